@@ -1,0 +1,14 @@
+// ASPIC_CHECK states what the code relies on; a violation is a bug in Aspic. On in debug and sanitizer builds.
+#pragma once
+
+namespace aspic {
+
+[[noreturn]] void check_failed(const char* condition, const char* file, int line);
+
+}  // namespace aspic
+
+#if defined(ASPIC_ENABLE_CHECKS)
+#define ASPIC_CHECK(condition) ((condition) ? void() : ::aspic::check_failed(#condition, __FILE__, __LINE__))
+#else
+#define ASPIC_CHECK(condition) void(sizeof(!(condition)))
+#endif

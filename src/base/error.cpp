@@ -1,0 +1,44 @@
+#include "base/error.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace aspic {
+namespace {
+
+size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 1; i <= a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i;
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string nearest_name(std::string_view word, const std::vector<std::string>& known) {
+  if (word.size() > 64) return "";  // no typing error is that long
+  const std::string* best = nullptr;
+  size_t best_distance = std::max<size_t>(2, word.size() / 3) + 1;
+  for (const std::string& name : known) {
+    const size_t distance = edit_distance(word, name);
+    if (distance < best_distance) best = &name, best_distance = distance;
+  }
+  return best ? *best : "";
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
+  if (const std::string name = nearest_name(word, known); !name.empty()) return " (did you mean '" + name + "'?)";
+  std::string list;
+  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+  return list.empty() ? "" : " (known: " + list + ")";
+}
+
+}  // namespace aspic

@@ -1,0 +1,40 @@
+// A model is everything that does not change while it is simulated: meshes, mass, the terms of V, pins.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "energy/energy.h"
+#include "energy/mass.h"
+#include "energy/tet_elasticity.h"
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+// A part of the mesh: vertices and tets of a body are consecutive.
+struct BodyRange {
+  std::string name;
+  int first_vertex = 0, vertex_count = 0;
+  int first_tet = 0, tet_count = 0;
+};
+
+// Vertices whose positions are prescribed exactly: x(t) = motion(x at the start, t). No vertex is in two pins.
+struct Pin {
+  std::string name;
+  std::vector<int> vertices;
+  std::function<Vec3d(const Vec3d& start, double time)> motion;  // empty: fixed where it starts
+};
+
+struct Model {
+  TetMesh mesh;  // all bodies one after another
+  std::vector<BodyRange> bodies;
+  std::vector<double> density;  // one per tet [kg/m^3]
+  std::unique_ptr<MassMatrix> mass;
+  std::vector<std::unique_ptr<TetElasticity>> elasticity;  // one per body
+  std::vector<std::unique_ptr<Energy>> loads;              // the other terms of V: gravity, springs, tractions
+  std::vector<std::unique_ptr<Energy>> damping;            // incremental potentials that dissipate
+  std::vector<Pin> pins;
+};
+
+}  // namespace aspic

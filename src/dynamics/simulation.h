@@ -1,0 +1,66 @@
+// Advances a model in time, one minimisation per step.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dynamics/model.h"
+#include "dynamics/state.h"
+#include "dynamics/step_report.h"
+
+namespace aspic {
+
+struct SolverOptions {
+  std::string method = "newton";           // "newton", "gradient_descent"
+  std::string linear = "auto";             // see linear_solver_names()
+  std::string definiteness = "on_demand";  // "exact", "clamped", "absolute", "on_demand"
+  MinimizeOptions minimize;
+};
+
+struct SimulationOptions {
+  double h = 0.01;                            // time step [s]
+  std::string integrator = "backward_euler";  // see integrator_names()
+  SolverOptions solver;
+};
+
+std::vector<std::string> integrator_names();
+std::vector<std::string> minimizer_names();
+std::vector<std::string> definiteness_names();
+
+class Simulation {
+ public:
+  // `initial` holds one entry per vertex of the model. Throws InvalidInput for an unknown name in the options and for
+  // a model that cannot be simulated: a vertex without mass in dynamics, a start with infinite energy.
+  Simulation(Model model, State initial, SimulationOptions options);
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+
+  StepReport step(const IterationObserver& observe = {});
+
+  const Model& model() const;
+  const State& state() const;
+  const SimulationOptions& options() const;
+  int steps_taken() const;
+
+  std::vector<std::string> potential_names() const;  // one per entry of StepReport::potential
+  double kinetic_energy() const;                     // [J]
+  std::vector<double> potential_energies() const;    // [J]
+  TetFields tet_fields() const;
+  std::string solver_description() const;  // e.g. "cholesky (1 856 vertices)": what auto chose and why
+
+  // Everything that the next steps depend on besides model and options; restoring continues to the same bits.
+  struct Snapshot {
+    State state;
+    State start;  // the state at time 0, to which pins and ledger refer
+    int steps_taken = 0;
+    std::vector<double> history;  // what the integrator and the minimiser remember
+  };
+  Snapshot snapshot() const;
+  void restore(const Snapshot& snapshot);  // throws InvalidInput when the sizes do not fit the model
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace aspic

@@ -1,0 +1,33 @@
+// What is known of a step after it was taken. A step that did not converge says so here.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "optimize/minimize.h"
+
+namespace aspic {
+
+struct StepReport {
+  int step = 0;     // 1 for the first
+  double time = 0;  // at the end of the step [s]
+
+  Status status = Status::converged;
+  Criterion criterion = Criterion::scale;
+  int iterations = 0, trials = 0, linear_iterations = 0, hessians = 0, projected_hessians = 0;
+  double residual = 0;            // |M a + dV/dx| over the free vertices [N]
+  double residual_threshold = 0;  // the residual that was asked for [N]; 0 for a scheme without a solve
+  double min_det_F = 0;
+
+  // The ledger: kinetic + potential changes by pin_work - damping_loss - numerical_loss + residual_work. [J]
+  double kinetic = 0;
+  std::vector<double> potential;  // one per term of V, named by Simulation::potential_names()
+  double potential_total = 0;
+  double pin_work = 0;        // by moving pins and moving targets of springs, in this step
+  double damping_loss = 0;    // by damping terms, in this step
+  double numerical_loss = 0;  // by the integrator, in this step
+  double residual_work = 0;   // by the forces that the solve left over
+  double ledger_error = 0;    // what does not add up
+  double seconds = 0;         // wall time of the step
+};
+
+}  // namespace aspic

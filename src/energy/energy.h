@@ -1,0 +1,41 @@
+// One term V_k(x) of the potential energy. A call covers all the elements of the term.
+#pragma once
+#include <limits>
+#include <span>
+#include <string_view>
+
+#include "linalg/block_sparse.h"
+
+namespace aspic {
+
+using Positions = std::span<const double>;  // x, 3 per vertex [m]
+
+// What to do with an element whose Hessian has negative eigenvalues: leave it, raise them to a small positive
+// number, or take their absolute value.
+enum class Definiteness { exact, clamped, absolute };
+
+struct StepContext {
+  Positions start;  // x at the start of the step
+  double h = 0;     // length of the step [s]; 0 in statics
+  double time = 0;  // the end of the step [s]
+};
+
+class Energy {
+ public:
+  virtual ~Energy() = default;
+  virtual std::string_view name() const = 0;
+
+  // Called before each step: moving targets follow the time, damping remembers the start.
+  virtual void begin_step(const StepContext&) {}
+
+  virtual double value(Positions x) const = 0;  // V(x) [J]; +inf where undefined
+  virtual void add_gradient(Positions x, double scale, std::span<double> g) const = 0;  // g += scale dV/dx
+  virtual void add_couplings(Couplings&) const {}  // which vertices share a 3x3 block
+  virtual void bind(const BlockPattern&) {}        // remember my slots
+  virtual void add_hessian(Positions x, double scale, Definiteness, BlockSparse& H) const = 0;  // H += scale d2V/dx2
+  virtual double max_step(Positions, std::span<const double>) const {  // largest safe alpha along d
+    return std::numeric_limits<double>::infinity();
+  }
+};
+
+}  // namespace aspic

@@ -1,0 +1,20 @@
+// V(x) = -sum f_i . x_i: gravity, body forces, dead tractions and pressures; forces that do not follow the body.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "energy/energy.h"
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+std::unique_ptr<Energy> make_linear_load(std::string name, std::vector<double> force);  // 3 per vertex [N]
+
+// Nodal forces, 3 per vertex, added into `force`:
+void add_body_force(const TetMesh& mesh, int tet, const Vec3d& force_density, std::span<double> force);  // [N/m^3]
+// A traction [Pa] over a triangle with corners X (in the rest shape); a pressure p is the traction -p n.
+void add_traction(const std::vector<Vec3d>& X, const Triangle& triangle, const Vec3d& traction,
+                  std::span<double> force);
+
+}  // namespace aspic

@@ -1,0 +1,30 @@
+// Springs to points in space, and springs between vertices.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "energy/energy.h"
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+struct PointSpring {
+  int vertex = 0;
+  double stiffness = 0;                      // k [N/m]: V = k/2 |x - target(t)|^2
+  std::function<Vec3d(double time)> target;  // [m]
+};
+std::unique_ptr<Energy> make_point_springs(std::string name, std::vector<PointSpring> springs);
+
+struct Spring {
+  int a = 0, b = 0;
+  double rest_length = 0;  // l0 [m]
+  double stiffness = 0;    // k [N/m]: V = k/2 (|xa - xb| - l0)^2
+};
+std::unique_ptr<Energy> make_springs(std::string name, std::vector<Spring> springs);
+
+// One spring along each edge of tets [first, first + count), k = stiffness for all.
+std::vector<Spring> edge_springs(const TetMesh& mesh, int first, int count, double stiffness);
+
+}  // namespace aspic

@@ -1,0 +1,35 @@
+// V(x) = sum over tets of volume * psi(F), F = Ds Dm^-1: linear tetrahedra of any registered material.
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "energy/energy.h"
+#include "material/registry.h"
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+// Quantities of each tet, in the order of the mesh.
+struct TetFields {
+  std::vector<double> energy_density;  // psi [J/m^3]
+  std::vector<double> det_F;           // J [1]
+  std::vector<double> cauchy;          // 6 per tet: xx yy zz xy yz zx [Pa]
+  std::vector<double> von_mises;       // [Pa]
+};
+
+class TetElasticity : public Energy {
+ public:
+  virtual double min_det_F(Positions x) const = 0;
+  virtual void evaluate(Positions x, TetFields& fields) const = 0;  // writes the entries of this term's tets
+};
+
+// Tets [first, first + parameters.size()) of the mesh. The mesh is only read here.
+std::unique_ptr<TetElasticity> make_tet_elasticity(std::string_view material, const TetMesh& mesh, int first,
+                                                   std::span<const MaterialParameters> parameters);
+
+// Kelvin-Voigt damping, rotation invariant: D(x) = h sum volume eta/2 |Edot|^2 with Edot = (E - E_start) / h and
+// E = (F'F - I) / 2. `viscosity` is eta of each tet [Pa s].
+std::unique_ptr<Energy> make_strain_rate_damping(const TetMesh& mesh, int first, std::span<const double> viscosity);
+
+}  // namespace aspic

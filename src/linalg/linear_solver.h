@@ -1,0 +1,36 @@
+// Solves H x = b for a symmetric positive definite H: analyze() once per pattern, factorize() once per matrix,
+// solve() once per right-hand side.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "linalg/block_sparse.h"
+
+namespace aspic {
+
+struct SolveReport {
+  bool ok = false;               // the residual is below the tolerance asked for
+  bool indefinite = false;       // negative curvature was met
+  int iterations = 0;            // 0 for a direct solver
+  double relative_residual = 0;  // |b - H x| / |b|; 0 when not measured
+};
+
+class LinearSolver {
+ public:
+  virtual ~LinearSolver() = default;
+  virtual std::string_view name() const = 0;
+  virtual void analyze(const BlockPattern& pattern) = 0;
+  virtual bool factorize(const BlockSparse& H) = 0;  // false: H is not positive definite. H must outlive the solves.
+  // `tolerance` bounds |b - H x| / |b|; a direct solver ignores it. x holds the answer, 3 numbers per row.
+  virtual SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) = 0;
+};
+
+// "auto", "cholesky", "block_jacobi" (conjugate gradients). Throws InvalidInput for another name.
+std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name);
+std::vector<std::string> linear_solver_names();
+
+}  // namespace aspic

@@ -1,0 +1,17 @@
+// Small-strain elastic constants. Every material reproduces them at rest, whatever its own parameters are.
+#pragma once
+
+namespace aspic {
+
+struct Lame {
+  double mu = 0, lambda = 0;  // [Pa]
+};
+
+inline Lame lame_from_young_poisson(double young, double poisson) {
+  return {young / (2 * (1 + poisson)), young * poisson / ((1 + poisson) * (1 - 2 * poisson))};
+}
+inline Lame lame_from_shear_bulk(double shear, double bulk) { return {shear, bulk - 2 * shear / 3}; }
+inline double young_modulus(Lame l) { return l.mu * (3 * l.lambda + 2 * l.mu) / (l.lambda + l.mu); }
+inline double poisson_ratio(Lame l) { return l.lambda / (2 * (l.lambda + l.mu)); }
+
+}  // namespace aspic

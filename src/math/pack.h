@@ -1,0 +1,68 @@
+// A Pack is kPackWidth doubles that move together. The only file that knows that SIMD lanes exist.
+#pragma once
+#include <cmath>
+
+namespace aspic {
+
+#if defined(__AVX512F__)
+inline constexpr int kPackWidth = 8;
+#elif defined(__AVX__)
+inline constexpr int kPackWidth = 4;
+#else
+inline constexpr int kPackWidth = 2;
+#endif
+
+struct Pack {
+  typedef double Lanes __attribute__((vector_size(kPackWidth * sizeof(double))));
+  Lanes v;
+  Pack() = default;
+  Pack(double s) : v(s - Lanes{}) {}
+  Pack(Lanes lanes) : v(lanes) {}
+  double operator[](int lane) const { return v[lane]; }
+  void set(int lane, double s) { v[lane] = s; }
+  friend Pack operator+(Pack a, Pack b) { return a.v + b.v; }
+  friend Pack operator-(Pack a, Pack b) { return a.v - b.v; }
+  friend Pack operator*(Pack a, Pack b) { return a.v * b.v; }
+  friend Pack operator/(Pack a, Pack b) { return a.v / b.v; }
+  friend Pack operator-(Pack a) { return -a.v; }
+  Pack& operator+=(Pack b) { return v += b.v, *this; }
+  Pack& operator-=(Pack b) { return v -= b.v, *this; }
+  Pack& operator*=(Pack b) { return v *= b.v, *this; }
+};
+
+// Applies fn lane by lane; a vector math library can replace it here and nowhere else.
+template <class Fn>
+Pack map(Pack a, Fn fn) {
+  for (int i = 0; i < kPackWidth; ++i) a.v[i] = fn(a[i]);
+  return a;
+}
+inline Pack sqrt(Pack a) {
+  return map(a, [](double x) { return std::sqrt(x); });
+}
+inline Pack exp(Pack a) {
+  return map(a, [](double x) { return std::exp(x); });
+}
+inline Pack log(Pack a) {
+  return map(a, [](double x) { return std::log(x); });
+}
+inline Pack cbrt(Pack a) {
+  return map(a, [](double x) { return std::cbrt(x); });
+}
+
+// condition > 0 ? a : b, lane by lane.
+inline Pack where_positive(Pack condition, Pack a, Pack b) { return condition.v > 0 ? a.v : b.v; }
+inline double where_positive(double condition, double a, double b) { return condition > 0 ? a : b; }
+
+// Lanes are added in order, so that the sum rounds alike everywhere.
+inline double sum(Pack a) {
+  double s = 0;
+  for (int i = 0; i < kPackWidth; ++i) s += a[i];
+  return s;
+}
+inline double min(Pack a) {
+  double m = a[0];
+  for (int i = 1; i < kPackWidth; ++i) m = a[i] < m ? a[i] : m;
+  return m;
+}
+
+}  // namespace aspic

@@ -1,0 +1,41 @@
+// What is wrong or suspicious about a mesh, each finding named, with the indices and the remedy.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+enum class Severity { error, warning, note };  // an error stops a simulation
+
+struct Finding {
+  Severity severity = Severity::note;
+  std::string name;          // "inverted_tets", "zero_volume_tets", "slivers", "duplicate_vertices", ...
+  std::string message;       // one sentence with the count and the worst value
+  std::string remedy;        // what to do, "--repair" where that helps
+  std::vector<int> indices;  // of the elements, vertices or triangles meant
+  bool repairable = false;
+};
+
+struct MeshQuality {
+  double min_volume = 0, max_volume = 0, total_volume = 0;  // [m^3]
+  double min_dihedral = 0, max_dihedral = 0;                // [degrees]
+  double min_mean_ratio = 0, average_mean_ratio = 0;        // 1: regular, 0: flat
+  std::vector<int> mean_ratio_histogram;                    // 10 bins of [0, 1]
+  int components = 0;
+  Vec3d lower{}, upper{};  // bounding box [m]
+};
+
+std::vector<Finding> diagnose(const TetMesh& mesh);
+std::vector<Finding> diagnose(const TriMesh& mesh);  // open, non-manifold, self-intersecting, orientation, degenerate
+MeshQuality quality(const TetMesh& mesh);
+
+// Does what can be done without guessing: flips inverted tets, removes zero-volume ones, merges duplicate vertices,
+// drops unreferenced ones. Returns one sentence per action; empty when nothing was done.
+std::vector<std::string> repair(TetMesh& mesh);
+std::vector<std::string> repair(TriMesh& mesh);
+
+bool has_errors(const std::vector<Finding>& findings);
+
+}  // namespace aspic

@@ -1,0 +1,20 @@
+// Meshes of simple shapes. Sizes are in metres; counts are at least 1 (ASPIC_CHECK).
+#pragma once
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+enum class BoxCut {
+  kuhn,  // six congruent-by-reflection tets per cell, conforming
+  five,  // five tets per cell, alternating
+};
+
+// [lower, upper] cut into cells[0] x cells[1] x cells[2]. Vertex (i, j, k) has index (i (ny + 1) + j) (nz + 1) + k.
+TetMesh make_box(const Vec3d& lower, const Vec3d& upper, const std::array<int, 3>& cells, BoxCut cut = BoxCut::kuhn);
+
+// Solid shapes mapped from boxes: no degenerate tets, roughly `size` long edges.
+TetMesh make_cylinder(double radius, double height, double size);           // axis z from 0 to height
+TetMesh make_sphere(double radius, double size);                            // about the origin
+TetMesh make_torus(double major_radius, double minor_radius, double size);  // about the z axis
+
+}  // namespace aspic

@@ -1,0 +1,38 @@
+// A tetrahedral mesh at rest, and a triangle mesh. Plain data: no adjacency, no physics.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "math/small.h"
+
+namespace aspic {
+
+using Tet = std::array<int, 4>;
+using Triangle = std::array<int, 3>;
+
+struct TetMesh {
+  std::vector<Vec3d> rest;  // X, one per vertex [m]
+  std::vector<Tet> tets;    // positively oriented: volume(mesh, t) > 0
+  std::vector<int> region;  // label of each tet; empty when the mesh has none
+
+  int vertex_count() const { return static_cast<int>(rest.size()); }
+  int tet_count() const { return static_cast<int>(tets.size()); }
+};
+
+struct TriMesh {
+  std::vector<Vec3d> vertices;      // [m]
+  std::vector<Triangle> triangles;  // counter-clockwise seen from outside
+
+  int vertex_count() const { return static_cast<int>(vertices.size()); }
+  int triangle_count() const { return static_cast<int>(triangles.size()); }
+};
+
+// Dm = [X1 - X0, X2 - X0, X3 - X0]
+inline Mat3d edge_matrix(const TetMesh& mesh, int tet) {
+  const auto& [a, b, c, d] = mesh.tets[tet];
+  const auto& X = mesh.rest;
+  return from_columns(X[b] - X[a], X[c] - X[a], X[d] - X[a]);
+}
+inline double volume(const TetMesh& mesh, int tet) { return determinant(edge_matrix(mesh, tet)) / 6; }  // signed [m^3]
+
+}  // namespace aspic

@@ -1,0 +1,47 @@
+// From a TOML file, or from a mesh alone, to a simulation that is ready to run.
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dynamics/simulation.h"
+#include "mesh/embed.h"
+
+namespace aspic {
+
+struct OutputOptions {
+  double every = 0;  // seconds of simulated time between frames; 0: every step
+  bool vtu = true, obj = false, ply = false, pc2 = true, usd = true;
+  double checkpoint_every = 0;  // seconds of wall time between checkpoints; 0: with every frame
+};
+
+struct Skin {
+  TriMesh rest;         // the fine surface, or the boundary of the body
+  Embedding embedding;  // into the vertices of the model
+  std::string body;
+};
+
+struct Scene {
+  std::string name;                // file name without extension
+  std::string resolved;            // TOML with every default filled in: rerunning it gives the same bits
+  std::vector<std::string> notes;  // each default that was chosen, with its reason; warnings of the doctor
+  Simulation simulation;
+  std::vector<Skin> skins;  // one per body
+  int steps = 0;            // of the whole run
+  OutputOptions output;
+};
+
+struct SceneOptions {
+  std::vector<std::string> overrides;  // "material.young=2e5", "time.step=0.005", "body.bunny.scale=2"
+  std::filesystem::path mesher;        // aspic-mesh; empty: found by itself
+};
+
+// A .toml file is a scene; any mesh file becomes one with sensible defaults. Throws InvalidInput with file, line,
+// column, value, remedy and nearest known name.
+Scene load_scene(const std::filesystem::path& path, const SceneOptions& options = {});
+
+// The same schema as a page: docs/scene.md is this text.
+std::string scene_reference();
+
+}  // namespace aspic
