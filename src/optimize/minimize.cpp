@@ -72,7 +72,10 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
     if (report.gradient_norm <= E.gradient_round_off()) return report.status = Status::round_off, report;
     if (i == options.max_iterations) return report.status = Status::iteration_limit, report;
 
-    Iteration iteration{.index = i, .value = report.value, .gradient_norm = report.gradient_norm};
+    Iteration iteration;
+    iteration.index = i;
+    iteration.value = report.value;
+    iteration.gradient_norm = report.gradient_norm;
     const double ratio = report.gradient_norm / report.first_gradient_norm;
     const bool found = direction.compute(E, x, g_, ratio, d_, iteration.direction);
     report.hessians += iteration.direction.hessians;
