@@ -100,7 +100,9 @@ TEST(Cylinder, IsSoundAtAnySize) {
     const int sides = 6 * std::max(1, static_cast<int>(std::lround(1 / size)));
     const double polygon = sides / 2.0 * std::sin(2 * std::numbers::pi / sides);  // area of the regular polygon
     EXPECT_NEAR(total_volume(mesh), 2 * polygon, 1e-12);
-    if (size <= 1) EXPECT_GT(smallest_dihedral(mesh), 33);
+    if (size <= 1) {
+      EXPECT_GT(smallest_dihedral(mesh), 33);
+    }
   }
 }
 
@@ -125,7 +127,9 @@ TEST(Torus, IsSoundAndHasOneHole) {
     SCOPED_TRACE(size);
     const TetMesh mesh = make_torus(1, 0.3, size);
     expect_sound(mesh, 0);
-    if (size <= 0.3) EXPECT_GT(smallest_dihedral(mesh), 28.5);
+    if (size <= 0.3) {
+      EXPECT_GT(smallest_dihedral(mesh), 28.5);
+    }
   }
   expect_sound(make_torus(1, 0.999, 0.1), 0);
   expect_sound(make_torus(1, 0.01, 0.1), 0);

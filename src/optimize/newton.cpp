@@ -22,6 +22,8 @@ HessianKind first_choice(NewtonDefiniteness definiteness) {
 Newton::Newton(std::unique_ptr<LinearSolver> solver, NewtonDefiniteness definiteness)
     : solver_(std::move(solver)), definiteness_(definiteness) {}
 
+std::string Newton::description() const { return "newton, " + solver_->description(); }
+
 // H d = -g, loosely while the minimum is far away and tightly near it, so that convergence stays superlinear
 // [Eisenstat and Walker 1996].
 bool Newton::compute(Objective& E, std::span<const double> x, std::span<const double> g, double gradient_ratio,
