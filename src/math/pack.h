@@ -4,6 +4,12 @@
 
 namespace aspic {
 
+// So that unqualified calls on a double never convert to Pack.
+using std::cbrt;
+using std::exp;
+using std::log;
+using std::sqrt;
+
 #if defined(__AVX512F__)
 inline constexpr int kPackWidth = 8;
 #elif defined(__AVX__)

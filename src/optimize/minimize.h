@@ -18,6 +18,7 @@ enum class Status {
   iteration_limit,  // max_iterations reached first
   stuck,            // the line search found no decrease
   no_descent,       // no descent direction could be computed
+  interrupted,      // the observer asked to stop
   undefined,        // value or gradient is not finite at the start
 };
 std::string_view to_string(Status status);

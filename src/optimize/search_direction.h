@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "linalg/linear_solver.h"
@@ -18,6 +19,7 @@ class SearchDirection {
  public:
   virtual ~SearchDirection() = default;
   virtual std::string_view name() const = 0;
+  virtual std::string description() const { return std::string(name()); }  // with what it decided, and why
   // Writes d; false when no descent direction could be found. gradient_ratio is |g| / |g first|.
   virtual bool compute(Objective& E, std::span<const double> x, std::span<const double> g, double gradient_ratio,
                        std::span<double> d, DirectionReport& report) = 0;
@@ -38,6 +40,7 @@ class Newton : public SearchDirection {
   explicit Newton(std::unique_ptr<LinearSolver> solver,
                   NewtonDefiniteness definiteness = NewtonDefiniteness::on_demand);
   std::string_view name() const override { return "newton"; }
+  std::string description() const override;
   bool compute(Objective& E, std::span<const double> x, std::span<const double> g, double gradient_ratio,
                std::span<double> d, DirectionReport& report) override;
   const LinearSolver& solver() const { return *solver_; }
