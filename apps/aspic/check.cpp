@@ -27,9 +27,12 @@ constexpr size_t kIndicesShown = 8;
 
 std::string_view to_string(Severity severity) {
   switch (severity) {
-    case Severity::error: return "error";
-    case Severity::warning: return "warning";
-    case Severity::note: return "note";
+    case Severity::error:
+      return "error";
+    case Severity::warning:
+      return "warning";
+    case Severity::note:
+      return "note";
   }
   return "";
 }
@@ -86,7 +89,8 @@ int check_mesh(const Arguments& arguments, Mesh mesh) {
   std::vector<Finding> findings = examine(mesh);
   if (arguments.repair) {
     const std::vector<std::string> actions = repair(mesh);
-    fmt::print("\nrepair: {}\n", actions.empty() ? "nothing could be done" : fmt::format("{}", fmt::join(actions, "\n  ")));
+    fmt::print("\nrepair: {}\n",
+               actions.empty() ? "nothing could be done" : fmt::format("{}", fmt::join(actions, "\n  ")));
     write_mesh(arguments.output, mesh);
     fmt::print("{}: {}\n", arguments.output.string(), counts(mesh));
     findings = examine(mesh);
@@ -108,8 +112,8 @@ TetMesh body_mesh(const Model& model, const BodyRange& body) {
 
 int check_scene(const Arguments& arguments) {
   if (arguments.repair) {
-    throw InvalidInput(fmt::format("{}: --repair works on a mesh file; name the mesh of the scene instead",
-                                   arguments.input.string()));
+    throw InvalidInput(
+        fmt::format("{}: --repair works on a mesh file; name the mesh of the scene instead", arguments.input.string()));
   }
   const Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides, .mesher = {}});
   const Model& model = scene.simulation.model();

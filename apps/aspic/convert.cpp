@@ -67,9 +67,9 @@ std::string format_table() {
   std::string text = "\nFormats (r: read, w: write):           tets  triangles\n";
   for (const MeshFormat& format : mesh_formats()) {
     const auto mark = [](bool reads, bool writes) { return std::string(reads ? "r" : "-") + (writes ? "w" : "-"); };
-    text += fmt::format("  {:<6} {:<30} {}    {}\n", format.extension, format.name,
-                        mark(format.reads_tets, format.writes_tets),
-                        mark(format.reads_triangles, format.writes_triangles));
+    text +=
+        fmt::format("  {:<6} {:<30} {}    {}\n", format.extension, format.name,
+                    mark(format.reads_tets, format.writes_tets), mark(format.reads_triangles, format.writes_triangles));
   }
   return text;
 }

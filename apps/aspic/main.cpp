@@ -1,4 +1,5 @@
-// The program `aspic`: parses the command line, runs one command, turns what went wrong into a message and an exit code.
+// The program `aspic`: parses the command line, runs one command, turns what went wrong into a message and an exit
+// code.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

@@ -62,7 +62,7 @@ void Progress::show(const StepReport& report) {
                                  duration_text(per_step * (last_ - report.step)));
   if (terminal_) {
     const int filled = static_cast<int>(done * kBarWidth);
-    line = "[" + std::string(filled, '#') + std::string(kBarWidth - filled, '.') + "] " + line;
+    line = fmt::format("[{:#<{}}{:.<{}}] {}", "", filled, "", kBarWidth - filled, line);
     line.resize(std::min(line.size(), terminal_width(stream_) - 1));
     fmt::print(stream_, "\r{}\x1b[K", line);  // erases what a longer line left
     drawn_ = true;
