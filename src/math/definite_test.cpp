@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 namespace aspic {
@@ -29,7 +30,9 @@ Mat9d with_spectrum(const Spectrum& values, const std::array<double, 81>& Q) {
 Spectrum spectrum(const Mat9d& H) {
   std::array<double, 81> A;
   std::copy(H.a, H.a + 81, A.begin());
-  return symmetric_eigen<9>(A).values;
+  Spectrum values = symmetric_eigen<9>(A).values;
+  std::sort(values.begin(), values.end());
+  return values;
 }
 
 TEST(SymmetricEigen, FindsAGivenSpectrum) {
@@ -104,6 +107,29 @@ TEST(MakeDefinite, ClampsOrReflectsTheNegativeEigenvaluesOnly) {
     const Mat9d H_expected = with_spectrum(expected, Q);
     for (int i = 0; i < 81; ++i) EXPECT_NEAR(H.a[i], H_expected.a[i], 1e-13);
     EXPECT_EQ(indefinite_lanes(H), 0u);
+  }
+}
+
+TEST(MakeDefinite, FiltersTheFailingLanesAndLeavesTheOthersBitwiseAlone) {
+  std::mt19937 random(8);
+  Mat9<Pack> before;
+  Mat9d alone[kPackWidth];
+  for (int lane = 0; lane < kPackWidth; ++lane) {
+    const double lowest = lane % 2 == 1 ? -0.5 * lane : 0.0;
+    alone[lane] = with_spectrum({lowest, 0, 0, 1, 2, 3, 4, 5, 6}, random_basis(random));
+    for (int i = 0; i < 81; ++i) before.a[i].set(lane, alone[lane].a[i]);
+  }
+  Mat9<Pack> after = before;
+  EXPECT_EQ(make_definite(after, EigenvalueFilter::clamp), 0xaau & ((1u << kPackWidth) - 1));
+  EXPECT_EQ(indefinite_lanes(after), 0u);
+  for (int lane = 0; lane < kPackWidth; ++lane) {
+    make_definite(alone[lane], EigenvalueFilter::clamp);
+    for (int i = 0; i < 81; ++i) {
+      EXPECT_NEAR(after.a[i][lane], alone[lane].a[i], 1e-13);
+      if (lane % 2 == 0) {
+        EXPECT_EQ(after.a[i][lane], before.a[i][lane]);
+      }
+    }
   }
 }
 

@@ -16,6 +16,6 @@ struct Svd3 {
 
 // F must be finite. F = 0 gives U = V = I.
 Svd3<double> svd3(const Mat3d& F);
-Svd3<Pack> svd3(const Mat3<Pack>& F);  // lane by lane
+Svd3<Pack> svd3(const Mat3<Pack>& F);
 
 }  // namespace aspic

@@ -86,9 +86,9 @@ TEST(Svd3, OverPackGivesInEachLaneWhatDoubleGives) {
   const Svd3<Pack> f = svd3(together);
   for (int l = 0; l < kPackWidth; ++l) {
     const Svd3<double> g = svd3(alone[l]);
-    for (int i = 0; i < 9; ++i) EXPECT_EQ(f.U.a[i][l], g.U.a[i]);
-    for (int i = 0; i < 9; ++i) EXPECT_EQ(f.V.a[i][l], g.V.a[i]);
-    for (int i = 0; i < 3; ++i) EXPECT_EQ(f.s[i][l], g.s[i]);
+    for (int i = 0; i < 9; ++i) EXPECT_NEAR(f.U.a[i][l], g.U.a[i], 1e-13);
+    for (int i = 0; i < 9; ++i) EXPECT_NEAR(f.V.a[i][l], g.V.a[i], 1e-13);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(f.s[i][l], g.s[i], kRoundOff);
   }
 }
 
