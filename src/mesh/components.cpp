@@ -1,5 +1,7 @@
 #include "mesh/components.h"
 
+#include <cstddef>
+
 #include "mesh/disjoint_sets.h"
 
 namespace aspic {

@@ -1,6 +1,7 @@
 // How the elements of a mesh meet. All lists are in ascending order.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "mesh/tet_mesh.h"
