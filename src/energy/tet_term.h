@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "energy/coloring.h"
+#include "energy/make_tet_term.h"
 #include "energy/tet_batch.h"
 #include "energy/tet_elasticity.h"
 #include "material/material.h"
@@ -26,12 +27,12 @@ class TetTerm : public TetElasticity {
   // Tets [first, first + parameters.size()) of the mesh.
   TetTerm(std::string name, const TetMesh& mesh, int first, std::span<const Params<double>> parameters)
       : name_(std::move(name)) {
-    const std::vector<int> order = locality_order(mesh, first, static_cast<int>(parameters.size()));
+    const std::vector<int> order = locality_order(mesh, first, parameters.size());
     for (size_t i = 0; i < order.size(); i += kPackWidth) {
       const std::span<const int> tets(&order[i], std::min<size_t>(kPackWidth, order.size() - i));
       const TetBatch& batch = batches_.emplace_back(mesh, tets);
-      Params<double> lanes[kPackWidth];
-      for (int l = 0; l < kPackWidth; ++l) lanes[l] = parameters[batch.tet[l] - first];
+      std::vector<Params<double>> lanes;
+      for (const int tet : batch.tet) lanes.push_back(parameters[tet - first]);
       params_.push_back(pack_params<M>(lanes));
     }
     color(mesh.vertex_count());
@@ -90,9 +91,24 @@ class TetTerm : public TetElasticity {
   std::vector<Params<Pack>> params_;
 
  private:
+  // Tets [first, first + count), neighbours near each other.
+  static std::vector<int> locality_order(const TetMesh& mesh, int first, size_t count) {
+    const std::vector<Vec3d> center = centroids(mesh);
+    std::vector<int> order = morton_order(std::span(center).subspan(first, count));
+    for (int& tet : order) tet += first;
+    return order;
+  }
+
   static void project(Mat9<Pack>& A, Definiteness definiteness) {
-    const Eigenvalues keep = definiteness == Definiteness::clamped ? Eigenvalues::clamped : Eigenvalues::absolute;
-    make_lanes_definite(A, keep);
+    const unsigned failed = indefinite_lanes(A);
+    const auto filter = definiteness == Definiteness::clamped ? EigenvalueFilter::clamp : EigenvalueFilter::absolute;
+    for (int l = 0; l < kPackWidth; ++l) {
+      if (!(failed >> l & 1)) continue;
+      Mat9d lane;
+      for (int i = 0; i < 81; ++i) lane.a[i] = A.a[i][l];
+      make_definite(lane, filter);
+      for (int i = 0; i < 81; ++i) A.a[i].set(l, lane.a[i]);
+    }
   }
 
   static void write(int tet, int lane, Pack psi, Pack J, const Mat3<Pack>& s, TetFields& fields) {
@@ -149,5 +165,13 @@ class TetTerm : public TetElasticity {
   ColorClasses colors_;
   mutable std::vector<double> partial_;  // scratch of reduce
 };
+
+template <class M>
+std::unique_ptr<TetElasticity> make_tet_term(const TetMesh& mesh, int first,
+                                             std::span<const MaterialParameters> parameters) {
+  std::vector<typename M::template Params<double>> own;
+  for (const MaterialParameters& p : parameters) own.push_back(M::params(p));
+  return std::make_unique<TetTerm<M>>("elasticity", mesh, first, own);
+}
 
 }  // namespace aspic
