@@ -1,0 +1,142 @@
+#include "linalg/block_sparse.h"
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+
+#include "base/check.h"
+#include "base/parallel.h"
+
+namespace aspic {
+namespace {
+
+constexpr int kRowsPerTask = 512;  // of a product; each row is summed by one thread in a fixed order
+
+int task_count(int rows) { return (rows + kRowsPerTask - 1) / kRowsPerTask; }
+
+// Turns counts, stored one place to the right, into starts.
+void accumulate(std::vector<int64_t>& start) { std::partial_sum(start.begin(), start.end(), start.begin()); }
+
+// Lower-triangle columns bucketed by row, repeats included; the diagonal is among them.
+struct Buckets {
+  std::vector<int64_t> start;
+  std::vector<int> column;
+};
+
+Buckets sort_by_row(int rows, const Couplings& couplings) {
+  Buckets buckets{std::vector<int64_t>(rows + 1, 1), {}};
+  buckets.start[0] = 0;
+  for (const auto& [i, j] : couplings) {
+    ASPIC_CHECK(0 <= i && i < rows && 0 <= j && j < rows);
+    if (i != j) ++buckets.start[std::max(i, j) + 1];
+  }
+  accumulate(buckets.start);
+  buckets.column.resize(buckets.start[rows]);
+  std::vector<int64_t> next(buckets.start.begin(), buckets.start.end() - 1);
+  for (const auto& [i, j] : couplings)
+    if (i != j) buckets.column[next[std::max(i, j)]++] = std::min(i, j);
+  for (int row = 0; row < rows; ++row) buckets.column[next[row]] = row;
+  return buckets;
+}
+
+// Sorts the columns of each row and counts the distinct ones.
+std::vector<int64_t> sort_columns(Buckets& buckets) {
+  const int rows = static_cast<int>(buckets.start.size()) - 1;
+  std::vector<int64_t> distinct(rows + 1, 0);
+  parallel_chunks(rows, [&](int first, int last) {
+    for (int row = first; row < last; ++row) {
+      const auto begin = buckets.column.begin() + buckets.start[row],
+                 end = buckets.column.begin() + buckets.start[row + 1];
+      std::sort(begin, end);
+      distinct[row + 1] = std::unique(begin, end) - begin;
+    }
+  });
+  return distinct;
+}
+
+void add_upper_view(BlockPattern& pattern) {
+  const int rows = pattern.rows();
+  const int64_t off_diagonal = pattern.block_count() - rows;
+  pattern.upper_start.assign(rows + 1, 0);
+  pattern.upper_row.resize(off_diagonal);
+  pattern.upper_slot.resize(off_diagonal);
+  for (int row = 0; row < rows; ++row)
+    for (int64_t s = pattern.row_start[row]; s < pattern.diagonal(row); ++s)
+      ++pattern.upper_start[pattern.column[s] + 1];
+  accumulate(pattern.upper_start);
+  std::vector<int64_t> next(pattern.upper_start.begin(), pattern.upper_start.end() - 1);
+  for (int row = 0; row < rows; ++row)
+    for (int64_t s = pattern.row_start[row]; s < pattern.diagonal(row); ++s) {
+      const int64_t place = next[pattern.column[s]]++;
+      pattern.upper_row[place] = row;
+      pattern.upper_slot[place] = s;
+    }
+}
+
+uint64_t next_version() {
+  static std::atomic<uint64_t> version = 0;
+  return ++version;
+}
+
+// y += A x and y += A' x for one column-major block.
+void add_product(const double* A, const double* x, double* y) {
+  for (int r = 0; r < 3; ++r) y[r] += A[r] * x[0] + A[r + 3] * x[1] + A[r + 6] * x[2];
+}
+void add_transposed_product(const double* A, const double* x, double* y) {
+  for (int r = 0; r < 3; ++r) y[r] += A[3 * r] * x[0] + A[3 * r + 1] * x[1] + A[3 * r + 2] * x[2];
+}
+
+}  // namespace
+
+int64_t BlockPattern::slot(int row, int col) const {
+  ASPIC_CHECK(0 <= col && col <= row && row < rows());
+  const auto begin = column.begin() + row_start[row], end = column.begin() + row_start[row + 1];
+  const auto found = std::lower_bound(begin, end, col);
+  ASPIC_CHECK(found != end && *found == col);
+  return found - column.begin();
+}
+
+BlockPattern make_pattern(int rows, Couplings couplings) {
+  ASPIC_CHECK(rows >= 0);
+  Buckets buckets = sort_by_row(rows, couplings);
+  Couplings().swap(couplings);  // large meshes need the memory now
+  BlockPattern pattern;
+  pattern.row_start = sort_columns(buckets);
+  accumulate(pattern.row_start);
+  pattern.column.resize(pattern.row_start[rows]);
+  for (int row = 0; row < rows; ++row) {
+    const int64_t count = pattern.row_start[row + 1] - pattern.row_start[row];
+    std::copy_n(buckets.column.begin() + buckets.start[row], count, pattern.column.begin() + pattern.row_start[row]);
+  }
+  add_upper_view(pattern);
+  pattern.version = next_version();
+  return pattern;
+}
+
+void BlockSparse::set_zero() {
+  auto clear_rows = [this](int first, int last) {
+    const auto begin = block.begin();
+    std::fill(begin + pattern->row_start[first], begin + pattern->row_start[last], Mat3d{});
+  };
+  parallel_chunks(pattern->rows(), clear_rows);
+}
+
+void BlockSparse::multiply(std::span<const double> x, std::span<double> y) const {
+  const BlockPattern& p = *pattern;
+  const int rows = p.rows();
+  ASPIC_CHECK(x.size() == 3 * static_cast<size_t>(rows) && y.size() == x.size() && x.data() != y.data());
+  auto rows_of_task = [&](int task) {
+    const int last = std::min(rows, (task + 1) * kRowsPerTask);
+    for (int row = task * kRowsPerTask; row < last; ++row) {
+      double sum[3] = {0, 0, 0};
+      for (int64_t s = p.row_start[row]; s < p.row_start[row + 1]; ++s)
+        add_product(block[s].a, &x[3 * static_cast<size_t>(p.column[s])], sum);
+      for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u)
+        add_transposed_product(block[p.upper_slot[u]].a, &x[3 * static_cast<size_t>(p.upper_row[u])], sum);
+      std::copy_n(sum, 3, &y[3 * static_cast<size_t>(row)]);
+    }
+  };
+  parallel_for(task_count(rows), std::ref(rows_of_task));  // std::ref: no allocation inside std::function
+}
+
+}  // namespace aspic

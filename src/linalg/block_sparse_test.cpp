@@ -1,0 +1,110 @@
+#include "linalg/block_sparse.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <set>
+
+#include "base/parallel.h"
+#include "linalg/matrices_test.h"
+
+namespace aspic {
+namespace {
+
+using namespace test;
+
+TEST(BlockPattern, HasEveryCouplingOnceAndEveryDiagonal) {
+  const Couplings couplings = random_couplings(50, 400, 1);
+  const BlockPattern p = make_pattern(50, couplings);
+  std::set<std::pair<int, int>> expected, found;
+  for (int r = 0; r < 50; ++r) expected.emplace(r, r);
+  for (const auto& [i, j] : couplings) expected.emplace(std::max(i, j), std::min(i, j));
+  for (int r = 0; r < p.rows(); ++r) {
+    EXPECT_TRUE(std::is_sorted(p.column.begin() + p.row_start[r], p.column.begin() + p.row_start[r + 1]));
+    EXPECT_EQ(p.column[p.diagonal(r)], r);
+    for (int64_t s = p.row_start[r]; s < p.row_start[r + 1]; ++s) found.emplace(r, p.column[s]);
+  }
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ(p.block_count(), static_cast<int64_t>(expected.size()));
+}
+
+TEST(BlockPattern, SlotFindsEachBlock) {
+  const BlockPattern p = make_pattern(40, random_couplings(40, 200, 2));
+  for (int r = 0; r < p.rows(); ++r)
+    for (int64_t s = p.row_start[r]; s < p.row_start[r + 1]; ++s) EXPECT_EQ(p.slot(r, p.column[s]), s);
+}
+
+TEST(BlockPattern, UpperViewNamesTheSameBlocks) {
+  const BlockPattern p = make_pattern(60, random_couplings(60, 300, 3));
+  EXPECT_EQ(p.upper_start.back(), p.block_count() - p.rows());
+  for (int c = 0; c < p.rows(); ++c)
+    for (int64_t u = p.upper_start[c]; u < p.upper_start[c + 1]; ++u) {
+      EXPECT_GT(p.upper_row[u], c);
+      EXPECT_EQ(p.upper_slot[u], p.slot(p.upper_row[u], c));
+    }
+}
+
+TEST(BlockPattern, OrderAndRepeatsOfCouplingsDoNotMatter) {
+  Couplings couplings = random_couplings(30, 100, 4);
+  const BlockPattern p = make_pattern(30, couplings);
+  std::reverse(couplings.begin(), couplings.end());
+  for (auto& [i, j] : couplings) std::swap(i, j);
+  couplings.insert(couplings.end(), couplings.begin(), couplings.begin() + 50);
+  const BlockPattern q = make_pattern(30, couplings);
+  EXPECT_EQ(p.row_start, q.row_start);
+  EXPECT_EQ(p.column, q.column);
+  EXPECT_EQ(p.upper_slot, q.upper_slot);
+}
+
+TEST(BlockPattern, VersionsDiffer) { EXPECT_NE(make_pattern(3, {}).version, make_pattern(3, {}).version); }
+
+TEST(BlockPattern, MayBeEmpty) {
+  const BlockPattern p = make_pattern(0, {});
+  EXPECT_EQ(p.rows(), 0);
+  EXPECT_EQ(p.block_count(), 0);
+  BlockSparse H(p);
+  H.set_zero();
+  H.multiply({}, {});
+}
+
+TEST(BlockSparse, ProductIsThatOfTheDenseSymmetricMatrix) {
+  for (const int rows : {1, 2, 3, 17, 200}) {
+    const Matrix H = random_dominant(rows, random_couplings(rows, 5 * rows, 5), 6);
+    const std::vector<double> x = random_vector(3 * rows, 7);
+    std::vector<double> y(x.size());
+    H.values.multiply(x, y);
+    const std::vector<double> entries = dense(H.values);
+    const Eigen::Map<const Eigen::MatrixXd> A(entries.data(), 3 * rows, 3 * rows);
+    const Eigen::Map<const Eigen::VectorXd> X(x.data(), 3 * rows), Y(y.data(), 3 * rows);
+    EXPECT_EQ(A, A.transpose());
+    const Eigen::VectorXd expected = A * X;
+    // Each entry sums at most 3 rows products: its error is below 3 rows eps |A| |x|.
+    const double bound = 3 * rows * 2.3e-16 * (A.cwiseAbs() * X.cwiseAbs()).maxCoeff();
+    EXPECT_LE((Y - expected).cwiseAbs().maxCoeff(), bound);
+  }
+}
+
+TEST(BlockSparse, SetZeroClearsEveryBlock) {
+  Matrix H = random_dominant(5000, random_couplings(5000, 9000, 8), 9);
+  H.values.set_zero();
+  for (const Mat3d& block : H.values.block) ASSERT_EQ(squared_norm(block), 0);
+}
+
+TEST(BlockSparse, ProductHasTheSameBitsForAnyThreadCount) {
+  const Matrix H = spring_lattice({.nx = 30, .ny = 14, .nz = 14});
+  const std::vector<double> x = random_vector(3 * H.rows(), 10);
+  const int threads = thread_count();
+  std::vector<double> expected(x.size()), y(x.size());
+  set_thread_count(1);
+  H.values.multiply(x, expected);
+  for (const int count : {2, 3, 8}) {
+    set_thread_count(count);
+    H.values.multiply(x, y);
+    EXPECT_EQ(y, expected) << count << " threads";
+  }
+  set_thread_count(threads);
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,153 @@
+#include "linalg/conjugate_gradient.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "base/parallel.h"
+#include "linalg/matrices_test.h"
+
+namespace aspic {
+namespace {
+
+using namespace test;
+
+TEST(BlockInverse, TimesTheBlockIsTheIdentity) {
+  const Matrix H = random_dominant(20, {}, 1);
+  for (const Mat3d& A : H.values.block) {
+    Mat3d inverse;
+    ASSERT_TRUE(invert_positive_definite(A, inverse));
+    EXPECT_LT(squared_norm(A * inverse - identity3<double>()), 1e-28);  // condition < 10: a few eps per entry
+  }
+}
+
+TEST(BlockInverse, RefusesWhatIsNotPositiveDefinite) {
+  Mat3d inverse;
+  EXPECT_FALSE(invert_positive_definite(Mat3d{}, inverse));
+  EXPECT_FALSE(invert_positive_definite(Mat3d{{1, 2, 0, 2, 1, 0, 0, 0, 1}}, inverse));
+  EXPECT_FALSE(invert_positive_definite(Mat3d{{1, 0, 0, 0, 1, 0, 0, 0, -1}}, inverse));
+  EXPECT_FALSE(invert_positive_definite(std::numeric_limits<double>::quiet_NaN() * identity3<double>(), inverse));
+}
+
+TEST(ConjugateGradient, ReachesTheToleranceAndSaysSo) {
+  const Matrix H = spring_lattice({.nx = 12, .ny = 5, .nz = 5, .stiffness = 100});
+  const std::vector<double> b = random_vector(3 * H.rows(), 2);
+  ConjugateGradient solver;
+  solver.analyze(*H.pattern);
+  ASSERT_TRUE(solver.factorize(H.values));
+  int iterations = 0;
+  for (const double tolerance : {1e-2, 1e-6, 1e-12}) {
+    std::vector<double> x(b.size(), 99.0);  // not a guess: overwritten
+    const SolveReport report = solver.solve(b, x, tolerance);
+    EXPECT_TRUE(report.ok);
+    EXPECT_FALSE(report.indefinite);
+    EXPECT_LE(relative_residual(H.values, b, x), tolerance * (1 + 1e-3));  // the measured residual rounds too
+    EXPECT_NEAR(report.relative_residual, relative_residual(H.values, b, x), 1e-15);
+    EXPECT_GT(report.iterations, iterations);
+    iterations = report.iterations;
+  }
+}
+
+TEST(ConjugateGradient, IsExactAfterOneIterationForABlockDiagonalMatrix) {
+  const Matrix H = random_dominant(10, {}, 3);
+  const std::vector<double> b = random_vector(30, 4);
+  std::vector<double> x(30);
+  ConjugateGradient solver;
+  solver.analyze(*H.pattern);
+  ASSERT_TRUE(solver.factorize(H.values));
+  const SolveReport report = solver.solve(b, x, 1e-12);
+  EXPECT_TRUE(report.ok);
+  EXPECT_EQ(report.iterations, 1);
+}
+
+TEST(ConjugateGradient, SaysThatItDidNotReachTheTolerance) {
+  const Matrix H = spring_lattice({.nx = 12, .ny = 5, .nz = 5, .stiffness = 1e4});
+  const std::vector<double> b = random_vector(3 * H.rows(), 5);
+  std::vector<double> x(b.size());
+  ConjugateGradient capped(3);
+  capped.analyze(*H.pattern);
+  ASSERT_TRUE(capped.factorize(H.values));
+  const SolveReport report = capped.solve(b, x, 1e-8);
+  EXPECT_FALSE(report.ok);
+  EXPECT_EQ(report.iterations, 3);
+  EXPECT_NEAR(report.relative_residual, relative_residual(H.values, b, x), 1e-15);
+
+  ConjugateGradient patient;  // no double precision solve reaches 1e-18: it stops when it stagnates
+  patient.analyze(*H.pattern);
+  ASSERT_TRUE(patient.factorize(H.values));
+  EXPECT_FALSE(patient.solve(b, x, 1e-18).ok);
+}
+
+TEST(ConjugateGradient, MeetsNegativeCurvatureAndStillDescends) {
+  for (const double shift : {-0.5, -3.0}) {
+    Matrix H = spring_lattice({.nx = 8, .ny = 4, .nz = 4, .stiffness = 10});
+    for (int r = 0; r < H.rows(); ++r) add_block(H.values, r, r, (shift - 1) * identity3<double>());
+    const std::vector<double> b(3 * H.rows(), 1.0);  // a translation: springs do not resist it
+    std::vector<double> x(b.size());
+    ConjugateGradient solver;
+    solver.analyze(*H.pattern);
+    ASSERT_TRUE(solver.factorize(H.values));
+    const SolveReport report = solver.solve(b, x, 1e-6);
+    EXPECT_TRUE(report.indefinite);
+    EXPECT_FALSE(report.ok);
+    EXPECT_GT(dot(b, x), 0);
+  }
+}
+
+TEST(ConjugateGradient, RefusesAnIndefiniteDiagonalBlockAndIsReusable) {
+  Matrix H = spring_lattice({.nx = 3, .ny = 3, .nz = 3});
+  const Mat3d saved = H.values.block[H.pattern->diagonal(7)];
+  ConjugateGradient solver;
+  solver.analyze(*H.pattern);
+  H.values.block[H.pattern->diagonal(7)] = -1.0 * saved;
+  EXPECT_FALSE(solver.factorize(H.values));
+  H.values.block[H.pattern->diagonal(7)] = saved;
+  ASSERT_TRUE(solver.factorize(H.values));
+  const std::vector<double> b = random_vector(3 * H.rows(), 6);
+  std::vector<double> x(b.size());
+  EXPECT_TRUE(solver.solve(b, x, 1e-10).ok);
+}
+
+TEST(ConjugateGradient, SolvesNothingAndZero) {
+  for (const int rows : {0, 1, 2}) {
+    const Matrix H = random_dominant(rows, {}, 7);
+    std::vector<double> b(3 * rows, 0.0), x(3 * rows, 1.0);
+    ConjugateGradient solver;
+    solver.analyze(*H.pattern);
+    ASSERT_TRUE(solver.factorize(H.values));
+    EXPECT_TRUE(solver.solve(b, x, 1e-10).ok);
+    EXPECT_EQ(x, b);
+  }
+}
+
+TEST(ConjugateGradient, DoesNotCallNaNASolution) {
+  const Matrix H = random_dominant(4, random_couplings(4, 6, 8), 9);
+  std::vector<double> b(12, std::numeric_limits<double>::quiet_NaN()), x(12);
+  ConjugateGradient solver;
+  solver.analyze(*H.pattern);
+  ASSERT_TRUE(solver.factorize(H.values));
+  const SolveReport report = solver.solve(b, x, 1e-10);
+  EXPECT_FALSE(report.ok);
+  EXPECT_FALSE(report.indefinite);
+}
+
+TEST(ConjugateGradient, HasTheSameBitsForAnyThreadCount) {
+  const Matrix H = spring_lattice({.nx = 30, .ny = 14, .nz = 14, .stiffness = 50});  // 6 975 vertices: several chunks
+  const std::vector<double> b = random_vector(3 * H.rows(), 10);
+  const int threads = thread_count();
+  std::vector<double> expected;
+  for (const int count : {1, 2, 3, 8}) {
+    set_thread_count(count);
+    ConjugateGradient solver;
+    solver.analyze(*H.pattern);
+    ASSERT_TRUE(solver.factorize(H.values));
+    std::vector<double> x(b.size());
+    EXPECT_TRUE(solver.solve(b, x, 1e-8).ok);
+    if (expected.empty()) expected = x;
+    EXPECT_EQ(x, expected) << count << " threads";
+  }
+  set_thread_count(threads);
+}
+
+}  // namespace
+}  // namespace aspic
