@@ -76,7 +76,8 @@ class GmshReader {
       read_entities();
     } else {
       const size_t place = text_.text().find(end, text_.position());
-      if (place == std::string_view::npos) text_.fail(shown(name) + " has no " + end + "; the file is cut short");
+      if (place == std::string_view::npos)
+        text_.fail(shown(name) + " has no " + shown(end) + "; it is cut short, get a complete copy");
       text_.seek(place);
     }
     expect(end);

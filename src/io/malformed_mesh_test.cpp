@@ -68,9 +68,12 @@ TEST(MalformedMesh, TruncationsAtEveryByteAreReadOrRefused) {
   for (const Case& c : cases()) {
     int refused = 0;
     for (size_t size = 0; size < c.contents.size(); ++size)
-      refused += is_refused(c, std::string_view(c.contents).substr(0, size), c.name + " cut at " + std::to_string(size));
+      refused +=
+          is_refused(c, std::string_view(c.contents).substr(0, size), c.name + " cut at " + std::to_string(size));
     // An OBJ file says nowhere how long it is.
-    if (c.name != "obj") EXPECT_GT(refused, static_cast<int>(c.contents.size()) / 2) << c.name;
+    if (c.name != "obj") {
+      EXPECT_GT(refused, static_cast<int>(c.contents.size()) / 2) << c.name;
+    }
   }
 }
 
@@ -116,7 +119,9 @@ TEST(MalformedMesh, FilesOfAnotherFormatAreRefused) {
   for (const Case& parser : cases())
     for (const Case& content : cases()) {
       const std::string a = parser.name.substr(0, 3), b = content.name.substr(0, 3);
-      if (a != b) EXPECT_TRUE(is_refused(parser, content.contents, parser.name)) << parser.name << " < " << content.name;
+      if (a != b) {
+        EXPECT_TRUE(is_refused(parser, content.contents, parser.name)) << parser.name << " < " << content.name;
+      }
     }
 }
 

@@ -155,7 +155,7 @@ int TextScanner::index(std::string_view what, int first, int count) {
   const int64_t value = integer(what);
   if (value < first || value - first >= count)
     fail(std::string(what) + " is " + std::to_string(value) +
-         (count == 0 ? ", but there are none"
+         (count == 0 ? ", but the file has none of these; get a complete copy"
                      : "; it must be from " + std::to_string(first) + " to " +
                            std::to_string(static_cast<int64_t>(first) + count - 1)));
   return static_cast<int>(value - first);
