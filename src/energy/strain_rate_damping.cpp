@@ -7,8 +7,8 @@ namespace {
 struct GreenStrainRate {
   template <class T>
   struct Params {
-    T viscosity;          // eta [Pa s]
-    T per_step;           // 1/h [1/s]; 0 in statics
+    T viscosity;               // eta [Pa s]
+    T per_step;                // 1/h [1/s]; 0 in statics
     T xx, yy, zz, xy, yz, zx;  // E_start
   };
 
