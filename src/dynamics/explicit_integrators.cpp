@@ -8,7 +8,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kSolveTolerance = 1e-13;  // the mass matrix is well conditioned
+constexpr double kSolveTolerance = 1e-12;  // the mass matrix is well conditioned
 
 class ExplicitIntegrator : public Integrator {
  public:
@@ -41,7 +41,7 @@ class ExplicitIntegrator : public Integrator {
     report.iterations = 1;
     report.linear_iterations = solved.iterations;
     const bool finite = std::all_of(state.q.begin(), state.q.end(), [](double x) { return std::isfinite(x); });
-    report.status = !finite ? Status::undefined : solved.ok ? Status::converged : Status::no_descent;
+    report.status = finite && solved.ok ? Status::converged : Status::undefined;
     return report;
   }
 

@@ -65,6 +65,7 @@ class LinearlyImplicitEuler : public BackwardEuler {
   MinimizeOptions adapted(const MinimizeOptions& options) const override {
     MinimizeOptions one = options;
     one.max_iterations = 1;
+    one.max_forcing = 1e-10;
     one.line_search.test = DecreaseTest::none;
     one.line_search.alpha_max = 1;
     return one;

@@ -100,8 +100,15 @@ class TetTerm : public TetElasticity {
   }
 
   static void project(Mat9<Pack>& A, Definiteness definiteness) {
-    const Eigenvalues keep = definiteness == Definiteness::clamped ? Eigenvalues::clamped : Eigenvalues::absolute;
-    make_lanes_definite(A, keep);
+    const unsigned failed = indefinite_lanes(A);
+    const auto filter = definiteness == Definiteness::clamped ? EigenvalueFilter::clamp : EigenvalueFilter::absolute;
+    for (int l = 0; l < kPackWidth; ++l) {
+      if (!(failed >> l & 1)) continue;
+      Mat9d lane;
+      for (int i = 0; i < 81; ++i) lane.a[i] = A.a[i][l];
+      make_definite(lane, filter);
+      for (int i = 0; i < 81; ++i) A.a[i].set(l, lane.a[i]);
+    }
   }
 
   static void write(int tet, int lane, Pack psi, Pack J, const Mat3<Pack>& s, TetFields& fields) {

@@ -23,6 +23,7 @@ class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
   virtual std::string_view name() const = 0;
+  virtual std::string description() const { return std::string(name()); }  // what was chosen, and why; for logs
   virtual void analyze(const BlockPattern& pattern) = 0;
   virtual bool factorize(const BlockSparse& H) = 0;  // false: H is not positive definite. H must outlive the solves.
   // `tolerance` bounds |b - H x| / |b|; a direct solver ignores it. x holds the answer, 3 numbers per row.

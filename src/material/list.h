@@ -6,15 +6,35 @@
 #include <vector>
 
 #include "base/error.h"
+#include "material/arap.h"
+#include "material/corotated.h"
+#include "material/fung.h"
+#include "material/linear.h"
+#include "material/mooney_rivlin.h"
 #include "material/neo_hookean.h"
+#include "material/neo_hookean_2020.h"
+#include "material/neo_hookean_isochoric.h"
 #include "material/neo_hookean_log.h"
+#include "material/neo_hookean_log_j2.h"
 #include "material/registry.h"
+#include "material/stable_neo_hookean.h"
+#include "material/stvk.h"
 
 namespace aspic {
 
 using MaterialList = std::tuple<  //
     NeoHookean,                   //
-    NeoHookeanLog>;
+    StableNeoHookean,             //
+    NeoHookeanLog,                //
+    NeoHookeanLogJ2,              //
+    NeoHookeanIsochoric,          //
+    NeoHookean2020,               //
+    Stvk,                         //
+    Corotated,                    //
+    Arap,                         //
+    Linear,                       //
+    MooneyRivlin,                 //
+    Fung>;
 
 // A material that scenes can name: params() turns small-strain constants into its own, info() describes it.
 template <class M>

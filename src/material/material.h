@@ -29,13 +29,13 @@ inline constexpr std::size_t kParameterCount = sizeof(typename M::template Param
 template <class M, class T>
 using ParameterArray = std::array<T, kParameterCount<M>>;
 
-// The same parameters over another scalar (Pack: in all lanes; Jet: as constants).
-template <class M, class T>
-typename M::template Params<T> broadcast_params(const typename M::template Params<double>& p) {
-  const auto from = std::bit_cast<ParameterArray<M, double>>(p);
-  ParameterArray<M, T> to;
-  for (std::size_t k = 0; k < from.size(); ++k) to[k] = T(from[k]);
-  return std::bit_cast<typename M::template Params<T>>(to);
+// The same parameters over another scalar (double to Pack: in all lanes; to Jet: as constants).
+template <class M, class To, class From = double>
+typename M::template Params<To> broadcast_params(const typename M::template Params<From>& p) {
+  const auto from = std::bit_cast<ParameterArray<M, From>>(p);
+  ParameterArray<M, To> to;
+  for (std::size_t k = 0; k < from.size(); ++k) to[k] = To(from[k]);
+  return std::bit_cast<typename M::template Params<To>>(to);
 }
 
 // One set of parameters per lane: 1 to kPackWidth of them; lanes beyond the last repeat it.

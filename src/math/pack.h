@@ -5,9 +5,11 @@
 namespace aspic {
 
 // So that unqualified calls on a double never convert to Pack.
+using std::abs;
 using std::cbrt;
 using std::exp;
 using std::log;
+using std::pow;
 using std::sqrt;
 
 #if defined(__AVX512F__)
@@ -55,9 +57,25 @@ inline Pack cbrt(Pack a) {
   return map(a, [](double x) { return std::cbrt(x); });
 }
 
+inline Pack pow(Pack a, double n) {
+  return map(a, [n](double x) { return std::pow(x, n); });
+}
+
 // condition > 0 ? a : b, lane by lane.
 inline Pack where_positive(Pack condition, Pack a, Pack b) { return condition.v > 0 ? a.v : b.v; }
 inline double where_positive(double condition, double a, double b) { return condition > 0 ? a : b; }
+
+inline Pack max(Pack a, Pack b) { return where_positive(a - b, a, b); }
+inline double max(double a, double b) { return where_positive(a - b, a, b); }
+inline Pack abs(Pack a) { return where_positive(a, a, -a); }
+
+// Bit l is set where lane l is not > 0 (NaN is not).
+inline unsigned lanes_not_positive(Pack a) {
+  unsigned bits = 0;
+  for (int i = 0; i < kPackWidth; ++i) bits |= unsigned{!(a[i] > 0)} << i;
+  return bits;
+}
+inline unsigned lanes_not_positive(double a) { return !(a > 0); }
 
 // Lanes are added in order, so that the sum rounds alike everywhere.
 inline double sum(Pack a) {

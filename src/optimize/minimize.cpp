@@ -1,5 +1,6 @@
 #include "optimize/minimize.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace aspic {
@@ -50,6 +51,12 @@ double threshold(const Objective& E, const MinimizeOptions& options, double firs
   return 0;
 }
 
+// Inner solves are loose while the minimum is far away and tight near it, so that convergence stays superlinear
+// [Eisenstat and Walker 1996].
+double forcing(double gradient_ratio, const MinimizeOptions& options) {
+  return std::min(options.max_forcing, std::max(1e-8, std::sqrt(gradient_ratio)));
+}
+
 // A line search that fails this close to the round-off of the gradient has nothing left to find.
 constexpr double kRoundOffMargin = 100;
 
@@ -76,8 +83,8 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
     iteration.index = i;
     iteration.value = report.value;
     iteration.gradient_norm = report.gradient_norm;
-    const double ratio = report.gradient_norm / report.first_gradient_norm;
-    const bool found = direction.compute(E, x, g_, ratio, d_, iteration.direction);
+    const double loose = forcing(report.gradient_norm / report.first_gradient_norm, options);
+    const bool found = direction.compute(E, x, g_, loose, d_, iteration.direction);
     report.hessians += iteration.direction.hessians;
     report.linear_iterations += iteration.direction.linear_iterations;
     report.projected_hessians += iteration.direction.projected;

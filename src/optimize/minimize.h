@@ -36,6 +36,7 @@ struct MinimizeOptions {
   int max_iterations = 50;
   double tolerance = 1e-6;
   Criterion criterion = Criterion::scale;
+  double max_forcing = 0.1;  // the loosest inner linear solve, as a relative residual
   LineSearchOptions line_search;
 };
 

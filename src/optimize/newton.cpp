@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <cmath>
-
 #include "optimize/search_direction.h"
 
 namespace aspic {
@@ -22,20 +19,18 @@ HessianKind first_choice(NewtonDefiniteness definiteness) {
 Newton::Newton(std::unique_ptr<LinearSolver> solver, NewtonDefiniteness definiteness)
     : solver_(std::move(solver)), definiteness_(definiteness) {}
 
-std::string Newton::description() const { return "newton, " + solver_->description(); }
+std::string Newton::description() const { return "newton, " + std::string(solver_->name()); }
 
-// H d = -g, loosely while the minimum is far away and tightly near it, so that convergence stays superlinear
-// [Eisenstat and Walker 1996].
-bool Newton::compute(Objective& E, std::span<const double> x, std::span<const double> g, double gradient_ratio,
+// H d = -g
+bool Newton::compute(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,
                      std::span<double> d, DirectionReport& report) {
-  const double tolerance = std::clamp(std::sqrt(gradient_ratio), 1e-8, 0.1);
-  if (solve(E.hessian(x, first_choice(definiteness_)), g, tolerance, d, report)) return true;
+  if (solve(E.hessian(x, first_choice(definiteness_)), g, forcing, d, report)) return true;
   if (definiteness_ != NewtonDefiniteness::on_demand) return false;
   report.projected = true;
-  return solve(E.hessian(x, HessianKind::clamped), g, tolerance, d, report);
+  return solve(E.hessian(x, HessianKind::clamped), g, forcing, d, report);
 }
 
-bool Newton::solve(const BlockSparse& H, std::span<const double> g, double tolerance, std::span<double> d,
+bool Newton::solve(const BlockSparse& H, std::span<const double> g, double forcing, std::span<double> d,
                    DirectionReport& report) {
   ++report.hessians;
   if (analyzed_version_ != H.pattern->version) {
@@ -44,7 +39,7 @@ bool Newton::solve(const BlockSparse& H, std::span<const double> g, double toler
   }
   ++report.factorizations;
   if (!solver_->factorize(H)) return false;
-  const SolveReport solved = solver_->solve(g, d, tolerance);
+  const SolveReport solved = solver_->solve(g, d, forcing);
   report.linear_iterations += solved.iterations;
   if (!solved.ok || solved.indefinite) return false;
   for (double& di : d) di = -di;

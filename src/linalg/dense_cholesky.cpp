@@ -1,0 +1,229 @@
+#include "linalg/dense_cholesky.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/check.h"
+#include "math/pack.h"
+
+namespace aspic {
+namespace {
+
+using std::ptrdiff_t;
+
+// Register tile of the product: 2 packs by 6 columns, 12 accumulators. Cache blocks follow [Goto and van de Geijn
+// 2008].
+constexpr int kTileRows = 2 * kPackWidth;
+constexpr int kTileColumns = 6;
+constexpr int kDepthBlock = 192;
+constexpr int kRowBlock = 9 * 16;      // a multiple of kTileRows for every pack width
+constexpr int kColumnBlock = 6 * 128;  // a multiple of kTileColumns and of kTileRows
+constexpr int kPackedFromRows = 192;   // smaller products read A where it lies
+constexpr int kBaseColumns = 12;       // narrower panels are factorised directly
+static_assert(kRowBlock % kTileRows == 0 && kReadAhead >= kTileRows);
+
+Pack load(const double* p) {
+  Pack x;
+  std::memcpy(&x, p, sizeof x);
+  return x;
+}
+void store(double* p, Pack x) { std::memcpy(p, &x, sizeof x); }
+
+struct Tile {
+  Pack sum[kTileColumns][2];
+};
+
+// sum_p A(:, p) B(:, p)' for kTileRows rows of A and kTileColumns rows of B.
+inline Tile product(const double* A, ptrdiff_t A_stride, const double* B, ptrdiff_t B_stride, int depth) {
+  Tile t;
+  for (auto& column : t.sum) column[0] = column[1] = Pack(0.0);
+  for (int p = 0; p < depth; ++p, A += A_stride, B += B_stride) {
+    const Pack a0 = load(A), a1 = load(A + kPackWidth);
+    for (int c = 0; c < kTileColumns; ++c) {
+      const Pack b(B[c]);
+      t.sum[c][0] += a0 * b;
+      t.sum[c][1] += a1 * b;
+    }
+  }
+  return t;
+}
+
+void subtract_whole(const Tile& t, double* C, ptrdiff_t stride) {
+  for (int c = 0; c < kTileColumns; ++c, C += stride) {
+    store(C, load(C) - t.sum[c][0]);
+    store(C + kPackWidth, load(C + kPackWidth) - t.sum[c][1]);
+  }
+}
+
+// Only the entries in the first `rows` rows and `columns` columns with row + shift >= column.
+void subtract_part(const Tile& t, double* C, ptrdiff_t stride, int rows, int columns, int shift) {
+  double sum[kTileRows];
+  for (int c = 0; c < columns; ++c, C += stride) {
+    store(sum, t.sum[c][0]);
+    store(sum + kPackWidth, t.sum[c][1]);
+    for (int r = std::max(0, c - shift); r < rows; ++r) C[r] -= sum[r];
+  }
+}
+
+struct Operand {  // strip s of the rows starts at data + s * strip_step; its columns are `stride` apart
+  const double* data;
+  ptrdiff_t strip_step, stride;
+};
+
+// C -= A B' on the tiles of one cache block; `shift` is the row minus the column of C's first entry.
+void subtract_block(Operand A, Operand B, int depth, double* C, ptrdiff_t stride, int rows, int columns, int shift) {
+  for (int j = 0; j < columns; j += kTileColumns) {
+    const double* b = B.data + j / kTileColumns * B.strip_step;
+    const int first = std::max(0, (j - shift) / kTileRows * kTileRows);
+    for (int i = first; i < rows; i += kTileRows) {
+      if (i + kTileRows - 1 + shift < j) continue;
+      const Tile t = product(A.data + i / kTileRows * A.strip_step, A.stride, b, B.stride, depth);
+      double* c = C + i + j * stride;
+      const int tile_rows = std::min(kTileRows, rows - i), tile_columns = std::min(kTileColumns, columns - j);
+      const bool whole = tile_rows == kTileRows && tile_columns == kTileColumns && i + shift >= j + kTileColumns - 1;
+      if (whole) {
+        subtract_whole(t, c, stride);
+      } else {
+        subtract_part(t, c, stride, tile_rows, tile_columns, i + shift - j);
+      }
+    }
+  }
+}
+
+// Copies strips of `strip` rows so that each is contiguous; missing rows of the last strip become zero.
+void pack_strips(const double* A, ptrdiff_t stride, int rows, int depth, int strip, double* packed) {
+  for (int i = 0; i < rows; i += strip, packed += static_cast<ptrdiff_t>(strip) * depth) {
+    const int count = std::min(strip, rows - i);
+    for (int p = 0; p < depth; ++p) {
+      double* out = packed + static_cast<ptrdiff_t>(p) * strip;
+      std::copy_n(A + i + p * stride, count, out);
+      std::fill(out + count, out + strip, 0.0);
+    }
+  }
+}
+
+// Unblocked Cholesky of a small square; reciprocal[j] = 1 / L(j, j).
+bool factorize_square(double* A, int n, ptrdiff_t stride, double* reciprocal) {
+  for (int j = 0; j < n; ++j) {
+    double pivot = A[j + j * stride];
+    for (int k = 0; k < j; ++k) pivot -= A[j + k * stride] * A[j + k * stride];
+    if (!(pivot > 0) || !std::isfinite(pivot)) return false;
+    A[j + j * stride] = std::sqrt(pivot);
+    reciprocal[j] = 1 / A[j + j * stride];
+    for (int i = j + 1; i < n; ++i) {
+      double sum = A[i + j * stride];
+      for (int k = 0; k < j; ++k) sum -= A[i + k * stride] * A[j + k * stride];
+      A[i + j * stride] = sum * reciprocal[j];
+    }
+  }
+  return true;
+}
+
+// Rows of X L' = B for T = Pack (kPackWidth rows at once) or double (one row); the row lives in registers.
+template <class T, int n, class Load, class Store>
+inline void solve_row(const double* L, ptrdiff_t stride, const double* reciprocal, Load get, Store put) {
+  T x[n];
+  for (int j = 0; j < n; ++j) {
+    x[j] = get(j);
+    for (int k = 0; k < j; ++k) x[j] = x[j] - x[k] * T(L[j + k * stride]);
+    x[j] = x[j] * T(reciprocal[j]);
+    put(j, x[j]);
+  }
+}
+
+template <int n>
+bool factorize_narrow(double* A, int rows, ptrdiff_t stride) {
+  double reciprocal[n];
+  if (!factorize_square(A, n, stride, reciprocal)) return false;
+  int i = n;
+  for (; i + kPackWidth <= rows; i += kPackWidth)
+    solve_row<Pack, n>(
+        A, stride, reciprocal, [&](int j) { return load(A + i + j * stride); },
+        [&](int j, Pack x) { store(A + i + j * stride, x); });
+  for (; i < rows; ++i)
+    solve_row<double, n>(
+        A, stride, reciprocal, [&](int j) { return A[i + j * stride]; },
+        [&](int j, double x) { A[i + j * stride] = x; });
+  return true;
+}
+
+}  // namespace
+
+DenseCholesky::DenseCholesky()
+    : packed_left_(static_cast<size_t>(kRowBlock) * kDepthBlock),
+      packed_right_(static_cast<size_t>(kColumnBlock) * kDepthBlock) {}
+
+bool DenseCholesky::factorize(double* A, int rows, int columns, ptrdiff_t stride) {
+  ASPIC_CHECK(columns % 3 == 0 && rows >= columns);
+  switch (columns) {
+    case 0:
+      return true;
+    case 3:
+      return factorize_narrow<3>(A, rows, stride);
+    case 6:
+      return factorize_narrow<6>(A, rows, stride);
+    case 9:
+      return factorize_narrow<9>(A, rows, stride);
+    case 12:
+      return factorize_narrow<12>(A, rows, stride);
+  }
+  const int left = (columns / 2 + kBaseColumns - 1) / kBaseColumns * kBaseColumns, right = columns - left;
+  double* C = A + left + left * stride;
+  if (!factorize(A, rows, left, stride)) return false;
+  subtract_outer_product(A + left, stride, left, C, stride, rows - left, right);
+  return factorize(C, rows - left, right, stride);
+}
+
+void DenseCholesky::subtract_outer_product(const double* A, ptrdiff_t A_stride, int depth, double* C,
+                                           ptrdiff_t C_stride, int rows, int columns) {
+  if (rows < kPackedFromRows) {
+    const Operand left{A, kTileRows, A_stride}, right{A, kTileColumns, A_stride};
+    return subtract_block(left, right, depth, C, C_stride, rows, columns, 0);
+  }
+  for (int j = 0; j < columns; j += kColumnBlock)
+    for (int p = 0; p < depth; p += kDepthBlock) {
+      const int width = std::min(kColumnBlock, columns - j), d = std::min(kDepthBlock, depth - p);
+      pack_strips(A + j + p * A_stride, A_stride, width, d, kTileColumns, packed_right_.data());
+      for (int i = j; i < rows; i += kRowBlock) {
+        const int height = std::min(kRowBlock, rows - i);
+        pack_strips(A + i + p * A_stride, A_stride, height, d, kTileRows, packed_left_.data());
+        const Operand left{packed_left_.data(), static_cast<ptrdiff_t>(kTileRows) * d, kTileRows};
+        const Operand right{packed_right_.data(), static_cast<ptrdiff_t>(kTileColumns) * d, kTileColumns};
+        subtract_block(left, right, d, C + i + j * C_stride, C_stride, height, width, i - j);
+      }
+    }
+}
+
+void solve_forward(const double* L, int rows, int columns, double* v) {
+  for (int j = 0; j < columns; j += 3) {  // three columns at once: v is read and written once for them
+    const double *a = L + static_cast<ptrdiff_t>(j) * rows, *b = a + rows, *c = b + rows;
+    const double x = v[j] / a[j];
+    const double y = (v[j + 1] - a[j + 1] * x) / b[j + 1];
+    const double z = (v[j + 2] - a[j + 2] * x - b[j + 2] * y) / c[j + 2];
+    v[j] = x, v[j + 1] = y, v[j + 2] = z;
+    for (int i = j + 3; i < rows; ++i) v[i] -= a[i] * x + b[i] * y + c[i] * z;
+  }
+}
+
+void solve_backward(const double* L, int rows, int columns, double* v) {
+  for (int j = columns - 3; j >= 0; j -= 3) {
+    const double *a = L + static_cast<ptrdiff_t>(j) * rows, *b = a + rows, *c = b + rows;
+    Pack sums[3] = {Pack(0.0), Pack(0.0), Pack(0.0)};
+    int i = j + 3;
+    for (; i + kPackWidth <= rows; i += kPackWidth) {
+      const Pack y = load(v + i);
+      sums[0] += load(a + i) * y;
+      sums[1] += load(b + i) * y;
+      sums[2] += load(c + i) * y;
+    }
+    double s[3] = {sum(sums[0]), sum(sums[1]), sum(sums[2])};
+    for (; i < rows; ++i) s[0] += a[i] * v[i], s[1] += b[i] * v[i], s[2] += c[i] * v[i];
+    const double z = (v[j + 2] - s[2]) / c[j + 2];
+    const double y = (v[j + 1] - s[1] - b[j + 2] * z) / b[j + 1];
+    v[j] = (v[j] - s[0] - a[j + 1] * y - a[j + 2] * z) / a[j];
+    v[j + 1] = y, v[j + 2] = z;
+  }
+}
+
+}  // namespace aspic

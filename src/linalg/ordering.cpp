@@ -1,0 +1,79 @@
+#include "linalg/ordering.h"
+
+#include <metis.h>
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace aspic {
+namespace {
+
+constexpr int kTiny = 200;  // rows; below, minimum degree fills as little and is faster
+
+bool is_permutation(const std::vector<int>& order) {
+  std::vector<char> seen(order.size(), 0);
+  for (const int row : order) {
+    if (row < 0 || row >= static_cast<int>(order.size()) || seen[row]) return false;
+    seen[row] = 1;
+  }
+  return true;
+}
+
+std::vector<int> nested_dissection_order(const BlockPattern& pattern) {
+  idx_t rows = pattern.rows();
+  std::vector<idx_t> start(rows + 1, 0), neighbour;
+  neighbour.reserve(2 * (pattern.block_count() - rows));
+  for (idx_t row = 0; row < rows; ++row) {
+    for (int64_t s = pattern.row_start[row]; s < pattern.diagonal(row); ++s) neighbour.push_back(pattern.column[s]);
+    for (int64_t u = pattern.upper_start[row]; u < pattern.upper_start[row + 1]; ++u)
+      neighbour.push_back(pattern.upper_row[u]);
+    start[row + 1] = static_cast<idx_t>(neighbour.size());
+  }
+  std::vector<idx_t> order(rows), position(rows);
+  idx_t options[METIS_NOPTIONS];
+  METIS_SetDefaultOptions(options);
+  options[METIS_OPTION_NUMBERING] = 0;
+  options[METIS_OPTION_SEED] = 1;  // the same order in every run
+  const int status =
+      METIS_NodeND(&rows, start.data(), neighbour.data(), nullptr, options, order.data(), position.data());
+  if (status != METIS_OK) return {};
+  return {order.begin(), order.end()};
+}
+
+}  // namespace
+
+std::vector<int> minimum_degree_order(const BlockPattern& pattern) {
+  const int rows = pattern.rows();
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(2 * pattern.block_count());
+  for (int row = 0; row < rows; ++row)
+    for (int64_t s = pattern.row_start[row]; s < pattern.row_start[row + 1]; ++s) {
+      entries.emplace_back(row, pattern.column[s], 1.0);
+      entries.emplace_back(pattern.column[s], row, 1.0);
+    }
+  Eigen::SparseMatrix<double> graph(rows, rows);
+  graph.setFromTriplets(entries.begin(), entries.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
+  Eigen::AMDOrdering<int>()(graph, permutation);
+  const int* first = permutation.indices().data();
+  return {first, first + rows};
+}
+
+std::vector<int> fill_reducing_order(const BlockPattern& pattern) {
+  const int rows = pattern.rows();
+  std::vector<int> order;
+  const int64_t edges = pattern.block_count() - rows;
+  if (edges == 0) {  // neither library is at its best on an empty graph
+    order.resize(rows);
+    std::iota(order.begin(), order.end(), 0);
+    return order;
+  }
+  if (rows >= kTiny && 2 * edges < std::numeric_limits<idx_t>::max()) order = nested_dissection_order(pattern);
+  if (static_cast<int>(order.size()) != rows || !is_permutation(order)) order = minimum_degree_order(pattern);
+  return order;
+}
+
+}  // namespace aspic
