@@ -4,6 +4,7 @@ set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin) # aspic finds aspic-mesh beside itself
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
@@ -21,7 +22,8 @@ endif()
 
 add_library(aspic_build INTERFACE)
 # One binary gives one set of bits; fused multiply-add is used, reassociation is not.
-target_compile_options(aspic_build INTERFACE ${ASPIC_ARCH} -ffp-contract=fast -fno-math-errno -Wall -Wextra -Wshadow)
+target_compile_options(aspic_build INTERFACE ${ASPIC_ARCH} -ffp-contract=fast -fno-math-errno -Wall -Wextra -Wshadow
+                                             -Wno-maybe-uninitialized -Wno-restrict)  # false alarms inside the headers of GCC 12
 if(ASPIC_WERROR)
   target_compile_options(aspic_build INTERFACE -Werror)
 endif()

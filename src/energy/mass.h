@@ -18,9 +18,9 @@ class MassMatrix {
   std::span<const double> vertex_mass() const { return lumped_; }  // row sums [kg]
   double total() const;                                            // [kg]
 
-  void multiply(std::span<const double> x, std::span<double> y) const;       // y = M x; 3 numbers per vertex
-  double inner(std::span<const double> x, std::span<const double> y) const;  // x' M y
+  void multiply(std::span<const double> x, std::span<double> y) const;  // y = M x; 3 numbers per vertex
   void add_couplings(Couplings& couplings) const;
+  void bind(const BlockPattern& target);            // remembers where add_to writes
   void add_to(double scale, BlockSparse& H) const;  // H += scale M
 
  private:
@@ -28,6 +28,7 @@ class MassMatrix {
   std::vector<double> lumped_;
   BlockPattern pattern_;
   std::vector<double> entry_;  // one per entry of pattern_.column [kg]; empty when lumped
+  std::vector<int64_t> target_slot_;
 };
 
 }  // namespace aspic

@@ -10,10 +10,14 @@
 
 namespace aspic {
 
+// How a field is stored: single precision halves what is only looked at.
+enum class FieldType { float64, float32, int32 };
+
 struct Field {
   std::string name;
   int components = 1;  // 1, 3, 6 or 9 numbers per point or cell
   std::vector<double> values;
+  FieldType type = FieldType::float64;
 };
 
 struct Vtu {
@@ -22,7 +26,11 @@ struct Vtu {
   std::vector<Field> point_fields, cell_fields;
 };
 
-Vtu read_vtu(const std::filesystem::path& path);  // ascii, inline base64 and appended, raw or zlib-compressed
+// Ascii, inline base64 and appended, raw or zlib-compressed. Quads are split; lines and points are passed over; any
+// other cell is an error, as are counts, indices and sizes that do not fit. Throws InvalidInput with file and line.
+Vtu read_vtu(const std::filesystem::path& path);
+
+// Inline base64, zlib-compressed; positions in double precision. The same input gives the same bytes.
 void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,
                const std::vector<Field>& point_fields, const std::vector<Field>& cell_fields);
 

@@ -4,6 +4,14 @@
 
 namespace aspic {
 
+// So that unqualified calls on a double never convert to Pack.
+using std::abs;
+using std::cbrt;
+using std::exp;
+using std::log;
+using std::pow;
+using std::sqrt;
+
 #if defined(__AVX512F__)
 inline constexpr int kPackWidth = 8;
 #elif defined(__AVX__)
@@ -49,9 +57,46 @@ inline Pack cbrt(Pack a) {
   return map(a, [](double x) { return std::cbrt(x); });
 }
 
+inline Pack pow(Pack a, double n) {
+  return map(a, [n](double x) { return std::pow(x, n); });
+}
+
 // condition > 0 ? a : b, lane by lane.
 inline Pack where_positive(Pack condition, Pack a, Pack b) { return condition.v > 0 ? a.v : b.v; }
 inline double where_positive(double condition, double a, double b) { return condition > 0 ? a : b; }
+
+inline Pack max(Pack a, Pack b) { return where_positive(a - b, a, b); }
+inline double max(double a, double b) { return where_positive(a - b, a, b); }
+inline Pack abs(Pack a) { return where_positive(a, a, -a); }
+
+// Bit l is set where lane l is not > 0 (NaN is not).
+inline unsigned lanes_not_positive(Pack a) {
+  unsigned bits = 0;
+  for (int i = 0; i < kPackWidth; ++i) bits |= unsigned{!(a[i] > 0)} << i;
+  return bits;
+}
+inline unsigned lanes_not_positive(double a) { return !(a > 0); }
+
+inline bool any_positive(Pack a) {
+  for (int i = 0; i < kPackWidth; ++i)
+    if (a[i] > 0) return true;
+  return false;
+}
+inline bool any_positive(double a) { return a > 0; }
+
+// 1 in the lanes whose bit is set, 0 in the others.
+template <class T>
+T lanes_from_bits(unsigned bits);
+template <>
+inline Pack lanes_from_bits<Pack>(unsigned bits) {
+  Pack a;
+  for (int i = 0; i < kPackWidth; ++i) a.set(i, bits >> i & 1);
+  return a;
+}
+template <>
+inline double lanes_from_bits<double>(unsigned bits) {
+  return bits & 1;
+}
 
 // Lanes are added in order, so that the sum rounds alike everywhere.
 inline double sum(Pack a) {

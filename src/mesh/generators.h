@@ -12,9 +12,11 @@ enum class BoxCut {
 // [lower, upper] cut into cells[0] x cells[1] x cells[2]. Vertex (i, j, k) has index (i (ny + 1) + j) (nz + 1) + k.
 TetMesh make_box(const Vec3d& lower, const Vec3d& upper, const std::array<int, 3>& cells, BoxCut cut = BoxCut::kuhn);
 
-// Solid shapes mapped from boxes: no degenerate tets, roughly `size` long edges.
+// Round solids with roughly `size` long edges. All volumes are positive at any size, and the smallest dihedral angle
+// does not fall with it: for size <= the smallest dimension, 33 degrees in the cylinder, 36 in the sphere, and in the
+// torus 28, 23, 10 for minor / major radius = 0.3, 0.5, 0.8.
 TetMesh make_cylinder(double radius, double height, double size);           // axis z from 0 to height
 TetMesh make_sphere(double radius, double size);                            // about the origin
-TetMesh make_torus(double major_radius, double minor_radius, double size);  // about the z axis
+TetMesh make_torus(double major_radius, double minor_radius, double size);  // about the z axis; minor < major
 
 }  // namespace aspic

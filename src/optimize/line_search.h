@@ -24,6 +24,7 @@ struct LineSearchResult {
   double alpha = 0;  // 0: stuck
   double value = 0;  // E(x + alpha d)
   int trials = 0;
+  bool gradient_known = false;  // `trial_gradient` holds the gradient at the accepted trial
 };
 
 // Near convergence the differences of E drown in round-off; a trial whose value lies within that noise is then judged

@@ -18,6 +18,7 @@ enum class Status {
   iteration_limit,  // max_iterations reached first
   stuck,            // the line search found no decrease
   no_descent,       // no descent direction could be computed
+  interrupted,      // the observer asked to stop
   undefined,        // value or gradient is not finite at the start
 };
 std::string_view to_string(Status status);
@@ -35,6 +36,7 @@ struct MinimizeOptions {
   int max_iterations = 50;
   double tolerance = 1e-6;
   Criterion criterion = Criterion::scale;
+  double max_forcing = 0.1;  // the loosest inner linear solve, as a relative residual
   LineSearchOptions line_search;
 };
 

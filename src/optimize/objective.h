@@ -23,6 +23,7 @@ class Objective {
   // round-off. A plain function measures against 1.
   virtual double gradient_scale() const { return 1; }
   virtual double gradient_round_off() const { return 0; }
+  virtual double value_round_off() const { return 0; }  // of the last value
 
   virtual double dot(std::span<const double> a,
                      std::span<const double> b);  // a distributed objective reduces over ranks

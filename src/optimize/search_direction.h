@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "linalg/linear_solver.h"
@@ -18,16 +19,18 @@ class SearchDirection {
  public:
   virtual ~SearchDirection() = default;
   virtual std::string_view name() const = 0;
-  // Writes d; false when no descent direction could be found. gradient_ratio is |g| / |g first|.
-  virtual bool compute(Objective& E, std::span<const double> x, std::span<const double> g, double gradient_ratio,
+  virtual std::string description() const { return std::string(name()); }  // with what it decided, and why
+  // Writes d; false when no descent direction could be found. An inner solve to the relative residual
+  // `forcing` is enough.
+  virtual bool compute(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,
                        std::span<double> d, DirectionReport& report) = 0;
 };
 
 class GradientDescent : public SearchDirection {
  public:
   std::string_view name() const override { return "gradient_descent"; }
-  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, double gradient_ratio,
-               std::span<double> d, DirectionReport& report) override;
+  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, double forcing, std::span<double> d,
+               DirectionReport& report) override;
 };
 
 // on_demand: exact first; clamped only when the exact Hessian turns out indefinite.
@@ -38,8 +41,9 @@ class Newton : public SearchDirection {
   explicit Newton(std::unique_ptr<LinearSolver> solver,
                   NewtonDefiniteness definiteness = NewtonDefiniteness::on_demand);
   std::string_view name() const override { return "newton"; }
-  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, double gradient_ratio,
-               std::span<double> d, DirectionReport& report) override;
+  std::string description() const override;
+  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, double forcing, std::span<double> d,
+               DirectionReport& report) override;
   const LinearSolver& solver() const { return *solver_; }
 
  private:

@@ -1,0 +1,158 @@
+// `aspic check`: what the doctor says of a mesh or of every mesh of a scene.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <variant>
+
+#include "aspic/commands.h"
+#include "base/error.h"
+#include "io/mesh_file.h"
+#include "mesh/doctor.h"
+#include "scene/scene.h"
+
+namespace aspic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  fs::path input, output;
+  std::vector<std::string> overrides;
+  bool repair = false;
+};
+
+constexpr size_t kIndicesShown = 8;
+
+std::string_view to_string(Severity severity) {
+  switch (severity) {
+    case Severity::error:
+      return "error";
+    case Severity::warning:
+      return "warning";
+    case Severity::note:
+      return "note";
+  }
+  return "";
+}
+
+void print(const Finding& finding) {
+  fmt::print("{}: {}: {}\n", to_string(finding.severity), finding.name, finding.message);
+  if (!finding.indices.empty()) {
+    const size_t shown = std::min(finding.indices.size(), kIndicesShown);
+    const auto end = finding.indices.begin() + static_cast<std::ptrdiff_t>(shown);
+    fmt::print("  indices: {}{}\n", fmt::join(finding.indices.begin(), end, ", "),
+               shown < finding.indices.size() ? fmt::format(", and {} more", finding.indices.size() - shown) : "");
+  }
+  if (!finding.remedy.empty()) fmt::print("  remedy: {}\n", finding.remedy);
+}
+
+void print_quality(const TetMesh& mesh) {
+  const MeshQuality q = quality(mesh);
+  fmt::print("box: [{:g}, {:g}] x [{:g}, {:g}] x [{:g}, {:g}] m\n", q.lower[0], q.upper[0], q.lower[1], q.upper[1],
+             q.lower[2], q.upper[2]);
+  fmt::print("volume: {:.6g} m^3, of a tet {:.3g} to {:.3g}; {} component{}\n", q.total_volume, q.min_volume,
+             q.max_volume, q.components, q.components == 1 ? "" : "s");
+  fmt::print("dihedral angles: {:.1f} to {:.1f} degrees; mean ratio: smallest {:.3f}, average {:.3f}\n", q.min_dihedral,
+             q.max_dihedral, q.min_mean_ratio, q.average_mean_ratio);
+  const auto& bins = q.mean_ratio_histogram;
+  const int most = bins.empty() ? 0 : *std::max_element(bins.begin(), bins.end());
+  fmt::print("mean ratio (1: regular, 0: flat)\n");
+  for (size_t i = 0; i < bins.size(); ++i) {
+    const auto width = most > 0 ? static_cast<size_t>(40.0 * bins[i] / most + 0.5) : 0;
+    fmt::print("  {:.1f} to {:.1f} {:>9}  {}\n", 0.1 * static_cast<double>(i), 0.1 * static_cast<double>(i + 1),
+               bins[i], std::string(width, '#'));
+  }
+}
+void print_quality(const TriMesh&) {}  // a surface is judged by its findings alone
+
+template <class Mesh>
+std::vector<Finding> examine(const Mesh& mesh) {
+  print_quality(mesh);
+  std::vector<Finding> findings = diagnose(mesh);
+  for (const Finding& finding : findings) print(finding);
+  if (findings.empty()) fmt::print("nothing is wrong with it\n");
+  return findings;
+}
+
+std::string counts(const TetMesh& mesh) {
+  return fmt::format("{} vertices, {} tets", mesh.vertex_count(), mesh.tet_count());
+}
+std::string counts(const TriMesh& mesh) {
+  return fmt::format("{} vertices, {} triangles", mesh.vertex_count(), mesh.triangle_count());
+}
+
+template <class Mesh>
+int check_mesh(const Arguments& arguments, Mesh mesh) {
+  fmt::print("{}: {}\n", arguments.input.string(), counts(mesh));
+  std::vector<Finding> findings = examine(mesh);
+  if (arguments.repair) {
+    const std::vector<std::string> actions = repair(mesh);
+    fmt::print("\nrepair: {}\n",
+               actions.empty() ? "nothing could be done" : fmt::format("{}", fmt::join(actions, "\n  ")));
+    write_mesh(arguments.output, mesh);
+    fmt::print("{}: {}\n", arguments.output.string(), counts(mesh));
+    findings = examine(mesh);
+  }
+  return has_errors(findings) ? exit_bad_input : exit_done;
+}
+
+// One body of a model as a mesh of its own.
+TetMesh body_mesh(const Model& model, const BodyRange& body) {
+  const TetMesh& all = model.mesh;
+  TetMesh mesh;
+  mesh.rest.assign(all.rest.begin() + body.first_vertex, all.rest.begin() + body.first_vertex + body.vertex_count);
+  mesh.tets.assign(all.tets.begin() + body.first_tet, all.tets.begin() + body.first_tet + body.tet_count);
+  for (Tet& tet : mesh.tets) {
+    for (int& corner : tet) corner -= body.first_vertex;
+  }
+  return mesh;
+}
+
+int check_scene(const Arguments& arguments) {
+  if (arguments.repair) {
+    throw InvalidInput(
+        fmt::format("{}: --repair works on a mesh file; name the mesh of the scene instead", arguments.input.string()));
+  }
+  const Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides, .mesher = {}});
+  const Model& model = scene.simulation.model();
+  fmt::print("{}: {} steps, {} bodies, {}\n", arguments.input.string(), scene.steps, model.bodies.size(),
+             counts(model.mesh));
+  for (const std::string& note : scene.notes) fmt::print("note: {}\n", note);
+  bool wrong = false;
+  for (const BodyRange& body : model.bodies) {
+    const TetMesh mesh = body_mesh(model, body);
+    fmt::print("\n{}: {}\n", body.name, counts(mesh));
+    wrong = has_errors(examine(mesh)) || wrong;
+  }
+  return wrong ? exit_bad_input : exit_done;
+}
+
+int check(const Arguments& arguments) {
+  if (arguments.input.extension() == ".toml") return check_scene(arguments);
+  return std::visit([&](auto mesh) { return check_mesh(arguments, std::move(mesh)); }, read_mesh(arguments.input));
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Action& action) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("check", "Says what is wrong or suspicious about a scene or a mesh");
+  command->footer(
+      "\nExamples:\n  aspic check bunny.mesh\n  aspic check scenes/bunny.toml\n"
+      "  aspic check broken.mesh --repair -o mended.mesh\n"
+      "Exit code 2 when there are errors (after the repair, when one was asked for).");
+  command->add_option("INPUT", arguments->input, "Scene (.toml) or mesh")->required();
+  command->add_option("--set", arguments->overrides, "Override a value of the scene: material.young=2e5")
+      ->allow_extra_args(false);
+  CLI::Option* output = command->add_option("-o,--output", arguments->output, "Where the repaired mesh goes");
+  CLI::Option* repair = command->add_flag("--repair", arguments->repair,
+                                          "Flip inverted tets, remove zero-volume ones, merge duplicate vertices, "
+                                          "drop unreferenced ones");
+  repair->needs(output);
+  output->needs(repair);
+  command->callback([arguments, &action] { action = [arguments] { return check(*arguments); }; });
+}
+
+}  // namespace aspic::cli

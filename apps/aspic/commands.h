@@ -1,0 +1,30 @@
+// The commands of the program. Each adds itself to the command line and, when it is the chosen one, sets `action`.
+#pragma once
+#include <functional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace aspic::cli {
+
+enum ExitCode {
+  exit_done = 0,
+  exit_internal_error = 1,
+  exit_bad_input = 2,
+  exit_unconverged = 3,
+  exit_signal = 128,  // plus the number of the signal: 130 after ctrl-C, 143 after a plain kill
+};
+
+using Action = std::function<int()>;  // returns the exit code
+
+void add_run(CLI::App& app, Action& action);
+void add_check(CLI::App& app, Action& action);
+void add_mesh(CLI::App& app, Action& action);
+void add_convert(CLI::App& app, Action& action);
+void add_materials(CLI::App& app, Action& action);
+
+std::string version_text();
+
+}  // namespace aspic::cli

@@ -1,0 +1,93 @@
+// `aspic convert`: from one mesh format to another.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <variant>
+
+#include "aspic/commands.h"
+#include "base/error.h"
+#include "io/mesh_file.h"
+#include "mesh/surface.h"
+
+namespace aspic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  fs::path in, out;
+  bool surface = false, binary = false;
+};
+
+std::string describe(const TetMesh& mesh) {
+  return fmt::format("{} vertices, {} tets", mesh.vertex_count(), mesh.tet_count());
+}
+std::string describe(const TriMesh& mesh) {
+  return fmt::format("{} vertices, {} triangles", mesh.vertex_count(), mesh.triangle_count());
+}
+
+const MeshFormat& format_of(const fs::path& path) {
+  std::vector<std::string> writable;
+  for (const MeshFormat& format : mesh_formats()) {
+    if (format.extension == path.extension()) return format;
+    if (format.writes_tets || format.writes_triangles) writable.push_back(format.extension);
+  }
+  throw InvalidInput(fmt::format("{}: '{}' is not the extension of a mesh format{}", path.string(),
+                                 path.extension().string(), suggestion(path.extension().string(), writable)));
+}
+
+template <class Mesh>
+int write(const Arguments& arguments, const Mesh& mesh, const std::string& what) {
+  write_mesh(arguments.out, mesh, arguments.binary ? FileEncoding::binary : FileEncoding::ascii);
+  fmt::print("{}: {}{}\n", arguments.out.string(), what, describe(mesh));
+  return exit_done;
+}
+
+int convert(const Arguments& arguments) {
+  const MeshFormat& format = format_of(arguments.out);
+  const auto mesh = read_mesh(arguments.in);
+  fmt::print("{}: {}\n", arguments.in.string(), std::visit([](const auto& m) { return describe(m); }, mesh));
+
+  if (const auto* tets = std::get_if<TetMesh>(&mesh)) {
+    if (format.writes_tets && !arguments.surface) return write(arguments, *tets, "");
+    if (format.writes_triangles) return write(arguments, boundary_surface(*tets).surface, "the boundary, ");
+  } else {
+    if (format.writes_triangles) return write(arguments, std::get<TriMesh>(mesh), "");
+    if (format.writes_tets) {
+      throw InvalidInput(fmt::format("{} is a surface and {} holds tets; fill it first: aspic mesh {} -o {}",
+                                     arguments.in.string(), format.extension, arguments.in.string(),
+                                     arguments.out.string()));
+    }
+  }
+  throw InvalidInput(fmt::format("{}: {} can be read but not written", arguments.out.string(), format.name));
+}
+
+std::string format_table() {
+  std::string text = "\nFormats (r: read, w: write):           tets  triangles\n";
+  for (const MeshFormat& format : mesh_formats()) {
+    const auto mark = [](bool reads, bool writes) { return std::string(reads ? "r" : "-") + (writes ? "w" : "-"); };
+    text +=
+        fmt::format("  {:<6} {:<30} {}    {}\n", format.extension, format.name,
+                    mark(format.reads_tets, format.writes_tets), mark(format.reads_triangles, format.writes_triangles));
+  }
+  return text;
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app, Action& action) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("convert", "Writes a mesh in another format, told by the file name");
+  command->footer([] {
+    return "\nExamples:\n  aspic convert bunny.msh bunny.vtu\n  aspic convert bunny.mesh bunny.obj    the boundary\n" +
+           format_table();
+  });
+  command->add_option("IN", arguments->in, "Mesh to read")->required();
+  command->add_option("OUT", arguments->out, "Mesh to write; replaced when it exists")->required();
+  command->add_flag("--surface", arguments->surface, "The boundary of a tet mesh rather than its tets");
+  command->add_flag("--binary", arguments->binary, "Binary where the format has both encodings");
+  command->callback([arguments, &action] { action = [arguments] { return convert(*arguments); }; });
+}
+
+}  // namespace aspic::cli

@@ -1,0 +1,116 @@
+// The program `aspic`: parses the command line, runs one command, turns what went wrong into a message and an exit
+// code.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "aspic/commands.h"
+#include "base/error.h"
+
+namespace aspic::cli {
+namespace {
+
+constexpr char kFooter[] = R"(
+Examples:
+  aspic run bunny.obj                       any closed surface or tet mesh, with sensible defaults
+  aspic run scenes/bunny.toml --steps 50    a described scene, its first 50 steps
+  aspic check bunny.mesh                    what is wrong with a mesh
+  aspic materials                           the materials and their formulas
+'aspic COMMAND --help' tells more about a command.
+
+Exit codes: 0 done, 1 internal error, 2 bad input, 3 some step did not converge, 130 interrupted.)";
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
+  return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+// What the writer of the command line may have meant; empty when nothing is near.
+std::string hint(const CLI::App& app, const std::vector<std::string>& arguments) {
+  const std::vector<std::string> commands = command_names(app);
+  const std::string& first = arguments.front();
+  const bool is_command = std::find(commands.begin(), commands.end(), first) != commands.end();
+  if (!is_command && first[0] != '-') {
+    if (std::filesystem::exists(first)) return fmt::format("'{0}' is a file: aspic run {0}", first);
+    return fmt::format("there is no command '{}'{}", first, suggestion(first, commands));
+  }
+  const CLI::App& command = is_command ? *app.get_subcommand(first) : app;
+  const std::vector<std::string> known = option_names(command);
+  for (const std::string& argument : arguments) {
+    const std::string name = argument.substr(0, argument.find('='));
+    if (name.starts_with("--") && std::find(known.begin(), known.end(), name) == known.end()) {
+      return fmt::format("there is no option '{}'{}", name, suggestion(name, known));
+    }
+  }
+  return "";
+}
+
+int report_parse_error(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& arguments) {
+  if (error.get_exit_code() == 0) {  // --help, --version
+    app.exit(error);
+    return exit_done;
+  }
+  const std::string meant = arguments.empty() ? "" : hint(app, arguments);
+  fmt::print(stderr, "error: {}\n", meant.empty() ? error.what() : meant);
+  const auto chosen = app.get_subcommands();
+  fmt::print(stderr, "'aspic {}--help' tells what is possible.\n", chosen.empty() ? "" : chosen[0]->get_name() + " ");
+  return exit_bad_input;
+}
+
+int run_program(int argc, char** argv) {
+  CLI::App app("Aspic animates soft bodies; every time step is one minimisation.", "aspic");
+  app.footer(kFooter);
+  app.require_subcommand(1);
+  app.set_version_flag("--version", version_text, "Version, and how this program was built");
+  app.get_formatter()->column_width(32);
+
+  Action action;
+  add_run(app, action);
+  add_check(app, action);
+  add_mesh(app, action);
+  add_convert(app, action);
+  add_materials(app, action);
+  if (argc == 1) {
+    fmt::print("{}", app.help());
+    return exit_bad_input;
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return report_parse_error(app, error, {argv + 1, argv + argc});
+  }
+  return action();
+}
+
+}  // namespace
+}  // namespace aspic::cli
+
+int main(int argc, char** argv) {
+  using namespace aspic;
+  try {
+    return cli::run_program(argc, argv);
+  } catch (const InvalidInput& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return cli::exit_bad_input;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "error: out of memory\n");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "internal error: {}\nThis should not happen; please report it with the command and its input.\n",
+               error.what());
+  }
+  return cli::exit_internal_error;
+}

@@ -1,0 +1,92 @@
+#include "aspic/progress.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace aspic::cli {
+namespace {
+
+constexpr double kRedrawInterval = 0.1;  // on a terminal [s]
+constexpr double kLineInterval = 10;     // in a pipe [s], and
+constexpr double kLineFraction = 0.05;   // of the whole run
+constexpr int kBarWidth = 20;
+
+size_t terminal_width(std::FILE* stream) {
+  winsize size{};
+  const bool known = ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : 80;
+}
+
+std::string step_text(const StepReport& report, int last) {
+  return fmt::format("step {}/{}  t {:.4g} s  {} it  E {:.4g} J  {}", report.step, last, report.time, report.iterations,
+                     report.kinetic + report.potential_total, to_string(report.status));
+}
+
+}  // namespace
+
+std::string duration_text(double seconds) {
+  if (seconds < 9.95) return fmt::format("{:.1f} s", seconds);
+  const long total = std::lround(seconds);
+  if (total < 60) return fmt::format("{} s", total);
+  if (total < 3600) return fmt::format("{} min {:02} s", total / 60, total % 60);
+  return fmt::format("{} h {:02} min", total / 3600, total / 60 % 60);
+}
+
+Progress::Progress(std::FILE* stream, int first_step, int last_step)
+    : stream_(stream),
+      terminal_(isatty(fileno(stream)) != 0),
+      first_(first_step),
+      last_(last_step),
+      shown_step_(first_step) {}
+
+double Progress::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+bool Progress::is_due(const StepReport& report) const {
+  if (report.step == last_) return true;
+  const double waited = seconds() - shown_at_;
+  if (terminal_) return waited >= kRedrawInterval;
+  return waited >= kLineInterval || report.step - shown_step_ >= kLineFraction * (last_ - first_);
+}
+
+void Progress::show(const StepReport& report) {
+  if (!is_due(report)) return;
+  shown_at_ = seconds();
+  shown_step_ = report.step;
+  const double done = static_cast<double>(report.step) / last_;
+  const double per_step = shown_at_ / (report.step - first_);
+  std::string line = fmt::format("{:3.0f}%  {}  {} left", 100 * done, step_text(report, last_),
+                                 duration_text(per_step * (last_ - report.step)));
+  if (terminal_) {
+    const int filled = static_cast<int>(done * kBarWidth);
+    line = fmt::format("[{:#<{}}{:.<{}}] {}", "", filled, "", kBarWidth - filled, line);
+    line.resize(std::min(line.size(), terminal_width(stream_) - 1));
+    fmt::print(stream_, "\r{}\x1b[K", line);  // erases what a longer line left
+    drawn_ = true;
+  } else {
+    fmt::print(stream_, "{}\n", line);
+  }
+  std::fflush(stream_);
+}
+
+void Progress::erase() {
+  if (drawn_) fmt::print(stream_, "\r\x1b[K");
+  drawn_ = false;
+}
+
+void Progress::message(const std::string& line) {
+  erase();
+  std::fflush(stream_);
+  fmt::print(stderr, "{}\n", line);
+}
+
+void Progress::finish() {
+  if (drawn_) fmt::print(stream_, "\n");
+  drawn_ = false;
+  std::fflush(stream_);
+}
+
+}  // namespace aspic::cli

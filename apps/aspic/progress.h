@@ -1,0 +1,35 @@
+// How far a run is: one line that redraws itself on a terminal, plain lines now and then in a pipe.
+#pragma once
+#include <chrono>
+#include <cstdio>
+#include <string>
+
+#include "dynamics/step_report.h"
+
+namespace aspic::cli {
+
+class Progress {
+ public:
+  Progress(std::FILE* stream, int first_step, int last_step);
+  void show(const StepReport& report);
+  void message(const std::string& line);  // a line of its own, above the bar
+  void finish();                          // leaves the bar as it is
+
+ private:
+  double seconds() const;
+  bool is_due(const StepReport& report) const;
+  void erase();
+
+  using Clock = std::chrono::steady_clock;
+  std::FILE* stream_;
+  bool terminal_;
+  int first_, last_;
+  Clock::time_point start_ = Clock::now();
+  double shown_at_ = -1e9;  // [s] since the start
+  int shown_step_ = 0;
+  bool drawn_ = false;
+};
+
+std::string duration_text(double seconds);  // "12 s", "3 min 20 s", "2 h 05 min"
+
+}  // namespace aspic::cli

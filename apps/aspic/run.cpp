@@ -1,0 +1,200 @@
+// `aspic run`: loads a scene or a mesh, takes the steps, records them.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+
+#include "aspic/commands.h"
+#include "aspic/interrupt.h"
+#include "aspic/progress.h"
+#include "aspic/step_json.h"
+#include "aspic/summary.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "scene/run_directory.h"
+#include "scene/scene.h"
+
+namespace aspic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  fs::path input, out;
+  std::vector<std::string> overrides;
+  int threads = 0, steps = 0;  // 0: not given
+  bool force = false, resume = false, quiet = false, json = false, allow_unconverged = false;
+};
+
+constexpr int kWarningsShown = 5;
+
+// The directory to continue: the one named, or the one where a run of the input would have gone.
+fs::path directory_to_resume(const Arguments& arguments) {
+  if (!arguments.out.empty()) return arguments.out;
+  if (fs::is_directory(arguments.input)) return arguments.input;
+  return fs::path("out") / arguments.input.stem();
+}
+
+Scene load(const Arguments& arguments) {
+  if (arguments.resume) {
+    if (!arguments.overrides.empty()) {
+      throw InvalidInput("--set and --resume exclude each other: a run is continued as it was begun");
+    }
+    const fs::path directory = directory_to_resume(arguments);
+    if (!fs::is_directory(directory)) {
+      throw InvalidInput(fmt::format("{}: no such run to resume; start it without --resume", directory.string()));
+    }
+    return load_scene(scene_of_run(directory));
+  }
+  if (fs::is_directory(arguments.input)) {
+    throw InvalidInput(
+        fmt::format("{0}: is a directory; to continue a run: aspic run {0} --resume", arguments.input.string()));
+  }
+  return load_scene(arguments.input, {.overrides = arguments.overrides, .mesher = {}});
+}
+
+RunDirectory open_directory(const Arguments& arguments, Scene& scene) {
+  if (arguments.resume) return RunDirectory::resume(directory_to_resume(arguments), scene);
+  const fs::path path = arguments.out.empty() ? fs::path("out") / scene.name : arguments.out;
+  return RunDirectory::create(path, scene, arguments.force ? ExistingRun::overwrite : ExistingRun::refuse);
+}
+
+// Takes the steps of one run and tells everyone who listens.
+class Runner {
+ public:
+  Runner(const Arguments& arguments, Scene& scene, RunDirectory& directory)
+      : arguments_(arguments),
+        scene_(scene),
+        directory_(directory),
+        human_(arguments.json ? stderr : stdout),
+        last_step_(arguments.steps > 0 ? arguments.steps : scene.steps),
+        first_step_(scene.simulation.steps_taken()) {
+    if (!arguments.quiet) progress_.emplace(human_, first_step_, last_step_);
+  }
+
+  // Stops early when a signal asks for it; a step cut short is dropped, so what is written ends with a whole one.
+  void run() {
+    Simulation& simulation = scene_.simulation;
+    while (simulation.steps_taken() < last_step_ && !interrupt_signal()) {
+      iterations_.clear();
+      const StepReport report = simulation.step([this](const Iteration& iteration) {
+        iterations_.push_back(iteration);
+        return !interrupt_signal();
+      });
+      if (report.status == Status::interrupted) break;
+      record(report);
+    }
+    directory_.finish(simulation);
+    if (progress_) progress_->finish();
+  }
+
+  const RunTotals& totals() const { return totals_; }
+  std::FILE* human() const { return human_; }
+  int last_step() const { return last_step_; }
+
+ private:
+  void record(const StepReport& report) {
+    for (const Iteration& iteration : iterations_) directory_.on_iteration(report.step, iteration);
+    directory_.on_step(report, scene_.simulation);
+    totals_.add(report);
+    if (!is_success(report.status)) warn(report);
+    if (arguments_.json) {
+      fmt::print("{}\n", step_json(report, scene_.simulation.potential_names()));
+      std::fflush(stdout);
+    }
+    if (progress_) progress_->show(report);
+  }
+
+  void warn(const StepReport& report) {
+    const int count = totals_.unconverged;
+    if (count > kWarningsShown) return;
+    std::string line = fmt::format(
+        "warning: step {} did not converge: {} after {} iterations; residual {:.3g} N, wanted {:.3g} N", report.step,
+        to_string(report.status), report.iterations, report.residual, report.residual_threshold);
+    if (count == kWarningsShown) line += " (further ones are only counted)";
+    if (progress_) {
+      progress_->message(line);
+    } else {
+      fmt::print(stderr, "{}\n", line);
+    }
+  }
+
+  const Arguments& arguments_;
+  Scene& scene_;
+  RunDirectory& directory_;
+  std::FILE* human_;
+  int last_step_, first_step_;
+  std::optional<Progress> progress_;
+  std::vector<Iteration> iterations_;  // of the step under way; recorded once it is whole
+  RunTotals totals_;
+};
+
+void print_start(std::FILE* stream, const Arguments& arguments, const Scene& scene, const fs::path& directory) {
+  const Simulation& simulation = scene.simulation;
+  for (const std::string& note : scene.notes) fmt::print(stream, "note: {}\n", note);
+  fmt::print(stream, "{}: {} vertices, {} tets; {}, {}; {} threads; into {}\n", scene.name,
+             simulation.model().mesh.vertex_count(), simulation.model().mesh.tet_count(),
+             simulation.options().integrator, simulation.solver_description(), thread_count(), directory.string());
+  if (arguments.resume) fmt::print(stream, "resuming after step {}\n", simulation.steps_taken());
+  std::fflush(stream);
+}
+
+int exit_code(const Arguments& arguments, const RunTotals& totals) {
+  if (interrupt_signal()) return exit_signal + interrupt_signal();
+  if (totals.unconverged > 0 && !arguments.allow_unconverged) return exit_unconverged;
+  return exit_done;
+}
+
+int run(const Arguments& arguments) {
+  if (arguments.threads > 0) set_thread_count(arguments.threads);
+  Scene scene = load(arguments);
+  RunDirectory directory = open_directory(arguments, scene);
+  catch_interrupts();  // not before there is something to keep
+
+  Runner runner(arguments, scene, directory);
+  if (!arguments.quiet) print_start(runner.human(), arguments, scene, directory.path());
+  runner.run();
+  if (!arguments.quiet) {
+    print_summary(runner.human(), runner.totals(),
+                  {.last_step = runner.last_step(),
+                   .steps_taken = scene.simulation.steps_taken(),
+                   .interrupted = interrupt_signal() != 0,
+                   .directory = directory.path()});
+  }
+  return exit_code(arguments, runner.totals());
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("run", "Simulates a scene, or a mesh with sensible defaults");
+  command->footer(R"(
+Examples:
+  aspic run bunny.obj                             fills the surface with tets and lets it fall and hang
+  aspic run scenes/bunny.toml                     results in out/bunny
+  aspic run beam.toml --set material.young=2e5 --set time.step=0.005 --out out/soft
+  aspic run beam.toml --resume                    continues an interrupted run, to the same bits
+  aspic run beam.toml --json | jq .iterations     one line of JSON per step
+
+Exit codes: 0 done, 2 bad input, 3 some step did not converge (unless --allow-unconverged),
+130 interrupted by ctrl-C, 143 by kill: everything up to the last whole step is written.)");
+  command->add_option("INPUT", arguments->input, "Scene (.toml), mesh, or with --resume a run directory")->required();
+  command->add_option("--set", arguments->overrides, "Override a value: material.young=2e5; can be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--threads", arguments->threads, "Threads; all cores by default; the result is the same")
+      ->check(CLI::Range(1, 1024));
+  command->add_option("--steps", arguments->steps, "Stop after this many steps of the run")
+      ->check(CLI::Range(1, 1000000000));
+  command->add_option("--out", arguments->out, "Directory of the results; out/NAME by default");
+  command->add_flag("--force", arguments->force, "Replace the results of an earlier run");
+  command->add_flag("--resume", arguments->resume, "Continue the run in the directory")->excludes("--force");
+  command->add_flag("--quiet", arguments->quiet, "Only warnings and errors");
+  command->add_flag("--json", arguments->json, "One line of JSON per step on stdout, all else on stderr");
+  command->add_flag("--allow-unconverged", arguments->allow_unconverged,
+                    "Exit code 0 even when a step did not converge");
+  command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+}
+
+}  // namespace aspic::cli

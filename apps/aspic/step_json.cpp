@@ -1,0 +1,37 @@
+#include "aspic/step_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace aspic::cli {
+
+std::string step_json(const StepReport& report, const std::vector<std::string>& potential_names) {
+  nlohmann::ordered_json potential = nlohmann::json::object();
+  for (size_t i = 0; i < report.potential.size(); ++i) potential[potential_names.at(i)] = report.potential[i];
+  const nlohmann::ordered_json line = {
+      {"step", report.step},
+      {"time", report.time},
+      {"status", to_string(report.status)},
+      {"converged", is_success(report.status)},
+      {"criterion", to_string(report.criterion)},
+      {"iterations", report.iterations},
+      {"trials", report.trials},
+      {"linear_iterations", report.linear_iterations},
+      {"hessians", report.hessians},
+      {"projected_hessians", report.projected_hessians},
+      {"residual", report.residual},
+      {"residual_threshold", report.residual_threshold},
+      {"min_det_F", report.min_det_F},
+      {"kinetic", report.kinetic},
+      {"potential", potential},
+      {"potential_total", report.potential_total},
+      {"pin_work", report.pin_work},
+      {"damping_loss", report.damping_loss},
+      {"numerical_loss", report.numerical_loss},
+      {"residual_work", report.residual_work},
+      {"ledger_error", report.ledger_error},
+      {"seconds", report.seconds},
+  };
+  return line.dump();
+}
+
+}  // namespace aspic::cli

@@ -1,0 +1,12 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "dynamics/step_report.h"
+
+namespace aspic::cli {
+
+// One line of JSON; numbers that are not finite are null.
+std::string step_json(const StepReport& report, const std::vector<std::string>& potential_names);
+
+}  // namespace aspic::cli

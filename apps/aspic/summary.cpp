@@ -1,0 +1,77 @@
+#include "aspic/summary.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string>
+#include <system_error>
+
+#include "aspic/progress.h"
+
+namespace aspic::cli {
+namespace {
+
+struct Viewer {
+  std::string extension, advice;
+};
+const std::array<Viewer, 4> kViewers = {{
+    {".pvd", "ParaView: open {}"},
+    {".usda", "USD viewers: open {}"},
+    {".pc2", "Blender: import the .obj beside it, add a Mesh Cache modifier with {}"},
+    {".csv", "spreadsheet: {}"},
+}};
+
+double peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+void print_results(std::FILE* stream, const std::filesystem::path& directory) {
+  std::error_code error;
+  std::set<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) files.insert(entry.path());
+  fmt::print(stream, "results    {}\n", directory.string());
+  for (const Viewer& viewer : kViewers) {
+    for (const auto& file : files) {
+      if (file.extension() != viewer.extension) continue;
+      fmt::print(stream, "           {}\n", fmt::format(fmt::runtime(viewer.advice), file.string()));
+    }
+  }
+}
+
+}  // namespace
+
+void RunTotals::add(const StepReport& report) {
+  ++steps;
+  if (!is_success(report.status)) ++unconverged;
+  iterations += report.iterations;
+  most_iterations = std::max(most_iterations, report.iterations);
+  seconds += report.seconds;
+  time = report.time;
+}
+
+void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end) {
+  if (totals.steps == 0 && !end.interrupted) {
+    fmt::print(stream, "nothing to do: the run has all its {} steps\n", end.steps_taken);
+  } else {
+    fmt::print(stream, "{}  {} of {} steps, to t = {:g} s\n", end.interrupted ? "stopped  " : "done     ",
+               end.steps_taken, end.last_step, totals.time);
+  }
+  if (totals.steps > 0) {
+    fmt::print(stream, "converged  {} of {}; iterations per step: mean {:.1f}, most {}\n",
+               totals.steps - totals.unconverged, totals.steps, static_cast<double>(totals.iterations) / totals.steps,
+               totals.most_iterations);
+    fmt::print(stream, "took       {} in steps, {:.3g} ms each; peak memory {:.0f} MB\n", duration_text(totals.seconds),
+               1000 * totals.seconds / totals.steps, peak_megabytes());
+  }
+  print_results(stream, end.directory);
+  if (end.interrupted) {
+    fmt::print(stream, "continue   aspic run {} --resume\n", end.directory.string());
+  }
+}
+
+}  // namespace aspic::cli

@@ -1,0 +1,28 @@
+// What a run amounted to, and how to look at its results.
+#pragma once
+#include <cstdio>
+#include <filesystem>
+
+#include "dynamics/step_report.h"
+
+namespace aspic::cli {
+
+struct RunTotals {
+  int steps = 0, unconverged = 0;
+  long iterations = 0;
+  int most_iterations = 0;
+  double seconds = 0;  // in steps
+  double time = 0;     // of the last step [s]
+
+  void add(const StepReport& report);
+};
+
+struct RunEnd {
+  int last_step = 0, steps_taken = 0;
+  bool interrupted = false;
+  std::filesystem::path directory;
+};
+
+void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end);
+
+}  // namespace aspic::cli

@@ -1,0 +1,107 @@
+// Backward Euler, its linearisation, and the static limit.
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/integrator.h"
+
+namespace aspic {
+namespace {
+
+// Starts from the candidate of lowest energy: where the body is, or where it would fly without forces. Pinned
+// vertices go where they must in both.
+void choose_start(const StepTools& tools, std::span<const double> predicted, double time, std::span<double> q) {
+  std::vector<double> current(q.begin(), q.end()), flying(predicted.begin(), predicted.end());
+  tools.pins.place(time, current);
+  tools.pins.place(time, flying);
+  const bool fly = tools.E.value(flying) <= tools.E.value(current);
+  const std::vector<double>& best = fly ? flying : current;
+  std::copy(best.begin(), best.end(), q.begin());
+}
+
+// q~ = q_t + h qdot_t = 2 q_t - q_(t-1)
+std::vector<double> predicted_position(const State& state, double h) {
+  std::vector<double> predicted(state.q.size());
+  for (size_t i = 0; i < predicted.size(); ++i) predicted[i] = state.q[i] + h * state.qdot[i];
+  return predicted;
+}
+
+// q_new = argmin 1/2 (q - q~)' M (q - q~) + h^2 V(q),  qdot_new = (q_new - q_t) / h
+class BackwardEuler : public Integrator {
+ public:
+  std::string_view name() const override { return "backward_euler"; }
+  bool is_implicit() const override { return true; }
+  Displacement displacement() const override { return Displacement::new_velocity; }
+
+  MinimizeReport advance(const StepTools& tools, double h, State& state) override {
+    const std::vector<double> q = state.q;
+    const std::vector<double> predicted = predicted_position(state, h);
+    tools.E.begin_step(predicted, 1, h * h);
+    start(tools, predicted, state.time + h, state.q);
+    const MinimizeReport report =
+        tools.minimizer.minimize(tools.E, tools.direction, state.q, adapted(tools.options), tools.observe);
+    for (size_t i = 0; i < q.size(); ++i) state.qdot[i] = (state.q[i] - q[i]) / h;
+    state.time += h;
+    return finished(report);
+  }
+
+ protected:
+  virtual void start(const StepTools& tools, std::span<const double> predicted, double time,
+                     std::span<double> q) const {
+    choose_start(tools, predicted, time, q);
+  }
+  virtual MinimizeOptions adapted(const MinimizeOptions& options) const { return options; }
+  virtual MinimizeReport finished(const MinimizeReport& report) const { return report; }
+};
+
+// One Newton iteration from the current state, without line search [Baraff and Witkin 1998].
+class LinearlyImplicitEuler : public BackwardEuler {
+ public:
+  std::string_view name() const override { return "linearly_implicit_euler"; }
+
+ protected:
+  void start(const StepTools& tools, std::span<const double>, double time, std::span<double> q) const override {
+    tools.pins.place(time, q);
+  }
+  MinimizeOptions adapted(const MinimizeOptions& options) const override {
+    MinimizeOptions one = options;
+    one.max_iterations = 1;
+    one.max_forcing = 1e-10;
+    one.line_search.test = DecreaseTest::none;
+    one.line_search.alpha_max = 1;
+    return one;
+  }
+  // The scheme asks for one iteration, not for a small gradient; what is left over stays in the report.
+  MinimizeReport finished(const MinimizeReport& report) const override {
+    MinimizeReport done = report;
+    if (done.status == Status::iteration_limit) done.status = Status::converged;
+    done.threshold = 0;
+    return done;
+  }
+};
+
+// q_new = argmin V(q)
+class QuasiStatic : public Integrator {
+ public:
+  std::string_view name() const override { return "quasi_static"; }
+  bool is_implicit() const override { return true; }
+  bool is_static() const override { return true; }
+  Displacement displacement() const override { return Displacement::any; }
+
+  MinimizeReport advance(const StepTools& tools, double h, State& state) override {
+    tools.E.begin_step(state.q, 0, 1);
+    tools.pins.place(state.time + h, state.q);
+    const MinimizeReport report =
+        tools.minimizer.minimize(tools.E, tools.direction, state.q, tools.options, tools.observe);
+    std::fill(state.qdot.begin(), state.qdot.end(), 0.0);
+    state.time += h;
+    return report;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_backward_euler() { return std::make_unique<BackwardEuler>(); }
+std::unique_ptr<Integrator> make_linearly_implicit_euler() { return std::make_unique<LinearlyImplicitEuler>(); }
+std::unique_ptr<Integrator> make_quasi_static() { return std::make_unique<QuasiStatic>(); }
+
+}  // namespace aspic

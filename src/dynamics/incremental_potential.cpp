@@ -1,0 +1,134 @@
+#include "dynamics/incremental_potential.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/check.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+BlockPattern pattern_of(const Model& model) {
+  Couplings couplings;
+  model.mass->add_couplings(couplings);
+  for (const auto& V : model.elasticity) V->add_couplings(couplings);
+  for (const auto& V : model.loads) V->add_couplings(couplings);
+  for (const auto& D : model.damping) D->add_couplings(couplings);
+  return make_pattern(model.mesh.vertex_count(), std::move(couplings));
+}
+
+Definiteness definiteness(HessianKind kind) {
+  switch (kind) {
+    case HessianKind::clamped:
+      return Definiteness::clamped;
+    case HessianKind::absolute:
+      return Definiteness::absolute;
+    case HessianKind::exact:
+      break;
+  }
+  return Definiteness::exact;
+}
+
+}  // namespace
+
+IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
+    : model_(model), pins_(pins), pattern_(pattern_of(model)), H_(pattern_) {
+  for (const auto& V : model.elasticity) potential_.push_back(V.get());
+  for (const auto& V : model.loads) potential_.push_back(V.get());
+  for (const auto& D : model.damping) damping_.push_back(D.get());
+  model.mass->bind(pattern_);
+  for (Energy* V : potential_) V->bind(pattern_);
+  for (Energy* D : damping_) D->bind(pattern_);
+  for (auto* v : {&predicted_, &offset_, &term_}) v->resize(3 * pattern_.rows());
+  growth_stiffness_ = growth_stiffness(model.mesh);
+}
+
+void IncrementalPotential::begin_step(std::span<const double> predicted, double inertia, double factor) {
+  predicted_.assign(predicted.begin(), predicted.end());
+  inertia_ = inertia;
+  factor_ = factor;
+  gradient_round_off_ = 0;  // known after the first Hessian
+}
+
+double IncrementalPotential::value(std::span<const double> q) {
+  double E = 0, magnitude = factor_ * growth_stiffness_;
+  const auto add = [&](double term) { E += term, magnitude += std::abs(term); };
+  if (inertia_ != 0) {
+    for (size_t i = 0; i < q.size(); ++i) offset_[i] = q[i] - predicted_[i];
+    model_.mass->multiply(offset_, term_);
+    add(0.5 * inertia_ * dot(offset_, term_));
+  }
+  for (const Energy* V : potential_) add(factor_ * V->value(q));
+  for (const Energy* D : damping_) add(factor_ * D->value(q));
+  value_round_off_ = kEpsilon * magnitude;
+  return E;
+}
+
+void IncrementalPotential::gradient(std::span<const double> q, std::span<double> g) {
+  std::fill(g.begin(), g.end(), 0.0);
+  gradient_scale_ = 0;
+  if (inertia_ != 0) {
+    for (size_t i = 0; i < q.size(); ++i) offset_[i] = inertia_ * (q[i] - predicted_[i]);
+    model_.mass->multiply(offset_, g);
+    gradient_scale_ = free_norm(g);
+  }
+  for (const Energy* V : potential_) add_term_gradient(*V, q, g);
+  for (const Energy* D : damping_) add_term_gradient(*D, q, g);
+  pins_.set_zero(g);
+}
+
+const BlockSparse& IncrementalPotential::hessian(std::span<const double> q, HessianKind kind) {
+  H_.set_zero();
+  if (inertia_ != 0) model_.mass->add_to(inertia_, H_);
+  for (const Energy* V : potential_) V->add_hessian(q, factor_, definiteness(kind), H_);
+  for (const Energy* D : damping_) D->add_hessian(q, factor_, definiteness(kind), H_);
+  pins_.set_identity(H_);
+
+  // Positions are known to eps |q|, so forces are to eps |q| times the stiffness that a vertex feels.
+  double size = 0, stiffness = 0;
+  for (const double qi : q) size = std::max(size, std::abs(qi));
+  for (int i = 0; i < pattern_.rows(); ++i)
+    if (!pins_.holds(i)) stiffness += squared_norm(H_.block[pattern_.diagonal(i)]);
+  gradient_round_off_ = kEpsilon * size * std::sqrt(stiffness);
+  return H_;
+}
+
+double IncrementalPotential::max_step(std::span<const double> q, std::span<const double> d) {
+  double alpha = std::numeric_limits<double>::infinity();
+  for (const Energy* V : potential_) alpha = std::min(alpha, V->max_step(q, d));
+  return alpha;
+}
+
+double IncrementalPotential::free_norm(std::span<const double> v) const {
+  double sum = 0;
+  for (size_t i = 0; i < v.size(); ++i)
+    if (!pins_.holds(static_cast<int>(i / 3))) sum += v[i] * v[i];
+  return std::sqrt(sum);
+}
+
+void IncrementalPotential::add_term_gradient(const Energy& term, std::span<const double> q, std::span<double> g) {
+  std::fill(term_.begin(), term_.end(), 0.0);
+  term.add_gradient(q, factor_, term_);
+  gradient_scale_ += free_norm(term_);
+  for (size_t i = 0; i < g.size(); ++i) g[i] += term_[i];
+}
+
+double IncrementalPotential::growth_stiffness(const TetMesh& mesh) {
+  Vec3d center{};
+  for (const Vec3d& X : mesh.rest) center = center + (1.0 / mesh.vertex_count()) * X;
+  std::vector<double> rest(term_.size()), growth(term_.size());
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    for (int r = 0; r < 3; ++r) {
+      rest[3 * v + r] = mesh.rest[v][r];
+      growth[3 * v + r] = mesh.rest[v][r] - center[r];
+    }
+  H_.set_zero();
+  for (const Energy* V : potential_) V->add_hessian(rest, 1, Definiteness::absolute, H_);
+  H_.multiply(growth, term_);
+  return dot(growth, term_);
+}
+
+}  // namespace aspic

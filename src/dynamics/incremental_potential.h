@@ -1,0 +1,52 @@
+// E(q) = w/2 (q - q~)' M (q - q~) + f (V(q) + D(q)): its minimiser is the end of an implicit time step.
+//   backward Euler: w = 1, f = h^2, q~ = q_t + h qdot_t          statics: w = 0, f = 1
+// Pinned vertices are not variables: their gradient is zero and their rows of the Hessian are those of the identity.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "dynamics/model.h"
+#include "dynamics/pins.h"
+#include "optimize/objective.h"
+
+namespace aspic {
+
+class IncrementalPotential : public Objective {
+ public:
+  IncrementalPotential(const Model& model, const Pins& pins);
+
+  // The terms must have been told of the step (Energy::begin_step) before.
+  void begin_step(std::span<const double> predicted, double inertia /* w */, double factor /* f */);
+
+  double value(std::span<const double> q) override;
+  void gradient(std::span<const double> q, std::span<double> g) override;
+  const BlockSparse& hessian(std::span<const double> q, HessianKind kind) override;
+  double max_step(std::span<const double> q, std::span<const double> d) override;
+  double gradient_scale() const override { return gradient_scale_; }
+  double gradient_round_off() const override { return gradient_round_off_; }
+  double value_round_off() const override { return value_round_off_; }
+
+  const std::vector<Energy*>& potential() const { return potential_; }  // the terms of V
+  const std::vector<Energy*>& damping() const { return damping_; }
+  const BlockPattern& pattern() const { return pattern_; }
+
+ private:
+  // The second derivative of V along a uniform growth of the body at rest: a modulus times the volume [J].
+  double growth_stiffness(const TetMesh& mesh);
+  double free_norm(std::span<const double> v) const;
+  void add_term_gradient(const Energy& term, std::span<const double> q, std::span<double> g);
+
+  const Model& model_;
+  const Pins& pins_;
+  std::vector<Energy*> potential_, damping_;
+  BlockPattern pattern_;
+  BlockSparse H_;
+
+  std::vector<double> predicted_;
+  double inertia_ = 1, factor_ = 1;
+  double growth_stiffness_ = 0;
+  double gradient_scale_ = 0, gradient_round_off_ = 0, value_round_off_ = 0;
+  std::vector<double> offset_, term_;  // scratch: q - q~, one term's gradient
+};
+
+}  // namespace aspic

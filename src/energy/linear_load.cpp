@@ -1,0 +1,55 @@
+#include "energy/linear_load.h"
+
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace aspic {
+namespace {
+
+class LinearLoad : public Energy {
+ public:
+  LinearLoad(std::string name, std::vector<double> force) : name_(std::move(name)), force_(std::move(force)) {}
+
+  std::string_view name() const override { return name_; }
+
+  double value(Positions x) const override {
+    return -parallel_sum(static_cast<int>(x.size()), [&](int first, int last) {
+      double sum = 0;
+      for (int i = first; i < last; ++i) sum += force_[i] * x[i];
+      return sum;
+    });
+  }
+
+  void add_gradient(Positions x, double scale, std::span<double> g) const override {
+    for (size_t i = 0; i < x.size(); ++i) g[i] -= scale * force_[i];
+  }
+
+  void add_hessian(Positions, double, Definiteness, BlockSparse&) const override {}
+
+ private:
+  std::string name_;
+  std::vector<double> force_;  // [N]
+};
+
+}  // namespace
+
+std::unique_ptr<Energy> make_linear_load(std::string name, std::vector<double> force) {
+  return std::make_unique<LinearLoad>(std::move(name), std::move(force));
+}
+
+void add_body_force(const TetMesh& mesh, int tet, const Vec3d& force_density, std::span<double> force) {
+  for (const int v : mesh.tets[tet])
+    for (int r = 0; r < 3; ++r) force[3 * v + r] += volume(mesh, tet) / 4 * force_density[r];
+}
+
+void add_traction(const std::vector<Vec3d>& X, const Triangle& triangle, const Vec3d& traction,
+                  std::span<double> force) {
+  const auto [a, b, c] = triangle;
+  const Vec3d n = cross(X[b] - X[a], X[c] - X[a]);
+  const double area = std::sqrt(dot(n, n)) / 2;
+  for (const int v : triangle)
+    for (int r = 0; r < 3; ++r) force[3 * v + r] += area / 3 * traction[r];
+}
+
+}  // namespace aspic

@@ -1,0 +1,78 @@
+#include "energy/tet_term.h"
+
+namespace aspic {
+namespace {
+
+// psi(F) = eta / (2 h) |E - E_start|^2, E = (F'F - I) / 2: a St. Venant-Kirchhoff solid at rest where the step starts.
+struct GreenStrainRate {
+  template <class T>
+  struct Params {
+    T viscosity;               // eta [Pa s]
+    T per_step;                // 1/h [1/s]; 0 in statics
+    T xx, yy, zz, xy, yz, zx;  // E_start
+  };
+
+  template <class T>
+  static Mat3<T> green_strain(const Mat3<T>& F) {
+    return T(0.5) * (transpose(F) * F - identity3<T>());
+  }
+
+  template <class T>
+  static Mat3<T> increment(const Mat3<T>& F, const Params<T>& p) {
+    const Mat3<T> start = {{p.xx, p.xy, p.zx, p.xy, p.yy, p.yz, p.zx, p.yz, p.zz}};
+    return green_strain(F) - start;
+  }
+
+  template <class T>
+  static T psi(const Mat3<T>& F, const Params<T>& p) {
+    return T(0.5) * p.viscosity * p.per_step * squared_norm(increment(F, p));
+  }
+
+  template <class T>
+  static Mat3<T> pk1(const Mat3<T>& F, const Params<T>& p) {
+    return (p.viscosity * p.per_step) * (F * increment(F, p));
+  }
+
+  // dP = k (dF S + F dE), S = E - E_start, dE = (dF'F + F'dF) / 2
+  template <class T>
+  static Mat9<T> hessian(const Mat3<T>& F, const Params<T>& p) {
+    const T k = p.viscosity * p.per_step;
+    const Mat3<T> S = increment(F, p), FFt = F * transpose(F);
+    Mat9<T> H;
+    for (int d = 0; d < 3; ++d)
+      for (int s = 0; s < 3; ++s)
+        for (int c = 0; c < 3; ++c)
+          for (int r = 0; r < 3; ++r) {
+            T h = T(0.5) * F(r, d) * F(s, c);
+            if (r == s) h = h + S(d, c);
+            if (c == d) h = h + T(0.5) * FFt(r, s);
+            H(r + 3 * c, s + 3 * d) = k * h;
+          }
+    return H;
+  }
+};
+
+class StrainRateDamping : public TetTerm<GreenStrainRate> {
+ public:
+  using TetTerm::TetTerm;
+
+  void begin_step(const StepContext& step) override {
+    for (size_t i = 0; i < batches_.size(); ++i) {
+      const Mat3<Pack> E = GreenStrainRate::green_strain(F(static_cast<int>(i), step.start));
+      auto& p = params_[i];
+      p.per_step = Pack(step.h > 0 ? 1 / step.h : 0.0);
+      p.xx = E(0, 0), p.yy = E(1, 1), p.zz = E(2, 2);
+      p.xy = E(0, 1), p.yz = E(1, 2), p.zx = E(2, 0);
+    }
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Energy> make_strain_rate_damping(const TetMesh& mesh, int first, std::span<const double> viscosity) {
+  std::vector<GreenStrainRate::Params<double>> parameters;
+  for (const double eta : viscosity) parameters.push_back({eta, 0, 0, 0, 0, 0, 0, 0});
+  return std::make_unique<StrainRateDamping>("strain_rate_damping", mesh, first, parameters);
+}
+
+}  // namespace aspic

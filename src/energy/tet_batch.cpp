@@ -1,0 +1,67 @@
+#include "energy/tet_batch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aspic {
+
+TetBatch::TetBatch(const TetMesh& mesh, std::span<const int> tets) : count(static_cast<int>(tets.size())) {
+  ASPIC_CHECK(count >= 1 && count <= W);
+  for (int l = 0; l < W; ++l) {
+    tet[l] = tets[l < count ? l : 0];
+    Tet corners = mesh.tets[tet[l]];
+    std::sort(corners.begin(), corners.end());
+    const auto& X = mesh.rest;
+    const Mat3d Dm =
+        from_columns(X[corners[1]] - X[corners[0]], X[corners[2]] - X[corners[0]], X[corners[3]] - X[corners[0]]);
+    const Mat3d Dm_inverse = inverse(Dm);
+    for (int i = 0; i < 9; ++i) rest_inverse.a[i].set(l, Dm_inverse.a[i]);
+    volume.set(l, l < count ? std::abs(determinant(Dm)) / 6 : 0.0);
+    for (int v = 0; v < 4; ++v) vertex[v][l] = corners[v];
+  }
+}
+
+void TetBatch::bind(const BlockPattern& pattern) {
+  for (int l = 0; l < W; ++l)
+    for (int u = 0, k = 0; u < 4; ++u)
+      for (int v = 0; v <= u; ++v, ++k) {
+        const int64_t s = pattern.slot(vertex[u][l], vertex[v][l]);
+        ASPIC_CHECK(s <= INT32_MAX);
+        slot[k][l] = static_cast<int>(s);
+      }
+}
+
+void TetBatch::scatter_gradient(const Mat3<Pack>& P, Pack weight, std::span<double> g) const {
+  const auto b = shape_gradients();
+  for (int v = 0; v < 4; ++v) {
+    Vec3<Pack> f;
+    for (int r = 0; r < 3; ++r) f[r] = weight * (P(r, 0) * b[v][0] + P(r, 1) * b[v][1] + P(r, 2) * b[v][2]);
+    for (int l = 0; l < W; ++l)
+      for (int r = 0; r < 3; ++r) g[3 * vertex[v][l] + r] += f[r][l];
+  }
+}
+
+void TetBatch::scatter_hessian(const Mat9<Pack>& A, Pack weight, BlockSparse& H) const {
+  const auto b = shape_gradients();
+  // Ab[v](i, c) = sum_d A(i, c + 3 d) b_v[d]; the blocks of vertex 0 follow from sum_v b_v = 0.
+  std::array<std::array<Pack, 27>, 4> Ab;
+  for (int v = 1; v < 4; ++v)
+    for (int c = 0; c < 3; ++c)
+      for (int i = 0; i < 9; ++i)
+        Ab[v][i + 9 * c] = weight * (A(i, c) * b[v][0] + A(i, c + 3) * b[v][1] + A(i, c + 6) * b[v][2]);
+  for (int k = 0; k < 27; ++k) Ab[0][k] = -(Ab[1][k] + Ab[2][k] + Ab[3][k]);
+
+  for (int u = 0, k = 0; u < 4; ++u)
+    for (int v = 0; v <= u; ++v, ++k) {
+      std::array<Pack, 9> K;
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r)
+          K[r + 3 * c] = b[u][0] * Ab[v][r + 9 * c] + b[u][1] * Ab[v][r + 3 + 9 * c] + b[u][2] * Ab[v][r + 6 + 9 * c];
+      for (int l = 0; l < W; ++l) {
+        double* block = H.block[slot[k][l]].a;
+        for (int i = 0; i < 9; ++i) block[i] += K[i][l];
+      }
+    }
+}
+
+}  // namespace aspic

@@ -1,0 +1,55 @@
+// kPackWidth tets side by side: connectivity and rest shape, one lane each. The last batch is padded with copies of
+// its first tet at zero volume, so there is no remainder loop.
+#pragma once
+#include <array>
+#include <span>
+
+#include "base/check.h"
+#include "energy/energy.h"
+#include "math/pack.h"
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+struct TetBatch {
+  static constexpr int W = kPackWidth;
+  std::array<std::array<int, W>, 4> vertex;  // ascending within a tet, so that block (u, v) with u > v is stored
+  std::array<std::array<int, W>, 10> slot;   // blocks (0,0) (1,0) (1,1) (2,0) ... (3,3)
+  std::array<int, W> tet;                    // index in the mesh
+  int count = 0;                             // lanes that are tets, not padding
+  Mat3<Pack> rest_inverse;                   // Dm^-1 [1/m]
+  Pack volume;                               // [m^3]
+
+  TetBatch(const TetMesh& mesh, std::span<const int> tets);
+
+  // F = Ds Dm^-1
+  Mat3<Pack> deformation_gradient(Positions x) const {
+    Mat3<Pack> Ds;
+    for (int l = 0; l < W; ++l) {
+      const double* x0 = &x[3 * vertex[0][l]];
+      for (int c = 0; c < 3; ++c) {
+        const double* xc = &x[3 * vertex[c + 1][l]];
+        for (int r = 0; r < 3; ++r) Ds(r, c).set(l, xc[r] - x0[r]);
+      }
+    }
+    return Ds * rest_inverse;
+  }
+
+  // Gradients of the four linear shape functions in the rest frame: the rows of Dm^-1, and minus their sum.
+  std::array<Vec3<Pack>, 4> shape_gradients() const {
+    std::array<Vec3<Pack>, 4> b;
+    for (int r = 0; r < 3; ++r) {
+      for (int v = 1; v < 4; ++v) b[v][r] = rest_inverse(v - 1, r);
+      b[0][r] = -(b[1][r] + b[2][r] + b[3][r]);
+    }
+    return b;
+  }
+
+  void scatter_gradient(const Mat3<Pack>& P, Pack weight, std::span<double> g) const;  // g_v += weight P b_v
+  void scatter_hessian(const Mat9<Pack>& A, Pack weight, BlockSparse& H) const;        // H_uv += weight b_u' A b_v
+  void bind(const BlockPattern& pattern);
+};
+
+inline constexpr int kBatchesPerGroup = 128 / kPackWidth;  // 128 tets: coarse enough for threads, fine enough to colour
+
+}  // namespace aspic

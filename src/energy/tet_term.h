@@ -1,0 +1,177 @@
+// The sum over tets of volume * psi(F) for one material M. Included only where it is instantiated.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/parallel.h"
+#include "energy/coloring.h"
+#include "energy/make_tet_term.h"
+#include "energy/tet_batch.h"
+#include "energy/tet_elasticity.h"
+#include "material/material.h"
+#include "math/definite.h"
+#include "mesh/order.h"
+
+namespace aspic {
+
+template <class M>
+class TetTerm : public TetElasticity {
+ public:
+  template <class T>
+  using Params = typename M::template Params<T>;
+
+  // Tets [first, first + parameters.size()) of the mesh.
+  TetTerm(std::string name, const TetMesh& mesh, int first, std::span<const Params<double>> parameters)
+      : name_(std::move(name)) {
+    const std::vector<int> order = locality_order(mesh, first, parameters.size());
+    for (size_t i = 0; i < order.size(); i += kPackWidth) {
+      const std::span<const int> tets(&order[i], std::min<size_t>(kPackWidth, order.size() - i));
+      const TetBatch& batch = batches_.emplace_back(mesh, tets);
+      std::vector<Params<double>> lanes;
+      for (const int tet : batch.tet) lanes.push_back(parameters[tet - first]);
+      params_.push_back(pack_params<M>(lanes));
+    }
+    color(mesh.vertex_count());
+  }
+
+  std::string_view name() const override { return name_; }
+
+  double value(Positions x) const override {
+    const double V = reduce([&](int i) { return sum(batches_[i].volume * M::psi(F(i, x), params_[i])); },
+                            [](double a, double b) { return a + b; }, 0.0);
+    return std::isnan(V) ? INFINITY : V;  // zero-volume lanes of an infinite density
+  }
+
+  void add_gradient(Positions x, double scale, std::span<double> g) const override {
+    for_each_batch(
+        [&](int i) { batches_[i].scatter_gradient(M::pk1(F(i, x), params_[i]), Pack(scale) * batches_[i].volume, g); });
+  }
+
+  void add_couplings(Couplings& couplings) const override {
+    for (const TetBatch& batch : batches_)
+      for (int l = 0; l < batch.count; ++l)
+        for (int u = 0; u < 4; ++u)
+          for (int v = 0; v < u; ++v) couplings.emplace_back(batch.vertex[u][l], batch.vertex[v][l]);
+  }
+
+  void bind(const BlockPattern& pattern) override {
+    parallel_for(static_cast<int>(batches_.size()), [&](int i) { batches_[i].bind(pattern); });
+  }
+
+  void add_hessian(Positions x, double scale, Definiteness definiteness, BlockSparse& H) const override {
+    for_each_batch([&](int i) {
+      Mat9<Pack> A = M::hessian(F(i, x), params_[i]);
+      if (definiteness != Definiteness::exact) project(A, definiteness);
+      batches_[i].scatter_hessian(A, Pack(scale) * batches_[i].volume, H);
+    });
+  }
+
+  double min_det_F(Positions x) const override {
+    return reduce([&](int i) { return min(determinant(F(i, x))); }, [](double a, double b) { return std::min(a, b); },
+                  INFINITY);
+  }
+
+  void evaluate(Positions x, TetFields& fields) const override {
+    parallel_for(static_cast<int>(batches_.size()), [&](int i) {
+      const Mat3<Pack> Fi = F(i, x);
+      const Pack psi = M::psi(Fi, params_[i]), J = determinant(Fi);
+      const Mat3<Pack> cauchy = (Pack(1.0) / J) * (M::pk1(Fi, params_[i]) * transpose(Fi));
+      for (int l = 0; l < batches_[i].count; ++l) write(batches_[i].tet[l], l, psi, J, cauchy, fields);
+    });
+  }
+
+ protected:
+  Mat3<Pack> F(int batch, Positions x) const { return batches_[batch].deformation_gradient(x); }
+
+  std::vector<TetBatch> batches_;
+  std::vector<Params<Pack>> params_;
+
+ private:
+  // Tets [first, first + count), neighbours near each other.
+  static std::vector<int> locality_order(const TetMesh& mesh, int first, size_t count) {
+    const std::vector<Vec3d> center = centroids(mesh);
+    std::vector<int> order = morton_order(std::span(center).subspan(first, count));
+    for (int& tet : order) tet += first;
+    return order;
+  }
+
+  static void project(Mat9<Pack>& A, Definiteness definiteness) {
+    const unsigned failed = indefinite_lanes(A);
+    const auto filter = definiteness == Definiteness::clamped ? EigenvalueFilter::clamp : EigenvalueFilter::absolute;
+    for (int l = 0; l < kPackWidth; ++l) {
+      if (!(failed >> l & 1)) continue;
+      Mat9d lane;
+      for (int i = 0; i < 81; ++i) lane.a[i] = A.a[i][l];
+      make_definite(lane, filter);
+      for (int i = 0; i < 81; ++i) A.a[i].set(l, lane.a[i]);
+    }
+  }
+
+  static void write(int tet, int lane, Pack psi, Pack J, const Mat3<Pack>& s, TetFields& fields) {
+    fields.energy_density[tet] = psi[lane];
+    fields.det_F[tet] = J[lane];
+    const double xx = s(0, 0)[lane], yy = s(1, 1)[lane], zz = s(2, 2)[lane];
+    const double xy = s(0, 1)[lane], yz = s(1, 2)[lane], zx = s(2, 0)[lane];
+    const double components[6] = {xx, yy, zz, xy, yz, zx};
+    std::copy(components, components + 6, &fields.cauchy[6 * tet]);
+    fields.von_mises[tet] = std::sqrt(0.5 * ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) +
+                                      3 * (xy * xy + yz * yz + zx * zx));
+  }
+
+  int group_count() const { return (static_cast<int>(batches_.size()) + kBatchesPerGroup - 1) / kBatchesPerGroup; }
+
+  template <class Body>
+  void for_group(int group, const Body& body) const {
+    const int last = std::min(static_cast<int>(batches_.size()), (group + 1) * kBatchesPerGroup);
+    for (int i = group * kBatchesPerGroup; i < last; ++i) body(i);
+  }
+
+  // Batches that scatter: colour after colour, the groups of a colour in parallel.
+  template <class Body>
+  void for_each_batch(const Body& body) const {
+    for (const std::vector<int>& groups : colors_)
+      parallel_for(static_cast<int>(groups.size()), [&](int k) { for_group(groups[k], body); });
+  }
+
+  // One number per batch, combined in the order of the batches.
+  template <class Body, class Combine>
+  double reduce(const Body& body, const Combine& combine, double start) const {
+    partial_.resize(group_count());
+    parallel_for(group_count(), [&](int group) {
+      double result = start;
+      for_group(group, [&](int i) { result = combine(result, body(i)); });
+      partial_[group] = result;
+    });
+    double result = start;
+    for (const double p : partial_) result = combine(result, p);
+    return result;
+  }
+
+  void color(int vertex_count) {
+    std::vector<std::vector<int>> vertices(group_count());
+    for (int group = 0; group < group_count(); ++group)
+      for_group(group, [&](int i) {
+        for (const auto& corner : batches_[i].vertex)
+          vertices[group].insert(vertices[group].end(), corner.begin(), corner.end());
+      });
+    colors_ = color_groups(vertices, vertex_count);
+  }
+
+  std::string name_;
+  ColorClasses colors_;
+  mutable std::vector<double> partial_;  // scratch of reduce
+};
+
+template <class M>
+std::unique_ptr<TetElasticity> make_tet_term(const TetMesh& mesh, int first,
+                                             std::span<const MaterialParameters> parameters) {
+  std::vector<typename M::template Params<double>> own;
+  for (const MaterialParameters& p : parameters) own.push_back(M::params(p));
+  return std::make_unique<TetTerm<M>>("elasticity", mesh, first, own);
+}
+
+}  // namespace aspic

@@ -1,0 +1,149 @@
+#include "io/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <system_error>
+
+#include "base/error.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what, int error, const std::string& remedy) {
+  throw InvalidInput(path.string() + ": " + what + ": " + std::generic_category().message(error) + "; " + remedy);
+}
+
+// An open file descriptor, closed at the end of its scope.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() { close(); }
+
+  operator int() const { return number_; }
+  int close() {
+    const int result = number_ < 0 ? 0 : ::close(number_);
+    number_ = -1;
+    return result;
+  }
+
+ private:
+  int number_;
+};
+
+// A new file beside the target; removed unless it was renamed onto the target. Its name is short, so that it fits
+// wherever the target's does, and its permissions are those of any new file.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const fs::path& target)
+      : name_(unused_name(target.parent_path())),
+        descriptor_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)),
+        exists_(descriptor_ >= 0) {}
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (exists_) ::unlink(name_.c_str());
+  }
+
+  bool exists() const { return exists_; }
+  bool write(std::string_view contents) const {
+    while (!contents.empty()) {
+      const ssize_t written = ::write(descriptor_, contents.data(), contents.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) return false;
+      contents.remove_prefix(static_cast<size_t>(written));
+    }
+    return true;
+  }
+  // A replaced file keeps its permissions.
+  bool take_mode_of(const fs::path& target) const {
+    struct stat info {};
+    return ::stat(target.c_str(), &info) != 0 || ::fchmod(descriptor_, info.st_mode & 0777) == 0;
+  }
+  bool flush() { return ::fsync(descriptor_) == 0 && descriptor_.close() == 0; }
+  bool rename_to(const fs::path& target) {
+    if (::rename(name_.c_str(), target.c_str()) != 0) return false;
+    exists_ = false;
+    return true;
+  }
+
+ private:
+  static std::string unused_name(const fs::path& folder) {
+    static std::atomic<unsigned> counter = 0;
+    for (;;) {
+      const std::string number = std::to_string(::getpid()) + "-" + std::to_string(counter++);
+      fs::path name = folder / (std::string(".aspic-") + number);
+      std::error_code error;
+      if (!fs::exists(fs::symlink_status(name, error))) return name.string();
+    }
+  }
+
+  std::string name_;
+  Descriptor descriptor_;
+  bool exists_ = false;
+};
+
+// The file that is replaced: a link stays a link.
+fs::path replaced_file(const fs::path& path) {
+  std::error_code error;
+  const fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
+  if (target.filename().empty()) throw InvalidInput(path.string() + ": names no file; name a file to write");
+  if (fs::exists(target, error) && !fs::is_regular_file(target, error))
+    throw InvalidInput(path.string() + ": is not a regular file; name a file to write");
+  return target;
+}
+
+// After a crash the new name is on the disk only when its directory is. Some file systems refuse this; that is no
+// error, since the file itself is complete.
+void flush_directory_of(const fs::path& file) {
+  const fs::path directory = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  const Descriptor descriptor(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (descriptor >= 0) ::fsync(descriptor);
+}
+
+}  // namespace
+
+void write_file(const fs::path& path, std::string_view contents) {
+  const fs::path target = replaced_file(path);
+  TemporaryFile temporary(target);
+  if (!temporary.exists()) fail(path, "cannot be written", errno, "create the folder or choose a writable one");
+  if (!temporary.write(contents) || !temporary.take_mode_of(target) || !temporary.flush())
+    fail(path, "cannot be written", errno, "free some space or choose another disk");
+  if (!temporary.rename_to(target)) fail(path, "cannot be replaced", errno, "check its folder's permissions");
+  flush_directory_of(target);
+}
+
+std::string read_file(const fs::path& path) {
+  const Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (descriptor < 0) fail(path, "cannot be read", errno, "check the name and the permissions");
+  struct stat info {};
+  if (::fstat(descriptor, &info) != 0) fail(path, "cannot be read", errno, "check the file system");
+  if (S_ISDIR(info.st_mode)) throw InvalidInput(path.string() + ": is a folder; name a file in it");
+  if (!S_ISREG(info.st_mode)) throw InvalidInput(path.string() + ": is not a regular file; copy it to one first");
+  const auto size = static_cast<size_t>(info.st_size);
+  const size_t memory = static_cast<size_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<size_t>(::sysconf(_SC_PAGESIZE));
+  if (size > memory)
+    throw InvalidInput(path.string() + ": is " + std::to_string(size) + " bytes, more than this machine's memory of " +
+                       std::to_string(memory) + "; use a smaller file");
+
+  std::string contents(size, '\0');
+  size_t done = 0;
+  while (done < size) {
+    const ssize_t count = ::read(descriptor, contents.data() + done, size - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(path, "cannot be read", errno, "check the disk");
+    if (count == 0) break;  // it was shortened meanwhile
+    done += static_cast<size_t>(count);
+  }
+  contents.resize(done);
+  return contents;
+}
+
+}  // namespace aspic

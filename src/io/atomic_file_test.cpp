@@ -1,0 +1,73 @@
+#include "io/atomic_file.h"
+
+#include <gmock/gmock.h>
+#include <stdlib.h>
+
+#include "base/error.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class AtomicFile : public testing::Test {
+ protected:
+  AtomicFile() {
+    std::string name = (fs::temp_directory_path() / "aspic_test_XXXXXX").string();
+    folder = ::mkdtemp(name.data());
+  }
+  ~AtomicFile() override { fs::remove_all(folder); }
+
+  std::string error(auto&& action) {
+    try {
+      action();
+    } catch (const InvalidInput& e) {
+      return e.what();
+    }
+    return "";
+  }
+  fs::path folder;
+};
+
+TEST_F(AtomicFile, ReadsBackWhatWasWritten) {
+  const std::string contents("a\0b\r\n\xff", 6);
+  write_file(folder / "a", contents);
+  EXPECT_EQ(read_file(folder / "a"), contents);
+  write_file(folder / "a", "");
+  EXPECT_EQ(read_file(folder / "a"), "");
+}
+
+TEST_F(AtomicFile, LeavesNoTemporaryBehind) {
+  write_file(folder / "a", "1");
+  write_file(folder / "a", "2");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
+}
+
+TEST_F(AtomicFile, NewFilesHaveOrdinaryPermissionsAndOldOnesKeepTheirs) {
+  write_file(folder / "a", "1");
+  EXPECT_NE(fs::status(folder / "a").permissions() & fs::perms::owner_read, fs::perms::none);
+  fs::permissions(folder / "a", fs::perms::owner_all);
+  write_file(folder / "a", "2");
+  EXPECT_EQ(fs::status(folder / "a").permissions(), fs::perms::owner_all);
+}
+
+TEST_F(AtomicFile, ALinkStaysALink) {
+  write_file(folder / "a", "1");
+  fs::create_symlink(folder / "a", folder / "link");
+  write_file(folder / "link", "2");
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(read_file(folder / "a"), "2");
+}
+
+TEST_F(AtomicFile, WhatCannotBeReadOrWrittenIsNamed) {
+  EXPECT_THAT(error([&] { read_file(folder / "none"); }), HasSubstr("none: cannot be read: No such file"));
+  EXPECT_THAT(error([&] { read_file(folder); }), HasSubstr("is a folder"));
+  EXPECT_THAT(error([&] { read_file("/dev/zero"); }), HasSubstr("is not a regular file"));
+  EXPECT_THAT(error([&] { write_file(folder / "none" / "a", "1"); }), HasSubstr("a: cannot be written: No such file"));
+  EXPECT_THAT(error([&] { write_file("/dev/null", "1"); }), HasSubstr("is not a regular file"));
+  EXPECT_THAT(error([&] { write_file(folder, "1"); }), HasSubstr("is not a regular file"));
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,56 @@
+#include "io/base64.h"
+
+#include <array>
+#include <cstdint>
+
+namespace aspic {
+namespace {
+
+constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+constexpr std::array<int8_t, 256> make_values() {
+  std::array<int8_t, 256> values{};
+  for (int8_t& value : values) value = -1;
+  for (int i = 0; i < 64; ++i) values[static_cast<unsigned char>(kAlphabet[i])] = static_cast<int8_t>(i);
+  return values;
+}
+constexpr std::array<int8_t, 256> kValues = make_values();
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+}  // namespace
+
+void append_base64(std::string_view bytes, std::string& text) {
+  text.reserve(text.size() + (bytes.size() + 2) / 3 * 4);
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    const size_t count = bytes.size() - i < 3 ? bytes.size() - i : 3;
+    uint32_t group = 0;
+    for (size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0);
+    for (size_t k = 0; k < 4; ++k) text += k <= count ? kAlphabet[group >> (18 - 6 * k) & 63] : '=';
+  }
+}
+
+bool decode_base64(std::string_view& text, size_t wanted, std::string& bytes) {
+  const size_t first = bytes.size();
+  uint32_t group = 0;
+  int digits = 0, padding = 0;
+  size_t i = 0;
+  for (; i < text.size() && (digits > 0 || bytes.size() - first < wanted); ++i) {
+    if (is_blank(text[i])) continue;
+    const int value = kValues[static_cast<unsigned char>(text[i])];
+    if (text[i] == '=' && digits >= 2) {
+      ++padding;
+    } else if (value < 0 || padding > 0) {
+      return false;
+    }
+    group = group << 6 | static_cast<uint32_t>(value < 0 ? 0 : value);
+    if (++digits < 4) continue;
+    for (int k = 0; k < 3 - padding; ++k) bytes += static_cast<char>(group >> (16 - 8 * k) & 255);
+    group = 0;
+    digits = padding = 0;
+  }
+  text.remove_prefix(i);
+  return digits == 0;
+}
+
+}  // namespace aspic

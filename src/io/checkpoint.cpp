@@ -1,0 +1,191 @@
+#include "io/checkpoint.h"
+
+#include <zlib.h>
+
+#include <cstring>
+
+#include "base/error.h"
+#include "io/atomic_file.h"
+#include "io/number_text.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Layout: magic, uint32 byte order mark, uint32 version, uint64 size of the whole file; the fingerprint; uint64 number
+// of integers, each a name and an int64; uint64 number of arrays, each a name, a uint64 length and doubles; CRC-32 of
+// everything before it. A name is a uint64 length and its characters.
+constexpr std::string_view kMagic("ASPICCHK", 8);
+constexpr uint32_t kByteOrderMark = 0x01020304, kVersion = 1;
+constexpr size_t kHeadSize = 24, kChecksumSize = 4;
+
+uint32_t checksum(std::string_view bytes) {
+  return static_cast<uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+void append_name(std::string& bytes, const std::string& name) {
+  append_bytes(bytes, uint64_t{name.size()});
+  bytes += name;
+}
+
+std::string encoded(const Checkpoint& checkpoint) {
+  std::string body;
+  append_name(body, checkpoint.fingerprint);
+  append_bytes(body, uint64_t{checkpoint.integers.size()});
+  for (const auto& [name, value] : checkpoint.integers) {
+    append_name(body, name);
+    append_bytes(body, value);
+  }
+  append_bytes(body, uint64_t{checkpoint.arrays.size()});
+  for (const auto& [name, values] : checkpoint.arrays) {
+    append_name(body, name);
+    append_bytes(body, uint64_t{values.size()});
+    body.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
+  }
+  std::string bytes(kMagic);
+  append_bytes(bytes, kByteOrderMark);
+  append_bytes(bytes, kVersion);
+  append_bytes(bytes, uint64_t{kHeadSize + body.size() + kChecksumSize});
+  bytes += body;
+  append_bytes(bytes, checksum(bytes));
+  return bytes;
+}
+
+class Decoder {
+ public:
+  Decoder(const fs::path& path, std::string_view bytes) : path_(path), whole_(bytes), rest_(bytes) {}
+
+  Checkpoint decode() {
+    check_head();
+    Checkpoint checkpoint;
+    checkpoint.fingerprint = name();
+    for (uint64_t n = number<uint64_t>(); n > 0; --n) {
+      std::string key = name();
+      checkpoint.integers.emplace_back(std::move(key), number<int64_t>());
+    }
+    for (uint64_t n = number<uint64_t>(); n > 0; --n) {
+      std::string key = name();
+      checkpoint.arrays.emplace_back(std::move(key), reals());
+    }
+    if (rest_.size() != kChecksumSize) fail("is damaged: it does not end where it should");
+    return checkpoint;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const { throw InvalidInput(path_.string() + ": " + what); }
+
+  void check_head() {
+    if (!whole_.starts_with(kMagic)) fail("is no checkpoint");
+    rest_.remove_prefix(kMagic.size());
+    if (number<uint32_t>() != kByteOrderMark) fail("was written on a machine of another byte order, or is damaged");
+    if (const auto version = number<uint32_t>(); version != kVersion) {
+      fail("is a checkpoint of version " + std::to_string(version) + "; this program reads version " +
+           std::to_string(kVersion));
+    }
+    if (const auto size = number<uint64_t>(); size != whole_.size() || size < kHeadSize + kChecksumSize) {
+      fail("is cut short or damaged: " + std::to_string(whole_.size()) + " bytes instead of " + std::to_string(size));
+    }
+    uint32_t stored;
+    std::memcpy(&stored, whole_.data() + whole_.size() - kChecksumSize, kChecksumSize);
+    if (stored != checksum(whole_.substr(0, whole_.size() - kChecksumSize))) fail("is damaged: its checksum is wrong");
+  }
+
+  std::string_view take(uint64_t size) {
+    if (size > rest_.size()) fail("is cut short or damaged");
+    const std::string_view taken = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    return taken;
+  }
+
+  template <class T>
+  T number() {
+    T value;
+    std::memcpy(&value, take(sizeof(T)).data(), sizeof(T));
+    return value;
+  }
+
+  std::string name() { return std::string(take(number<uint64_t>())); }
+
+  std::vector<double> reals() {
+    const auto count = number<uint64_t>();
+    if (count > rest_.size() / sizeof(double)) fail("is cut short or damaged");
+    std::vector<double> values(count);
+    const std::string_view bytes = take(count * sizeof(double));
+    if (count > 0) std::memcpy(values.data(), bytes.data(), bytes.size());
+    return values;
+  }
+
+  const fs::path& path_;
+  std::string_view whole_, rest_;
+};
+
+// A second name for the file, replacing what had that name at once.
+void keep_as(const fs::path& path, const fs::path& kept) {
+  std::error_code error;
+  const fs::path fresh = kept.string() + ".new";
+  fs::remove(fresh, error);
+  fs::create_hard_link(path, fresh, error);
+  if (error) {  // a file system without hard links
+    write_file(kept, read_file(path));
+    return;
+  }
+  fs::rename(fresh, kept, error);
+  if (error) throw InvalidInput(kept.string() + ": cannot be written: " + error.message());
+}
+
+}  // namespace
+
+const std::vector<double>& Checkpoint::array(std::string_view name) const {
+  for (const auto& [key, values] : arrays) {
+    if (key == name) return values;
+  }
+  throw InvalidInput("the checkpoint has no array '" + std::string(name) + "'");
+}
+
+int64_t Checkpoint::integer(std::string_view name) const {
+  for (const auto& [key, value] : integers) {
+    if (key == name) return value;
+  }
+  throw InvalidInput("the checkpoint has no integer '" + std::string(name) + "'");
+}
+
+fs::path previous_checkpoint(const fs::path& path) {
+  return path.parent_path() / (path.stem().string() + ".previous" + path.extension().string());
+}
+
+void write_checkpoint(const fs::path& path, const Checkpoint& checkpoint) {
+  std::error_code error;
+  if (fs::exists(path, error)) keep_as(path, previous_checkpoint(path));
+  write_file(path, encoded(checkpoint));
+}
+
+Checkpoint read_checkpoint(const fs::path& path) {
+  const std::string bytes = read_file(path);
+  return Decoder(path, bytes).decode();
+}
+
+NewestCheckpoint read_newest_checkpoint(const fs::path& path) {
+  std::string reason;
+  try {
+    return {read_checkpoint(path), ""};
+  } catch (const InvalidInput& error) {
+    reason = error.what();
+  }
+  const fs::path previous = previous_checkpoint(path);
+  try {
+    return {read_checkpoint(previous), reason + "; continuing from " + previous.filename().string()};
+  } catch (const InvalidInput& error) {
+    throw InvalidInput("no readable checkpoint: " + reason + "; " + error.what());
+  }
+}
+
+std::string fingerprint(std::string_view text) {
+  uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  std::string digits(16, '0');
+  for (int i = 15; i >= 0; --i, hash >>= 4) digits[i] = "0123456789abcdef"[hash & 15];
+  return digits;
+}
+
+}  // namespace aspic

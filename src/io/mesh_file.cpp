@@ -1,0 +1,205 @@
+#include "io/mesh_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "io/atomic_file.h"
+#include "io/gmsh.h"
+#include "io/medit.h"
+#include "io/mesh_content.h"
+#include "io/obj.h"
+#include "io/off.h"
+#include "io/ply.h"
+#include "io/stl.h"
+#include "io/tetgen.h"
+#include "io/vtu.h"
+#include "mesh/surface.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+
+// One row of the table of formats; a function that is missing is a thing the format cannot do.
+struct Format {
+  std::string extension, name;
+  MeshContent (*read)(const fs::path&);
+  void (*write_tets)(const fs::path&, const TetMesh&, FileEncoding);
+  void (*write_triangles)(const fs::path&, const TriMesh&, FileEncoding);
+  bool holds_tets, holds_triangles;
+};
+
+template <MeshContent (*parse)(const std::string&, std::string_view)>
+MeshContent read_text(const fs::path& path) {
+  return parse(path.string(), read_file(path));
+}
+
+void check_ascii(const fs::path& path, FileEncoding encoding) {
+  if (encoding == FileEncoding::binary)
+    throw InvalidInput(path.string() + ": this format is text only; write ASCII, or choose .msh, .ply or .stl");
+}
+
+template <class Mesh, std::string (*text)(const Mesh&)>
+void write_text(const fs::path& path, const Mesh& mesh, FileEncoding encoding) {
+  check_ascii(path, encoding);
+  write_file(path, text(mesh));
+}
+
+template <class Mesh, std::string (*bytes)(const Mesh&, FileEncoding)>
+void write_bytes(const fs::path& path, const Mesh& mesh, FileEncoding encoding) {
+  write_file(path, bytes(mesh, encoding));
+}
+
+void write_stl(const fs::path& path, const TriMesh& mesh, FileEncoding encoding) {
+  write_file(path, stl_bytes(path.string(), mesh, encoding));
+}
+
+// The other file of a .node/.ele pair, in the same case of letters.
+fs::path partner(const fs::path& path, const std::string& lower_extension) {
+  std::string extension = lower_extension;
+  if (const std::string given = path.extension().string(); given.size() > 1 && std::isupper(given[1]))
+    for (char& c : extension) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return fs::path(path).replace_extension(extension);
+}
+
+MeshContent read_tetgen(const fs::path& path) {
+  const fs::path node = partner(path, ".node"), ele = partner(path, ".ele");
+  for (const fs::path& file : {node, ele})
+    if (!fs::exists(file))
+      throw InvalidInput(file.string() + ": does not exist; a TetGen mesh is a pair of .node and .ele");
+  return parse_tetgen(node.string(), read_file(node), ele.string(), read_file(ele));
+}
+
+void write_tetgen(const fs::path& path, const TetMesh& mesh, FileEncoding encoding) {
+  check_ascii(path, encoding);
+  const TetgenText text = tetgen_text(mesh);
+  write_file(partner(path, ".node"), text.node);
+  write_file(partner(path, ".ele"), text.ele);
+}
+
+MeshContent read_vtu_mesh(const fs::path& path) {
+  Vtu vtu = read_vtu(path);
+  if (!vtu.mesh.tets.empty())
+    return {std::move(vtu.mesh.rest), std::move(vtu.mesh.tets), std::move(vtu.mesh.region), {}};
+  return {std::move(vtu.triangles.vertices), {}, {}, std::move(vtu.triangles.triangles)};
+}
+
+void write_vtu_mesh(const fs::path& path, const TetMesh& mesh, FileEncoding) {
+  const std::span<const double> points(mesh.rest.empty() ? nullptr : mesh.rest[0].a, 3 * mesh.rest.size());
+  std::vector<Field> cell_fields;
+  if (!mesh.region.empty()) cell_fields.push_back({"region", 1, {mesh.region.begin(), mesh.region.end()}});
+  write_vtu(path, points, mesh.tets, {}, cell_fields);
+}
+
+const std::vector<Format>& formats() {
+  static const std::vector<Format> table = {
+      {".msh", "Gmsh 2.2 and 4.1, ASCII and binary", read_text<parse_gmsh>, write_bytes<TetMesh, gmsh_bytes>,
+       write_bytes<TriMesh, gmsh_bytes>, true, true},
+      {".mesh", "Medit, ASCII", read_text<parse_medit>, write_text<TetMesh, medit_text>,
+       write_text<TriMesh, medit_text>, true, true},
+      {".node", "TetGen .node and .ele", read_tetgen, write_tetgen, nullptr, true, false},
+      {".ele", "TetGen .node and .ele", read_tetgen, write_tetgen, nullptr, true, false},
+      {".vtu", "VTK XML unstructured grid", read_vtu_mesh, write_vtu_mesh, nullptr, true, true},
+      {".obj", "Wavefront OBJ", read_text<parse_obj>, nullptr, write_text<TriMesh, obj_text>, false, true},
+      {".ply", "PLY, ASCII and binary", read_text<parse_ply>, nullptr, write_bytes<TriMesh, ply_bytes>, false, true},
+      {".stl", "STL, ASCII and binary", read_text<parse_stl>, nullptr, write_stl, false, true},
+      {".off", "OFF, ASCII", read_text<parse_off>, nullptr, write_text<TriMesh, off_text>, false, true},
+  };
+  return table;
+}
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+const Format& format_of(const fs::path& path) {
+  const std::string extension = lower(path.extension().string());
+  std::vector<std::string> known;
+  for (const Format& format : formats()) {
+    if (format.extension == extension) return format;
+    known.push_back(format.extension);
+  }
+  throw InvalidInput(path.string() + ": no mesh format has the extension '" + extension + "'" +
+                     suggestion(extension, known));
+}
+
+void check_vertices(const fs::path& path, const std::vector<Vec3d>& vertices) {
+  for (size_t i = 0; i < vertices.size(); ++i)
+    for (const double coordinate : vertices[i].a)
+      if (!std::isfinite(coordinate))
+        throw InvalidInput(path.string() + ": not written, since vertex " + std::to_string(i) +
+                           " has a coordinate that is not finite; find out where it comes from");
+}
+
+template <class Elements>
+bool are_indices_valid(const Elements& elements, int vertices) {
+  for (const auto& element : elements)
+    for (const int vertex : element)
+      if (vertex < 0 || vertex >= vertices) return false;
+  return true;
+}
+
+}  // namespace
+
+const std::vector<MeshFormat>& mesh_formats() {
+  static const std::vector<MeshFormat> list = [] {
+    std::vector<MeshFormat> result;
+    for (const Format& format : formats())
+      result.push_back({format.extension, format.name, format.holds_tets, format.write_tets != nullptr,
+                        format.holds_triangles, format.write_triangles != nullptr});
+    return result;
+  }();
+  return list;
+}
+
+std::variant<TetMesh, TriMesh> read_mesh(const fs::path& path) {
+  const Format& format = format_of(path);
+  MeshContent content = format.read(path);
+  if (!content.tets.empty())
+    return TetMesh{std::move(content.vertices), std::move(content.tets), std::move(content.region)};
+  if (!content.triangles.empty()) return TriMesh{std::move(content.vertices), std::move(content.triangles)};
+  throw InvalidInput(path.string() + ": holds " +
+                     (format.holds_tets && format.holds_triangles ? "neither tets nor triangles"
+                      : format.holds_tets                         ? "no tets"
+                                                                  : "no faces") +
+                     "; export the mesh again with its elements");
+}
+
+TetMesh read_tet_mesh(const fs::path& path) {
+  auto mesh = read_mesh(path);
+  if (auto* tets = std::get_if<TetMesh>(&mesh)) return std::move(*tets);
+  throw InvalidInput(path.string() + ": holds a surface, no tets; fill it with 'aspic mesh " +
+                     path.filename().string() + " -o " + path.stem().string() + ".msh'");
+}
+
+TriMesh read_tri_mesh(const fs::path& path) {
+  auto mesh = read_mesh(path);
+  if (auto* triangles = std::get_if<TriMesh>(&mesh)) return std::move(*triangles);
+  return boundary_surface(std::get<TetMesh>(mesh)).surface;
+}
+
+void write_mesh(const fs::path& path, const TetMesh& mesh, FileEncoding encoding) {
+  const Format& format = format_of(path);
+  if (!format.write_tets)
+    throw InvalidInput(path.string() + ": " + format.name + " cannot hold tets; write .msh, .mesh, .node or .vtu");
+  ASPIC_CHECK(mesh.region.empty() || mesh.region.size() == mesh.tets.size());
+  ASPIC_CHECK(are_indices_valid(mesh.tets, mesh.vertex_count()));
+  check_vertices(path, mesh.rest);
+  format.write_tets(path, mesh, encoding);
+}
+
+void write_mesh(const fs::path& path, const TriMesh& mesh, FileEncoding encoding) {
+  const Format& format = format_of(path);
+  if (!format.write_triangles)
+    throw InvalidInput(path.string() + ": " + format.name +
+                       " is not written for triangles; write .obj, .ply, .stl, .off, .msh or .mesh");
+  ASPIC_CHECK(are_indices_valid(mesh.triangles, mesh.vertex_count()));
+  check_vertices(path, mesh.vertices);
+  format.write_triangles(path, mesh, encoding);
+}
+
+}  // namespace aspic

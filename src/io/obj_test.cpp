@@ -1,0 +1,70 @@
+#include "io/obj.h"
+
+#include <gmock/gmock.h>
+
+#include "base/error.h"
+
+namespace aspic {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+MeshContent parse(const char* text) { return parse_obj("a.obj", text); }
+
+std::string error(const char* text) {
+  try {
+    parse(text);
+  } catch (const InvalidInput& e) {
+    return e.what();
+  }
+  return "";
+}
+
+const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+TEST(Obj, PolygonsAreFannedFromTheirFirstCorner) {
+  const MeshContent mesh = parse((kSquare + "f 1 2 3 4\n").c_str());
+  EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+}
+
+TEST(Obj, CornersMayCarryTextureAndNormal) {
+  const MeshContent mesh =
+      parse((kSquare + "vt 0 0\nvn 0 0 1\nf 1/1 2/1 3/1\nf 1//1 2//1 3//1\nf 1/1/1 3/1/1 4/1/1").c_str());
+  EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+}
+
+TEST(Obj, NegativeIndicesCountBackFromTheLastVertexSoFar) {
+  const MeshContent mesh = parse("v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 0 1 0\nf -4 -2 -1\n");
+  EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+}
+
+TEST(Obj, CommentsGroupsMaterialsCarriageReturnsAndJoinedLinesAreUnderstood) {
+  const MeshContent mesh = parse(
+      "# made by hand\r\nmtllib a.mtl\r\no box\r\nv 0 0 0 1\r\nv 1 0 0 0.5 0.5 0.5\r\nv 1 \\\r\n 1 0 # corner\r\n"
+      "g side\r\nusemtl red\r\ns off\r\nf 1 2\\\r\n 3\r\n");
+  EXPECT_EQ(mesh.vertices.size(), 3u);
+  EXPECT_EQ(mesh.vertices[2][1], 1);
+  EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}));
+}
+
+TEST(Obj, FacesMayPrecedeTheirVertices) {
+  EXPECT_THAT(parse(("f 1 2 3\n" + kSquare).c_str()).triangles, ElementsAre(Triangle{0, 1, 2}));
+}
+
+TEST(Obj, ErrorsNameFileLineValueAndRemedy) {
+  EXPECT_EQ(error("v 0 0 0\nv 0 x 0\n"), "a.obj:2: a vertex coordinate is 'x'; it must be a finite number");
+  EXPECT_EQ(error("v 0 0 0\nv nan 0 0\n"), "a.obj:2: a vertex coordinate is 'nan'; it must be a finite number");
+  EXPECT_EQ(error("v 0 0 0\nv 1e999 0 0\n"), "a.obj:2: a vertex coordinate is '1e999'; it must be a finite number");
+  EXPECT_THAT(error("v 0 0\nv 1 0 0\n"), HasSubstr("a.obj:1: the line ends where a vertex coordinate should follow"));
+  EXPECT_THAT(error((kSquare + "f 1 2 5\nf 1 2 3\n").c_str()), HasSubstr("a.obj:5: a corner names vertex 5"));
+  EXPECT_THAT(error((kSquare + "f 1 2 -5\n").c_str()), HasSubstr("a.obj:5: a corner names vertex -5 of 4"));
+  EXPECT_THAT(error((kSquare + "f 0 1 2\n").c_str()), HasSubstr("vertices count from 1"));
+  EXPECT_THAT(error((kSquare + "f 1 2\n").c_str()), HasSubstr("a.obj:5: a face has fewer than three corners"));
+  EXPECT_THAT(error("vertex 1 2 3\n"), HasSubstr("a.obj:1: unknown statement 'vertex'"));
+}
+
+TEST(Obj, NumbersBelowTheSmallestDoubleAreZero) { EXPECT_EQ(parse("v 1e-999 +2 -1E-400").vertices[0][0], 0); }
+
+}  // namespace
+}  // namespace aspic

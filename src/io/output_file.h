@@ -1,0 +1,38 @@
+// A file that grows while it is written, for results that are appended step by step.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+
+namespace aspic {
+
+// Every call throws InvalidInput with the path and the reason when the system refuses (disk full, no permission).
+class OutputFile {
+ public:
+  OutputFile() = default;                                              // no file
+  static OutputFile create(const std::filesystem::path& path);         // empty
+  static OutputFile open_existing(const std::filesystem::path& path);  // positioned at its end
+  ~OutputFile();
+  OutputFile(OutputFile&& other) noexcept;
+  OutputFile& operator=(OutputFile&& other) noexcept;
+
+  void append(std::string_view bytes);                     // one system call for a short text: written whole or not
+  void write_at(uint64_t offset, std::string_view bytes);  // overwrites
+  void truncate(uint64_t size);                            // keeps the first `size` bytes
+  void sync();                                             // returns when the bytes are on the disk
+  void close();
+
+  uint64_t size() const { return size_; }
+  bool is_open() const { return descriptor_ >= 0; }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  OutputFile(std::filesystem::path path, int flags);
+  [[noreturn]] void fail(const char* what) const;
+
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  uint64_t size_ = 0;
+};
+
+}  // namespace aspic

@@ -1,0 +1,89 @@
+#include "io/pc2.h"
+
+#include <cstring>
+#include <fstream>
+#include <string>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "io/number_text.h"
+
+namespace aspic {
+namespace {
+
+constexpr std::string_view kMagic("POINTCACHE2\0", 12);
+constexpr uint64_t kHeadSize = 32, kCountOffset = 28;
+
+std::string head(int points, int samples) {
+  std::string bytes(kMagic);
+  append_bytes(bytes, int32_t{1});
+  append_bytes(bytes, static_cast<int32_t>(points));
+  append_bytes(bytes, 0.0f);  // start [frames]
+  append_bytes(bytes, 1.0f);  // rate [frames per sample]
+  append_bytes(bytes, static_cast<int32_t>(samples));
+  return bytes;
+}
+
+std::string bytes_at(const std::filesystem::path& path, uint64_t offset, uint64_t size) {
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes(size, '\0');
+  in.seekg(static_cast<std::streamoff>(offset));
+  in.read(bytes.data(), static_cast<std::streamsize>(size));
+  if (!in) throw InvalidInput(path.string() + ": cannot be read: the point cache is cut short");
+  return bytes;
+}
+
+}  // namespace
+
+Pc2File Pc2File::create(const std::filesystem::path& path, int points) {
+  Pc2File cache;
+  cache.file_ = OutputFile::create(path);
+  cache.file_.append(head(points, 0));
+  cache.points_ = points;
+  return cache;
+}
+
+Pc2File Pc2File::resume(const std::filesystem::path& path, int points, int samples) {
+  Pc2File cache;
+  cache.file_ = OutputFile::open_existing(path);
+  cache.points_ = points;
+  cache.samples_ = samples;
+  if (cache.file_.size() < kHeadSize || bytes_at(path, 0, kCountOffset) != head(points, 0).substr(0, kCountOffset)) {
+    throw InvalidInput(path.string() + ": is no point cache of " + std::to_string(points) + " points");
+  }
+  const uint64_t size = kHeadSize + static_cast<uint64_t>(samples) * cache.sample_size();
+  if (cache.file_.size() < size) {
+    throw InvalidInput(path.string() + ": holds fewer than the " + std::to_string(samples) +
+                       " samples of the checkpoint; the run cannot be continued");
+  }
+  cache.write_count();  // first, so that the head never counts what is cut off
+  cache.file_.truncate(size);
+  return cache;
+}
+
+void Pc2File::append(std::span<const double> x) {
+  ASPIC_CHECK(x.size() == 3 * static_cast<size_t>(points_));
+  std::string bytes;
+  bytes.reserve(sample_size());
+  for (const double coordinate : x) append_bytes(bytes, static_cast<float>(coordinate));
+  file_.append(bytes);
+  ++samples_;
+  write_count();
+}
+
+std::vector<float> Pc2File::sample(int index) const {
+  ASPIC_CHECK(index >= 0 && index < samples_);
+  const std::string bytes =
+      bytes_at(file_.path(), kHeadSize + static_cast<uint64_t>(index) * sample_size(), sample_size());
+  std::vector<float> x(3 * static_cast<size_t>(points_));
+  std::memcpy(x.data(), bytes.data(), bytes.size());
+  return x;
+}
+
+void Pc2File::write_count() {
+  std::string count;
+  append_bytes(count, static_cast<int32_t>(samples_));
+  file_.write_at(kCountOffset, count);
+}
+
+}  // namespace aspic

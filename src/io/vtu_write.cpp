@@ -1,0 +1,118 @@
+#include <zlib.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "io/atomic_file.h"
+#include "io/base64.h"
+#include "io/vtu.h"
+#include "io/xml.h"
+
+namespace aspic {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the files say LittleEndian");
+
+constexpr size_t kBlockSize = 1 << 18;  // bytes that are compressed at a time, so that threads share the work
+constexpr int kCompression = 1;         // fastest: the mantissas of positions hardly compress at any level
+
+template <class Stored, class Number>
+std::string bytes_of(std::span<const Number> numbers) {
+  std::string bytes(numbers.size() * sizeof(Stored), '\0');
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    const auto stored = static_cast<Stored>(numbers[i]);
+    std::memcpy(bytes.data() + i * sizeof(Stored), &stored, sizeof(Stored));
+  }
+  return bytes;
+}
+
+std::string deflated(std::string_view bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::string block(size, '\0');
+  const int result = compress2(reinterpret_cast<Bytef*>(block.data()), &size,
+                               reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), kCompression);
+  block.resize(result == Z_OK ? size : 0);
+  return block;
+}
+
+// [blocks][size of a block][size of the last block, 0: full][compressed size of each block] blocks
+void append_compressed(std::string_view bytes, std::string& text) {
+  const size_t blocks = (bytes.size() + kBlockSize - 1) / kBlockSize;
+  std::vector<std::string> block(blocks);
+  parallel_for(static_cast<int>(blocks),
+               [&](int i) { block[i] = deflated(bytes.substr(static_cast<size_t>(i) * kBlockSize, kBlockSize)); });
+  std::vector<uint32_t> header = {static_cast<uint32_t>(blocks), kBlockSize,
+                                  static_cast<uint32_t>(bytes.size() % kBlockSize)};
+  std::string data;
+  for (const std::string& compressed : block) {
+    if (compressed.empty()) throw InvalidInput("zlib could not compress the data (out of memory?)");
+    header.push_back(static_cast<uint32_t>(compressed.size()));
+    data += compressed;
+  }
+  append_base64({reinterpret_cast<const char*>(header.data()), header.size() * 4}, text);
+  append_base64(data, text);
+}
+
+void append_array(std::string_view type, std::string_view name, int components, std::string_view bytes,
+                  std::string& text) {
+  text += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_escaped(name) + "\" NumberOfComponents=\"" +
+          std::to_string(components) + "\" format=\"binary\">\n";
+  append_compressed(bytes, text);
+  text += "\n</DataArray>\n";
+}
+
+void append_fields(const std::vector<Field>& fields, [[maybe_unused]] size_t count, std::string& text) {
+  for (const Field& field : fields) {
+    ASPIC_CHECK(field.values.size() == count * static_cast<size_t>(field.components));
+    const std::span<const double> values = field.values;
+    switch (field.type) {
+      case FieldType::float64:
+        append_array("Float64", field.name, field.components, bytes_of<double>(values), text);
+        break;
+      case FieldType::float32:
+        append_array("Float32", field.name, field.components, bytes_of<float>(values), text);
+        break;
+      case FieldType::int32:
+        append_array("Int32", field.name, field.components, bytes_of<int32_t>(values), text);
+        break;
+    }
+  }
+}
+
+void append_cells(const std::vector<Tet>& tets, std::string& text) {
+  constexpr uint8_t kTet = 10;
+  const std::span<const int> corners(tets.empty() ? nullptr : tets.front().data(), 4 * tets.size());
+  std::vector<int64_t> offsets(tets.size());
+  for (size_t i = 0; i < tets.size(); ++i) offsets[i] = 4 * static_cast<int64_t>(i + 1);
+  append_array("Int32", "connectivity", 1, bytes_of<int32_t>(corners), text);
+  append_array("Int64", "offsets", 1, bytes_of<int64_t>(std::span<const int64_t>(offsets)), text);
+  append_array("UInt8", "types", 1, std::string(tets.size(), static_cast<char>(kTet)), text);
+}
+
+}  // namespace
+
+void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,
+               const std::vector<Field>& point_fields, const std::vector<Field>& cell_fields) {
+  const size_t point_count = points.size() / 3;
+  std::string text =
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt32\" "
+      "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
+      std::to_string(point_count) + "\" NumberOfCells=\"" + std::to_string(tets.size()) + "\">\n<Points>\n";
+  append_array("Float64", "Points", 3, bytes_of<double>(points), text);
+  text += "</Points>\n<Cells>\n";
+  append_cells(tets, text);
+  text += "</Cells>\n<PointData>\n";
+  append_fields(point_fields, point_count, text);
+  text += "</PointData>\n<CellData>\n";
+  append_fields(cell_fields, tets.size(), text);
+  text += "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+  write_file(path, text);
+}
+
+}  // namespace aspic

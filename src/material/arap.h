@@ -1,0 +1,47 @@
+// As rigid as possible: psi = mu |F - R|^2, R the rotation closest to F. Nothing resists a change of volume as such.
+#pragma once
+#include "material/material.h"
+#include "material/registry.h"
+#include "material/rotation_distance.h"
+
+namespace aspic {
+
+struct Arap {
+  template <class T>
+  struct Params {
+    T mu;  // [Pa]
+  };
+
+  template <class T>
+  static T psi(const Mat3<T>& F, const Params<T>& p) {
+    return p.mu * squared_rotation_distance(F);
+  }
+  template <class T>
+  static Mat3<T> pk1(const Mat3<T>& F, const Params<T>& p) {
+    return T(2.0) * p.mu * (F - rotation(svd3(F)));
+  }
+  template <class T>
+  static Mat9<T> hessian(const Mat3<T>& F, const Params<T>& p) {
+    const T two_mu = T(2.0) * p.mu;
+    Mat9<T> H;
+    for (int i = 0; i < 81; ++i) H.a[i] = i % 10 == 0 ? two_mu : T(0.0);
+    add_rotation_gradient(svd3(F), -two_mu, kLeastStretchSum, H);
+    return H;
+  }
+
+  static Params<double> params(const MaterialParameters& m) { return {m.lame.mu}; }
+
+  static MaterialInfo info() {
+    return {.name = "arap",
+            .formula = "mu |F - R|^2, R the rotation closest to F, with mu = mu_L",
+            .remarks =
+                "Reproduces the shear modulus only: la_L is ignored, so at small strain nu = 0 "
+                "and E = 2 mu_L. The only states without stress are the rest shape, up to "
+                "rotation; the stress jumps where two signed singular values sum to zero, F = 0 "
+                "among them.",
+            .extra = {},
+            .barrier = false};
+  }
+};
+
+}  // namespace aspic

@@ -1,0 +1,49 @@
+// Corotated solid with the exact volume term ("fixed corotated"): psi = mu |F - R|^2 + lambda/2 (J - 1)^2,
+// R the rotation closest to F [Stomakhin 2012].
+#pragma once
+#include "material/from_invariants.h"
+#include "material/material.h"
+#include "material/registry.h"
+#include "material/rotation_distance.h"
+
+namespace aspic {
+
+struct Corotated {
+  template <class T>
+  struct Params {
+    T mu, lambda;  // [Pa]
+  };
+
+  template <class T>
+  static T psi(const Mat3<T>& F, const Params<T>& p) {
+    const T dJ = determinant(F) - T(1.0);
+    return p.mu * squared_rotation_distance(F) + T(0.5) * p.lambda * dJ * dJ;
+  }
+  template <class T>
+  static Mat3<T> pk1(const Mat3<T>& F, const Params<T>& p) {
+    const T tension = p.lambda * (determinant(F) - T(1.0));
+    return T(2.0) * p.mu * (F - rotation(svd3(F))) + tension * cofactor(F);
+  }
+  template <class T>
+  static Mat9<T> hessian(const Mat3<T>& F, const Params<T>& p) {
+    const T tension = p.lambda * (determinant(F) - T(1.0));
+    Mat9<T> H = law_hessian(F, LawDerivativesLinearInI1<T>{p.mu, tension, p.lambda});
+    add_rotation_gradient(svd3(F), T(-2.0) * p.mu, kLeastStretchSum, H);
+    return H;
+  }
+
+  static Params<double> params(const MaterialParameters& m) { return {m.lame.mu, m.lame.lambda}; }
+
+  static MaterialInfo info() {
+    return {.name = "corotated",
+            .formula = "mu |F - R|^2 + la/2 (J - 1)^2, R the rotation closest to F, with mu = mu_L, la = la_L",
+            .remarks =
+                "Defined for inverted elements. The only states without stress are the rest "
+                "shape, up to rotation. R, and so the stress, jumps where two signed singular "
+                "values sum to zero, F = 0 among them. [Stomakhin 2012]",
+            .extra = {},
+            .barrier = false};
+  }
+};
+
+}  // namespace aspic

@@ -1,0 +1,54 @@
+// Fung-type exponential solid, isotropic: psi = mu/(2b) (exp(b (I1bar - 3)) - 1) + K/2 (J - 1)^2,
+// I1bar = J^(-2/3) I1; +inf for J <= 0. b -> 0 gives neo_hookean_isochoric.
+#pragma once
+#include "material/isochoric.h"
+#include "material/material.h"
+#include "material/registry.h"
+
+namespace aspic {
+
+struct FungLaw {
+  template <class T>
+  struct Params {
+    T mu, bulk;  // [Pa]
+    T b;         // stiffening [1]
+  };
+
+  template <class T>
+  static T energy(const T& I1, const T& J, const Params<T>& p) {
+    return isochoric_energy(J, T(0.5) * p.mu / p.b * (stiffening(I1, J, p) - T(1.0)), p.bulk);
+  }
+  template <class T>
+  static LawDerivatives<T> derivatives(const T& I1, const T& J, const Params<T>& p) {
+    const T slope = T(0.5) * p.mu * stiffening(I1, J, p);
+    return isochoric_derivatives(I1, J, slope, p.b * slope, p.bulk);
+  }
+
+  static Params<double> params(const MaterialParameters& m) { return {m.lame.mu, bulk_modulus(m.lame), m.extra[0]}; }
+
+  static MaterialInfo info() {
+    return {.name = "fung",
+            .formula = "mu/(2b) (exp(b (J^(-2/3) I1 - 3)) - 1) + K/2 (J - 1)^2 with mu = mu_L, K = la_L + 2/3 mu_L",
+            .remarks =
+                "+inf for J <= 0 and where the exponential overflows. The only state without "
+                "stress is the rest shape, up to rotation; the stiffness grows like exp(b I1bar),"
+                " so steps from large strain are many and short.",
+            .extra = {{.name = "b",
+                       .unit = "1",
+                       .meaning = "exponential stiffening of the shape-changing part",
+                       .fallback = 1,
+                       .min = 1e-3,
+                       .max = 1e3}},
+            .barrier = true};
+  }
+
+ private:
+  template <class T>
+  static T stiffening(const T& I1, const T& J, const Params<T>& p) {
+    return exp(p.b * (isochoric_scale(J) * I1 - T(3.0)));
+  }
+};
+
+using Fung = FromInvariants<FungLaw>;
+
+}  // namespace aspic

@@ -1,0 +1,94 @@
+// Mooney-Rivlin solid: psi = c10 (I1bar - 3) + c01 (I2bar - 3) + K/2 (J - 1)^2; +inf for J <= 0.
+//   I1bar = J^(-2/3) I1, I2bar = J^(-4/3) I2, I2 = |cof F|^2 = (I1^2 - |F'F|^2) / 2
+#pragma once
+#include "material/isochoric.h"
+#include "material/material.h"
+#include "material/registry.h"
+#include "material/second_piola.h"
+
+namespace aspic {
+
+struct MooneyRivlin {
+  template <class T>
+  struct Params {
+    T c10, c01, bulk;  // [Pa]
+  };
+
+  template <class T>
+  static T psi(const Mat3<T>& F, const Params<T>& p) {
+    const T J = determinant(F), s = isochoric_scale(J);
+    const T W1 = p.c10 * (s * squared_norm(F) - T(3.0));
+    const T W2 = p.c01 * (s * s * squared_norm(cofactor(F)) - T(3.0));
+    return isochoric_energy(J, W1 + W2, p.bulk);
+  }
+  template <class T>
+  static Mat3<T> pk1(const Mat3<T>& F, const Params<T>& p) {
+    const Derivatives<T> d(F, p);
+    return (d.law.dI + d.law.dI) * F + d.law.dJ * cofactor(F) + d.dI2 * gradient_of_I2(F);
+  }
+  template <class T>
+  static Mat9<T> hessian(const Mat3<T>& F, const Params<T>& p) {
+    const Derivatives<T> d(F, p);
+    Mat9<T> H = law_hessian(F, d.law);
+    const Mat3<T> g = cofactor(F), g2 = gradient_of_I2(F), y = d.dI2J * g2;
+    for (int c = 0; c < 9; ++c)
+      for (int r = 0; r < 9; ++r) H(r, c) = H(r, c) + (y.a[r] * g.a[c] + g.a[r] * y.a[c]);
+    // I2 has the gradient F S with dS = -2 dC + 2 dI1 I; the second part is 4 f f', already in law_hessian.
+    add_product_hessian(F, d.dI2 * stress_of_I2(F), T(-2.0) * d.dI2, H);
+    return H;
+  }
+
+  // At rest mu_L = 2 (c10 + c01).
+  static Params<double> params(const MaterialParameters& m) {
+    const double share = m.extra[0];
+    return {0.5 * m.lame.mu * (1 - share), 0.5 * m.lame.mu * share, bulk_modulus(m.lame)};
+  }
+
+  static MaterialInfo info() {
+    return {.name = "mooney_rivlin",
+            .formula =
+                "c10 (J^(-2/3) I1 - 3) + c01 (J^(-4/3) I2 - 3) + K/2 (J - 1)^2 with "
+                "c10 = (1 - share) mu_L/2, c01 = share mu_L/2, K = la_L + 2/3 mu_L, I2 = |cof F|^2",
+            .remarks =
+                "+inf for J <= 0, so every start must be free of inversion. The only state "
+                "without stress is the rest shape, up to rotation, but the energy stays finite "
+                "(K/2) as a body shrinks uniformly to a point.",
+            .extra = {{.name = "share",
+                       .unit = "1",
+                       .meaning = "share of c01 in c10 + c01",
+                       .fallback = 0.5,
+                       .min = 0,
+                       .max = 1}},
+            .barrier = true};
+  }
+
+ private:
+  // dpsi/dI2 and d2psi/dI2 dJ beside the derivatives in I1 and J.
+  template <class T>
+  struct Derivatives {
+    LawDerivatives<T> law;
+    T dI2, dI2J;
+
+    Derivatives(const Mat3<T>& F, const Params<T>& p) {
+      const T J = determinant(F), r = T(1.0) / J, s = isochoric_scale(J);
+      law = isochoric_derivatives(squared_norm(F), J, p.c10, T(0.0), p.bulk);
+      dI2 = p.c01 * s * s;
+      dI2J = T(-4.0 / 3.0) * dI2 * r;
+      const T slope = dI2J * squared_norm(cofactor(F));
+      law.dJ = law.dJ + slope;
+      law.dJJ = law.dJJ - T(7.0 / 3.0) * slope * r;
+      law.dII = dI2;  // d2I2/dF2 holds 4 f f'
+    }
+  };
+  // dI2/dF = F S, S = 2 (I1 I - C).
+  template <class T>
+  static Mat3<T> stress_of_I2(const Mat3<T>& F) {
+    return T(2.0) * (squared_norm(F) * identity3<T>() - transpose(F) * F);
+  }
+  template <class T>
+  static Mat3<T> gradient_of_I2(const Mat3<T>& F) {
+    return F * stress_of_I2(F);
+  }
+};
+
+}  // namespace aspic

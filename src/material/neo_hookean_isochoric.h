@@ -1,0 +1,40 @@
+// Neo-Hookean solid split into shape and volume: psi = mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2; +inf for J <= 0.
+#pragma once
+#include "material/isochoric.h"
+#include "material/material.h"
+#include "material/registry.h"
+
+namespace aspic {
+
+struct NeoHookeanIsochoricLaw {
+  template <class T>
+  struct Params {
+    T mu, bulk;  // [Pa]
+  };
+
+  template <class T>
+  static T energy(const T& I1, const T& J, const Params<T>& p) {
+    return isochoric_energy(J, T(0.5) * p.mu * (isochoric_scale(J) * I1 - T(3.0)), p.bulk);
+  }
+  template <class T>
+  static LawDerivatives<T> derivatives(const T& I1, const T& J, const Params<T>& p) {
+    return isochoric_derivatives(I1, J, T(0.5) * p.mu, T(0.0), p.bulk);
+  }
+
+  static Params<double> params(const MaterialParameters& m) { return {m.lame.mu, bulk_modulus(m.lame)}; }
+
+  static MaterialInfo info() {
+    return {.name = "neo_hookean_isochoric",
+            .formula = "mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2 with mu = mu_L, K = la_L + 2/3 mu_L",
+            .remarks =
+                "+inf for J <= 0, so every start must be free of inversion. The only state "
+                "without stress is the rest shape, up to rotation, but the energy stays finite "
+                "(K/2) as a body shrinks uniformly to a point: no barrier in that direction.",
+            .extra = {},
+            .barrier = true};
+  }
+};
+
+using NeoHookeanIsochoric = FromInvariants<NeoHookeanIsochoricLaw>;
+
+}  // namespace aspic

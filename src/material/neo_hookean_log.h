@@ -1,0 +1,46 @@
+// Neo-Hookean solid with logarithmic volume term: psi = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2; +inf for J <= 0.
+#pragma once
+#include "material/barrier.h"
+#include "material/from_invariants.h"
+#include "material/material.h"
+#include "material/registry.h"
+
+namespace aspic {
+
+struct NeoHookeanLogLaw {
+  template <class T>
+  struct Params {
+    T mu, lambda;  // [Pa]
+  };
+
+  template <class T>
+  static T energy(const T& I1, const T& J, const Params<T>& p) {
+    const T L = log(J);
+    return infinite_unless_positive(J, T(0.5) * p.mu * (I1 - T(3.0)) + (T(0.5) * p.lambda * L - p.mu) * L);
+  }
+  template <class T>
+  static LawDerivativesLinearInI1<T> derivatives(const T&, const T& J, const Params<T>& p) {
+    const T inverse_J = T(1.0) / J;
+    const T tension = p.lambda * log(J) - p.mu;  // J dpsi/dJ
+    return {T(0.5) * p.mu, tension * inverse_J, (p.lambda - tension) * inverse_J * inverse_J};
+  }
+
+  static Params<double> params(const MaterialParameters& m) { return {m.lame.mu, m.lame.lambda}; }
+
+  static MaterialInfo info() {
+    return {
+        .name = "neo_hookean_log",
+        .formula = "mu/2 (I1 - 3) - mu ln J + la/2 (ln J)^2 with mu = mu_L, la = la_L",
+        .remarks =
+            "Barrier: +inf for J <= 0, so every start must be free of inversion. For nu >= 0 the only state without "
+            "stress is the rest shape, up to rotation; for nu < 0 the volume term pulls towards J = 0 and beats the "
+            "barrier. "
+            "The volume term softens beyond J = e.",
+        .extra = {},
+        .barrier = true};
+  }
+};
+
+using NeoHookeanLog = FromInvariants<NeoHookeanLogLaw>;
+
+}  // namespace aspic

@@ -1,0 +1,54 @@
+// Stable neo-Hookean solid of [Smith 2018]. The logarithm removes the pull towards F = 0 that neo_hookean has there.
+//   psi = mu/2 (I1 - 3) + lambda/2 (J - alpha)^2 - mu/2 ln(I1 + 1) + constant,   alpha = 1 + 3 mu / (4 lambda)
+// written around J = 1, so that nothing divides by lambda.
+#pragma once
+#include "material/from_invariants.h"
+#include "material/material.h"
+#include "material/registry.h"
+
+namespace aspic {
+
+struct StableNeoHookeanLaw {
+  template <class T>
+  struct Params {
+    T mu, lambda;  // [Pa]
+  };
+
+  template <class T>
+  static T energy(const T& I1, const T& J, const Params<T>& p) {
+    const T dJ = J - T(1.0);
+    return T(0.5) * p.mu * (I1 - T(3.0) - log(T(0.25) * (I1 + T(1.0)))) +
+           (T(0.5) * p.lambda * dJ - T(0.75) * p.mu) * dJ;
+  }
+  template <class T>
+  static LawDerivatives<T> derivatives(const T& I1, const T& J, const Params<T>& p) {
+    const T r = T(1.0) / (I1 + T(1.0)), half_mu = T(0.5) * p.mu;
+    return {.dI = half_mu - half_mu * r,
+            .dJ = p.lambda * (J - T(1.0)) - T(0.75) * p.mu,
+            .dII = half_mu * r * r,
+            .dIJ = T(0.0),
+            .dJJ = p.lambda};
+  }
+
+  // At rest: mu_L = 3/4 mu, lambda_L = lambda - 5/8 mu.
+  static Params<double> params(const MaterialParameters& m) {
+    return {4.0 / 3.0 * m.lame.mu, m.lame.lambda + 5.0 / 6.0 * m.lame.mu};
+  }
+
+  static MaterialInfo info() {
+    return {.name = "stable_neo_hookean",
+            .formula =
+                "mu/2 (I1 - 3) + la/2 (J - alpha)^2 - mu/2 ln((I1 + 1)/4) with mu = 4/3 mu_L, "
+                "la = la_L + 5/6 mu_L, alpha = 1 + 3 mu/(4 la), up to a constant",
+            .remarks =
+                "Defined for inverted elements. The only states without stress are the rest "
+                "shape, up to rotation, and F = 0: a saddle whose Hessian is zero, which a body "
+                "in one point leaves only after a perturbation. [Smith 2018]",
+            .extra = {},
+            .barrier = false};
+  }
+};
+
+using StableNeoHookean = FromInvariants<StableNeoHookeanLaw>;
+
+}  // namespace aspic

@@ -1,0 +1,58 @@
+// St. Venant-Kirchhoff solid: psi = mu |E|^2 + lambda/2 (tr E)^2, E = (F'F - I) / 2; P = F S, S = 2 mu E + lambda tr E
+// I.
+#pragma once
+#include "material/material.h"
+#include "material/registry.h"
+#include "material/second_piola.h"
+
+namespace aspic {
+
+struct Stvk {
+  template <class T>
+  struct Params {
+    T mu, lambda;  // [Pa]
+  };
+
+  template <class T>
+  static T psi(const Mat3<T>& F, const Params<T>& p) {
+    const Mat3<T> E = green_strain(F);
+    const T tr = trace(E);
+    return p.mu * squared_norm(E) + T(0.5) * p.lambda * tr * tr;
+  }
+  template <class T>
+  static Mat3<T> pk1(const Mat3<T>& F, const Params<T>& p) {
+    return F * stress(green_strain(F), p);
+  }
+  template <class T>
+  static Mat9<T> hessian(const Mat3<T>& F, const Params<T>& p) {
+    Mat9<T> H = scaled_outer(p.lambda, F);
+    add_product_hessian(F, stress(green_strain(F), p), p.mu, H);
+    return H;
+  }
+
+  static Params<double> params(const MaterialParameters& m) { return {m.lame.mu, m.lame.lambda}; }
+
+  static MaterialInfo info() {
+    return {.name = "stvk",
+            .formula = "mu |E|^2 + la/2 (tr E)^2, E = (F'F - I)/2, with mu = mu_L, la = la_L",
+            .remarks =
+                "Softens in compression: a body shrunk uniformly below 1/sqrt(3) = 0.577 of its "
+                "size collapses towards F = 0, and mirror images of the rest shape are free of "
+                "stress too. For small strain with large rotation.",
+            .extra = {},
+            .barrier = false};
+  }
+
+ private:
+  template <class T>
+  static Mat3<T> green_strain(const Mat3<T>& F) {
+    return T(0.5) * (transpose(F) * F - identity3<T>());
+  }
+  // Second Piola-Kirchhoff stress.
+  template <class T>
+  static Mat3<T> stress(const Mat3<T>& E, const Params<T>& p) {
+    return T(2.0) * p.mu * E + p.lambda * trace(E) * identity3<T>();
+  }
+};
+
+}  // namespace aspic

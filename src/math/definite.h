@@ -1,0 +1,67 @@
+// Positive semidefinite 9x9 matrices: a fast exact test for many at a time, and a filter for the few that fail.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "math/pack.h"
+#include "math/small.h"
+#include "math/symmetric_eigen.h"
+
+namespace aspic {
+
+// Bit l is set when H of lane l has an eigenvalue below -tolerance * (largest diagonal entry); NaN sets it too.
+// The test is whether H + shift Id = L D L' has positive D. It is sharp up to rounding (about 1e-15 of the scale).
+template <class T>
+unsigned indefinite_lanes(const Mat9<T>& H, double tolerance = 1e-12) {
+  T scale = T(0.0);
+  for (int i = 0; i < 9; ++i) scale = max(scale, abs(H(i, i)));
+  const T shift = T(tolerance) * scale + T(std::numeric_limits<double>::min());  // H = 0 is semidefinite
+
+  T L[9][9];  // below the diagonal L; scaled by D before its column is finished
+  unsigned failed = 0;
+  for (int k = 0; k < 9; ++k) {
+    T d = H(k, k) + shift;
+    for (int m = 0; m < k; ++m) d = d - L[k][m] * L[k][m] * L[m][m];
+    failed |= lanes_not_positive(d);
+    L[k][k] = d;
+    const T inverse = T(1.0) / d;
+    for (int i = k + 1; i < 9; ++i) {
+      T x = H(i, k);
+      for (int m = 0; m < k; ++m) x = x - L[i][m] * (L[k][m] * L[m][m]);
+      L[i][k] = x * inverse;
+    }
+  }
+  return failed;
+}
+
+// What becomes of an eigenvalue l: max(l, floor) or max(|l|, floor).
+enum class EigenvalueFilter { clamp, absolute };
+
+// Filters the eigenvalues of the lanes that fail indefinite_lanes, with floor = relative_floor * (largest
+// |eigenvalue|), and leaves the others alone to the last bit. Returns the lanes that failed.
+template <class T>
+unsigned make_definite(Mat9<T>& H, EigenvalueFilter filter, double relative_floor = 1e-9) {
+  const unsigned failed = indefinite_lanes(H);
+  if (failed == 0) return failed;
+  std::array<T, 81> entries;
+  std::copy(H.a, H.a + 81, entries.begin());
+  const SymmetricEigen<9, T> e = symmetric_eigen<9>(entries);
+  T largest = T(0.0);
+  for (const T& l : e.values) largest = max(largest, abs(l));
+  const T floor = max(T(relative_floor) * largest, T(std::numeric_limits<double>::min()));
+  const T chosen = lanes_from_bits<T>(failed);
+  // Only what the filter changes is added, so that the other eigenvalues keep their last digits.
+  for (int k = 0; k < 9; ++k) {
+    const T l = e.values[k];
+    const T raise = chosen * (max(filter == EigenvalueFilter::absolute ? abs(l) : l, floor) - l);
+    if (!any_positive(raise)) continue;
+    for (int c = 0; c < 9; ++c) {
+      const T x = raise * e.vectors[9 * k + c];
+      for (int r = 0; r < 9; ++r) H(r, c) = H(r, c) + x * e.vectors[9 * k + r];
+    }
+  }
+  return failed;
+}
+
+}  // namespace aspic

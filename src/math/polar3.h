@@ -1,0 +1,51 @@
+// The polar decomposition F = R S: R the closest rotation, tr S the sum of the (signed) singular values.
+#pragma once
+#include "math/jet.h"
+#include "math/svd3.h"
+
+namespace aspic {
+
+template <class T>
+Mat3<T> rotation(const Svd3<T>& f) {
+  return f.U * transpose(f.V);
+}
+
+// H += scale dR/dF, where dR/dF = sum over i < j of w w' / (s_i + s_j), w = vec(u_i v_j' - u_j v_i').
+// R jumps where s_i + s_j = 0; there the sum is held at `least`, so that the result stays finite.
+template <class T>
+void add_rotation_gradient(const Svd3<T>& f, const T& scale, double least, Mat9<T>& H) {
+  for (int j = 1; j < 3; ++j)
+    for (int i = 0; i < j; ++i) {
+      const T sum = f.s[i] + f.s[j];
+      const T factor = scale / where_positive(sum - T(least), sum, T(least));
+      Mat3<T> w;
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) w(r, c) = f.U(r, i) * f.V(c, j) - f.U(r, j) * f.V(c, i);
+      for (int c = 0; c < 9; ++c)
+        for (int r = 0; r < 9; ++r) H(r, c) = H(r, c) + factor * w.a[r] * w.a[c];
+    }
+}
+
+// tr S = s_0 + s_1 + s_2.
+template <class T>
+T stretch_trace(const Mat3<T>& F) {
+  const Svd3<T> f = svd3(F);
+  return f.s[0] + f.s[1] + f.s[2];
+}
+
+// With its derivatives: t = tr S is a root of (t^2 - I1)^2 / 4 - I2 - 2 J t, I1 = |F|^2, I2 = |cof F|^2.
+// Each Newton step on the jet doubles the order to which it is right, so two steps give second derivatives.
+template <class T>
+Jet<T> stretch_trace(const Mat3<Jet<T>>& F) {
+  Mat3<T> value;
+  for (int i = 0; i < 9; ++i) value.a[i] = F.a[i].value;
+  const Jet<T> I1 = squared_norm(F), I2 = squared_norm(cofactor(F)), J = determinant(F);
+  Jet<T> t(stretch_trace(value));
+  for (int step = 0; step < 2; ++step) {
+    const Jet<T> q = 0.5 * (t * t - I1);
+    t = t - (q * q - I2 - 2.0 * J * t) / (2.0 * (t * q - J));
+  }
+  return t;
+}
+
+}  // namespace aspic

@@ -1,0 +1,88 @@
+// A binary tree of axis-aligned boxes over items in Morton order: which items may overlap a box, or be nearest to a
+// point.
+#pragma once
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+struct Box {
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Vec3d lower = {{kInfinity, kInfinity, kInfinity}}, upper = {{-kInfinity, -kInfinity, -kInfinity}};
+
+  void add(const Vec3d& x) {
+    for (int axis = 0; axis < 3; ++axis) {
+      lower[axis] = std::min(lower[axis], x[axis]);
+      upper[axis] = std::max(upper[axis], x[axis]);
+    }
+  }
+  bool overlaps(const Box& other) const {
+    for (int axis = 0; axis < 3; ++axis)
+      if (lower[axis] > other.upper[axis] || upper[axis] < other.lower[axis]) return false;
+    return true;
+  }
+  double squared_distance(const Vec3d& x) const {
+    double sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double away = std::max({lower[axis] - x[axis], x[axis] - upper[axis], 0.0});
+      sum += away * away;
+    }
+    return sum;
+  }
+};
+
+class BoxTree {
+ public:
+  explicit BoxTree(std::span<const Box> boxes);
+
+  // Calls visit(item) for the items whose box overlaps `box` until it returns false.
+  template <class Visit>
+  void for_each_overlap(const Box& box, Visit visit) const {
+    if (!items_.empty()) overlap({0, 0, static_cast<int>(items_.size())}, box, visit);
+  }
+
+  // Calls visit(item) for the items whose box is at a squared distance of at most `reach` from x, near ones first by
+  // and large; visit may lower `reach` as it goes.
+  template <class Visit>
+  void for_each_near(const Vec3d& x, const double& reach, Visit visit) const {
+    if (!items_.empty()) near({0, 0, static_cast<int>(items_.size())}, x, reach, visit);
+  }
+
+ private:
+  // A node and its items [begin, end). Its left child follows it; a subtree of n items has 2 n - 1 nodes.
+  struct Node {
+    int index, begin, end;
+    bool is_leaf() const { return end - begin == 1; }
+    int middle() const { return begin + (end - begin) / 2; }
+    Node left() const { return {index + 1, begin, middle()}; }
+    Node right() const { return {index + 2 * (middle() - begin), middle(), end}; }
+  };
+
+  Box bound(Node node, std::span<const Box> boxes);
+
+  template <class Visit>
+  bool overlap(Node node, const Box& box, Visit& visit) const {
+    if (!bounds_[node.index].overlaps(box)) return true;
+    if (node.is_leaf()) return visit(items_[node.begin]);
+    return overlap(node.left(), box, visit) && overlap(node.right(), box, visit);
+  }
+
+  template <class Visit>
+  void near(Node node, const Vec3d& x, const double& reach, Visit& visit) const {
+    if (node.is_leaf()) return visit(items_[node.begin]);
+    Node first = node.left(), second = node.right();
+    double to_first = bounds_[first.index].squared_distance(x), to_second = bounds_[second.index].squared_distance(x);
+    if (to_second < to_first) std::swap(first, second), std::swap(to_first, to_second);
+    if (to_first <= reach) near(first, x, reach, visit);
+    if (to_second <= reach) near(second, x, reach, visit);
+  }
+
+  std::vector<int> items_;
+  std::vector<Box> bounds_;  // in preorder
+};
+
+}  // namespace aspic

@@ -1,0 +1,16 @@
+// Orders that keep neighbours in space near each other in memory.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+// The indices of the points along the Morton (Z-order) curve of their bounding cube; points in the same cell of its
+// 2^21-fold grid keep their order. Points that are not finite come first.
+std::vector<int> morton_order(std::span<const Vec3d> points);
+
+std::vector<Vec3d> centroids(const TetMesh& mesh);  // at rest [m]
+
+}  // namespace aspic

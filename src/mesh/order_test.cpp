@@ -1,0 +1,46 @@
+#include "mesh/order.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "mesh/generators.h"
+#include "mesh/tet_shape.h"
+
+namespace aspic {
+namespace {
+
+double path_length(const std::vector<Vec3d>& points, const std::vector<int>& order) {
+  double sum = 0;
+  for (size_t i = 1; i < order.size(); ++i) sum += length(points[order[i]] - points[order[i - 1]]);
+  return sum;
+}
+
+TEST(MortonOrder, VisitsTheCornersOfACubeWithXFastest) {
+  const std::vector<Vec3d> corners = {{{1, 1, 1}}, {{0, 0, 0}}, {{0, 0, 1}}, {{1, 0, 0}}, {{0, 1, 0}}};
+  EXPECT_EQ(morton_order(corners), (std::vector<int>{1, 3, 4, 2, 0}));
+}
+
+TEST(MortonOrder, IsAPermutationThatShortensTheWayThroughAMesh) {
+  const std::vector<Vec3d> centres = centroids(make_box({{0, 0, 0}}, {{1, 1, 1}}, {16, 16, 16}));
+  std::vector<int> order = morton_order(centres), natural(centres.size());
+  std::iota(natural.begin(), natural.end(), 0);
+  std::vector<int> shuffled = natural;
+  for (size_t i = 0; i < shuffled.size(); ++i) shuffled[i] = static_cast<int>(i * 7919 % shuffled.size());
+  EXPECT_LT(path_length(centres, order), 0.1 * path_length(centres, shuffled));
+  std::sort(order.begin(), order.end());
+  EXPECT_EQ(order, natural);
+}
+
+TEST(MortonOrder, KeepsTheOrderOfEqualPointsAndBearsNan) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Vec3d> points = {{{1, 1, 1}}, {{1, 1, 1}}, {{nan, 0, 0}}, {{1, 1, 1}}};
+  EXPECT_EQ(morton_order(points), (std::vector<int>{0, 1, 2, 3}));
+  EXPECT_TRUE(morton_order({}).empty());
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,70 @@
+#include "mesh/tet_shape.h"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+#include "mesh/triangle_shape.h"
+
+namespace aspic {
+namespace {
+
+constexpr int kEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+constexpr int kOppositeEdges[6][2] = {{2, 3}, {3, 1}, {1, 2}, {0, 3}, {2, 0}, {0, 1}};
+constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+}  // namespace
+
+double longest_edge(const TetCorners& X) {
+  double longest = 0;
+  for (const auto& [a, b] : kEdges) longest = std::max(longest, length(X[b] - X[a]));
+  return longest;
+}
+
+std::array<double, 2> dihedral_range(const TetCorners& X) {
+  double smallest = std::numbers::pi, largest = 0;
+  for (int e = 0; e < 6; ++e) {
+    const Vec3d edge = X[kEdges[e][1]] - X[kEdges[e][0]];
+    const Vec3d m = cross(edge, X[kOppositeEdges[e][0]] - X[kEdges[e][0]]);
+    const Vec3d n = cross(edge, X[kOppositeEdges[e][1]] - X[kEdges[e][0]]);
+    const double angle = std::atan2(length(cross(m, n)), dot(m, n));
+    smallest = std::min(smallest, angle);
+    largest = std::max(largest, angle);
+  }
+  const double degrees = 180 / std::numbers::pi;
+  return {smallest * degrees, largest * degrees};
+}
+
+double mean_ratio(const TetCorners& X) {
+  double sum = 0;
+  for (const auto& [a, b] : kEdges) sum += dot(X[b] - X[a], X[b] - X[a]);
+  if (sum == 0) return 0;
+  const double root = std::cbrt(3 * signed_volume(X));
+  return 12 * root * std::abs(root) / sum;
+}
+
+double flat_volume(const TetCorners& X) {
+  double size = 0;
+  for (const Vec3d& x : X) size = std::max({size, std::abs(x[0]), std::abs(x[1]), std::abs(x[2])});
+  // Each entry of the determinant carries the round-off of a coordinate; the others are edges.
+  const double edge = longest_edge(X);
+  return 4 * std::numeric_limits<double>::epsilon() * std::max(size, edge) * edge * edge;
+}
+
+std::array<double, 4> barycentric(const TetCorners& X, const Vec3d& p) {
+  const Vec3d w = inverse(from_columns(X[1] - X[0], X[2] - X[0], X[3] - X[0])) * (p - X[0]);
+  return {1 - w[0] - w[1] - w[2], w[0], w[1], w[2]};
+}
+
+double squared_distance(const TetCorners& X, const Vec3d& p) {
+  const std::array<double, 4> w = barycentric(X, p);
+  if (*std::min_element(w.begin(), w.end()) >= 0) return 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& [a, b, c] : kFaces) {
+    const Vec3d away = p - nearest_point(p, X[a], X[b], X[c]);
+    nearest = std::min(nearest, dot(away, away));
+  }
+  return nearest;
+}
+
+}  // namespace aspic

@@ -1,0 +1,41 @@
+// The shape of one tetrahedron: lengths, angles, quality, and its point nearest to another.
+#pragma once
+#include <array>
+#include <cmath>
+
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+using TetCorners = std::array<Vec3d, 4>;
+
+inline TetCorners corners(const TetMesh& mesh, int tet) {
+  const auto& [a, b, c, d] = mesh.tets[tet];
+  return {mesh.rest[a], mesh.rest[b], mesh.rest[c], mesh.rest[d]};
+}
+
+inline double length(const Vec3d& x) { return std::sqrt(dot(x, x)); }
+
+inline double signed_volume(const TetCorners& X) {
+  return determinant(from_columns(X[1] - X[0], X[2] - X[0], X[3] - X[0])) / 6;
+}
+
+double longest_edge(const TetCorners& corners);
+
+// The angles inside the tet at its six edges [degrees], smallest and largest. 0 and 180 for a flat one.
+std::array<double, 2> dihedral_range(const TetCorners& corners);
+
+// 12 (3 V)^(2/3) / sum of squared edges: 1 for the regular tet, 0 for a flat one, negative for an inverted one
+// [Liu and Joe 1994].
+double mean_ratio(const TetCorners& corners);
+
+// Volume below this is round-off of the corners rather than shape: the tet counts as flat.
+double flat_volume(const TetCorners& corners);
+
+// Barycentric coordinates of p, summing to 1; the tet must not be flat.
+std::array<double, 4> barycentric(const TetCorners& corners, const Vec3d& p);
+
+// Squared distance [m^2] from p to the tet, 0 inside.
+double squared_distance(const TetCorners& corners, const Vec3d& p);
+
+}  // namespace aspic

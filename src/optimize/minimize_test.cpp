@@ -1,0 +1,125 @@
+#include "optimize/minimize.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "optimize/test_functions.h"
+
+namespace aspic {
+namespace {
+
+MinimizeOptions tight() {
+  MinimizeOptions options;
+  options.tolerance = 1e-10;
+  options.criterion = Criterion::absolute;
+  return options;
+}
+
+std::unique_ptr<Newton> newton(NewtonDefiniteness definiteness = NewtonDefiniteness::on_demand) {
+  return std::make_unique<Newton>(make_linear_solver("block_jacobi"), definiteness);
+}
+
+TEST(Minimize, NewtonFindsTheMinimumOfRosenbrockFromBothSides) {
+  for (const double x0 : {-0.8, 0.9, -1.5}) {
+    Rosenbrock f;
+    std::vector<double> x = {x0, 0.6, 0};
+    const MinimizeReport report = Minimizer().minimize(f, *newton(), x, tight());
+    EXPECT_EQ(report.status, Status::converged);
+    EXPECT_NEAR(x[0], 1, 1e-8);
+    EXPECT_NEAR(x[1], 1, 1e-8);
+    EXPECT_LT(report.iterations, 40);
+  }
+}
+
+TEST(Minimize, GradientDescentDescendsMonotonicallyAndNeedsManyMoreIterations) {
+  Rosenbrock f;
+  GradientDescent direction;
+  std::vector<double> x = {-0.8, 0.6, 0};
+  MinimizeOptions options = tight();
+  options.tolerance = 1e-3;
+  options.max_iterations = 20000;
+  double last = INFINITY;
+  const MinimizeReport report = Minimizer().minimize(f, direction, x, options, [&](const Iteration& iteration) {
+    EXPECT_LT(iteration.value, last);
+    last = iteration.value;
+    return true;
+  });
+  EXPECT_EQ(report.status, Status::converged);
+  EXPECT_GT(report.iterations, 200);
+}
+
+TEST(Minimize, NewtonWithoutLineSearchOvershoots) {
+  Rosenbrock f;
+  std::vector<double> x = {-0.8, 0.6, 0};
+  MinimizeOptions options = tight();
+  options.line_search.test = DecreaseTest::none;
+  bool rose = false;
+  double last = f.value(x);
+  Minimizer().minimize(f, *newton(), x, options, [&](const Iteration& iteration) {
+    rose = rose || iteration.value > last;
+    last = iteration.value;
+    return true;
+  });
+  EXPECT_TRUE(rose);
+}
+
+TEST(Minimize, AnIndefiniteHessianIsProjectedOnDemandAndRefusedWhenExact) {
+  Rosenbrock f;
+  std::vector<double> x = {0, 1, 0};  // the Hessian there has one negative eigenvalue
+  EXPECT_EQ(Minimizer().minimize(f, *newton(NewtonDefiniteness::exact), x, tight()).status, Status::no_descent);
+  const MinimizeReport report = Minimizer().minimize(f, *newton(), x, tight());
+  EXPECT_EQ(report.status, Status::converged);
+  EXPECT_GT(report.projected_hessians, 0);
+}
+
+TEST(Minimize, TheIterationLimitIsNotSuccess) {
+  Rosenbrock f;
+  std::vector<double> x = {-0.8, 0.6, 0};
+  MinimizeOptions options = tight();
+  options.max_iterations = 2;
+  const MinimizeReport report = Minimizer().minimize(f, *newton(), x, options);
+  EXPECT_EQ(report.status, Status::iteration_limit);
+  EXPECT_FALSE(is_success(report.status));
+  EXPECT_EQ(report.iterations, 2);
+}
+
+TEST(Minimize, AStartThatIsNotFiniteIsUndefined) {
+  Rosenbrock f;
+  std::vector<double> x = {NAN, 0, 0};
+  EXPECT_EQ(Minimizer().minimize(f, *newton(), x, tight()).status, Status::undefined);
+}
+
+TEST(Minimize, TheObserverCanStopIt) {
+  Rosenbrock f;
+  std::vector<double> x = {-0.8, 0.6, 0};
+  const MinimizeReport report =
+      Minimizer().minimize(f, *newton(), x, tight(), [](const Iteration& iteration) { return iteration.index < 3; });
+  EXPECT_EQ(report.status, Status::interrupted);
+  EXPECT_EQ(report.iterations, 4);
+}
+
+TEST(LineSearch, TextbookAndSlideTestsDifferByAlpha) {
+  // Along d = (0.005, 0), from (0, 0): f falls by 2 alpha 0.005 to first order, so c = 0.6 rejects nothing for the
+  // textbook test at small alpha, while the slide's test asks for the full decrease whatever alpha is.
+  Rosenbrock f;
+  const std::vector<double> x = {0, 0, 0}, d = {0.5, 0, 0};
+  std::vector<double> trial(3), g(3);
+  LineSearchOptions options;
+  options.sufficient_decrease = 0.6;
+  const LineSearchResult textbook = backtrack(f, x, d, f.value(x), -1, options, trial, g);
+  EXPECT_GT(textbook.alpha, 0);
+  EXPECT_LE(f.value(std::vector<double>{textbook.alpha * 0.5, 0, 0}), 1 - 0.6 * textbook.alpha);
+  options.test = DecreaseTest::slide;
+  EXPECT_EQ(backtrack(f, x, d, f.value(x), -1, options, trial, g).alpha, 0);  // stuck
+}
+
+TEST(LineSearch, AnAscentDirectionIsStuck) {
+  Rosenbrock f;
+  const std::vector<double> x = {0, 0, 0}, d = {-1, 0, 0};
+  std::vector<double> trial(3), g(3);
+  EXPECT_EQ(backtrack(f, x, d, f.value(x), -2, {}, trial, g).alpha, 0);
+}
+
+}  // namespace
+}  // namespace aspic

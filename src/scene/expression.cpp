@@ -1,0 +1,211 @@
+#include "scene/expression.h"
+
+#include <muParser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+
+#include "base/error.h"
+#include "scene/value.h"
+
+namespace aspic {
+namespace {
+
+struct Function {
+  const char* name;
+  const char* meaning;
+  double (*call)(double);
+};
+struct Function2 {
+  const char* name;
+  const char* meaning;
+  double (*call)(double, double);
+};
+struct FunctionN {
+  const char* name;
+  const char* meaning;
+  double (*call)(const double*, int);
+};
+struct Constant {
+  const char* name;
+  const char* meaning;
+  double value;
+};
+
+double smallest(const double* a, int n) { return n > 0 ? *std::min_element(a, a + n) : NAN; }
+double largest(const double* a, int n) { return n > 0 ? *std::max_element(a, a + n) : NAN; }
+double negation(double a) { return a == 0; }
+
+const Function kFunctions[] = {
+    {"sin", "sine of radians", [](double a) { return std::sin(a); }},
+    {"cos", "cosine of radians", [](double a) { return std::cos(a); }},
+    {"tan", "tangent of radians", [](double a) { return std::tan(a); }},
+    {"asin", "arc sine", [](double a) { return std::asin(a); }},
+    {"acos", "arc cosine", [](double a) { return std::acos(a); }},
+    {"atan", "arc tangent", [](double a) { return std::atan(a); }},
+    {"sinh", "hyperbolic sine", [](double a) { return std::sinh(a); }},
+    {"cosh", "hyperbolic cosine", [](double a) { return std::cosh(a); }},
+    {"tanh", "hyperbolic tangent", [](double a) { return std::tanh(a); }},
+    {"exp", "exponential", [](double a) { return std::exp(a); }},
+    {"log", "natural logarithm", [](double a) { return std::log(a); }},
+    {"sqrt", "square root", [](double a) { return std::sqrt(a); }},
+    {"abs", "absolute value", [](double a) { return std::abs(a); }},
+    {"sign", "-1, 0 or 1", [](double a) { return double((a > 0) - (a < 0)); }},
+    {"floor", "largest integer not above", [](double a) { return std::floor(a); }},
+    {"ceil", "smallest integer not below", [](double a) { return std::ceil(a); }},
+    {"round", "nearest integer", [](double a) { return std::round(a); }},
+};
+const Function2 kFunctions2[] = {
+    {"atan2", "angle of the point (b, a): atan2(a, b)", [](double a, double b) { return std::atan2(a, b); }},
+    {"hypot", "sqrt(a^2 + b^2)", [](double a, double b) { return std::hypot(a, b); }},
+};
+const FunctionN kFunctionsN[] = {
+    {"min", "smallest of its arguments", smallest},
+    {"max", "largest of its arguments", largest},
+};
+const Constant kConstants[] = {
+    {"pi", "3.14159...", std::numbers::pi},
+    {"all", "1, so that where = \"all\" selects everything", 1.0},
+};
+
+std::string in_column(const std::string& text, size_t column, const std::string& reason) {
+  return "column " + std::to_string(column) + " of \"" + shortened(text) + "\": " + reason;
+}
+
+// What the parser would understand but a formula has no use for: assignments, strings, lists.
+void check_text(const std::string& text) {
+  if (text.find_first_not_of(" \t") == std::string::npos) throw InvalidInput("the expression is empty");
+  if (text.size() > kMaxExpressionLength)
+    throw InvalidInput(in_column(text, kMaxExpressionLength + 1,
+                                 std::to_string(text.size()) + " characters; at most " +
+                                     std::to_string(kMaxExpressionLength) + " are read (use a per-element file)"));
+  int depth = 0;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const bool allowed = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                         std::string_view("_.+-*/^()<>=!&|?:, \t").find(c) != std::string_view::npos;
+    if (!allowed) throw InvalidInput(in_column(text, i + 1, std::string("unexpected character '") + c + "'"));
+    if (c == '=') {
+      const char before = i > 0 ? text[i - 1] : ' ', after = i + 1 < text.size() ? text[i + 1] : ' ';
+      const bool compares = after == '=' || before == '=' || before == '<' || before == '>' || before == '!';
+      if (!compares) throw InvalidInput(in_column(text, i + 1, "'=' assigns nothing here; compare with '=='"));
+    }
+    depth += (c == '(') - (c == ')');
+    if (depth > kMaxExpressionDepth)
+      throw InvalidInput(
+          in_column(text, i + 1, "more than " + std::to_string(kMaxExpressionDepth) + " open parentheses"));
+  }
+}
+
+std::vector<std::string> known_names(ExpressionVariables variables) {
+  std::vector<std::string> names = {"x", "y", "z", "X", "Y", "Z"};
+  if (variables == ExpressionVariables::position_and_time) names.push_back("t");
+  for (const NamedMeaning& f : expression_functions()) names.push_back(f.name);
+  for (const NamedMeaning& c : expression_constants()) names.push_back(c.name);
+  return names;
+}
+
+std::string reason_of(const mu::ParserError& e, ExpressionVariables variables) {
+  switch (e.GetCode()) {
+    case mu::ecUNASSIGNABLE_TOKEN:
+      if (e.GetToken() == "t" && variables == ExpressionVariables::position)
+        return "'t' has no meaning here: this is evaluated once, at the start";
+      return "unknown name '" + e.GetToken() + "'" + suggestion(e.GetToken(), known_names(variables));
+    case mu::ecUNEXPECTED_EOF:
+      return "ends too early";
+    case mu::ecMISSING_PARENS:
+      return "a parenthesis is missing";
+    case mu::ecTOO_MANY_PARAMS:
+      return "too many arguments for '" + e.GetToken() + "'";
+    case mu::ecTOO_FEW_PARAMS:
+      return "too few arguments for '" + e.GetToken() + "'";
+    case mu::ecUNEXPECTED_VAL:
+    case mu::ecUNEXPECTED_VAR:
+    case mu::ecUNEXPECTED_FUN:
+    case mu::ecUNEXPECTED_OPERATOR:
+    case mu::ecUNEXPECTED_PARENS:
+    case mu::ecUNEXPECTED_ARG_SEP:
+      return "unexpected '" + e.GetToken() + "'";
+    default:
+      return e.GetMsg();
+  }
+}
+
+}  // namespace
+
+struct Expression::Impl {
+  std::string text;
+  ExpressionVariables variables;
+  mutable std::mutex evaluation;  // the parser evaluates in place
+  mutable mu::Parser parser;
+  mutable std::array<double, 4> value{};  // X Y Z t
+};
+
+Expression::Expression(const std::string& text, ExpressionVariables variables) {
+  check_text(text);
+  auto impl = std::make_shared<Impl>();
+  impl->text = text;
+  impl->variables = variables;
+  mu::Parser& parser = impl->parser;
+  try {
+    parser.ClearFun();
+    parser.ClearConst();
+    for (const Function& f : kFunctions) parser.DefineFun(f.name, f.call);
+    for (const Function2& f : kFunctions2) parser.DefineFun(f.name, f.call);
+    for (const FunctionN& f : kFunctionsN) parser.DefineFun(f.name, f.call);
+    for (const Constant& c : kConstants) parser.DefineConst(c.name, c.value);
+    parser.DefineInfixOprt("!", negation);
+    const char* upper[] = {"X", "Y", "Z", "t"};
+    const char* lower[] = {"x", "y", "z"};
+    const int count = variables == ExpressionVariables::position_and_time ? 4 : 3;
+    for (int i = 0; i < count; ++i) parser.DefineVar(upper[i], &impl->value[i]);
+    for (int i = 0; i < 3; ++i) parser.DefineVar(lower[i], &impl->value[i]);
+    parser.SetExpr(text);
+    parser.Eval();
+    if (parser.GetNumResults() != 1)
+      throw InvalidInput(in_column(text, text.find(',') + 1, "one value is expected, not a list"));
+  } catch (const mu::ParserError& e) {
+    const size_t position = e.GetPos() >= 0 ? std::min(text.size(), static_cast<size_t>(e.GetPos())) : text.size();
+    throw InvalidInput(in_column(text, position + 1, reason_of(e, variables)));
+  }
+  impl_ = std::move(impl);
+}
+
+double Expression::at(const Vec3d& X, double t) const {
+  double result = 0;
+  {
+    const std::lock_guard lock(impl_->evaluation);
+    impl_->value = {X[0], X[1], X[2], t};
+    try {
+      result = impl_->parser.Eval();
+    } catch (const mu::ParserError& e) {
+      throw InvalidInput("\"" + shortened(impl_->text) + "\": " + e.GetMsg());
+    }
+  }
+  if (!std::isfinite(result)) {
+    const bool timed = impl_->variables == ExpressionVariables::position_and_time;
+    throw InvalidInput("\"" + shortened(impl_->text) + "\" is " + number_text(result) + " at " + point_text(X) +
+                       (timed ? ", t = " + number_text(t) : ""));
+  }
+  return result;
+}
+
+const std::string& Expression::text() const { return impl_->text; }
+
+std::vector<NamedMeaning> expression_functions() {
+  std::vector<NamedMeaning> names;
+  for (const Function& f : kFunctions) names.push_back({f.name, f.meaning});
+  for (const Function2& f : kFunctions2) names.push_back({f.name, f.meaning});
+  for (const FunctionN& f : kFunctionsN) names.push_back({f.name, f.meaning});
+  return names;
+}
+
+std::vector<NamedMeaning> expression_constants() {
+  std::vector<NamedMeaning> names;
+  for (const Constant& c : kConstants) names.push_back({c.name, c.meaning});
+  return names;
+}
+
+}  // namespace aspic

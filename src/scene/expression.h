@@ -1,0 +1,41 @@
+// Formulas of a position and a time, such as "1e5 * (1 + 3 * exp(-Y^2 / 0.02))" and "y > 0.9 && x < 0".
+#pragma once
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "math/small.h"
+
+namespace aspic {
+
+inline constexpr size_t kMaxExpressionLength = 1000;  // characters: a formula from a file cannot take for ever
+inline constexpr int kMaxExpressionDepth = 50;        // open parentheses
+
+enum class ExpressionVariables {
+  position,           // X, Y, Z, or x, y, z for the same
+  position_and_time,  // and t
+};
+
+class Expression {
+ public:
+  // Throws InvalidInput with the column, the reason and the nearest known name.
+  explicit Expression(const std::string& text, ExpressionVariables variables = ExpressionVariables::position);
+
+  // The value is finite, or InvalidInput names the formula and the point. Safe to call from several threads.
+  double at(const Vec3d& X, double t = 0) const;
+  bool holds_at(const Vec3d& X) const { return at(X) != 0; }
+  const std::string& text() const;
+
+ private:
+  struct Impl;
+  std::shared_ptr<const Impl> impl_;
+};
+
+struct NamedMeaning {
+  std::string name, meaning;
+};
+std::vector<NamedMeaning> expression_functions();  // what a formula may call, for the reference
+std::vector<NamedMeaning> expression_constants();
+
+}  // namespace aspic

@@ -1,0 +1,53 @@
+#include "scene/schema.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+
+namespace aspic {
+
+bool Range::contains(double value) const {
+  return (min_open ? value > min : value >= min) && (max_open ? value < max : value <= max);
+}
+
+std::string Range::text() const {
+  const std::string low = std::isinf(min) ? "" : (min_open ? "> " : ">= ") + number_text(min);
+  const std::string high = std::isinf(max) ? "" : (max_open ? "< " : "<= ") + number_text(max);
+  return low + (low.empty() || high.empty() ? "" : " and ") + high;
+}
+
+std::string Range::remedy() const {
+  if (std::isfinite(max) && max_open)
+    return "try " + number_text(std::isfinite(min) ? max - 0.01 * (max - min) : max - 1);
+  if (std::isfinite(max)) return "try " + number_text(max);
+  if (std::isfinite(min)) return "try " + number_text(min_open ? min + 1 : min);
+  return "";
+}
+
+const Key* Schema::find(std::string_view section, std::string_view name) const {
+  for (const Key& k : keys)
+    if (k.section == section && k.name == name) return &k;
+  return nullptr;
+}
+
+const Key& Schema::key(std::string_view section, std::string_view name) const {
+  const Key* found = find(section, name);
+  ASPIC_CHECK(found);
+  return *found;
+}
+
+std::vector<std::string> Schema::names(std::string_view section) const {
+  std::vector<std::string> result;
+  for (const Key& k : keys)
+    if (k.section == section) result.push_back(k.name);
+  return result;
+}
+
+const Alternatives* Schema::alternatives_of(std::string_view section) const {
+  for (const Alternatives& a : alternatives)
+    if (a.section == section) return &a;
+  return nullptr;
+}
+
+}  // namespace aspic

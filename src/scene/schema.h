@@ -1,0 +1,82 @@
+// Every key that a scene may contain: one table from which the validation, the defaults of the resolved scene and the
+// page docs/scene.md all come.
+#pragma once
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/value.h"
+
+namespace aspic {
+
+enum Accepts : unsigned {
+  kNumber = 1,
+  kInteger = 2,
+  kBoolean = 4,
+  kText = 8,          // a string: one of `choices` when there are any
+  kExpression = 16,   // a string: a formula of X, Y, Z
+  kNumbers = 32,      // three numbers
+  kExpressions = 64,  // three numbers or formulas
+  kIntegers = 128,    // a list of integers of any length
+  kMatrix = 256,      // three rows of three numbers
+  kPairs = 512,       // a list of pairs of integers
+  kTable = 1024,
+  kTables = 2048,            // [[...]], or a single table
+  kAnyTable = 4096,          // keys are chosen by the user; all values are numbers
+  kMovingExpressions = 8192  // three numbers or formulas of X, Y, Z and t
+};
+
+struct Range {
+  double min = -std::numeric_limits<double>::infinity(), max = std::numeric_limits<double>::infinity();
+  bool min_open = false, max_open = false;
+
+  bool contains(double value) const;
+  std::string text() const;    // "> 0 and < 0.5"; empty for all numbers
+  std::string remedy() const;  // a value that would do: "try 0.49"
+};
+
+struct Key {
+  std::string section = {}, name = {};
+  unsigned accepts = 0;
+  std::string unit = {};      // "" for a pure number or no number
+  std::string fallback = {};  // the default as TOML; empty: none
+  bool required = false;      // in a group of alternatives: once that group is chosen
+  Range range = {};
+  std::vector<std::string> choices = {};
+  std::string table = {};  // the section of the keys of a table or of a list of tables
+  std::string meaning = {}, reason = {};
+};
+
+struct Section {
+  std::string name;   // "material"
+  std::string where;  // how it appears in a file: "material = { ... } of a [[body]]"
+  std::string about;
+};
+
+// At most one of the groups may be given. A group's defaults apply when it is chosen; those of the first group also
+// when none is.
+struct Alternatives {
+  std::string section;
+  std::vector<std::vector<std::string>> groups;
+  bool required = false;
+};
+
+struct Schema {
+  std::vector<Section> sections;
+  std::vector<Key> keys;
+  std::vector<Alternatives> alternatives;
+
+  const Key* find(std::string_view section, std::string_view name) const;
+  const Key& key(std::string_view section, std::string_view name) const;  // which exists
+  std::vector<std::string> names(std::string_view section) const;
+  const Alternatives* alternatives_of(std::string_view section) const;
+};
+
+const Schema& scene_schema();
+
+// Checks a document against the schema and fills in the defaults, in the order of the schema; whole numbers become
+// floats where a float is expected. Throws InvalidInput with the first few errors, one per line.
+void check_and_complete(Table& document, const std::string& source);
+
+}  // namespace aspic

@@ -1,0 +1,274 @@
+// The table itself. A new key is one entry here; the order is the order of docs/scene.md and of resolved scenes.
+#include <set>
+
+#include "dynamics/simulation.h"
+#include "linalg/linear_solver.h"
+#include "material/registry.h"
+#include "scene/scene.h"
+#include "scene/schema_table.h"
+
+namespace aspic {
+namespace {
+
+const Range kPositive{.min = 0, .min_open = true};
+const Range kNotNegative{.min = 0};
+const Range kFraction{.min = 0, .max = 1, .min_open = true};
+
+void add_scene(Schema& s) {
+  s.sections.push_back({"scene", "the top level of the file", "What is simulated."});
+  add_keys(s, "scene",
+           {{.name = "version",
+             .accepts = kText,
+             .meaning = "version of Aspic that resolved the scene; written by it, noted when it differs"},
+            {.name = "gravity",
+             .accepts = kNumbers,
+             .unit = "m/s^2",
+             .fallback = "[0.0, -9.81, 0.0]",
+             .meaning = "acceleration of everything that has mass",
+             .reason = "standard gravity along -y, the usual 'down'"},
+            {.name = "time",
+             .accepts = kTable,
+             .fallback = "{}",
+             .table = "time",
+             .meaning = "steps and how they are taken"},
+            {.name = "solver",
+             .accepts = kTable,
+             .fallback = "{}",
+             .table = "solver",
+             .meaning = "how each step's minimisation is solved"},
+            {.name = "output", .accepts = kTable, .fallback = "{}", .table = "output", .meaning = "what is written"},
+            {.name = "body", .accepts = kTables, .required = true, .table = "body", .meaning = "the bodies"}});
+}
+
+void add_time(Schema& s) {
+  const SimulationOptions usual;
+  s.sections.push_back({"time", "[time]", "The steps."});
+  add_keys(s, "time",
+           {{.name = "step",
+             .accepts = kNumber,
+             .unit = "s",
+             .fallback = number_text(usual.h),
+             .range = {.min = 1e-9, .max = 1e6},
+             .meaning = "length h of a time step",
+             .reason = "resolves motions of a few hertz"},
+            {.name = "duration",
+             .accepts = kNumber,
+             .unit = "s",
+             .fallback = "2.0",
+             .range = {.min = 0, .max = 1e9},
+             .meaning = "simulated time; the last step is the first that reaches it",
+             .reason = "long enough to see a soft body swing"},
+            {.name = "integrator",
+             .accepts = kText,
+             .fallback = toml_string(usual.integrator),
+             .choices = integrator_names(),
+             .meaning = "the scheme that turns a step into a minimisation",
+             .reason = "stable for every step length"}});
+}
+
+void add_solver(Schema& s) {
+  const SolverOptions usual;
+  const std::string scale(to_string(usual.minimize.criterion));
+  s.sections.push_back({"solver", "[solver]", "The minimisation of each step."});
+  add_keys(
+      s, "solver",
+      {{.name = "method",
+        .accepts = kText,
+        .fallback = toml_string(usual.method),
+        .choices = minimizer_names(),
+        .meaning = "how the search direction is found",
+        .reason = "converges in a few iterations"},
+       {.name = "max_iterations",
+        .accepts = kInteger,
+        .fallback = std::to_string(usual.minimize.max_iterations),
+        .range = {.min = 1, .max = 1e9},
+        .meaning = "iterations per step; a step that needs more is reported as not converged",
+        .reason = "ten times what Newton's method usually takes"},
+       {.name = "tolerance",
+        .accepts = kNumber,
+        .fallback = number_text(usual.minimize.tolerance),
+        .range = {.min = 0, .max = 1, .max_open = true},
+        .meaning = "the gradient's norm at which a step has converged, relative to `criterion`",
+        .reason = "positions are then right to about six digits"},
+       {.name = "criterion",
+        .accepts = kText,
+        .fallback = toml_string(scale),
+        .choices = {"scale", "first_gradient", "absolute"},
+        .meaning = "what `tolerance` is relative to: the forces that balance, the first gradient of the step, or 1 N",
+        .reason = "means the same in every unit and for every start"},
+       {.name = "line_search",
+        .accepts = kTable,
+        .fallback = "{}",
+        .table = "line_search",
+        .meaning = "how far to go along a direction"},
+       {.name = "linear",
+        .accepts = kText,
+        .fallback = toml_string(usual.linear),
+        .choices = linear_solver_names(),
+        .meaning = "the solver of the linear systems of Newton's method",
+        .reason = "chosen by the size of the mesh"},
+       {.name = "definiteness",
+        .accepts = kText,
+        .fallback = toml_string(usual.definiteness),
+        .choices = definiteness_names(),
+        .meaning = "what is done to an indefinite Hessian",
+        .reason = "projects only when it has to"},
+       {.name = "mass",
+        .accepts = kText,
+        .fallback = "\"consistent\"",
+        .choices = {"consistent", "lumped"},
+        .meaning = "the mass matrix",
+        .reason = "second-order accurate in space, and costs nothing extra in an implicit step"}});
+}
+
+void add_line_search(Schema& s) {
+  const LineSearchOptions usual;
+  s.sections.push_back({"line_search", "line_search = { ... } in [solver]",
+                        "Backtracking: try alpha_max, then shrink by p until E has decreased enough."});
+  add_keys(s, "line_search",
+           {{.name = "alpha_max",
+             .accepts = kNumber,
+             .fallback = number_text(usual.alpha_max),
+             .range = kPositive,
+             .meaning = "the first trial",
+             .reason = "the full Newton step"},
+            {.name = "c",
+             .accepts = kNumber,
+             .fallback = number_text(usual.sufficient_decrease),
+             .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
+             .meaning = "sufficient decrease",
+             .reason = "the textbook's value"},
+            {.name = "p",
+             .accepts = kNumber,
+             .fallback = number_text(usual.shrink),
+             .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
+             .meaning = "factor between trials",
+             .reason = "halving"},
+            {.name = "tol",
+             .accepts = kNumber,
+             .fallback = number_text(usual.tolerance),
+             .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
+             .meaning = "steps shorter than this are given up as stuck",
+             .reason = "about 33 halvings"},
+            {.name = "test",
+             .accepts = kText,
+             .fallback = "\"textbook\"",
+             .choices = {"textbook", "slide", "none"},
+             .meaning = "`textbook`: E + c alpha g.d (Armijo); `slide`: E + c g.d, as printed in the lecture; `none`: "
+                        "accept the first trial",
+             .reason = "converges from everywhere"}});
+}
+
+void add_output(Schema& s) {
+  const OutputOptions usual;
+  const auto format = [&](const char* name, bool on, const char* meaning, const char* reason) {
+    add_key(
+        s, "output",
+        {.name = name, .accepts = kBoolean, .fallback = on ? "true" : "false", .meaning = meaning, .reason = reason});
+  };
+  s.sections.push_back({"output", "[output]", "The files of a run."});
+  add_key(s, "output",
+          {.name = "every",
+           .accepts = kNumber,
+           .unit = "s",
+           .fallback = number_text(usual.every),
+           .range = kNotNegative,
+           .meaning = "simulated time between frames; 0: a frame per step",
+           .reason = "nothing is lost"});
+  format("vtu", usual.vtu, "VTU frames with a PVD index, for ParaView", "carries all fields");
+  format("obj", usual.obj, "an OBJ file per frame", "large; PC2 holds the same");
+  format("ply", usual.ply, "a PLY file per frame", "large; PC2 holds the same");
+  format("pc2", usual.pc2, "a PC2 cache with its OBJ, for Blender", "small");
+  format("usd", usual.usd, "one time-sampled USD text file", "opens in most 3-D programs");
+  add_key(s, "output",
+          {.name = "checkpoint_every",
+           .accepts = kNumber,
+           .unit = "s",
+           .fallback = number_text(usual.checkpoint_every),
+           .range = kNotNegative,
+           .meaning = "wall time between checkpoints; 0: with every frame",
+           .reason = "nothing is computed twice after an interruption"});
+}
+
+void add_material(Schema& s) {
+  constexpr unsigned kField = kNumber | kExpression | kTable;
+  const auto field = [&](const char* name, const char* unit, const char* fallback, Range range, const char* meaning,
+                         const char* reason, bool required) {
+    add_key(s, "material",
+            {.name = name,
+             .accepts = kField,
+             .unit = unit,
+             .fallback = fallback,
+             .required = required,
+             .range = range,
+             .table = "field",
+             .meaning = meaning,
+             .reason = reason});
+  };
+  std::vector<std::string> models;
+  for (const MaterialInfo& m : materials()) models.push_back(m.name);
+  s.sections.push_back({"material", "material = { ... } in a [[body]]",
+                        "Elastic constants at small strain, whatever the model does at large strain. Each value is a "
+                        "number, a formula of the centroid (X, Y, Z) of a tet at rest, or a `field` table."});
+  add_key(s, "material",
+          {.name = "model",
+           .accepts = kText,
+           .fallback = "\"neo_hookean\"",
+           .choices = models,
+           .meaning = "the energy density; `aspic materials` prints each formula",
+           .reason = "stays finite when elements are turned inside out"});
+  field("density", "kg/m^3", "1000.0", kPositive, "mass per volume at rest", "water and soft tissue", false);
+  field("young", "Pa", "1e5", kPositive, "Young's modulus E", "soft silicone rubber", false);
+  field("poisson", "", "0.3", {.min = -1, .max = 0.5, .min_open = true, .max_open = true}, "Poisson's ratio nu",
+        "linear tets lock above 0.45", false);
+  field("lambda", "Pa", "", {}, "first Lame constant; above -2/3 mu", "", true);
+  field("mu", "Pa", "", kPositive, "second Lame constant, the shear modulus", "", true);
+  field("shear", "Pa", "", kPositive, "shear modulus", "", true);
+  field("bulk", "Pa", "", kPositive, "bulk modulus", "", true);
+  std::set<std::string> known;
+  for (const MaterialInfo& m : materials())
+    for (const ExtraParameter& e : m.extra)
+      if (known.insert(e.name).second)
+        add_key(s, "material",
+                {.name = e.name,
+                 .accepts = kField,
+                 .unit = e.unit,
+                 .range = {.min = e.min, .max = e.max},
+                 .table = "field",
+                 .meaning = e.meaning + " (only " + m.name + "; default " + number_text(e.fallback) + ")"});
+  s.alternatives.push_back({"material", {{"young", "poisson"}, {"lambda", "mu"}, {"shear", "bulk"}}, false});
+
+  s.sections.push_back({"field", "in place of a number of a material", "A value per tet from a table or a file."});
+  add_key(s, "field",
+          {.name = "regions",
+           .accepts = kAnyTable,
+           .meaning = "a number for each region label of the mesh: { 1 = 1e5, 2 = 3e5 }"});
+  add_key(s, "field",
+          {.name = "file", .accepts = kText, .meaning = "a CSV file with one number per tet, or a VTU file"});
+  add_key(s, "field", {.name = "name", .accepts = kText, .meaning = "the cell field of a VTU file"});
+  add_key(s, "field",
+          {.name = "hash",
+           .accepts = kText,
+           .meaning = "of the file's contents; written into resolved scenes and then checked"});
+  s.alternatives.push_back({"field", {{"regions"}, {"file", "name", "hash"}}, true});
+}
+
+}  // namespace
+
+const Schema& scene_schema() {
+  static const Schema schema = [] {
+    Schema s;
+    add_scene(s);
+    add_time(s);
+    add_solver(s);
+    add_line_search(s);
+    add_output(s);
+    add_body_sections(s);
+    add_material(s);
+    add_action_sections(s);
+    return s;
+  }();
+  return schema;
+}
+
+}  // namespace aspic

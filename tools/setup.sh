@@ -1,0 +1,145 @@
+# Shared by ./run and ./test: installs what is missing, configures, builds. Sourced; `root` is the repository.
+# shellcheck shell=sh disable=SC2034,SC2086,SC2154,SC2209
+
+build_dir=$root/build/release
+log_dir=$root/build/log
+
+# A name after ':' is the program to look for where it is not called like its package.
+core_programs="g++ cmake ninja-build:ninja ccache"
+core_packages="libeigen3-dev libmetis-dev libmuparser-dev libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
+  libfmt-dev zlib1g-dev"
+mesher_packages="libcgal-dev"
+test_programs="python3"
+test_packages="libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libsuitesparse-dev python3-meshio"
+bench_packages="libbenchmark-dev"
+
+say() { printf '%s\n' "$*" >&2; }
+die() {
+  say "error: $*"
+  exit 1
+}
+
+# Prints the packages among the arguments that are not installed.
+missing_packages() {
+  for package in "$@"; do
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || printf '%s ' "$package"
+  done
+}
+
+# Prints the packages of the programs among the arguments that are not on the PATH.
+missing_programs() {
+  for entry in "$@"; do
+    command -v "${entry#*:}" >/dev/null 2>&1 || printf '%s ' "${entry%:*}"
+  done
+}
+
+# Runs a command with its output in a log, shown only when it fails.
+logged() {
+  log=$log_dir/$1.log
+  shift
+  mkdir -p "$log_dir"
+  "$@" >"$log" 2>&1 || {
+    status=$?
+    tail -n 40 "$log" >&2
+    say "(the whole output is in $log)"
+    return $status
+  }
+}
+
+# Installs the packages among the arguments; does nothing without arguments.
+install_packages() {
+  [ $# -gt 0 ] || return 0
+  by_hand="apt-get install --no-install-recommends $*"
+  command -v apt-get >/dev/null 2>&1 || die "missing: $*
+These are Debian's package names; install what they contain in this system's way, then try again."
+  if [ "$(id -u)" = 0 ]; then
+    as_root=env
+  elif command -v sudo >/dev/null 2>&1; then
+    as_root="sudo env"
+  else
+    die "missing packages: $*
+Neither root nor sudo is available to install them. Ask an administrator to run:
+  $by_hand"
+  fi
+  say "Installing with apt-get: $*"
+  logged apt-update $as_root DEBIAN_FRONTEND=noninteractive apt-get -q update ||
+    say "warning: the package lists could not be refreshed (no network?); trying with the lists at hand"
+  logged apt-install $as_root DEBIAN_FRONTEND=noninteractive \
+    apt-get -q -y --no-install-recommends install "$@" ||
+    die "the packages could not be installed. By hand:
+  $by_hand"
+}
+
+# need PACKAGES PROGRAMS: two lists; what is missing of either is installed.
+need() {
+  if command -v dpkg-query >/dev/null 2>&1; then
+    missing=$(missing_packages $1)
+  else
+    missing=
+  fi
+  missing="$missing$(missing_programs $2)"
+  install_packages $missing
+}
+
+# configured NAME=VALUE...: whether the build folder was configured with all of these.
+configured() {
+  [ -f "$build_dir/build.ninja" ] || return 1
+  for setting in "$@"; do
+    grep -q "^${setting%%=*}:[A-Z]*=${setting#*=}\$" "$build_dir/CMakeCache.txt" || return 1
+  done
+}
+
+# configure NAME=VALUE...: a release build; settings of earlier calls stay as they were.
+configure() {
+  case "${ASPIC_PORTABLE-}" in
+    "" | 0 | OFF) set -- ASPIC_PORTABLE=OFF "$@" ;;
+    *) set -- ASPIC_PORTABLE=ON "$@" ;;
+  esac
+  ! configured "$@" || return 0
+  for setting in "$@"; do
+    set -- "$@" "-D$setting"
+    shift
+  done
+  [ -f "$build_dir/CMakeCache.txt" ] || set -- -DASPIC_TESTS=OFF -DASPIC_BENCH=OFF "$@"
+  logged configure cmake -S "$root" -B "$build_dir" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@" ||
+    die "the build could not be configured"
+}
+
+# build TARGETS: on a terminal ninja shows one line of progress, in a pipe nothing unless it fails.
+build() {
+  ! ninja -C "$build_dir" -n "$@" 2>/dev/null | grep -q 'no work to do' || return 0
+  if [ -t 2 ]; then
+    ninja -C "$build_dir" "$@" >&2 || die "the build failed"
+  else
+    say "Building (the first time takes a few minutes) ..."
+    logged build ninja -C "$build_dir" "$@" || die "the build failed"
+  fi
+}
+
+# The default scene's mesh: the Stanford bunny of the npm package `bunny` (public domain), about 3 000 vertices.
+bunny_package=bunny@1.0.1
+make_bunny() {
+  assets=$root/assets
+  [ ! -s "$assets/bunny.mesh" ] || return 0
+  mkdir -p "$assets"
+  [ -s "$assets/bunny.obj" ] || fetch_bunny
+  say "Filling the bunny with tetrahedra ..."
+  logged bunny-mesh "$build_dir/bin/aspic-mesh" "$assets/bunny.obj" -o "$assets/new.mesh" --size "$bunny_size" ||
+    die "assets/bunny.obj could not be filled with tetrahedra"
+  mv "$assets/new.mesh" "$assets/bunny.mesh"
+}
+
+fetch_bunny() {
+  need "" "nodejs:node npm"
+  say "Fetching the surface of the bunny: npm package $bunny_package ..."
+  folder=$(mktemp -d)
+  if ! (cd "$folder" && logged npm npm pack --silent "$bunny_package"); then
+    rm -rf "$folder"
+    die "the npm package $bunny_package could not be fetched (is the network away?).
+Everything but the default scene works without it: ./run run MESH with any mesh of your own."
+  fi
+  tar -xzf "$folder"/bunny-*.tgz -C "$folder"
+  awk -f "$root/tools/bunny_to_obj.awk" "$folder/package/index.js" >"$assets/new.obj"
+  rm -rf "$folder"
+  mv "$assets/new.obj" "$assets/bunny.obj"
+}
