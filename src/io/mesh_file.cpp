@@ -7,8 +7,15 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "io/atomic_file.h"
+#include "io/gmsh.h"
+#include "io/medit.h"
 #include "io/mesh_content.h"
 #include "io/obj.h"
+#include "io/off.h"
+#include "io/ply.h"
+#include "io/stl.h"
+#include "io/tetgen.h"
+#include "io/vtu.h"
 #include "mesh/surface.h"
 
 namespace aspic {
@@ -32,19 +39,74 @@ MeshContent read_text(const fs::path& path) {
 
 void check_ascii(const fs::path& path, FileEncoding encoding) {
   if (encoding == FileEncoding::binary)
-    throw InvalidInput(path.string() +
-                       ": this format is text only; write it as ASCII, or .msh, .ply or .stl in binary");
+    throw InvalidInput(path.string() + ": this format is text only; write ASCII, or choose .msh, .ply or .stl");
 }
 
-template <std::string (*text)(const TriMesh&)>
-void write_triangle_text(const fs::path& path, const TriMesh& mesh, FileEncoding encoding) {
+template <class Mesh, std::string (*text)(const Mesh&)>
+void write_text(const fs::path& path, const Mesh& mesh, FileEncoding encoding) {
   check_ascii(path, encoding);
   write_file(path, text(mesh));
 }
 
+template <class Mesh, std::string (*bytes)(const Mesh&, FileEncoding)>
+void write_bytes(const fs::path& path, const Mesh& mesh, FileEncoding encoding) {
+  write_file(path, bytes(mesh, encoding));
+}
+
+void write_stl(const fs::path& path, const TriMesh& mesh, FileEncoding encoding) {
+  write_file(path, stl_bytes(path.string(), mesh, encoding));
+}
+
+// The other file of a .node/.ele pair, in the same case of letters.
+fs::path partner(const fs::path& path, const std::string& lower_extension) {
+  std::string extension = lower_extension;
+  if (const std::string given = path.extension().string(); given.size() > 1 && std::isupper(given[1]))
+    for (char& c : extension) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return fs::path(path).replace_extension(extension);
+}
+
+MeshContent read_tetgen(const fs::path& path) {
+  const fs::path node = partner(path, ".node"), ele = partner(path, ".ele");
+  for (const fs::path& file : {node, ele})
+    if (!fs::exists(file))
+      throw InvalidInput(file.string() + ": does not exist; a TetGen mesh is a pair of .node and .ele");
+  return parse_tetgen(node.string(), read_file(node), ele.string(), read_file(ele));
+}
+
+void write_tetgen(const fs::path& path, const TetMesh& mesh, FileEncoding encoding) {
+  check_ascii(path, encoding);
+  const TetgenText text = tetgen_text(mesh);
+  write_file(partner(path, ".node"), text.node);
+  write_file(partner(path, ".ele"), text.ele);
+}
+
+MeshContent read_vtu_mesh(const fs::path& path) {
+  Vtu vtu = read_vtu(path);
+  if (!vtu.mesh.tets.empty())
+    return {std::move(vtu.mesh.rest), std::move(vtu.mesh.tets), std::move(vtu.mesh.region), {}};
+  return {std::move(vtu.triangles.vertices), {}, {}, std::move(vtu.triangles.triangles)};
+}
+
+void write_vtu_mesh(const fs::path& path, const TetMesh& mesh, FileEncoding) {
+  const std::span<const double> points(mesh.rest.empty() ? nullptr : mesh.rest[0].a, 3 * mesh.rest.size());
+  std::vector<Field> cell_fields;
+  if (!mesh.region.empty()) cell_fields.push_back({"region", 1, {mesh.region.begin(), mesh.region.end()}});
+  write_vtu(path, points, mesh.tets, {}, cell_fields);
+}
+
 const std::vector<Format>& formats() {
   static const std::vector<Format> table = {
-      {".obj", "Wavefront OBJ", read_text<parse_obj>, nullptr, write_triangle_text<obj_text>, false, true},
+      {".msh", "Gmsh 2.2 and 4.1, ASCII and binary", read_text<parse_gmsh>, write_bytes<TetMesh, gmsh_bytes>,
+       write_bytes<TriMesh, gmsh_bytes>, true, true},
+      {".mesh", "Medit, ASCII", read_text<parse_medit>, write_text<TetMesh, medit_text>,
+       write_text<TriMesh, medit_text>, true, true},
+      {".node", "TetGen .node and .ele", read_tetgen, write_tetgen, nullptr, true, false},
+      {".ele", "TetGen .node and .ele", read_tetgen, write_tetgen, nullptr, true, false},
+      {".vtu", "VTK XML unstructured grid", read_vtu_mesh, write_vtu_mesh, nullptr, true, true},
+      {".obj", "Wavefront OBJ", read_text<parse_obj>, nullptr, write_text<TriMesh, obj_text>, false, true},
+      {".ply", "PLY, ASCII and binary", read_text<parse_ply>, nullptr, write_bytes<TriMesh, ply_bytes>, false, true},
+      {".stl", "STL, ASCII and binary", read_text<parse_stl>, nullptr, write_stl, false, true},
+      {".off", "OFF, ASCII", read_text<parse_off>, nullptr, write_text<TriMesh, off_text>, false, true},
   };
   return table;
 }

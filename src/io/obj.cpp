@@ -44,7 +44,7 @@ class ObjReader {
   void read_vertex() {
     Vec3d vertex;
     for (double& coordinate : vertex.a) {
-      if (text_.at_line_end()) text_.fail("a vertex has fewer than three coordinates; write 'v x y z'");
+      text_.require_on_line("a vertex coordinate");
       coordinate = text_.number("a vertex coordinate");
     }
     content_.vertices.push_back(vertex);  // a weight or a colour may follow
@@ -61,7 +61,7 @@ class ObjReader {
   // "vertex", "vertex/texture", "vertex//normal" or "vertex/texture/normal"; from 1, or from -1 backwards.
   int corner(std::string_view word) {
     const auto given = parse_integer(word.substr(0, word.find('/')));
-    if (!given) text_.fail("a corner is " + quoted(word) + "; it must be a vertex number such as 1 or 1/1/1");
+    if (!given) text_.fail("a corner is " + shown(word) + "; it must be a vertex number such as 1 or 1/1/1");
     const auto vertices = static_cast<int64_t>(content_.vertices.size());
     if (*given == 0 || *given < -vertices || *given > INT_MAX)
       text_.fail("a corner names vertex " + std::to_string(*given) + " of " + std::to_string(vertices) +
@@ -79,7 +79,7 @@ class ObjReader {
   void check_ignored(std::string_view statement) {
     const auto& known = other_statements();
     if (std::find(known.begin(), known.end(), statement) == known.end())
-      text_.fail("unknown statement " + quoted(statement) + suggestion(statement, {"v", "vt", "vn", "f"}) +
+      text_.fail("unknown statement " + shown(statement) + suggestion(statement, {"v", "vt", "vn", "f"}) +
                  "; is this a Wavefront OBJ file?");
     leave_line();
   }

@@ -56,7 +56,7 @@ TEST(Obj, ErrorsNameFileLineValueAndRemedy) {
   EXPECT_EQ(error("v 0 0 0\nv 0 x 0\n"), "a.obj:2: a vertex coordinate is 'x'; it must be a finite number");
   EXPECT_EQ(error("v 0 0 0\nv nan 0 0\n"), "a.obj:2: a vertex coordinate is 'nan'; it must be a finite number");
   EXPECT_EQ(error("v 0 0 0\nv 1e999 0 0\n"), "a.obj:2: a vertex coordinate is '1e999'; it must be a finite number");
-  EXPECT_THAT(error("v 0 0\nv 1 0 0\n"), HasSubstr("a.obj:1: a vertex has fewer than three coordinates"));
+  EXPECT_THAT(error("v 0 0\nv 1 0 0\n"), HasSubstr("a.obj:1: the line ends where a vertex coordinate should follow"));
   EXPECT_THAT(error((kSquare + "f 1 2 5\nf 1 2 3\n").c_str()), HasSubstr("a.obj:5: a corner names vertex 5"));
   EXPECT_THAT(error((kSquare + "f 1 2 -5\n").c_str()), HasSubstr("a.obj:5: a corner names vertex -5 of 4"));
   EXPECT_THAT(error((kSquare + "f 0 1 2\n").c_str()), HasSubstr("vertices count from 1"));

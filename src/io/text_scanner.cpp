@@ -41,7 +41,7 @@ std::optional<int64_t> parse_integer(std::string_view word) {
   return value;
 }
 
-std::string quoted(std::string_view word) {
+std::string shown(std::string_view word) {
   constexpr size_t kLongest = 40;
   std::string text(word.substr(0, kLongest));
   for (char& c : text)
@@ -87,6 +87,11 @@ bool TextScanner::at_line_end() {
   return position_ == text_.size() || text_[position_] == '\n';
 }
 
+void TextScanner::require_on_line(std::string_view what) {
+  if (at_line_end())
+    word_begin_ = position_, fail("the line ends where " + std::string(what) + " should follow; complete it");
+}
+
 void TextScanner::skip_line() {
   const size_t end = text_.find('\n', position_);
   position_ = end == text_.npos ? text_.size() : end + 1;
@@ -116,14 +121,14 @@ std::string_view TextScanner::peek() {
 double TextScanner::number(std::string_view what) {
   const std::string_view next = word(what);
   const auto value = parse_number(next);
-  if (!value) fail(std::string(what) + " is " + quoted(next) + "; it must be a finite number");
+  if (!value) fail(std::string(what) + " is " + shown(next) + "; it must be a finite number");
   return *value;
 }
 
 int64_t TextScanner::integer(std::string_view what) {
   const std::string_view next = word(what);
   const auto value = parse_integer(next);
-  if (!value) fail(std::string(what) + " is " + quoted(next) + "; it must be a whole number");
+  if (!value) fail(std::string(what) + " is " + shown(next) + "; it must be a whole number");
   return *value;
 }
 
@@ -134,8 +139,9 @@ int TextScanner::small_integer(std::string_view what) {
   return static_cast<int>(value);
 }
 
-int TextScanner::count(std::string_view what, size_t bytes) {
-  const int64_t value = integer(what);
+int TextScanner::count(std::string_view what, size_t bytes) { return checked_count(integer(what), what, bytes); }
+
+int TextScanner::checked_count(int64_t value, std::string_view what, size_t bytes) const {
   if (value < 0) fail(std::string(what) + " is " + std::to_string(value) + "; it must not be negative");
   // The last item may lack the line's end.
   const size_t most = (text_.size() - position_ + 1) / std::max<size_t>(bytes, 1);
@@ -149,7 +155,7 @@ int TextScanner::index(std::string_view what, int first, int count) {
   const int64_t value = integer(what);
   if (value < first || value - first >= count)
     fail(std::string(what) + " is " + std::to_string(value) +
-         (count == 0 ? ", but there are none"
+         (count == 0 ? ", but the file has none of these; get a complete copy"
                      : "; it must be from " + std::to_string(first) + " to " +
                            std::to_string(static_cast<int64_t>(first) + count - 1)));
   return static_cast<int>(value - first);

@@ -13,7 +13,7 @@ std::optional<double> parse_number(std::string_view word);
 std::optional<int64_t> parse_integer(std::string_view word);
 
 // A word as an error message shows it: quoted, shortened, without control characters.
-std::string quoted(std::string_view word);
+std::string shown(std::string_view word);
 
 class TextScanner {
  public:
@@ -22,9 +22,10 @@ class TextScanner {
   // A comment begins with the character `comment` and lasts to the end of its line. The text must outlive the scanner.
   TextScanner(std::string file, std::string_view text, char comment);
 
-  bool at_end();       // nothing but blanks and comments is left
-  bool at_line_end();  // nothing but blanks and a comment is left on this line
-  void skip_line();    // to the beginning of the next line
+  bool at_end();                                // nothing but blanks and comments is left
+  bool at_line_end();                           // nothing but blanks and a comment is left on this line
+  void require_on_line(std::string_view what);  // fails where the line has ended
+  void skip_line();                             // to the beginning of the next line
 
   // `what` names the thing expected, for the message when it is not there.
   std::string_view word(std::string_view what);
@@ -35,6 +36,7 @@ class TextScanner {
   // A number of things that each take at least `bytes` bytes of this text: what cannot follow is an error, so memory
   // may be reserved for it.
   int count(std::string_view what, size_t bytes);
+  int checked_count(int64_t value, std::string_view what, size_t bytes) const;  // the same for a value already read
   int index(std::string_view what, int first, int count);  // in [first, first + count), returned from 0
 
   [[noreturn]] void fail(std::string_view message) const;  // at the last word taken

@@ -99,6 +99,7 @@ bool Cholesky::allocate() {
 
 bool Cholesky::factorize(const BlockSparse& H) {
   ASPIC_CHECK(pattern_ && H.pattern->version == pattern_->version);
+  pattern_ = H.pattern;
   H_ = nullptr;
   if (!allocated_) {
     allocated_ = allocate();

@@ -49,7 +49,10 @@ struct MooneyRivlin {
             .formula =
                 "c10 (J^(-2/3) I1 - 3) + c01 (J^(-4/3) I2 - 3) + K/2 (J - 1)^2 with "
                 "c10 = (1 - share) mu_L/2, c01 = share mu_L/2, K = la_L + 2/3 mu_L, I2 = |cof F|^2",
-            .remarks = "TODO",
+            .remarks =
+                "+inf for J <= 0, so every start must be free of inversion. The only state "
+                "without stress is the rest shape, up to rotation, but the energy stays finite "
+                "(K/2) as a body shrinks uniformly to a point.",
             .extra = {{.name = "share",
                        .unit = "1",
                        .meaning = "share of c01 in c10 + c01",

@@ -35,7 +35,10 @@ struct Stvk {
   static MaterialInfo info() {
     return {.name = "stvk",
             .formula = "mu |E|^2 + la/2 (tr E)^2, E = (F'F - I)/2, with mu = mu_L, la = la_L",
-            .remarks = "TODO",
+            .remarks =
+                "Softens in compression: a body shrunk uniformly below 1/sqrt(3) = 0.577 of its "
+                "size collapses towards F = 0, and mirror images of the rest shape are free of "
+                "stress too. For small strain with large rotation.",
             .extra = {},
             .barrier = false};
   }

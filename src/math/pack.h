@@ -77,6 +77,27 @@ inline unsigned lanes_not_positive(Pack a) {
 }
 inline unsigned lanes_not_positive(double a) { return !(a > 0); }
 
+inline bool any_positive(Pack a) {
+  for (int i = 0; i < kPackWidth; ++i)
+    if (a[i] > 0) return true;
+  return false;
+}
+inline bool any_positive(double a) { return a > 0; }
+
+// 1 in the lanes whose bit is set, 0 in the others.
+template <class T>
+T lanes_from_bits(unsigned bits);
+template <>
+inline Pack lanes_from_bits<Pack>(unsigned bits) {
+  Pack a;
+  for (int i = 0; i < kPackWidth; ++i) a.set(i, bits >> i & 1);
+  return a;
+}
+template <>
+inline double lanes_from_bits<double>(unsigned bits) {
+  return bits & 1;
+}
+
 // Lanes are added in order, so that the sum rounds alike everywhere.
 inline double sum(Pack a) {
   double s = 0;

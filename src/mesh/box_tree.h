@@ -39,7 +39,7 @@ class BoxTree {
  public:
   explicit BoxTree(std::span<const Box> boxes);
 
-  // Calls visit(item) for every item whose box overlaps `box`.
+  // Calls visit(item) for the items whose box overlaps `box` until it returns false.
   template <class Visit>
   void for_each_overlap(const Box& box, Visit visit) const {
     if (!items_.empty()) overlap({0, 0, static_cast<int>(items_.size())}, box, visit);
@@ -65,11 +65,10 @@ class BoxTree {
   Box bound(Node node, std::span<const Box> boxes);
 
   template <class Visit>
-  void overlap(Node node, const Box& box, Visit& visit) const {
-    if (!bounds_[node.index].overlaps(box)) return;
+  bool overlap(Node node, const Box& box, Visit& visit) const {
+    if (!bounds_[node.index].overlaps(box)) return true;
     if (node.is_leaf()) return visit(items_[node.begin]);
-    overlap(node.left(), box, visit);
-    overlap(node.right(), box, visit);
+    return overlap(node.left(), box, visit) && overlap(node.right(), box, visit);
   }
 
   template <class Visit>

@@ -1,0 +1,49 @@
+#include <CGAL/Image_3.h>
+
+#include <cmath>
+
+#include "labelled.h"
+
+namespace aspic {
+namespace {
+
+CGAL::Image_3 read_image(const std::filesystem::path& path) {
+  if (!std::filesystem::is_regular_file(path)) throw InvalidInput(path.string() + ": no such file");
+  CGAL::Image_3 image;
+  if (!image.read(path.string()))
+    throw InvalidInput(path.string() + ": not an INRIMAGE that can be read; save the labels as .inr or .inr.gz");
+  if (image.image()->vdim != 1)
+    throw InvalidInput(path.string() + ": " + std::to_string(image.image()->vdim) +
+                       " values per voxel; a labelled image has one");
+  if (image.image()->wordKind != WK_FIXED)
+    throw InvalidInput(path.string() + ": voxels are not integers; a labelled image has one integer label per voxel");
+  return image;
+}
+
+CGAL::Bbox_3 bounding_box(const CGAL::Image_3& image) {
+  const double x = image.tx(), y = image.ty(), z = image.tz();
+  return {x,
+          y,
+          z,
+          x + image.vx() * static_cast<double>(image.xdim() - 1),
+          y + image.vy() * static_cast<double>(image.ydim() - 1),
+          z + image.vz() * static_cast<double>(image.zdim() - 1)};
+}
+
+}  // namespace
+
+TetMesh mesh_image(const std::filesystem::path& path, const MesherOptions& options) {
+  const CGAL::Image_3 image = read_image(path);
+  const CGAL::Bbox_3 box = bounding_box(image);
+  const double size = options.size > 0 ? options.size : std::hypot(box.x_span(), box.y_span(), box.z_span()) / 25;
+  const LabelledDomain domain = LabelledDomain::create_labeled_image_mesh_domain(
+      image, CGAL::parameters::relative_error_bound = kSurfaceTolerance);
+  const LabelGrid grid(domain, box, std::min({image.vx(), image.vy(), image.vz()}));
+  if (grid.is_empty()) throw InvalidInput(path.string() + ": all labels are 0; there is nothing to fill");
+  for (const auto& [label, unused] : options.region_size)
+    if (!grid.has(label))
+      throw InvalidInput("--region-size: " + path.string() + " has no label " + std::to_string(label));
+  return mesh_labelled(domain, grid, size, options);
+}
+
+}  // namespace aspic

@@ -1,0 +1,33 @@
+// What aspic-mesh can fill with tets. Each function is one instantiation of CGAL's Mesh_3, in a file of its own because
+// each takes a minute to compile. All are serial and use fixed seeds, so equal input gives equal output.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+struct MesherOptions {
+  double size = 0;                    // target edge length in units of the input; 0: bounding box diagonal / 25
+  std::map<int, double> region_size;  // label -> target edge length there
+};
+
+// Fills a closed surface without self-intersections; `checked_surface` gives one.
+TetMesh mesh_surface(const TriMesh& surface, const MesherOptions& options);
+
+// {f < 0} inside the box `bounds`; f in x, y, z with muParser's operators and functions.
+struct ImplicitShape {
+  std::string expression;
+  Vec3d lower, upper;
+};
+TetMesh mesh_implicit(const ImplicitShape& shape, const MesherOptions& options);
+
+// The voxels with a label other than 0 of an .inr or .inr.gz image; the labels become regions.
+TetMesh mesh_image(const std::filesystem::path& image, const MesherOptions& options);
+
+// Fills holes whose border is shorter than the diagonal of the bounding box; larger ones stay open.
+TriMesh with_holes_filled(const TriMesh& surface);
+
+}  // namespace aspic

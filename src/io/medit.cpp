@@ -1,0 +1,228 @@
+#include "io/medit.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+
+#include "base/error.h"
+#include "io/number_text.h"
+#include "io/text_scanner.h"
+
+namespace aspic {
+namespace {
+
+// Sections that may stand beside tets and triangles without anything being lost that is kept.
+const std::vector<std::string>& skipped_sections() {
+  static const std::vector<std::string> names = {"Edges",
+                                                 "Corners",
+                                                 "Ridges",
+                                                 "RequiredVertices",
+                                                 "RequiredEdges",
+                                                 "RequiredTriangles",
+                                                 "RequiredQuadrilaterals",
+                                                 "RequiredTetrahedra",
+                                                 "ParallelVertices",
+                                                 "ParallelEdges",
+                                                 "ParallelTriangles",
+                                                 "ParallelQuadrilaterals",
+                                                 "ParallelTetrahedra",
+                                                 "Normals",
+                                                 "NormalAtVertices",
+                                                 "NormalAtTriangles",
+                                                 "NormalAtTriangleVertices",
+                                                 "NormalAtQuadrilaterals",
+                                                 "NormalAtQuadrilateralVertices",
+                                                 "Tangents",
+                                                 "TangentAtVertices",
+                                                 "TangentAtEdges",
+                                                 "TangentAtEdgeVertices",
+                                                 "Geometry",
+                                                 "Identifier",
+                                                 "IncludeFile",
+                                                 "AngleOfCornerBound",
+                                                 "BoundingBox",
+                                                 "SubDomainFromMesh",
+                                                 "SubDomainFromGeom",
+                                                 "SubDomain",
+                                                 "VertexOnGeometricVertex",
+                                                 "VertexOnGeometricEdge",
+                                                 "VertexOnGeometricTriangle",
+                                                 "VertexOnGeometricQuadrilateral",
+                                                 "EdgeOnGeometricEdge",
+                                                 "VertexOnSupportVertex",
+                                                 "VertexOnSupportEdge",
+                                                 "VertexOnSupportTriangle",
+                                                 "VertexOnSupportQuadrilateral",
+                                                 "VertexOnSupportTetrahedron",
+                                                 "VertexOnSupportPentahedron",
+                                                 "VertexOnSupportHexahedron",
+                                                 "CrackedEdges",
+                                                 "CrackedTriangles",
+                                                 "CrackedQuadrilaterals",
+                                                 "EquivalentEdges",
+                                                 "EquivalentTriangles",
+                                                 "EquivalentQuadrilaterals",
+                                                 "PhysicsReference",
+                                                 "Time",
+                                                 "Iterations"};
+  return names;
+}
+
+// Sections whose loss would lose part of the solid.
+const std::map<std::string_view, std::string_view>& lost_solids() {
+  static const std::map<std::string_view, std::string_view> names = {{"Hexahedra", "hexahedra"},
+                                                                     {"Hexaedra", "hexahedra"},
+                                                                     {"Prisms", "prisms"},
+                                                                     {"Pentahedra", "prisms"},
+                                                                     {"Wedges", "prisms"},
+                                                                     {"Pyramids", "pyramids"},
+                                                                     {"TetrahedraP2", "10-node tets (second order)"},
+                                                                     {"TetrahedraP3", "20-node tets (third order)"},
+                                                                     {"TetrahedraP4", "35-node tets (fourth order)"}};
+  return names;
+}
+
+class MeditReader {
+ public:
+  MeditReader(const std::string& file, std::string_view contents) : text_(file, contents, '#') {}
+
+  MeshContent read() {
+    find_sections();
+    if (!seek("Vertices")) text_.fail("the file has no 'Vertices'; export the mesh again");
+    read_vertices();
+    if (seek("Tetrahedra")) read_tets();
+    if (seek("Triangles")) read_polygons<3>("the number of triangles");
+    if (seek("Quadrilaterals")) read_polygons<4>("the number of quadrilaterals");
+    return std::move(content_);
+  }
+
+ private:
+  // The sections may come in any order, and tets before their vertices; so their places are noted first.
+  void find_sections() {
+    if (const auto word = text_.word("'MeshVersionFormatted'"); word != "MeshVersionFormatted")
+      text_.fail("found " + shown(word) + " where 'MeshVersionFormatted' should be; is this a Medit .mesh file?");
+    text_.small_integer("the version");
+    while (!text_.at_end()) {
+      const std::string_view word = text_.word("a keyword");
+      if (!std::isalpha(static_cast<unsigned char>(word[0]))) continue;  // a number of the section before
+      if (word == "End") return;
+      if (word == "nan" || word == "inf" || word == "NaN" || word == "Inf")
+        text_.fail("a number is " + shown(word) + "; it must be finite");
+      if (word == "Dimension") {
+        if (text_.integer("the dimension") != 3) text_.fail("the mesh is not three-dimensional; use a 3-d mesh");
+      } else {
+        note_section(word);
+      }
+    }
+  }
+
+  void note_section(std::string_view word) {
+    const bool is_read = std::find(std::begin(kRead), std::end(kRead), word) != std::end(kRead);
+    if (is_read && !sections_.emplace(word, text_.position()).second)
+      text_.fail("a second section " + shown(word) + "; merge it with the first");
+    if (const auto lost = lost_solids().find(word); lost != lost_solids().end() && text_.integer("a count") != 0)
+      text_.fail("the mesh has " + std::string(lost->second) + ", which are not read; export it with 4-node tets only");
+    const auto& skipped = skipped_sections();
+    if (is_read || lost_solids().contains(word) || std::find(skipped.begin(), skipped.end(), word) != skipped.end())
+      return;
+    std::vector<std::string> known(std::begin(kRead), std::end(kRead));
+    text_.fail("unknown keyword " + shown(word) + suggestion(word, known) + "; correct or remove this section");
+  }
+
+  bool seek(std::string_view section) {
+    const auto place = sections_.find(section);
+    if (place != sections_.end()) text_.seek(place->second);
+    return place != sections_.end();
+  }
+
+  void read_vertices() {
+    content_.vertices.resize(static_cast<size_t>(text_.count("the number of vertices", 8)));
+    for (Vec3d& vertex : content_.vertices) {
+      for (double& coordinate : vertex.a) coordinate = text_.number("a vertex coordinate");
+      text_.integer("the reference of a vertex");
+    }
+  }
+
+  template <size_t corners>
+  std::array<int, corners> read_corners() {
+    std::array<int, corners> element;
+    for (int& corner : element) corner = text_.index("a corner", 1, static_cast<int>(content_.vertices.size()));
+    return element;
+  }
+
+  void read_tets() {
+    const int count = text_.count("the number of tets", 10);
+    content_.tets.resize(static_cast<size_t>(count));
+    content_.region.resize(content_.tets.size());
+    for (size_t t = 0; t < content_.tets.size(); ++t) {
+      content_.tets[t] = read_corners<4>();
+      content_.region[t] = text_.small_integer("the reference of a tet");
+    }
+    // Reference 0 means none.
+    if (std::all_of(content_.region.begin(), content_.region.end(), [](int label) { return label == 0; }))
+      content_.region.clear();
+  }
+
+  template <size_t corners>
+  void read_polygons(std::string_view what) {
+    const int count = text_.count(what, 2 * (corners + 1));
+    for (int i = 0; i < count; ++i) {
+      add_fan(read_corners<corners>(), content_.triangles);
+      text_.integer("the reference of a face");
+    }
+  }
+
+  static constexpr std::string_view kRead[] = {"Vertices", "Tetrahedra", "Triangles", "Quadrilaterals"};
+
+  TextScanner text_;
+  MeshContent content_;
+  std::map<std::string_view, size_t> sections_;
+};
+
+void append_section(std::string& text, std::string_view keyword, size_t count) {
+  text += keyword;
+  text += '\n';
+  append_number(text, count);
+  text += '\n';
+}
+
+std::string head(const std::vector<Vec3d>& vertices) {
+  std::string text = "MeshVersionFormatted 2\nDimension 3\n";
+  append_section(text, "Vertices", vertices.size());
+  for (const Vec3d& vertex : vertices) {
+    append_point(text, vertex);
+    text += " 0\n";
+  }
+  return text;
+}
+
+// "i j k reference"
+template <class Corners>
+void append_element(std::string& text, const Corners& corners, int reference) {
+  append_indices(text, corners, 1);
+  append_indices(text, std::array{reference}, 0);
+  text += '\n';
+}
+
+}  // namespace
+
+MeshContent parse_medit(const std::string& file, std::string_view contents) {
+  return MeditReader(file, contents).read();
+}
+
+std::string medit_text(const TetMesh& mesh) {
+  std::string text = head(mesh.rest);
+  append_section(text, "Tetrahedra", mesh.tets.size());
+  for (size_t t = 0; t < mesh.tets.size(); ++t)
+    append_element(text, mesh.tets[t], mesh.region.empty() ? 0 : mesh.region[t]);
+  return text + "End\n";
+}
+
+std::string medit_text(const TriMesh& mesh) {
+  std::string text = head(mesh.vertices);
+  append_section(text, "Triangles", mesh.triangles.size());
+  for (const Triangle& triangle : mesh.triangles) append_element(text, triangle, 0);
+  return text + "End\n";
+}
+
+}  // namespace aspic

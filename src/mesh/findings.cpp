@@ -1,0 +1,126 @@
+#include "mesh/findings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "mesh/box_tree.h"
+#include "mesh/topology.h"
+
+namespace aspic {
+namespace {
+
+template <class Element>
+std::vector<int> with_invalid_index(const std::vector<Element>& elements, size_t vertex_count) {
+  std::vector<int> invalid;
+  for (size_t e = 0; e < elements.size(); ++e)
+    if (std::any_of(elements[e].begin(), elements[e].end(),
+                    [&](int v) { return v < 0 || static_cast<size_t>(v) >= vertex_count; }))
+      invalid.push_back(static_cast<int>(e));
+  return invalid;
+}
+
+std::vector<int> not_finite(const std::vector<Vec3d>& vertices) {
+  std::vector<int> list;
+  for (size_t v = 0; v < vertices.size(); ++v)
+    if (!std::isfinite(vertices[v][0] + vertices[v][1] + vertices[v][2])) list.push_back(static_cast<int>(v));
+  return list;
+}
+
+std::vector<int> duplicates(const std::vector<Vec3d>& vertices) {
+  const std::vector<int> first = first_at_same_place(vertices);
+  std::vector<int> list;
+  for (size_t v = 0; v < first.size(); ++v)
+    if (first[v] != static_cast<int>(v)) list.push_back(static_cast<int>(v));
+  return list;
+}
+
+template <class Element>
+std::vector<int> unreferenced(const std::vector<Element>& elements, size_t vertex_count) {
+  std::vector<bool> used(vertex_count);
+  for (const Element& element : elements)
+    for (int v : element) used[v] = true;
+  std::vector<int> list;
+  for (size_t v = 0; v < vertex_count; ++v)
+    if (!used[v]) list.push_back(static_cast<int>(v));
+  return list;
+}
+
+}  // namespace
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+std::string count_of(size_t count, size_t total, const std::string& noun, const std::string& what) {
+  return std::to_string(count) + " of " + std::to_string(total) + " " + noun + " " + what;
+}
+
+template <class Element>
+bool examine_vertices(const std::vector<Vec3d>& vertices, const std::vector<Element>& elements, const std::string& noun,
+                      Findings& findings) {
+  const size_t total = vertices.size();
+  const std::vector<int> invalid = with_invalid_index(elements, total), infinite = not_finite(vertices);
+  if (elements.empty())
+    findings.add_general(
+        {Severity::error, "empty_mesh", "the mesh has no " + noun, "check the file and its format", {}, false});
+  findings.add({Severity::error, "invalid_indices",
+                count_of(invalid.size(), elements.size(), noun, "name a vertex that does not exist"),
+                "write the file again; indices start at 1 in some formats and at 0 in others", invalid, false});
+  findings.add({Severity::error, "non_finite_coordinates",
+                count_of(infinite.size(), total, "vertices", "have a coordinate that is infinite or not a number"),
+                "correct the file", infinite, false});
+  if (elements.empty() || !invalid.empty() || !infinite.empty()) return false;
+  const std::vector<int> repeated = duplicates(vertices), unused = unreferenced(elements, total);
+  findings.add({Severity::warning, "duplicate_vertices",
+                count_of(repeated.size(), total, "vertices",
+                         "lie exactly where an earlier one does, so the mesh comes apart there"),
+                "merge them with --repair", repeated, true});
+  findings.add({Severity::error, "unreferenced_vertices",
+                count_of(unused.size(), total, "vertices", "belong to none of the " + noun), "drop them with --repair",
+                unused, true});
+  return true;
+}
+template bool examine_vertices(const std::vector<Vec3d>&, const std::vector<Tet>&, const std::string&, Findings&);
+template bool examine_vertices(const std::vector<Vec3d>&, const std::vector<Triangle>&, const std::string&, Findings&);
+
+void examine_units(const std::vector<Vec3d>& vertices, Findings& findings) {
+  constexpr double kLargest = 50, kSmallest = 1e-3;  // [m] soft bodies are seldom outside
+  Box box;
+  for (const Vec3d& x : vertices) box.add(x);
+  double extent = 0;
+  for (int axis = 0; axis < 3; ++axis) extent = std::max(extent, box.upper[axis] - box.lower[axis]);
+  if (extent > kLargest)
+    findings.add_general({Severity::note,
+                          "suspicious_units",
+                          "extent " + number(extent) + " m; if the file is in millimetres use scale = 0.001",
+                          "set scale in the scene when the file is not in metres",
+                          {},
+                          false});
+  if (extent < kSmallest)
+    findings.add_general({Severity::note,
+                          "suspicious_units",
+                          "extent " + number(extent) + " m; if the file is in kilometres use scale = 1000",
+                          "set scale in the scene when the file is not in metres",
+                          {},
+                          false});
+}
+
+void examine_components(const std::vector<std::vector<int>>& components, const std::string& noun, Findings& findings) {
+  if (components.size() < 2) return;
+  const auto smaller = [](const auto& a, const auto& b) { return a.size() < b.size(); };
+  const auto& smallest = *std::min_element(components.begin(), components.end(), smaller);
+  Finding finding{Severity::note,
+                  "several_components",
+                  "the mesh falls into " + std::to_string(components.size()) +
+                      " parts that share no vertex; the smallest has " + std::to_string(smallest.size()) + " " + noun,
+                  "if one body was meant, join them where it was made, or merge duplicate vertices with --repair",
+                  {},
+                  false};
+  for (const auto& component : components) finding.indices.push_back(component.front());
+  findings.add(std::move(finding));
+}
+
+}  // namespace aspic

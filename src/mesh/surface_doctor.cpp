@@ -1,0 +1,92 @@
+// The doctor of triangle meshes.
+#include <algorithm>
+
+#include "mesh/components.h"
+#include "mesh/doctor.h"
+#include "mesh/findings.h"
+#include "mesh/self_intersection.h"
+#include "mesh/surface_orientation.h"
+#include "mesh/topology.h"
+#include "mesh/triangle_shape.h"
+
+namespace aspic {
+namespace {
+
+void examine_triangles(const TriMesh& mesh, Findings& findings) {
+  std::vector<int> twice, thin;
+  for (int t = 0; t < mesh.triangle_count(); ++t) {
+    const auto [a, b, c] = mesh.triangles[t];
+    if (lists_vertex_twice(mesh.triangles[t]))
+      twice.push_back(t);
+    else if (is_degenerate({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}))
+      thin.push_back(t);
+  }
+  const std::vector<int> repeated = repeated_elements(mesh.triangles);
+  const size_t total = mesh.triangles.size();
+  findings.add({Severity::error, "repeated_vertex_in_triangle",
+                count_of(twice.size(), total, "triangles", "list a vertex twice"), "remove them with --repair", twice,
+                true});
+  findings.add({Severity::warning, "degenerate_triangles",
+                count_of(thin.size(), total, "triangles", "have no area: their corners lie on a line"),
+                "swap or collapse their edges where the surface was made", thin, false});
+  findings.add({Severity::error, "repeated_triangles",
+                count_of(repeated.size(), total, "triangles", "have the same vertices as an earlier one"),
+                "remove them with --repair", repeated, true});
+}
+
+void examine_edges(const TriMesh& mesh, const SurfaceTopology& surface, Findings& findings) {
+  const size_t total = mesh.triangles.size();
+  findings.add({Severity::error, "open_surface",
+                "the surface is open: " + std::to_string(surface.open_edges) + " edges round " +
+                    std::to_string(surface.holes) + (surface.holes == 1 ? " hole" : " holes") +
+                    " have one triangle only (these triangles are listed)",
+                "close the holes where it was made; aspic-mesh --fill-holes closes small ones", surface.open, false});
+  findings.add(
+      {Severity::error, "non_manifold_edges",
+       std::to_string(surface.non_manifold_edges) + " edges are shared by more than two triangles (these are listed)",
+       "remove inner walls and extra triangles where it was made", surface.non_manifold, false});
+  findings.add({Severity::warning, "non_manifold_vertices",
+                count_of(surface.non_manifold_vertices.size(), mesh.vertices.size(), "vertices",
+                         "join sheets that touch there only"),
+                "separate or join the sheets where it was made", surface.non_manifold_vertices, false});
+  findings.add({Severity::error, "inconsistent_orientation",
+                count_of(surface.disagreeing.size(), total, "triangles", "face the other way than a neighbour"),
+                "turn them with --repair", surface.disagreeing, true});
+}
+
+void examine_intersections(const TriMesh& mesh, Findings& findings) {
+  const std::vector<std::array<int, 2>> pairs = self_intersections(mesh);
+  if (pairs.empty()) return;
+  std::vector<int> triangles;
+  for (const auto& pair : pairs) triangles.insert(triangles.end(), pair.begin(), pair.end());
+  std::sort(triangles.begin(), triangles.end());
+  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  findings.add({Severity::error, "self_intersections",
+                "the surface runs into itself: " + std::to_string(pairs.size()) + " pairs of triangles, the first " +
+                    std::to_string(pairs[0][0]) + " and " + std::to_string(pairs[0][1]),
+                "pull the parts apart, or unite them where it was made", triangles, false});
+}
+
+}  // namespace
+
+std::vector<Finding> diagnose(const TriMesh& mesh) {
+  Findings findings;
+  if (!examine_vertices(mesh.vertices, mesh.triangles, "triangles", findings)) return findings.take();
+  examine_triangles(mesh, findings);
+  const SurfaceTopology surface = topology(mesh.triangles, mesh.vertex_count());
+  examine_edges(mesh, surface, findings);
+  const bool is_closed = surface.open.empty() && surface.non_manifold.empty() && surface.disagreeing.empty();
+  if (is_closed && enclosed_volume(mesh) < 0)
+    findings.add_general({Severity::warning,
+                          "inward_surface",
+                          "the triangles face inwards: the enclosed volume is negative",
+                          "turn them with --repair",
+                          {},
+                          true});
+  examine_intersections(mesh, findings);
+  examine_components(triangle_components(mesh), "triangles", findings);
+  examine_units(mesh.vertices, findings);
+  return findings.take();
+}
+
+}  // namespace aspic
