@@ -45,7 +45,7 @@ TEST_F(CheckpointFile, EveryChangedBitIsDetected) {
     for (int bit = 0; bit < 8; ++bit) {
       std::string changed = whole;
       changed[n] = static_cast<char>(changed[n] ^ (1 << bit));
-      write_file(path("c.bin"), changed);
+      put(path("c.bin"), changed);
       ASSERT_NE(message(path("c.bin")), "") << "byte " << n << ", bit " << bit;
     }
   }
@@ -55,10 +55,10 @@ TEST_F(CheckpointFile, EveryTruncationAndExtensionIsDetected) {
   write_checkpoint(path("c.bin"), sample(1));
   const std::string whole = read_file(path("c.bin"));
   for (size_t n = 0; n < whole.size(); ++n) {
-    write_file(path("c.bin"), whole.substr(0, n));
+    put(path("c.bin"), whole.substr(0, n));
     ASSERT_NE(message(path("c.bin")), "") << n;
   }
-  write_file(path("c.bin"), whole + "x");
+  put(path("c.bin"), whole + "x");
   EXPECT_THAT(message(path("c.bin")), HasSubstr("is cut short or damaged"));
 }
 
@@ -66,12 +66,12 @@ TEST_F(CheckpointFile, NamesAnotherVersionOrByteOrder) {
   write_checkpoint(path("c.bin"), sample(1));
   std::string whole = read_file(path("c.bin"));
   whole[12] = 9;
-  write_file(path("c.bin"), whole);
+  put(path("c.bin"), whole);
   EXPECT_THAT(message(path("c.bin")), HasSubstr("is a checkpoint of version 9; this program reads version 1"));
   std::swap(whole[8], whole[11]);
-  write_file(path("c.bin"), whole);
+  put(path("c.bin"), whole);
   EXPECT_THAT(message(path("c.bin")), HasSubstr("another byte order"));
-  write_file(path("c.bin"), "step,time\n");
+  put(path("c.bin"), "step,time\n");
   EXPECT_THAT(message(path("c.bin")), HasSubstr("c.bin: is no checkpoint"));
 }
 
@@ -84,13 +84,13 @@ TEST_F(CheckpointFile, ADamagedNewestFallsBackToThePreviousWithANote) {
 
   std::string bytes = read_file(path("c.bin"));
   bytes[40] ^= 1;
-  write_file(path("c.bin"), bytes);
+  put(path("c.bin"), bytes);
   newest = read_newest_checkpoint(path("c.bin"));
   EXPECT_EQ(newest.checkpoint.integer("step"), 1);
   EXPECT_THAT(newest.note, HasSubstr("c.bin: is damaged"));
   EXPECT_THAT(newest.note, HasSubstr("continuing from c.previous.bin"));
 
-  write_file(path("c.previous.bin"), "");
+  put(path("c.previous.bin"), "");
   EXPECT_THAT(message_of<InvalidInput>([&] { read_newest_checkpoint(path("c.bin")); }),
               HasSubstr("no readable checkpoint"));
 }

@@ -37,21 +37,21 @@ TEST_F(CsvTable, EveryRowIsInTheFileAtOnce) {
 
 TEST_F(CsvTable, ResumingDropsLaterRowsAndATornLine) {
   for (const char* rest : {"", "3,0.75\n4,1\n", "3,0.7", "3"}) {
-    write_file(path("t.csv"), std::string("step,energy\n1,0.5\n2,0.6\n") + rest);
+    put(path("t.csv"), std::string("step,energy\n1,0.5\n2,0.6\n") + rest);
     CsvFile::resume(path("t.csv"), kColumns, 2, CsvFile::Rows::every_step).append(CsvRow().add(3).add(9.0));
     EXPECT_EQ(read_file(path("t.csv")), "step,energy\n1,0.5\n2,0.6\n3,9\n");
   }
 }
 
 TEST_F(CsvTable, ResumingAtStepZeroKeepsTheHeadAlone) {
-  write_file(path("t.csv"), "step,energy\n1,0.5\n");
+  put(path("t.csv"), "step,energy\n1,0.5\n");
   CsvFile::resume(path("t.csv"), kColumns, 0, CsvFile::Rows::every_step);
   EXPECT_EQ(read_file(path("t.csv")), "step,energy\n");
 }
 
 TEST_F(CsvTable, ResumingRefusesWhatDoesNotFit) {
   const auto message = [&](const std::string& text, CsvFile::Rows rows) {
-    write_file(path("t.csv"), text);
+    put(path("t.csv"), text);
     return message_of<InvalidInput>([&] { CsvFile::resume(path("t.csv"), kColumns, 2, rows); });
   };
   constexpr auto kEvery = CsvFile::Rows::every_step, kOptional = CsvFile::Rows::optional;

@@ -27,7 +27,7 @@ TEST_F(GrowingFile, AppendsOverwritesAndShortens) {
 }
 
 TEST_F(GrowingFile, ContinuesAnExistingFile) {
-  write_file(path("a"), "one\n");
+  put(path("a"), "one\n");
   OutputFile file = OutputFile::open_existing(path("a"));
   file.append("two\n");
   EXPECT_EQ(read_file(path("a")), "one\ntwo\n");

@@ -59,7 +59,7 @@ TEST_F(PointCache, ResumingRefusesWhatDoesNotFit) {
   };
   EXPECT_THAT(message(3, 2), HasSubstr("a.pc2: is no point cache of 3 points"));
   EXPECT_THAT(message(2, 3), HasSubstr("holds fewer than the 3 samples"));
-  write_file(path("a.pc2"), "POINTCACHE2");
+  put(path("a.pc2"), "POINTCACHE2");
   EXPECT_THAT(message(2, 0), HasSubstr("is no point cache"));
 }
 

@@ -4,7 +4,9 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
 #include <string>
+#include <string_view>
 
 namespace aspic {
 
@@ -18,6 +20,11 @@ class TestFolder : public testing::Test {
 
   const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+
+  // Without waiting for the disk, since tests write many files.
+  static void put(const std::filesystem::path& path, std::string_view text) {
+    std::ofstream(path, std::ios::binary) << text;
+  }
 
  private:
   static std::string name() {

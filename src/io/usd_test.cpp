@@ -67,7 +67,7 @@ TEST_F(UsdScene, WritesNonFiniteNumbersAsUsdSpellsThem) {
 }
 
 TEST_F(UsdScene, AFailureLeavesTheOldFileAlone) {
-  write_file(path("a.usda"), "old");
+  put(path("a.usda"), "old");
   const auto fail = [](int) -> std::vector<float> { throw InvalidInput("no points"); };
   EXPECT_THROW(write_usd(path("a.usda"), {{"x", {}, fail}}, {0}, 1), InvalidInput);
   EXPECT_EQ(read_file(path("a.usda")), "old");

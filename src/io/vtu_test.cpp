@@ -21,7 +21,7 @@ using testing::HasSubstr;
 class VtuFile : public TestFolder {
  protected:
   Vtu read_text(const std::string& text) const {
-    write_file(path("text.vtu"), text);
+    put(path("text.vtu"), text);
     return read_vtu(path("text.vtu"));
   }
 
