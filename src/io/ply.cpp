@@ -107,7 +107,7 @@ class PlyReader {
     size_t bytes = 0;
     for (const PlyProperty& property : element.properties)
       bytes += Source::least_bytes(property.is_list ? property.count_type : property.type);
-    return source_.checked_count(element.count, "the number of elements '" + element.name + "'", bytes);
+    return source_.checked_count(element.count, "the number of elements " + shown(element.name), bytes);
   }
 
   int read_length(const PlyProperty& list) {
