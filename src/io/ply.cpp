@@ -18,6 +18,7 @@ class TextSource {
   TextSource(const std::string& file, std::string_view contents, size_t begin)
       : text_(file, contents, TextScanner::kNoComments) {
     text_.seek(begin);
+    text_.blame(begin);
   }
   static size_t least_bytes(PlyScalar) { return 2; }  // a digit and a blank
 
