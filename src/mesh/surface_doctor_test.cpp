@@ -83,6 +83,14 @@ TEST(DoctorOfSurfaces, MergesTheLooseTrianglesOfAnStlFile) {
   EXPECT_THAT(diagnose(loose), IsEmpty());
 }
 
+TEST(DoctorOfSurfaces, NotesUnreferencedVerticesAndDropsThem) {
+  TriMesh surface = ball();
+  surface.vertices.push_back({{0, 0, 0}});
+  EXPECT_EQ(found(surface, "unreferenced_vertices").severity, Severity::note);
+  EXPECT_THAT(repair(surface), ElementsAre("dropped 1 unreferenced vertices"));
+  EXPECT_EQ(surface.vertex_count(), ball().vertex_count());
+}
+
 TEST(DoctorOfSurfaces, FindsInnerWalls) {
   TetMesh two = make_box({{0, 0, 0}}, {{2, 1, 1}}, {2, 1, 1});
   TriMesh surface;
