@@ -3,10 +3,12 @@ include(CMakeFindDependencyMacro)
 find_dependency(Threads)
 find_dependency(ZLIB)
 
-foreach(name metis muparser) # neither has a reliable CMake package
+# Neither of these has a CMake package that one can count on.
+find_library(METIS_LIBRARY metis REQUIRED)
+find_library(MUPARSER_LIBRARY muparser REQUIRED)
+foreach(name METIS MUPARSER)
   if(NOT TARGET aspic_${name})
-    find_library(ASPIC_${name}_LIBRARY ${name} REQUIRED)
     add_library(aspic_${name} UNKNOWN IMPORTED)
-    set_target_properties(aspic_${name} PROPERTIES IMPORTED_LOCATION ${ASPIC_${name}_LIBRARY})
+    set_target_properties(aspic_${name} PROPERTIES IMPORTED_LOCATION ${${name}_LIBRARY})
   endif()
 endforeach()

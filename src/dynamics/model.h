@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "energy/energy.h"
@@ -30,6 +31,8 @@ struct Model {
   TetMesh mesh;  // all bodies one after another
   std::vector<BodyRange> bodies;
   std::vector<double> density;  // one per tet [kg/m^3]
+  // Constants to export with the results, one per tet: "young" [Pa], "poisson" [1] and the like.
+  std::vector<std::pair<std::string, std::vector<double>>> tet_fields;
   std::unique_ptr<MassMatrix> mass;
   std::vector<std::unique_ptr<TetElasticity>> elasticity;  // one per body
   std::vector<std::unique_ptr<Energy>> loads;              // the other terms of V: gravity, springs, tractions

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
@@ -12,37 +11,23 @@
 #include "base/error.h"
 #include "io/atomic_file.h"
 #include "io/base64.h"
+#include "io/test_folder_test.h"
 
 namespace aspic {
 namespace {
 
 using testing::HasSubstr;
 
-class VtuFile : public testing::Test {
+class VtuFile : public TestFolder {
  protected:
-  VtuFile() { std::filesystem::create_directories(folder_); }
-  ~VtuFile() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path path(const std::string& name) const { return folder_ / name; }
-
   Vtu read_text(const std::string& text) const {
-    write_file(path("text.vtu"), text);
+    put(path("text.vtu"), text);
     return read_vtu(path("text.vtu"));
   }
 
   std::string message(const std::string& text) const {
-    try {
-      read_text(text);
-    } catch (const InvalidInput& error) {
-      return error.what();
-    }
-    return "";
+    return message_of<InvalidInput>([&] { read_text(text); });
   }
-
- private:
-  std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      ("vtu_" + std::to_string(getpid()) + testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 // Two tets on five points, with the arrays given as `array(type, name, components, numbers)` stores them.

@@ -1,14 +1,16 @@
 #include "linalg/linear_solver.h"
 
 #include "base/error.h"
+#include "linalg/auto_solver.h"
 #include "linalg/cholesky.h"
 #include "linalg/conjugate_gradient.h"
 
 namespace aspic {
 
-std::vector<std::string> linear_solver_names() { return {"cholesky", "block_jacobi"}; }
+std::vector<std::string> linear_solver_names() { return {"auto", "cholesky", "block_jacobi"}; }
 
 std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name) {
+  if (name == "auto") return std::make_unique<AutoSolver>();
   if (name == "cholesky") return std::make_unique<Cholesky>();
   if (name == "block_jacobi") return std::make_unique<ConjugateGradient>();
   throw InvalidInput("no linear solver is called '" + std::string(name) + "'" +

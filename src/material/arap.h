@@ -32,12 +32,15 @@ struct Arap {
   static Params<double> params(const MaterialParameters& m) { return {m.lame.mu}; }
 
   static MaterialInfo info() {
-    return {
-        .name = "arap",
-        .formula = "mu |F - R|^2, R the rotation closest to F, with mu = mu_L",
-        .remarks = "Reproduces the shear modulus only: la_L is ignored, so at small strain nu = 0 and E = 2 mu_L. TODO",
-        .extra = {},
-        .barrier = false};
+    return {.name = "arap",
+            .formula = "mu |F - R|^2, R the rotation closest to F, with mu = mu_L",
+            .remarks =
+                "Reproduces the shear modulus only: la_L is ignored, so at small strain nu = 0 "
+                "and E = 2 mu_L. The only states without stress are the rest shape, up to "
+                "rotation; the stress jumps where two signed singular values sum to zero, F = 0 "
+                "among them.",
+            .extra = {},
+            .barrier = false};
   }
 };
 

@@ -37,7 +37,10 @@ struct Corotated {
   static MaterialInfo info() {
     return {.name = "corotated",
             .formula = "mu |F - R|^2 + la/2 (J - 1)^2, R the rotation closest to F, with mu = mu_L, la = la_L",
-            .remarks = "TODO [Stomakhin 2012]",
+            .remarks =
+                "Defined for inverted elements. The only states without stress are the rest "
+                "shape, up to rotation. R, and so the stress, jumps where two signed singular "
+                "values sum to zero, F = 0 among them. [Stomakhin 2012]",
             .extra = {},
             .barrier = false};
   }

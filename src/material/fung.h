@@ -29,7 +29,10 @@ struct FungLaw {
   static MaterialInfo info() {
     return {.name = "fung",
             .formula = "mu/(2b) (exp(b (J^(-2/3) I1 - 3)) - 1) + K/2 (J - 1)^2 with mu = mu_L, K = la_L + 2/3 mu_L",
-            .remarks = "TODO",
+            .remarks =
+                "+inf for J <= 0 and where the exponential overflows. The only state without "
+                "stress is the rest shape, up to rotation; the stiffness grows like exp(b I1bar),"
+                " so steps from large strain are many and short.",
             .extra = {{.name = "b",
                        .unit = "1",
                        .meaning = "exponential stiffening of the shape-changing part",

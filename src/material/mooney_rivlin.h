@@ -29,12 +29,12 @@ struct MooneyRivlin {
   template <class T>
   static Mat9<T> hessian(const Mat3<T>& F, const Params<T>& p) {
     const Derivatives<T> d(F, p);
-    Mat9<T> H = law_hessian(F, d.law);
-    const Mat3<T> g = cofactor(F), g2 = gradient_of_I2(F), y = d.dI2J * g2;
-    for (int c = 0; c < 9; ++c)
-      for (int r = 0; r < 9; ++r) H(r, c) = H(r, c) + (y.a[r] * g.a[c] + g.a[r] * y.a[c]);
-    // I2 has the gradient F S with dS = -2 dC + 2 dI1 I; the second part is 4 f f', already in law_hessian.
-    add_product_hessian(F, d.dI2 * stress_of_I2(F), T(-2.0) * d.dI2, H);
+    const Mat3<T> g = cofactor(F), S = stress_of_I2(F);
+    const Mat3<T> y = (d.law.dIJ + d.law.dIJ) * F + (T(0.5) * d.law.dJJ) * g + d.dI2J * (F * S);
+    Mat9<T> H = identity_plus_outer(d.law.dI + d.law.dI, T(4.0) * d.dI2, F, y, g);
+    add_determinant_hessian(F, d.law.dJ, H);
+    // I2 has the gradient F S with dS = -2 dC + 2 dI1 I; the second part is the 4 f f' above.
+    add_product_hessian(F, d.dI2 * S, T(-2.0) * d.dI2, H);
     return H;
   }
 
@@ -49,7 +49,10 @@ struct MooneyRivlin {
             .formula =
                 "c10 (J^(-2/3) I1 - 3) + c01 (J^(-4/3) I2 - 3) + K/2 (J - 1)^2 with "
                 "c10 = (1 - share) mu_L/2, c01 = share mu_L/2, K = la_L + 2/3 mu_L, I2 = |cof F|^2",
-            .remarks = "TODO",
+            .remarks =
+                "+inf for J <= 0, so every start must be free of inversion. The only state "
+                "without stress is the rest shape, up to rotation, but the energy stays finite "
+                "(K/2) as a body shrinks uniformly to a point.",
             .extra = {{.name = "share",
                        .unit = "1",
                        .meaning = "share of c01 in c10 + c01",
@@ -74,7 +77,6 @@ struct MooneyRivlin {
       const T slope = dI2J * squared_norm(cofactor(F));
       law.dJ = law.dJ + slope;
       law.dJJ = law.dJJ - T(7.0 / 3.0) * slope * r;
-      law.dII = dI2;  // d2I2/dF2 holds 4 f f'
     }
   };
   // dI2/dF = F S, S = 2 (I1 I - C).

@@ -26,7 +26,10 @@ struct NeoHookeanIsochoricLaw {
   static MaterialInfo info() {
     return {.name = "neo_hookean_isochoric",
             .formula = "mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2 with mu = mu_L, K = la_L + 2/3 mu_L",
-            .remarks = "+inf for J <= 0, so every start must be free of inversion. TODO",
+            .remarks =
+                "+inf for J <= 0, so every start must be free of inversion. The only state "
+                "without stress is the rest shape, up to rotation, but the energy stays finite "
+                "(K/2) as a body shrinks uniformly to a point: no barrier in that direction.",
             .extra = {},
             .barrier = true};
   }

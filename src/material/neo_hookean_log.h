@@ -28,13 +28,16 @@ struct NeoHookeanLogLaw {
   static Params<double> params(const MaterialParameters& m) { return {m.lame.mu, m.lame.lambda}; }
 
   static MaterialInfo info() {
-    return {.name = "neo_hookean_log",
-            .formula = "mu/2 (I1 - 3) - mu ln J + la/2 (ln J)^2 with mu = mu_L, la = la_L",
-            .remarks =
-                "Barrier: +inf for J <= 0, so every start must be free of inversion. The only state without "
-                "stress is the rest shape, up to rotation; the volume term softens beyond J = e.",
-            .extra = {},
-            .barrier = true};
+    return {
+        .name = "neo_hookean_log",
+        .formula = "mu/2 (I1 - 3) - mu ln J + la/2 (ln J)^2 with mu = mu_L, la = la_L",
+        .remarks =
+            "Barrier: +inf for J <= 0, so every start must be free of inversion. For nu >= 0 the only state without "
+            "stress is the rest shape, up to rotation; for nu < 0 the volume term pulls towards J = 0 and beats the "
+            "barrier. "
+            "The volume term softens beyond J = e.",
+        .extra = {},
+        .barrier = true};
   }
 };
 

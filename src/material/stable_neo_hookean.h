@@ -1,4 +1,4 @@
-// Stable neo-Hookean solid of [Smith 2018, eq. 14], with the logarithm that keeps F = 0 from being stress-free.
+// Stable neo-Hookean solid of [Smith 2018]. The logarithm removes the pull towards F = 0 that neo_hookean has there.
 //   psi = mu/2 (I1 - 3) + lambda/2 (J - alpha)^2 - mu/2 ln(I1 + 1) + constant,   alpha = 1 + 3 mu / (4 lambda)
 // written around J = 1, so that nothing divides by lambda.
 #pragma once
@@ -40,7 +40,10 @@ struct StableNeoHookeanLaw {
             .formula =
                 "mu/2 (I1 - 3) + la/2 (J - alpha)^2 - mu/2 ln((I1 + 1)/4) with mu = 4/3 mu_L, "
                 "la = la_L + 5/6 mu_L, alpha = 1 + 3 mu/(4 la), up to a constant",
-            .remarks = "TODO-basin [Smith 2018]",
+            .remarks =
+                "Defined for inverted elements. The only states without stress are the rest "
+                "shape, up to rotation, and F = 0: a saddle whose Hessian is zero, which a body "
+                "in one point leaves only after a perturbation. [Smith 2018]",
             .extra = {},
             .barrier = false};
   }

@@ -1,7 +1,7 @@
 // Positive semidefinite 9x9 matrices: a fast exact test for many at a time, and a filter for the few that fail.
 #pragma once
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <limits>
 
 #include "math/pack.h"
@@ -38,21 +38,30 @@ unsigned indefinite_lanes(const Mat9<T>& H, double tolerance = 1e-12) {
 // What becomes of an eigenvalue l: max(l, floor) or max(|l|, floor).
 enum class EigenvalueFilter { clamp, absolute };
 
-// Filters the eigenvalues of the symmetric H, with floor = relative_floor * (largest |eigenvalue|).
-inline void make_definite(Mat9d& H, EigenvalueFilter filter, double relative_floor = 1e-9) {
-  std::array<double, 81> entries;
+// Filters the eigenvalues of the lanes that fail indefinite_lanes, with floor = relative_floor * (largest
+// |eigenvalue|), and leaves the others alone to the last bit. Returns the lanes that failed.
+template <class T>
+unsigned make_definite(Mat9<T>& H, EigenvalueFilter filter, double relative_floor = 1e-9) {
+  const unsigned failed = indefinite_lanes(H);
+  if (failed == 0) return failed;
+  std::array<T, 81> entries;
   std::copy(H.a, H.a + 81, entries.begin());
-  const SymmetricEigen<9> e = symmetric_eigen<9>(entries);
-  const double largest = std::fmax(std::abs(e.values.front()), std::abs(e.values.back()));
-  const double floor = std::fmax(relative_floor * largest, std::numeric_limits<double>::min());
+  const SymmetricEigen<9, T> e = symmetric_eigen<9>(entries);
+  T largest = T(0.0);
+  for (const T& l : e.values) largest = max(largest, abs(l));
+  const T floor = max(T(relative_floor) * largest, T(std::numeric_limits<double>::min()));
+  const T chosen = lanes_from_bits<T>(failed);
   // Only what the filter changes is added, so that the other eigenvalues keep their last digits.
-  for (int k = 0; k < 9 && e.values[k] < floor; ++k) {
-    const double kept = filter == EigenvalueFilter::absolute ? std::abs(e.values[k]) : e.values[k];
-    const double raise = std::fmax(kept, floor) - e.values[k];
-    const double* v = &e.vectors[9 * k];
-    for (int c = 0; c < 9; ++c)
-      for (int r = 0; r < 9; ++r) H(r, c) += raise * (v[r] * v[c]);
+  for (int k = 0; k < 9; ++k) {
+    const T l = e.values[k];
+    const T raise = chosen * (max(filter == EigenvalueFilter::absolute ? abs(l) : l, floor) - l);
+    if (!any_positive(raise)) continue;
+    for (int c = 0; c < 9; ++c) {
+      const T x = raise * e.vectors[9 * k + c];
+      for (int r = 0; r < 9; ++r) H(r, c) = H(r, c) + x * e.vectors[9 * k + r];
+    }
   }
+  return failed;
 }
 
 }  // namespace aspic

@@ -6,7 +6,7 @@
 namespace aspic {
 
 // F = U diag(s) V' with det U = det V = +1 and s[0] >= s[1] >= |s[2]|: s[2] has the sign of det F.
-// Hence s[i] + s[j] >= 0, and R = U V' is the rotation closest to F.
+// Hence s[i] + s[j] >= 0 (up to rounding), and R = U V' is the rotation closest to F.
 template <class T>
 struct Svd3 {
   Mat3<T> U;
@@ -16,6 +16,6 @@ struct Svd3 {
 
 // F must be finite. F = 0 gives U = V = I.
 Svd3<double> svd3(const Mat3d& F);
-Svd3<Pack> svd3(const Mat3<Pack>& F);  // lane by lane
+Svd3<Pack> svd3(const Mat3<Pack>& F);
 
 }  // namespace aspic

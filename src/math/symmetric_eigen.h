@@ -1,70 +1,67 @@
 // Eigenvalues and eigenvectors of a small symmetric matrix by Jacobi's method [Golub 2013, sec. 8.5].
 #pragma once
 #include <array>
-#include <cmath>
 #include <limits>
-#include <utility>
+
+#include "math/pack.h"
 
 namespace aspic {
 
-// A = sum values[k] v_k v_k', values ascending, v_k = column k of `vectors` (column-major), orthonormal.
-template <int N>
+// A = sum values[k] v_k v_k', v_k = column k of `vectors` (column-major), orthonormal, in no particular order.
+template <int N, class T = double>
 struct SymmetricEigen {
-  std::array<double, N> values;
-  std::array<double, N * N> vectors;
+  std::array<T, N> values;
+  std::array<T, N * N> vectors;
 };
 
-// tan, sin and cos of the rotation that makes [[app, apq], [apq, aqq]] diagonal; |angle| <= pi/4.
-struct JacobiRotation {
-  double t, s, c;
+template <class T>
+struct PlaneRotation {
+  T sin, cos;
 };
-inline JacobiRotation jacobi_rotation(double app, double aqq, double apq) {
-  const double zeta = (aqq - app) / (2 * apq);
-  const double t = std::copysign(1.0, zeta) / (std::abs(zeta) + std::hypot(1.0, zeta));
-  const double c = 1 / std::sqrt(1 + t * t);
-  return {t, t * c, c};
+
+// The rotation by at most pi/4 that makes [[app, apq], [apq, aqq]] diagonal; none where `active` is not positive.
+template <class T>
+PlaneRotation<T> jacobi_rotation(const T& app, const T& aqq, const T& apq, const T& active) {
+  const T zeta = (aqq - app) / (T(2.0) * where_positive(active, apq, T(1.0)));
+  const T sign = where_positive(-zeta, T(-1.0), T(1.0));
+  const T tan = where_positive(active, sign / (abs(zeta) + sqrt(T(1.0) + zeta * zeta)), T(0.0));
+  const T cos = T(1.0) / sqrt(T(1.0) + tan * tan);
+  return {tan * cos, cos};
 }
 
-// (x, y) <- (c x - s y, s x + c y)
-inline void rotate(const JacobiRotation& r, double& x, double& y) {
-  const double z = r.c * x - r.s * y;
-  y = r.s * x + r.c * y;
+// (x, y) <- (cos x - sin y, sin x + cos y)
+template <class T>
+void rotate(const PlaneRotation<T>& r, T& x, T& y) {
+  const T z = r.cos * x - r.sin * y;
+  y = r.sin * x + r.cos * y;
   x = z;
 }
 
-// Reads all of the column-major A, which must be symmetric and finite.
-template <int N>
-SymmetricEigen<N> symmetric_eigen(std::array<double, N * N> A) {
-  constexpr int kMaxSweeps = 30;  // quadratic convergence: 6 to 8 are typical
-  SymmetricEigen<N> e{};
-  for (int i = 0; i < N; ++i) e.vectors[i * (N + 1)] = 1;
-  double scale = 0;
-  for (const double a : A) scale = std::fmax(scale, std::abs(a));
-  const double negligible = scale * std::numeric_limits<double>::epsilon() / 16;
+// Reads all of the column-major A, which must be symmetric; lanes that are not finite give no numbers.
+template <int N, class T>
+SymmetricEigen<N, T> symmetric_eigen(std::array<T, N * N> A) {
+  constexpr int kMaxSweeps = 30;  // convergence is quadratic: 6 to 8 are typical
+  SymmetricEigen<N, T> e;
+  for (int i = 0; i < N * N; ++i) e.vectors[i] = T(i % (N + 1) == 0 ? 1.0 : 0.0);
+  T scale = T(0.0);
+  for (const T& a : A) scale = max(scale, abs(a));
+  const T negligible = T(std::numeric_limits<double>::epsilon() / 16) * scale;
 
   bool rotated = true;
   for (int sweep = 0; rotated && sweep < kMaxSweeps; ++sweep) {
     rotated = false;
     for (int q = 1; q < N; ++q)
       for (int p = 0; p < q; ++p) {
-        if (!(std::abs(A[p + N * q]) > negligible)) continue;
+        const T active = abs(A[p + N * q]) - negligible;
+        if (!any_positive(active)) continue;
         rotated = true;
-        const JacobiRotation r = jacobi_rotation(A[p + N * p], A[q + N * q], A[p + N * q]);
+        const PlaneRotation<T> r = jacobi_rotation(A[p + N * p], A[q + N * q], A[p + N * q], active);
         for (int k = 0; k < N; ++k) rotate(r, A[k + N * p], A[k + N * q]);
         for (int k = 0; k < N; ++k) rotate(r, A[p + N * k], A[q + N * k]);
         for (int k = 0; k < N; ++k) rotate(r, e.vectors[k + N * p], e.vectors[k + N * q]);
       }
   }
-
   for (int i = 0; i < N; ++i) e.values[i] = A[i * (N + 1)];
-  for (int i = 0; i < N; ++i) {  // selection sort: N is small
-    int least = i;
-    for (int j = i + 1; j < N; ++j)
-      if (e.values[j] < e.values[least]) least = j;
-    if (least == i) continue;
-    std::swap(e.values[i], e.values[least]);
-    for (int k = 0; k < N; ++k) std::swap(e.vectors[k + N * i], e.vectors[k + N * least]);
-  }
   return e;
 }
 

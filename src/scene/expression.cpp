@@ -70,7 +70,7 @@ const Constant kConstants[] = {
     {"all", "1, so that where = \"all\" selects everything", 1.0},
 };
 
-std::string error_at(const std::string& text, size_t column, const std::string& reason) {
+std::string in_column(const std::string& text, size_t column, const std::string& reason) {
   return "column " + std::to_string(column) + " of \"" + shortened(text) + "\": " + reason;
 }
 
@@ -78,24 +78,24 @@ std::string error_at(const std::string& text, size_t column, const std::string& 
 void check_text(const std::string& text) {
   if (text.find_first_not_of(" \t") == std::string::npos) throw InvalidInput("the expression is empty");
   if (text.size() > kMaxExpressionLength)
-    throw InvalidInput(error_at(text, kMaxExpressionLength + 1,
-                                std::to_string(text.size()) + " characters; at most " +
-                                    std::to_string(kMaxExpressionLength) + " are read (use a per-element file)"));
+    throw InvalidInput(in_column(text, kMaxExpressionLength + 1,
+                                 std::to_string(text.size()) + " characters; at most " +
+                                     std::to_string(kMaxExpressionLength) + " are read (use a per-element file)"));
   int depth = 0;
   for (size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     const bool allowed = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
                          std::string_view("_.+-*/^()<>=!&|?:, \t").find(c) != std::string_view::npos;
-    if (!allowed) throw InvalidInput(error_at(text, i + 1, std::string("unexpected character '") + c + "'"));
+    if (!allowed) throw InvalidInput(in_column(text, i + 1, std::string("unexpected character '") + c + "'"));
     if (c == '=') {
       const char before = i > 0 ? text[i - 1] : ' ', after = i + 1 < text.size() ? text[i + 1] : ' ';
       const bool compares = after == '=' || before == '=' || before == '<' || before == '>' || before == '!';
-      if (!compares) throw InvalidInput(error_at(text, i + 1, "'=' assigns nothing here; compare with '=='"));
+      if (!compares) throw InvalidInput(in_column(text, i + 1, "'=' assigns nothing here; compare with '=='"));
     }
     depth += (c == '(') - (c == ')');
     if (depth > kMaxExpressionDepth)
       throw InvalidInput(
-          error_at(text, i + 1, "more than " + std::to_string(kMaxExpressionDepth) + " open parentheses"));
+          in_column(text, i + 1, "more than " + std::to_string(kMaxExpressionDepth) + " open parentheses"));
   }
 }
 
@@ -165,10 +165,10 @@ Expression::Expression(const std::string& text, ExpressionVariables variables) {
     parser.SetExpr(text);
     parser.Eval();
     if (parser.GetNumResults() != 1)
-      throw InvalidInput(error_at(text, text.find(',') + 1, "one value is expected, not a list"));
+      throw InvalidInput(in_column(text, text.find(',') + 1, "one value is expected, not a list"));
   } catch (const mu::ParserError& e) {
     const size_t position = e.GetPos() >= 0 ? std::min(text.size(), static_cast<size_t>(e.GetPos())) : text.size();
-    throw InvalidInput(error_at(text, position + 1, reason_of(e, variables)));
+    throw InvalidInput(in_column(text, position + 1, reason_of(e, variables)));
   }
   impl_ = std::move(impl);
 }

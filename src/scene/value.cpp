@@ -49,6 +49,10 @@ std::string to_string(const Place& place) {
   return *place.source + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
 }
 
+InvalidInput error_at(const Place& place, const std::string& reason) {
+  return InvalidInput(to_string(place) + ": " + reason);
+}
+
 const Value* Table::find(std::string_view key) const {
   for (const Member& m : members)
     if (m.key == key) return &m.value;
@@ -58,12 +62,14 @@ const Value* Table::find(std::string_view key) const {
 Value* Table::find(std::string_view key) { return const_cast<Value*>(std::as_const(*this).find(key)); }
 
 void Table::set(std::string_view key, Value value) {
-  if (Value* old = find(key)) {
-    *old = std::move(value);
-  } else {
-    const Place place = value.place;
-    members.push_back({std::string(key), place, std::move(value)});
+  const Place place = value.place;
+  for (Member& m : members) {
+    if (m.key != key) continue;
+    m.place = place;
+    m.value = std::move(value);
+    return;
   }
+  members.push_back({std::string(key), place, std::move(value)});
 }
 
 double Value::number() const {

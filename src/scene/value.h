@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/error.h"
 #include "math/small.h"
 
 namespace aspic {
@@ -18,6 +19,7 @@ struct Place {
   bool is_override() const { return source && line == 0; }
 };
 std::string to_string(const Place& place);  // "beam.toml:12:3"
+InvalidInput error_at(const Place& place, const std::string& reason);
 
 struct Value;
 struct Member;

@@ -1,0 +1,141 @@
+#include "io/usd.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <system_error>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "io/number_text.h"
+#include "io/output_file.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Letters, digits and underscores, not beginning with a digit; distinct from all in `taken`.
+std::string identifier(const std::string& name, std::set<std::string>& taken) {
+  std::string word;
+  for (const char c : name) {
+    const bool fits = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    word += fits ? c : '_';
+  }
+  if (word.empty() || (word[0] >= '0' && word[0] <= '9')) word = "_" + word;
+  std::string unique = word;
+  for (int i = 2; !taken.insert(unique).second; ++i) unique = word + "_" + std::to_string(i);
+  return unique;
+}
+
+void append_real(std::string& text, float value) {
+  if (std::isnan(value)) {
+    text += "nan";
+  } else {
+    append_number(text, value);
+  }
+}
+
+std::string points_text(const std::vector<float>& x) {
+  std::string text = "[";
+  for (size_t i = 0; i + 2 < x.size(); i += 3) {
+    text += i == 0 ? "(" : ", (";
+    for (size_t k = 0; k < 3; ++k) {
+      if (k > 0) text += ", ";
+      append_real(text, x[i + k]);
+    }
+    text += ')';
+  }
+  return text + "]";
+}
+
+// [(lower), (upper)], which viewers use instead of looking at every point.
+std::string extent_text(const std::vector<float>& x) {
+  std::vector<float> corners(x.begin(), x.begin() + std::min<std::ptrdiff_t>(3, std::ssize(x)));
+  corners.insert(corners.end(), corners.begin(), corners.end());
+  for (size_t i = 3; i < x.size(); ++i) {
+    corners[i % 3] = std::min(corners[i % 3], x[i]);
+    corners[3 + i % 3] = std::max(corners[3 + i % 3], x[i]);
+  }
+  return points_text(corners);
+}
+
+// Whole frames keep whole numbers although the times were rounded.
+double time_code(double time, double codes_per_second) {
+  const double code = time * codes_per_second;
+  return std::abs(code - std::round(code)) < 1e-6 ? std::round(code) : code;
+}
+
+std::string head(const std::string& first, const std::vector<double>& codes, double codes_per_second) {
+  std::string text = "#usda 1.0\n(\n    defaultPrim = \"" + first + "\"\n    metersPerUnit = 1\n    upAxis = \"Y\"\n";
+  const auto add = [&](const char* key, double value) {
+    text += std::string("    ") + key + " = ";
+    append_number(text, value);
+    text += '\n';
+  };
+  add("timeCodesPerSecond", codes_per_second);
+  add("framesPerSecond", codes_per_second);
+  add("startTimeCode", codes.empty() ? 0 : codes.front());
+  add("endTimeCode", codes.empty() ? 0 : codes.back());
+  return text + ")\n";
+}
+
+std::string topology(std::span<const Triangle> triangles) {
+  std::string counts, indices;
+  for (const Triangle& triangle : triangles) {
+    counts += counts.empty() ? "3" : ", 3";
+    for (const int vertex : triangle) {
+      if (!indices.empty()) indices += ", ";
+      append_number(indices, vertex);
+    }
+  }
+  return "        int[] faceVertexCounts = [" + counts + "]\n        int[] faceVertexIndices = [" + indices +
+         "]\n        uniform token subdivisionScheme = \"none\"\n";
+}
+
+template <class ValueText>
+void write_samples(OutputFile& file, const std::string& attribute, const std::vector<double>& codes,
+                   ValueText value_text) {
+  file.append("        " + attribute + ".timeSamples = {\n");
+  for (size_t i = 0; i < codes.size(); ++i) {
+    std::string line = "            ";
+    append_number(line, codes[i]);
+    file.append(line + ": " + value_text(static_cast<int>(i)) + ",\n");
+  }
+  file.append("        }\n");
+}
+
+void write_mesh_prim(OutputFile& file, const UsdMesh& mesh, const std::string& name, const std::vector<double>& codes) {
+  file.append("\n    def Mesh \"" + name + "\"\n    {\n" + topology(mesh.triangles));
+  write_samples(file, "float3[] extent", codes, [&](int sample) { return extent_text(mesh.points(sample)); });
+  write_samples(file, "point3f[] points", codes, [&](int sample) { return points_text(mesh.points(sample)); });
+  file.append("    }\n");
+}
+
+}  // namespace
+
+void write_usd(const fs::path& path, const std::vector<UsdMesh>& meshes, const std::vector<double>& times,
+               double codes_per_second) {
+  std::vector<double> codes;
+  for (const double time : times) codes.push_back(time_code(time, codes_per_second));
+
+  const fs::path unfinished = path.string() + ".unfinished";
+  OutputFile file = OutputFile::create(unfinished);
+  try {
+    file.append(head("simulation", codes, codes_per_second) + "\ndef Xform \"simulation\"\n{");
+    std::set<std::string> taken;
+    for (const UsdMesh& mesh : meshes) write_mesh_prim(file, mesh, identifier(mesh.name, taken), codes);
+    file.append("}\n");
+    file.sync();
+    file.close();
+  } catch (const InvalidInput&) {
+    std::error_code ignored;
+    fs::remove(unfinished, ignored);
+    throw;
+  }
+  std::error_code error;
+  fs::rename(unfinished, path, error);
+  if (error) throw InvalidInput(path.string() + ": cannot be written: " + error.message());
+}
+
+}  // namespace aspic

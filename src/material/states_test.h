@@ -1,0 +1,90 @@
+// Deformation gradients that every material is tested at.
+#pragma once
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "material/list.h"
+#include "math/small.h"
+
+namespace aspic {
+
+struct NamedState {
+  std::string name;
+  Mat3d F;
+};
+
+inline Mat3d diagonal(double x, double y, double z) { return {{x, 0, 0, 0, y, 0, 0, 0, z}}; }
+
+inline Mat3d random_matrix(std::mt19937& random) {
+  std::uniform_real_distribution<double> entry(-1, 1);
+  Mat3d A;
+  for (double& a : A.a) a = entry(random);
+  return A;
+}
+
+// From a random unit quaternion.
+inline Mat3d random_rotation(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  const double a = normal(random), b = normal(random), c = normal(random), d = normal(random);
+  const double s = 2 / (a * a + b * b + c * c + d * d);
+  return {{1 - s * (c * c + d * d), s * (b * c + a * d), s * (b * d - a * c),  //
+           s * (b * c - a * d), 1 - s * (b * b + d * d), s * (c * d + a * b),  //
+           s * (b * d + a * c), s * (c * d - a * b), 1 - s * (b * b + c * c)}};
+}
+
+// Well inside J > 0: a rotation times a stretch of at most 60 %.
+inline Mat3d random_deformation(std::mt19937& random) {
+  return random_rotation(random) * (identity3<double>() + 0.2 * random_matrix(random));
+}
+
+// States where psi is finite and twice differentiable. Barriers have J > 0; where R is used, F has no kink.
+template <class M>
+std::vector<NamedState> smooth_states() {
+  std::mt19937 random(7);
+  const Mat3d I = identity3<double>();
+  std::vector<NamedState> states = {{"rest", I}, {"rotated rest", random_rotation(random)}};
+  for (int i = 0; i < 20; ++i) states.push_back({"random " + std::to_string(i), random_deformation(random)});
+  states.push_back({"equal singular values", 0.7 * random_rotation(random)});
+  states.push_back({"two equal singular values", random_rotation(random) * diagonal(1.5, 0.8, 0.8)});
+  const Mat3d A = random_deformation(random);
+  states.push_back({"small, J = 1e-8", std::cbrt(1e-8 / determinant(A)) * A});
+  if (!std::is_same_v<M, Fung>) {  // its exponential overflows in these
+    states.push_back({"flat, J = 1e-8", {{1, 0, 0, 0.25, 1, 0, -0.5, 0.125, 1e-8}}});
+    states.push_back({"|F| = 1e6", 1e6 / std::sqrt(squared_norm(A)) * A});
+  }
+  if (M::info().barrier) return states;
+  states.push_back({"inverted", random_rotation(random) * diagonal(1.2, 0.9, -0.5) * random_rotation(random)});
+  states.push_back({"inverted, |F| = 1e6", 1e6 * (random_rotation(random) * diagonal(0.9, 0.4, -0.1))});
+  if (!std::is_same_v<M, Arap> && !std::is_same_v<M, Corotated>) {
+    states.push_back({"F = 0", 0.0 * I});
+    states.push_back({"mirror image", diagonal(1, 1, -1)});
+  }
+  return states;
+}
+
+// Middle-of-the-road constants with unequal extra parameters.
+template <class M>
+typename M::template Params<double> ordinary_params(double young = 2.5, double poisson = 0.4) {
+  MaterialParameters m{lame_from_young_poisson(young, poisson), {}};
+  const auto extra = M::info().extra;
+  for (std::size_t k = 0; k < extra.size(); ++k) m.extra[k] = 0.7 * extra[k].fallback;
+  return M::params(m);
+}
+
+template <std::size_t N>
+double largest(const double (&a)[N]) {
+  double most = 0;
+  for (const double x : a) most = std::isnan(x) ? x : std::fmax(most, std::abs(x));
+  return most;
+}
+
+template <std::size_t N>
+double largest_difference(const double (&a)[N], const double (&b)[N]) {
+  double d[N];
+  for (std::size_t i = 0; i < N; ++i) d[i] = a[i] - b[i];
+  return largest(d);
+}
+
+}  // namespace aspic

@@ -1,0 +1,136 @@
+#include "scene/completion.h"
+
+#include <algorithm>
+#include <map>
+
+#include "base/error.h"
+#include "material/registry.h"
+#include "scene/overrides.h"
+#include "scene/schema.h"
+
+namespace aspic {
+namespace {
+
+void put_first(Table& table, const std::string& key, Value value) {
+  table.members.insert(table.members.begin(), Member{key, value.place, std::move(value)});
+}
+
+// Names become parts of file names and of --set paths.
+void check_name(const std::string& name, const Place& place) {
+  const bool good = !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+  if (!good)
+    throw error_at(place, "name = " + shortened(toml_string(name)) +
+                              "; a name is made of at most 64 letters, digits, _ and - (try \"body1\")");
+}
+
+// Gives each table a name, its own or the one made by `name_of`, and refuses two of the same.
+template <class NameOf>
+void name_tables(Array& tables, const NameOf& name_of) {
+  std::map<std::string, Place> taken;
+  for (size_t i = 0; i < tables.size(); ++i) {
+    Table& table = tables[i].table();
+    if (!table.find("name")) put_first(table, "name", {name_of(table, i), tables[i].place});
+    const Value& name = *table.find("name");
+    check_name(name.text(), name.place);
+    const auto [earlier, is_new] = taken.emplace(name.text(), name.place);
+    if (!is_new)
+      throw error_at(name.place, "name = " + toml_string(name.text()) + " is taken by " + to_string(earlier->second) +
+                                     "; choose another");
+  }
+}
+
+void complete_material(Value& material) {
+  const MaterialInfo& info = material_info(material["model"].text());
+  const std::vector<std::string> plain = {"model", "density", "young", "poisson", "lambda", "mu", "shear", "bulk"};
+  std::vector<std::string> accepted = plain;
+  for (const ExtraParameter& extra : info.extra) {
+    accepted.push_back(extra.name);
+    if (!material.find(extra.name)) material.table().set(extra.name, {extra.fallback, material.place});
+  }
+  for (const Member& m : material.table().members)
+    if (std::find(accepted.begin(), accepted.end(), m.key) == accepted.end())
+      throw error_at(m.place, m.key + " = " + shortened(inline_toml(m.value)) + "; the material " + info.name +
+                                  " has no such parameter" + suggestion(m.key, accepted));
+  const Value *lambda = material.find("lambda"), *mu = material.find("mu");
+  if (lambda && lambda->is_number() && mu->is_number() && !(lambda->number() > -2.0 / 3 * mu->number()))
+    throw error_at(lambda->place, "lambda = " + number_text(lambda->number()) +
+                                      "; must be > -2/3 mu = " + number_text(-2.0 / 3 * mu->number()));
+}
+
+void check_axis(const Value& table) {
+  const Value* axis = table.find("axis");
+  if (!axis) return;
+  const Vec3d a = axis->vector();
+  if (dot(a, a) == 0) throw error_at(axis->place, "axis = [0, 0, 0]; a direction is needed (try [0, 0, 1])");
+}
+
+void check_keyframes(const Value& keyframes) {
+  double last = -1;
+  for (const Value& k : keyframes.array()) {
+    const Value& time = k["time"];
+    if (time.number() <= last)
+      throw error_at(time.place, "time = " + number_text(time.number()) + "; must be later than the one before, " +
+                                     number_text(last));
+    last = time.number();
+  }
+  if (keyframes.array().empty()) throw error_at(keyframes.place, "keyframes = []; at least one is needed");
+}
+
+void check_motion(const Value& holder) {
+  const Value* motion = holder.find("motion");
+  if (!motion || !motion->is_table()) return;
+  if (const Value* spin = motion->find("rotate")) check_axis(*spin);
+  if (const Value* keyframes = motion->find("keyframes")) check_keyframes(*keyframes);
+}
+
+void check_springs(const Value& springs, const Array& bodies) {
+  std::vector<std::string> names;
+  for (const Value& body : bodies) names.push_back(body["name"].text());
+  for (const Value& spring : springs.array()) {
+    check_motion(spring);
+    if (const Value* edges = spring.find("edges"); edges && !edges->boolean())
+      throw error_at(edges->place, "edges = false; leave the whole spring out, or write edges = true");
+    const Value* other = spring.find("to_body");
+    if (other && std::find(names.begin(), names.end(), other->text()) == names.end())
+      throw error_at(other->place, "to_body = " + toml_string(other->text()) + "; there is no such body" +
+                                       suggestion(other->text(), names));
+  }
+}
+
+void check_box(const Value& shape) {
+  const Value* box = shape.find("box");
+  if (!box) return;
+  const Vec3d lower = (*box)["lower"].vector(), upper = (*box)["upper"].vector();
+  for (int i = 0; i < 3; ++i)
+    if (!(upper[i] > lower[i]))
+      throw error_at((*box)["upper"].place,
+                     "upper = " + inline_toml((*box)["upper"]) +
+                         "; each number must be above that of lower = " + inline_toml((*box)["lower"]));
+  if (const Value* cells = box->find("cells"); cells && cells->array().size() != 3)
+    throw error_at(cells->place, "cells = " + shortened(inline_toml(*cells)) + "; three numbers are needed");
+}
+
+}  // namespace
+
+void complete_scene(Table& document) {
+  Value& list = *document.find("body");
+  Array& bodies = list.array();
+  if (bodies.empty()) throw error_at(list.place, "body = []; at least one is needed");
+  name_tables(bodies, body_name);
+  for (Value& body : bodies) {
+    complete_material(*body.table().find("material"));
+    if (Value* pins = body.table().find("pin")) {
+      name_tables(pins->array(), [](const Table&, size_t i) { return "pin" + std::to_string(i + 1); });
+      for (const Value& pin : pins->array()) check_motion(pin);
+    }
+    if (const Value* springs = body.find("spring")) check_springs(*springs, bodies);
+    if (const Value* rotate = body.find("rotate")) check_axis(*rotate);
+    if (const Value* shape = body.find("shape")) check_box(*shape);
+    const Value* deform = body.find("deform");
+    if (const Value* twist = deform ? deform->find("twist") : nullptr) check_axis(*twist);
+  }
+}
+
+}  // namespace aspic

@@ -1,0 +1,75 @@
+#include "scene/motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scene/expression.h"
+#include "scene/placement.h"
+
+namespace aspic {
+namespace {
+
+double end_of(const Value& motion) {
+  const Value* until = motion.find("until");
+  return until ? until->number() : INFINITY;
+}
+
+Motion linear(const Value& motion) {
+  const Vec3d velocity = motion["velocity"].vector();
+  const double until = end_of(motion);
+  return [=](const Vec3d& start, double time) { return start + std::min(time, until) * velocity; };
+}
+
+Motion spin(const Value& motion, const std::vector<Vec3d>& starts) {
+  const Vec3d axis = motion["axis"].vector();
+  const double rate = std::numbers::pi / 180 * motion["rate_deg"].number(), until = end_of(motion);  // [rad/s]
+  Vec3d center{};
+  if (const Value* given = motion.find("center")) {
+    center = given->vector();
+  } else {
+    for (const Vec3d& x : starts) center = center + x;
+    center = (1.0 / static_cast<double>(starts.size())) * center;
+  }
+  return [=](const Vec3d& start, double time) {
+    if (time == 0) return start;  // exactly
+    return center + rotation(axis, rate * std::min(time, until)) * (start - center);
+  };
+}
+
+Motion keyframed(const Value& keyframes) {
+  std::vector<double> times;
+  std::vector<Vec3d> offsets;
+  for (const Value& k : keyframes.array()) {
+    times.push_back(k["time"].number());
+    offsets.push_back(k["displacement"].vector());
+  }
+  return [times, offsets](const Vec3d& start, double time) {
+    const size_t next = std::upper_bound(times.begin(), times.end(), time) - times.begin();
+    if (next == 0) return start + offsets.front();
+    if (next == times.size()) return start + offsets.back();
+    const double s = (time - times[next - 1]) / (times[next] - times[next - 1]);
+    return start + ((1 - s) * offsets[next - 1] + s * offsets[next]);
+  };
+}
+
+Motion displaced(const Value& displacement) {
+  std::vector<Expression> u;
+  for (const Value& v : displacement.array())
+    u.emplace_back(v.is_text() ? v.text() : number_text(v.number()), ExpressionVariables::position_and_time);
+  return [u](const Vec3d& start, double time) {
+    return start + Vec3d{{u[0].at(start, time), u[1].at(start, time), u[2].at(start, time)}};
+  };
+}
+
+}  // namespace
+
+Motion make_motion(const Value& motion, const std::vector<Vec3d>& starts) {
+  if (motion.is_text()) return nullptr;
+  if (const Value* m = motion.find("linear")) return linear(*m);
+  if (const Value* m = motion.find("rotate")) return spin(*m, starts);
+  if (const Value* m = motion.find("keyframes")) return keyframed(*m);
+  return displaced(motion["displacement"]);
+}
+
+}  // namespace aspic

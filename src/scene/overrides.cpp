@@ -1,0 +1,124 @@
+#include "scene/overrides.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/error.h"
+#include "scene/schema.h"
+#include "scene/toml_reader.h"
+
+namespace aspic {
+namespace {
+
+std::string trimmed(const std::string& text) {
+  const size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+std::vector<std::string> words_of(const std::string& path) {
+  std::vector<std::string> words;
+  size_t begin = 0;
+  while (true) {
+    const size_t dot = path.find('.', begin);
+    words.push_back(trimmed(path.substr(begin, dot - begin)));
+    if (dot == std::string::npos) return words;
+    begin = dot + 1;
+  }
+}
+
+Value value_of(const std::string& text, const std::string& source) {
+  try {
+    return read_toml_value(text, source);
+  } catch (const InvalidInput&) {
+    if (text.empty() || text.find_first_of("\"'[{") == 0) throw;
+    return {text, {std::make_shared<const std::string>(source), 0, 0}};  // a bare word or formula
+  }
+}
+
+struct Assignment {
+  std::vector<std::string> words;
+  Value value;
+
+  [[noreturn]] void fail(const std::string& reason) const { throw error_at(value.place, reason); }
+
+  void apply_to(Table& table, const std::string& section, size_t i) const {
+    const Key* key = scene_schema().find(section, words[i]);
+    if (i + 1 == words.size()) {
+      table.set(words[i], value);  // an unknown key is reported with all the others
+    } else if (key && (key->accepts & kTables)) {
+      apply_to_list(table, *key, i);
+    } else if (key && (key->accepts & (kTable | kAnyTable))) {
+      Value* inner = table.find(words[i]);
+      if (!inner || !inner->is_table()) table.set(words[i], {Table{}, value.place});
+      apply_to(table.find(words[i])->table(), key->table, i + 1);
+    } else {
+      const std::vector<std::string> known = scene_schema().names(section);
+      fail(key ? "'" + words[i] + "' has no keys of its own"
+               : "unknown key '" + words[i] + "' in " + section + suggestion(words[i], known));
+    }
+  }
+
+  void apply_to_list(Table& table, const Key& key, size_t i) const {
+    Value* list = table.find(key.name);
+    if (!list || !(list->is_array() || list->is_table())) fail("the scene has no " + key.name);
+    if (list->is_table()) return apply_to(list->table(), key.table, i + 1);
+    bool picked = false;
+    for (size_t k = 0; k < list->array().size(); ++k) {
+      Value& element = list->array()[k];
+      if (!element.is_table() || name_of(element.table(), key, k) != words[i + 1]) continue;
+      if (i + 2 >= words.size()) fail("a key of " + words[i + 1] + " is missing");
+      apply_to(element.table(), key.table, i + 2);
+      picked = true;
+    }
+    if (picked) return;
+    if (!scene_schema().find(key.table, words[i + 1])) fail_unknown_element(*list, key, words[i + 1]);
+    for (Value& element : list->array())
+      if (element.is_table()) apply_to(element.table(), key.table, i + 1);
+  }
+
+  std::string name_of(const Table& element, const Key& key, size_t index) const {
+    if (key.name == "body") return body_name(element, index);
+    const Value* name = element.find("name");
+    return name && name->is_text() ? name->text() : std::to_string(index);
+  }
+
+  [[noreturn]] void fail_unknown_element(const Value& list, const Key& key, const std::string& word) const {
+    std::vector<std::string> known = scene_schema().names(key.table);
+    for (size_t k = 0; k < list.array().size(); ++k)
+      if (list.array()[k].is_table()) known.push_back(name_of(list.array()[k].table(), key, k));
+    fail("unknown key or name '" + word + "' of " + key.name + suggestion(word, known));
+  }
+};
+
+}  // namespace
+
+void apply_override(Table& document, const std::string& text) {
+  const std::string source = "--set " + text;
+  const size_t equals = text.find('=');
+  if (equals == std::string::npos) throw InvalidInput(source + ": KEY=VALUE is expected, for example time.step=0.005");
+  Assignment assignment{words_of(text.substr(0, equals)), value_of(trimmed(text.substr(equals + 1)), source)};
+  if (std::count(assignment.words.begin(), assignment.words.end(), "") > 0)
+    throw InvalidInput(source + ": a key is empty");
+  const Schema& schema = scene_schema();
+  const std::string& first = assignment.words.front();
+  if (!schema.find("scene", first)) {
+    std::vector<std::string> known = schema.names("scene");
+    for (const std::string& name : schema.names("body")) known.push_back(name);
+    if (!schema.find("body", first)) assignment.fail("unknown key '" + first + "'" + suggestion(first, known));
+    assignment.words.insert(assignment.words.begin(), "body");
+  }
+  assignment.apply_to(document, "scene", 0);
+}
+
+std::string body_name(const Table& body, size_t index) {
+  if (const Value* name = body.find("name"); name && name->is_text()) return name->text();
+  if (const Value* mesh = body.find("mesh"); mesh && mesh->is_text()) {
+    std::string stem = std::filesystem::path(mesh->text()).stem().string();
+    for (char& c : stem)
+      if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-')) c = '_';
+    if (!stem.empty()) return stem;
+  }
+  return "body" + std::to_string(index + 1);
+}
+
+}  // namespace aspic

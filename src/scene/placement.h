@@ -1,0 +1,46 @@
+// Where a body is: its rest shape, its shape at time 0 and its velocity.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "math/small.h"
+#include "scene/expression.h"
+#include "scene/scene_files.h"
+#include "scene/value.h"
+
+namespace aspic {
+
+struct AffineMap {
+  Mat3d A = identity3<double>();
+  Vec3d b{};
+  Vec3d operator()(const Vec3d& X) const { return A * X + b; }
+};
+
+Mat3d rotation(const Vec3d& axis, double angle /* [rad] */);  // the axis has any length but 0
+
+AffineMap placement_of(const Value& body);  // scale, then rotate, then translate
+
+// The shape at time 0 of the placed rest shape X. Files are remembered under `stem`.
+std::vector<Vec3d> deformed(Value& body, const std::vector<Vec3d>& X, SceneFiles& files, const std::string& stem);
+
+// velocity(X) + omega x (x - centre of mass)
+std::vector<Vec3d> velocities(const Value& body, const std::vector<Vec3d>& X, const std::vector<Vec3d>& x,
+                              std::span<const double> vertex_mass);
+
+// A vector of numbers or formulas at points.
+class VectorField {
+ public:
+  explicit VectorField(const Value& value);
+  Vec3d at(const Vec3d& X) const;
+
+ private:
+  std::vector<double> number_;  // NaN where the formula is meant
+  std::vector<Expression> formula_;
+};
+
+struct Box {
+  Vec3d lower{}, upper{};
+};
+Box bounding_box(const std::vector<Vec3d>& X);
+
+}  // namespace aspic

@@ -1,0 +1,215 @@
+#include "scene/run_directory.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "base/error.h"
+#include "io/atomic_file.h"
+#include "io/checkpoint.h"
+#include "io/vtu.h"
+#include "scene/run_directory_frame.h"
+#include "scene/run_directory_layout.h"
+#include "scene/run_directory_skins.h"
+#include "scene/run_directory_tables.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+void create_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InvalidInput(folder.string() + ": cannot be created: " + error.message());
+}
+
+// Leaves an empty directory or one with files that no run writes, or throws.
+void make_room(const RunLayout& layout, ExistingRun existing) {
+  const std::string name = layout.root().string();
+  std::error_code error;
+  if (!fs::exists(layout.root(), error)) return create_folder(layout.root());
+  if (!fs::is_directory(layout.root(), error)) throw InvalidInput(name + ": is a file; results need a directory");
+  if (fs::is_empty(layout.root(), error)) return;
+  if (!layout.holds_run()) {
+    throw InvalidInput(name + ": is not empty and holds no run; choose another directory, or empty this one");
+  }
+  if (existing == ExistingRun::refuse) {
+    throw InvalidInput(name + ": holds a run already; --force replaces it, --resume continues it");
+  }
+  layout.remove_run();
+}
+
+Checkpoint to_checkpoint(const Simulation& simulation, const std::string& scene,
+                         const std::vector<double>& frame_times) {
+  const Simulation::Snapshot snapshot = simulation.snapshot();
+  Checkpoint checkpoint;
+  checkpoint.fingerprint = scene;
+  checkpoint.integers = {{"steps_taken", snapshot.steps_taken}};
+  checkpoint.arrays = {
+      {"q", snapshot.state.q},       {"qdot", snapshot.state.qdot},       {"time", {snapshot.state.time}},
+      {"start_q", snapshot.start.q}, {"start_qdot", snapshot.start.qdot}, {"start_time", {snapshot.start.time}},
+      {"history", snapshot.history}, {"frame_times", frame_times}};
+  return checkpoint;
+}
+
+double only_number(const Checkpoint& checkpoint, const char* name) {
+  const std::vector<double>& values = checkpoint.array(name);
+  if (values.size() != 1) throw InvalidInput(std::string("the checkpoint has no single number '") + name + "'");
+  return values[0];
+}
+
+Simulation::Snapshot to_snapshot(const Checkpoint& checkpoint) {
+  Simulation::Snapshot snapshot;
+  snapshot.steps_taken = static_cast<int>(checkpoint.integer("steps_taken"));
+  snapshot.state = {checkpoint.array("q"), checkpoint.array("qdot"), only_number(checkpoint, "time")};
+  snapshot.start = {checkpoint.array("start_q"), checkpoint.array("start_qdot"), only_number(checkpoint, "start_time")};
+  snapshot.history = checkpoint.array("history");
+  return snapshot;
+}
+
+// ":12: 'young = 2e5' here, 'young = 1e5' in the run"
+std::string first_difference(const std::string& here, const std::string& in_run) {
+  std::istringstream ours(here), theirs(in_run);
+  for (int line = 1;; ++line) {
+    std::string a, b;
+    const bool has_a = !!std::getline(ours, a), has_b = !!std::getline(theirs, b);
+    if (!has_a && !has_b) return ": it was changed after the run began";
+    if (a != b || has_a != has_b)
+      return std::string(":").append(std::to_string(line)).append(": '" + a + "' now, '" + b + "' in the run");
+  }
+}
+
+void check_same_scene(const RunLayout& layout, const Scene& scene, const Checkpoint& checkpoint) {
+  if (checkpoint.fingerprint == fingerprint(scene.resolved)) return;
+  throw InvalidInput(layout.root().string() + ": was computed with another scene; continue with the run's own scene (" +
+                     layout.scene().string() + first_difference(scene.resolved, read_file(layout.scene())) + ")");
+}
+
+}  // namespace
+
+struct RunDirectory::Impl {
+  Impl(RunLayout where, const Scene& scene)
+      : layout(std::move(where)), output(scene.output), scene_fingerprint(fingerprint(scene.resolved)) {}
+
+  // The frame that `time` falls into; times are sums of rounded steps, hence the tolerance.
+  double frame_slot(double time) const { return std::floor(time / output.every + 1e-6); }
+
+  bool is_frame_due(double time) const {
+    return frame_times.empty() || output.every <= 0 || frame_slot(time) > frame_slot(frame_times.back());
+  }
+
+  void write_index() const {
+    std::vector<std::pair<double, std::string>> frames;
+    for (const double time : frame_times)
+      frames.emplace_back(time, RunLayout::frame_file(static_cast<int>(frames.size())));
+    if (output.vtu) write_pvd(layout.index(), frames);
+  }
+
+  void add_frame(const Simulation& simulation) {
+    const int frame = static_cast<int>(frame_times.size());
+    if (output.vtu) write_frame(layout.root() / RunLayout::frame_file(frame), simulation);
+    skins->add_frame(frame, simulation.state().q);
+    frame_times.push_back(simulation.state().time);
+    write_index();
+    skins->write_usd_when_doubled(frame_times);
+  }
+
+  // Whatever a checkpoint counts is on the disk before it.
+  void save_checkpoint(const Simulation& simulation) {
+    tables.sync();
+    skins->sync();
+    write_checkpoint(layout.checkpoint(), to_checkpoint(simulation, scene_fingerprint, frame_times));
+    last_checkpoint = Clock::now();
+  }
+
+  bool is_checkpoint_due(bool has_frame) const {
+    if (output.checkpoint_every <= 0) return has_frame;
+    return std::chrono::duration<double>(Clock::now() - last_checkpoint).count() >= output.checkpoint_every;
+  }
+
+  RunLayout layout;
+  OutputOptions output;
+  std::string scene_fingerprint;
+  std::vector<double> frame_times;  // [s]
+  RunTables tables;
+  std::optional<RunSkins> skins;
+  Clock::time_point last_checkpoint = Clock::now();
+};
+
+RunDirectory::RunDirectory(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+RunDirectory::~RunDirectory() = default;
+RunDirectory::RunDirectory(RunDirectory&&) noexcept = default;
+
+RunDirectory RunDirectory::create(const fs::path& path, const Scene& scene, ExistingRun existing) {
+  auto impl = std::make_unique<Impl>(RunLayout(path), scene);
+  const RunLayout& layout = impl->layout;
+  const OutputOptions& output = scene.output;
+  make_room(layout, existing);
+  impl->tables = RunTables::create(layout, scene.simulation.potential_names());
+  write_file(layout.scene(), scene.resolved);
+  if (output.vtu || output.obj || output.ply) create_folder(layout.frames());
+  if ((output.pc2 || output.usd) && !scene.skins.empty()) create_folder(layout.skins());
+  impl->skins = RunSkins::create(layout, scene);
+  impl->add_frame(scene.simulation);
+  impl->save_checkpoint(scene.simulation);
+  return RunDirectory(std::move(impl));
+}
+
+RunDirectory RunDirectory::resume(const fs::path& path, Scene& scene) {
+  auto impl = std::make_unique<Impl>(RunLayout(path), scene);
+  const RunLayout& layout = impl->layout;
+  if (!layout.holds_run()) throw InvalidInput(path.string() + ": holds no run to continue");
+  const NewestCheckpoint newest = read_newest_checkpoint(layout.checkpoint());
+  check_same_scene(layout, scene, newest.checkpoint);
+  scene.simulation.restore(to_snapshot(newest.checkpoint));
+  if (!newest.note.empty()) {
+    scene.notes.push_back(newest.note);
+    std::error_code ignored;  // so that the damaged one never takes the place of the good one
+    fs::remove(layout.checkpoint(), ignored);
+  }
+  impl->frame_times = newest.checkpoint.array("frame_times");
+  const int frames = static_cast<int>(impl->frame_times.size());
+  impl->tables = RunTables::resume(layout, scene.simulation.potential_names(), scene.simulation.steps_taken());
+  impl->skins = RunSkins::resume(layout, scene, frames);
+  layout.remove_unfinished();
+  impl->write_index();
+  layout.remove_frames_from(frames);
+  return RunDirectory(std::move(impl));
+}
+
+void RunDirectory::on_iteration(int step, const Iteration& iteration) { impl_->tables.add(step, iteration); }
+
+void RunDirectory::on_step(const StepReport& report, const Simulation& simulation) {
+  impl_->tables.add(report);
+  const bool has_frame = impl_->is_frame_due(report.time);
+  if (has_frame) impl_->add_frame(simulation);
+  if (impl_->is_checkpoint_due(has_frame)) impl_->save_checkpoint(simulation);
+}
+
+void RunDirectory::finish(const Simulation& simulation) {
+  impl_->save_checkpoint(simulation);
+  impl_->skins->write_usd(impl_->frame_times);
+  std::error_code ignored;  // which checkpoint came before the last depends on interruptions; results must not
+  fs::remove(previous_checkpoint(impl_->layout.checkpoint()), ignored);
+  impl_->skins->close();
+  impl_->tables.close();
+}
+
+const fs::path& RunDirectory::path() const { return impl_->layout.root(); }
+
+fs::path scene_of_run(const fs::path& run) {
+  const RunLayout layout(run);
+  std::error_code error;
+  if (!fs::exists(layout.scene(), error)) {
+    throw InvalidInput(run.string() + ": holds no run to continue (there is no scene.toml in it)");
+  }
+  return layout.scene();
+}
+
+}  // namespace aspic

@@ -1,0 +1,57 @@
+#include "scene/run_directory_frame.h"
+
+#include <utility>
+
+#include "io/vtu.h"
+
+namespace aspic {
+namespace {
+
+std::vector<double> displacement(const TetMesh& mesh, const std::vector<double>& q) {
+  std::vector<double> u(q.size());
+  for (size_t i = 0; i < q.size(); ++i) u[i] = q[i] - mesh.rest[i / 3][static_cast<int>(i % 3)];
+  return u;
+}
+
+// The index of the body of each tet.
+std::vector<double> body_of_tets(const Model& model) {
+  std::vector<double> body(static_cast<size_t>(model.mesh.tet_count()), -1);
+  for (size_t b = 0; b < model.bodies.size(); ++b) {
+    const BodyRange& range = model.bodies[b];
+    for (int t = range.first_tet; t < range.first_tet + range.tet_count; ++t) body[t] = static_cast<double>(b);
+  }
+  return body;
+}
+
+std::vector<double> region_of_tets(const TetMesh& mesh) {
+  if (mesh.region.empty()) return std::vector<double>(static_cast<size_t>(mesh.tet_count()), 0);
+  return {mesh.region.begin(), mesh.region.end()};
+}
+
+std::vector<Field> cell_fields(const Simulation& simulation) {
+  const Model& model = simulation.model();
+  TetFields tet = simulation.tet_fields();
+  constexpr FieldType kSingle = FieldType::float32, kLabel = FieldType::int32;
+  std::vector<Field> fields;
+  fields.push_back({"energy_density", 1, std::move(tet.energy_density), kSingle});
+  fields.push_back({"det_F", 1, std::move(tet.det_F), kSingle});
+  fields.push_back({"cauchy", 6, std::move(tet.cauchy), kSingle});
+  fields.push_back({"von_mises", 1, std::move(tet.von_mises), kSingle});
+  fields.push_back({"body", 1, body_of_tets(model), kLabel});
+  fields.push_back({"region", 1, region_of_tets(model.mesh), kLabel});
+  if (!model.density.empty()) fields.push_back({"density", 1, model.density, kSingle});
+  for (const auto& [name, values] : model.tet_fields) fields.push_back({name, 1, values, kSingle});
+  return fields;
+}
+
+}  // namespace
+
+void write_frame(const std::filesystem::path& path, const Simulation& simulation) {
+  const Model& model = simulation.model();
+  const State& state = simulation.state();
+  const std::vector<Field> point_fields = {{"displacement", 3, displacement(model.mesh, state.q), FieldType::float32},
+                                           {"velocity", 3, state.qdot, FieldType::float32}};
+  write_vtu(path, state.q, model.mesh.tets, point_fields, cell_fields(simulation));
+}
+
+}  // namespace aspic

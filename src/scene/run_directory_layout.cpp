@@ -1,0 +1,125 @@
+#include "scene/run_directory_layout.h"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <optional>
+#include <set>
+#include <system_error>
+
+#include "base/error.h"
+#include "io/checkpoint.h"
+#include "scene/run_directory_tables.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string six_digits(int frame) {
+  const std::string digits = std::to_string(frame);
+  return std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') + digits;
+}
+
+// The number of a file that frame_file or skin_frame names.
+std::optional<int> frame_number(const fs::path& file) {
+  const std::string stem = file.stem().string(), extension = file.extension().string();
+  const bool is_body = extension == ".vtu" && stem.starts_with("body_");
+  const bool is_skin = (extension == ".obj" || extension == ".ply") && stem.starts_with("skin_");
+  const std::string digits = stem.substr(stem.rfind('_') + 1);
+  if (!(is_body ? stem == "body_" + digits : is_skin) || digits.size() < 6) return {};
+  int number = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (error != std::errc() || end != digits.data() + digits.size() || number < 0) return {};
+  return number;
+}
+
+bool is_skin_file(const fs::path& file) {
+  return file.filename().string().starts_with("skin_") && (file.extension() == ".obj" || file.extension() == ".pc2");
+}
+
+bool is_unfinished(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return name.starts_with(".aspic-") || name == "run.usda.unfinished" || name == "checkpoint.previous.bin.new";
+}
+
+void remove_file(const fs::path& file) {
+  std::error_code error;
+  fs::remove(file, error);
+  if (error) throw InvalidInput(file.string() + ": cannot be removed: " + error.message());
+}
+
+template <class Condition>
+void remove_files(const fs::path& folder, Condition is_unwanted) {
+  std::error_code error;
+  std::vector<fs::path> unwanted;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (!fs::is_directory(entry->symlink_status()) && is_unwanted(entry->path())) unwanted.push_back(entry->path());
+  }
+  for (const fs::path& file : unwanted) remove_file(file);
+}
+
+}  // namespace
+
+std::string RunLayout::frame_file(int frame) { return "frames/body_" + six_digits(frame) + ".vtu"; }
+
+fs::path RunLayout::skin_frame(const std::string& skin, int frame, const std::string& extension) const {
+  return frames() / ("skin_" + skin + "_" + six_digits(frame) + extension);
+}
+
+bool RunLayout::holds_run() const {
+  std::ifstream in(steps());
+  std::string head;
+  return std::getline(in, head) && head.starts_with(kStepsHead);
+}
+
+void RunLayout::remove_run() const {
+  remove_unfinished();
+  remove_frames_from(0);
+  remove_files(skins(), is_skin_file);
+  for (const fs::path& folder : {frames(), skins()}) {
+    std::error_code not_empty;
+    fs::remove(folder, not_empty);
+  }
+  for (const fs::path& file :
+       {scene(), iterations(), timings(), checkpoint(), previous_checkpoint(checkpoint()), index(), usd()}) {
+    remove_file(file);
+  }
+  remove_file(steps());  // last: without it the directory is no run any more
+}
+
+void RunLayout::remove_frames_from(int first) const {
+  remove_files(frames(), [&](const fs::path& file) {
+    const std::optional<int> number = frame_number(file);
+    return number && *number >= first;
+  });
+}
+
+void RunLayout::remove_unfinished() const {
+  for (const fs::path& folder : {root(), frames(), skins()}) remove_files(folder, is_unfinished);
+}
+
+std::vector<std::string> file_names(const std::vector<std::string>& names) {
+  std::set<std::string> taken;  // in lower case, for file systems that do not tell them apart
+  std::vector<std::string> files;
+  for (const std::string& name : names) {
+    std::string word;
+    for (const char c : name) {
+      const bool fits =
+          (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+      word += fits ? c : '_';
+    }
+    word = word.empty() ? "_" : word.substr(0, 100);
+    const auto is_new = [&](std::string candidate) {
+      std::transform(candidate.begin(), candidate.end(), candidate.begin(),
+                     [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+      return taken.insert(candidate).second;
+    };
+    std::string unique = word;
+    for (int i = 2; !is_new(unique); ++i) unique = word + "-" + std::to_string(i);
+    files.push_back(unique);
+  }
+  return files;
+}
+
+}  // namespace aspic

@@ -1,0 +1,89 @@
+#include "scene/run_directory_skins.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "io/mesh_file.h"
+#include "io/usd.h"
+
+namespace aspic {
+namespace {
+
+std::vector<std::string> names_of(const std::vector<Skin>& skins) {
+  std::vector<std::string> names;
+  for (const Skin& skin : skins) names.push_back(skin.body);
+  return file_names(names);
+}
+
+TriMesh moved(const TriMesh& rest, const std::vector<double>& x) {
+  TriMesh mesh = rest;
+  for (size_t i = 0; i < x.size(); ++i) mesh.vertices[i / 3][static_cast<int>(i % 3)] = x[i];
+  return mesh;
+}
+
+}  // namespace
+
+RunSkins::RunSkins(const RunLayout& layout, const Scene& scene)
+    : layout_(layout),
+      output_(scene.output),
+      skins_(scene.skins),
+      names_(names_of(scene.skins)),
+      frame_rate_(1 / std::max(scene.output.every, scene.simulation.options().h)) {}
+
+RunSkins RunSkins::create(const RunLayout& layout, const Scene& scene) {
+  RunSkins skins(layout, scene);
+  for (size_t i = 0; i < skins.skins_.size(); ++i) {
+    if (!skins.output_.pc2 && !skins.output_.usd) break;
+    const TriMesh& rest = skins.skins_[i].rest;
+    write_mesh(layout.skin_rest(skins.names_[i]), rest);
+    skins.caches_.push_back(Pc2File::create(layout.skin_cache(skins.names_[i]), rest.vertex_count()));
+  }
+  return skins;
+}
+
+RunSkins RunSkins::resume(const RunLayout& layout, const Scene& scene, int frames) {
+  RunSkins skins(layout, scene);
+  for (size_t i = 0; i < skins.skins_.size(); ++i) {
+    if (!skins.output_.pc2 && !skins.output_.usd) break;
+    skins.caches_.push_back(
+        Pc2File::resume(layout.skin_cache(skins.names_[i]), skins.skins_[i].rest.vertex_count(), frames));
+  }
+  return skins;
+}
+
+void RunSkins::add_frame(int frame, std::span<const double> q) {
+  for (size_t i = 0; i < skins_.size(); ++i) {
+    x_.resize(3 * static_cast<size_t>(skins_[i].rest.vertex_count()));
+    carry(skins_[i].embedding, q, x_);
+    if (!caches_.empty()) caches_[i].append(x_);
+    if (!output_.obj && !output_.ply) continue;
+    const TriMesh mesh = moved(skins_[i].rest, x_);
+    if (output_.obj) write_mesh(layout_.skin_frame(names_[i], frame, ".obj"), mesh);
+    if (output_.ply) write_mesh(layout_.skin_frame(names_[i], frame, ".ply"), mesh, FileEncoding::binary);
+  }
+}
+
+void RunSkins::sync() {
+  for (Pc2File& cache : caches_) cache.sync();
+}
+
+void RunSkins::write_usd(const std::vector<double>& frame_times) {
+  if (!output_.usd || skins_.empty()) return;
+  std::vector<UsdMesh> meshes;
+  for (size_t i = 0; i < skins_.size(); ++i) {
+    meshes.push_back(
+        {skins_[i].body, skins_[i].rest.triangles, [this, i](int frame) { return caches_[i].sample(frame); }});
+  }
+  aspic::write_usd(layout_.usd(), meshes, frame_times, frame_rate_);
+  frames_in_usd_ = frame_times.size();
+}
+
+void RunSkins::write_usd_when_doubled(const std::vector<double>& frame_times) {
+  if (frame_times.size() >= 2 * frames_in_usd_) write_usd(frame_times);
+}
+
+void RunSkins::close() {
+  for (Pc2File& cache : caches_) cache.close();
+}
+
+}  // namespace aspic

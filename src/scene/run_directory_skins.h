@@ -1,0 +1,38 @@
+// The skins of a run over time: point caches for Blender, mesh sequences, one USD scene.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "io/pc2.h"
+#include "scene/run_directory_layout.h"
+#include "scene/scene.h"
+
+namespace aspic {
+
+class RunSkins {
+ public:
+  static RunSkins create(const RunLayout& layout, const Scene& scene);
+  static RunSkins resume(const RunLayout& layout, const Scene& scene, int frames);
+
+  void add_frame(int frame, std::span<const double> q);  // q of the model, 3 per vertex [m]
+  void sync();
+  // Rewrites run.usda with all frames.
+  void write_usd(const std::vector<double>& frame_times);
+  // The same when so many frames were added that the cost of rewriting stays a fixed share of the whole.
+  void write_usd_when_doubled(const std::vector<double>& frame_times);
+  void close();
+
+ private:
+  RunSkins(const RunLayout& layout, const Scene& scene);
+
+  RunLayout layout_;
+  OutputOptions output_;
+  std::vector<Skin> skins_;
+  std::vector<std::string> names_;
+  double frame_rate_;            // [1/s]
+  std::vector<Pc2File> caches_;  // one per skin, when PC2 or USD is wanted: USD is assembled from them
+  size_t frames_in_usd_ = 0;
+  std::vector<double> x_;  // scratch
+};
+
+}  // namespace aspic

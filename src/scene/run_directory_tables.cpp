@@ -1,0 +1,87 @@
+#include "scene/run_directory_tables.h"
+
+#include "scene/run_directory_layout.h"
+
+namespace aspic {
+namespace {
+
+std::vector<std::string> step_columns(const std::vector<std::string>& potential_names) {
+  std::vector<std::string> columns = {"step",
+                                      "time",
+                                      "status",
+                                      "criterion",
+                                      "iterations",
+                                      "trials",
+                                      "linear_iterations",
+                                      "hessians",
+                                      "projected_hessians",
+                                      "residual",
+                                      "residual_threshold",
+                                      "min_det_F",
+                                      "kinetic"};
+  for (const std::string& name : potential_names) columns.push_back("potential_" + name);
+  for (const char* name :
+       {"potential_total", "pin_work", "damping_loss", "numerical_loss", "residual_work", "ledger_error"}) {
+    columns.push_back(name);
+  }
+  return columns;
+}
+
+const std::vector<std::string> kIterationColumns = {
+    "step",   "iteration", "value",          "gradient_norm",     "decrement", "alpha",
+    "trials", "hessians",  "factorizations", "linear_iterations", "projected"};
+const std::vector<std::string> kTimingColumns = {"step", "seconds"};
+
+}  // namespace
+
+RunTables RunTables::create(const RunLayout& layout, const std::vector<std::string>& potential_names) {
+  RunTables tables;
+  tables.steps_ = CsvFile::create(layout.steps(), step_columns(potential_names));
+  tables.iterations_ = CsvFile::create(layout.iterations(), kIterationColumns);
+  tables.timings_ = CsvFile::create(layout.timings(), kTimingColumns);
+  return tables;
+}
+
+RunTables RunTables::resume(const RunLayout& layout, const std::vector<std::string>& potential_names, int last_step) {
+  RunTables tables;
+  tables.steps_ = CsvFile::resume(layout.steps(), step_columns(potential_names), last_step, CsvFile::Rows::every_step);
+  tables.iterations_ = CsvFile::resume(layout.iterations(), kIterationColumns, last_step, CsvFile::Rows::optional);
+  tables.timings_ = CsvFile::resume(layout.timings(), kTimingColumns, last_step, CsvFile::Rows::every_step);
+  return tables;
+}
+
+void RunTables::add(const StepReport& report) {
+  CsvRow row;
+  row.add(report.step).add(report.time).add(to_string(report.status)).add(to_string(report.criterion));
+  row.add(report.iterations).add(report.trials).add(report.linear_iterations);
+  row.add(report.hessians).add(report.projected_hessians);
+  row.add(report.residual).add(report.residual_threshold).add(report.min_det_F).add(report.kinetic);
+  for (const double energy : report.potential) row.add(energy);
+  row.add(report.potential_total).add(report.pin_work).add(report.damping_loss).add(report.numerical_loss);
+  row.add(report.residual_work).add(report.ledger_error);
+  steps_.append(row);
+  timings_.append(CsvRow().add(report.step).add(report.seconds));
+}
+
+void RunTables::add(int step, const Iteration& iteration) {
+  const DirectionReport& direction = iteration.direction;
+  CsvRow row;
+  row.add(step).add(iteration.index).add(iteration.value).add(iteration.gradient_norm).add(iteration.decrement);
+  row.add(iteration.alpha).add(iteration.trials).add(direction.hessians).add(direction.factorizations);
+  row.add(direction.linear_iterations).add(direction.projected ? 1 : 0);
+  iterations_.append(row);
+}
+
+void RunTables::sync() {
+  steps_.sync();
+  iterations_.sync();
+  timings_.sync();
+}
+
+void RunTables::close() {
+  steps_.close();
+  iterations_.close();
+  timings_.close();
+}
+
+}  // namespace aspic

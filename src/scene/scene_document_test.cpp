@@ -1,0 +1,189 @@
+// The schema's rules and the words of the refusals.
+#include "scene/scene_document.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "scene/schema.h"
+
+namespace aspic {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+const std::string kBox = "[[body]]\nshape = { box = { upper = [1, 1, 1], cells = [2, 2, 2] } }\n";
+
+Table document(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return read_scene_document(text, "beam.toml", overrides);
+}
+
+std::string refusal(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    document(text, overrides);
+  } catch (const InvalidInput& e) {
+    return e.what();
+  }
+  return "";
+}
+
+const Value& body(const Table& scene, size_t i = 0) { return scene.find("body")->array()[i]; }
+
+TEST(SceneDocument, NeedsOnlyABody) {
+  const Table scene = document(kBox);
+  EXPECT_EQ((*scene.find("time"))["step"].number(), 0.01);
+  EXPECT_EQ((*scene.find("solver"))["line_search"]["p"].number(), 0.5);
+  EXPECT_EQ(body(scene)["name"].text(), "body1");
+  EXPECT_EQ(body(scene)["material"]["young"].number(), 1e5);
+  EXPECT_THAT(refusal("gravity = [0, 0, 0]\n"), HasSubstr("needs the key 'body'"));
+  EXPECT_THAT(refusal("body = []\n"), HasSubstr("at least one"));
+}
+
+TEST(SceneDocument, CompletedTextReadsBackToItself) {
+  const std::string text = "gravity = [0, -9.81, 1e-300]\n" + kBox +
+                           "name = \"a\"\nmaterial = { model = \"neo_hookean\", shear = 0.1, bulk = 3 }\n"
+                           "deform = { displacement = [0.1, \"X * \\\"\", 0] }\n";
+  EXPECT_THAT(refusal(text), HasSubstr("unexpected character"));
+  std::string good = text;
+  good.replace(good.find("X * \\\""), 6, "X*Y");
+  good += "[[body.pin]]\nwhere = { box = { lower = [0, 0, 0], upper = [1, 0.1, 1] } }\n";
+  const std::string once = to_toml(document(good));
+  EXPECT_EQ(once, to_toml(document(once)));
+  EXPECT_THAT(once, HasSubstr("shear = 0.1, bulk = 3.0"));
+  EXPECT_THAT(once, Not(HasSubstr("young")));
+}
+
+TEST(SceneDocument, MisspeltKeyIsNamedWithPlaceValueAndNearestName) {
+  EXPECT_EQ(refusal(kBox + "material = { yuong = 2e5 }\n"),
+            "beam.toml:3:14: unknown key yuong = 2e+05 in material (did you mean 'young'?)");
+  EXPECT_THAT(refusal("[tim]\nstep = 1\n" + kBox), AllOf(StartsWith("beam.toml:1:"), HasSubstr("'time'")));
+  EXPECT_THAT(refusal(kBox + "duration = 3\n"), HasSubstr("belongs to time"));
+}
+
+TEST(SceneDocument, WrongTypeIsNamedWithWhatIsExpected) {
+  EXPECT_EQ(refusal("[time]\nstep = \"fast\"\n" + kBox),
+            "beam.toml:2:8: step = \"fast\"; this is a string; expected is a number [s]");
+  EXPECT_THAT(refusal("gravity = [0, -9.81]\n" + kBox),
+              AllOf(StartsWith("beam.toml:1:11"), HasSubstr("three numbers [m/s^2]")));
+  EXPECT_THAT(refusal("[solver]\nmax_iterations = 2.5\n" + kBox), HasSubstr("an integer"));
+  EXPECT_THAT(refusal("[output]\nobj = 1\n" + kBox), HasSubstr("true or false"));
+  EXPECT_THAT(refusal("time = 1979-05-27\n" + kBox), HasSubstr("date"));
+}
+
+TEST(SceneDocument, ValueOutOfRangeIsNamedWithTheRemedy) {
+  EXPECT_EQ(refusal(kBox + "material = { poisson = 0.5 }\n"),
+            "beam.toml:3:24: poisson = 0.5; must be > -1 and < 0.5 (try 0.485)");
+  EXPECT_THAT(refusal(kBox + "material = { density = 0 }\n"), HasSubstr("must be > 0"));
+  EXPECT_THAT(refusal(kBox + "material = { density = -5.0 }\n"), HasSubstr("density = -5.0"));
+  EXPECT_THAT(refusal("[time]\nstep = nan\n" + kBox), HasSubstr("finite"));
+  EXPECT_THAT(refusal("gravity = [0, inf, 0]\n" + kBox), HasSubstr("finite"));
+  EXPECT_THAT(refusal("[time]\nstep = 0\n" + kBox), HasSubstr("step = 0"));
+  EXPECT_THAT(refusal(kBox + "scale = -1\n"), HasSubstr("scale = -1"));
+}
+
+TEST(SceneDocument, UnknownChoiceNamesTheNearest) {
+  EXPECT_THAT(refusal(kBox + "material = { model = \"neo_hokean\" }\n"), HasSubstr("did you mean 'neo_hookean'?"));
+  EXPECT_THAT(refusal("[time]\nintegrator = \"backward_eular\"\n" + kBox), HasSubstr("'backward_euler'"));
+  EXPECT_THAT(refusal("[solver]\nmethod = \"newtn\"\n" + kBox), HasSubstr("'newton'"));
+}
+
+TEST(SceneDocument, AlternativesExcludeEachOther) {
+  EXPECT_THAT(refusal(kBox + "material = { young = 1e5, mu = 3 }\n"),
+              AllOf(StartsWith("beam.toml:3:"), HasSubstr("mu = 3.0 excludes young"), HasSubstr("lambda, mu")));
+  EXPECT_THAT(refusal(kBox + "material = { mu = 3 }\n"), HasSubstr("needs the key 'lambda'"));
+  EXPECT_THAT(refusal(kBox + "material = { mu = 3, lambda = -2 }\n"), HasSubstr("lambda = -2; must be > -2/3 mu = -2"));
+  EXPECT_THAT(refusal(kBox + "mesh = \"a.msh\"\n"), HasSubstr("excludes"));
+  EXPECT_THAT(refusal("[[body]]\nname = \"a\"\n"), HasSubstr("body needs one of: mesh, mesh_size | shape"));
+  EXPECT_THAT(refusal(kBox + "[[body.pin]]\nwhere = { lowest = 0.1, highest = 0.1 }\n"), HasSubstr("excludes lowest"));
+}
+
+TEST(SceneDocument, SeveralErrorsAreReportedTogether) {
+  const std::string text = refusal("[time]\nstep = -1\nduraton = 3\n" + kBox + "velocity = 1\n");
+  EXPECT_THAT(text, AllOf(HasSubstr("beam.toml:2:"), HasSubstr("beam.toml:3:"), HasSubstr("beam.toml:6:")));
+}
+
+TEST(SceneDocument, SyntaxErrorsHaveAPlace) { EXPECT_THAT(refusal("gravity = [0, 0\n"), StartsWith("beam.toml:")); }
+
+TEST(SceneDocument, FormulasAreCheckedWhereTheyStand) {
+  EXPECT_THAT(refusal(kBox + "material = { young = \"1e5 * foo\" }\n"),
+              AllOf(StartsWith("beam.toml:3:22"), HasSubstr("'foo'")));
+  EXPECT_THAT(refusal(kBox + "[[body.pin]]\nwhere = \"y >\"\n"), StartsWith("beam.toml:4:9"));
+  EXPECT_EQ(refusal(kBox + "[[body.pin]]\nwhere = \"y>0\"\nmotion = { displacement = [0, \"sin(t)\", 0] }\n"), "");
+}
+
+TEST(SceneDocument, NamesAreUniqueAndPlain) {
+  EXPECT_THAT(refusal(kBox + "name = \"a\"\n" + kBox + "name = \"a\"\n"),
+              AllOf(StartsWith("beam.toml:6:"), HasSubstr("taken by beam.toml:3:")));
+  EXPECT_THAT(refusal(kBox + "name = \"../a\"\n"), HasSubstr("letters, digits"));
+  const Table scene = document("[[body]]\nmesh = \"meshes/fat cat.msh\"\n" + kBox);
+  EXPECT_EQ(body(scene, 0)["name"].text(), "fat_cat");
+  EXPECT_EQ(body(scene, 1)["name"].text(), "body2");
+}
+
+TEST(SceneDocument, DegenerateGeometryIsRefused) {
+  EXPECT_THAT(refusal("[[body]]\nshape = { box = { upper = [1, 0, 1], cells = [1, 1, 1] } }\n"), HasSubstr("upper"));
+  EXPECT_THAT(refusal("[[body]]\nshape = { box = { upper = [1, 1, 1], cells = [1, 1] } }\n"), HasSubstr("cells"));
+  EXPECT_THAT(refusal("[[body]]\nshape = { box = { upper = [1, 1, 1], cells = [1, 0, 1] } }\n"), HasSubstr("cells"));
+  EXPECT_THAT(refusal(kBox + "rotate = { axis = [0, 0, 0], angle_deg = 3 }\n"), HasSubstr("direction"));
+  EXPECT_THAT(refusal(kBox + "[[body.pin]]\nwhere = \"all\"\nmotion = { keyframes = [{ time = 1, displacement = [0, 0, "
+                             "0] }, { time = 1, displacement = [0, 0, 0] }] }\n"),
+              HasSubstr("later than the one before"));
+}
+
+TEST(Override, ReplacesValuesAnywhere) {
+  const std::string two = kBox + "name = \"a\"\n[[body.pin]]\nname = \"base\"\nwhere = \"y < 0.1\"\n" + kBox;
+  const Table scene = document(two, {"time.step=0.005", "material.young=2e5", "body.a.material.density = 900",
+                                     "solver.method=gradient_descent", "body.a.pin.base.where=y < 0.5"});
+  EXPECT_EQ((*scene.find("time"))["step"].number(), 0.005);
+  EXPECT_EQ((*scene.find("solver"))["method"].text(), "gradient_descent");
+  EXPECT_EQ(body(scene, 0)["material"]["young"].number(), 2e5);
+  EXPECT_EQ(body(scene, 1)["material"]["young"].number(), 2e5);
+  EXPECT_EQ(body(scene, 0)["material"]["density"].number(), 900);
+  EXPECT_EQ(body(scene, 1)["material"]["density"].number(), 1000);
+  EXPECT_EQ(body(scene, 0)["pin"].array()[0]["where"].text(), "y < 0.5");
+}
+
+TEST(Override, ErrorsNameTheOverride) {
+  EXPECT_EQ(refusal(kBox, {"material.yuong=2e5"}),
+            "--set material.yuong=2e5: unknown key yuong = 2e+05 in material (did you mean 'young'?)");
+  EXPECT_THAT(refusal(kBox, {"time.step=-1"}), StartsWith("--set time.step=-1: step = -1"));
+  EXPECT_THAT(refusal(kBox, {"time.step=fast"}), StartsWith("--set time.step=fast: step = \"fast\"; this is a string"));
+  EXPECT_THAT(refusal(kBox, {"tme.step=1"}), HasSubstr("did you mean 'time'?"));
+  EXPECT_THAT(refusal(kBox, {"time.step"}), HasSubstr("KEY=VALUE"));
+  EXPECT_THAT(refusal(kBox, {"time..step=1"}), HasSubstr("empty"));
+  EXPECT_THAT(refusal(kBox, {"body.buny.scale=2"}), HasSubstr("unknown key or name 'buny'"));
+  EXPECT_THAT(refusal(kBox, {"body.pin.where=\"y < 0\""}), HasSubstr("no pin"));
+  EXPECT_THAT(refusal(kBox, {"gravity=[0, 1"}), StartsWith("--set gravity=[0, 1: "));
+  EXPECT_THAT(refusal(kBox, {"gravity=[0, 0, 0]\ntime=3"}), StartsWith("--set gravity"));
+}
+
+TEST(Schema, EveryKeyIsExplained) {
+  for (const Key& key : scene_schema().keys) {
+    EXPECT_FALSE(key.meaning.empty()) << key.section << "." << key.name;
+    EXPECT_TRUE(key.fallback.empty() || key.fallback == "{}" || !key.reason.empty()) << key.section << "." << key.name;
+  }
+}
+
+TEST(Schema, EveryTableHasItsSection) {
+  for (const Key& key : scene_schema().keys) {
+    if (key.table.empty()) continue;
+    EXPECT_FALSE(scene_schema().names(key.table).empty()) << key.section << "." << key.name;
+  }
+}
+
+TEST(Schema, NoKeyAppearsTwiceInASection) {
+  const Schema& schema = scene_schema();
+  for (const Key& key : schema.keys) EXPECT_EQ(&key, schema.find(key.section, key.name)) << key.section << key.name;
+}
+
+TEST(Schema, AlternativesNameExistingKeys) {
+  for (const Alternatives& rule : scene_schema().alternatives)
+    for (const auto& group : rule.groups)
+      for (const std::string& name : group) EXPECT_TRUE(scene_schema().find(rule.section, name)) << name;
+}
+
+}  // namespace
+}  // namespace aspic

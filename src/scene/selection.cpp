@@ -1,0 +1,137 @@
+#include "scene/selection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "base/error.h"
+#include "scene/expression.h"
+#include "scene/placement.h"
+#include "scene/tables.h"
+
+namespace aspic {
+namespace {
+
+using Predicate = std::function<bool(const Vec3d&)>;
+
+// Selections by height reach a little further than their fraction, so that a flat base is whole despite round-off.
+constexpr double kHeightSlack = 1e-9;
+
+Predicate by_height(const SelectionScope& scope, double lowest, double highest) {
+  double low = INFINITY, high = -INFINITY;
+  for (const Vec3d& X : scope.mesh.rest) low = std::min(low, dot(scope.up, X)), high = std::max(high, dot(scope.up, X));
+  const double height = high - low, slack = kHeightSlack * height;
+  const double below = low + lowest * height + slack, above = high - highest * height - slack;
+  const Vec3d up = scope.up;
+  if (highest < 0) return [up, below](const Vec3d& X) { return dot(up, X) <= below; };
+  return [up, above](const Vec3d& X) { return dot(up, X) >= above; };
+}
+
+Predicate geometric(const Value& where, const SelectionScope& scope) {
+  if (where.is_text()) {
+    const Expression formula(where.text());
+    return [formula](const Vec3d& X) { return formula.holds_at(X); };
+  }
+  if (const Value* box = where.find("box")) {
+    const Vec3d lower = (*box)["lower"].vector(), upper = (*box)["upper"].vector();
+    return [lower, upper](const Vec3d& X) {
+      for (int i = 0; i < 3; ++i)
+        if (!(X[i] >= lower[i] && X[i] <= upper[i])) return false;
+      return true;
+    };
+  }
+  if (const Value* sphere = where.find("sphere")) {
+    const Vec3d center = (*sphere)["center"].vector();
+    const double radius = (*sphere)["radius"].number();
+    return [center, radius](const Vec3d& X) { return dot(X - center, X - center) <= radius * radius; };
+  }
+  if (const Value* lowest = where.find("lowest")) return by_height(scope, lowest->number(), -1);
+  return by_height(scope, -1, where["highest"].number());
+}
+
+// One flag per vertex of the body for a list of indices; empty for other selections.
+std::vector<char> listed_vertices(const Value& where, const SelectionScope& scope) {
+  const Value* list = where.is_table() ? where.find("vertices") : nullptr;
+  if (!list) return {};
+  std::vector<char> listed(scope.mesh.rest.size(), 0);
+  for (const Value& index : list->array()) {
+    const std::int64_t i = std::get<std::int64_t>(index.data);
+    if (i >= scope.mesh.vertex_count())
+      throw error_at(index.place, "vertices: " + std::to_string(i) + " is beyond the last vertex of body '" +
+                                      scope.body + "', " + std::to_string(scope.mesh.vertex_count() - 1));
+    listed[i] = 1;
+  }
+  return listed;
+}
+
+template <class Selected>
+void require_some(const Selected& selected, const Value& where, const SelectionScope& scope, const char* what) {
+  if (!selected.empty()) return;
+  const Box box = bounding_box(scope.mesh.rest);
+  throw error_at(where.place, "where = " + shortened(inline_toml(where)) + " selects no " + what + " of body '" +
+                                  scope.body + "', which reaches from " + point_text(box.lower) + " to " +
+                                  point_text(box.upper));
+}
+
+// Runs `select`, whose formulas may fail at a point, and adds the place.
+template <class Select>
+auto placed(const Value& where, const Select& select) {
+  try {
+    return select();
+  } catch (const InvalidInput& e) {
+    const std::string text = e.what();
+    if (text.starts_with(to_string(where.place))) throw;
+    throw error_at(where.place, text);
+  }
+}
+
+}  // namespace
+
+std::vector<int> select_vertices(const Value& where, const SelectionScope& scope) {
+  const std::vector<char> listed = listed_vertices(where, scope);
+  const std::vector<int> selected = placed(where, [&] {
+    const Predicate holds = listed.empty() ? geometric(where, scope) : nullptr;
+    std::vector<int> result;
+    for (int v = 0; v < scope.mesh.vertex_count(); ++v)
+      if (holds ? holds(scope.mesh.rest[v]) : listed[v]) result.push_back(v);
+    return result;
+  });
+  require_some(selected, where, scope, "vertex");
+  return selected;
+}
+
+std::vector<int> select_tets(const Value& where, const SelectionScope& scope) {
+  const std::vector<char> listed = listed_vertices(where, scope);
+  const std::vector<int> selected = placed(where, [&] {
+    const Predicate holds = listed.empty() ? geometric(where, scope) : nullptr;
+    const auto is_listed = [&](int v) { return listed[v] != 0; };
+    std::vector<int> result;
+    for (int t = 0; t < scope.mesh.tet_count(); ++t) {
+      const Tet& tet = scope.mesh.tets[t];
+      if (holds ? holds(centroid(scope.mesh, t)) : std::all_of(tet.begin(), tet.end(), is_listed)) result.push_back(t);
+    }
+    return result;
+  });
+  require_some(selected, where, scope, "tet");
+  return selected;
+}
+
+std::vector<Triangle> select_triangles(const Value& where, const SelectionScope& scope,
+                                       const std::vector<Triangle>& boundary) {
+  const std::vector<char> listed = listed_vertices(where, scope);
+  const std::vector<Triangle> selected = placed(where, [&] {
+    const Predicate holds = listed.empty() ? geometric(where, scope) : nullptr;
+    const auto is_listed = [&](int v) { return listed[v] != 0; };
+    const std::vector<Vec3d>& X = scope.mesh.rest;
+    std::vector<Triangle> result;
+    for (const Triangle& t : boundary) {
+      const Vec3d center = (1.0 / 3) * (X[t[0]] + X[t[1]] + X[t[2]]);
+      if (holds ? holds(center) : std::all_of(t.begin(), t.end(), is_listed)) result.push_back(t);
+    }
+    return result;
+  });
+  require_some(selected, where, scope, "boundary triangle");
+  return selected;
+}
+
+}  // namespace aspic

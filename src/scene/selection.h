@@ -1,0 +1,23 @@
+// Which vertices, boundary triangles or tets of a body are meant by `where`.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "mesh/tet_mesh.h"
+#include "scene/value.h"
+
+namespace aspic {
+
+struct SelectionScope {
+  const TetMesh& mesh;  // the placed rest shape of one body, with its own indices
+  Vec3d up;             // against gravity, of length 1
+  std::string body;     // for messages
+};
+
+// Never empty: a selection of nothing throws InvalidInput with the extent of the body.
+std::vector<int> select_vertices(const Value& where, const SelectionScope& scope);
+std::vector<int> select_tets(const Value& where, const SelectionScope& scope);
+std::vector<Triangle> select_triangles(const Value& where, const SelectionScope& scope,
+                                       const std::vector<Triangle>& boundary);
+
+}  // namespace aspic

@@ -1,0 +1,166 @@
+#include "scene/tables.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <set>
+
+#include "base/error.h"
+#include "io/atomic_file.h"
+#include "io/vtu.h"
+#include "scene/expression.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The words of a line, without its separators.
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  while (true) {
+    const size_t begin = line.find_first_not_of(",; \t\r");
+    if (begin == std::string_view::npos) return words;
+    const size_t end = std::min(line.find_first_of(",; \t\r", begin), line.size());
+    words.push_back(line.substr(begin, end - begin));
+    line.remove_prefix(end);
+  }
+}
+
+bool parse_finite(std::string_view word, double& value) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size() && std::isfinite(value);
+}
+
+std::vector<double> from_vtu(const fs::path& path, const Value& table, const TetMesh& mesh) {
+  const Value* name = table.find("name");
+  const Vtu vtu = read_vtu(path);
+  std::vector<std::string> known;
+  for (const Field& f : vtu.cell_fields)
+    if (f.components == 1) known.push_back(f.name);
+  if (!name)
+    throw error_at(table["file"].place,
+                   path.filename().string() + " needs `name`, its cell field" + suggestion("", known));
+  for (const Field& f : vtu.cell_fields) {
+    if (f.name != name->text() || f.components != 1) continue;
+    if (f.values.size() != mesh.tets.size())
+      throw error_at(name->place, path.filename().string() + " has " + std::to_string(f.values.size()) +
+                                      " cells; the body has " + std::to_string(mesh.tets.size()) + " tets");
+    return f.values;
+  }
+  throw error_at(name->place, path.filename().string() + " has no cell field " + toml_string(name->text()) +
+                                  " of one component" + suggestion(name->text(), known));
+}
+
+std::vector<double> from_file(Table& table, const TetMesh& mesh, SceneFiles& files, const std::string& stem) {
+  Value view{table, {}};
+  const Value name = view["file"];
+  const fs::path path = files.find(name);
+  std::vector<double> values;
+  if (path.extension() == ".vtu" || path.extension() == ".VTU") {
+    values = from_vtu(path, view, mesh);
+  } else {
+    if (const Value* field = table.find("name"))
+      throw error_at(field->place, "name = " + toml_string(field->text()) + "; only a VTU file has named fields");
+    values = read_number_table(path, 1, mesh.tets.size(), "a tet", name.place);
+  }
+  check_fingerprint(table, "hash", fingerprint_of_file(path), path.string());
+  table.set("file", {files.keep(path, stem), {}});
+  return values;
+}
+
+std::vector<double> from_regions(const Value& regions, const TetMesh& mesh) {
+  const std::set<int> labels(mesh.region.begin(), mesh.region.end());
+  std::string list;
+  for (const int label : labels) list += (list.empty() ? "" : ", ") + std::to_string(label);
+  if (labels.empty())
+    throw error_at(regions.place, "regions = " + shortened(inline_toml(regions)) +
+                                      "; the mesh has no region labels (use a formula or a file)");
+  for (const int label : labels)
+    if (!regions.find(std::to_string(label)))
+      throw error_at(regions.place, "regions = " + shortened(inline_toml(regions)) + "; a value for region " +
+                                        std::to_string(label) + " is missing (the mesh has: " + list + ")");
+  for (const Member& m : regions.table().members) {
+    const bool used = std::any_of(labels.begin(), labels.end(), [&](int l) { return std::to_string(l) == m.key; });
+    if (!used) throw error_at(m.place, "the mesh has no region " + m.key + " (it has: " + list + ")");
+  }
+  std::vector<double> values;
+  for (const int label : mesh.region) values.push_back(regions[std::to_string(label)].number());
+  return values;
+}
+
+std::vector<double> from_formula(const Value& value, const TetMesh& mesh) {
+  const Expression formula(value.text());
+  std::vector<double> values;
+  try {
+    for (int t = 0; t < mesh.tet_count(); ++t) values.push_back(formula.at(centroid(mesh, t)));
+  } catch (const InvalidInput& e) {
+    throw error_at(value.place, e.what());
+  }
+  return values;
+}
+
+}  // namespace
+
+std::vector<double> read_number_table(const fs::path& path, size_t columns, size_t rows, const std::string& row,
+                                      const Place& place) {
+  const std::string text = read_file(path);
+  std::vector<double> values;
+  size_t count = 0;
+  int line_number = 0;
+  bool may_be_header = true;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line(text.data() + begin, end - begin);
+    begin = end + 1;
+    ++line_number;
+    const std::vector<std::string_view> words = words_of(line);
+    if (words.empty() || words[0].starts_with('#')) continue;
+    const std::string where = path.string() + ":" + std::to_string(line_number) + ": ";
+    double number = 0;
+    const bool is_header = may_be_header && std::isalpha(static_cast<unsigned char>(words[0][0])) &&
+                           !parse_finite(words[0], number) && words[0] != "nan" && words[0] != "inf";
+    may_be_header = false;
+    if (is_header) continue;
+    if (words.size() != columns)
+      throw InvalidInput(where + std::to_string(words.size()) + " numbers; " + std::to_string(columns) +
+                         " are needed for each of the " + std::to_string(rows) + " lines");
+    for (const std::string_view word : words) {
+      if (!parse_finite(word, number))
+        throw InvalidInput(where + toml_string(shortened(std::string(word))) + " is not a finite number");
+      values.push_back(number);
+    }
+    ++count;
+  }
+  if (count != rows)
+    throw error_at(place, path.string() + " has " + std::to_string(count) + " lines of numbers; one for " + row +
+                              " is needed, " + std::to_string(rows) + " in all");
+  return values;
+}
+
+Vec3d centroid(const TetMesh& mesh, int tet) {
+  const auto& [a, b, c, d] = mesh.tets[tet];
+  return 0.25 * ((mesh.rest[a] + mesh.rest[b]) + (mesh.rest[c] + mesh.rest[d]));
+}
+
+std::vector<double> tet_values(Table& table, const Key& key, const TetMesh& mesh, SceneFiles& files,
+                               const std::string& stem) {
+  Value& value = *table.find(key.name);
+  if (value.is_number()) return std::vector<double>(mesh.tets.size(), value.number());
+  std::vector<double> values;
+  if (value.is_text()) {
+    values = from_formula(value, mesh);
+  } else if (const Value* regions = value.find("regions")) {
+    values = from_regions(*regions, mesh);
+  } else {
+    values = from_file(value.table(), mesh, files, stem + "." + key.name);
+  }
+  for (int t = 0; t < mesh.tet_count(); ++t)
+    if (!key.range.contains(values[t]))
+      throw error_at(value.place, key.name + " = " + number_text(values[t]) + " in tet " + std::to_string(t) + " at " +
+                                      point_text(centroid(mesh, t)) + "; must be " + key.range.text());
+  return values;
+}
+
+}  // namespace aspic
