@@ -20,12 +20,9 @@ using testing::HasSubstr;
 
 class VtuFile : public TestFolder {
  protected:
-  Vtu read_text(const std::string& text) const {
-    put(path("text.vtu"), text);
-    return read_vtu(path("text.vtu"));
-  }
+  static Vtu read_text(const std::string& text) { return parse_vtu(text, "text.vtu"); }
 
-  std::string message(const std::string& text) const {
+  static std::string message(const std::string& text) {
     return message_of<InvalidInput>([&] { read_text(text); });
   }
 };
