@@ -30,15 +30,22 @@ CGAL::Bbox_3 bounding_box(const CGAL::Image_3& image) {
           z + image.vz() * static_cast<double>(image.zdim() - 1)};
 }
 
+// The labels end at the border of the image; one voxel further out they are 0.
+CGAL::Bbox_3 widened_by_voxel(const CGAL::Bbox_3& box, const CGAL::Image_3& image) {
+  return {box.xmin() - image.vx(), box.ymin() - image.vy(), box.zmin() - image.vz(),
+          box.xmax() + image.vx(), box.ymax() + image.vy(), box.zmax() + image.vz()};
+}
+
 }  // namespace
 
 TetMesh mesh_image(const std::filesystem::path& path, const MesherOptions& options) {
   const CGAL::Image_3 image = read_image(path);
   const CGAL::Bbox_3 box = bounding_box(image);
   const double size = options.size > 0 ? options.size : std::hypot(box.x_span(), box.y_span(), box.z_span()) / 25;
+  check_size(box, size);
   const LabelledDomain domain = LabelledDomain::create_labeled_image_mesh_domain(
       image, CGAL::parameters::relative_error_bound = kSurfaceTolerance);
-  const LabelGrid grid(domain, box, std::min({image.vx(), image.vy(), image.vz()}));
+  const LabelGrid grid(domain, widened_by_voxel(box, image), std::min({image.vx(), image.vy(), image.vz()}));
   if (grid.is_empty()) throw InvalidInput(path.string() + ": all labels are 0; there is nothing to fill");
   for (const auto& [label, unused] : options.region_size)
     if (!grid.has(label))

@@ -1,45 +1,10 @@
-#include <muParser.h>
-
 #include <cmath>
 
 #include "labelled.h"
+#include "scene/expression.h"
 
 namespace aspic {
 namespace {
-
-constexpr size_t kLongestExpression = 4096;
-
-// Compiled once; each call sets the three variables in place and runs the byte code.
-class Expression {
- public:
-  explicit Expression(const std::string& text) {
-    if (text.size() > kLongestExpression)
-      throw InvalidInput("--implicit: the expression is longer than " + std::to_string(kLongestExpression) +
-                         " characters; shorten it");
-    try {
-      parser_.DefineVar("x", &x_[0]);
-      parser_.DefineVar("y", &x_[1]);
-      parser_.DefineVar("z", &x_[2]);
-      parser_.DefineConst("pi", 3.141592653589793);
-      parser_.SetExpr(text);
-      parser_.Eval();
-    } catch (const mu::ParserError& error) {
-      throw InvalidInput("--implicit: " + error.GetMsg() + " in '" + text +
-                         "'; write f(x, y, z) that is negative inside, for example x^2+y^2+z^2-1");
-    }
-  }
-  Expression(const Expression&) = delete;  // the parser points into this object
-  Expression& operator=(const Expression&) = delete;
-
-  double at(const Point& p) {
-    for (int axis = 0; axis < 3; ++axis) x_[axis] = p[axis];
-    return parser_.Eval();
-  }
-
- private:
-  double x_[3] = {};
-  mu::Parser parser_;
-};
 
 CGAL::Bbox_3 bounding_box(const Vec3d& lower, const Vec3d& upper) {
   for (int axis = 0; axis < 3; ++axis)
@@ -58,6 +23,15 @@ bool contains(const CGAL::Bbox_3& box, const Point& p) {
   return true;
 }
 
+Expression parsed(const std::string& text) {
+  try {
+    return Expression(text);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput("--implicit: " + std::string(error.what()) +
+                       "; write a formula of x, y, z that is negative inside, such as x^2+y^2+z^2-1");
+  }
+}
+
 }  // namespace
 
 // A shape that reaches beyond the bounds is cut off there.
@@ -65,8 +39,9 @@ TetMesh mesh_implicit(const ImplicitShape& shape, const MesherOptions& options) 
   const CGAL::Bbox_3 bounds = bounding_box(shape.lower, shape.upper);
   const double diagonal = std::hypot(bounds.x_span(), bounds.y_span(), bounds.z_span());
   const double size = options.size > 0 ? options.size : diagonal / 25;
-  Expression f(shape.expression);
-  const auto label = [&](const Point& p) { return contains(bounds, p) && f.at(p) < 0 ? 1 : 0; };
+  check_size(bounds, size);
+  const Expression f = parsed(shape.expression);
+  const auto label = [&](const Point& p) { return contains(bounds, p) && f.at({{p.x(), p.y(), p.z()}}) < 0 ? 1 : 0; };
   const CGAL::Bbox_3 wide = widened(bounds, 0.05 * diagonal);
   const LabelledDomain domain(label, wide, CGAL::parameters::relative_error_bound = kSurfaceTolerance);
   const LabelGrid grid(domain, wide, size / 2);

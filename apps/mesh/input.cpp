@@ -1,0 +1,83 @@
+#include "input.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+#include "base/error.h"
+#include "io/mesh_file.h"
+#include "mesh/doctor.h"
+#include "mesher.h"
+
+namespace aspic {
+namespace {
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+std::string first_indices(const std::vector<int>& indices) {
+  constexpr size_t kShown = 8;
+  std::string text;
+  for (size_t i = 0; i < std::min(kShown, indices.size()); ++i)
+    text += (text.empty() ? "" : ", ") + std::to_string(indices[i]);
+  return indices.size() > kShown ? text + ", ..." : text;
+}
+
+void check(const std::filesystem::path& path, const TriMesh& mesh) {
+  std::string errors;
+  for (const Finding& finding : diagnose(mesh)) {
+    if (finding.severity != Severity::error) continue;
+    errors += (errors.empty() ? "" : "\n") + path.string() + ": " + finding.message;
+    if (!finding.indices.empty()) errors += " [" + first_indices(finding.indices) + "]";
+    errors += "; " + finding.remedy;
+  }
+  if (!errors.empty()) throw InvalidInput(errors);
+}
+
+}  // namespace
+
+CheckedSurface checked_surface(const std::filesystem::path& path, Holes holes) {
+  CheckedSurface surface{read_tri_mesh(path), {}};
+  surface.actions = repair(surface.mesh);
+  if (holes == Holes::fill_small) {
+    const int before = surface.mesh.triangle_count();
+    surface.mesh = with_holes_filled(surface.mesh);
+    if (const int added = surface.mesh.triangle_count() - before; added > 0)
+      surface.actions.push_back("filled holes with " + std::to_string(added) + " triangles");
+  }
+  check(path, surface.mesh);
+  return surface;
+}
+
+bool is_image(const std::filesystem::path& path) {
+  const std::string name = lower(path.filename().string());
+  return name.ends_with(".inr") || name.ends_with(".inr.gz");
+}
+
+void check_output(const std::filesystem::path& path) {
+  std::vector<std::string> known;
+  for (const MeshFormat& format : mesh_formats()) {
+    if (!format.writes_tets) continue;
+    if (format.extension == lower(path.extension().string())) return;
+    known.push_back(format.extension);
+  }
+  throw InvalidInput("--output " + path.string() + ": no format with this extension holds tets" +
+                     suggestion(path.extension().string(), known));
+}
+
+std::pair<int, double> parsed_region_size(const std::string& text) {
+  int label = 0;
+  double size = 0;
+  const char* const end = text.data() + text.size();
+  const auto [equals, label_error] = std::from_chars(text.data(), end, label);
+  if (label_error == std::errc() && equals != end && *equals == '=') {
+    const auto [last, size_error] = std::from_chars(equals + 1, end, size);
+    if (size_error == std::errc() && last == end && std::isfinite(size) && size > 0) return {label, size};
+  }
+  throw InvalidInput("--region-size " + text + ": write LABEL=SIZE with an integer and a positive length, as 2=0.5");
+}
+
+}  // namespace aspic

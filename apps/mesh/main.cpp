@@ -1,1 +1,124 @@
-int main() { return 0; }
+// aspic-mesh: fills a closed surface, an implicit shape or a labelled image with tetrahedra.
+#include <CLI/CLI.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include "base/error.h"
+#include "input.h"
+#include "io/mesh_file.h"
+#include "mesher.h"
+#include "report.h"
+
+namespace aspic {
+namespace {
+
+enum ExitCode { kDone = 0, kFailed = 1, kBadInput = 2 };
+
+constexpr const char* kLicence =
+    "aspic-mesh links CGAL's packages under the GNU General Public License, version 3 or later; as a whole it is\n"
+    "distributed under that licence. It comes without any warranty. Meshes made with it are yours.";
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  aspic-mesh bunny.obj -o bunny.msh\n"
+    "  aspic-mesh part.stl -o part.msh --size 2 --fill-holes\n"
+    "  aspic-mesh --implicit \"(sqrt(x^2+y^2)-1)^2+z^2-0.16\" --bounds -2 -2 -1 2 2 1 -o torus.mesh\n"
+    "  aspic-mesh liver.inr.gz -o liver.msh --size 8 --region-size 2=4\n"
+    "Exit codes: 0 done, 2 bad input, 1 anything else.\n\n";
+
+struct Arguments {
+  std::string input, output, expression;
+  std::vector<double> bounds;
+  double size = 0;
+  std::vector<std::string> region_sizes;
+  bool fill_holes = false, quiet = false;
+};
+
+void declare(CLI::App& app, Arguments& arguments) {
+  app.set_version_flag("--version",
+                       std::string("aspic-mesh ") + ASPIC_VERSION + " (CGAL " + CGAL_VERSION_TEXT + ")\n" + kLicence);
+  app.footer(std::string(kExamples) + kLicence);
+  app.add_option("input", arguments.input,
+                 "a closed surface (.obj .stl .ply .off ...), or a labelled image (.inr .inr.gz)");
+  app.add_option("--implicit", arguments.expression, "instead of a file: a formula of x, y, z that is negative inside");
+  app.add_option("--bounds", arguments.bounds, "x0 y0 z0 x1 y1 z1: the box that holds the implicit shape")->expected(6);
+  app.add_option("-o,--output", arguments.output, "the file to write; its extension names the format")->required();
+  app.add_option("--size", arguments.size,
+                 "target edge length in units of the input; 0: diagonal of the bounding box / 25");
+  app.add_option("--region-size", arguments.region_sizes,
+                 "LABEL=SIZE: another target edge length in that region of an image")
+      ->allow_extra_args(false);
+  app.add_flag("--fill-holes", arguments.fill_holes,
+               "close holes of the surface whose border is shorter than its diagonal");
+  app.add_flag("--quiet", arguments.quiet, "no report");
+}
+
+MesherOptions mesher_options(const Arguments& arguments) {
+  if (!(arguments.size >= 0) || !std::isfinite(arguments.size))
+    throw InvalidInput("--size " + std::to_string(arguments.size) + ": give a positive length, or 0 for the default");
+  MesherOptions options{arguments.size, {}};
+  for (const std::string& text : arguments.region_sizes) options.region_size.insert(parsed_region_size(text));
+  return options;
+}
+
+void check_combination(const Arguments& arguments) {
+  if (arguments.input.empty() == arguments.expression.empty())
+    throw InvalidInput("give either an input file or --implicit; see aspic-mesh --help");
+  if (!arguments.expression.empty() && arguments.bounds.empty())
+    throw InvalidInput("--implicit needs --bounds x0 y0 z0 x1 y1 z1, the box that holds the shape");
+  if (arguments.expression.empty() && !arguments.bounds.empty())
+    throw InvalidInput("--bounds belongs to --implicit; a file has its own");
+  if (!arguments.region_sizes.empty() && !is_image(arguments.input))
+    throw InvalidInput("--region-size needs a labelled image (.inr, .inr.gz); use --size");
+  if (arguments.fill_holes && (arguments.input.empty() || is_image(arguments.input)))
+    throw InvalidInput("--fill-holes needs a surface");
+}
+
+TetMesh mesh(const Arguments& arguments) {
+  const MesherOptions options = mesher_options(arguments);
+  if (!arguments.expression.empty()) {
+    const auto& b = arguments.bounds;
+    return mesh_implicit({arguments.expression, {{b[0], b[1], b[2]}}, {{b[3], b[4], b[5]}}}, options);
+  }
+  if (is_image(arguments.input)) return mesh_image(arguments.input, options);
+  const CheckedSurface surface =
+      checked_surface(arguments.input, arguments.fill_holes ? Holes::fill_small : Holes::refuse);
+  if (!arguments.quiet)
+    for (const std::string& action : surface.actions) std::printf("%s: %s\n", arguments.input.c_str(), action.c_str());
+  return mesh_surface(surface.mesh, options);
+}
+
+void run(const Arguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  check_combination(arguments);
+  check_output(arguments.output);
+  const TetMesh tets = mesh(arguments);
+  write_mesh(arguments.output, tets);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  if (!arguments.quiet) std::fputs(quality_report(tets, seconds.count()).c_str(), stdout);
+}
+
+}  // namespace
+}  // namespace aspic
+
+int main(int argc, char** argv) {
+  CLI::App app("Fills a closed surface, an implicit shape or a labelled image with tetrahedra.", "aspic-mesh");
+  aspic::Arguments arguments;
+  aspic::declare(app, arguments);
+  try {
+    app.parse(argc, argv);
+    aspic::run(arguments);
+    return aspic::kDone;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? aspic::kDone : aspic::kBadInput;
+  } catch (const aspic::InvalidInput& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return aspic::kBadInput;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: meshing failed: %s\n", error.what());
+    return aspic::kFailed;
+  }
+}

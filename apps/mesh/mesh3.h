@@ -8,6 +8,7 @@
 #include <CGAL/make_mesh_3.h>
 
 #include <algorithm>
+#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -26,6 +27,16 @@ inline constexpr double kRadiusPerEdge = 0.75;
 // Distance between the facets and the surface, relative to the bound of the facets' radii.
 inline constexpr double kDistancePerRadius = 0.15;
 inline constexpr double kSliverBound = 12;  // [degrees] smallest dihedral angle that the optimisers aim for
+
+// A size given in other units than the input would never end.
+inline void check_size(const CGAL::Bbox_3& box, double size) {
+  constexpr double kMostCells = 1e9;  // cubes of that size in the bounding box
+  const double cells = (box.x_span() / size + 1) * (box.y_span() / size + 1) * (box.z_span() / size + 1);
+  if (cells > kMostCells)
+    throw InvalidInput("--size " + std::to_string(size) + ": too fine for a shape " +
+                       std::to_string(std::max({box.x_span(), box.y_span(), box.z_span()})) +
+                       " long; it is in the units of the input, give a larger one");
+}
 
 // Bound of the radii at a point, from the region it is in or, on a surface, the finer of the two regions it separates.
 template <class Domain>

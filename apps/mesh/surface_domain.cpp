@@ -47,11 +47,13 @@ TriMesh to_tri_mesh(const Surface& surface) {
   return mesh;
 }
 
-double diagonal(const TriMesh& mesh) {
+CGAL::Bbox_3 bounding_box(const TriMesh& mesh) {
   CGAL::Bbox_3 box;
   for (const Vec3d& x : mesh.vertices) box += Point(x[0], x[1], x[2]).bbox();
-  return std::hypot(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
+  return box;
 }
+
+double diagonal(const CGAL::Bbox_3& box) { return std::hypot(box.x_span(), box.y_span(), box.z_span()); }
 
 // Up to a dozen vertices of each component, beside the points that the domain shoots itself.
 SeededDomain<Domain>::Seeds seeds(const Domain& domain, const TriMesh& mesh) {
@@ -72,17 +74,20 @@ SeededDomain<Domain>::Seeds seeds(const Domain& domain, const TriMesh& mesh) {
 }  // namespace
 
 TetMesh mesh_surface(const TriMesh& mesh, const MesherOptions& options) {
+  const CGAL::Bbox_3 box = bounding_box(mesh);
+  const double size = options.size > 0 ? options.size : diagonal(box) / 25;
+  check_size(box, size);
   const Surface surface = to_surface(mesh);
   SeededDomain<Domain> domain(surface);
   domain.set_seeds(seeds(domain, mesh));
-  TetMesh tets = filled(domain, options.size > 0 ? options.size : diagonal(mesh) / 25, {});
+  TetMesh tets = filled(domain, size, {});
   tets.region.clear();
   return tets;
 }
 
 TriMesh with_holes_filled(const TriMesh& mesh) {
   Surface surface = to_surface(mesh);
-  const double longest = diagonal(mesh);
+  const double longest = diagonal(bounding_box(mesh));
   std::vector<Surface::Halfedge_index> borders;
   processing::extract_boundary_cycles(surface, std::back_inserter(borders));
   for (const auto border : borders) {

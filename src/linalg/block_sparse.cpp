@@ -124,7 +124,7 @@ void BlockSparse::set_zero() {
 void BlockSparse::multiply(std::span<const double> x, std::span<double> y) const {
   const BlockPattern& p = *pattern;
   const int rows = p.rows();
-  ASPIC_CHECK(x.size() == 3 * static_cast<size_t>(rows) && y.size() == x.size() && x.data() != y.data());
+  ASPIC_CHECK(x.size() == 3 * static_cast<size_t>(rows) && y.size() == x.size() && (rows == 0 || x.data() != y.data()));
   auto rows_of_task = [&](int task) {
     const int last = std::min(rows, (task + 1) * kRowsPerTask);
     for (int row = task * kRowsPerTask; row < last; ++row) {

@@ -77,7 +77,8 @@ void Cholesky::analyze(const BlockPattern& pattern) {
   for (int k = 0; k < count; ++k)
     if (const int p = supernodes_.parent[k]; p >= 0) sibling_[k] = last_child_[p], last_child_[p] = k;
   const int64_t doubles = supernodes_.cost.nnz + stack_peak(supernodes_, last_child_, sibling_) + 2 * kReadAhead +
-                          9 * static_cast<int64_t>(pattern.rows()) + largest_front(supernodes_);
+                          9 * static_cast<int64_t>(pattern.rows()) + largest_front(supernodes_) +
+                          static_cast<int64_t>(DenseCholesky::scratch(largest_front(supernodes_)));
   supernodes_.cost.bytes = 8 * doubles + 4 * (supernodes_.row_start.back() + pattern.rows());
 }
 
@@ -90,6 +91,7 @@ bool Cholesky::allocate() {
     stack_.assign(stack_peak(supernodes_, last_child_, sibling_) + kReadAhead, 0.0);
     local_.assign(pattern_->rows(), -1);
     for (std::vector<double>* v : {&permuted_, &residual_}) v->assign(3 * static_cast<size_t>(pattern_->rows()), 0.0);
+    kernels_.reserve(largest_front(supernodes_));
     front_.assign(largest_front(supernodes_), 0.0);
   } catch (const std::bad_alloc&) {
     return false;

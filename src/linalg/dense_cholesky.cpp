@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 
 #include "base/check.h"
+#include "base/parallel.h"
 #include "math/pack.h"
 
 namespace aspic {
@@ -20,6 +22,7 @@ constexpr int kDepthBlock = 192;
 constexpr int kRowBlock = 9 * 16;      // a multiple of kTileRows for every pack width
 constexpr int kColumnBlock = 6 * 128;  // a multiple of kTileColumns and of kTileRows
 constexpr int kPackedFromRows = 192;   // smaller products read A where it lies
+constexpr double kParallelFrom = 4e6;  // multiplications and additions: about 0.1 ms on one core
 constexpr int kBaseColumns = 12;       // narrower panels are factorised directly
 static_assert(kRowBlock % kTileRows == 0 && kReadAhead >= kTileRows);
 
@@ -148,11 +151,19 @@ bool factorize_narrow(double* A, int rows, ptrdiff_t stride) {
   return true;
 }
 
+int block_count(int rows) { return (rows + kRowBlock - 1) / kRowBlock; }
+size_t left_size(int rows) { return static_cast<size_t>(block_count(rows)) * kRowBlock * kDepthBlock; }
+constexpr size_t kRightSize = static_cast<size_t>(kColumnBlock) * kDepthBlock;
+
 }  // namespace
 
-DenseCholesky::DenseCholesky()
-    : packed_left_(static_cast<size_t>(kRowBlock) * kDepthBlock),
-      packed_right_(static_cast<size_t>(kColumnBlock) * kDepthBlock) {}
+size_t DenseCholesky::scratch(int rows) { return rows < kPackedFromRows ? 0 : left_size(rows) + kRightSize; }
+
+void DenseCholesky::reserve(int rows) {
+  if (rows < kPackedFromRows) return;
+  packed_left_.resize(left_size(rows));
+  packed_right_.resize(kRightSize);
+}
 
 bool DenseCholesky::factorize(double* A, int rows, int columns, ptrdiff_t stride) {
   ASPIC_CHECK(columns % 3 == 0 && rows >= columns);
@@ -184,13 +195,21 @@ void DenseCholesky::subtract_outer_product(const double* A, ptrdiff_t A_stride, 
   for (int j = 0; j < columns; j += kColumnBlock)
     for (int p = 0; p < depth; p += kDepthBlock) {
       const int width = std::min(kColumnBlock, columns - j), d = std::min(kDepthBlock, depth - p);
+      const int blocks = block_count(rows - j);
       pack_strips(A + j + p * A_stride, A_stride, width, d, kTileColumns, packed_right_.data());
-      for (int i = j; i < rows; i += kRowBlock) {
-        const int height = std::min(kRowBlock, rows - i);
-        pack_strips(A + i + p * A_stride, A_stride, height, d, kTileRows, packed_left_.data());
-        const Operand left{packed_left_.data(), static_cast<ptrdiff_t>(kTileRows) * d, kTileRows};
-        const Operand right{packed_right_.data(), static_cast<ptrdiff_t>(kTileColumns) * d, kTileColumns};
+      const Operand right{packed_right_.data(), static_cast<ptrdiff_t>(kTileColumns) * d, kTileColumns};
+      auto subtract_rows = [&](int task) {
+        const int block = blocks - 1 - task;  // the longest first
+        const int i = j + block * kRowBlock, height = std::min(kRowBlock, rows - i);
+        double* packed = packed_left_.data() + static_cast<ptrdiff_t>(block) * kRowBlock * kDepthBlock;
+        pack_strips(A + i + p * A_stride, A_stride, height, d, kTileRows, packed);
+        const Operand left{packed, static_cast<ptrdiff_t>(kTileRows) * d, kTileRows};
         subtract_block(left, right, d, C + i + j * C_stride, C_stride, height, width, i - j);
+      };
+      if (static_cast<double>(rows - j) * width * d > kParallelFrom) {
+        parallel_for(blocks, std::ref(subtract_rows));
+      } else {
+        for (int task = 0; task < blocks; ++task) subtract_rows(task);
       }
     }
 }

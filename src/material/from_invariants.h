@@ -32,21 +32,24 @@ void add_determinant_hessian(const Mat3<T>& F, const T& s, Mat9<T>& H) {
   }
 }
 
-// s Id + x a' + y b', which the caller knows to be symmetric.
+// s Id + a x x'
 template <class T>
-Mat9<T> identity_plus_outer(const T& s, const Mat3<T>& x, const Mat3<T>& a, const Mat3<T>& y, const Mat3<T>& b) {
+Mat9<T> identity_plus_outer(const T& s, const T& a, const Mat3<T>& x) {
+  const Mat3<T> ax = a * x;
   Mat9<T> H;
   for (int c = 0; c < 9; ++c) {
-    for (int r = c; r < 9; ++r) H(r, c) = H(c, r) = x.a[r] * a.a[c] + y.a[r] * b.a[c];
+    for (int r = c; r < 9; ++r) H(r, c) = H(c, r) = ax.a[r] * x.a[c];
     H(c, c) = H(c, c) + s;
   }
   return H;
 }
+// s Id + a x x' + y z' + z y'
 template <class T>
-Mat9<T> identity_plus_outer(const T& s, const Mat3<T>& x, const Mat3<T>& a) {
+Mat9<T> identity_plus_outer(const T& s, const T& a, const Mat3<T>& x, const Mat3<T>& y, const Mat3<T>& z) {
+  const Mat3<T> ax = a * x;
   Mat9<T> H;
   for (int c = 0; c < 9; ++c) {
-    for (int r = c; r < 9; ++r) H(r, c) = H(c, r) = x.a[r] * a.a[c];
+    for (int r = c; r < 9; ++r) H(r, c) = H(c, r) = ax.a[r] * x.a[c] + (y.a[r] * z.a[c] + z.a[r] * y.a[c]);
     H(c, c) = H(c, c) + s;
   }
   return H;
@@ -54,16 +57,14 @@ Mat9<T> identity_plus_outer(const T& s, const Mat3<T>& x, const Mat3<T>& a) {
 
 template <class T>
 Mat9<T> law_hessian(const Mat3<T>& F, const LawDerivativesLinearInI1<T>& d) {
-  const Mat3<T> g = cofactor(F);
-  Mat9<T> H = identity_plus_outer(d.dI + d.dI, d.dJJ * g, g);
+  Mat9<T> H = identity_plus_outer(d.dI + d.dI, d.dJJ, cofactor(F));
   add_determinant_hessian(F, d.dJ, H);
   return H;
 }
 template <class T>
 Mat9<T> law_hessian(const Mat3<T>& F, const LawDerivatives<T>& d) {
-  const Mat3<T> g = cofactor(F);
-  const T two_dIJ = d.dIJ + d.dIJ, four_dII = T(4.0) * d.dII;
-  Mat9<T> H = identity_plus_outer(d.dI + d.dI, four_dII * F + two_dIJ * g, F, two_dIJ * F + d.dJJ * g, g);
+  const Mat3<T> g = cofactor(F), y = (d.dIJ + d.dIJ) * F + (T(0.5) * d.dJJ) * g;
+  Mat9<T> H = identity_plus_outer(d.dI + d.dI, T(4.0) * d.dII, F, y, g);
   add_determinant_hessian(F, d.dJ, H);
   return H;
 }

@@ -29,12 +29,12 @@ struct MooneyRivlin {
   template <class T>
   static Mat9<T> hessian(const Mat3<T>& F, const Params<T>& p) {
     const Derivatives<T> d(F, p);
-    Mat9<T> H = law_hessian(F, d.law);
-    const Mat3<T> g = cofactor(F), g2 = gradient_of_I2(F), y = d.dI2J * g2;
-    for (int c = 0; c < 9; ++c)
-      for (int r = 0; r < 9; ++r) H(r, c) = H(r, c) + (y.a[r] * g.a[c] + g.a[r] * y.a[c]);
-    // I2 has the gradient F S with dS = -2 dC + 2 dI1 I; the second part is 4 f f', already in law_hessian.
-    add_product_hessian(F, d.dI2 * stress_of_I2(F), T(-2.0) * d.dI2, H);
+    const Mat3<T> g = cofactor(F), S = stress_of_I2(F);
+    const Mat3<T> y = (d.law.dIJ + d.law.dIJ) * F + (T(0.5) * d.law.dJJ) * g + d.dI2J * (F * S);
+    Mat9<T> H = identity_plus_outer(d.law.dI + d.law.dI, T(4.0) * d.dI2, F, y, g);
+    add_determinant_hessian(F, d.law.dJ, H);
+    // I2 has the gradient F S with dS = -2 dC + 2 dI1 I; the second part is the 4 f f' above.
+    add_product_hessian(F, d.dI2 * S, T(-2.0) * d.dI2, H);
     return H;
   }
 
@@ -77,7 +77,6 @@ struct MooneyRivlin {
       const T slope = dI2J * squared_norm(cofactor(F));
       law.dJ = law.dJ + slope;
       law.dJJ = law.dJJ - T(7.0 / 3.0) * slope * r;
-      law.dII = dI2;  // d2I2/dF2 holds 4 f f'
     }
   };
   // dI2/dF = F S, S = 2 (I1 I - C).

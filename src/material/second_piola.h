@@ -1,6 +1,5 @@
 // Pieces for materials whose stress is P = F S, S a polynomial in C = F'F.
 #pragma once
-#include "material/from_invariants.h"
 #include "math/small.h"
 
 namespace aspic {
@@ -18,12 +17,6 @@ void add_product_hessian(const Mat3<T>& F, const Mat3<T>& S, const T& m, Mat9<T>
           if (c == d) h = h + mB(r, q);
           H(r + 3 * c, q + 3 * d) = H(r + 3 * c, q + 3 * d) + h;
         }
-}
-
-// s f f', f = vec A.
-template <class T>
-Mat9<T> scaled_outer(const T& s, const Mat3<T>& A) {
-  return identity_plus_outer(T(0.0), s * A, A);
 }
 
 }  // namespace aspic

@@ -1,6 +1,7 @@
 // St. Venant-Kirchhoff solid: psi = mu |E|^2 + lambda/2 (tr E)^2, E = (F'F - I) / 2; P = F S, S = 2 mu E + lambda tr E
 // I.
 #pragma once
+#include "material/from_invariants.h"
 #include "material/material.h"
 #include "material/registry.h"
 #include "material/second_piola.h"
@@ -25,7 +26,7 @@ struct Stvk {
   }
   template <class T>
   static Mat9<T> hessian(const Mat3<T>& F, const Params<T>& p) {
-    Mat9<T> H = scaled_outer(p.lambda, F);
+    Mat9<T> H = identity_plus_outer(T(0.0), p.lambda, F);
     add_product_hessian(F, stress(green_strain(F), p), p.mu, H);
     return H;
   }

@@ -1,6 +1,8 @@
 // A Pack is kPackWidth doubles that move together. The only file that knows that SIMD lanes exist.
 #pragma once
+#include <bit>
 #include <cmath>
+#include <limits>
 
 namespace aspic {
 
@@ -50,13 +52,48 @@ inline Pack sqrt(Pack a) {
 inline Pack exp(Pack a) {
   return map(a, [](double x) { return std::exp(x); });
 }
-inline Pack log(Pack a) {
-  return map(a, [](double x) { return std::log(x); });
-}
-inline Pack cbrt(Pack a) {
-  return map(a, [](double x) { return std::cbrt(x); });
+
+// The bits of the lanes as integers: sign, 11 bits of exponent, 52 of mantissa.
+typedef long long PackBits __attribute__((vector_size(kPackWidth * sizeof(double))));
+
+// Positive, normal and small enough that a few of them add up without overflow.
+inline bool all_ordinary(Pack a) {
+  bool all = true;
+  for (int i = 0; i < kPackWidth; ++i)
+    all &= a[i] >= std::numeric_limits<double>::min() && a[i] <= std::numeric_limits<double>::max() / 8;
+  return all;
 }
 
+// Within 1 ulp. x = 2^k m with m in [sqrt(1/2), sqrt(2)); ln m = 2 artanh s = 2s (1 + s^2/3 + s^4/5 + ...),
+// s = f/(2 + f), f = m - 1, s^2 < 0.0295. As 2s = f - s f, ln m = f - s (f - R), R = 2 s^2/3 + 2 s^4/5 + ...
+inline Pack log(Pack a) {
+  if (!all_ordinary(a)) return map(a, [](double x) { return std::log(x); });
+  constexpr long long kSqrtHalf = std::bit_cast<long long>(0.70710678118654752);
+  constexpr double kLn2High = 0x1.62e42fefa0000p-1, kLn2Low = 0x1.cf79abc9e3b3ap-40;  // k * high is exact
+  const PackBits bits = (PackBits)a.v, k_bits = (bits - kSqrtHalf) >> 52;
+  const Pack k = __builtin_convertvector(k_bits, Pack::Lanes);
+  const Pack f = Pack((Pack::Lanes)(bits - (k_bits << 52))) - 1.0;
+  const Pack s = f / (2.0 + f), z = s * s;
+  Pack R = 2.0 / 23;
+  for (int odd = 21; odd >= 3; odd -= 2) R = 2.0 / odd + z * R;
+  R *= z;
+  return k * kLn2High - ((s * (f - R) - k * kLn2Low) - f);
+}
+
+// Within 2 ulp. A third of the exponent is right to some percent; Halley's iteration triples the digits, and
+// Newton's last one rounds once.
+inline Pack cbrt(Pack a) {
+  if (!all_ordinary(a)) return map(a, [](double x) { return std::cbrt(x); });
+  constexpr double kTwoThirdsOfOne = 2.0 / 3 * std::bit_cast<long long>(0.97);
+  const Pack bits = __builtin_convertvector((PackBits)a.v, Pack::Lanes);
+  const Pack third = (1.0 / 3) * bits + kTwoThirdsOfOne;
+  Pack y((Pack::Lanes) __builtin_convertvector(third.v, PackBits));
+  for (int i = 0; i < 2; ++i) {
+    const Pack cube = y * y * y;
+    y = y * ((cube + 2.0 * a) / (2.0 * cube + a));
+  }
+  return y - (y * y * y - a) / (3.0 * (y * y));
+}
 inline Pack pow(Pack a, double n) {
   return map(a, [n](double x) { return std::pow(x, n); });
 }

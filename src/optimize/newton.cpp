@@ -19,7 +19,7 @@ HessianKind first_choice(NewtonDefiniteness definiteness) {
 Newton::Newton(std::unique_ptr<LinearSolver> solver, NewtonDefiniteness definiteness)
     : solver_(std::move(solver)), definiteness_(definiteness) {}
 
-std::string Newton::description() const { return "newton, " + std::string(solver_->name()); }
+std::string Newton::description() const { return "newton, " + solver_->description(); }
 
 // H d = -g
 bool Newton::compute(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,

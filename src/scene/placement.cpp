@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/expression.h"
 #include "scene/tables.h"
 
 namespace aspic {
@@ -60,7 +59,7 @@ std::vector<Vec3d> displaced_by_file(Value& deform, const std::vector<Vec3d>& X,
   std::vector<Vec3d> x;
   for (size_t i = 0; i < X.size(); ++i) x.push_back(X[i] + Vec3d{{u[3 * i], u[3 * i + 1], u[3 * i + 2]}});
   check_fingerprint(deform.table(), "hash", fingerprint_of_file(path), path.string());
-  deform.table().set("file", {files.keep(path, stem + "_displacement"), {}});
+  deform.table().set("file", {files.keep(path, stem + ".displacement"), {}});
   return x;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "math/small.h"
+#include "scene/expression.h"
 #include "scene/scene_files.h"
 #include "scene/value.h"
 
@@ -33,8 +34,8 @@ class VectorField {
   Vec3d at(const Vec3d& X) const;
 
  private:
-  std::vector<double> number_;
-  std::vector<class Expression> formula_;  // one per component, or none when all are numbers
+  std::vector<double> number_;  // NaN where the formula is meant
+  std::vector<Expression> formula_;
 };
 
 struct Box {

@@ -154,7 +154,7 @@ std::vector<double> tet_values(Table& table, const Key& key, const TetMesh& mesh
   } else if (const Value* regions = value.find("regions")) {
     values = from_regions(*regions, mesh);
   } else {
-    values = from_file(value.table(), mesh, files, stem + "_" + key.name);
+    values = from_file(value.table(), mesh, files, stem + "." + key.name);
   }
   for (int t = 0; t < mesh.tet_count(); ++t)
     if (!key.range.contains(values[t]))

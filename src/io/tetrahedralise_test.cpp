@@ -1,0 +1,86 @@
+#include "io/tetrahedralise.h"
+
+#include <gmock/gmock.h>
+#include <stdlib.h>
+
+#include "base/error.h"
+#include "io/atomic_file.h"
+#include "io/mesh_file.h"
+#include "mesh/generators.h"
+#include "mesh/surface.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+// The mesher's place is taken by shell scripts that keep to its command line: SURFACE -o OUT --size S.
+class Tetrahedralise : public testing::Test {
+ protected:
+  Tetrahedralise() {
+    std::string name = (fs::temp_directory_path() / "aspic_test_XXXXXX").string();
+    folder = ::mkdtemp(name.data());
+    fs::create_directory(folder / "temporary");
+    surface = folder / "a b;c.off";  // no shell may see this name
+    write_mesh(surface, boundary_surface(make_box({{0, 0, 0}}, {{2, 2, 1}}, {1, 1, 1})).surface);
+    write_mesh(folder / "tets.mesh", make_box({{0, 0, 0}}, {{2, 2, 1}}, {1, 1, 1}));
+    ::setenv("TMPDIR", (folder / "temporary").c_str(), 1);
+  }
+  ~Tetrahedralise() override {
+    ::unsetenv("TMPDIR");
+    fs::remove_all(folder);
+  }
+
+  TetMesh run(const std::string& script, double size = 0) {
+    write_file(folder / "mesher", "#!/bin/sh\n" + script);
+    fs::permissions(folder / "mesher", fs::perms::owner_all);
+    return tetrahedralise(surface, {.size = size, .program = folder / "mesher"});
+  }
+  std::string error(auto&& action) {
+    try {
+      action();
+    } catch (const InvalidInput& e) {
+      return e.what();
+    }
+    return "no error";
+  }
+  void expect_no_leftovers() { EXPECT_TRUE(fs::is_empty(folder / "temporary")); }
+
+  std::string good() {
+    return "echo \"$0 $1 $2 $4 $5\" > '" + (folder / "said").string() + "'; cp '" + (folder / "tets.mesh").string() +
+           "' \"$3\"";
+  }
+  fs::path folder, surface;
+};
+
+TEST_F(Tetrahedralise, ReturnsTheTetsThatTheProgramWrote) {
+  EXPECT_EQ(run(good(), 0.25).tet_count(), 6);
+  EXPECT_EQ(read_file(folder / "said"), (folder / "mesher").string() + " " + surface.string() + " -o --size 0.25\n");
+  expect_no_leftovers();
+}
+
+TEST_F(Tetrahedralise, TheDefaultSizeIsTheDiagonalOver25) {
+  run(good());
+  EXPECT_THAT(read_file(folder / "said"), HasSubstr("--size 0.12\n"));  // sqrt(4 + 4 + 1) / 25
+}
+
+TEST_F(Tetrahedralise, TheReasonOfAFailureIsPassedOn) {
+  EXPECT_THAT(error([&] { run("echo the surface is open >&2; exit 2"); }),
+              testing::AllOf(HasSubstr(surface.string()), HasSubstr("aspic-mesh failed: the surface is open")));
+  EXPECT_THAT(error([&] { run("exit 3"); }), HasSubstr("it gave no reason"));
+  EXPECT_THAT(error([&] { run("kill -KILL $$"); }), HasSubstr("signal 'Killed'"));
+  EXPECT_THAT(error([&] { run("true"); }), HasSubstr("wrote no mesh"));
+  EXPECT_THAT(error([&] { run("echo garbage > \"$3\""); }), HasSubstr("MeshVersionFormatted"));
+  expect_no_leftovers();
+}
+
+TEST_F(Tetrahedralise, BadSizesAndProgramsAreRefused) {
+  EXPECT_THAT(error([&] { run(good(), -1); }), HasSubstr("must be positive"));
+  EXPECT_THAT(error([&] { tetrahedralise(surface, {.program = folder / "none"}); }), HasSubstr("is not a program"));
+  EXPECT_THAT(error([&] { tetrahedralise(folder / "none.obj", {.program = "/bin/true"}); }),
+              HasSubstr("cannot be read"));
+}
+
+}  // namespace
+}  // namespace aspic

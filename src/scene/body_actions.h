@@ -1,0 +1,26 @@
+// What holds, moves, loads and slows the bodies: pins, springs, tractions, forces and damping of a scene.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "dynamics/model.h"
+#include "scene/scene_files.h"
+#include "scene/value.h"
+
+namespace aspic {
+
+// A body of the scene inside the model.
+struct PlacedBody {
+  Value& scene;  // its table
+  TetMesh mesh;  // the placed rest shape with its own indices
+  std::vector<Vec3d> start;
+  int first_vertex = 0, first_tet = 0;
+
+  std::string name() const { return scene["name"].text(); }
+};
+
+// Adds pins, loads and damping to a model that has its mesh, mass and elasticity. `gravity` in [m/s^2].
+void add_actions(std::vector<PlacedBody>& bodies, const Vec3d& gravity, MassKind mass, SceneFiles& files, Model& model,
+                 std::vector<std::string>& notes);
+
+}  // namespace aspic

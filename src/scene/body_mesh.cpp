@@ -1,0 +1,169 @@
+#include "scene/body_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "base/error.h"
+#include "io/mesh_file.h"
+#include "io/tetrahedralise.h"
+#include "mesh/doctor.h"
+#include "mesh/generators.h"
+#include "mesh/surface.h"
+#include "scene/placement.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMaxTets = 2e7;  // of a generated shape: about what fits into a large machine
+
+std::string sentence(const Finding& finding) {
+  return finding.message + (finding.remedy.empty() ? "" : "; " + finding.remedy);
+}
+
+void heed(const std::vector<Finding>& findings, const std::string& what, std::vector<std::string>& notes) {
+  for (const Finding& f : findings)
+    if (f.severity == Severity::error) throw InvalidInput(what + ": " + sentence(f));
+  for (const Finding& f : findings)
+    if (f.severity == Severity::warning) notes.push_back(what + ": " + sentence(f));
+}
+
+void check_count(double tets, const Value& shape) {
+  if (tets > kMaxTets)
+    throw error_at(shape.place, "about " + number_text(std::round(tets)) + " tets; at most " + number_text(kMaxTets) +
+                                    " are generated (choose a larger size)");
+}
+
+TetMesh box_mesh(const Value& box) {
+  const Vec3d lower = box["lower"].vector(), upper = box["upper"].vector();
+  double count[3];
+  for (int i = 0; i < 3; ++i) {
+    const Value* size = box.find("size");
+    count[i] =
+        size ? std::max(1.0, std::round((upper[i] - lower[i]) / size->number())) : box["cells"].array()[i].number();
+  }
+  const bool five = box["cut"].text() == "five";
+  check_count((five ? 5 : 6) * count[0] * count[1] * count[2], box);
+  const std::array<int, 3> cells = {int(count[0]), int(count[1]), int(count[2])};
+  return make_box(lower, upper, cells, five ? BoxCut::five : BoxCut::kuhn);
+}
+
+// A tet of edge length s has the volume s^3 / (6 sqrt 2).
+double tets_in(double volume, double size) { return volume * 6 * std::sqrt(2.0) / (size * size * size); }
+
+TetMesh shape_mesh(const Value& shape) {
+  const auto number = [](const Value& table, const char* key) { return table[key].number(); };
+  if (const Value* box = shape.find("box")) return box_mesh(*box);
+  if (const Value* c = shape.find("cylinder")) {
+    const double r = number(*c, "radius"), h = number(*c, "height"), size = number(*c, "size");
+    check_count(tets_in(3.15 * r * r * h, size), *c);
+    return make_cylinder(r, h, size);
+  }
+  if (const Value* s = shape.find("sphere")) {
+    const double r = number(*s, "radius"), size = number(*s, "size");
+    check_count(tets_in(4.19 * r * r * r, size), *s);
+    return make_sphere(r, size);
+  }
+  const Value& t = shape["torus"];
+  const double major = number(t, "major_radius"), minor = number(t, "minor_radius"), size = number(t, "size");
+  if (!(minor < major))
+    throw error_at(t["minor_radius"].place,
+                   "minor_radius = " + number_text(minor) + "; must be below major_radius = " + number_text(major));
+  check_count(tets_in(19.8 * major * minor * minor, size), t);
+  return make_torus(major, minor, size);
+}
+
+bool is_tetgen(const fs::path& path) { return path.extension() == ".node" || path.extension() == ".ele"; }
+
+// The name under which the results keep a mesh file; a TetGen mesh is two files.
+std::string keep_mesh_file(const fs::path& path, const std::string& stem, SceneFiles& files) {
+  if (!is_tetgen(path)) return files.keep(path, stem);
+  files.keep(fs::path(path).replace_extension(".ele"), stem);
+  return files.keep(fs::path(path).replace_extension(".node"), stem);
+}
+
+double mesh_size_of(const Value& body) {
+  const Value* size = body.find("mesh_size");
+  return size ? size->number() : 0;
+}
+
+// Reads or generates the tets and leaves in `body` what gives the same tets again.
+LoadedMesh resolve_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMesh> loaded) {
+  const std::string name = body["name"].text();
+  if (const Value* shape = body.find("shape")) return {shape_mesh(*shape), {}};
+  const Value mesh = body["mesh"];
+  const fs::path path = loader.files.find(mesh);
+  if (!loaded) {
+    try {
+      loaded = load_mesh(path, mesh_size_of(body), loader);
+    } catch (const InvalidInput& e) {
+      throw error_at(mesh.place, std::string("mesh = ") + toml_string(mesh.text()) + ": " + e.what());
+    }
+  }
+  if (loaded->surface.empty()) {
+    if (const Value* size = body.find("mesh_size"))
+      throw error_at(size->place, "mesh_size = " + number_text(size->number()) + "; " + path.string() +
+                                      " holds tets already, so there is nothing to fill; remove mesh_size");
+    body.table().set("mesh", {keep_mesh_file(path, name, loader.files), {}});
+    return *std::move(loaded);
+  }
+  body.table().set("mesh", {loader.files.keep(loaded->tets, name), {}});
+  std::erase_if(body.table().members, [](const Member& m) { return m.key == "mesh_size"; });
+  return *std::move(loaded);
+}
+
+// Exact: each vertex of the boundary is a vertex of the tets.
+BodyMesh with_boundary_as_skin(TetMesh tets) {
+  BoundarySurface boundary = boundary_surface(tets);
+  BodyMesh body;
+  for (const int v : boundary.tet_vertex) {
+    body.embedding.vertices.push_back({v, v, v, v});
+    body.embedding.weights.push_back({1, 0, 0, 0});
+  }
+  body.skin = std::move(boundary.surface);
+  body.tets = std::move(tets);
+  return body;
+}
+
+BodyMesh with_skin(TetMesh tets, TriMesh skin, const std::string& what, std::vector<std::string>& notes) {
+  BodyMesh body{std::move(tets), std::move(skin), {}};
+  body.embedding = embed(body.tets, body.skin);
+  if (const int outside = body.embedding.outside; outside > 0)
+    notes.push_back(what + ": " + std::to_string(outside) + " of " + std::to_string(body.skin.vertex_count()) +
+                    " skin vertices lie outside the tets and follow the nearest one");
+  return body;
+}
+
+}  // namespace
+
+LoadedMesh load_mesh(const fs::path& path, double size, MeshLoader& loader) {
+  std::variant<TetMesh, TriMesh> mesh = read_mesh(path);
+  if (TetMesh* tets = std::get_if<TetMesh>(&mesh)) return {std::move(*tets), {}};
+  heed(diagnose(std::get<TriMesh>(mesh)), path.string(), loader.notes);
+  TetMesh tets = tetrahedralise(path, {.size = size, .program = loader.mesher});
+  const std::string length = size > 0 ? number_text(size) : "the diagonal of the bounding box / 25";
+  loader.notes.push_back(path.filename().string() + ": a surface; filled with " + std::to_string(tets.tet_count()) +
+                         " tets of edge length " + length + " (mesh_size changes it)");
+  return {std::move(tets), path};
+}
+
+BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMesh> loaded) {
+  const std::string name = body["name"].text();
+  LoadedMesh mesh = resolve_mesh(body, loader, std::move(loaded));
+  check_fingerprint(body.table(), "mesh_hash", fingerprint_of(mesh.tets), "the mesh of body '" + name + "'");
+  const AffineMap place = placement_of(body);
+  for (Vec3d& X : mesh.tets.rest) X = place(X);
+  heed(diagnose(mesh.tets), "body '" + name + "'", loader.notes);
+
+  const Value* skin = body.find("skin");
+  if (!skin && mesh.surface.empty()) return with_boundary_as_skin(std::move(mesh.tets));
+  const fs::path path = skin ? loader.files.find(*skin) : mesh.surface;
+  TriMesh surface = read_tri_mesh(path);
+  for (Vec3d& X : surface.vertices) X = place(X);
+  body.table().set("skin", {loader.files.keep(path, name + ".skin"), {}});
+  return with_skin(std::move(mesh.tets), std::move(surface), "body '" + name + "'", loader.notes);
+}
+
+}  // namespace aspic

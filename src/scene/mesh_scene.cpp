@@ -1,0 +1,147 @@
+#include "scene/mesh_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "scene/overrides.h"
+#include "scene/placement.h"
+#include "scene/scene_document.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kSmallest = 0.3, kLargest = 3;  // [m] extents that are taken as they are
+constexpr double kSag = 0.05;                    // rho g H / E: strain of the base under the body's weight
+constexpr double kPull = 0.25;                   // sideways displacement of the top / height
+
+// The number with one significant digit: a default that can be read and said.
+double rounded(double x) {
+  const double unit = std::pow(10.0, std::floor(std::log10(x)));
+  return std::round(x / unit) * unit;
+}
+
+double largest_extent(const Box& box) {
+  const Vec3d size = box.upper - box.lower;
+  return std::max({size[0], size[1], size[2]});
+}
+
+// A smallest share of the height that holds the body at more than a point.
+double base_fraction(const std::vector<Vec3d>& X, const Box& box) {
+  const double height = box.upper[1] - box.lower[1];
+  for (const double fraction : {0.02, 0.05, 0.1, 0.2}) {
+    const auto is_low = [&](const Vec3d& P) { return P[1] <= box.lower[1] + fraction * height; };
+    const auto count = std::count_if(X.begin(), X.end(), is_low);
+    if (count >= 6 && count >= static_cast<std::ptrdiff_t>(X.size() / 100)) return fraction;
+  }
+  return 0.2;
+}
+
+struct Choice {
+  std::string key, text;  // "material.young"
+};
+
+// Does an override replace this key, a key inside it, or a table around it?
+bool is_overridden(const std::string& key, const std::vector<std::string>& overrides) {
+  for (const std::string& o : overrides) {
+    const std::string path = o.substr(0, o.find('='));
+    if (path == key || path.ends_with("." + key) || key.starts_with(path + ".") ||
+        path.find("." + key + ".") != std::string::npos || path.starts_with(key + "."))
+      return true;
+  }
+  return false;
+}
+
+struct Defaults {
+  std::string toml;
+  std::vector<Choice> choices;
+};
+
+Defaults defaults_for(const std::filesystem::path& path, const std::vector<Vec3d>& file_X, double scale) {
+  const Box file_box = bounding_box(file_X);
+  std::vector<Vec3d> X;
+  for (const Vec3d& P : file_X) X.push_back(scale * P);
+  const Box box = bounding_box(X);
+  const double height = box.upper[1] - box.lower[1], extent = largest_extent(file_box);
+  const double density = 1000, g = 9.81;
+  const double young = rounded(density * g * std::max(height, 1e-9) / kSag);
+  const double base = base_fraction(X, box);
+  const std::string pull =
+      number_text(kPull * height) + " * ((Y - " + number_text(box.lower[1]) + ") / " + number_text(height) + ")^2";
+
+  Defaults d;
+  d.toml = "gravity = [0.0, -9.81, 0.0]\n[time]\nstep = 0.01\nduration = 2.0\n[[body]]\nmesh = " +
+           toml_string(path.string()) + "\nscale = " + number_text(scale) +
+           "\nmaterial = { model = \"neo_hookean\", young = " + number_text(young) +
+           ", poisson = 0.4, density = 1000.0 }\ndeform = { displacement = [" + toml_string(pull) +
+           ", 0.0, 0.0] }\n[[body.pin]]\nname = \"base\"\nwhere = { lowest = " + number_text(base) + " }\n";
+  const std::string size = number_text(extent);
+  if (scale == 1) {
+    d.choices.push_back(
+        {"scale", "scale = 1: a mesh has no unit; its largest extent, " + size + ", is taken as metres"});
+  } else {
+    d.choices.push_back({"scale", "scale = " + number_text(scale) + ": a mesh has no unit; its largest extent, " +
+                                      size +
+                                      ", becomes 1 m, at which the motion can be followed (scale=1 keeps metres, "
+                                      "scale=0.001 is for millimetres)"});
+  }
+  d.choices.push_back({"gravity", "gravity = 9.81 m/s^2 along -y: up is taken as y (gravity=[0,0,-9.81] for z)"});
+  d.choices.push_back({"material.model",
+                       "material.model = neo_hookean: stays finite when elements are turned inside "
+                       "out"});
+  d.choices.push_back({"material.young", "material.young = " + number_text(young) +
+                                             " Pa: under its own weight the body "
+                                             "is compressed by about 5 %, soft enough to see it move"});
+  d.choices.push_back({"material.poisson",
+                       "material.poisson = 0.4: rubber or flesh as far as linear tets render it "
+                       "well"});
+  d.choices.push_back({"material.density", "material.density = 1000 kg/m^3: water and soft tissue"});
+  d.choices.push_back({"pin", "pin: the lowest " + number_text(100 * base) +
+                                  " % of the height is held, as if glued to "
+                                  "the ground"});
+  d.choices.push_back({"deform", "deform: pulled sideways by a quarter of its height at the top, then let go"});
+  d.choices.push_back({"time.step", "time.step = 0.01 s: follows swings of a few hertz"});
+  d.choices.push_back({"time.duration", "time.duration = 2 s: several swings"});
+  return d;
+}
+
+double guessed_scale(const std::vector<Vec3d>& X) {
+  const double extent = largest_extent(bounding_box(X));
+  return extent >= kSmallest && extent <= kLargest ? 1 : 1 / extent;
+}
+
+}  // namespace
+
+SceneSource scene_of_mesh(const std::filesystem::path& path, const std::vector<std::string>& overrides,
+                          MeshLoader& loader) {
+  const std::string file = path.string();
+  // Overrides may set the size of tets and the scale, on which the other defaults depend.
+  const auto read = [&](const std::string& toml) {
+    return read_scene_document(toml, "defaults for " + file, overrides);
+  };
+  const std::string minimal =
+      "[time]\n[[body]]\nmesh = " + toml_string(file) +
+      "\nmaterial = { young = 1e5, poisson = 0.4 }\ndeform = { displacement = [0, 0, 0] }\n[[body.pin]]\nname = "
+      "\"base\"\nwhere = { lowest = 0.05 }\n";
+  const Table first = read(minimal);
+  const Value& body = first.find("body")->array().front();
+  const Value* size = body.find("mesh_size");
+  LoadedMesh mesh = load_mesh(path, size ? size->number() : 0, loader);
+  if (mesh.tets.rest.empty() || mesh.tets.tets.empty())
+    throw InvalidInput(file + ": holds no tets and no triangles; there is nothing to simulate");
+  const double extent = largest_extent(bounding_box(mesh.tets.rest));
+  if (!(extent > 0) || !std::isfinite(extent))
+    throw InvalidInput(file + ": all vertices are in one place; there is nothing to simulate");
+
+  double scale = guessed_scale(mesh.tets.rest);
+  if (is_overridden("scale", overrides) && body["scale"].is_number()) scale = body["scale"].number();
+  const Defaults defaults = defaults_for(path, mesh.tets.rest, scale);
+  SceneSource source{read(defaults.toml), path.stem().string(), file, {}, {}};
+  for (const Choice& c : defaults.choices)
+    if (!is_overridden(c.key, overrides)) source.notes.push_back(c.text);
+  const std::string name = source.document.find("body")->array().front()["name"].text();
+  source.meshes.emplace(name, std::move(mesh));
+  return source;
+}
+
+}  // namespace aspic

@@ -1,0 +1,66 @@
+#include "scene/scene.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "io/atomic_file.h"
+#include "io/mesh_file.h"
+#include "scene/mesh_scene.h"
+#include "scene/scene_builder.h"
+#include "scene/scene_document.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kMaxSceneBytes = 16 << 20;  // lists of vertices make scenes long, but not that long
+
+std::string scene_text(const fs::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (!error && size > kMaxSceneBytes)
+    throw InvalidInput(path.string() + ": " + std::to_string(size) +
+                       " bytes; a scene has at most 16 MiB (put numbers "
+                       "per element into CSV files)");
+  return read_file(path);
+}
+
+void copy_file(const fs::path& source, const fs::path& target) {
+  std::error_code error;
+  if (fs::equivalent(source, target, error)) return;
+  write_file(target, read_file(source));
+}
+
+}  // namespace
+
+Scene load_scene(const fs::path& path, const SceneOptions& options) {
+  if (path.extension() == ".toml") {
+    SceneSource source{read_scene_document(scene_text(path), path.string(), options.overrides),
+                       path.stem().string(),
+                       path.string(),
+                       {},
+                       {}};
+    return build_scene(std::move(source), SceneFiles(path.parent_path(), options.allow_outside), options.mesher);
+  }
+  SceneFiles files("", true);  // the user named the mesh
+  std::vector<std::string> notes;
+  MeshLoader loader{files, options.mesher, notes};
+  SceneSource source = scene_of_mesh(path, options.overrides, loader);
+  source.notes.insert(source.notes.begin(), notes.begin(), notes.end());
+  return build_scene(std::move(source), std::move(files), options.mesher);
+}
+
+void write_inputs(const Scene& scene, const fs::path& folder) {
+  const auto prepared = [&](const std::string& name) {
+    const fs::path target = folder / name;
+    std::error_code error;
+    fs::create_directories(target.parent_path(), error);
+    if (error) throw InvalidInput(target.parent_path().string() + ": cannot be created: " + error.message());
+    return target;
+  };
+  for (const auto& [name, source] : scene.input_files) aspic::copy_file(source, prepared(name));
+  for (const auto& [name, mesh] : scene.generated_meshes) write_mesh(prepared(name), mesh);
+}
+
+}  // namespace aspic

@@ -1,0 +1,232 @@
+#include "scene/scene_builder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "material/registry.h"
+#include "scene/body_actions.h"
+#include "scene/placement.h"
+#include "scene/schema.h"
+#include "scene/tables.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kLockingPoisson = 0.45;  // linear tets are too stiff above
+
+// The parameters of each tet of a body; density apart.
+std::vector<MaterialParameters> parameters_of(PlacedBody& body, SceneFiles& files, std::vector<std::string>& notes) {
+  Table& material = body.scene.table().find("material")->table();
+  const auto values = [&](const char* name) {
+    return tet_values(material, scene_schema().key("material", name), body.mesh, files, body.name());
+  };
+  const size_t count = body.mesh.tets.size();
+  std::vector<MaterialParameters> parameters(count);
+  if (!body.scene["elastic"].boolean()) return parameters;  // all stiffness is zero
+  if (material.find("young")) {
+    const std::vector<double> E = values("young"), nu = values("poisson");
+    for (size_t t = 0; t < count; ++t) parameters[t].lame = lame_from_young_poisson(E[t], nu[t]);
+  } else if (material.find("lambda")) {
+    const std::vector<double> lambda = values("lambda"), mu = values("mu");
+    for (size_t t = 0; t < count; ++t) {
+      parameters[t].lame = {mu[t], lambda[t]};
+      if (!(lambda[t] > -2.0 / 3 * mu[t]))
+        throw error_at(material.find("lambda")->place, "lambda = " + number_text(lambda[t]) + " in tet " +
+                                                           std::to_string(t) +
+                                                           "; must be > -2/3 mu = " + number_text(-2.0 / 3 * mu[t]));
+    }
+  } else {
+    const std::vector<double> shear = values("shear"), bulk = values("bulk");
+    for (size_t t = 0; t < count; ++t) parameters[t].lame = lame_from_shear_bulk(shear[t], bulk[t]);
+  }
+  const MaterialInfo& info = material_info(material.find("model")->text());
+  for (size_t e = 0; e < info.extra.size(); ++e) {
+    const std::vector<double> extra = values(info.extra[e].name.c_str());
+    for (size_t t = 0; t < count; ++t) parameters[t].extra[e] = extra[t];
+  }
+  double highest = -1;
+  for (const MaterialParameters& p : parameters) highest = std::max(highest, poisson_ratio(p.lame));
+  if (highest > kLockingPoisson + 1e-9)
+    notes.push_back("body '" + body.name() + "': Poisson's ratio reaches " + number_text(highest) +
+                    "; linear tets lock above 0.45 and deform too little (0.45 is safe)");
+  return parameters;
+}
+
+// Without elasticity a body still has its term, of zero stiffness, so that det F is watched.
+std::string model_of(const PlacedBody& body) {
+  return body.scene["elastic"].boolean() ? body.scene["material"]["model"].text() : "neo_hookean";
+}
+
+void append(const TetMesh& mesh, TetMesh& all) {
+  const int offset = all.vertex_count(), first_tet = all.tet_count();
+  all.rest.insert(all.rest.end(), mesh.rest.begin(), mesh.rest.end());
+  for (const Tet& t : mesh.tets) all.tets.push_back({t[0] + offset, t[1] + offset, t[2] + offset, t[3] + offset});
+  if (mesh.region.empty() && all.region.empty()) return;
+  all.region.resize(first_tet, 0);  // bodies without labels have 0
+  all.region.insert(all.region.end(), mesh.region.begin(), mesh.region.end());
+  all.region.resize(all.tets.size(), 0);
+}
+
+DecreaseTest test_named(const std::string& name) {
+  if (name == "slide") return DecreaseTest::slide;
+  return name == "none" ? DecreaseTest::none : DecreaseTest::textbook;
+}
+
+Criterion criterion_named(const std::string& name) {
+  for (const Criterion c : {Criterion::scale, Criterion::first_gradient, Criterion::absolute})
+    if (to_string(c) == name) return c;
+  throw InvalidInput("criterion '" + name + "' is unknown");
+}
+
+SimulationOptions options_of(const Table& document) {
+  const Value &time = *document.find("time"), &solver = *document.find("solver"), &search = solver["line_search"];
+  SimulationOptions options;
+  options.h = time["step"].number();
+  options.integrator = time["integrator"].text();
+  options.solver.method = solver["method"].text();
+  options.solver.linear = solver["linear"].text();
+  options.solver.definiteness = solver["definiteness"].text();
+  MinimizeOptions& minimize = options.solver.minimize;
+  minimize.max_iterations = solver["max_iterations"].integer();
+  minimize.tolerance = solver["tolerance"].number();
+  minimize.criterion = criterion_named(solver["criterion"].text());
+  minimize.line_search = {.alpha_max = search["alpha_max"].number(),
+                          .sufficient_decrease = search["c"].number(),
+                          .shrink = search["p"].number(),
+                          .tolerance = search["tol"].number(),
+                          .test = test_named(search["test"].text())};
+  return options;
+}
+
+OutputOptions output_of(const Value& table) {
+  return {.every = table["every"].number(),
+          .vtu = table["vtu"].boolean(),
+          .obj = table["obj"].boolean(),
+          .ply = table["ply"].boolean(),
+          .pc2 = table["pc2"].boolean(),
+          .usd = table["usd"].boolean(),
+          .checkpoint_every = table["checkpoint_every"].number()};
+}
+
+int steps_of(const Value& time) {
+  // The quotient of two rounded numbers: 2 / 0.01 must not become 201 steps.
+  const double steps = std::ceil(time["duration"].number() / time["step"].number() - 1e-6);
+  if (steps > 1e9)
+    throw error_at(time["duration"].place, "duration = " + number_text(time["duration"].number()) + " needs " +
+                                               number_text(steps) + " steps; choose a longer step");
+  return static_cast<int>(std::max(steps, 0.0));
+}
+
+class SceneBuilder {
+ public:
+  SceneBuilder(SceneSource source, SceneFiles files, const std::filesystem::path& mesher)
+      : source_(std::move(source)), files_(std::move(files)), mesher_(mesher) {}
+
+  Scene build() {
+    note_version();
+    add_bodies();
+    add_model();
+    State state = start();
+    const SimulationOptions options = options_of(source_.document);
+    const int steps = steps_of(*source_.document.find("time"));
+    std::string resolved = to_toml(source_.document);
+    try {
+      return {source_.name,
+              std::move(resolved),
+              std::move(source_.notes),
+              Simulation(std::move(model_), std::move(state), options),
+              std::move(skins_),
+              steps,
+              output_of(*source_.document.find("output")),
+              std::move(files_.kept_files),
+              std::move(files_.kept_meshes)};
+    } catch (const InvalidInput& e) {
+      throw InvalidInput(source_.file + ": " + e.what());
+    }
+  }
+
+ private:
+  void note_version() {
+    const std::string current = ASPIC_VERSION;
+    if (const Value* made_by = source_.document.find("version")) {
+      if (made_by->text() != current)
+        source_.notes.push_back("this scene was resolved by version " + made_by->text() + "; this is " + current +
+                                ", so the last digits may differ");
+    }
+    std::erase_if(source_.document.members, [](const Member& m) { return m.key == "version"; });
+    source_.document.members.insert(source_.document.members.begin(), Member{"version", {}, {current, {}}});
+  }
+
+  void add_bodies() {
+    MeshLoader loader{files_, mesher_, source_.notes};
+    for (Value& scene : source_.document.find("body")->array()) {
+      std::optional<LoadedMesh> loaded;
+      if (const auto known = source_.meshes.find(scene["name"].text()); known != source_.meshes.end())
+        loaded = std::move(known->second);
+      BodyMesh mesh = make_body_mesh(scene, loader, std::move(loaded));
+      PlacedBody body{scene, std::move(mesh.tets), {}, model_.mesh.vertex_count(), model_.mesh.tet_count()};
+      try {
+        body.start = deformed(scene, body.mesh.rest, files_, body.name());
+      } catch (const InvalidInput& e) {
+        throw InvalidInput(source_.file + ": body '" + body.name() + "', deform: " + e.what());
+      }
+      append(body.mesh, model_.mesh);
+      for (Tet& corners : mesh.embedding.vertices)
+        for (int& v : corners) v += body.first_vertex;
+      skins_.push_back({std::move(mesh.skin), std::move(mesh.embedding), body.name()});
+      model_.bodies.push_back(
+          {body.name(), body.first_vertex, body.mesh.vertex_count(), body.first_tet, body.mesh.tet_count()});
+      bodies_.push_back(std::move(body));
+    }
+  }
+
+  void add_model() {
+    const Value& solver = *source_.document.find("solver");
+    const MassKind kind = solver["mass"].text() == "lumped" ? MassKind::lumped : MassKind::consistent;
+    for (PlacedBody& body : bodies_) {
+      Table& material = body.scene.table().find("material")->table();
+      const std::vector<double> density =
+          tet_values(material, scene_schema().key("material", "density"), body.mesh, files_, body.name());
+      model_.density.insert(model_.density.end(), density.begin(), density.end());
+      const std::vector<MaterialParameters> parameters = parameters_of(body, files_, source_.notes);
+      model_.elasticity.push_back(make_tet_elasticity(model_of(body), model_.mesh, body.first_tet, parameters));
+    }
+    model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind);
+    add_actions(bodies_, source_.document.find("gravity")->vector(), kind, files_, model_, source_.notes);
+  }
+
+  State start() {
+    State state;
+    const std::span<const double> mass = model_.mass->vertex_mass();
+    for (const PlacedBody& body : bodies_) {
+      std::vector<Vec3d> v;
+      try {
+        v = velocities(body.scene, body.mesh.rest, body.start, mass.subspan(body.first_vertex, body.start.size()));
+      } catch (const InvalidInput& e) {
+        throw error_at(body.scene["velocity"].place, e.what());
+      }
+      for (size_t i = 0; i < v.size(); ++i)
+        for (int r = 0; r < 3; ++r) {
+          state.q.push_back(body.start[i][r]);
+          state.qdot.push_back(v[i][r]);
+        }
+    }
+    return state;
+  }
+
+  SceneSource source_;
+  SceneFiles files_;
+  const std::filesystem::path& mesher_;
+  std::vector<PlacedBody> bodies_;
+  Model model_;
+  std::vector<Skin> skins_;
+};
+
+}  // namespace
+
+Scene build_scene(SceneSource source, SceneFiles files, const std::filesystem::path& mesher) {
+  return SceneBuilder(std::move(source), std::move(files), mesher).build();
+}
+
+}  // namespace aspic

@@ -1,0 +1,25 @@
+// A complete document to a scene that is ready to run.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scene/body_mesh.h"
+#include "scene/scene.h"
+#include "scene/value.h"
+
+namespace aspic {
+
+struct SceneSource {
+  Table document;                            // has passed read_scene_document()
+  std::string name;                          // of the scene
+  std::string file;                          // for messages
+  std::map<std::string, LoadedMesh> meshes;  // of bodies, when read before
+  std::vector<std::string> notes;
+};
+
+// Throws InvalidInput.
+Scene build_scene(SceneSource source, SceneFiles files, const std::filesystem::path& mesher);
+
+}  // namespace aspic

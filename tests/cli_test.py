@@ -1,0 +1,339 @@
+#!/usr/bin/env python3
+"""The command line as its users meet it: every command, every exit code, interruption and resumption.
+
+usage: ASPIC=path/to/aspic cli_test.py [TestCase...]
+"""
+import csv
+import filecmp
+import json
+import os
+import pathlib
+import pty
+import re
+import select
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+ASPIC = os.environ["ASPIC"]
+MESHER = pathlib.Path(ASPIC).with_name("aspic-mesh")
+CUBE_OBJ = """v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1
+f 1 3 2\nf 1 4 3\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n"""
+BEAM = """[time]
+step = 0.01
+duration = {duration}
+[[body]]
+name = "beam"
+shape = {{ box = {{ upper = [0.4, 0.1, 0.1], cells = [{cells}] }} }}
+material = {{ model = "neo_hookean", young = 1e5, poisson = 0.3, density = 1000 }}
+[[body.pin]]
+where = "x < 1e-9"
+"""
+
+
+def box_mesh(cells=2, flip=None):
+    """A unit cube of cells^3 x 6 tets in Medit's format; tet number `flip` is turned inside out."""
+    n = cells + 1
+    vertices = [(i / cells, j / cells, k / cells) for i in range(n) for j in range(n) for k in range(n)]
+    index = lambda c: 1 + (c[0] * n + c[1]) * n + c[2]
+    tets = []
+    for i in range(cells):
+        for j in range(cells):
+            for k in range(cells):
+                for path, even in (((0, 1, 2), 1), ((1, 2, 0), 1), ((2, 0, 1), 1),
+                                   ((0, 2, 1), 0), ((2, 1, 0), 0), ((1, 0, 2), 0)):
+                    corner, tet = [i, j, k], [index((i, j, k))]
+                    for axis in path:
+                        corner[axis] += 1
+                        tet.append(index(corner))
+                    if not even:
+                        tet[2], tet[3] = tet[3], tet[2]
+                    tets.append(tet)
+    if flip is not None:
+        tets[flip][2], tets[flip][3] = tets[flip][3], tets[flip][2]
+    lines = ["MeshVersionFormatted 2", "Dimension 3", "Vertices", str(len(vertices))]
+    lines += ["%.17g %.17g %.17g 0" % v for v in vertices]
+    lines += ["Tetrahedra", str(len(tets))] + ["%d %d %d %d 0" % tuple(t) for t in tets] + ["End", ""]
+    return "\n".join(lines)
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="aspic_cli_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text)
+        return name
+
+    def beam(self, name="beam.toml", duration=0.05, cells="8, 2, 2", extra=""):
+        return self.write(name, BEAM.format(duration=duration, cells=cells) + extra)
+
+    def aspic(self, *arguments, code=0, timeout=120):
+        done = subprocess.run([ASPIC, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=timeout)
+        self.assertEqual(done.returncode, code, f"aspic {' '.join(arguments)}\n{done.stdout}\n{done.stderr}")
+        return done
+
+    def start(self, *arguments):
+        return subprocess.Popen([ASPIC, *arguments], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                text=True)
+
+    def steps(self, run):
+        with open(self.folder / run / "steps.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def assert_same_results(self, one, other):
+        """Frames, caches and scene to the bit; the tables but for wall times."""
+        left, right = self.folder / one, self.folder / other
+        names = {p.relative_to(left) for p in left.rglob("*") if p.is_file()}
+        self.assertEqual(names, {p.relative_to(right) for p in right.rglob("*") if p.is_file()})
+        self.assertTrue(any(n.suffix == ".vtu" for n in names), names)
+        for name in sorted(names):
+            if name.name == "steps.csv":
+                without_times = lambda rows: [{k: v for k, v in r.items() if "seconds" not in k} for r in rows]
+                self.assertEqual(without_times(self.steps(one)), without_times(self.steps(other)))
+            else:
+                self.assertTrue(filecmp.cmp(left / name, right / name, shallow=False), f"{name} differs")
+
+
+class Help(CommandLine):
+    def test_every_level_has_examples(self):
+        for arguments in ([], ["run"], ["check"], ["convert"], ["materials"]):
+            self.assertIn("Examples:", self.aspic(*arguments, "--help").stdout)
+
+    def test_version_states_how_the_program_was_built(self):
+        text = self.aspic("--version").stdout
+        for fact in ("aspic ", "compiler", "flags", "SIMD", "libraries"):
+            self.assertIn(fact, text)
+
+    def test_a_misspelt_command_is_corrected(self):
+        self.assertIn("did you mean 'check'", self.aspic("chek", "x.mesh", code=2).stderr)
+
+    def test_a_misspelt_option_is_corrected(self):
+        self.assertIn("did you mean '--threads'", self.aspic("run", "x.toml", "--thread", "2", code=2).stderr)
+
+    def test_a_file_without_a_command_is_told_about_run(self):
+        self.write("box.mesh", box_mesh())
+        self.assertIn("aspic run box.mesh", self.aspic("box.mesh", code=2).stderr)
+
+    def test_no_arguments_show_the_help(self):
+        self.assertIn("Examples:", self.aspic(code=2).stdout)
+
+
+class Materials(CommandLine):
+    def test_each_has_a_formula(self):
+        text = self.aspic("materials").stdout
+        for name in ("neo_hookean", "neo_hookean_log", "stvk", "corotated"):
+            self.assertRegex(text, rf"(?m)^{name}\n  psi = ")
+
+    def test_json(self):
+        listed = json.loads(self.aspic("materials", "--json").stdout)
+        self.assertTrue(all(m["name"] and m["formula"] for m in listed))
+
+    def test_a_misspelt_name_is_corrected(self):
+        self.assertIn("did you mean 'neo_hookean'", self.aspic("materials", "neo_hokean", code=2).stderr)
+
+
+class Check(CommandLine):
+    def test_a_good_mesh_passes_with_its_quality(self):
+        self.write("box.mesh", box_mesh())
+        text = self.aspic("check", "box.mesh").stdout
+        self.assertIn("27 vertices, 48 tets", text)
+        self.assertIn("mean ratio", text)
+
+    def test_an_inverted_tet_is_named_by_its_index(self):
+        self.write("bad.mesh", box_mesh(flip=5))
+        text = self.aspic("check", "bad.mesh", code=2).stdout
+        self.assertRegex(text, r"error: inverted_tets: .*\n  indices: 5\n")
+
+    def test_repair_mends_it(self):
+        self.write("bad.mesh", box_mesh(flip=5))
+        self.aspic("check", "bad.mesh", "--repair", "-o", "good.mesh")
+        self.aspic("check", "good.mesh")
+
+    def test_an_open_surface_is_an_error(self):
+        self.write("open.obj", CUBE_OBJ.rsplit("f ", 1)[0])
+        self.assertIn("open", self.aspic("check", "open.obj", code=2).stdout)
+
+    def test_a_scene(self):
+        self.assertIn("beam", self.aspic("check", self.beam()).stdout)
+
+    def test_a_file_that_is_missing_or_broken(self):
+        self.assertIn("none.mesh", self.aspic("check", "none.mesh", code=2).stderr)
+        self.write("cut.mesh", box_mesh()[:200])
+        self.assertIn("cut.mesh", self.aspic("check", "cut.mesh", code=2).stderr)
+        self.write("nan.mesh", box_mesh().replace("0.5", "nan", 1))
+        self.assertRegex(self.aspic("check", "nan.mesh", code=2).stderr, r"nan\.mesh:\d+")
+
+
+class Convert(CommandLine):
+    def test_tets_survive_the_round_trip(self):
+        self.write("box.mesh", box_mesh())
+        self.aspic("convert", "box.mesh", "box.msh", "--binary")
+        self.aspic("convert", "box.msh", "box.vtu")
+        self.aspic("convert", "box.vtu", "back.mesh")
+        self.assertIn("27 vertices, 48 tets", self.aspic("check", "back.mesh").stdout)
+
+    def test_tets_become_their_boundary_in_a_surface_format(self):
+        self.write("box.mesh", box_mesh())
+        self.assertIn("boundary", self.aspic("convert", "box.mesh", "box.obj").stdout)
+        self.assertIn("26 vertices, 48 triangles", self.aspic("check", "box.obj").stdout)
+
+    def test_an_unknown_extension_is_bad_input(self):
+        self.write("box.mesh", box_mesh())
+        self.assertIn(".xyz", self.aspic("convert", "box.mesh", "box.xyz", code=2).stderr)
+
+
+@unittest.skipUnless(MESHER.exists(), "aspic-mesh was not built")
+class Mesh(CommandLine):
+    def test_a_closed_surface_is_filled(self):
+        self.write("cube.obj", CUBE_OBJ)
+        self.aspic("mesh", "cube.obj", "-o", "cube.mesh", "--size", "0.3")
+        self.assertIn("tets", self.aspic("check", "cube.mesh").stdout)
+
+    def test_a_surface_runs_without_a_scene(self):
+        self.write("cube.obj", CUBE_OBJ)
+        text = self.aspic("run", "cube.obj", "--steps", "2").stdout
+        self.assertIn("note:", text)
+        self.assertEqual(len(self.steps("out/cube")), 2)
+
+
+class Run(CommandLine):
+    def test_a_scene_ends_with_a_summary(self):
+        text = self.aspic("run", self.beam()).stdout
+        for part in ("done", "5 of 5", "iterations per step", "peak memory", "out/beam", ".pvd"):
+            self.assertIn(part, text)
+        self.assertEqual(len(self.steps("out/beam")), 5)
+
+    def test_a_tet_mesh_runs_without_a_scene(self):
+        self.write("box.mesh", box_mesh())
+        self.assertIn("note:", self.aspic("run", "box.mesh", "--steps", "2").stdout)
+
+    def test_an_existing_run_is_kept_unless_forced(self):
+        scene = self.beam()
+        self.aspic("run", scene)
+        self.assertIn("--force", self.aspic("run", scene, code=2).stderr)
+        self.aspic("run", scene, "--force")
+
+    def test_the_resolved_scene_gives_the_same_results(self):
+        self.aspic("run", self.beam(), "--out", "a")
+        shutil.copy(self.folder / "a/scene.toml", self.folder / "beam_again.toml")
+        self.aspic("run", "beam_again.toml", "--out", "b")
+        self.assertEqual([r["residual"] for r in self.steps("a")] if "residual" in self.steps("a")[0] else None,
+                         [r["residual"] for r in self.steps("b")] if "residual" in self.steps("b")[0] else None)
+
+    def test_results_do_not_depend_on_the_number_of_threads(self):
+        scene = self.beam()
+        self.aspic("run", scene, "--out", "one", "--threads", "1")
+        self.aspic("run", scene, "--out", "three", "--threads", "3")
+        self.assert_same_results("one", "three")
+
+    def test_set_overrides_the_scene(self):
+        scene = self.beam()
+        lines = {}
+        for young in ("1e5", "1e4"):
+            out = self.aspic("run", scene, "--json", "--out", young, "--set", f"material.young={young}").stdout
+            lines[young] = json.loads(out.splitlines()[-1])
+        self.assertNotEqual(lines["1e5"]["potential_total"], lines["1e4"]["potential_total"])
+        self.assertIn("material.yung", self.aspic("run", scene, "--set", "material.yung=1", code=2).stderr)
+
+    def test_json_is_one_line_per_step_and_nothing_else(self):
+        done = self.aspic("run", self.beam(), "--json")
+        lines = [json.loads(line) for line in done.stdout.splitlines()]
+        self.assertEqual([line["step"] for line in lines], [1, 2, 3, 4, 5])
+        self.assertTrue(all(line["converged"] and line["iterations"] >= 1 for line in lines))
+        self.assertIn("elasticity", lines[0]["potential"])
+        self.assertIn("done", done.stderr)
+
+    def test_quiet_prints_nothing(self):
+        done = self.aspic("run", self.beam(), "--quiet")
+        self.assertEqual((done.stdout, done.stderr), ("", ""))
+
+    def test_a_misspelt_key_is_corrected_with_its_place(self):
+        self.write("bad.toml", BEAM.format(duration=0.05, cells="2, 1, 1").replace("young", "yuong"))
+        self.assertRegex(self.aspic("run", "bad.toml", code=2).stderr, r"bad\.toml:7:\d+: .*yuong.*young")
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_a_broken_mesh_is_refused(self):
+        self.write("bad.mesh", box_mesh(flip=5))
+        self.assertIn("inverted", self.aspic("run", "bad.mesh", code=2).stderr)
+
+    def test_a_step_that_does_not_converge_shows_in_the_exit_code(self):
+        scene = self.beam()
+        hard = ["--set", "solver.max_iterations=1", "--set", "solver.tolerance=1e-12", "--set", "material.young=1e3"]
+        self.assertIn("did not converge", self.aspic("run", scene, *hard, code=3).stderr)
+        self.aspic("run", scene, *hard, "--force", "--allow-unconverged")
+
+    def test_a_terminal_gets_a_progress_bar(self):
+        scene = self.beam()
+        master, slave = pty.openpty()
+        process = subprocess.Popen([ASPIC, "run", scene], cwd=self.folder, stdout=slave, stderr=slave)
+        os.close(slave)
+        text = b""
+        while True:
+            ready, _, _ = select.select([master], [], [], 60)
+            try:
+                chunk = os.read(master, 4096) if ready else b""
+            except OSError:  # the other end is closed
+                chunk = b""
+            if not chunk:
+                break
+            text += chunk
+        os.close(master)
+        self.assertEqual(process.wait(), 0)
+        self.assertIn(b"[####################] 100%", text)
+
+
+class Interruption(CommandLine):
+    """A run of a hundred steps is stopped in its middle, in three ways, and continued."""
+
+    def setUp(self):
+        super().setUp()
+        self.scene = self.beam(duration=1.0, cells="16, 4, 4")
+
+    def interrupt(self, with_signal, out):
+        process = self.start("run", self.scene, "--out", out, "--json")
+        for _ in range(10):
+            self.assertTrue(process.stdout.readline())
+        process.send_signal(with_signal)
+        process.communicate(timeout=60)
+        return process.returncode
+
+    def resume_and_compare(self, out):
+        self.assertGreaterEqual(len(self.steps(out)), 10)
+        self.assertLess(len(self.steps(out)), 100, "the run ended before it was interrupted")
+        self.aspic("run", self.scene, "--out", out, "--resume")
+        self.aspic("run", self.scene, "--out", "whole")
+        self.assertEqual(len(self.steps(out)), 100)
+        self.assert_same_results("whole", out)
+
+    def test_ctrl_c_and_resume_give_the_same_bits(self):
+        self.assertEqual(self.interrupt(signal.SIGINT, "stopped"), 130)
+        self.resume_and_compare("stopped")
+
+    def test_kill_and_resume_give_the_same_bits(self):
+        self.assertEqual(self.interrupt(signal.SIGTERM, "stopped"), 143)
+        self.resume_and_compare("stopped")
+
+    def test_kill_9_and_resume_give_the_same_bits(self):
+        self.assertEqual(self.interrupt(signal.SIGKILL, "stopped"), -signal.SIGKILL)
+        self.resume_and_compare("stopped")
+
+    def test_the_steps_option_and_resume_give_the_same_bits(self):
+        self.aspic("run", self.scene, "--out", "stopped", "--steps", "30")
+        self.resume_and_compare("stopped")
+
+    def test_resume_needs_a_run(self):
+        self.assertIn("no such run", self.aspic("run", self.scene, "--resume", code=2).stderr)
+
+    def test_a_complete_run_has_nothing_to_resume(self):
+        scene = self.beam("short.toml")
+        self.aspic("run", scene)
+        self.assertIn("nothing to do", self.aspic("run", "out/short", "--resume").stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
