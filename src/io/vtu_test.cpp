@@ -11,14 +11,14 @@
 #include "base/error.h"
 #include "io/atomic_file.h"
 #include "io/base64.h"
-#include "io/test_folder_test.h"
+#include "io/folder_test.h"
 
 namespace aspic {
 namespace {
 
 using testing::HasSubstr;
 
-class VtuFile : public TestFolder {
+class VtuFile : public FolderTest {
  protected:
   static Vtu read_text(const std::string& text) { return parse_vtu(text, "text.vtu"); }
 

@@ -11,7 +11,7 @@
 #include "energy/linear_load.h"
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
-#include "io/test_folder_test.h"
+#include "io/folder_test.h"
 #include "io/vtu.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
@@ -56,7 +56,9 @@ Scene sagging_scene(const OutputOptions& output = {}) {
           .simulation = Simulation(std::move(model), std::move(state), {}),
           .skins = {std::move(skin)},
           .steps = kSteps,
-          .output = output};
+          .output = output,
+          .input_files = {},
+          .generated_meshes = {}};
 }
 
 void run_to(RunDirectory& run, Simulation& simulation, int last_step) {
@@ -95,10 +97,10 @@ std::vector<std::string> names(const fs::path& folder) {
 
 int line_count(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
-using RunResults = TestFolder;
+using RunResults = FolderTest;
 
 TEST_F(RunResults, HoldTheDocumentedFiles) {
-  run_whole(path("run"), {.every = 0.03, .obj = true, .ply = false});
+  run_whole(path("run"), {.every = 0.03, .obj = true, .ply = true});
   EXPECT_THAT(names(path("run")),
               testing::UnorderedElementsAre("scene.toml", "steps.csv", "iterations.csv", "checkpoint.bin", "run.pvd",
                                             "run.usda", "frames/body_000000.vtu", "frames/body_000001.vtu",
@@ -214,7 +216,7 @@ TEST_F(RunResults, AnExistingRunIsOnlyReplacedWhenAsked) {
 }
 
 TEST_F(RunResults, ReplacingARunSparesForeignFiles) {
-  run_whole(path("run"), {.obj = true, .ply = false});
+  run_whole(path("run"), {.obj = true, .ply = true});
   const std::vector<std::string> foreign = {"notes.txt", "frames/body_1.vtu", "frames/body_000001.png",
                                             "skins/bunny.obj", "frames/body_x_000001.vtu"};
   for (const std::string& name : foreign) put(path("run") / name, "mine");
@@ -223,6 +225,24 @@ TEST_F(RunResults, ReplacingARunSparesForeignFiles) {
   std::vector<std::string> expected = {"scene.toml", "steps.csv", "iterations.csv", "checkpoint.bin"};
   expected.insert(expected.end(), foreign.begin(), foreign.end());
   EXPECT_THAT(names(path("run")), testing::UnorderedElementsAreArray(expected));
+}
+
+TEST_F(RunResults, InputsAreKeptBesideTheSceneAndReplacedWithTheRun) {
+  put(path("bar.msh"), "a mesh");
+  Scene scene = sagging_scene();
+  scene.resolved += "mesh = \"inputs/bar.msh\"\n";
+  scene.input_files = {{"inputs/bar.msh", path("bar.msh")}};
+  RunDirectory::create(path("run"), scene, ExistingRun::refuse);
+  EXPECT_EQ(read_file(path("run/inputs/bar.msh")), "a mesh");
+
+  scene.input_files = {{"inputs/bar.msh", path("run/inputs/bar.msh")}};  // the run's own scene, run again
+  RunDirectory::create(path("run"), scene, ExistingRun::overwrite);
+  EXPECT_EQ(read_file(path("run/inputs/bar.msh")), "a mesh");
+
+  put(path("run/inputs/mine.msh"), "mine");
+  RunDirectory::create(path("run"), sagging_scene(), ExistingRun::overwrite);
+  EXPECT_FALSE(fs::exists(path("run/inputs/bar.msh")));
+  EXPECT_EQ(read_file(path("run/inputs/mine.msh")), "mine");
 }
 
 TEST_F(RunResults, ADirectoryThatHoldsNoRunIsNeverTouched) {
