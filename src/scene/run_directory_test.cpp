@@ -166,6 +166,24 @@ TEST_F(RunResults, AnInterruptedRunContinuesToTheSameBytes) {
   }
 }
 
+TEST_F(RunResults, FramesAfterTheLastCheckpointAreComputedAgain) {
+  const OutputOptions output{.checkpoint_every = 1e9};  // [s]: only at the start and the end
+  run_whole(path("whole"), output);
+  {
+    Scene scene = sagging_scene(output);
+    RunDirectory run = RunDirectory::create(path("run"), scene, ExistingRun::refuse);
+    run_to(run, scene.simulation, 5);
+  }
+  Scene scene = sagging_scene(output);
+  RunDirectory run = RunDirectory::resume(path("run"), scene);
+  EXPECT_EQ(scene.simulation.steps_taken(), 0);
+  EXPECT_FALSE(fs::exists(path("run/frames/body_000001.vtu")));
+  EXPECT_EQ(line_count(read_file(path("run/steps.csv"))), 1);
+  run_to(run, scene.simulation, kSteps);
+  run.finish(scene.simulation);
+  EXPECT_EQ(contents(path("run")), contents(path("whole")));
+}
+
 TEST_F(RunResults, AFinishedRunResumesWithoutChange) {
   run_whole(path("run"), {});
   const auto before = contents(path("run"));
