@@ -91,7 +91,7 @@ TEST_P(SceneFile, IsShort) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, SceneFile, ::testing::ValuesIn(scene_files()),
-                         [](const auto& info) { return info.param.stem().string(); });
+                         [](const auto& file) { return file.param.stem().string(); });
 
 TEST(SceneReference, IsTheCommittedPage) {
   const fs::path page = fs::path(ASPIC_SOURCE_DIR) / "docs" / "scene.md";
@@ -406,7 +406,7 @@ TEST(MeshAlone, OverridesReplaceDefaultsAndTheirNotes) {
   EXPECT_NEAR(scene.simulation.model().mesh.rest.back()[1], 0.1, 1e-15);
   EXPECT_THAT(scene.notes, Not(Contains(HasSubstr("becomes 1 m"))));
   EXPECT_THAT(scene.notes, Not(Contains(HasSubstr("material.young"))));
-  EXPECT_THAT(scene.resolved, HasSubstr("young = 5e+04"));
+  EXPECT_THAT(scene.resolved, HasSubstr("young = 50000.0"));
   EXPECT_THAT(refusal_of(folder / "tower.msh", {.overrides = {"material.yuong=1"}}), HasSubstr("'young'"));
 }
 
