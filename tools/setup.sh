@@ -133,7 +133,7 @@ fetch_bunny() {
   need "" "nodejs:node npm"
   say "Fetching the surface of the bunny: npm package $bunny_package ..."
   folder=$(mktemp -d)
-  if ! (cd "$folder" && logged npm npm pack --silent "$bunny_package"); then
+  if ! (cd "$folder" && logged npm npm pack "$bunny_package"); then
     rm -rf "$folder"
     die "the npm package $bunny_package could not be fetched (is the network away?).
 Everything but the default scene works without it: ./run run MESH with any mesh of your own."
