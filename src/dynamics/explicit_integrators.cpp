@@ -15,25 +15,10 @@ class ExplicitIntegrator : public Integrator {
   bool is_implicit() const override { return false; }
 
   MinimizeReport advance(const StepTools& tools, double h, State& state) override {
-    const size_t n = state.q.size();
-    // Velocities with which pinned vertices arrive where they are prescribed.
-    std::vector<double> pinned_velocity = pin_velocity(tools, h, state);
-
-    // M a = -dV/dq - C qdot, with the pinned accelerations known.
-    std::vector<double> acceleration(n, 0.0), Ma(n), g(n, 0.0), drift(n);
-    for (size_t i = 0; i < n; ++i) drift[i] = state.q[i] + h * state.qdot[i];
-    for (const Energy* V : tools.E.potential()) V->add_gradient(state.q, 1, g);
-    for (const Energy* D : tools.E.damping()) D->add_gradient(drift, 1, g);
-    for (size_t i = 0; i < n; ++i)
-      if (tools.pins.holds(static_cast<int>(i / 3))) acceleration[i] = (pinned_velocity[i] - state.qdot[i]) / h;
-    tools.model.mass->multiply(acceleration, Ma);
-    for (size_t i = 0; i < n; ++i) g[i] = -g[i] - Ma[i];
-    tools.pins.set_zero(g);
-    const SolveReport solved = solve_mass(tools, g);
-    for (size_t i = 0; i < n; ++i)
-      if (!tools.pins.holds(static_cast<int>(i / 3))) acceleration[i] = a_[i];
-
-    update(h, acceleration, state);
+    for (auto* v : {&pin_velocity_, &acceleration_, &force_, &drift_, &scratch_}) v->resize(state.q.size());
+    place_pin_velocity(tools.pins, h, state.time);
+    const SolveReport solved = solve_motion(tools, h, state);
+    update(h, acceleration_, state);
     state.time += h;
     tools.pins.place(state.time, state.q);
 
@@ -46,20 +31,40 @@ class ExplicitIntegrator : public Integrator {
   }
 
  protected:
-  virtual std::vector<double> pin_velocity(const StepTools& tools, double h, const State& state) const = 0;
+  // When, relative to the end of the step, the velocity of a pinned vertex moves it.
+  virtual double pin_delay(double h) const = 0;
   virtual void update(double h, std::span<const double> acceleration, State& state) const = 0;
 
-  // (x(time_b) - x(time_a)) / (time_b - time_a) of the pinned vertices, zero elsewhere
-  static std::vector<double> mean_pin_velocity(const Pins& pins, double time_a, double time_b, size_t n) {
-    std::vector<double> a(n, 0.0), b(n, 0.0);
-    pins.place(time_a, a);
-    pins.place(time_b, b);
-    for (size_t i = 0; i < n; ++i) b[i] = (b[i] - a[i]) / (time_b - time_a);
-    return b;
+ private:
+  // Velocities with which pinned vertices arrive where they are prescribed.
+  void place_pin_velocity(const Pins& pins, double h, double time) {
+    const double from = time + pin_delay(h), to = from + h;
+    pins.place(to, pin_velocity_);
+    pins.place(from, scratch_);
+    for (size_t i = 0; i < scratch_.size(); ++i) pin_velocity_[i] = (pin_velocity_[i] - scratch_[i]) / h;
   }
 
- private:
-  SolveReport solve_mass(const StepTools& tools, std::span<const double> force) {
+  // M a = -dV/dq - C qdot, with the accelerations of pinned vertices known.
+  SolveReport solve_motion(const StepTools& tools, double h, const State& state) {
+    const size_t n = state.q.size();
+    for (size_t i = 0; i < n; ++i) drift_[i] = state.q[i] + h * state.qdot[i];
+    std::fill(force_.begin(), force_.end(), 0.0);
+    for (const Energy* V : tools.E.potential()) V->add_gradient(state.q, -1, force_);
+    for (const Energy* D : tools.E.damping()) D->add_gradient(drift_, -1, force_);
+    for (size_t i = 0; i < n; ++i) {
+      const bool pinned = tools.pins.holds(static_cast<int>(i / 3));
+      acceleration_[i] = pinned ? (pin_velocity_[i] - state.qdot[i]) / h : 0;
+    }
+    tools.model.mass->multiply(acceleration_, scratch_);
+    for (size_t i = 0; i < n; ++i) force_[i] -= scratch_[i];
+    tools.pins.set_zero(force_);
+    const SolveReport solved = solve_mass(tools, force_, scratch_);
+    tools.pins.set_zero(scratch_);
+    for (size_t i = 0; i < n; ++i) acceleration_[i] += scratch_[i];
+    return solved;
+  }
+
+  SolveReport solve_mass(const StepTools& tools, std::span<const double> force, std::span<double> a) {
     if (!solver_) {
       solver_ = make_linear_solver("auto");
       M_.emplace(tools.E.pattern());
@@ -67,14 +72,13 @@ class ExplicitIntegrator : public Integrator {
       tools.pins.set_identity(*M_);
       solver_->analyze(tools.E.pattern());
       factorized_ = solver_->factorize(*M_);
-      a_.resize(force.size());
     }
-    return factorized_ ? solver_->solve(force, a_, kSolveTolerance) : SolveReport{};
+    return factorized_ ? solver_->solve(force, a, kSolveTolerance) : SolveReport{};
   }
 
   std::unique_ptr<LinearSolver> solver_;
   std::optional<BlockSparse> M_;
-  std::vector<double> a_;
+  std::vector<double> pin_velocity_, acceleration_, force_, drift_, scratch_;
   bool factorized_ = false;
 };
 
@@ -85,9 +89,7 @@ class SymplecticEuler : public ExplicitIntegrator {
   Displacement displacement() const override { return Displacement::new_velocity; }
 
  protected:
-  std::vector<double> pin_velocity(const StepTools& tools, double h, const State& state) const override {
-    return mean_pin_velocity(tools.pins, state.time, state.time + h, state.q.size());
-  }
+  double pin_delay(double) const override { return 0; }
   void update(double h, std::span<const double> acceleration, State& state) const override {
     for (size_t i = 0; i < state.q.size(); ++i) {
       state.qdot[i] += h * acceleration[i];
@@ -103,9 +105,7 @@ class ForwardEuler : public ExplicitIntegrator {
   Displacement displacement() const override { return Displacement::old_velocity; }
 
  protected:
-  std::vector<double> pin_velocity(const StepTools& tools, double h, const State& state) const override {
-    return mean_pin_velocity(tools.pins, state.time + h, state.time + 2 * h, state.q.size());
-  }
+  double pin_delay(double h) const override { return h; }
   void update(double h, std::span<const double> acceleration, State& state) const override {
     for (size_t i = 0; i < state.q.size(); ++i) {
       state.q[i] += h * state.qdot[i];

@@ -7,24 +7,6 @@
 namespace aspic {
 namespace {
 
-// Starts from the candidate of lowest energy: where the body is, or where it would fly without forces. Pinned
-// vertices go where they must in both.
-void choose_start(const StepTools& tools, std::span<const double> predicted, double time, std::span<double> q) {
-  std::vector<double> current(q.begin(), q.end()), flying(predicted.begin(), predicted.end());
-  tools.pins.place(time, current);
-  tools.pins.place(time, flying);
-  const bool fly = tools.E.value(flying) <= tools.E.value(current);
-  const std::vector<double>& best = fly ? flying : current;
-  std::copy(best.begin(), best.end(), q.begin());
-}
-
-// q~ = q_t + h qdot_t = 2 q_t - q_(t-1)
-std::vector<double> predicted_position(const State& state, double h) {
-  std::vector<double> predicted(state.q.size());
-  for (size_t i = 0; i < predicted.size(); ++i) predicted[i] = state.q[i] + h * state.qdot[i];
-  return predicted;
-}
-
 // q_new = argmin 1/2 (q - q~)' M (q - q~) + h^2 V(q),  qdot_new = (q_new - q_t) / h
 class BackwardEuler : public Integrator {
  public:
@@ -33,24 +15,31 @@ class BackwardEuler : public Integrator {
   Displacement displacement() const override { return Displacement::new_velocity; }
 
   MinimizeReport advance(const StepTools& tools, double h, State& state) override {
-    const std::vector<double> q = state.q;
-    const std::vector<double> predicted = predicted_position(state, h);
-    tools.E.begin_step(predicted, 1, h * h);
-    start(tools, predicted, state.time + h, state.q);
+    q_ = state.q;
+    predicted_.resize(q_.size());
+    for (size_t i = 0; i < q_.size(); ++i) predicted_[i] = q_[i] + h * state.qdot[i];  // = 2 q_t - q_(t-1)
+    tools.E.begin_step(predicted_, 1, h * h);
+    start(tools, state.time + h, state.q);
     const MinimizeReport report =
         tools.minimizer.minimize(tools.E, tools.direction, state.q, adapted(tools.options), tools.observe);
-    for (size_t i = 0; i < q.size(); ++i) state.qdot[i] = (state.q[i] - q[i]) / h;
+    for (size_t i = 0; i < q_.size(); ++i) state.qdot[i] = (state.q[i] - q_[i]) / h;
     state.time += h;
     return finished(report);
   }
 
  protected:
-  virtual void start(const StepTools& tools, std::span<const double> predicted, double time,
-                     std::span<double> q) const {
-    choose_start(tools, predicted, time, q);
+  // Starts from the candidate of lower energy: where the body is, or where it would fly without forces. Pinned
+  // vertices go where they must in both.
+  virtual void start(const StepTools& tools, double time, std::span<double> q) {
+    tools.pins.place(time, q);
+    tools.pins.place(time, predicted_);
+    if (tools.E.value(predicted_) <= tools.E.value(q)) std::copy(predicted_.begin(), predicted_.end(), q.begin());
   }
   virtual MinimizeOptions adapted(const MinimizeOptions& options) const { return options; }
   virtual MinimizeReport finished(const MinimizeReport& report) const { return report; }
+
+ private:
+  std::vector<double> q_, predicted_;  // q_t, q~
 };
 
 // One Newton iteration from the current state, without line search [Baraff and Witkin 1998].
@@ -59,9 +48,7 @@ class LinearlyImplicitEuler : public BackwardEuler {
   std::string_view name() const override { return "linearly_implicit_euler"; }
 
  protected:
-  void start(const StepTools& tools, std::span<const double>, double time, std::span<double> q) const override {
-    tools.pins.place(time, q);
-  }
+  void start(const StepTools& tools, double time, std::span<double> q) override { tools.pins.place(time, q); }
   MinimizeOptions adapted(const MinimizeOptions& options) const override {
     MinimizeOptions one = options;
     one.max_iterations = 1;

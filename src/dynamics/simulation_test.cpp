@@ -123,6 +123,54 @@ TEST(Simulation, LinearMomentumChangesByTheExternalImpulse) {
   }
 }
 
+// L = sum q_i x (M v)_i changes by h sum v_new_i x (M v_old)_i: backward Euler does not conserve it.
+TEST(Simulation, AngularMomentumChangesAsBackwardEulerMust) {
+  Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}), {.young = 1e4, .gravity = {}});
+  State start = at_rest(model.mesh);
+  for (size_t i = 0; i < start.q.size(); i += 3) {
+    start.qdot[i] = -6 * start.q[i + 1];
+    start.qdot[i + 1] = 6 * start.q[i];
+    start.q[i + 2] *= 1.2;
+  }
+  SimulationOptions options{.h = 0.01, .integrator = "backward_euler", .solver = {}};
+  options.solver.minimize.tolerance = 1e-13;
+  Simulation simulation(std::move(model), start, options);
+  for (int i = 0; i < 10; ++i) {
+    const Vec3d before = momentum(simulation, true);
+    const std::vector<double> v = simulation.state().qdot;
+    simulation.step();
+    std::vector<double> Mv(v.size());
+    simulation.model().mass->multiply(v, Mv);
+    Vec3d change{};
+    for (size_t k = 0; k < v.size(); k += 3) {
+      const double* w = &simulation.state().qdot[k];
+      change = change + 0.01 * cross(Vec3d{{w[0], w[1], w[2]}}, Vec3d{{Mv[k], Mv[k + 1], Mv[k + 2]}});
+    }
+    const Vec3d after = momentum(simulation, true);
+    for (int r = 0; r < 3; ++r) EXPECT_NEAR(after[r] - before[r], change[r], 1e-8 * before[2]);
+    EXPECT_LT(after[2], before[2]);
+  }
+}
+
+// The same beam in units of length a, of modulus and density b: lengths scale with a, times with a.
+TEST(Simulation, AChangeOfUnitsChangesNeitherIterationsNorTheDimensionlessResult) {
+  const auto run = [](double a, double b) {
+    TetMesh mesh = make_box({{0, 0, 0}}, {{4 * a, a, a}}, {8, 2, 2});
+    Model model = make_model(mesh, {.young = 1e5 * b, .density = 1000 * b, .gravity = {{0, -9.81 / a, 0}}});
+    model.pins.push_back({"wall", vertices_where(mesh, [a](const Vec3d& X) { return X[0] < 1e-9 * a; }), {}});
+    Simulation simulation = simulate(std::move(model), {.h = 0.02 * a, .integrator = "backward_euler", .solver = {}});
+    std::vector<double> result;
+    for (int i = 0; i < 10; ++i) result.push_back(simulation.step().iterations);
+    for (const double q : simulation.state().q) result.push_back(q / a);
+    return result;
+  };
+  const std::vector<double> metres = run(1, 1);
+  for (const auto& [a, b] : {std::pair{1e-3, 1.0}, {1e3, 1.0}, {1.0, 1e-3}, {1.0, 1e6}}) {
+    const std::vector<double> scaled = run(a, b);
+    for (size_t i = 0; i < metres.size(); ++i) EXPECT_NEAR(scaled[i], metres[i], 1e-9) << a << " " << b;
+  }
+}
+
 // x = A(t) X with A = I + s(t) B solves the equations under the body force rho A'' X when the boundary follows it.
 class AffineLoad : public Energy {
  public:

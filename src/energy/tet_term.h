@@ -65,7 +65,8 @@ class TetTerm : public TetElasticity {
   void add_hessian(Positions x, double scale, Definiteness definiteness, BlockSparse& H) const override {
     for_each_batch([&](int i) {
       Mat9<Pack> A = M::hessian(F(i, x), params_[i]);
-      if (definiteness != Definiteness::exact) project(A, definiteness);
+      if (definiteness == Definiteness::clamped) make_definite(A, EigenvalueFilter::clamp);
+      if (definiteness == Definiteness::absolute) make_definite(A, EigenvalueFilter::absolute);
       batches_[i].scatter_hessian(A, Pack(scale) * batches_[i].volume, H);
     });
   }
@@ -97,18 +98,6 @@ class TetTerm : public TetElasticity {
     std::vector<int> order = morton_order(std::span(center).subspan(first, count));
     for (int& tet : order) tet += first;
     return order;
-  }
-
-  static void project(Mat9<Pack>& A, Definiteness definiteness) {
-    const unsigned failed = indefinite_lanes(A);
-    const auto filter = definiteness == Definiteness::clamped ? EigenvalueFilter::clamp : EigenvalueFilter::absolute;
-    for (int l = 0; l < kPackWidth; ++l) {
-      if (!(failed >> l & 1)) continue;
-      Mat9d lane;
-      for (int i = 0; i < 81; ++i) lane.a[i] = A.a[i][l];
-      make_definite(lane, filter);
-      for (int i = 0; i < 81; ++i) A.a[i].set(l, lane.a[i]);
-    }
   }
 
   static void write(int tet, int lane, Pack psi, Pack J, const Mat3<Pack>& s, TetFields& fields) {

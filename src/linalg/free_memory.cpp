@@ -10,11 +10,17 @@ namespace {
 
 constexpr int64_t kUnknown = std::numeric_limits<int64_t>::max();
 
-int64_t machine_available() {  // /proc/meminfo: "MemAvailable:   123456 kB"
-  std::ifstream file("/proc/meminfo");
-  for (std::string key; file >> key; file.ignore(256, '\n'))
-    if (int64_t kilobytes = 0; key == "MemAvailable:" && file >> kilobytes) return kilobytes * 1024;
+// The number after `key` in a file of lines "key number ...".
+int64_t entry(const char* path, const char* key) {
+  std::ifstream file(path);
+  for (std::string word; file >> word; file.ignore(256, '\n'))
+    if (int64_t value = 0; word == key && file >> value) return value;
   return kUnknown;
+}
+
+int64_t machine_available() {
+  const int64_t kilobytes = entry("/proc/meminfo", "MemAvailable:");
+  return kilobytes == kUnknown ? kUnknown : kilobytes * 1024;
 }
 
 int64_t number_in(const char* path) {  // "max" stands for no limit
@@ -23,17 +29,27 @@ int64_t number_in(const char* path) {  // "max" stands for no limit
   return file >> value ? value : kUnknown;
 }
 
-int64_t group_available(const char* limit_path, const char* usage_path) {
-  const int64_t limit = number_in(limit_path), usage = number_in(usage_path);
-  return limit == kUnknown || usage == kUnknown ? kUnknown : std::max<int64_t>(0, limit - usage);
+struct GroupFiles {
+  const char *limit, *usage, *statistics, *cache_key;
+};
+
+// The usage counts the page cache, which gives way to programs.
+int64_t group_available(const GroupFiles& files) {
+  const int64_t limit = number_in(files.limit), usage = number_in(files.usage);
+  if (limit == kUnknown || usage == kUnknown) return kUnknown;
+  const int64_t cache = entry(files.statistics, files.cache_key);
+  return std::clamp<int64_t>(limit - usage + (cache == kUnknown ? 0 : cache), 0, limit);
 }
 
 }  // namespace
 
 int64_t free_memory() {
-  return std::min(
-      {machine_available(), group_available("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
-       group_available("/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes")});
+  const int64_t version_2 = group_available(
+      {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current", "/sys/fs/cgroup/memory.stat", "inactive_file"});
+  const int64_t version_1 =
+      group_available({"/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes",
+                       "/sys/fs/cgroup/memory/memory.stat", "total_inactive_file"});
+  return std::min({machine_available(), version_2, version_1});
 }
 
 }  // namespace aspic

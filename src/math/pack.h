@@ -80,7 +80,7 @@ inline Pack log(Pack a) {
   return k * kLn2High - ((s * (f - R) - k * kLn2Low) - f);
 }
 
-// Within 1 ulp. A third of the exponent is right to some percent; Halley's iteration triples the digits, and
+// Within 2 ulp. A third of the exponent is right to some percent; Halley's iteration triples the digits, and
 // Newton's last one rounds once.
 inline Pack cbrt(Pack a) {
   if (!all_ordinary(a)) return map(a, [](double x) { return std::cbrt(x); });

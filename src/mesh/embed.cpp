@@ -26,31 +26,54 @@ struct Carrier {
   std::array<double, 4> weights{};
 };
 
+double least(const std::array<double, 4>& w) { return std::min(std::min(w[0], w[1]), std::min(w[2], w[3])); }
+
 class Cage {
  public:
   explicit Cage(const TetMesh& mesh) : mesh_(mesh), usable_(usable_tets(mesh)), tree_(boxes(mesh, usable_)) {
-    if (usable_.empty()) throw InvalidInput("the cage has no tets of positive volume; a skin needs some to carry it");
+    if (usable_.empty()) throw InvalidInput("the cage has no tets with a volume; a skin needs some to carry it");
+    for (int tet : usable_) inverse_.push_back(inverse(edge_matrix(mesh, tet)));
+  }
+
+  Carrier carrier(const Vec3d& p) const {
+    const Carrier containing = container(p);
+    return containing.tet >= 0 ? containing : nearest(p);
+  }
+
+ private:
+  // The tet that has p deepest inside; none when p is outside.
+  Carrier container(const Vec3d& p) const {
+    Carrier best;
+    best.least_weight = -kOnFace;
+    constexpr double kHere = 0;
+    tree_.for_each_near(p, kHere, [&](int item) {
+      const std::array<double, 4> w = weights(item, p);
+      if (least(w) >= best.least_weight) best = {usable_[item], 0, least(w), w};
+    });
+    return best;
   }
 
   // The tet nearest to p; of several, the one that extrapolates least.
-  Carrier carrier(const Vec3d& p) const {
+  Carrier nearest(const Vec3d& p) const {
     Carrier best;
     double reach = std::numeric_limits<double>::infinity();
     tree_.for_each_near(p, reach, [&](int item) {
-      const TetCorners X = corners(mesh_, usable_[item]);
-      const double distance = squared_distance(X, p);
+      const std::array<double, 4> w = weights(item, p);
+      const double distance = squared_distance(corners(mesh_, usable_[item]), w, p);
       if (distance > reach) return;
-      const std::array<double, 4> w = barycentric(X, p);
-      const double least = *std::min_element(w.begin(), w.end());
       const bool nearer = distance < best.squared_distance * (1 - kTie);
-      if (best.tet >= 0 && !nearer && least <= best.least_weight) return;
-      best = {usable_[item], distance, least, w};
+      if (best.tet >= 0 && !nearer && least(w) <= best.least_weight) return;
+      best = {usable_[item], distance, least(w), w};
       reach = std::min(reach, distance * (1 + kTie));
     });
     return best;
   }
 
- private:
+  std::array<double, 4> weights(int item, const Vec3d& p) const {
+    const Vec3d w = inverse_[item] * (p - mesh_.rest[mesh_.tets[usable_[item]][0]]);
+    return {1 - w[0] - w[1] - w[2], w[0], w[1], w[2]};
+  }
+
   static std::vector<int> usable_tets(const TetMesh& mesh) {
     std::vector<int> usable;
     for (int t = 0; t < mesh.tet_count(); ++t) {
@@ -69,6 +92,7 @@ class Cage {
 
   const TetMesh& mesh_;
   std::vector<int> usable_;
+  std::vector<Mat3d> inverse_;  // of the edge matrices of the usable tets
   BoxTree tree_;
 };
 
@@ -95,7 +119,7 @@ Embedding embed(const TetMesh& cage_mesh, const TriMesh& skin) {
       embedding.weights[v] = carrier.weights;
     }
   });
-  for (const auto& w : embedding.weights) embedding.outside += *std::min_element(w.begin(), w.end()) < -kOnFace;
+  for (const auto& w : embedding.weights) embedding.outside += least(w) < -kOnFace;
   return embedding;
 }
 

@@ -63,6 +63,8 @@ TEST(Embedding, FindsTheNearestTetRatherThanTheNearestCentroid) {
   EXPECT_EQ(embedding.outside, 1);
 }
 
+double squared_distance(const TetCorners& X, const Vec3d& p) { return squared_distance(X, barycentric(X, p), p); }
+
 TEST(Embedding, AgreesWithASearchOfAllTets) {
   const TetMesh cage = make_torus(1, 0.3, 0.25);
   const TriMesh skin = random_skin(200, 1.6);

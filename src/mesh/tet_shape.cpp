@@ -56,13 +56,15 @@ std::array<double, 4> barycentric(const TetCorners& X, const Vec3d& p) {
   return {1 - w[0] - w[1] - w[2], w[0], w[1], w[2]};
 }
 
-double squared_distance(const TetCorners& X, const Vec3d& p) {
-  const std::array<double, 4> w = barycentric(X, p);
-  if (*std::min_element(w.begin(), w.end()) >= 0) return 0;
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const auto& [a, b, c] : kFaces) {
+double squared_distance(const TetCorners& X, const std::array<double, 4>& w, const Vec3d& p) {
+  double nearest = 0;
+  bool is_outside = false;
+  for (int corner = 0; corner < 4; ++corner) {
+    if (w[corner] >= 0) continue;  // p is not beyond the face opposite to this corner
+    const auto& [a, b, c] = kFaces[corner];
     const Vec3d away = p - nearest_point(p, X[a], X[b], X[c]);
-    nearest = std::min(nearest, dot(away, away));
+    nearest = is_outside ? std::min(nearest, dot(away, away)) : dot(away, away);
+    is_outside = true;
   }
   return nearest;
 }

@@ -35,7 +35,7 @@ double flat_volume(const TetCorners& corners);
 // Barycentric coordinates of p, summing to 1; the tet must not be flat.
 std::array<double, 4> barycentric(const TetCorners& corners, const Vec3d& p);
 
-// Squared distance [m^2] from p to the tet, 0 inside.
-double squared_distance(const TetCorners& corners, const Vec3d& p);
+// Squared distance [m^2] from p, whose barycentric coordinates are w, to the tet; 0 inside.
+double squared_distance(const TetCorners& corners, const std::array<double, 4>& w, const Vec3d& p);
 
 }  // namespace aspic

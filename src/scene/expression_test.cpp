@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <clocale>
 #include <cmath>
+#include <locale>
 #include <numbers>
 #include <thread>
 
@@ -103,12 +103,17 @@ TEST(Expression, IsBoundedInLengthAndDepth) {
 }
 
 TEST(Expression, DoesNotDependOnTheLocale) {
-  const char* before = std::setlocale(LC_ALL, nullptr);
-  const std::string saved = before ? before : "C";
-  if (!std::setlocale(LC_ALL, "de_DE.UTF-8") && !std::setlocale(LC_ALL, "fr_FR.UTF-8"))
-    GTEST_SKIP() << "no locale with a decimal comma is installed";
-  EXPECT_EQ(value("1.5 + 0.25"), 1.75);
-  std::setlocale(LC_ALL, saved.c_str());
+  struct DecimalComma : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
+  const double sum = value("1.5 + 0.25 + 1000");
+  const std::string refused = refusal("1/X");
+  std::locale::global(before);
+  EXPECT_EQ(sum, 1001.75);
+  EXPECT_THAT(refused, HasSubstr("(0, 0, 0)"));
 }
 
 TEST(Expression, IsSafeToShareBetweenThreads) {

@@ -18,7 +18,7 @@ constexpr double kPull = 0.25;                   // sideways displacement of the
 // The number with one significant digit: a default that can be read and said.
 double rounded(double x) {
   const double unit = std::pow(10.0, std::floor(std::log10(x)));
-  return std::strtod(number_text(std::round(x / unit)).c_str(), nullptr) * unit;
+  return std::round(x / unit) * unit;
 }
 
 double largest_extent(const Box& box) {

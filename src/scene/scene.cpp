@@ -26,7 +26,7 @@ std::string scene_text(const fs::path& path) {
   return read_file(path);
 }
 
-void copy(const fs::path& source, const fs::path& target) {
+void copy_file(const fs::path& source, const fs::path& target) {
   std::error_code error;
   if (fs::equivalent(source, target, error)) return;
   write_file(target, read_file(source));
@@ -59,7 +59,7 @@ void write_inputs(const Scene& scene, const fs::path& folder) {
     if (error) throw InvalidInput(target.parent_path().string() + ": cannot be created: " + error.message());
     return target;
   };
-  for (const auto& [name, source] : scene.input_files) copy(source, prepared(name));
+  for (const auto& [name, source] : scene.input_files) aspic::copy_file(source, prepared(name));
   for (const auto& [name, mesh] : scene.generated_meshes) write_mesh(prepared(name), mesh);
 }
 

@@ -1,0 +1,203 @@
+#!/usr/bin/env python3
+"""aspic-mesh as its user meets it: files in, files, messages and exit codes out."""
+import collections
+import gzip
+import itertools
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = sys.argv.pop(1)
+
+
+def run(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=280)
+
+
+def read_medit(path):
+    """Vertices and tets (with their label) of a Medit ASCII file."""
+    words = iter(path.read_text().split())
+    vertices, tets = [], []
+    for word in words:
+        if word == "Vertices":
+            vertices = [[float(next(words)) for _ in range(4)][:3] for _ in range(int(next(words)))]
+        elif word == "Tetrahedra":
+            tets = [[int(next(words)) for _ in range(5)] for _ in range(int(next(words)))]
+    return vertices, [([v - 1 for v in tet[:4]], tet[4]) for tet in tets]
+
+
+def volume(vertices, tet):
+    a, b, c, d = (vertices[v] for v in tet)
+    u, v, w = ([p[i] - a[i] for i in range(3)] for p in (b, c, d))
+    return (u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2])
+            + u[2] * (v[0] * w[1] - v[1] * w[0])) / 6
+
+
+def boundary(tets):
+    faces = collections.Counter(tuple(sorted(f)) for tet, _ in tets for f in itertools.combinations(tet, 3))
+    return [face for face, count in faces.items() if count == 1]
+
+
+def euler_characteristic(faces):
+    edges = {tuple(sorted(e)) for f in faces for e in itertools.combinations(f, 2)}
+    return len({v for f in faces for v in f}) - len(edges) + len(faces)
+
+
+def write_ball(path, centre=(0, 0, 0), rings=12, sectors=24, append_to=None, skip=0):
+    """A unit ball of latitude rings; returns its lines so that two can share a file."""
+    first = 1 if append_to is None else sum(line.startswith("v ") for line in append_to) + 1
+    points = [(0, 0, 1)] + [(math.sin(t) * math.cos(p), math.sin(t) * math.sin(p), math.cos(t))
+                            for t in (math.pi * r / rings for r in range(1, rings))
+                            for p in (2 * math.pi * s / sectors for s in range(sectors))] + [(0, 0, -1)]
+    at = lambda ring, sector: 1 + (ring - 1) * sectors + sector % sectors
+    faces = []
+    for s in range(sectors):
+        faces += [(0, at(1, s), at(1, s + 1)), (len(points) - 1, at(rings - 1, s + 1), at(rings - 1, s))]
+        for r in range(1, rings - 1):
+            faces += [(at(r, s), at(r + 1, s), at(r + 1, s + 1)), (at(r, s), at(r + 1, s + 1), at(r, s + 1))]
+    lines = list(append_to or [])
+    lines += ["v " + " ".join(repr(x + c) for x, c in zip(p, centre)) for p in points]
+    lines += ["f " + " ".join(str(first + v) for v in face) for face in faces[skip:]]
+    path.write_text("\n".join(lines) + "\n")
+    return lines
+
+
+def write_image(path, labels):
+    """An INRIMAGE of bytes from labels[z][y][x]."""
+    nz, ny, nx = len(labels), len(labels[0]), len(labels[0][0])
+    header = (f"#INRIMAGE-4#{{\nXDIM={nx}\nYDIM={ny}\nZDIM={nz}\nVDIM=1\nTYPE=unsigned fixed\nPIXSIZE=8 bits\n"
+              "SCALE=2**0\nCPU=decm\nVX=1\nVY=1\nVZ=1\n")
+    data = header.ljust(252, "\n").encode() + b"##}\n" + bytes(x for plane in labels for row in plane for x in row)
+    path.write_bytes(gzip.compress(data) if path.suffix == ".gz" else data)
+
+
+class Mesher(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.out = self.folder / "out.mesh"
+
+    def expect_sound(self, expected_volume, tolerance, euler):
+        vertices, tets = read_medit(self.out)
+        volumes = [volume(vertices, tet) for tet, _ in tets]
+        self.assertGreater(min(volumes), 0)
+        self.assertAlmostEqual(sum(volumes), expected_volume, delta=tolerance * expected_volume)
+        self.assertEqual(euler_characteristic(boundary(tets)), euler)
+        return vertices, tets
+
+    def expect_error(self, code, words, *arguments):
+        result = run(*arguments, "-o", self.out)
+        self.assertEqual(result.returncode, code, result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
+        self.assertFalse(self.out.exists())
+
+    def test_a_closed_surface_is_filled_and_reported(self):
+        write_ball(self.folder / "ball.obj")
+        result = run(self.folder / "ball.obj", "-o", self.out, "--size", 0.25)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.expect_sound(4 * math.pi / 3, 0.06, 2)
+        for word in ("vertices", "tets", "dihedral", "mean ratio", "time"):
+            self.assertIn(word, result.stdout)
+
+    def test_equal_input_gives_equal_bytes(self):
+        write_ball(self.folder / "ball.obj")
+        texts = []
+        for i in range(2):
+            self.assertEqual(run(self.folder / "ball.obj", "-o", self.out, "--size", 0.3, "--quiet").stdout, "")
+            texts.append(self.out.read_bytes())
+        self.assertEqual(*texts)
+
+    def test_two_balls_are_both_filled(self):
+        lines = write_ball(self.folder / "balls.obj")
+        write_ball(self.folder / "balls.obj", centre=(3, 0, 0), append_to=lines)
+        self.assertEqual(run(self.folder / "balls.obj", "-o", self.out, "--size", 0.4).returncode, 0)
+        self.expect_sound(2 * 4 * math.pi / 3, 0.1, 4)
+
+    def test_a_small_hole_is_filled_only_when_asked(self):
+        write_ball(self.folder / "open.obj", skip=1)
+        self.expect_error(2, ["open", "edges", "--fill-holes"], self.folder / "open.obj")
+        result = run(self.folder / "open.obj", "-o", self.out, "--size", 0.3, "--fill-holes")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.expect_sound(4 * math.pi / 3, 0.07, 2)
+
+    def test_an_implicit_torus_keeps_its_hole(self):
+        result = run("--implicit", "(sqrt(x^2+y^2)-1)^2+z^2-0.16", "--bounds", -2, -2, -1, 2, 2, 1, "-o", self.out,
+                     "--size", 0.2)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.expect_sound(2 * math.pi**2 * 0.16, 0.04, 0)
+
+    def test_separate_implicit_parts_are_all_found(self):
+        balls = " , ".join(f"(x-{c})^2+y^2+z^2-0.04" for c in (0, 1, 2, 3))
+        result = run("--implicit", f"min({balls})", "--bounds", -0.5, -0.5, -0.5, 3.5, 0.5, 0.5, "-o", self.out,
+                     "--size", 0.1)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.expect_sound(4 * 4 * math.pi / 3 * 0.008, 0.1, 8)
+
+    def test_a_labelled_image_keeps_its_regions_and_their_sizes(self):
+        n = 16
+        inside = lambda x, y, z: (x - 7.5)**2 + (y - 7.5)**2 + (z - 7.5)**2 < 36
+        labels = [[[(1 if x < 8 else 2) if inside(x, y, z) else 0 for x in range(n)] for y in range(n)]
+                  for z in range(n)]
+        for name in ("two.inr", "two.inr.gz"):
+            write_image(self.folder / name, labels)
+            result = run(self.folder / name, "-o", self.out, "--size", 4, "--region-size", "2=1.5")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            voxels = sum(label > 0 for plane in labels for row in plane for label in row)
+            _, tets = self.expect_sound(voxels, 0.15, 2)
+            counts = collections.Counter(label for _, label in tets)
+            self.assertEqual(set(counts), {1, 2})
+            self.assertGreater(counts[2], 3 * counts[1])
+            self.assertIn("region 2", result.stdout)
+
+    def test_bad_input_is_refused_with_its_remedy(self):
+        lines = write_ball(self.folder / "meeting.obj")
+        write_ball(self.folder / "meeting.obj", centre=(1.5, 0, 0), append_to=lines)
+        self.expect_error(2, ["runs into itself", "triangles", "unite"], self.folder / "meeting.obj")
+        self.expect_error(2, ["missing.obj"], self.folder / "missing.obj")
+        self.expect_error(2, ["missing.inr"], self.folder / "missing.inr")
+        (self.folder / "broken.inr").write_bytes(b"#INRIMAGE-4#{\nXDIM=9\n")
+        self.expect_error(2, ["broken.inr"], self.folder / "broken.inr")
+        write_image(self.folder / "empty.inr", [[[0] * 4] * 4] * 4)
+        self.expect_error(2, ["labels are 0"], self.folder / "empty.inr")
+        self.expect_error(2, ["no label 7"], self.write_block(), "--region-size", "7=1")
+        self.expect_error(2, ["LABEL=SIZE"], self.write_block(), "--region-size", "7:1")
+        write_ball(self.folder / "ball.obj")
+        self.expect_error(2, ["too fine"], self.folder / "ball.obj", "--size", 1e-6)
+        self.expect_error(2, ["--size"], self.folder / "ball.obj", "--size", -1)
+        bounds = ["--bounds", -2, -2, -2, 2, 2, 2]
+        self.expect_error(2, ["did you mean 'sqrt'"], "--implicit", "sqtr(x)-1", *bounds)
+        self.expect_error(2, ["nowhere negative"], "--implicit", "x^2+1", *bounds)
+        self.expect_error(2, ["--bounds"], "--implicit", "x^2+y^2+z^2-1")
+        self.expect_error(2, ["either"])
+        self.assertEqual(run(self.folder / "ball.obj").returncode, 2)
+        result = run(self.folder / "ball.obj", "-o", self.folder / "out.xyz")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn(".xyz", result.stderr)
+
+    def write_block(self):
+        path = self.folder / "block.inr"
+        write_image(path, [[[int(0 < x < 5 and 0 < y < 5 and 0 < z < 5) for x in range(6)] for y in range(6)]
+                           for z in range(6)])
+        return path
+
+    def test_labels_at_the_border_of_an_image_are_filled(self):
+        write_image(self.folder / "full.inr", [[[3] * 8] * 8] * 8)
+        result = run(self.folder / "full.inr", "-o", self.out, "--size", 2)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        _, tets = read_medit(self.out)
+        self.assertEqual({label for _, label in tets}, {3})
+
+    def test_help_and_version_name_the_licence(self):
+        for flag in ("--help", "--version"):
+            result = run(flag)
+            self.assertEqual(result.returncode, 0)
+            self.assertIn("General Public License", result.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
