@@ -103,16 +103,17 @@ void parallel_for(int count, const std::function<void(int)>& body) {
     return;
   }
   if (pool().workers() != thread_count() - 1) pool().resize(thread_count() - 1);
-  pool().run(count, [&](int i) {
+  const auto run = [&](int i) {
     inside_loop = true;
     body(i);
     inside_loop = false;
-  });
+  };
+  pool().run(count, std::ref(run));
 }
 
 void parallel_chunks(int count, const std::function<void(int, int)>& body) {
-  parallel_for((count + kChunkSize - 1) / kChunkSize,
-               [&](int chunk) { body(chunk * kChunkSize, std::min(count, (chunk + 1) * kChunkSize)); });
+  const auto run = [&](int chunk) { body(chunk * kChunkSize, std::min(count, (chunk + 1) * kChunkSize)); };
+  parallel_for((count + kChunkSize - 1) / kChunkSize, std::ref(run));  // by reference: nothing is allocated
 }
 
 double parallel_sum(int count, const std::function<double(int, int)>& body) {
@@ -120,8 +121,10 @@ double parallel_sum(int count, const std::function<double(int, int)>& body) {
   thread_local std::vector<double> partial;  // grows once; steps allocate nothing
   std::vector<double>& sums = partial;
   sums.resize(chunks);
-  parallel_for(chunks,
-               [&](int chunk) { sums[chunk] = body(chunk * kChunkSize, std::min(count, (chunk + 1) * kChunkSize)); });
+  const auto run = [&](int chunk) {
+    sums[chunk] = body(chunk * kChunkSize, std::min(count, (chunk + 1) * kChunkSize));
+  };
+  parallel_for(chunks, std::ref(run));
   double sum = 0;
   for (int chunk = 0; chunk < chunks; ++chunk) sum += sums[chunk];
   return sum;
