@@ -57,7 +57,10 @@ Scene load(const Arguments& arguments) {
 RunDirectory open_directory(const Arguments& arguments, Scene& scene) {
   if (arguments.resume) return RunDirectory::resume(directory_to_resume(arguments), scene);
   const fs::path path = arguments.out.empty() ? fs::path("out") / scene.name : arguments.out;
-  return RunDirectory::create(path, scene, arguments.force ? ExistingRun::overwrite : ExistingRun::refuse);
+  RunDirectory directory =
+      RunDirectory::create(path, scene, arguments.force ? ExistingRun::overwrite : ExistingRun::refuse);
+  write_inputs(scene, directory.path());
+  return directory;
 }
 
 // Takes the steps of one run and tells everyone who listens.
