@@ -107,7 +107,11 @@ TEST(SceneDocument, SeveralErrorsAreReportedTogether) {
   EXPECT_THAT(text, AllOf(HasSubstr("beam.toml:2:"), HasSubstr("beam.toml:3:"), HasSubstr("beam.toml:6:")));
 }
 
-TEST(SceneDocument, SyntaxErrorsHaveAPlace) { EXPECT_THAT(refusal("gravity = [0, 0\n"), StartsWith("beam.toml:")); }
+TEST(SceneDocument, SyntaxErrorsHaveAPlace) {
+  EXPECT_THAT(refusal("gravity = [0, 0\n"), StartsWith("beam.toml:"));
+  EXPECT_THAT(refusal("gravity = [0, }\n"), StartsWith("beam.toml:1:15: "));
+  EXPECT_THAT(refusal("gravity = \n"), StartsWith("beam.toml:1:"));
+}
 
 TEST(SceneDocument, FormulasAreCheckedWhereTheyStand) {
   EXPECT_THAT(refusal(kBox + "material = { young = \"1e5 * foo\" }\n"),

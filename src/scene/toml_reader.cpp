@@ -1,5 +1,9 @@
 #include "scene/toml_reader.h"
 
+// toml++ 3.3 asserts that "[1, }" cannot be (in a release build it tells the compiler so) and then reports it as the
+// error that it is. Input must not end the program, so its assertions are off in every build.
+#undef NDEBUG
+#define TOML_ASSERT(condition) static_cast<void>(0)
 #include <toml++/toml.h>
 
 #include <algorithm>
