@@ -7,13 +7,13 @@
 
 #include "base/error.h"
 #include "io/atomic_file.h"
-#include "io/test_folder_test.h"
+#include "io/folder_test.h"
 
 namespace aspic {
 namespace {
 
 using testing::HasSubstr;
-using CheckpointFile = TestFolder;
+using CheckpointFile = FolderTest;
 
 Checkpoint sample(int64_t step) {
   return {"scene",

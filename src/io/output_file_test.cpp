@@ -4,13 +4,13 @@
 
 #include "base/error.h"
 #include "io/atomic_file.h"
-#include "io/test_folder_test.h"
+#include "io/folder_test.h"
 
 namespace aspic {
 namespace {
 
 using testing::HasSubstr;
-using GrowingFile = TestFolder;
+using GrowingFile = FolderTest;
 
 TEST_F(GrowingFile, AppendsOverwritesAndShortens) {
   OutputFile file = OutputFile::create(path("a"));

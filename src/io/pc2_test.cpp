@@ -4,13 +4,13 @@
 
 #include "base/error.h"
 #include "io/atomic_file.h"
-#include "io/test_folder_test.h"
+#include "io/folder_test.h"
 
 namespace aspic {
 namespace {
 
 using testing::HasSubstr;
-using PointCache = TestFolder;
+using PointCache = FolderTest;
 
 const std::vector<double> kFirst = {0, 1, 2, 3, 4, 5}, kSecond = {0.5, 1.5, 2.5, 3.5, 4.5, 5.5};
 

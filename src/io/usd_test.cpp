@@ -6,13 +6,13 @@
 
 #include "base/error.h"
 #include "io/atomic_file.h"
-#include "io/test_folder_test.h"
+#include "io/folder_test.h"
 
 namespace aspic {
 namespace {
 
 using testing::HasSubstr;
-using UsdScene = TestFolder;
+using UsdScene = FolderTest;
 
 TEST_F(UsdScene, WritesOneMeshWithSampledPoints) {
   const std::vector<Triangle> triangles = {{0, 1, 2}};

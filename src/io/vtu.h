@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct Vtu {
 // Ascii, inline base64 and appended, raw or zlib-compressed. Quads are split; lines and points are passed over; any
 // other cell is an error, as are counts, indices and sizes that do not fit. Throws InvalidInput with file and line.
 Vtu read_vtu(const std::filesystem::path& path);
+Vtu parse_vtu(std::string_view contents, const std::string& file);  // `file` is for messages
 
 // Inline base64, zlib-compressed; positions in double precision. The same input gives the same bytes.
 void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,

@@ -192,10 +192,11 @@ std::vector<int> region_of(const std::string& file, const std::vector<Field>& ce
 
 }  // namespace
 
-Vtu read_vtu(const std::filesystem::path& path) {
-  const std::string text = read_file(path);
-  const XmlElement root = parse_xml(text, path.string(), "AppendedData");
-  const VtkFile file = vtk_file(root, "UnstructuredGrid", path.string());
+Vtu read_vtu(const std::filesystem::path& path) { return parse_vtu(read_file(path), path.string()); }
+
+Vtu parse_vtu(std::string_view contents, const std::string& name) {
+  const XmlElement root = parse_xml(contents, name, "AppendedData");
+  const VtkFile file = vtk_file(root, "UnstructuredGrid", name);
   const XmlElement& grid = section(file, root, "UnstructuredGrid");
 
   std::vector<Piece> pieces;

@@ -11,21 +11,18 @@
 #include "base/error.h"
 #include "io/atomic_file.h"
 #include "io/base64.h"
-#include "io/test_folder_test.h"
+#include "io/folder_test.h"
 
 namespace aspic {
 namespace {
 
 using testing::HasSubstr;
 
-class VtuFile : public TestFolder {
+class VtuFile : public FolderTest {
  protected:
-  Vtu read_text(const std::string& text) const {
-    put(path("text.vtu"), text);
-    return read_vtu(path("text.vtu"));
-  }
+  static Vtu read_text(const std::string& text) { return parse_vtu(text, "text.vtu"); }
 
-  std::string message(const std::string& text) const {
+  static std::string message(const std::string& text) {
     return message_of<InvalidInput>([&] { read_text(text); });
   }
 };

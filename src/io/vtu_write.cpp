@@ -60,8 +60,10 @@ void append_compressed(std::string_view bytes, std::string& text) {
 
 void append_array(std::string_view type, std::string_view name, int components, std::string_view bytes,
                   std::string& text) {
-  text += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_escaped(name) + "\" NumberOfComponents=\"" +
-          std::to_string(components) + "\" format=\"binary\">\n";
+  text += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_escaped(name) + "\"";
+  // Left out for scalars, which meshio would otherwise give as a column.
+  if (components != 1) text += " NumberOfComponents=\"" + std::to_string(components) + "\"";
+  text += " format=\"binary\">\n";
   append_compressed(bytes, text);
   text += "\n</DataArray>\n";
 }

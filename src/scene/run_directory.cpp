@@ -30,7 +30,7 @@ void create_folder(const fs::path& folder) {
 }
 
 // Leaves an empty directory or one with files that no run writes, or throws.
-void make_room(const RunLayout& layout, ExistingRun existing) {
+void make_room(const RunLayout& layout, const Scene& scene, ExistingRun existing) {
   const std::string name = layout.root().string();
   std::error_code error;
   if (!fs::exists(layout.root(), error)) return create_folder(layout.root());
@@ -42,7 +42,9 @@ void make_room(const RunLayout& layout, ExistingRun existing) {
   if (existing == ExistingRun::refuse) {
     throw InvalidInput(name + ": holds a run already; --force replaces it, --resume continues it");
   }
-  layout.remove_run();
+  std::vector<fs::path> needed;  // a run may be repeated from the inputs that lie in it
+  for (const auto& [_, source] : scene.input_files) needed.push_back(source);
+  layout.remove_run(needed);
 }
 
 Checkpoint to_checkpoint(const Simulation& simulation, const std::string& scene,
@@ -150,8 +152,9 @@ RunDirectory RunDirectory::create(const fs::path& path, const Scene& scene, Exis
   auto impl = std::make_unique<Impl>(RunLayout(path), scene);
   const RunLayout& layout = impl->layout;
   const OutputOptions& output = scene.output;
-  make_room(layout, existing);
+  make_room(layout, scene, existing);
   impl->tables = RunTables::create(layout, scene.simulation.potential_names());
+  write_inputs(scene, path);
   write_file(layout.scene(), scene.resolved);
   if (output.vtu || output.obj || output.ply) create_folder(layout.frames());
   if ((output.pc2 || output.usd) && !scene.skins.empty()) create_folder(layout.skins());

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "io/atomic_file.h"
 #include "io/checkpoint.h"
 #include "scene/run_directory_tables.h"
 
@@ -50,13 +51,28 @@ void remove_file(const fs::path& file) {
 }
 
 template <class Condition>
-void remove_files(const fs::path& folder, Condition is_unwanted) {
+std::vector<fs::path> files_in(const fs::path& folder, Condition is_wanted) {
   std::error_code error;
-  std::vector<fs::path> unwanted;
+  std::vector<fs::path> files;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    if (!fs::is_directory(entry->symlink_status()) && is_unwanted(entry->path())) unwanted.push_back(entry->path());
+    if (!fs::is_directory(entry->symlink_status()) && is_wanted(entry->path())) files.push_back(entry->path());
   }
-  for (const fs::path& file : unwanted) remove_file(file);
+  return files;
+}
+
+// The files that the scene of the run calls "inputs/...".
+std::vector<fs::path> named_inputs(const fs::path& root, const fs::path& scene) {
+  std::error_code error;
+  if (!fs::is_regular_file(scene, error)) return {};
+  const std::string text = read_file(scene);
+  constexpr std::string_view kFolder = "inputs/";
+  std::vector<fs::path> files;
+  for (size_t start = text.find(kFolder); start != std::string::npos; start = text.find(kFolder, start + 1)) {
+    const std::string name = text.substr(start, text.find_first_of("\"'\n", start) - start);
+    const fs::path file = root / name;
+    if (name.find("..") == std::string::npos && fs::is_regular_file(file, error)) files.push_back(file);
+  }
+  return files;
 }
 
 }  // namespace
@@ -73,30 +89,43 @@ bool RunLayout::holds_run() const {
   return std::getline(in, head) && head.starts_with(kStepsHead);
 }
 
-void RunLayout::remove_run() const {
+void RunLayout::remove_run(const std::vector<fs::path>& needed) const {
   remove_unfinished();
-  remove_frames_from(0);
-  remove_files(skins(), is_skin_file);
-  for (const fs::path& folder : {frames(), skins()}) {
+  std::vector<fs::path> files = named_inputs(root_, scene());
+  for (const fs::path& file : files_in(frames(), [](const fs::path& f) { return frame_number(f).has_value(); })) {
+    files.push_back(file);
+  }
+  for (const fs::path& file : files_in(skins(), is_skin_file)) files.push_back(file);
+  for (const fs::path& file :
+       {scene(), iterations(), timings(), checkpoint(), previous_checkpoint(checkpoint()), index(), usd()}) {
+    files.push_back(file);
+  }
+  files.push_back(steps());  // last: without it the directory is no run any more
+  for (const fs::path& file : files) {
+    const auto is_same = [&](const fs::path& other) {
+      std::error_code error;
+      return fs::equivalent(file, other, error);
+    };
+    if (std::none_of(needed.begin(), needed.end(), is_same)) remove_file(file);
+  }
+  for (const fs::path& folder : {frames(), skins(), root_ / "inputs"}) {
     std::error_code not_empty;
     fs::remove(folder, not_empty);
   }
-  for (const fs::path& file :
-       {scene(), iterations(), timings(), checkpoint(), previous_checkpoint(checkpoint()), index(), usd()}) {
-    remove_file(file);
-  }
-  remove_file(steps());  // last: without it the directory is no run any more
 }
 
 void RunLayout::remove_frames_from(int first) const {
-  remove_files(frames(), [&](const fs::path& file) {
+  const auto is_later = [&](const fs::path& file) {
     const std::optional<int> number = frame_number(file);
     return number && *number >= first;
-  });
+  };
+  for (const fs::path& file : files_in(frames(), is_later)) remove_file(file);
 }
 
 void RunLayout::remove_unfinished() const {
-  for (const fs::path& folder : {root(), frames(), skins()}) remove_files(folder, is_unfinished);
+  for (const fs::path& folder : {root_, frames(), skins(), root_ / "inputs"}) {
+    for (const fs::path& file : files_in(folder, is_unfinished)) remove_file(file);
+  }
 }
 
 std::vector<std::string> file_names(const std::vector<std::string>& names) {

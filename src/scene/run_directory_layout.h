@@ -27,7 +27,8 @@ class RunLayout {
   std::filesystem::path skin_cache(const std::string& skin) const { return skins() / ("skin_" + skin + ".pc2"); }
 
   bool holds_run() const;  // a steps.csv with the head that runs write
-  void remove_run() const;
+  // Every file of the run, its inputs included, except those in `needed`.
+  void remove_run(const std::vector<std::filesystem::path>& needed) const;
   void remove_frames_from(int first) const;  // of bodies and skins
   void remove_unfinished() const;            // what a killed run was about to write
 

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "base/error.h"
 #include "scene/schema.h"
 
@@ -158,6 +160,34 @@ TEST(Override, ErrorsNameTheOverride) {
   EXPECT_THAT(refusal(kBox, {"body.pin.where=\"y < 0\""}), HasSubstr("no pin"));
   EXPECT_THAT(refusal(kBox, {"gravity=[0, 1"}), StartsWith("--set gravity=[0, 1: "));
   EXPECT_THAT(refusal(kBox, {"gravity=[0, 0, 0]\ntime=3"}), StartsWith("--set gravity"));
+}
+
+TEST(SceneDocument, MutatedScenesAreReadOrRefused) {
+  const std::string scene =
+      "gravity = [0, -9.81, 0]\n[time]\nstep = 0.01\n[solver]\nline_search = { p = 0.5 }\n" + kBox +
+      "material = { young = \"1e5 * (1 + X)\", poisson = 0.3 }\ndeform = { twist = { axis = [0, 1, 0], angle_deg = 9 } "
+      "}\n[[body.pin]]\nwhere = { lowest = 0.03 }\nmotion = { keyframes = [{ time = 0, displacement = [0, 0, 0] }] "
+      "}\n[[body.spring]]\nbetween = [[0, 1]]\nstiffness = 3\n";
+  const std::string characters = "0123456789.,=[]{}\"' \n-+eabxyz_#\\";
+  std::mt19937 random(5);
+  int refused = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    std::string text = scene;
+    for (unsigned edits = 1 + random() % 4; edits > 0; --edits) {
+      const size_t at = random() % text.size();
+      const char c = characters[random() % characters.size()];
+      if (random() % 3 == 0) {
+        text.erase(at, 1 + random() % 6);
+      } else if (random() % 2) {
+        text.insert(at, 1, c);
+      } else {
+        text[at] = c;
+      }
+    }
+    refused += !refusal(text).empty();  // anything but InvalidInput ends the test
+  }
+  EXPECT_GT(refused, 1000);
+  EXPECT_LT(refused, 3000);
 }
 
 TEST(Schema, EveryKeyIsExplained) {

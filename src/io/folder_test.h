@@ -10,10 +10,10 @@
 
 namespace aspic {
 
-class TestFolder : public testing::Test {
+class FolderTest : public testing::Test {
  protected:
-  TestFolder() { std::filesystem::create_directories(folder_); }
-  ~TestFolder() override {
+  FolderTest() { std::filesystem::create_directories(folder_); }
+  ~FolderTest() override {
     std::error_code ignored;
     std::filesystem::remove_all(folder_, ignored);
   }

@@ -1,0 +1,288 @@
+#include "scene/run_directory.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <optional>
+
+#include "base/error.h"
+#include "energy/linear_load.h"
+#include "io/atomic_file.h"
+#include "io/checkpoint.h"
+#include "io/folder_test.h"
+#include "io/vtu.h"
+#include "mesh/generators.h"
+#include "mesh/surface.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr int kSteps = 7;
+constexpr double kDensity = 1000;  // [kg/m^3]
+
+// A soft bar of 16 vertices, held at x = 0, that sags under gravity.
+Model sagging_bar() {
+  Model model;
+  model.mesh = make_box({{0, 0, 0}}, {{3, 1, 1}}, {3, 1, 1});
+  const int tets = model.mesh.tet_count();
+  model.bodies = {{"soft bar", 0, model.mesh.vertex_count(), 0, tets}};
+  model.density.assign(static_cast<size_t>(tets), kDensity);
+  model.tet_fields = {{"young", std::vector<double>(static_cast<size_t>(tets), 1e5)}};
+  model.mass = std::make_unique<MassMatrix>(model.mesh, model.density, MassKind::consistent);
+  const std::vector<MaterialParameters> parameters(static_cast<size_t>(tets), {lame_from_young_poisson(1e5, 0.3), {}});
+  model.elasticity.push_back(make_tet_elasticity("neo_hookean", model.mesh, 0, parameters));
+  std::vector<double> force(3 * static_cast<size_t>(model.mesh.vertex_count()), 0.0);
+  for (int t = 0; t < tets; ++t) add_body_force(model.mesh, t, {{0, -9.81 * kDensity, 0}}, force);
+  model.loads.push_back(make_linear_load("gravity", force));
+  model.pins = {{"wall", {0, 1, 2, 3}, {}}};
+  return model;
+}
+
+Scene sagging_scene(const OutputOptions& output = {}) {
+  Model model = sagging_bar();
+  State state;
+  for (const Vec3d& X : model.mesh.rest) state.q.insert(state.q.end(), X.a, X.a + 3);
+  state.qdot.assign(state.q.size(), 0.0);
+  const BoundarySurface boundary = boundary_surface(model.mesh);
+  Skin skin{boundary.surface, embed(model.mesh, boundary.surface), "soft bar"};
+  return {.name = "bar",
+          .resolved = "name = \"bar\"\nyoung = 1e5\n",
+          .notes = {},
+          .simulation = Simulation(std::move(model), std::move(state), {}),
+          .skins = {std::move(skin)},
+          .steps = kSteps,
+          .output = output,
+          .input_files = {},
+          .generated_meshes = {}};
+}
+
+void run_to(RunDirectory& run, Simulation& simulation, int last_step) {
+  while (simulation.steps_taken() < last_step) {
+    const int step = simulation.steps_taken() + 1;
+    const StepReport report = simulation.step([&](const Iteration& iteration) {
+      run.on_iteration(step, iteration);
+      return true;
+    });
+    run.on_step(report, simulation);
+  }
+}
+
+void run_whole(const fs::path& path, const OutputOptions& output) {
+  Scene scene = sagging_scene(output);
+  RunDirectory run = RunDirectory::create(path, scene, ExistingRun::refuse);
+  run_to(run, scene.simulation, kSteps);
+  run.finish(scene.simulation);
+}
+
+// Every file by its relative name, except wall times.
+std::map<std::string, std::string> contents(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = fs::relative(entry.path(), folder).string();
+    if (entry.is_regular_file() && name != "timings.csv") files[name] = read_file(entry.path());
+  }
+  return files;
+}
+
+std::vector<std::string> names(const fs::path& folder) {
+  std::vector<std::string> result;
+  for (const auto& [name, text] : contents(folder)) result.push_back(name);
+  return result;
+}
+
+int line_count(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
+
+using RunResults = FolderTest;
+
+TEST_F(RunResults, HoldTheDocumentedFiles) {
+  run_whole(path("run"), {.every = 0.03, .obj = true, .ply = true});
+  EXPECT_THAT(names(path("run")),
+              testing::UnorderedElementsAre("scene.toml", "steps.csv", "iterations.csv", "checkpoint.bin", "run.pvd",
+                                            "run.usda", "frames/body_000000.vtu", "frames/body_000001.vtu",
+                                            "frames/body_000002.vtu", "frames/skin_soft_bar_000000.obj",
+                                            "frames/skin_soft_bar_000001.obj", "frames/skin_soft_bar_000002.obj",
+                                            "skins/skin_soft_bar.obj", "skins/skin_soft_bar.pc2"));
+  EXPECT_EQ(line_count(read_file(path("run/steps.csv"))), 1 + kSteps);
+  EXPECT_EQ(line_count(read_file(path("run/timings.csv"))), 1 + kSteps);
+  EXPECT_THAT(read_file(path("run/steps.csv")), HasSubstr(",potential_elasticity,potential_gravity,potential_total,"));
+  EXPECT_THAT(read_file(path("run/run.pvd")),
+              HasSubstr("timestep=\"0.03\" group=\"\" part=\"0\" file=\"frames/body_000001.vtu\""));
+  EXPECT_EQ(scene_of_run(path("run")), path("run/scene.toml"));
+}
+
+TEST_F(RunResults, FramesCarryStateStressAndMaterial) {
+  Scene scene = sagging_scene();
+  RunDirectory run = RunDirectory::create(path("run"), scene, ExistingRun::refuse);
+  run_to(run, scene.simulation, 2);
+  const Vtu frame = read_vtu(path("run/frames/body_000002.vtu"));
+  const State& state = scene.simulation.state();
+  const TetFields tet = scene.simulation.tet_fields();
+  for (int i = 0; i < frame.mesh.vertex_count(); ++i) {
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(frame.mesh.rest[i][k], state.q[3 * i + k]);
+  }
+  std::map<std::string, Field> fields;
+  for (const auto* list : {&frame.point_fields, &frame.cell_fields}) {
+    for (const Field& field : *list) fields[field.name] = field;
+  }
+  for (const char* name : {"displacement", "velocity", "energy_density", "det_F", "cauchy", "von_mises", "body",
+                           "region", "density", "young"}) {
+    EXPECT_TRUE(fields.contains(name)) << name;
+  }
+  EXPECT_EQ(fields["velocity"].values[40], static_cast<float>(state.qdot[40]));
+  EXPECT_EQ(fields["displacement"].values[40],
+            static_cast<float>(state.q[40] - scene.simulation.model().mesh.rest[13][1]));
+  EXPECT_EQ(fields["cauchy"].components, 6);
+  EXPECT_EQ(fields["cauchy"].values[7], static_cast<float>(tet.cauchy[7]));
+  EXPECT_EQ(fields["young"].values[0], 1e5);
+}
+
+// The run is dropped without finish(), as a killed process drops it, after any number of steps.
+TEST_F(RunResults, AnInterruptedRunContinuesToTheSameBytes) {
+  for (const double every : {0.0, 0.02}) {
+    const OutputOptions output{.every = every, .obj = true};
+    const std::string whole = "whole" + std::to_string(every > 0);
+    run_whole(path(whole), output);
+    for (int stop = 0; stop <= kSteps; ++stop) {
+      const fs::path torn = path("torn" + std::to_string(stop) + std::to_string(every > 0));
+      {
+        Scene scene = sagging_scene(output);
+        RunDirectory run = RunDirectory::create(torn, scene, ExistingRun::refuse);
+        run_to(run, scene.simulation, stop);
+      }
+      std::ofstream(torn / "steps.csv", std::ios::app) << stop + 1 << ",0.0";  // a torn line
+      std::ofstream(torn / "frames" / "body_000099.vtu") << "later";
+      std::ofstream(torn / "frames" / ".aspic-1-1") << "unfinished";
+      Scene scene = sagging_scene(output);
+      RunDirectory run = RunDirectory::resume(torn, scene);
+      run_to(run, scene.simulation, kSteps);
+      run.finish(scene.simulation);
+      EXPECT_EQ(contents(torn), contents(path(whole))) << "stopped after step " << stop << ", every " << every;
+    }
+  }
+}
+
+TEST_F(RunResults, FramesAfterTheLastCheckpointAreComputedAgain) {
+  const OutputOptions output{.checkpoint_every = 1e9};  // [s]: only at the start and the end
+  run_whole(path("whole"), output);
+  {
+    Scene scene = sagging_scene(output);
+    RunDirectory run = RunDirectory::create(path("run"), scene, ExistingRun::refuse);
+    run_to(run, scene.simulation, 5);
+  }
+  Scene scene = sagging_scene(output);
+  RunDirectory run = RunDirectory::resume(path("run"), scene);
+  EXPECT_EQ(scene.simulation.steps_taken(), 0);
+  EXPECT_FALSE(fs::exists(path("run/frames/body_000001.vtu")));
+  EXPECT_EQ(line_count(read_file(path("run/steps.csv"))), 1);
+  run_to(run, scene.simulation, kSteps);
+  run.finish(scene.simulation);
+  EXPECT_EQ(contents(path("run")), contents(path("whole")));
+}
+
+TEST_F(RunResults, AFinishedRunResumesWithoutChange) {
+  run_whole(path("run"), {});
+  const auto before = contents(path("run"));
+  Scene scene = sagging_scene();
+  RunDirectory run = RunDirectory::resume(path("run"), scene);
+  EXPECT_EQ(scene.simulation.steps_taken(), kSteps);
+  run.finish(scene.simulation);
+  EXPECT_EQ(contents(path("run")), before);
+}
+
+TEST_F(RunResults, ADamagedCheckpointFallsBackToTheOneBefore) {
+  run_whole(path("whole"), {});
+  {
+    Scene scene = sagging_scene();
+    RunDirectory run = RunDirectory::create(path("run"), scene, ExistingRun::refuse);
+    run_to(run, scene.simulation, 4);
+  }
+  fs::resize_file(path("run/checkpoint.bin"), 100);
+  Scene scene = sagging_scene();
+  RunDirectory run = RunDirectory::resume(path("run"), scene);
+  EXPECT_EQ(scene.simulation.steps_taken(), 3);
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_THAT(scene.notes[0], HasSubstr("continuing from checkpoint.previous.bin"));
+  EXPECT_EQ(read_newest_checkpoint(path("run/checkpoint.bin")).checkpoint.integer("steps_taken"), 3);
+  run_to(run, scene.simulation, kSteps);
+  run.finish(scene.simulation);
+  EXPECT_EQ(contents(path("run")), contents(path("whole")));
+}
+
+TEST_F(RunResults, AnotherSceneIsRefusedWithTheLineThatDiffers) {
+  run_whole(path("run"), {});
+  Scene scene = sagging_scene();
+  scene.resolved = "name = \"bar\"\nyoung = 2e5\n";
+  const std::string message = message_of<InvalidInput>([&] { RunDirectory::resume(path("run"), scene); });
+  EXPECT_THAT(message, HasSubstr("was computed with another scene"));
+  EXPECT_THAT(message, HasSubstr(":2: 'young = 2e5' now, 'young = 1e5' in the run"));
+}
+
+TEST_F(RunResults, AnExistingRunIsOnlyReplacedWhenAsked) {
+  run_whole(path("run"), {});
+  const auto before = contents(path("run"));
+  const Scene scene = sagging_scene();
+  const std::string message =
+      message_of<InvalidInput>([&] { RunDirectory::create(path("run"), scene, ExistingRun::refuse); });
+  EXPECT_THAT(message, HasSubstr("--force"));
+  EXPECT_THAT(message, HasSubstr("--resume"));
+  EXPECT_EQ(contents(path("run")), before);
+}
+
+TEST_F(RunResults, ReplacingARunSparesForeignFiles) {
+  run_whole(path("run"), {.obj = true, .ply = true});
+  const std::vector<std::string> foreign = {"notes.txt", "frames/body_1.vtu", "frames/body_000001.png",
+                                            "skins/bunny.obj", "frames/body_x_000001.vtu"};
+  for (const std::string& name : foreign) put(path("run") / name, "mine");
+  const Scene scene = sagging_scene({.vtu = false, .pc2 = false, .usd = false});
+  RunDirectory::create(path("run"), scene, ExistingRun::overwrite);
+  std::vector<std::string> expected = {"scene.toml", "steps.csv", "iterations.csv", "checkpoint.bin"};
+  expected.insert(expected.end(), foreign.begin(), foreign.end());
+  EXPECT_THAT(names(path("run")), testing::UnorderedElementsAreArray(expected));
+}
+
+TEST_F(RunResults, InputsAreKeptBesideTheSceneAndReplacedWithTheRun) {
+  put(path("bar.msh"), "a mesh");
+  Scene scene = sagging_scene();
+  scene.resolved += "mesh = \"inputs/bar.msh\"\n";
+  scene.input_files = {{"inputs/bar.msh", path("bar.msh")}};
+  RunDirectory::create(path("run"), scene, ExistingRun::refuse);
+  EXPECT_EQ(read_file(path("run/inputs/bar.msh")), "a mesh");
+
+  scene.input_files = {{"inputs/bar.msh", path("run/inputs/bar.msh")}};  // the run's own scene, run again
+  RunDirectory::create(path("run"), scene, ExistingRun::overwrite);
+  EXPECT_EQ(read_file(path("run/inputs/bar.msh")), "a mesh");
+
+  put(path("run/inputs/mine.msh"), "mine");
+  RunDirectory::create(path("run"), sagging_scene(), ExistingRun::overwrite);
+  EXPECT_FALSE(fs::exists(path("run/inputs/bar.msh")));
+  EXPECT_EQ(read_file(path("run/inputs/mine.msh")), "mine");
+}
+
+TEST_F(RunResults, ADirectoryThatHoldsNoRunIsNeverTouched) {
+  fs::create_directories(path("mine"));
+  put(path("mine/scene.toml"), "my scene");
+  const Scene scene = sagging_scene();
+  for (const ExistingRun existing : {ExistingRun::refuse, ExistingRun::overwrite}) {
+    EXPECT_THAT(message_of<InvalidInput>([&] { RunDirectory::create(path("mine"), scene, existing); }),
+                HasSubstr("mine: is not empty and holds no run"));
+    EXPECT_THAT(message_of<InvalidInput>([&] { RunDirectory::create(path("mine/scene.toml"), scene, existing); }),
+                HasSubstr("is a file"));
+  }
+  EXPECT_EQ(read_file(path("mine/scene.toml")), "my scene");
+  EXPECT_THAT(names(path("mine")), testing::ElementsAre("scene.toml"));
+}
+
+TEST_F(RunResults, NothingToContinueIsSaidSo) {
+  Scene scene = sagging_scene();
+  EXPECT_THAT(message_of<InvalidInput>([&] { RunDirectory::resume(path("no"), scene); }),
+              HasSubstr("holds no run to continue"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { scene_of_run(path("no")); }), HasSubstr("holds no run to continue"));
+}
+
+}  // namespace
+}  // namespace aspic

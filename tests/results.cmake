@@ -1,0 +1,11 @@
+# Result files are read back by programs that are not Aspic.
+add_executable(results_samples ${CMAKE_CURRENT_LIST_DIR}/results_samples.cpp)
+target_link_libraries(results_samples PRIVATE aspic aspic_build)
+# Debian's Python, since packages such as python3-meshio are not visible to any other.
+find_program(ASPIC_DEBIAN_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+if(ASPIC_DEBIAN_PYTHON)
+  add_test(NAME results_oracle COMMAND ${ASPIC_DEBIAN_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/results_oracle.py
+                                       $<TARGET_FILE:results_samples>
+                                       ${CMAKE_SOURCE_DIR}/web/node_modules/tinyusdz)
+  set_tests_properties(results_oracle PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 120)
+endif()

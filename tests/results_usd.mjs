@@ -1,0 +1,27 @@
+// Prints the USD layer that tinyusdz read from a file. Arguments: the folder of the npm package tinyusdz, the file.
+import fs from 'node:fs';
+import path from 'node:path';
+import { pathToFileURL } from 'node:url';
+
+const [folder, file] = process.argv.slice(2).map((name) => path.resolve(name));
+// The package is built for browsers and their workers and refuses Node; it runs there once told that it is a worker.
+Object.defineProperty(process, 'type', { value: 'renderer' });
+globalThis.WorkerGlobalScope = class {};
+globalThis.self = globalThis;
+globalThis.location = { href: 'http://localhost/' };
+
+const { default: start } = await import(pathToFileURL(path.join(folder, 'tinyusdz.js')));
+const wasm = fs.readFileSync(path.join(folder, 'tinyusdz.wasm'));
+const tinyusdz = await start({
+  instantiateWasm(imports, done) {
+    WebAssembly.instantiate(wasm, imports).then((result) => done(result.instance, result.module));
+    return {};
+  },
+});
+
+const bytes = new Uint8Array(fs.readFileSync(file));
+const scene = new tinyusdz.TinyUSDZLoaderNative();
+if (!scene.loadFromBinary(bytes, 'run.usda')) throw new Error(scene.error());
+const layer = new tinyusdz.TinyUSDZLoaderNative();
+if (!layer.loadAsLayerFromBinary(bytes, 'run.usda')) throw new Error(layer.error());
+process.stdout.write(layer.layerToString());
