@@ -171,7 +171,7 @@ class Mesher(unittest.TestCase):
         self.expect_error(2, ["--size"], self.folder / "ball.obj", "--size", -1)
         bounds = ["--bounds", -2, -2, -2, 2, 2, 2]
         self.expect_error(2, ["did you mean 'sqrt'"], "--implicit", "sqtr(x)-1", *bounds)
-        self.expect_error(2, ["nowhere negative"], "--implicit", "x^2+1", *bounds)
+        self.expect_error(2, ["negative at no point"], "--implicit", "x^2+1", *bounds)
         self.expect_error(2, ["--bounds"], "--implicit", "x^2+y^2+z^2-1")
         self.expect_error(2, ["either"])
         self.assertEqual(run(self.folder / "ball.obj").returncode, 2)

@@ -118,13 +118,14 @@ build() {
 
 # The default scene's mesh: the Stanford bunny of the npm package `bunny` (public domain), about 3 000 vertices.
 bunny_package=bunny@1.0.1
+bunny_size=0.53 # in units of the file, in which the bunny is 10 wide
 make_bunny() {
   assets=$root/assets
   [ ! -s "$assets/bunny.mesh" ] || return 0
   mkdir -p "$assets"
   [ -s "$assets/bunny.obj" ] || fetch_bunny
   say "Filling the bunny with tetrahedra ..."
-  logged bunny-mesh "$build_dir/bin/aspic-mesh" "$assets/bunny.obj" -o "$assets/new.mesh" --size "$bunny_size" ||
+  logged bunny-mesh "$build_dir/bin/aspic-mesh" "$assets/bunny.obj" -o "$assets/new.mesh" --size "$bunny_size" --quiet ||
     die "assets/bunny.obj could not be filled with tetrahedra"
   mv "$assets/new.mesh" "$assets/bunny.mesh"
 }

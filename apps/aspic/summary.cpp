@@ -15,13 +15,13 @@ namespace aspic::cli {
 namespace {
 
 struct Viewer {
-  std::string extension, advice;
+  std::string folder, extension, advice;
 };
 const std::array<Viewer, 4> kViewers = {{
-    {".pvd", "ParaView: open {}"},
-    {".usda", "USD viewers: open {}"},
-    {".pc2", "Blender: import the .obj beside it, add a Mesh Cache modifier with {}"},
-    {".csv", "spreadsheet: {}"},
+    {"", ".pvd", "ParaView: open {}"},
+    {"", ".usda", "USD viewers: open {}"},
+    {"skins", ".pc2", "Blender: import the .obj beside it, add a Mesh Cache modifier with {}"},
+    {"", ".csv", "spreadsheet: {}"},
 }};
 
 double peak_megabytes() {
@@ -30,14 +30,20 @@ double peak_megabytes() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
+// Files of a folder with the extension, in the order of their names.
+std::set<std::filesystem::path> files(const std::filesystem::path& folder, const std::string& extension) {
+  std::error_code error;  // a folder that was not written holds no files
+  std::set<std::filesystem::path> found;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.path().extension() == extension) found.insert(entry.path());
+  }
+  return found;
+}
+
 void print_results(std::FILE* stream, const std::filesystem::path& directory) {
-  std::error_code error;
-  std::set<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) files.insert(entry.path());
   fmt::print(stream, "results    {}\n", directory.string());
   for (const Viewer& viewer : kViewers) {
-    for (const auto& file : files) {
-      if (file.extension() != viewer.extension) continue;
+    for (const auto& file : files(directory / viewer.folder, viewer.extension)) {
       fmt::print(stream, "           {}\n", fmt::format(fmt::runtime(viewer.advice), file.string()));
     }
   }

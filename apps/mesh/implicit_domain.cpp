@@ -47,7 +47,8 @@ TetMesh mesh_implicit(const ImplicitShape& shape, const MesherOptions& options) 
   const LabelGrid grid(domain, wide, size / 2);
   if (grid.is_empty())
     throw InvalidInput("--implicit: '" + shape.expression +
-                       "' is nowhere negative within the bounds; check --bounds and the sign (f < 0 is inside)");
+                       "' is negative at no point of a grid over the bounds; check --bounds and the sign (f < 0 is "
+                       "inside), or give a smaller --size if the shape is thin");
   TetMesh mesh = mesh_labelled(domain, grid, size, options);
   mesh.region.clear();
   return mesh;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <system_error>
 
 #include "base/check.h"
 #include "base/error.h"
@@ -67,8 +68,9 @@ fs::path partner(const fs::path& path, const std::string& lower_extension) {
 
 MeshContent read_tetgen(const fs::path& path) {
   const fs::path node = partner(path, ".node"), ele = partner(path, ".ele");
+  std::error_code error;
   for (const fs::path& file : {node, ele})
-    if (!fs::exists(file))
+    if (!fs::exists(file, error))
       throw InvalidInput(file.string() + ": does not exist; a TetGen mesh is a pair of .node and .ele");
   return parse_tetgen(node.string(), read_file(node), ele.string(), read_file(ele));
 }

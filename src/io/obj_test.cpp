@@ -41,7 +41,8 @@ TEST(Obj, NegativeIndicesCountBackFromTheLastVertexSoFar) {
 
 TEST(Obj, CommentsGroupsMaterialsCarriageReturnsAndJoinedLinesAreUnderstood) {
   const MeshContent mesh = parse(
-      "# made by hand\r\nmtllib a.mtl\r\no box\r\nv 0 0 0 1\r\nv 1 0 0 0.5 0.5 0.5\r\nv 1 \\\r\n 1 0 # corner\r\n"
+      "\xef\xbb\xbf# made by hand\r\nmtllib a.mtl\r\no box\r\nv 0 0 0 1\r\nv 1 0 0 0.5 0.5 0.5\r\nv 1 \\\r\n 1 0 # "
+      "corner\r\n"
       "g side\r\nusemtl red\r\ns off\r\nf 1 2\\\r\n 3\r\n");
   EXPECT_EQ(mesh.vertices.size(), 3u);
   EXPECT_EQ(mesh.vertices[2][1], 1);

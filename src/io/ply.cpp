@@ -18,6 +18,7 @@ class TextSource {
   TextSource(const std::string& file, std::string_view contents, size_t begin)
       : text_(file, contents, TextScanner::kNoComments) {
     text_.seek(begin);
+    text_.blame(begin);
   }
   static size_t least_bytes(PlyScalar) { return 2; }  // a digit and a blank
 
@@ -107,7 +108,7 @@ class PlyReader {
     size_t bytes = 0;
     for (const PlyProperty& property : element.properties)
       bytes += Source::least_bytes(property.is_list ? property.count_type : property.type);
-    return source_.checked_count(element.count, "the number of elements '" + element.name + "'", bytes);
+    return source_.checked_count(element.count, "the number of elements " + shown(element.name), bytes);
   }
 
   int read_length(const PlyProperty& list) {

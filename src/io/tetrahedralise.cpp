@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -53,9 +54,11 @@ fs::path find_program() {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "aspic-XXXXXX").string();
-    if (!::mkdtemp(name.data()))
-      throw InvalidInput(name + ": cannot be created: " + std::generic_category().message(errno) +
+    std::error_code error;  // of an unusable TMPDIR
+    std::string name = (fs::temp_directory_path(error) / "aspic-XXXXXX").string();
+    if (error || !::mkdtemp(name.data()))
+      throw InvalidInput(name +
+                         ": cannot be created: " + (error ? error.message() : std::generic_category().message(errno)) +
                          "; set TMPDIR to a folder with space");
     path_ = name;
   }
@@ -97,7 +100,8 @@ int run(const std::vector<std::string>& arguments, const fs::path& messages) {
 // The end of what the program said, on one line.
 std::string said(const fs::path& messages) {
   constexpr size_t kLongest = 2000;
-  std::string text = fs::exists(messages) ? read_file(messages) : "";
+  std::error_code error;
+  std::string text = fs::exists(messages, error) ? read_file(messages) : "";
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
   if (text.size() > kLongest) text = "... " + text.substr(text.size() - kLongest);
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -145,7 +149,9 @@ TetMesh tetrahedralise(const fs::path& surface, const TetrahedraliseOptions& opt
       run({fs::absolute(program).string(), fs::absolute(surface).string(), "-o", result.string(), "--size", size},
           messages);
   check_status(status, surface, messages);
-  if (!fs::exists(result)) throw InvalidInput(surface.string() + ": " + kProgram + " wrote no mesh: " + said(messages));
+  std::error_code error;
+  if (!fs::exists(result, error))
+    throw InvalidInput(surface.string() + ": " + kProgram + " wrote no mesh: " + said(messages));
   return read_tet_mesh(result);
 }
 

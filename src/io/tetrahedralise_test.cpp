@@ -78,6 +78,8 @@ TEST_F(Tetrahedralise, TheReasonOfAFailureIsPassedOn) {
 TEST_F(Tetrahedralise, BadSizesAndProgramsAreRefused) {
   EXPECT_THAT(error([&] { run(good(), -1); }), HasSubstr("must be positive"));
   EXPECT_THAT(error([&] { tetrahedralise(surface, {.program = folder / "none"}); }), HasSubstr("is not a program"));
+  ::setenv("TMPDIR", "/nowhere", 1);
+  EXPECT_THAT(error([&] { run(good()); }), HasSubstr("set TMPDIR to a folder with space"));
   EXPECT_THAT(error([&] { tetrahedralise(folder / "none.obj", {.program = "/bin/true"}); }),
               HasSubstr("cannot be read"));
 }

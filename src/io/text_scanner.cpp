@@ -50,7 +50,10 @@ std::string shown(std::string_view word) {
 }
 
 TextScanner::TextScanner(std::string file, std::string_view text, char comment)
-    : file_(std::move(file)), text_(text), comment_(comment) {}
+    : file_(std::move(file)), text_(text), comment_(comment) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // of UTF-8, which some editors write
+  if (text_.starts_with(kByteOrderMark)) position_ = kByteOrderMark.size();
+}
 
 // A backslash at the end of a line joins it with the next one.
 bool TextScanner::is_continued_line() const {

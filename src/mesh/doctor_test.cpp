@@ -3,16 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <random>
+#include <numbers>
 
+#include "mesh/doctor_test.h"
 #include "mesh/generators.h"
-#include "mesh/self_intersection.h"
-#include "mesh/surface.h"
-#include "mesh/surface_orientation.h"
 
 namespace aspic {
 namespace {
@@ -21,36 +17,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-std::vector<std::string> names(const std::vector<Finding>& findings) {
-  std::vector<std::string> list;
-  for (const Finding& finding : findings) list.push_back(finding.name);
-  return list;
-}
-
-template <class Mesh>
-Finding found(const Mesh& mesh, const std::string& name) {
-  for (const Finding& finding : diagnose(mesh))
-    if (finding.name == name) return finding;
-  ADD_FAILURE() << name << " was not found among " << testing::PrintToString(names(diagnose(mesh)));
-  return {};
-}
-
 TetMesh box() { return make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}); }
-TriMesh ball() { return boundary_surface(make_sphere(1, 0.3)).surface; }
-
-TriMesh joined(TriMesh a, const TriMesh& b, const Vec3d& offset) {
-  const int first = a.vertex_count();
-  for (const Vec3d& x : b.vertices) a.vertices.push_back(x + offset);
-  for (const auto& [i, j, k] : b.triangles) a.triangles.push_back({first + i, first + j, first + k});
-  return a;
-}
-
-// About the axis (1, 2, 3): nothing stays aligned with the axes.
-Vec3d turned(const Vec3d& x) {
-  const Vec3d axis = (1 / std::sqrt(14.0)) * Vec3d{{1, 2, 3}};
-  const double c = std::cos(0.7), s = std::sin(0.7);
-  return c * x + s * cross(axis, x) + ((1 - c) * dot(axis, x)) * axis;
-}
 
 TEST(DoctorOfTets, FindsNothingWrongWithTheGenerators) {
   for (const TetMesh& mesh : {box(), make_box({{0, 0, 0}}, {{4, 1, 1}}, {8, 2, 2}, BoxCut::five), make_sphere(1, 0.2),
@@ -187,150 +154,10 @@ TEST(Quality, OfARegularTetIsOne) {
   if (volume(mesh, 0) < 0) std::swap(mesh.tets[0][2], mesh.tets[0][3]);
   const MeshQuality q = quality(mesh);
   EXPECT_NEAR(q.min_mean_ratio, 1, 1e-14);
-  EXPECT_NEAR(q.min_dihedral, std::acos(1.0 / 3) * 180 / M_PI, 1e-12);
+  EXPECT_NEAR(q.min_dihedral, std::acos(1.0 / 3) * 180 / std::numbers::pi, 1e-12);
   EXPECT_NEAR(q.max_dihedral, q.min_dihedral, 1e-12);
   EXPECT_NEAR(q.total_volume, 8.0 / 3, 1e-14);
   EXPECT_EQ(q.mean_ratio_histogram[9], 1);
-}
-
-TEST(DoctorOfSurfaces, FindsNothingWrongWithCleanOnes) {
-  for (const TetMesh& mesh : {box(), make_sphere(1, 0.2), make_cylinder(0.5, 2, 0.2), make_torus(1, 0.3, 0.1)}) {
-    TriMesh surface = boundary_surface(mesh).surface;
-    EXPECT_THAT(names(diagnose(surface)), IsEmpty());
-    for (Vec3d& x : surface.vertices) x = turned(x) + Vec3d{{0.3, 0.1, 0.7}};  // flat faces are no longer exactly flat
-    EXPECT_THAT(names(diagnose(surface)), IsEmpty());
-  }
-}
-
-TEST(DoctorOfSurfaces, FindsAHole) {
-  TriMesh surface = ball();
-  surface.triangles.erase(surface.triangles.begin() + 4);
-  const Finding finding = found(surface, "open_surface");
-  EXPECT_EQ(finding.indices.size(), 3u);
-  EXPECT_THAT(finding.message, HasSubstr("3 edges round 1 hole "));
-  EXPECT_TRUE(has_errors(diagnose(surface)));
-}
-
-TEST(DoctorOfSurfaces, FindsTurnedTrianglesAndTurnsThemBack) {
-  const TriMesh clean = ball();
-  TriMesh surface = clean;
-  std::swap(surface.triangles[9][1], surface.triangles[9][2]);
-  EXPECT_THAT(found(surface, "inconsistent_orientation").indices, testing::Contains(9));
-  EXPECT_THAT(repair(surface), ElementsAre("turned 1 triangles that faced the wrong way"));
-  EXPECT_EQ(surface.triangles, clean.triangles);
-}
-
-TEST(DoctorOfSurfaces, FindsAnInwardSurfaceAndTurnsIt) {
-  TriMesh surface = ball();
-  for (Triangle& triangle : surface.triangles) std::swap(triangle[1], triangle[2]);
-  EXPECT_THAT(names(diagnose(surface)), ElementsAre("inward_surface"));
-  EXPECT_EQ(repair(surface).size(), 1u);
-  EXPECT_THAT(diagnose(surface), IsEmpty());
-}
-
-TEST(DoctorOfSurfaces, LeavesACavityFacingIntoIt) {
-  TriMesh cavity = ball();
-  for (Triangle& triangle : cavity.triangles) std::swap(triangle[1], triangle[2]);
-  TriMesh surface = joined(boundary_surface(make_sphere(3, 1)).surface, cavity, {{0, 0, 0}});
-  EXPECT_THAT(names(diagnose(surface)), ElementsAre("several_components"));
-  EXPECT_THAT(repair(surface), IsEmpty());
-}
-
-TEST(DoctorOfSurfaces, MergesTheLooseTrianglesOfAnStlFile) {
-  const TriMesh clean = ball();
-  TriMesh loose;
-  for (const Triangle& triangle : clean.triangles) {
-    const int first = loose.vertex_count();
-    for (int v : triangle) loose.vertices.push_back(clean.vertices[v]);
-    loose.triangles.push_back({first, first + 1, first + 2});
-  }
-  EXPECT_EQ(found(loose, "duplicate_vertices").indices.size(), loose.vertices.size() - clean.vertices.size());
-  EXPECT_EQ(repair(loose).size(), 1u);
-  EXPECT_THAT(diagnose(loose), IsEmpty());
-}
-
-TEST(DoctorOfSurfaces, FindsInnerWalls) {
-  TetMesh two = make_box({{0, 0, 0}}, {{2, 1, 1}}, {2, 1, 1});
-  TriMesh surface;
-  surface.vertices = two.rest;
-  for (int half : {0, 6})
-    for (const Triangle& triangle : boundary_triangles(two, half, 6)) surface.triangles.push_back(triangle);
-  EXPECT_FALSE(found(surface, "non_manifold_edges").indices.empty());
-  EXPECT_EQ(found(surface, "repeated_triangles").indices.size(), 2u);
-}
-
-TEST(DoctorOfSurfaces, FindsADegenerateTriangle) {
-  TriMesh surface;
-  surface.vertices = {{{0, 0, 0}}, {{1, 1, 1}}, {{3, 3, 3}}};
-  surface.triangles = {{0, 1, 2}};
-  EXPECT_THAT(found(surface, "degenerate_triangles").indices, ElementsAre(0));
-}
-
-TEST(SelfIntersection, OfTwoBallsIsFoundExactlyWhereTheyMeet) {
-  const TriMesh apart = joined(ball(), ball(), {{2.01, 0, 0}});
-  EXPECT_THAT(self_intersections(apart), IsEmpty());
-  const TriMesh meeting = joined(ball(), ball(), {{1.5, 0, 0}});
-  const Finding finding = found(meeting, "self_intersections");
-  EXPECT_GT(finding.indices.size(), 20u);
-  for (int t : finding.indices)  // the balls meet on the circle x = 0.75
-    for (int v : meeting.triangles[t]) EXPECT_NEAR(meeting.vertices[v][0], 0.75, 0.45);
-}
-
-TEST(SelfIntersection, OfAlignedBoxesIsFoundThoughEdgesMeetEdges) {
-  const TriMesh cube = boundary_surface(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1})).surface;
-  for (const Vec3d& offset : {Vec3d{{0.5, 0.5, 0.5}}, Vec3d{{0.5, 0, 0}}, Vec3d{{1, 0.5, 0.5}}})
-    EXPECT_THAT(self_intersections(joined(cube, cube, offset)), testing::Not(IsEmpty()));
-  EXPECT_THAT(self_intersections(joined(cube, cube, {{1.0000000001, 0, 0}})), IsEmpty());
-}
-
-TEST(SelfIntersection, AgreesWithBruteForceOverRandomSegments) {
-  // Oracle: two triangles meet when an edge of one crosses the other, by solving for the crossing.
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> coordinate(0, 1);
-  TriMesh soup;
-  for (int i = 0; i < 300; ++i) soup.vertices.push_back({{coordinate(random), coordinate(random), coordinate(random)}});
-  for (int t = 0; t < 100; ++t) soup.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
-  const auto crosses = [&](const Triangle& s, const Triangle& t) {
-    const auto& x = soup.vertices;
-    for (int e = 0; e < 3; ++e) {
-      const Vec3d p = x[s[e]], q = x[s[(e + 1) % 3]];
-      const Vec3d w = inverse(from_columns(x[t[1]] - x[t[0]], x[t[2]] - x[t[0]], p - q)) * (p - x[t[0]]);
-      if (w[0] >= 0 && w[1] >= 0 && w[0] + w[1] <= 1 && w[2] >= 0 && w[2] <= 1) return true;
-    }
-    return false;
-  };
-  std::vector<std::array<int, 2>> expected;
-  for (int i = 0; i < 100; ++i)
-    for (int j = i + 1; j < 100; ++j)
-      if (crosses(soup.triangles[i], soup.triangles[j]) || crosses(soup.triangles[j], soup.triangles[i]))
-        expected.push_back({i, j});
-  EXPECT_GT(expected.size(), 100u);
-  EXPECT_EQ(self_intersections(soup), expected);
-}
-
-TEST(SelfIntersection, OfNeighboursIsFound) {
-  TriMesh fold;  // the second triangle lies on the first, beyond their common edge or corner
-  fold.vertices = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0.2, 0.3, 0}}, {{1, 1, 0}}};
-  fold.triangles = {{0, 1, 2}, {1, 0, 3}};
-  EXPECT_EQ(self_intersections(fold).size(), 1u);
-  fold.triangles = {{0, 1, 2}, {0, 3, 4}};
-  EXPECT_EQ(self_intersections(fold).size(), 1u);
-  fold.triangles = {{0, 1, 2}, {1, 4, 2}};
-  EXPECT_THAT(self_intersections(fold), IsEmpty());
-  fold.vertices[3] = {{0.5, 0.5, -1}};
-  fold.vertices[4] = {{0.2, 0.2, 1}};  // pierces the first triangle from its corner 0
-  fold.triangles = {{0, 1, 2}, {0, 3, 4}};
-  EXPECT_EQ(self_intersections(fold).size(), 1u);
-}
-
-TEST(SelfIntersection, SurvivesManyTrianglesInOnePlace) {
-  TriMesh pile;
-  for (int i = 0; i < 2000; ++i) {
-    const double z = 1e-3 * i;
-    pile.vertices.insert(pile.vertices.end(), {{{0, 0, z}}, {{1, 0, -z}}, {{0, 1, 0.5}}});
-    pile.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
-  EXPECT_EQ(self_intersections(pile, 1000).size(), 1000u);
 }
 
 }  // namespace

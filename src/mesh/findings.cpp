@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 
 #include "mesh/box_tree.h"
 #include "mesh/topology.h"
@@ -74,11 +75,13 @@ bool examine_vertices(const std::vector<Vec3d>& vertices, const std::vector<Elem
                 "correct the file", infinite, false});
   if (elements.empty() || !invalid.empty() || !infinite.empty()) return false;
   const std::vector<int> repeated = duplicates(vertices), unused = unreferenced(elements, total);
+  // A vertex of no tet has no mass, which no solver can move; beside a surface it is harmless.
+  constexpr Severity severity = std::tuple_size_v<Element> == 4 ? Severity::error : Severity::note;
   findings.add({Severity::warning, "duplicate_vertices",
                 count_of(repeated.size(), total, "vertices",
                          "lie exactly where an earlier one does, so the mesh comes apart there"),
                 "merge them with --repair", repeated, true});
-  findings.add({Severity::error, "unreferenced_vertices",
+  findings.add({severity, "unreferenced_vertices",
                 count_of(unused.size(), total, "vertices", "belong to none of the " + noun), "drop them with --repair",
                 unused, true});
   return true;

@@ -127,13 +127,18 @@ BodyMesh with_boundary_as_skin(TetMesh tets) {
   return body;
 }
 
-BodyMesh with_skin(TetMesh tets, TriMesh skin, const std::string& what, std::vector<std::string>& notes) {
+BodyMesh with_skin(TetMesh tets, TriMesh skin) {
   BodyMesh body{std::move(tets), std::move(skin), {}};
   body.embedding = embed(body.tets, body.skin);
-  if (const int outside = body.embedding.outside; outside > 0)
-    notes.push_back(what + ": " + std::to_string(outside) + " of " + std::to_string(body.skin.vertex_count()) +
-                    " skin vertices lie outside the tets and follow the nearest one");
   return body;
+}
+
+// About a skin that the scene chose: one that was filled always pokes out a little.
+void note_outside(const BodyMesh& body, const std::string& name, std::vector<std::string>& notes) {
+  if (const int outside = body.embedding.outside; outside > 0)
+    notes.push_back("body '" + name + "': " + std::to_string(outside) + " of " +
+                    std::to_string(body.skin.vertex_count()) +
+                    " skin vertices lie outside the tets and follow the nearest one");
 }
 
 }  // namespace
@@ -162,8 +167,11 @@ BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMes
   const fs::path path = skin ? loader.files.find(*skin) : mesh.surface;
   TriMesh surface = read_tri_mesh(path);
   for (Vec3d& X : surface.vertices) X = place(X);
+  const bool is_chosen = skin != nullptr;
   body.table().set("skin", {loader.files.keep(path, name + ".skin"), {}});
-  return with_skin(std::move(mesh.tets), std::move(surface), "body '" + name + "'", loader.notes);
+  BodyMesh result = with_skin(std::move(mesh.tets), std::move(surface));
+  if (is_chosen) note_outside(result, name, loader.notes);
+  return result;
 }
 
 }  // namespace aspic

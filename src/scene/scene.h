@@ -33,17 +33,17 @@ struct Scene {
   OutputOptions output;
   // What `resolved` refers to, by the names it uses there ("inputs/bunny.msh"): files to copy, and meshes that were
   // made from a surface.
-  std::vector<std::pair<std::string, std::filesystem::path>> input_files;
-  std::vector<std::pair<std::string, TetMesh>> generated_meshes;
+  std::vector<std::pair<std::string, std::filesystem::path>> input_files = {};
+  std::vector<std::pair<std::string, TetMesh>> generated_meshes = {};
 };
 
 // Puts them below `folder`, beside which `resolved` can be run again. Throws InvalidInput.
 void write_inputs(const Scene& scene, const std::filesystem::path& folder);
 
 struct SceneOptions {
-  std::vector<std::string> overrides;  // "material.young=2e5", "time.step=0.005", "body.bunny.scale=2"
-  std::filesystem::path mesher;        // aspic-mesh; empty: found by itself
-  bool allow_outside = false;          // read files from outside the scene's folder and the folder above it
+  std::vector<std::string> overrides = {};  // "material.young=2e5", "time.step=0.005", "body.bunny.scale=2"
+  std::filesystem::path mesher = {};        // aspic-mesh; empty: found by itself
+  bool allow_outside = false;               // read files from outside the scene's folder and the folder above it
 };
 
 // A .toml file is a scene; any mesh file becomes one with sensible defaults. Throws InvalidInput with file, line,

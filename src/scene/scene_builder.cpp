@@ -130,6 +130,7 @@ class SceneBuilder {
     State state = start();
     const SimulationOptions options = options_of(source_.document);
     const int steps = steps_of(*source_.document.find("time"));
+    put_in_order(source_.document);
     std::string resolved = to_toml(source_.document);
     try {
       return {source_.name,

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "base/error.h"
 #include "scene/schema.h"
 
@@ -135,8 +137,9 @@ TEST(SceneDocument, DegenerateGeometryIsRefused) {
 
 TEST(Override, ReplacesValuesAnywhere) {
   const std::string two = kBox + "name = \"a\"\n[[body.pin]]\nname = \"base\"\nwhere = \"y < 0.1\"\n" + kBox;
-  const Table scene = document(two, {"time.step=0.005", "material.young=2e5", "body.a.material.density = 900",
-                                     "solver.method=gradient_descent", "body.a.pin.base.where=y < 0.5"});
+  const Table scene =
+      document(two, {"time.step=0.005", "material.young=2e5", "body.a.material.density = 900",
+                     "solver.method=gradient_descent", "body.a.pin.0.motion=fixed", "body.a.pin.base.where=y < 0.5"});
   EXPECT_EQ((*scene.find("time"))["step"].number(), 0.005);
   EXPECT_EQ((*scene.find("solver"))["method"].text(), "gradient_descent");
   EXPECT_EQ(body(scene, 0)["material"]["young"].number(), 2e5);
@@ -152,12 +155,41 @@ TEST(Override, ErrorsNameTheOverride) {
   EXPECT_THAT(refusal(kBox, {"time.step=-1"}), StartsWith("--set time.step=-1: step = -1"));
   EXPECT_THAT(refusal(kBox, {"time.step=fast"}), StartsWith("--set time.step=fast: step = \"fast\"; this is a string"));
   EXPECT_THAT(refusal(kBox, {"tme.step=1"}), HasSubstr("did you mean 'time'?"));
+  EXPECT_THAT(refusal(kBox, {"integrator=forward_euler"}), HasSubstr("did you mean 'time.integrator'?"));
   EXPECT_THAT(refusal(kBox, {"time.step"}), HasSubstr("KEY=VALUE"));
   EXPECT_THAT(refusal(kBox, {"time..step=1"}), HasSubstr("empty"));
   EXPECT_THAT(refusal(kBox, {"body.buny.scale=2"}), HasSubstr("unknown key or name 'buny'"));
   EXPECT_THAT(refusal(kBox, {"body.pin.where=\"y < 0\""}), HasSubstr("no pin"));
   EXPECT_THAT(refusal(kBox, {"gravity=[0, 1"}), StartsWith("--set gravity=[0, 1: "));
   EXPECT_THAT(refusal(kBox, {"gravity=[0, 0, 0]\ntime=3"}), StartsWith("--set gravity"));
+}
+
+TEST(SceneDocument, MutatedScenesAreReadOrRefused) {
+  const std::string scene =
+      "gravity = [0, -9.81, 0]\n[time]\nstep = 0.01\n[solver]\nline_search = { p = 0.5 }\n" + kBox +
+      "material = { young = \"1e5 * (1 + X)\", poisson = 0.3 }\ndeform = { twist = { axis = [0, 1, 0], angle_deg = 9 } "
+      "}\n[[body.pin]]\nwhere = { lowest = 0.03 }\nmotion = { keyframes = [{ time = 0, displacement = [0, 0, 0] }] "
+      "}\n[[body.spring]]\nbetween = [[0, 1]]\nstiffness = 3\n";
+  const std::string characters = "0123456789.,=[]{}\"' \n-+eabxyz_#\\";
+  std::mt19937 random(5);
+  int refused = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    std::string text = scene;
+    for (unsigned edits = 1 + random() % 4; edits > 0; --edits) {
+      const size_t at = random() % text.size();
+      const char c = characters[random() % characters.size()];
+      if (random() % 3 == 0) {
+        text.erase(at, 1 + random() % 6);
+      } else if (random() % 2) {
+        text.insert(at, 1, c);
+      } else {
+        text[at] = c;
+      }
+    }
+    refused += !refusal(text).empty();  // anything but InvalidInput ends the test
+  }
+  EXPECT_GT(refused, 1000);
+  EXPECT_LT(refused, 3000);
 }
 
 TEST(Schema, EveryKeyIsExplained) {

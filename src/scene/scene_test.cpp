@@ -10,6 +10,7 @@
 #include "io/atomic_file.h"
 #include "io/mesh_file.h"
 #include "mesh/generators.h"
+#include "mesh/surface.h"
 #include "scene/test_folder_test.h"
 
 namespace aspic {
@@ -91,7 +92,7 @@ TEST_P(SceneFile, IsShort) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, SceneFile, ::testing::ValuesIn(scene_files()),
-                         [](const auto& info) { return info.param.stem().string(); });
+                         [](const auto& file) { return file.param.stem().string(); });
 
 TEST(SceneReference, IsTheCommittedPage) {
   const fs::path page = fs::path(ASPIC_SOURCE_DIR) / "docs" / "scene.md";
@@ -406,7 +407,7 @@ TEST(MeshAlone, OverridesReplaceDefaultsAndTheirNotes) {
   EXPECT_NEAR(scene.simulation.model().mesh.rest.back()[1], 0.1, 1e-15);
   EXPECT_THAT(scene.notes, Not(Contains(HasSubstr("becomes 1 m"))));
   EXPECT_THAT(scene.notes, Not(Contains(HasSubstr("material.young"))));
-  EXPECT_THAT(scene.resolved, HasSubstr("young = 5e+04"));
+  EXPECT_THAT(scene.resolved, HasSubstr("young = 50000.0"));
   EXPECT_THAT(refusal_of(folder / "tower.msh", {.overrides = {"material.yuong=1"}}), HasSubstr("'young'"));
 }
 
@@ -420,6 +421,57 @@ TEST(MeshAlone, ResolvedSceneGivesTheSameBits) {
   scene.simulation.step();
   again.simulation.step();
   EXPECT_EQ(scene.simulation.state().q, again.simulation.state().q);
+}
+
+// A mesher that copies a prepared mesh to where it is told, with "-o".
+fs::path fake_mesher(const TestFolder& folder, const fs::path& prepared) {
+  const fs::path script = folder.write(
+      "mesher", "#!/bin/sh\nwhile [ \"$1\" != -o ]; do shift; done\ncp '" + prepared.string() + "' \"$2\"\n");
+  fs::permissions(script, fs::perms::owner_all);
+  return script;
+}
+
+TEST(MeshAlone, ASurfaceIsFilledOnceAndItsTetsAreKept) {
+  const TestFolder folder;
+  write_mesh(folder / "tets.mesh", make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}));
+  write_mesh(folder / "cube.obj", read_tri_mesh(folder / "tets.mesh"));
+  const fs::path mesher = fake_mesher(folder, folder / "tets.mesh");
+  Scene scene = load_scene(folder / "cube.obj", {.mesher = mesher});
+  EXPECT_THAT(scene.notes, Contains(HasSubstr("a surface; filled with 48 tets")));
+  EXPECT_EQ(scene.skins[0].rest.vertex_count(), 26);
+  EXPECT_THAT(scene.resolved, AllOf(HasSubstr("inputs/cube.msh"), HasSubstr("inputs/cube.skin.obj")));
+
+  write_inputs(scene, folder / "run");
+  Scene again = load_scene(folder.write("run/scene.toml", scene.resolved), {.mesher = "/nowhere/mesher"});
+  EXPECT_EQ(scene.resolved, again.resolved);
+  scene.simulation.step();
+  again.simulation.step();
+  EXPECT_EQ(scene.simulation.state().q, again.simulation.state().q);
+}
+
+TEST(MeshAlone, AnOpenSurfaceIsRefused) {
+  const TestFolder folder;
+  folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");
+  EXPECT_THAT(refusal_of(folder / "open.obj"), AllOf(HasSubstr("open.obj"), HasSubstr("open")));
+}
+
+TEST(Scene, ASkinIsPlacedAndCarriedWithItsBody) {
+  const TestFolder folder;
+  const TetMesh fine = make_box({{0.25, 0.25, 0.25}}, {{0.75, 0.75, 0.75}}, {3, 3, 3});
+  write_mesh(folder / "skin.obj", boundary_surface(fine).surface);
+  write_mesh(folder / "cage.msh", make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}));
+  const Scene scene = load_scene(
+      folder.write("s.toml", "[[body]]\nmesh = \"cage.msh\"\nskin = \"skin.obj\"\nscale = 2\ntranslate = [1, 0, 0]\n"));
+  const Skin& skin = scene.skins[0];
+  EXPECT_EQ(skin.embedding.outside, 0);
+  std::vector<double> carried(3 * skin.rest.vertex_count());
+  carry(skin.embedding, scene.simulation.state().q, carried);
+  for (int v = 0; v < skin.rest.vertex_count(); ++v) {
+    EXPECT_LT(distance(vertex(carried, v), skin.rest.vertices[v]), 1e-14);
+    EXPECT_GE(skin.rest.vertices[v][0], 1.5);
+  }
+  folder.write("s.toml", "[[body]]\nmesh = \"cage.msh\"\nmesh_size = 3\n");
+  EXPECT_THAT(refusal_of(folder / "s.toml"), HasSubstr("remove mesh_size"));
 }
 
 }  // namespace

@@ -50,4 +50,19 @@ const Alternatives* Schema::alternatives_of(std::string_view section) const {
   return nullptr;
 }
 
+void put_in_order(Table& table, std::string_view section) {
+  const Schema& schema = scene_schema();
+  const auto earlier = [&](const Member& a, const Member& b) {
+    return &schema.key(section, a.key) < &schema.key(section, b.key);
+  };
+  std::stable_sort(table.members.begin(), table.members.end(), earlier);
+  for (Member& m : table.members) {
+    const Key& key = schema.key(section, m.key);
+    if (key.table.empty()) continue;
+    if (m.value.is_table()) put_in_order(m.value.table(), key.table);
+    if (m.value.is_array() && (key.accepts & kTables))
+      for (Value& element : m.value.array()) put_in_order(element.table(), key.table);
+  }
+}
+
 }  // namespace aspic

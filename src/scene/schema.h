@@ -79,4 +79,7 @@ const Schema& scene_schema();
 // floats where a float is expected. Throws InvalidInput with the first few errors, one per line.
 void check_and_complete(Table& document, const std::string& source);
 
+// Sorts the members of a checked document, at every level, as the schema has them.
+void put_in_order(Table& table, std::string_view section = "scene");
+
 }  // namespace aspic

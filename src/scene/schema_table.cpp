@@ -15,7 +15,7 @@ const Range kNotNegative{.min = 0};
 const Range kFraction{.min = 0, .max = 1, .min_open = true};
 
 void add_scene(Schema& s) {
-  s.sections.push_back({"scene", "the top level of the file", "What is simulated."});
+  s.sections.push_back({"scene", "*.toml", "What is simulated: the top level of the file."});
   add_keys(s, "scene",
            {{.name = "version",
              .accepts = kText,
@@ -87,7 +87,7 @@ void add_solver(Schema& s) {
        {.name = "tolerance",
         .accepts = kNumber,
         .fallback = number_text(usual.minimize.tolerance),
-        .range = {.min = 0, .max = 1, .max_open = true},
+        .range = kNotNegative,
         .meaning = "the gradient's norm at which a step has converged, relative to `criterion`",
         .reason = "positions are then right to about six digits"},
        {.name = "criterion",
