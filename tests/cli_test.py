@@ -4,6 +4,7 @@
 usage: ASPIC=path/to/aspic cli_test.py [TestCase...]
 """
 import csv
+import fcntl
 import filecmp
 import json
 import os
@@ -263,6 +264,7 @@ class Run(CommandLine):
         hard = ["--set", "solver.max_iterations=1", "--set", "solver.tolerance=1e-12", "--set", "material.young=1e3"]
         self.assertIn("did not converge", self.aspic("run", scene, *hard, code=3).stderr)
         self.aspic("run", scene, *hard, "--force", "--allow-unconverged")
+        self.aspic("run", scene, "--resume", code=3)  # also when the steps were taken before
 
     def test_a_terminal_gets_a_progress_bar(self):
         scene = self.beam()
@@ -293,6 +295,8 @@ class Interruption(CommandLine):
 
     def interrupt(self, with_signal, out):
         process = self.start("run", self.scene, "--out", out, "--json")
+        # A pipe that holds a few lines makes the run wait for its reader: it cannot end before it is interrupted.
+        fcntl.fcntl(process.stdout, fcntl.F_SETPIPE_SZ, 4096)
         for _ in range(10):
             self.assertTrue(process.stdout.readline())
         process.send_signal(with_signal)

@@ -118,7 +118,7 @@ build() {
 
 # The default scene's mesh: the Stanford bunny of the npm package `bunny` (public domain), about 3 000 vertices.
 bunny_package=bunny@1.0.1
-bunny_size=0.6 # in units of the file, in which the bunny is 10 wide
+bunny_size=0.53 # in units of the file, in which the bunny is 10 wide
 make_bunny() {
   assets=$root/assets
   [ ! -s "$assets/bunny.mesh" ] || return 0

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 
 #include "aspic/commands.h"
@@ -61,6 +62,19 @@ RunDirectory open_directory(const Arguments& arguments, Scene& scene) {
       RunDirectory::create(path, scene, arguments.force ? ExistingRun::overwrite : ExistingRun::refuse);
   write_inputs(scene, directory.path());
   return directory;
+}
+
+// How many of the steps that a resumed run keeps did not converge: the exit code is that of the whole run.
+int unconverged_before(const fs::path& directory, int steps) {
+  std::ifstream file(directory / "steps.csv");
+  std::string line;
+  std::getline(file, line);  // step,time,status,...
+  int count = 0;
+  for (int i = 0; i < steps && std::getline(file, line); ++i) {
+    const auto has = [&](Status status) { return line.find(fmt::format(",{},", to_string(status))) != line.npos; };
+    if (!has(Status::converged) && !has(Status::round_off)) ++count;
+  }
+  return count;
 }
 
 // Takes the steps of one run and tells everyone who listens.
@@ -143,9 +157,9 @@ void print_start(std::FILE* stream, const Arguments& arguments, const Scene& sce
   std::fflush(stream);
 }
 
-int exit_code(const Arguments& arguments, const RunTotals& totals) {
+int exit_code(const Arguments& arguments, int unconverged) {
   if (interrupt_signal()) return exit_signal + interrupt_signal();
-  if (totals.unconverged > 0 && !arguments.allow_unconverged) return exit_unconverged;
+  if (unconverged > 0 && !arguments.allow_unconverged) return exit_unconverged;
   return exit_done;
 }
 
@@ -155,17 +169,20 @@ int run(const Arguments& arguments) {
   RunDirectory directory = open_directory(arguments, scene);
   catch_interrupts();  // not before there is something to keep
 
+  const int earlier = unconverged_before(directory.path(), scene.simulation.steps_taken());
+
   Runner runner(arguments, scene, directory);
   if (!arguments.quiet) print_start(runner.human(), arguments, scene, directory.path());
   runner.run();
   if (!arguments.quiet) {
+    if (earlier > 0) fmt::print(runner.human(), "{} of the earlier steps did not converge\n", earlier);
     print_summary(runner.human(), runner.totals(),
                   {.last_step = runner.last_step(),
                    .steps_taken = scene.simulation.steps_taken(),
                    .interrupted = interrupt_signal() != 0,
                    .directory = directory.path()});
   }
-  return exit_code(arguments, runner.totals());
+  return exit_code(arguments, earlier + runner.totals().unconverged);
 }
 
 }  // namespace
