@@ -1,0 +1,92 @@
+// A mesh that comes alone.
+#include "scene/scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/mesh_file.h"
+#include "mesh/generators.h"
+#include "scene/scene_cases_test.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(MeshAlone, GetsDefaultsThatAreStated) {
+  const TestFolder folder;
+  write_mesh(folder / "tower.msh", make_box({{0, 0, 0}}, {{40, 100, 40}}, {3, 8, 3}));
+  Scene scene = load_scene(folder / "tower.msh");
+  EXPECT_EQ(scene.name, "tower");
+  EXPECT_EQ(scene.steps, 200);
+  EXPECT_THAT(scene.notes, Contains(AllOf(HasSubstr("100"), HasSubstr("becomes 1 m"))));
+  EXPECT_THAT(scene.notes, Contains(HasSubstr("material.young = 2e+05 Pa")));
+  EXPECT_EQ(scene.simulation.model().pins[0].vertices.size(), 16u);
+  double reach = 0;
+  for (int step = 0; step < 3; ++step) EXPECT_TRUE(is_success(scene.simulation.step().status));
+  for (size_t i = 0; i < scene.simulation.state().q.size(); i += 3)
+    reach = std::max(reach, scene.simulation.state().qdot[i] * -1);
+  EXPECT_GT(reach, 0.1);  // the top swings back, metres per second
+}
+
+TEST(MeshAlone, OverridesReplaceDefaultsAndTheirNotes) {
+  const TestFolder folder;
+  write_mesh(folder / "tower.msh", make_box({{0, 0, 0}}, {{40, 100, 40}}, {1, 2, 1}));
+  const Scene scene = load_scene(folder / "tower.msh", {.overrides = {"scale=0.001", "material.young=5e4"}});
+  EXPECT_NEAR(scene.simulation.model().mesh.rest.back()[1], 0.1, 1e-15);
+  EXPECT_THAT(scene.notes, Not(Contains(HasSubstr("becomes 1 m"))));
+  EXPECT_THAT(scene.notes, Not(Contains(HasSubstr("material.young"))));
+  EXPECT_THAT(scene.resolved, HasSubstr("young = 50000.0"));
+  EXPECT_THAT(refusal_of(folder / "tower.msh", {.overrides = {"material.yuong=1"}}), HasSubstr("'young'"));
+}
+
+TEST(MeshAlone, ResolvedSceneGivesTheSameBits) {
+  const TestFolder folder;
+  write_mesh(folder / "tower.mesh", make_box({{0, 0, 0}}, {{0.4, 1.3, 0.4}}, {2, 4, 2}));
+  Scene scene = load_scene(folder / "tower.mesh");
+  write_inputs(scene, folder / "run");
+  Scene again = load_scene(folder.write("run/scene.toml", scene.resolved));
+  EXPECT_EQ(scene.resolved, again.resolved);
+  scene.simulation.step();
+  again.simulation.step();
+  EXPECT_EQ(scene.simulation.state().q, again.simulation.state().q);
+}
+
+// A mesher that copies a prepared mesh to where it is told, with "-o".
+fs::path fake_mesher(const TestFolder& folder, const fs::path& prepared) {
+  const fs::path script = folder.write(
+      "mesher", "#!/bin/sh\nwhile [ \"$1\" != -o ]; do shift; done\ncp '" + prepared.string() + "' \"$2\"\n");
+  fs::permissions(script, fs::perms::owner_all);
+  return script;
+}
+
+TEST(MeshAlone, ASurfaceIsFilledOnceAndItsTetsAreKept) {
+  const TestFolder folder;
+  write_mesh(folder / "tets.mesh", make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}));
+  write_mesh(folder / "cube.obj", read_tri_mesh(folder / "tets.mesh"));
+  const fs::path mesher = fake_mesher(folder, folder / "tets.mesh");
+  Scene scene = load_scene(folder / "cube.obj", {.mesher = mesher});
+  EXPECT_THAT(scene.notes, Contains(HasSubstr("a surface; filled with 48 tets")));
+  EXPECT_EQ(scene.skins[0].rest.vertex_count(), 26);
+  EXPECT_THAT(scene.resolved, AllOf(HasSubstr("inputs/cube.msh"), HasSubstr("inputs/cube.skin.obj")));
+
+  write_inputs(scene, folder / "run");
+  Scene again = load_scene(folder.write("run/scene.toml", scene.resolved), {.mesher = "/nowhere/mesher"});
+  EXPECT_EQ(scene.resolved, again.resolved);
+  scene.simulation.step();
+  again.simulation.step();
+  EXPECT_EQ(scene.simulation.state().q, again.simulation.state().q);
+}
+
+TEST(MeshAlone, AnOpenSurfaceIsRefused) {
+  const TestFolder folder;
+  folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");
+  EXPECT_THAT(refusal_of(folder / "open.obj"), AllOf(HasSubstr("open.obj"), HasSubstr("open")));
+}
+
+}  // namespace
+}  // namespace aspic

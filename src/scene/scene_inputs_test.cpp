@@ -1,0 +1,139 @@
+// Meshes, skins and numbers that a scene takes from files.
+#include "scene/scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/mesh_file.h"
+#include "mesh/generators.h"
+#include "mesh/surface.h"
+#include "scene/scene_cases_test.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+TEST(Scene, DisplacementFileGivesEachVertexItsOwn) {
+  const TestFolder folder;
+  std::string csv = "x,y,z\n";
+  for (int i = 0; i < 27; ++i) csv += std::to_string(i) + ",0,0.5\n";
+  folder.write("u.csv", csv);
+  const std::string text = kCube + "scale = 100\ndeform = { file = \"u.csv\" }\n";
+  const Scene scene = load_scene(folder.write("beam.toml", text));
+  EXPECT_EQ(vertex(scene.simulation.state().q, 26).a[0], 126);
+  EXPECT_THAT(scene.resolved, HasSubstr("inputs/cube.displacement.csv"));
+  folder.write("u.csv", "1,2,3\n");
+  EXPECT_THAT(refusal_of(folder / "beam.toml"), HasSubstr("1 lines of numbers; one for a vertex is needed, 27 in all"));
+  folder.write("u.csv", "1,2,3\n1,2,nan\n");
+  EXPECT_THAT(refusal_of(folder / "beam.toml"), AllOf(HasSubstr("u.csv:2:"), HasSubstr("nan")));
+}
+
+TEST(Scene, ParametersVaryFromTetToTet) {
+  const TestFolder folder;
+  std::string csv;
+  for (int t = 0; t < 48; ++t) csv += std::to_string(1000 + t) + "\n";
+  folder.write("rho.csv", csv);
+  const Scene scene = load_scene(folder.write(
+      "beam.toml", kCube + "material = { density = { file = \"rho.csv\" }, young = \"1e5 * (1 + X)\" }\n"));
+  EXPECT_EQ(scene.simulation.model().density[47], 1047);
+  EXPECT_THAT(scene.resolved, AllOf(HasSubstr("inputs/cube.density.csv"), HasSubstr("fnv1a:")));
+  folder.write("rho.csv", "1\n" + csv);
+  EXPECT_THAT(refusal_of(folder / "beam.toml"), HasSubstr("49 lines of numbers"));
+  csv.replace(0, 4, "-100");
+  folder.write("rho.csv", csv);
+  EXPECT_THAT(refusal_of(folder / "beam.toml"), AllOf(HasSubstr("density = -100 in tet 0"), HasSubstr("must be > 0")));
+  EXPECT_THAT(refusal(kCube + "material = { poisson = \"X\" }\n"), HasSubstr("poisson = "));
+  EXPECT_THAT(refusal(kCube + "material = { young = \"1 / 0\" }\n"), HasSubstr("inf"));
+}
+
+TEST(Scene, RegionsMapLabelsToValues) {
+  const TestFolder folder;
+  TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1});
+  mesh.region = {1, 1, 1, 7, 7, 7};
+  write_mesh(folder / "cube.msh", mesh);
+  const auto with = [&](const std::string& regions) {
+    return folder.write("beam.toml",
+                        "[[body]]\nmesh = \"cube.msh\"\nmaterial = { density = { regions = " + regions + " } }\n");
+  };
+  const Scene scene = load_scene(with("{ 1 = 100, 7 = 300 }"));
+  EXPECT_EQ(scene.simulation.model().density, (std::vector<double>{100, 100, 100, 300, 300, 300}));
+  EXPECT_THAT(refusal_of(with("{ 1 = 100 }")), AllOf(HasSubstr("region 7 is missing"), HasSubstr("1, 7")));
+  EXPECT_THAT(refusal_of(with("{ 1 = 100, 7 = 1, 8 = 2 }")), HasSubstr("no region 8"));
+}
+
+TEST(Scene, ExtraParametersBelongToTheirMaterial) {
+  EXPECT_THAT(refusal(kCube + "material = { model = \"neo_hookean\", ratio = 1 }\n"), HasSubstr("ratio"));
+}
+
+TEST(Scene, FilesAreConfinedToTheFolderAndTheOneAbove) {
+  const TestFolder folder;
+  const TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1});
+  fs::create_directories(folder / "a/b/scenes");
+  fs::create_directories(folder / "a/b/assets");
+  write_mesh(folder / "a/b/assets/cube.msh", mesh);
+  write_mesh(folder / "a/cube.msh", mesh);
+  const auto with = [&](const std::string& name) {
+    return folder.write("a/b/scenes/s.toml", "[[body]]\nmesh = \"" + name + "\"\n");
+  };
+  EXPECT_EQ(refusal_of(with("../assets/cube.msh")), "");
+  EXPECT_THAT(refusal_of(with("../../cube.msh")), AllOf(HasSubstr("s.toml:2:8"), HasSubstr("outside")));
+  EXPECT_THAT(refusal_of(with("../assets/../../cube.msh")), HasSubstr("outside"));
+  const std::string absolute = (folder / "a/cube.msh").string();
+  EXPECT_THAT(refusal_of(with(absolute)), HasSubstr("outside"));
+  EXPECT_EQ(refusal_of(with(absolute), {.allow_outside = true}), "");
+  EXPECT_EQ(refusal_of(with("missing.msh"), {.overrides = {"mesh=" + absolute}}), "");
+  EXPECT_THAT(refusal_of(with("../assets/cub.msh")), AllOf(HasSubstr("does not exist"), HasSubstr("'cube.msh'")));
+  EXPECT_THAT(refusal_of(with("../assets")), HasSubstr("is a folder"));
+}
+
+TEST(Scene, AChangedMeshIsNoticedByItsHash) {
+  const TestFolder folder;
+  const TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1});
+  write_mesh(folder / "cube.msh", mesh);
+  const Scene scene = load_scene(folder.write("s.toml", "[[body]]\nmesh = \"cube.msh\"\n"));
+  write_inputs(scene, folder / "run");
+  const fs::path resolved = folder.write("run/scene.toml", scene.resolved);
+  EXPECT_EQ(refusal_of(resolved), "");
+  write_mesh(folder / "run/inputs/cube.msh", make_box({{0, 0, 0}}, {{1, 1, 1.001}}, {1, 1, 1}));
+  EXPECT_THAT(refusal_of(resolved), AllOf(HasSubstr("mesh_hash"), HasSubstr("changed")));
+}
+
+TEST(Scene, ABrokenMeshStopsWithTheDoctorsWords) {
+  const TestFolder folder;
+  TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1});
+  std::swap(mesh.tets[2][0], mesh.tets[2][1]);
+  write_mesh(folder / "cube.msh", mesh);
+  const fs::path path = folder.write("s.toml", "[[body]]\nmesh = \"cube.msh\"\n");
+  EXPECT_THAT(refusal_of(path), AllOf(HasSubstr("cube"), HasSubstr("inverted")));
+}
+
+TEST(Scene, MissingOrUnreadableFilesAreNamed) {
+  const TestFolder folder;
+  EXPECT_THAT(refusal_of(folder / "none.toml"), HasSubstr("none.toml"));
+  EXPECT_THAT(refusal_of(folder / "none.msh"), HasSubstr("none.msh"));
+}
+
+TEST(Scene, ASkinIsPlacedAndCarriedWithItsBody) {
+  const TestFolder folder;
+  const TetMesh fine = make_box({{0.25, 0.25, 0.25}}, {{0.75, 0.75, 0.75}}, {3, 3, 3});
+  write_mesh(folder / "skin.obj", boundary_surface(fine).surface);
+  write_mesh(folder / "cage.msh", make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}));
+  const Scene scene = load_scene(
+      folder.write("s.toml", "[[body]]\nmesh = \"cage.msh\"\nskin = \"skin.obj\"\nscale = 2\ntranslate = [1, 0, 0]\n"));
+  const Skin& skin = scene.skins[0];
+  EXPECT_EQ(skin.embedding.outside, 0);
+  std::vector<double> carried(3 * skin.rest.vertex_count());
+  carry(skin.embedding, scene.simulation.state().q, carried);
+  for (int v = 0; v < skin.rest.vertex_count(); ++v) {
+    EXPECT_LT(distance(vertex(carried, v), skin.rest.vertices[v]), 1e-14);
+    EXPECT_GE(skin.rest.vertices[v][0], 1.5);
+  }
+  folder.write("s.toml", "[[body]]\nmesh = \"cage.msh\"\nmesh_size = 3\n");
+  EXPECT_THAT(refusal_of(folder / "s.toml"), HasSubstr("remove mesh_size"));
+}
+
+}  // namespace
+}  // namespace aspic

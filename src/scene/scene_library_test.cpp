@@ -1,0 +1,69 @@
+// The scenes of this project, and the page about them.
+#include "scene/scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "io/atomic_file.h"
+#include "scene/scene_cases_test.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<fs::path>& scene_files() {
+  static const std::vector<fs::path> files = [] {
+    std::vector<fs::path> found;
+    for (const auto& entry : fs::directory_iterator(fs::path(ASPIC_SOURCE_DIR) / "scenes"))
+      if (entry.path().extension() == ".toml" && entry.path().stem() != "bunny") found.push_back(entry.path());
+    std::sort(found.begin(), found.end());
+    return found;
+  }();
+  return files;
+}
+
+class SceneFile : public ::testing::TestWithParam<fs::path> {};
+
+TEST_P(SceneFile, LoadsAndTakesTwoConvergedSteps) {
+  Scene scene = load_scene(GetParam());
+  EXPECT_GT(scene.steps, 0);
+  EXPECT_EQ(scene.name, GetParam().stem());
+  for (int step = 0; step < 2; ++step) {
+    const StepReport report = scene.simulation.step();
+    EXPECT_TRUE(is_success(report.status)) << to_string(report.status);
+    EXPECT_GT(report.min_det_F, 0);
+  }
+}
+
+TEST_P(SceneFile, ResolvedSceneGivesTheSameBits) {
+  const TestFolder folder;
+  Scene scene = load_scene(GetParam());
+  write_inputs(scene, folder / "run");
+  Scene again = load_scene(folder.write("run/scene.toml", scene.resolved));
+  EXPECT_EQ(scene.resolved, again.resolved);
+  scene.simulation.step();
+  again.simulation.step();
+  EXPECT_EQ(scene.simulation.state().q, again.simulation.state().q);
+  EXPECT_EQ(scene.simulation.state().qdot, again.simulation.state().qdot);
+}
+
+TEST_P(SceneFile, IsShort) {
+  const std::string text = read_file(GetParam());
+  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 35);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, SceneFile, ::testing::ValuesIn(scene_files()),
+                         [](const auto& file) { return file.param.stem().string(); });
+
+TEST(SceneReference, IsTheCommittedPage) {
+  const fs::path page = fs::path(ASPIC_SOURCE_DIR) / "docs" / "scene.md";
+  if (std::getenv("ASPIC_UPDATE_DOCS")) write_file(page, scene_reference());
+  EXPECT_EQ(read_file(page), scene_reference()) << "ASPIC_UPDATE_DOCS=1 test_scene writes docs/scene.md anew";
+}
+
+}  // namespace
+}  // namespace aspic
