@@ -112,6 +112,8 @@ std::string reason_of(const mu::ParserError& e, ExpressionVariables variables) {
     case mu::ecUNASSIGNABLE_TOKEN:
       if (e.GetToken() == "t" && variables == ExpressionVariables::position)
         return "'t' has no meaning here: this is evaluated once, at the start";
+      if (e.GetToken().size() == 1)  // near to every other letter
+        return "unknown name '" + e.GetToken() + "' (a point is x, y, z or X, Y, Z)";
       return "unknown name '" + e.GetToken() + "'" + suggestion(e.GetToken(), known_names(variables));
     case mu::ecUNEXPECTED_EOF:
       return "ends too early";

@@ -65,7 +65,9 @@ struct Assignment {
     bool picked = false;
     for (size_t k = 0; k < list->array().size(); ++k) {
       Value& element = list->array()[k];
-      if (!element.is_table() || name_of(element.table(), key, k) != words[i + 1]) continue;
+      const bool is_meant =
+          element.is_table() && (name_of(element.table(), key, k) == words[i + 1] || std::to_string(k) == words[i + 1]);
+      if (!is_meant) continue;
       if (i + 2 >= words.size()) fail("a key of " + words[i + 1] + " is missing");
       apply_to(element.table(), key.table, i + 2);
       picked = true;
@@ -90,6 +92,17 @@ struct Assignment {
   }
 };
 
+// "step" alone is not a path, but time.step may be what was meant.
+std::string unknown_first_word(const std::string& word) {
+  const Schema& schema = scene_schema();
+  for (const char* section : {"time", "solver", "output", "material", "damping"})
+    if (schema.find(section, word))
+      return std::string("unknown key '") + word + "' (did you mean '" + section + "." + word + "'?)";
+  std::vector<std::string> known = schema.names("scene");
+  for (const std::string& name : schema.names("body")) known.push_back(name);
+  return std::string("unknown key '") + word + "'" + suggestion(word, known);
+}
+
 }  // namespace
 
 void apply_override(Table& document, const std::string& text) {
@@ -102,9 +115,7 @@ void apply_override(Table& document, const std::string& text) {
   const Schema& schema = scene_schema();
   const std::string& first = assignment.words.front();
   if (!schema.find("scene", first)) {
-    std::vector<std::string> known = schema.names("scene");
-    for (const std::string& name : schema.names("body")) known.push_back(name);
-    if (!schema.find("body", first)) assignment.fail("unknown key '" + first + "'" + suggestion(first, known));
+    if (!schema.find("body", first)) assignment.fail(unknown_first_word(first));
     assignment.words.insert(assignment.words.begin(), "body");
   }
   assignment.apply_to(document, "scene", 0);

@@ -104,9 +104,11 @@ TEST_F(RunResults, HoldTheDocumentedFiles) {
   EXPECT_THAT(names(path("run")),
               testing::UnorderedElementsAre("scene.toml", "steps.csv", "iterations.csv", "checkpoint.bin", "run.pvd",
                                             "run.usda", "frames/body_000000.vtu", "frames/body_000001.vtu",
-                                            "frames/body_000002.vtu", "frames/skin_soft_bar_000000.obj",
-                                            "frames/skin_soft_bar_000001.obj", "frames/skin_soft_bar_000002.obj",
-                                            "skins/skin_soft_bar.obj", "skins/skin_soft_bar.pc2"));
+                                            "frames/body_000002.vtu", "frames/skin_soft_bar_000000.ply",
+                                            "frames/skin_soft_bar_000001.ply", "frames/skin_soft_bar_000002.ply",
+                                            "frames/skin_soft_bar_000000.obj", "frames/skin_soft_bar_000001.obj",
+                                            "frames/skin_soft_bar_000002.obj", "skins/skin_soft_bar.obj",
+                                            "skins/skin_soft_bar.pc2"));
   EXPECT_EQ(line_count(read_file(path("run/steps.csv"))), 1 + kSteps);
   EXPECT_EQ(line_count(read_file(path("run/timings.csv"))), 1 + kSteps);
   EXPECT_THAT(read_file(path("run/steps.csv")), HasSubstr(",potential_elasticity,potential_gravity,potential_total,"));

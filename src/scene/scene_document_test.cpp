@@ -137,8 +137,9 @@ TEST(SceneDocument, DegenerateGeometryIsRefused) {
 
 TEST(Override, ReplacesValuesAnywhere) {
   const std::string two = kBox + "name = \"a\"\n[[body.pin]]\nname = \"base\"\nwhere = \"y < 0.1\"\n" + kBox;
-  const Table scene = document(two, {"time.step=0.005", "material.young=2e5", "body.a.material.density = 900",
-                                     "solver.method=gradient_descent", "body.a.pin.base.where=y < 0.5"});
+  const Table scene =
+      document(two, {"time.step=0.005", "material.young=2e5", "body.a.material.density = 900",
+                     "solver.method=gradient_descent", "body.a.pin.0.motion=fixed", "body.a.pin.base.where=y < 0.5"});
   EXPECT_EQ((*scene.find("time"))["step"].number(), 0.005);
   EXPECT_EQ((*scene.find("solver"))["method"].text(), "gradient_descent");
   EXPECT_EQ(body(scene, 0)["material"]["young"].number(), 2e5);
@@ -154,6 +155,7 @@ TEST(Override, ErrorsNameTheOverride) {
   EXPECT_THAT(refusal(kBox, {"time.step=-1"}), StartsWith("--set time.step=-1: step = -1"));
   EXPECT_THAT(refusal(kBox, {"time.step=fast"}), StartsWith("--set time.step=fast: step = \"fast\"; this is a string"));
   EXPECT_THAT(refusal(kBox, {"tme.step=1"}), HasSubstr("did you mean 'time'?"));
+  EXPECT_THAT(refusal(kBox, {"integrator=forward_euler"}), HasSubstr("did you mean 'time.integrator'?"));
   EXPECT_THAT(refusal(kBox, {"time.step"}), HasSubstr("KEY=VALUE"));
   EXPECT_THAT(refusal(kBox, {"time..step=1"}), HasSubstr("empty"));
   EXPECT_THAT(refusal(kBox, {"body.buny.scale=2"}), HasSubstr("unknown key or name 'buny'"));
