@@ -58,10 +58,7 @@ Scene load(const Arguments& arguments) {
 RunDirectory open_directory(const Arguments& arguments, Scene& scene) {
   if (arguments.resume) return RunDirectory::resume(directory_to_resume(arguments), scene);
   const fs::path path = arguments.out.empty() ? fs::path("out") / scene.name : arguments.out;
-  RunDirectory directory =
-      RunDirectory::create(path, scene, arguments.force ? ExistingRun::overwrite : ExistingRun::refuse);
-  write_inputs(scene, directory.path());
-  return directory;
+  return RunDirectory::create(path, scene, arguments.force ? ExistingRun::overwrite : ExistingRun::refuse);
 }
 
 // How many of the steps that a resumed run keeps did not converge: the exit code is that of the whole run.
