@@ -192,9 +192,20 @@ class SceneBuilder {
       model_.density.insert(model_.density.end(), density.begin(), density.end());
       const std::vector<MaterialParameters> parameters = parameters_of(body, files_, source_.notes);
       model_.elasticity.push_back(make_tet_elasticity(model_of(body), model_.mesh, body.first_tet, parameters));
+      export_moduli(parameters);
     }
     model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind);
     add_actions(bodies_, source_.document.find("gravity")->vector(), kind, files_, model_, source_.notes);
+  }
+
+  // The material fields of the results; zero where a body is not elastic.
+  void export_moduli(const std::vector<MaterialParameters>& parameters) {
+    if (model_.tet_fields.empty()) model_.tet_fields = {{"young", {}}, {"poisson", {}}};
+    for (const MaterialParameters& p : parameters) {
+      const bool elastic = p.lame.mu > 0;
+      model_.tet_fields[0].second.push_back(elastic ? young_modulus(p.lame) : 0);
+      model_.tet_fields[1].second.push_back(elastic ? poisson_ratio(p.lame) : 0);
+    }
   }
 
   State start() {

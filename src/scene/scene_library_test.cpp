@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "io/atomic_file.h"
@@ -54,6 +55,25 @@ TEST_P(SceneFile, ResolvedSceneGivesTheSameBits) {
 TEST_P(SceneFile, IsShort) {
   const std::string text = read_file(GetParam());
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 35);
+}
+
+TEST(SceneLibrary, TheModuliOfEachTetAreKeptForTheResults) {
+  const Scene scene = load_scene(fs::path(ASPIC_SOURCE_DIR) / "scenes" / "heterogeneous.toml");
+  const Model& model = scene.simulation.model();
+  ASSERT_EQ(model.tet_fields.size(), 2u);
+  EXPECT_EQ(model.tet_fields[0].first, "young");
+  EXPECT_EQ(model.tet_fields[1].first, "poisson");
+  int stiff = 0;
+  for (int t = 0; t < model.mesh.tet_count(); ++t) {
+    Vec3d center{};
+    for (const int v : model.mesh.tets[t]) center = center + 0.25 * model.mesh.rest[v];
+    const bool core = std::hypot(center[1], center[2]) < 0.06;
+    EXPECT_NEAR(model.tet_fields[0].second[t] / (core ? 1e7 : 5e4 * (1 + center[0])), 1, 1e-12);
+    EXPECT_NEAR(model.tet_fields[1].second[t], core ? 0.3 : 0.45, 1e-12);
+    EXPECT_EQ(model.density[t], core ? 1900 : 1050);
+    stiff += core;
+  }
+  EXPECT_GT(stiff, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, SceneFile, ::testing::ValuesIn(scene_files()),
