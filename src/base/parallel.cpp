@@ -12,7 +12,7 @@
 namespace aspic {
 namespace {
 
-// The calling thread works too; threads take the next index from a shared counter.
+// Runs one loop at a time. The calling thread works too; threads take the next index from a shared counter.
 class Pool {
  public:
   ~Pool() { resize(0); }
@@ -31,7 +31,7 @@ class Pool {
     for (int i = 0; i < workers; ++i) threads_.emplace_back([this, seen = generation_] { serve(seen); });
   }
 
-  void run(int count, const std::function<void(int)>& body) {
+  void run(int count, FunctionRef<void(int)> body) {
     {
       std::lock_guard lock(mutex_);
       body_ = &body;
@@ -47,7 +47,7 @@ class Pool {
   }
 
  private:
-  void work(int count, const std::function<void(int)>& body) {
+  void work(int count, FunctionRef<void(int)> body) {
     for (int i; (i = next_.fetch_add(1, std::memory_order_relaxed)) < count;) body(i);
   }
 
@@ -70,7 +70,7 @@ class Pool {
   std::mutex mutex_;
   std::condition_variable wake_, done_;
   std::atomic<int> next_ = 0;
-  const std::function<void(int)>* body_ = nullptr;
+  const FunctionRef<void(int)>* body_ = nullptr;
   int count_ = 0, busy_ = 0;
   unsigned generation_ = 0;
   bool quit_ = false;
@@ -81,12 +81,19 @@ Pool& pool() {
   return instance;
 }
 
-int& requested_threads() {
-  static int count = std::max(1u, std::thread::hardware_concurrency());
+std::atomic<int>& requested_threads() {
+  static std::atomic<int> count = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   return count;
 }
 
-thread_local bool inside_loop = false;  // a loop inside a loop runs serially
+std::mutex& pool_in_use() {
+  static std::mutex instance;
+  return instance;
+}
+
+thread_local bool inside_loop = false;
+
+int chunk_count(int count) { return (count + kChunkSize - 1) / kChunkSize; }
 
 }  // namespace
 
@@ -97,36 +104,37 @@ void set_thread_count(int count) {
   requested_threads() = std::max(1, count);
 }
 
-void parallel_for(int count, const std::function<void(int)>& body) {
-  if (count <= 1 || thread_count() == 1 || inside_loop) {
+void parallel_for(int count, FunctionRef<void(int)> body) {
+  const int threads = thread_count();
+  std::unique_lock lock(pool_in_use(), std::defer_lock);
+  if (count <= 1 || threads == 1 || inside_loop || !lock.try_lock()) {
     for (int i = 0; i < count; ++i) body(i);
     return;
   }
-  if (pool().workers() != thread_count() - 1) pool().resize(thread_count() - 1);
-  const auto run = [&](int i) {
+  if (pool().workers() != threads - 1) pool().resize(threads - 1);
+  pool().run(count, [&](int i) {
     inside_loop = true;
     body(i);
     inside_loop = false;
-  };
-  pool().run(count, std::ref(run));
+  });
 }
 
-void parallel_chunks(int count, const std::function<void(int, int)>& body) {
-  const auto run = [&](int chunk) { body(chunk * kChunkSize, std::min(count, (chunk + 1) * kChunkSize)); };
-  parallel_for((count + kChunkSize - 1) / kChunkSize, std::ref(run));  // by reference: nothing is allocated
+void parallel_chunks(int count, FunctionRef<void(int, int)> body) {
+  parallel_for(chunk_count(count),
+               [&](int chunk) { body(chunk * kChunkSize, std::min(count, (chunk + 1) * kChunkSize)); });
 }
 
-double parallel_sum(int count, const std::function<double(int, int)>& body) {
-  const int chunks = (count + kChunkSize - 1) / kChunkSize;
-  thread_local std::vector<double> partial;  // grows once; steps allocate nothing
-  std::vector<double>& sums = partial;
-  sums.resize(chunks);
-  const auto run = [&](int chunk) {
-    sums[chunk] = body(chunk * kChunkSize, std::min(count, (chunk + 1) * kChunkSize));
-  };
-  parallel_for(chunks, std::ref(run));
+double parallel_sum(int count, FunctionRef<double(int, int)> body) {
+  // Grows once. Taken along, so that a sum inside this one, on this thread, has its own.
+  thread_local std::vector<double> spare;
+  std::vector<double> partial = std::move(spare);
+  partial.resize(chunk_count(count));
+  parallel_for(chunk_count(count), [&](int chunk) {
+    partial[chunk] = body(chunk * kChunkSize, std::min(count, (chunk + 1) * kChunkSize));
+  });
   double sum = 0;
-  for (int chunk = 0; chunk < chunks; ++chunk) sum += sums[chunk];
+  for (const double term : partial) sum += term;
+  spare = std::move(partial);
   return sum;
 }
 

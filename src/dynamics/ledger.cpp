@@ -14,17 +14,17 @@ double total(const std::vector<Energy*>& terms, std::span<const double> x) {
 
 }  // namespace
 
-double kinetic_energy(const MassMatrix& mass, std::span<const double> qdot) {
-  std::vector<double> Mv(qdot.size());
-  mass.multiply(qdot, Mv);
+double kinetic_energy(const MassMatrix& mass, std::span<const double> qdot, std::span<double> momentum) {
+  mass.multiply(qdot, momentum);
   double T = 0;
-  for (size_t i = 0; i < qdot.size(); ++i) T += 0.5 * qdot[i] * Mv[i];
+  for (size_t i = 0; i < qdot.size(); ++i) T += 0.5 * qdot[i] * momentum[i];
   return T;
 }
 
 void Ledger::open(const StepTools& tools, const State& state) {
   before_ = state;
-  kinetic_ = kinetic_energy(*tools.model.mass, state.qdot);
+  momentum_.resize(state.qdot.size());
+  kinetic_ = kinetic_energy(*tools.model.mass, state.qdot, momentum_);
   potential_ = total(tools.E.potential(), state.q);
 }
 
@@ -62,10 +62,11 @@ void Ledger::close(const StepTools& tools, const Integrator& integrator, double 
   }
 
   report.potential.clear();
+  report.potential.reserve(tools.E.potential().size());
   report.potential_total = 0;
   for (const Energy* V : tools.E.potential()) report.potential.push_back(V->value(state.q));
   for (const double V : report.potential) report.potential_total += V;
-  report.kinetic = kinetic_energy(*tools.model.mass, state.qdot);
+  report.kinetic = kinetic_energy(*tools.model.mass, state.qdot, momentum_);
   report.residual = std::sqrt(residual_squared);
   report.pin_work = reaction_work + target_work_;
   const double s = integrator.displacement() == Displacement::old_velocity ? -1 : 1;

@@ -25,9 +25,10 @@ class Ledger {
  private:
   State before_;
   double kinetic_ = 0, potential_ = 0, target_work_ = 0;  // [J]
-  std::vector<double> gradient_, damping_, dv_, Mdv_, at_;
+  std::vector<double> gradient_, damping_, dv_, Mdv_, at_, momentum_;
 };
 
-double kinetic_energy(const MassMatrix& mass, std::span<const double> qdot);  // 1/2 qdot' M qdot [J]
+// 1/2 qdot' M qdot [J]; `momentum` receives M qdot.
+double kinetic_energy(const MassMatrix& mass, std::span<const double> qdot, std::span<double> momentum);
 
 }  // namespace aspic

@@ -122,7 +122,7 @@ struct Simulation::Impl {
   StepReport step(const IterationObserver& observe) {
     const auto began = std::chrono::steady_clock::now();
     const StepTools with = tools(observe);
-    const State before = state;
+    before = state;
     ledger.open(with, state);
     begin_step(before.q, before.time + options.h);
     ledger.targets_moved(with, state);
@@ -159,6 +159,7 @@ struct Simulation::Impl {
   Model model;
   SimulationOptions options;
   State state, start;
+  State before;  // the state before the last step
   std::unique_ptr<Integrator> integrator;
   std::unique_ptr<SearchDirection> direction;
   std::unique_ptr<Pins> pins;
@@ -194,7 +195,10 @@ std::vector<std::string> Simulation::potential_names() const {
   return names;
 }
 
-double Simulation::kinetic_energy() const { return aspic::kinetic_energy(*impl_->model.mass, impl_->state.qdot); }
+double Simulation::kinetic_energy() const {
+  std::vector<double> momentum(impl_->state.qdot.size());
+  return aspic::kinetic_energy(*impl_->model.mass, impl_->state.qdot, momentum);
+}
 
 std::vector<double> Simulation::potential_energies() const {
   std::vector<double> energies;

@@ -10,8 +10,8 @@
 namespace aspic {
 namespace {
 
-// Cell types of VTK [vtkCellType.h].
-constexpr int kVertex = 1, kPolyVertex = 2, kLine = 3, kPolyLine = 4, kTriangle = 5, kQuad = 9, kTet = 10;
+// Cell types of VTK [vtkCellType.h]; between the first two: several vertices, a line.
+constexpr int kVertex = 1, kPolyLine = 4, kTriangle = 5, kQuad = 9, kTet = 10;
 
 constexpr int64_t kMaxCount = std::numeric_limits<int>::max() / 4;
 

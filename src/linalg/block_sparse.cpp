@@ -136,7 +136,7 @@ void BlockSparse::multiply(std::span<const double> x, std::span<double> y) const
       std::copy_n(sum, 3, &y[3 * static_cast<size_t>(row)]);
     }
   };
-  parallel_for(task_count(rows), std::ref(rows_of_task));  // std::ref: no allocation inside std::function
+  parallel_for(task_count(rows), rows_of_task);
 }
 
 }  // namespace aspic

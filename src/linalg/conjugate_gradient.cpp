@@ -46,7 +46,7 @@ bool ConjugateGradient::factorize(const BlockSparse& H) {
     for (int row = first; row < last; ++row)
       if (!invert_positive_definite(H.block[H.pattern->diagonal(row)], inverse_diagonal_[row])) definite = false;
   };
-  parallel_chunks(H.pattern->rows(), std::ref(invert));
+  parallel_chunks(H.pattern->rows(), invert);
   if (!definite) H_ = nullptr;
   return definite;
 }
@@ -92,7 +92,7 @@ SolveReport ConjugateGradient::solve(std::span<const double> b, std::span<double
     auto turn = [&](int first, int last) {
       for (int i = 3 * first; i < 3 * last; ++i) p_[i] = z_[i] + beta * p_[i];
     };
-    parallel_chunks(H_->pattern->rows(), std::ref(turn));
+    parallel_chunks(H_->pattern->rows(), turn);
   }
   H_->multiply(x, q_);
   report.relative_residual = std::sqrt(begin(b).rr) / b_norm;
@@ -106,7 +106,7 @@ double ConjugateGradient::p_dot_q() {
     for (int i = 3 * first; i < 3 * last; ++i) sum += p_[i] * q_[i];
     partial_[first / kChunkSize].rr = sum;
   };
-  parallel_chunks(H_->pattern->rows(), std::ref(dot));
+  parallel_chunks(H_->pattern->rows(), dot);
   return add_partial_sums().rr;
 }
 
@@ -115,7 +115,7 @@ ConjugateGradient::Sums ConjugateGradient::advance(std::span<double> x, double a
     for (int i = 3 * first; i < 3 * last; ++i) x[i] += alpha * p_[i], r_[i] -= alpha * q_[i];
     precondition(first, last, partial_[first / kChunkSize]);
   };
-  parallel_chunks(H_->pattern->rows(), std::ref(step));
+  parallel_chunks(H_->pattern->rows(), step);
   return add_partial_sums();
 }
 
@@ -125,7 +125,7 @@ ConjugateGradient::Sums ConjugateGradient::begin(std::span<const double> b) {
     precondition(first, last, partial_[first / kChunkSize]);
     std::copy(z_.begin() + 3 * first, z_.begin() + 3 * last, p_.begin() + 3 * first);
   };
-  parallel_chunks(H_->pattern->rows(), std::ref(step));
+  parallel_chunks(H_->pattern->rows(), step);
   return add_partial_sums();
 }
 

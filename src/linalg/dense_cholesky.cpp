@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <functional>
 
 #include "base/check.h"
 #include "base/parallel.h"
@@ -207,7 +206,7 @@ void DenseCholesky::subtract_outer_product(const double* A, ptrdiff_t A_stride, 
         subtract_block(left, right, d, C + i + j * C_stride, C_stride, height, width, i - j);
       };
       if (static_cast<double>(rows - j) * width * d > kParallelFrom) {
-        parallel_for(blocks, std::ref(subtract_rows));
+        parallel_for(blocks, subtract_rows);
       } else {
         for (int task = 0; task < blocks; ++task) subtract_rows(task);
       }

@@ -84,7 +84,7 @@ inline Pack log(Pack a) {
 // Newton's last one rounds once.
 inline Pack cbrt(Pack a) {
   if (!all_ordinary(a)) return map(a, [](double x) { return std::cbrt(x); });
-  constexpr double kTwoThirdsOfOne = 2.0 / 3 * std::bit_cast<long long>(0.97);
+  constexpr double kTwoThirdsOfOne = 2.0 / 3 * static_cast<double>(std::bit_cast<long long>(0.97));
   const Pack bits = __builtin_convertvector((PackBits)a.v, Pack::Lanes);
   const Pack third = (1.0 / 3) * bits + kTwoThirdsOfOne;
   Pack y((Pack::Lanes) __builtin_convertvector(third.v, PackBits));

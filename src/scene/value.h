@@ -34,7 +34,7 @@ struct Table {
 };
 
 struct Value {
-  std::variant<bool, std::int64_t, double, std::string, Array, Table> data = false;
+  std::variant<bool, std::int64_t, double, std::string, Array, Table> data;  // false
   Place place;
 
   bool is_table() const { return std::holds_alternative<Table>(data); }

@@ -1,0 +1,41 @@
+#include "base/error.h"
+
+#include <gtest/gtest.h>
+
+namespace aspic {
+namespace {
+
+const std::vector<std::string> kKnown = {"young", "poisson", "density", "box"};
+
+TEST(NearestName, IsTheOneWithTheFewestTypingErrors) {
+  EXPECT_EQ(nearest_name("young", kKnown), "young");
+  EXPECT_EQ(nearest_name("yuong", kKnown), "young");     // two letters exchanged
+  EXPECT_EQ(nearest_name("poison", kKnown), "poisson");  // one missing
+  EXPECT_EQ(nearest_name("densitty", kKnown), "density");
+  EXPECT_EQ(nearest_name("bax", kKnown), "box");
+}
+
+TEST(NearestName, IsEmptyWhereNothingIsMeant) {
+  EXPECT_EQ(nearest_name("gravity", kKnown), "");
+  EXPECT_EQ(nearest_name("young", {}), "");
+  EXPECT_EQ(nearest_name(std::string(65, 'y'), {std::string(65, 'y')}), "");  // not a typing error
+}
+
+TEST(NearestName, OfSeveralEquallyNearIsTheFirst) {
+  EXPECT_EQ(nearest_name("bxx", {"bax", "bix"}), "bax");
+  EXPECT_EQ(nearest_name("bxx", {"bix", "bax"}), "bix");
+}
+
+TEST(NearestName, AllowsMoreErrorsInALongerWord) {
+  EXPECT_EQ(nearest_name("bekwrd_euller", {"backward_euler"}), "backward_euler");  // 3 of 13
+  EXPECT_EQ(nearest_name("abc", {"xyz"}), "");
+}
+
+TEST(Suggestion, NamesTheNearestOrElseListsAll) {
+  EXPECT_EQ(suggestion("yung", kKnown), " (did you mean 'young'?)");
+  EXPECT_EQ(suggestion("gravity", kKnown), " (known: young, poisson, density, box)");
+  EXPECT_EQ(suggestion("anything", {}), "");
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,55 @@
+#include "allocation_counter.h"
+
+#include <gtest/gtest.h>
+
+#include "base/parallel.h"
+#include "dynamics/models_test.h"
+
+namespace aspic {
+namespace {
+
+using namespace testing_models;
+
+// Of steps that all terms, moving pins, moving targets and damping take part in.
+void expect_steady_steps_to_allocate_only_their_report(const SimulationOptions& options) {
+  Simulation simulation = simulate(damped_beam_with_moving_pins_and_targets(4), options);
+  for (int i = 0; i < 2; ++i) ASSERT_TRUE(is_success(simulation.step().status));
+  for (int i = 0; i < 3; ++i) {
+    const test::AllocationCounter counter;
+    const StepReport report = simulation.step();
+    EXPECT_EQ(counter.count(), 1) << options.integrator << ", " << options.solver.linear
+                                  << ": more than the vector StepReport::potential, which goes to the caller";
+    EXPECT_TRUE(is_success(report.status));
+  }
+}
+
+TEST(Allocations, ASteadyStepMakesNoneWithAnyLinearSolverAndNumberOfThreads) {
+  const int before = thread_count();
+  for (const int threads : {1, 2, 8})
+    for (const std::string& linear : linear_solver_names()) {
+      set_thread_count(threads);
+      expect_steady_steps_to_allocate_only_their_report({.solver = {.linear = linear, .minimize = {}}});
+    }
+  set_thread_count(before);
+}
+
+TEST(Allocations, ASteadyStepMakesNoneWithAnyIntegrator) {
+  for (const std::string& integrator : integrator_names()) {
+    const bool is_explicit = integrator == "symplectic_euler" || integrator == "forward_euler";
+    expect_steady_steps_to_allocate_only_their_report(
+        {.h = is_explicit ? 5e-5 : 0.01, .integrator = integrator, .solver = {}});
+  }
+}
+
+TEST(Allocations, ASteadyStepMakesNoneByGradientDescentAndWithAnyDefiniteness) {
+  for (const std::string& definiteness : definiteness_names())
+    expect_steady_steps_to_allocate_only_their_report({.solver = {.definiteness = definiteness, .minimize = {}}});
+  SimulationOptions options;
+  options.solver.method = "gradient_descent";
+  options.h = 1e-4;
+  options.solver.minimize.max_iterations = 10'000;
+  expect_steady_steps_to_allocate_only_their_report(options);
+}
+
+}  // namespace
+}  // namespace aspic

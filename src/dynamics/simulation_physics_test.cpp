@@ -1,0 +1,169 @@
+// Free fall, energy, momentum, units: what mechanics says about a simulation.
+#include "dynamics/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/models_test.h"
+#include "energy/rayleigh_damping.h"
+
+namespace aspic {
+namespace {
+
+using namespace testing_models;
+
+TEST(Simulation, EveryIntegratorFallsFreelyAsItsFormulaSays) {
+  // After n steps: backward, linearly implicit and symplectic Euler g h^2 n(n+1)/2, forward Euler g h^2 n(n-1)/2.
+  const int n = 20;
+  const double h = 0.01, g = 9.81;
+  const std::vector<std::pair<std::string, double>> expected = {{"backward_euler", n * (n + 1) / 2.0},
+                                                                {"linearly_implicit_euler", n * (n + 1) / 2.0},
+                                                                {"symplectic_euler", n * (n + 1) / 2.0},
+                                                                {"forward_euler", n * (n - 1) / 2.0}};
+  for (const auto& [integrator, steps] : expected) {
+    SimulationOptions options{.h = h, .integrator = integrator, .solver = {}};
+    options.solver.minimize.tolerance = 1e-14;
+    // Soft enough for the explicit schemes to be stable.
+    Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}), {.young = 1e3});
+    Simulation simulation = simulate(std::move(model), options);
+    for (int i = 0; i < n; ++i) ASSERT_TRUE(is_success(simulation.step().status)) << integrator;
+    for (int v = 0; v < simulation.model().mesh.vertex_count(); ++v)
+      EXPECT_NEAR(simulation.state().q[3 * v + 1], simulation.model().mesh.rest[v][1] - g * h * h * steps, 1e-12)
+          << integrator;
+  }
+}
+
+TEST(Simulation, TheBenchmarkBeamFallsToTheAgreedDisplacement) {
+  SimulationOptions options;
+  options.solver.minimize.criterion = Criterion::first_gradient;
+  Simulation simulation = simulate(beam(7), options);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(simulation.step().status, Status::converged);
+  const int tip = 28 * 8 * 8;  // (4, 0, 0)
+  EXPECT_NEAR(simulation.state().q[3 * tip + 1], -0.0539775432, 1e-8);
+}
+
+double largest_term(const StepReport& report) {
+  double largest = std::abs(report.kinetic);
+  for (const double V : report.potential) largest = std::max(largest, std::abs(V));
+  return largest;
+}
+
+TEST(Simulation, TheLedgerAddsUpForEveryIntegratorWithPinsTargetsAndDamping) {
+  for (const std::string& integrator : integrator_names()) {
+    const bool is_explicit = integrator == "symplectic_euler" || integrator == "forward_euler";
+    Simulation simulation = simulate(damped_beam_with_moving_pins_and_targets(),
+                                     {.h = is_explicit ? 1e-4 : 0.01, .integrator = integrator, .solver = {}});
+    double largest = 0, pin_work = 0;
+    for (int i = 0; i < 20; ++i) {
+      const StepReport report = simulation.step();
+      ASSERT_TRUE(is_success(report.status)) << integrator << " " << to_string(report.status);
+      largest = std::max(largest, largest_term(report));
+      pin_work += std::abs(report.pin_work);
+      EXPECT_LT(std::abs(report.ledger_error), 1e-11 * largest) << integrator;
+    }
+    EXPECT_GT(pin_work, 0) << integrator;
+  }
+}
+
+TEST(Simulation, BackwardEulerLosesEnergyAndForwardEulerGainsIt) {
+  for (const auto& [integrator, sign] : {std::pair{"backward_euler", 1.0}, {"forward_euler", -1.0}}) {
+    Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}), {.young = 1e4, .gravity = {}});
+    State start = at_rest(model.mesh);
+    for (size_t i = 0; i < start.q.size(); i += 3) start.q[i] *= 1.1;
+    Simulation simulation(std::move(model), start, {.h = 1e-3, .integrator = integrator, .solver = {}});
+    double loss = 0;
+    for (int i = 0; i < 50; ++i) loss += simulation.step().numerical_loss;
+    EXPECT_GT(sign * loss, 0) << integrator;
+  }
+}
+
+Vec3d momentum(const Simulation& simulation, bool angular) {
+  std::vector<double> p(simulation.state().q.size());
+  simulation.model().mass->multiply(simulation.state().qdot, p);
+  Vec3d total{};
+  for (size_t i = 0; i < p.size(); i += 3) {
+    const Vec3d pi{{p[i], p[i + 1], p[i + 2]}};
+    const double* q = &simulation.state().q[i];
+    total = total + (angular ? cross(Vec3d{{q[0], q[1], q[2]}}, pi) : pi);
+  }
+  return total;
+}
+
+TEST(Simulation, LinearMomentumChangesByTheExternalImpulse) {
+  Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}), {.young = 1e5});
+  State start = at_rest(model.mesh);
+  for (size_t i = 0; i < start.q.size(); i += 3) start.q[i] *= 1.2;
+  SimulationOptions options{.h = 0.01, .integrator = "backward_euler", .solver = {}};
+  options.solver.minimize.tolerance = 1e-13;
+  Simulation simulation(std::move(model), start, options);
+  const double mass = simulation.model().mass->total();
+  EXPECT_NEAR(mass, 1000, 1e-9);
+  for (int i = 1; i <= 10; ++i) {
+    simulation.step();
+    const Vec3d p = momentum(simulation, false);
+    EXPECT_NEAR(p[0], 0, 1e-9 * mass);
+    EXPECT_NEAR(p[1], -9.81 * 0.01 * i * mass, 1e-9 * mass);
+    EXPECT_NEAR(p[2], 0, 1e-9 * mass);
+  }
+}
+
+// L = sum q_i x (M v)_i changes by h sum v_new_i x (M v_old)_i: backward Euler does not conserve it.
+TEST(Simulation, AngularMomentumChangesAsBackwardEulerMust) {
+  Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}), {.young = 1e4, .gravity = {}});
+  State start = at_rest(model.mesh);
+  for (size_t i = 0; i < start.q.size(); i += 3) {
+    start.qdot[i] = -6 * start.q[i + 1];
+    start.qdot[i + 1] = 6 * start.q[i];
+    start.q[i + 2] *= 1.2;
+  }
+  SimulationOptions options{.h = 0.01, .integrator = "backward_euler", .solver = {}};
+  options.solver.minimize.tolerance = 1e-13;
+  Simulation simulation(std::move(model), start, options);
+  for (int i = 0; i < 10; ++i) {
+    const Vec3d before = momentum(simulation, true);
+    const std::vector<double> v = simulation.state().qdot;
+    simulation.step();
+    std::vector<double> Mv(v.size());
+    simulation.model().mass->multiply(v, Mv);
+    Vec3d change{};
+    for (size_t k = 0; k < v.size(); k += 3) {
+      const double* w = &simulation.state().qdot[k];
+      change = change + 0.01 * cross(Vec3d{{w[0], w[1], w[2]}}, Vec3d{{Mv[k], Mv[k + 1], Mv[k + 2]}});
+    }
+    const Vec3d after = momentum(simulation, true);
+    for (int r = 0; r < 3; ++r) EXPECT_NEAR(after[r] - before[r], change[r], 1e-8 * before[2]);
+    EXPECT_LT(after[2], before[2]);
+  }
+}
+
+// The same beam in units of length a, of modulus and density b: lengths scale with a, times with a.
+TEST(Simulation, AChangeOfUnitsChangesNeitherIterationsNorTheDimensionlessResult) {
+  const auto run = [](double a, double b) {
+    TetMesh mesh = make_box({{0, 0, 0}}, {{4 * a, a, a}}, {8, 2, 2});
+    Model model = make_model(mesh, {.young = 1e5 * b, .density = 1000 * b, .gravity = {{0, -9.81 / a, 0}}});
+    model.pins.push_back({"wall", vertices_where(mesh, [a](const Vec3d& X) { return X[0] < 1e-9 * a; }), {}});
+    Simulation simulation = simulate(std::move(model), {.h = 0.02 * a, .integrator = "backward_euler", .solver = {}});
+    std::vector<double> result;
+    for (int i = 0; i < 10; ++i) result.push_back(simulation.step().iterations);
+    for (const double q : simulation.state().q) result.push_back(q / a);
+    return result;
+  };
+  const std::vector<double> metres = run(1, 1);
+  for (const auto& [a, b] : {std::pair{1e-3, 1.0}, {1e3, 1.0}, {1.0, 1e-3}, {1.0, 1e6}}) {
+    const std::vector<double> scaled = run(a, b);
+    for (size_t i = 0; i < metres.size(); ++i) EXPECT_NEAR(scaled[i], metres[i], 1e-9) << a << " " << b;
+  }
+}
+
+TEST(Simulation, AStretchedBodyComesToRestUnderDamping) {
+  Model model = beam(1, {.material = "neo_hookean", .young = 1e6});
+  model.damping.push_back(make_rayleigh_damping(*model.mass, 4, nullptr, 0));  // about critical
+  Simulation simulation = simulate(std::move(model), {.h = 0.02, .integrator = "backward_euler", .solver = {}});
+  for (int i = 0; i < 500; ++i) ASSERT_TRUE(is_success(simulation.step().status));
+  EXPECT_LT(simulation.kinetic_energy(), 1e-8);
+}
+
+}  // namespace
+}  // namespace aspic
