@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <variant>
 
 #include "base/error.h"
@@ -30,10 +32,16 @@ void heed(const std::vector<Finding>& findings, const std::string& what, std::ve
     if (f.severity == Severity::warning) notes.push_back(what + ": " + sentence(f));
 }
 
+std::string rounded_text(double count) {  // "3.56e+10"
+  std::ostringstream text;
+  text << std::setprecision(3) << count;
+  return text.str();
+}
+
 void check_count(double tets, const Value& shape) {
   if (tets > kMaxTets)
-    throw error_at(shape.place, "about " + number_text(std::round(tets)) + " tets; at most " + number_text(kMaxTets) +
-                                    " are generated (choose a larger size)");
+    throw error_at(shape.place, "about " + rounded_text(tets) + " tets; at most " + number_text(kMaxTets) +
+                                    " are generated (choose a larger size, or fewer cells)");
 }
 
 TetMesh box_mesh(const Value& box) {
