@@ -30,6 +30,7 @@ inline void* count_and_allocate(std::size_t size, std::size_t alignment) {
 
 }  // namespace aspic::test
 
+// NOLINTBEGIN(misc-definitions-in-headers): one source of a program includes this
 // Not inlined: GCC would see free() meet a pointer from operator new and warn.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   return aspic::test::count_and_allocate(size, __STDCPP_DEFAULT_NEW_ALIGNMENT__);
@@ -49,3 +50,4 @@ inline void* count_and_allocate(std::size_t size, std::size_t alignment) {
 [[gnu::noinline]] void operator delete[](void* memory, std::align_val_t) noexcept { std::free(memory); }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 [[gnu::noinline]] void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+// NOLINTEND(misc-definitions-in-headers)

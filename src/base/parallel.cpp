@@ -48,7 +48,8 @@ class Pool {
 
  private:
   void work(int count, FunctionRef<void(int)> body) {
-    for (int i; (i = next_.fetch_add(1, std::memory_order_relaxed)) < count;) body(i);
+    const auto next = [this] { return next_.fetch_add(1, std::memory_order_relaxed); };
+    for (int i = next(); i < count; i = next()) body(i);
   }
 
   void serve(unsigned seen) {

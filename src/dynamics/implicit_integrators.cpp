@@ -34,7 +34,7 @@ class BackwardEuler : public Integrator {
   // Starts from the candidate of lower energy: where the body is, or where it would fly without forces. Pinned
   // vertices go where they must in both.
   virtual void start(const StepTools& tools, double time, std::span<double> q, MinimizeReport& lead) {
-    lead_pins(tools, time, q, lead);
+    lead_pins(tools, time, q_, q, lead);
     tools.pins.place(time, predicted_);
     if (tools.E.value(predicted_) <= tools.E.value(q)) std::copy(predicted_.begin(), predicted_.end(), q.begin());
   }
@@ -81,14 +81,18 @@ class QuasiStatic : public Integrator {
 
   MinimizeReport advance(const StepTools& tools, double h, State& state) override {
     tools.E.begin_step(state.q, 0, 1);
+    q_ = state.q;
     MinimizeReport lead;
-    lead_pins(tools, state.time + h, state.q, lead);
+    lead_pins(tools, state.time + h, q_, state.q, lead);
     MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, state.q, tools.options, tools.observe);
     add_work(lead, report);
     std::fill(state.qdot.begin(), state.qdot.end(), 0.0);
     state.time += h;
     return report;
   }
+
+ private:
+  std::vector<double> q_;  // where the step starts
 };
 
 }  // namespace

@@ -28,13 +28,13 @@ void add_work(const MinimizeReport& spent, MinimizeReport& work) {
   work.projected_hessians += spent.projected_hessians;
 }
 
-void lead_pins(const StepTools& tools, double time, std::span<double> q, MinimizeReport& work) {
-  const std::vector<double> from(q.begin(), q.end());
+void lead_pins(const StepTools& tools, double time, std::span<const double> from, std::span<double> q,
+               MinimizeReport& work) {
   tools.pins.place(time, q);
   if (std::isfinite(tools.E.value(q))) return;
   const std::vector<double> to(q.begin(), q.end());
 
-  std::vector<double> reached = from, trial = from;
+  std::vector<double> reached(from.begin(), from.end()), trial = reached;
   double done = 0, part = 0.5;
   for (int i = 0; i < kMostParts && part >= kSmallestPart; ++i) {
     const double next = std::min(1.0, done + part);

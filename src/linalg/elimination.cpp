@@ -125,6 +125,7 @@ std::vector<int> relaxed_supernodes(const std::vector<int>& parent, const std::v
     merged.push_back(top);
   }
   std::vector<int> first;
+  first.reserve(merged.size() + 1);
   for (const Merged& m : merged) first.push_back(m.first);
   first.push_back(n);
   return first;

@@ -23,7 +23,7 @@ inline constexpr int kPackWidth = 2;
 #endif
 
 struct Pack {
-  typedef double Lanes __attribute__((vector_size(kPackWidth * sizeof(double))));
+  using Lanes __attribute__((vector_size(kPackWidth * sizeof(double)))) = double;
   Lanes v;
   Pack() = default;
   Pack(double s) : v(s - Lanes{}) {}
@@ -54,7 +54,7 @@ inline Pack exp(Pack a) {
 }
 
 // The bits of the lanes as integers: sign, 11 bits of exponent, 52 of mantissa.
-typedef long long PackBits __attribute__((vector_size(kPackWidth * sizeof(double))));
+using PackBits __attribute__((vector_size(kPackWidth * sizeof(double)))) = long long;
 
 // Positive, normal and small enough that a few of them add up without overflow.
 inline bool all_ordinary(Pack a) {

@@ -40,7 +40,7 @@ Cube bounding_cube(std::span<const Vec3d> points) {
 }
 
 uint64_t morton_code(const Vec3d& x, const Cube& cube) {
-  if (!is_finite(x) || !(cube.size > 0)) return 0;
+  if (!is_finite(x) || !(cube.size > 0) || !std::isfinite(cube.size)) return 0;
   constexpr double kCells = 1 << kBits;
   uint64_t code = 0;
   for (int axis = 0; axis < 3; ++axis) {

@@ -42,5 +42,10 @@ TEST(MortonOrder, KeepsTheOrderOfEqualPointsAndBearsNan) {
   EXPECT_TRUE(morton_order({}).empty());
 }
 
+TEST(MortonOrder, LeavesPointsFartherApartThanADoubleCanSayInTheirOrder) {
+  EXPECT_EQ(morton_order(std::vector<Vec3d>{{{1e308, 1, 1}}, {{-1e308, 0, 0}}, {{0, 0, 0}}}),
+            (std::vector<int>{0, 1, 2}));
+}
+
 }  // namespace
 }  // namespace aspic
