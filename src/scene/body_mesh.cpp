@@ -21,8 +21,12 @@ namespace fs = std::filesystem;
 
 constexpr double kMaxTets = 2e7;  // of a generated shape: about what fits into a large machine
 
+// The remedy names an option of another command than the one that fails here.
 std::string sentence(const Finding& finding) {
-  return finding.message + (finding.remedy.empty() ? "" : "; " + finding.remedy);
+  std::string remedy = finding.remedy;
+  if (const size_t option = remedy.find("--repair"); option != std::string::npos)
+    remedy.replace(option, 8, "aspic check MESH --repair -o MENDED");
+  return finding.message + (remedy.empty() ? "" : "; " + remedy);
 }
 
 void heed(const std::vector<Finding>& findings, const std::string& what, std::vector<std::string>& notes) {
