@@ -89,7 +89,7 @@ std::string_view remedy(Status status, const std::string& integrator) {
                        : "try solver.definiteness = \"clamped\"; `aspic check` finds bad tets";
     case Status::undefined:
       return is_explicit ? "explicit schemes blow up when time.step is too long: shorten it, or use backward_euler"
-                         : "shorten time.step, and look for forces or velocities that are far too large";
+                         : "shorten time.step, and look for pins, forces or velocities that move too far in one step";
     case Status::converged:
     case Status::round_off:
     case Status::interrupted:

@@ -70,6 +70,10 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
     std::vector<int> inverted;
     for (int t = 0; t < model.mesh.tet_count(); ++t)
       if (!(fields.det_F[t] > 0)) inverted.push_back(t);
+    if (inverted.empty())
+      throw InvalidInput(
+          "the initial shape has infinite energy: its strain is more than the material can take; choose a "
+          "smaller initial deformation or another material");
     throw InvalidInput("the initial shape has infinite energy: " + std::to_string(inverted.size()) +
                        " tets are inverted or flat (" + listed(inverted) +
                        "); choose a smaller initial deformation, or a material that tolerates inversion, such as "

@@ -51,12 +51,12 @@ std::vector<Vec3d> starts_of(const PlacedBody& body, const std::vector<int>& ver
 }
 
 // A motion that does not begin where the vertices are would throw them in the first step.
-void note_jump(const Motion& motion, const std::vector<Vec3d>& starts, const std::string& what, const Value& place,
+void note_jump(const Motion& motion, const std::vector<Vec3d>& starts, const std::string& what,
                std::vector<std::string>& notes) {
   if (!motion) return;
   double jump = 0;
   for (const Vec3d& x : starts) {
-    const Vec3d d = at_place(place, [&] { return motion(x, 0); }) - x;
+    const Vec3d d = motion(x, 0) - x;
     jump = std::max(jump, std::sqrt(dot(d, d)));
   }
   if (jump > 0)
@@ -70,7 +70,7 @@ void add_pins(Builder& builder, const PlacedBody& body) {
     const std::vector<Vec3d> starts = starts_of(body, vertices);
     const std::string name = body.name() + "." + scene["name"].text();
     Pin pin{name, {}, make_motion(scene["motion"], starts)};
-    note_jump(pin.motion, starts, "pin " + name, scene["motion"], builder.notes);
+    note_jump(pin.motion, starts, "pin " + name, builder.notes);
     for (const int v : vertices) {
       if (holder[v])
         throw error_at(scene["where"].place, "vertex " + std::to_string(v) + " of body '" + body.name() + "' at " +
@@ -91,7 +91,7 @@ void add_point_springs(Builder& builder, const PlacedBody& body, const Value& sc
   const Motion motion = make_motion(scene["motion"], targets);
   for (size_t i = 0; i < vertices.size(); ++i) {
     const Vec3d start = targets[i];
-    if (motion) at_place(scene["motion"], [&] { return motion(start, 0); });
+    if (motion) motion(start, 0);  // a formula that fails, fails here
     builder.point_springs.push_back({body.first_vertex + vertices[i], scene["stiffness"].number(),
                                      [start, motion](double time) { return motion ? motion(start, time) : start; }});
   }

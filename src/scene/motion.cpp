@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/error.h"
 #include "scene/expression.h"
 #include "scene/placement.h"
 
@@ -57,8 +58,12 @@ Motion displaced(const Value& displacement) {
   std::vector<Expression> u;
   for (const Value& v : displacement.array())
     u.emplace_back(v.is_text() ? v.text() : number_text(v.number()), ExpressionVariables::position_and_time);
-  return [u](const Vec3d& start, double time) {
-    return start + Vec3d{{u[0].at(start, time), u[1].at(start, time), u[2].at(start, time)}};
+  return [u, place = displacement.place](const Vec3d& start, double time) {
+    try {
+      return start + Vec3d{{u[0].at(start, time), u[1].at(start, time), u[2].at(start, time)}};
+    } catch (const InvalidInput& e) {  // maybe long after the scene was read
+      throw error_at(place, e.what());
+    }
   };
 }
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/folder_test.h"
 #include "scene/scene_cases_test.h"
 
 namespace aspic {
@@ -121,6 +122,14 @@ TEST(Scene, PinsMoveAsTold) {
 TEST(Scene, AMotionThatDoesNotStartAtZeroIsNoted) {
   const Scene scene = load(kCube + "[[body.pin]]\nwhere = \"y < 0.1\"\nmotion = { displacement = [0.5, 0, 0] }\n");
   EXPECT_THAT(scene.notes, Contains(HasSubstr("jumps by 0.5 m")));
+}
+
+TEST(Scene, AMotionThatFailsDuringTheRunNamesItsPlace) {
+  Scene scene =
+      load(kCube + "[[body.pin]]\nwhere = \"y < 0.1\"\nmotion = { displacement = [\"t < 0.015 ? 0 : 1/0\", 0, 0] }\n");
+  scene.simulation.step();
+  const std::string message = message_of<InvalidInput>([&] { scene.simulation.step(); });
+  EXPECT_THAT(message, AllOf(HasSubstr("beam.toml:6:27: "), HasSubstr("is inf at"), HasSubstr("t = 0.02")));
 }
 
 TEST(Scene, SelectionsMeanWhatTheySay) {
