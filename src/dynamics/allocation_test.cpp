@@ -13,13 +13,13 @@ using namespace testing_models;
 // Of steps that all terms, moving pins, moving targets and damping take part in.
 void expect_steady_steps_to_allocate_only_their_report(const SimulationOptions& options) {
   Simulation simulation = simulate(damped_beam_with_moving_pins_and_targets(4), options);
-  for (int i = 0; i < 2; ++i) ASSERT_TRUE(is_success(simulation.step().status));
+  for (int i = 0; i < 2; ++i) simulation.step();
   for (int i = 0; i < 3; ++i) {
     const test::AllocationCounter counter;
     const StepReport report = simulation.step();
     EXPECT_EQ(counter.count(), 1) << options.integrator << ", " << options.solver.linear
                                   << ": more than the vector StepReport::potential, which goes to the caller";
-    EXPECT_TRUE(is_success(report.status));
+    EXPECT_TRUE(is_success(report.status) || report.status == Status::iteration_limit) << to_string(report.status);
   }
 }
 
@@ -46,8 +46,7 @@ TEST(Allocations, ASteadyStepMakesNoneByGradientDescentAndWithAnyDefiniteness) {
     expect_steady_steps_to_allocate_only_their_report({.solver = {.definiteness = definiteness, .minimize = {}}});
   SimulationOptions options;
   options.solver.method = "gradient_descent";
-  options.h = 1e-4;
-  options.solver.minimize.max_iterations = 10'000;
+  options.solver.minimize.max_iterations = 20;
   expect_steady_steps_to_allocate_only_their_report(options);
 }
 
