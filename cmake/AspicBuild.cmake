@@ -20,15 +20,13 @@ else()
   set(ASPIC_ARCH -march=native)
 endif()
 
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  set(false_alarms -Wno-maybe-uninitialized -Wno-restrict)  # inside the headers of GCC 12
-endif()
-
 add_library(aspic_build INTERFACE)
 # One binary gives one set of bits; fused multiply-add is used, reassociation is not.
 target_compile_options(aspic_build INTERFACE ${ASPIC_ARCH} -ffp-contract=fast -fno-math-errno -Wall -Wextra -Wshadow
-                                             -Wno-missing-field-initializers  # {.a = 1}: the rest has defaults
-                                             ${false_alarms})
+                                             -Wno-missing-field-initializers)  # {.a = 1}: the rest has defaults
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # false alarms inside the headers of GCC 12
+  target_compile_options(aspic_build INTERFACE -Wno-maybe-uninitialized -Wno-restrict)
+endif()
 if(ASPIC_WERROR)
   target_compile_options(aspic_build INTERFACE -Werror)
 endif()

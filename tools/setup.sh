@@ -9,7 +9,7 @@ core_programs="g++ cmake ninja-build:ninja ccache"
 core_packages="libeigen3-dev libmetis-dev libmuparser-dev libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
   libfmt-dev zlib1g-dev"
 mesher_packages="libcgal-dev"
-test_programs="python3"
+test_programs="python3 nodejs:node npm"
 test_packages="libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libsuitesparse-dev python3-meshio"
 bench_packages="libbenchmark-dev"
 
@@ -143,4 +143,13 @@ Everything but the default scene works without it: ./run run MESH with any mesh 
   awk -f "$root/tools/bunny_to_obj.awk" "$folder/package/index.js" >"$assets/new.obj"
   rm -rf "$folder"
   mv "$assets/new.obj" "$assets/bunny.obj"
+}
+
+# Programs from npm that read our results back in the tests.
+tinyusdz_package=tinyusdz@0.9.0-rc10
+fetch_oracles() {
+  [ ! -f "$root/build/oracles/node_modules/tinyusdz/tinyusdz.wasm" ] || return 0
+  say "Fetching the npm package $tinyusdz_package, which reads our USD files in the tests ..."
+  logged oracles npm install --prefix "$root/build/oracles" --no-save "$tinyusdz_package" ||
+    say "warning: it could not be fetched; our USD files will be read by our own parser alone"
 }

@@ -74,6 +74,30 @@ int unconverged_before(const fs::path& directory, int steps) {
   return count;
 }
 
+// What usually helps when a step did not converge.
+std::string_view remedy(Status status, const std::string& integrator) {
+  const bool is_static = integrator == "quasi_static";
+  const bool is_explicit = integrator == "forward_euler" || integrator == "symplectic_euler";
+  switch (status) {
+    case Status::iteration_limit:
+      return is_static ? "raise solver.max_iterations, or load the body in smaller steps"
+                       : "raise solver.max_iterations, or shorten time.step";
+    case Status::stuck:
+      return "shorten time.step; `aspic check` finds bad tets";
+    case Status::no_descent:
+      return is_static ? "a body that nothing holds has no single equilibrium: pin it"
+                       : "try solver.definiteness = \"clamped\"; `aspic check` finds bad tets";
+    case Status::undefined:
+      return is_explicit ? "explicit schemes blow up when time.step is too long: shorten it, or use backward_euler"
+                         : "shorten time.step, and look for forces or velocities that are far too large";
+    case Status::converged:
+    case Status::round_off:
+    case Status::interrupted:
+      break;
+  }
+  return "";
+}
+
 // Takes the steps of one run and tells everyone who listens.
 class Runner {
  public:
@@ -115,7 +139,7 @@ class Runner {
     if (!is_success(report.status)) warn(report);
     if (arguments_.json) {
       fmt::print("{}\n", step_json(report, scene_.simulation.potential_names()));
-      std::fflush(stdout);
+      if (std::fflush(stdout) != 0) throw InvalidInput("--json: standard output cannot be written; is the disk full?");
     }
     if (progress_) progress_->show(report);
   }
@@ -126,6 +150,8 @@ class Runner {
     std::string line = fmt::format(
         "warning: step {} did not converge: {} after {} iterations; residual {:.3g} N, wanted {:.3g} N", report.step,
         to_string(report.status), report.iterations, report.residual, report.residual_threshold);
+    if (count == 1)
+      line += fmt::format("\n  remedy: {}", remedy(report.status, scene_.simulation.options().integrator));
     if (count == kWarningsShown) line += " (further ones are only counted)";
     if (progress_) {
       progress_->message(line);

@@ -40,6 +40,10 @@ std::set<std::filesystem::path> files(const std::filesystem::path& folder, const
   return found;
 }
 
+std::string step_duration_text(double seconds) {
+  return seconds < 1 ? fmt::format("{:.3g} ms", 1000 * seconds) : duration_text(seconds);
+}
+
 void print_results(std::FILE* stream, const std::filesystem::path& directory) {
   fmt::print(stream, "results    {}\n", directory.string());
   for (const Viewer& viewer : kViewers) {
@@ -62,7 +66,7 @@ void RunTotals::add(const StepReport& report) {
 
 void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end) {
   if (totals.steps == 0 && !end.interrupted) {
-    fmt::print(stream, "nothing to do: the run has all its {} steps\n", end.steps_taken);
+    fmt::print(stream, "nothing to do: step {} is taken already\n", end.steps_taken);
   } else {
     fmt::print(stream, "{}  {} of {} steps, to t = {:g} s\n", end.interrupted ? "stopped  " : "done     ",
                end.steps_taken, end.last_step, totals.time);
@@ -71,8 +75,8 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
     fmt::print(stream, "converged  {} of {}; iterations per step: mean {:.1f}, most {}\n",
                totals.steps - totals.unconverged, totals.steps, static_cast<double>(totals.iterations) / totals.steps,
                totals.most_iterations);
-    fmt::print(stream, "took       {} in steps, {:.3g} ms each; peak memory {:.0f} MB\n", duration_text(totals.seconds),
-               1000 * totals.seconds / totals.steps, peak_megabytes());
+    fmt::print(stream, "took       {} in steps, {} each; peak memory {:.0f} MB\n", duration_text(totals.seconds),
+               step_duration_text(totals.seconds / totals.steps), peak_megabytes());
   }
   print_results(stream, end.directory);
   if (end.interrupted) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "dynamics/integrator.h"
+#include "dynamics/lead_pins.h"
 
 namespace aspic {
 namespace {
@@ -19,9 +20,11 @@ class BackwardEuler : public Integrator {
     predicted_.resize(q_.size());
     for (size_t i = 0; i < q_.size(); ++i) predicted_[i] = q_[i] + h * state.qdot[i];  // = 2 q_t - q_(t-1)
     tools.E.begin_step(predicted_, 1, h * h);
-    start(tools, state.time + h, state.q);
-    const MinimizeReport report =
+    MinimizeReport lead;
+    start(tools, state.time + h, state.q, lead);
+    MinimizeReport report =
         tools.minimizer.minimize(tools.E, tools.direction, state.q, adapted(tools.options), tools.observe);
+    add_work(lead, report);
     for (size_t i = 0; i < q_.size(); ++i) state.qdot[i] = (state.q[i] - q_[i]) / h;
     state.time += h;
     return finished(report);
@@ -30,8 +33,8 @@ class BackwardEuler : public Integrator {
  protected:
   // Starts from the candidate of lower energy: where the body is, or where it would fly without forces. Pinned
   // vertices go where they must in both.
-  virtual void start(const StepTools& tools, double time, std::span<double> q) {
-    tools.pins.place(time, q);
+  virtual void start(const StepTools& tools, double time, std::span<double> q, MinimizeReport& lead) {
+    lead_pins(tools, time, q_, q, lead);
     tools.pins.place(time, predicted_);
     if (tools.E.value(predicted_) <= tools.E.value(q)) std::copy(predicted_.begin(), predicted_.end(), q.begin());
   }
@@ -48,7 +51,9 @@ class LinearlyImplicitEuler : public BackwardEuler {
   std::string_view name() const override { return "linearly_implicit_euler"; }
 
  protected:
-  void start(const StepTools& tools, double time, std::span<double> q) override { tools.pins.place(time, q); }
+  void start(const StepTools& tools, double time, std::span<double> q, MinimizeReport&) override {
+    tools.pins.place(time, q);
+  }
   MinimizeOptions adapted(const MinimizeOptions& options) const override {
     MinimizeOptions one = options;
     one.max_iterations = 1;
@@ -76,13 +81,18 @@ class QuasiStatic : public Integrator {
 
   MinimizeReport advance(const StepTools& tools, double h, State& state) override {
     tools.E.begin_step(state.q, 0, 1);
-    tools.pins.place(state.time + h, state.q);
-    const MinimizeReport report =
-        tools.minimizer.minimize(tools.E, tools.direction, state.q, tools.options, tools.observe);
+    q_ = state.q;
+    MinimizeReport lead;
+    lead_pins(tools, state.time + h, q_, state.q, lead);
+    MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, state.q, tools.options, tools.observe);
+    add_work(lead, report);
     std::fill(state.qdot.begin(), state.qdot.end(), 0.0);
     state.time += h;
     return report;
   }
+
+ private:
+  std::vector<double> q_;  // where the step starts
 };
 
 }  // namespace

@@ -42,6 +42,11 @@ std::string listed(const std::vector<int>& indices) {
   return text + (indices.size() > 5 ? ", ..." : "");
 }
 
+// Squares overflow before positions do, so a state may be finite while its energies are not.
+bool is_finite(const StepReport& report) {
+  return std::isfinite(report.residual) && std::isfinite(report.kinetic) && std::isfinite(report.potential_total);
+}
+
 void require_mass(const Model& model, const Pins& pins) {
   std::vector<int> massless;
   for (int v = 0; v < model.mesh.vertex_count(); ++v)
@@ -136,6 +141,7 @@ struct Simulation::Impl {
     report.time = state.time;
     if (solved.status != Status::interrupted) report.step = ++steps_taken;
     ledger.close(with, *integrator, options.h, state, report);
+    if (is_success(report.status) && !is_finite(report)) report.status = Status::undefined;
     report.min_det_F = INFINITY;
     for (const auto& V : model.elasticity) report.min_det_F = std::min(report.min_det_F, V->min_det_F(state.q));
     report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

@@ -23,12 +23,12 @@ LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<co
     for (size_t i = 0; i < x.size(); ++i) trial[i] = x[i] + alpha * d[i];
     const double trial_value = E.value(trial);
     ++result.trials;
-    // Written so that a value that is not a number fails.
-    bool accepted = trial_value <= allowed_value(value, alpha, slope, options) || options.test == DecreaseTest::none;
-    if (!accepted && trial_value <= value + noise && -alpha * slope <= noise / options.sufficient_decrease) {
+    bool accepted = options.test == DecreaseTest::none;
+    if (!accepted && std::abs(trial_value - value) <= noise) {
       E.gradient(trial, trial_gradient);
-      const double trial_slope = E.dot(trial_gradient, d);
-      accepted = result.gradient_known = trial_slope <= (2 * options.sufficient_decrease - 1) * slope;
+      accepted = result.gradient_known = E.dot(trial_gradient, d) <= (2 * options.sufficient_decrease - 1) * slope;
+    } else if (!accepted) {
+      accepted = trial_value <= allowed_value(value, alpha, slope, options);  // false for what is not a number
     }
     if (accepted) {
       result.alpha = alpha;

@@ -95,7 +95,8 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
         backtrack(E, x, d_, report.value, slope, options.line_search, trial_, trial_gradient_);
     report.trials += step.trials;
     if (step.alpha == 0) {
-      const bool at_floor = report.gradient_norm <= kRoundOffMargin * E.gradient_round_off();
+      const double round_off = E.gradient_round_off();
+      const bool at_floor = std::isfinite(round_off) && report.gradient_norm <= kRoundOffMargin * round_off;
       return report.status = at_floor ? Status::round_off : Status::stuck, report;
     }
     std::copy(trial_.begin(), trial_.end(), x.begin());

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <set>
+#include <stdexcept>
 
 #include "optimize/test_functions.h"
 
@@ -167,6 +168,26 @@ TEST(LineSearch, TextbookAndSlideTestsDifferByAlpha) {
   EXPECT_LE(f.value(std::vector<double>{textbook.alpha * 0.5, 0, 0}), 1 - 0.6 * textbook.alpha);
   options.test = DecreaseTest::slide;
   EXPECT_EQ(backtrack(f, x, d, f.value(x), -1, options, trial, g).alpha, 0);  // stuck
+}
+
+// f(x) = 8 x^2 + 1e9, whose differences near the minimum are lost in the round-off of 1e9.
+class DrownedParabola : public Objective {
+ public:
+  double value(std::span<const double> x) override { return 8 * x[0] * x[0] + 1e9; }
+  void gradient(std::span<const double> x, std::span<double> g) override { g[0] = 16 * x[0]; }
+  const BlockSparse& hessian(std::span<const double>, HessianKind) override { throw std::logic_error("not needed"); }
+  double value_round_off() const override { return 1e-7; }
+};
+
+TEST(LineSearch, DescendsWhereDifferencesOfTheValueAreLostInRoundOff) {
+  DrownedParabola f;
+  GradientDescent direction;
+  std::vector<double> x = {1.3};
+  MinimizeOptions options = tight();
+  options.max_iterations = 1000;
+  const MinimizeReport report = Minimizer().minimize(f, direction, x, options);
+  EXPECT_EQ(report.status, Status::converged);
+  EXPECT_LT(std::abs(x[0]), 1e-11);
 }
 
 TEST(LineSearch, AnAscentDirectionIsStuck) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <variant>
 
 #include "base/error.h"
@@ -19,8 +21,12 @@ namespace fs = std::filesystem;
 
 constexpr double kMaxTets = 2e7;  // of a generated shape: about what fits into a large machine
 
+// The remedy names an option of another command than the one that fails here.
 std::string sentence(const Finding& finding) {
-  return finding.message + (finding.remedy.empty() ? "" : "; " + finding.remedy);
+  std::string remedy = finding.remedy;
+  if (const size_t option = remedy.find("--repair"); option != std::string::npos)
+    remedy.replace(option, 8, "aspic check MESH --repair -o MENDED");
+  return finding.message + (remedy.empty() ? "" : "; " + remedy);
 }
 
 void heed(const std::vector<Finding>& findings, const std::string& what, std::vector<std::string>& notes) {
@@ -30,10 +36,16 @@ void heed(const std::vector<Finding>& findings, const std::string& what, std::ve
     if (f.severity == Severity::warning) notes.push_back(what + ": " + sentence(f));
 }
 
+std::string rounded_text(double count) {  // "3.56e+10"
+  std::ostringstream text;
+  text << std::setprecision(3) << count;
+  return text.str();
+}
+
 void check_count(double tets, const Value& shape) {
   if (tets > kMaxTets)
-    throw error_at(shape.place, "about " + number_text(std::round(tets)) + " tets; at most " + number_text(kMaxTets) +
-                                    " are generated (choose a larger size)");
+    throw error_at(shape.place, "about " + rounded_text(tets) + " tets; at most " + number_text(kMaxTets) +
+                                    " are generated (choose a larger size, or fewer cells)");
 }
 
 TetMesh box_mesh(const Value& box) {

@@ -30,7 +30,7 @@ Value value_of(const std::string& text, const std::string& source) {
   try {
     return read_toml_value(text, source);
   } catch (const InvalidInput&) {
-    if (text.empty() || text.find_first_of("\"'[{") == 0) throw;
+    if (text.find_first_of("\"'[{") == 0) throw;
     return {text, {std::make_shared<const std::string>(source), 0, 0}};  // a bare word or formula
   }
 }
@@ -109,6 +109,8 @@ void apply_override(Table& document, const std::string& text) {
   const std::string source = "--set " + text;
   const size_t equals = text.find('=');
   if (equals == std::string::npos) throw InvalidInput(source + ": KEY=VALUE is expected, for example time.step=0.005");
+  if (trimmed(text.substr(equals + 1)).empty())
+    throw InvalidInput(source + ": a value is missing after '=', for example time.step=0.005");
   Assignment assignment{words_of(text.substr(0, equals)), value_of(trimmed(text.substr(equals + 1)), source)};
   if (std::count(assignment.words.begin(), assignment.words.end(), "") > 0)
     throw InvalidInput(source + ": a key is empty");

@@ -26,7 +26,9 @@ using Clock = std::chrono::steady_clock;
 void create_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw InvalidInput(folder.string() + ": cannot be created: " + error.message());
+  if (error)
+    throw InvalidInput(folder.string() + ": cannot be created: " + error.message() +
+                       "; choose a writable place with --out");
 }
 
 // Leaves an empty directory or one with files that no run writes, or throws.
@@ -118,12 +120,13 @@ struct RunDirectory::Impl {
     if (output.vtu) write_frame(layout.root() / RunLayout::frame_file(frame), simulation);
     skins->add_frame(frame, simulation.state().q);
     frame_times.push_back(simulation.state().time);
-    write_index();
     skins->write_usd_when_doubled(frame_times);
   }
 
-  // Whatever a checkpoint counts is on the disk before it.
+  // Whatever a checkpoint counts is on the disk before it. The index comes with it: rewriting that for every frame
+  // would take time that grows with the square of their number.
   void save_checkpoint(const Simulation& simulation) {
+    write_index();
     tables.sync();
     skins->sync();
     write_checkpoint(layout.checkpoint(), to_checkpoint(simulation, scene_fingerprint, frame_times));

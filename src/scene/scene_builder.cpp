@@ -14,6 +14,7 @@ namespace aspic {
 namespace {
 
 constexpr double kLockingPoisson = 0.45;  // linear tets are too stiff above
+constexpr double kFarFromOrigin = 1e8;    // in sizes of the body; half of the 16 digits of a position are lost there
 
 // The parameters of each tet of a body; density apart.
 std::vector<MaterialParameters> parameters_of(PlacedBody& body, SceneFiles& files, std::vector<std::string>& notes) {
@@ -172,6 +173,8 @@ class SceneBuilder {
       } catch (const InvalidInput& e) {
         throw InvalidInput(source_.file + ": body '" + body.name() + "', deform: " + e.what());
       }
+      note_inverted_start(body);
+      note_lost_digits(body);
       append(body.mesh, model_.mesh);
       for (Tet& corners : mesh.embedding.vertices)
         for (int& v : corners) v += body.first_vertex;
@@ -180,6 +183,32 @@ class SceneBuilder {
           {body.name(), body.first_vertex, body.mesh.vertex_count(), body.first_tet, body.mesh.tet_count()});
       bodies_.push_back(std::move(body));
     }
+  }
+
+  void note_inverted_start(const PlacedBody& body) {
+    const TetMesh start{body.start, body.mesh.tets, {}};
+    int count = 0;
+    for (int t = 0; t < start.tet_count(); ++t)
+      if (!(volume(start, t) > 0)) ++count;
+    if (count > 0 && body.scene["elastic"].boolean())
+      source_.notes.push_back(
+          "body '" + body.name() + "': " + std::to_string(count) +
+          " tets start inverted or flat; a shape that is flat or a point may be in balance and stay "
+          "so (disturb it with a small deform.displacement)");
+  }
+
+  // Strains are differences of positions, whose last digits are lost far from the origin.
+  void note_lost_digits(const PlacedBody& body) {
+    const Box box = bounding_box(body.start);
+    double far = 0, extent = 0;
+    for (int i = 0; i < 3; ++i) {
+      far = std::max({far, std::abs(box.lower[i]), std::abs(box.upper[i])});
+      extent = std::max(extent, box.upper[i] - box.lower[i]);
+    }
+    if (far > kFarFromOrigin * extent)
+      source_.notes.push_back("body '" + body.name() + "' is " + number_text(extent) + " m large and " +
+                              number_text(far) +
+                              " m from the origin: its strains have few exact digits (translate it " + "nearer)");
   }
 
   void add_model() {

@@ -82,7 +82,9 @@ TEST(SceneDocument, ValueOutOfRangeIsNamedWithTheRemedy) {
   EXPECT_THAT(refusal(kBox + "material = { density = -5.0 }\n"), HasSubstr("density = -5.0"));
   EXPECT_THAT(refusal("[time]\nstep = nan\n" + kBox), HasSubstr("finite"));
   EXPECT_THAT(refusal("gravity = [0, inf, 0]\n" + kBox), HasSubstr("finite"));
-  EXPECT_THAT(refusal("[time]\nstep = 0\n" + kBox), HasSubstr("step = 0"));
+  EXPECT_THAT(refusal("[time]\nstep = 0\n" + kBox), HasSubstr("step = 0; must be >= 1e-09 and <= 1e+06 (try 0.01)"));
+  EXPECT_THAT(refusal("[time]\nstep = 1e9\n" + kBox), HasSubstr("(try 1e+06)"));
+  EXPECT_THAT(refusal("[solver]\nline_search = { p = 0.99999 }\n" + kBox), HasSubstr("(try 0.99)"));
   EXPECT_THAT(refusal(kBox + "scale = -1\n"), HasSubstr("scale = -1"));
 }
 
@@ -165,6 +167,8 @@ TEST(Override, ErrorsNameTheOverride) {
   EXPECT_THAT(refusal(kBox, {"body.buny.scale=2"}), HasSubstr("unknown key or name 'buny'"));
   EXPECT_THAT(refusal(kBox, {"body.pin.where=\"y < 0\""}), HasSubstr("no pin"));
   EXPECT_THAT(refusal(kBox, {"gravity=[0, 1"}), StartsWith("--set gravity=[0, 1: "));
+  EXPECT_THAT(refusal(kBox, {"velocity=[Y, 0, 0]"}), HasSubstr("texts in lists and tables need quotes"));
+  EXPECT_THAT(refusal(kBox, {"time.step="}), HasSubstr("a value is missing after '='"));
   EXPECT_THAT(refusal(kBox, {"gravity=[0, 0, 0]\ntime=3"}), StartsWith("--set gravity"));
 }
 

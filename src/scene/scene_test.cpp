@@ -164,6 +164,16 @@ TEST(Scene, LockingIsNoted) {
   EXPECT_THAT(load(kCube + "material = { poisson = 0.45 }\n").notes, Not(Contains(HasSubstr("lock"))));
 }
 
+TEST(Scene, AnInvertedOrFlatStartIsNoted) {
+  EXPECT_THAT(load(kCube + "deform = { scale = 0 }\n").notes, Contains(HasSubstr("48 tets start inverted or flat")));
+  EXPECT_THAT(load(kCube + "deform = { scale = 0.5 }\n").notes, Not(Contains(HasSubstr("inverted"))));
+}
+
+TEST(Scene, DigitsLostFarFromTheOriginAreNoted) {
+  EXPECT_THAT(load(kCube + "translate = [1e12, 0, 0]\n").notes, Contains(HasSubstr("from the origin")));
+  EXPECT_THAT(load(kCube + "translate = [1e5, 0, 0]\n").notes, Not(Contains(HasSubstr("from the origin"))));
+}
+
 TEST(Scene, SpringsJoinBodies) {
   Scene scene =
       load("gravity = [0, 0, 0]\n" + kCube +

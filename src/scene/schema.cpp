@@ -17,12 +17,12 @@ std::string Range::text() const {
   return low + (low.empty() || high.empty() ? "" : " and ") + high;
 }
 
-std::string Range::remedy() const {
-  if (std::isfinite(max) && max_open)
-    return "try " + number_text(std::isfinite(min) ? max - 0.01 * (max - min) : max - 1);
-  if (std::isfinite(max)) return "try " + number_text(max);
-  if (std::isfinite(min)) return "try " + number_text(min_open ? min + 1 : min);
-  return "";
+std::string Range::remedy(double value, const std::string& usual) const {
+  const bool is_below = value < min || (min_open && value == min);
+  if (is_below && !usual.empty()) return "try " + usual;
+  if (is_below) return "try " + number_text(min_open ? (std::isfinite(max) ? 0.5 * (min + max) : min + 1) : min);
+  if (max_open) return "try " + number_text(std::isfinite(min) ? max - 0.01 * (max - min) : max - 1);
+  return "try " + number_text(max);
 }
 
 const Key* Schema::find(std::string_view section, std::string_view name) const {

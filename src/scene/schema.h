@@ -32,8 +32,9 @@ struct Range {
   bool min_open = false, max_open = false;
 
   bool contains(double value) const;
-  std::string text() const;    // "> 0 and < 0.5"; empty for all numbers
-  std::string remedy() const;  // a value that would do: "try 0.49"
+  std::string text() const;  // "> 0 and < 0.5"; empty for all numbers
+  // A value that would do instead of `value`: "try 0.49". Below the range it is the usual one, where there is one.
+  std::string remedy(double value, const std::string& usual) const;
 };
 
 struct Key {

@@ -119,8 +119,8 @@ class Checker {
     if (!std::isfinite(number)) {
       wrong(whole, key, "a finite number is needed");
     } else if (!key.range.contains(number)) {
-      const std::string remedy = key.range.remedy();
-      wrong(whole, key, "must be " + key.range.text() + (remedy.empty() ? "" : " (" + remedy + ")"));
+      const std::string usual = whole.is_array() ? "" : key.fallback;
+      wrong(whole, key, "must be " + key.range.text() + " (" + key.range.remedy(number, usual) + ")");
     }
   }
   void check_float(Value& value, const Value& whole, const Key& key) {

@@ -129,7 +129,7 @@ void add_line_search(Schema& s) {
            {{.name = "alpha_max",
              .accepts = kNumber,
              .fallback = number_text(usual.alpha_max),
-             .range = kPositive,
+             .range = {.min = 0, .max = 1e6, .min_open = true},
              .meaning = "the first trial",
              .reason = "the full Newton step"},
             {.name = "c",
@@ -141,13 +141,13 @@ void add_line_search(Schema& s) {
             {.name = "p",
              .accepts = kNumber,
              .fallback = number_text(usual.shrink),
-             .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
+             .range = {.min = 0, .max = 0.99, .min_open = true},
              .meaning = "factor between trials",
              .reason = "halving"},
             {.name = "tol",
              .accepts = kNumber,
              .fallback = number_text(usual.tolerance),
-             .range = {.min = 0, .max = 1, .min_open = true, .max_open = true},
+             .range = {.min = 1e-16, .max = 1, .max_open = true},
              .meaning = "steps shorter than this are given up as stuck",
              .reason = "about 33 halvings"},
             {.name = "test",
@@ -187,7 +187,7 @@ void add_output(Schema& s) {
            .fallback = number_text(usual.checkpoint_every),
            .range = kNotNegative,
            .meaning = "wall time between checkpoints; 0: with every frame",
-           .reason = "nothing is computed twice after an interruption"});
+           .reason = "ctrl-C and `kill` lose nothing, a crash the last second"});
 }
 
 void add_material(Schema& s) {

@@ -77,7 +77,8 @@ Value read_toml_value(const std::string& text, const std::string& source) {
   } catch (const InvalidInput& e) {
     const std::string reason = e.what();
     const size_t start = reason.find(": ", source.size());
-    throw InvalidInput(source + ": " + (start == std::string::npos ? reason : reason.substr(start + 2)));
+    throw InvalidInput(source + ": " + (start == std::string::npos ? reason : reason.substr(start + 2)) +
+                       " (texts in lists and tables need quotes: --set 'velocity=[\"Y\", 0, 0]')");
   }
   if (table.members.size() != 1) throw InvalidInput(source + ": one value is expected");
   Value value = std::move(table.members.front().value);

@@ -1,0 +1,60 @@
+#include "dynamics/lead_pins.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace aspic {
+namespace {
+
+constexpr double kSmallestPart = 1.0 / 1024;
+constexpr int kMostParts = 200;
+
+MinimizeOptions rough(const MinimizeOptions& options) {
+  MinimizeOptions few = options;
+  few.max_iterations = std::min(options.max_iterations, 8);
+  few.criterion = Criterion::scale;
+  few.tolerance = 1e-2;
+  return few;
+}
+
+}  // namespace
+
+void add_work(const MinimizeReport& spent, MinimizeReport& work) {
+  work.iterations += spent.iterations;
+  work.trials += spent.trials;
+  work.hessians += spent.hessians;
+  work.linear_iterations += spent.linear_iterations;
+  work.projected_hessians += spent.projected_hessians;
+}
+
+void lead_pins(const StepTools& tools, double time, std::span<const double> from, std::span<double> q,
+               MinimizeReport& work) {
+  tools.pins.place(time, q);
+  if (std::isfinite(tools.E.value(q))) return;
+  const std::vector<double> to(q.begin(), q.end());
+
+  std::vector<double> reached(from.begin(), from.end()), trial = reached;
+  double done = 0, part = 0.5;
+  for (int i = 0; i < kMostParts && part >= kSmallestPart; ++i) {
+    const double next = std::min(1.0, done + part);
+    trial = reached;
+    for (size_t k = 0; k < trial.size(); ++k)
+      if (tools.pins.holds(static_cast<int>(k / 3))) trial[k] = next < 1 ? from[k] + next * (to[k] - from[k]) : to[k];
+    if (!std::isfinite(tools.E.value(trial))) {
+      part /= 2;
+      continue;
+    }
+    done = next;
+    reached = trial;
+    if (done == 1) break;
+    const MinimizeReport spent =
+        tools.minimizer.minimize(tools.E, tools.direction, reached, rough(tools.options), tools.observe);
+    add_work(spent, work);
+    if (spent.status == Status::interrupted) break;
+    part *= 2;
+  }
+  if (done == 1) std::copy(reached.begin(), reached.end(), q.begin());
+}
+
+}  // namespace aspic
