@@ -39,6 +39,6 @@ if(ASPIC_SANITIZE)
   target_link_options(aspic_build INTERFACE -fsanitize=${ASPIC_SANITIZE})
 endif()
 if(ASPIC_COVERAGE)
-  target_compile_options(aspic_build INTERFACE --coverage)
+  target_compile_options(aspic_build INTERFACE --coverage -fprofile-update=atomic)  # threads count too
   target_link_options(aspic_build INTERFACE --coverage)
 endif()

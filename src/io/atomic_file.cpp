@@ -93,7 +93,7 @@ class TemporaryFile {
 // The file that is replaced: a link stays a link.
 fs::path replaced_file(const fs::path& path) {
   std::error_code error;
-  const fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
+  fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
   if (target.filename().empty()) throw InvalidInput(path.string() + ": names no file; name a file to write");
   if (fs::exists(target, error) && !fs::is_regular_file(target, error))
     throw InvalidInput(path.string() + ": is not a regular file; name a file to write");

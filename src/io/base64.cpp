@@ -37,7 +37,7 @@ bool decode_base64(std::string_view& text, size_t wanted, std::string& bytes) {
   size_t i = 0;
   for (; i < text.size() && (digits > 0 || bytes.size() - first < wanted); ++i) {
     if (is_blank(text[i])) continue;
-    const int value = kValues[static_cast<unsigned char>(text[i])];
+    const int8_t value = kValues[static_cast<unsigned char>(text[i])];
     if (text[i] == '=' && digits >= 2) {
       ++padding;
     } else if (value < 0 || padding > 0) {

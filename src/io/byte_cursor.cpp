@@ -16,14 +16,6 @@ int ByteCursor::checked_count(int64_t value, std::string_view what, size_t bytes
   return static_cast<int>(value);
 }
 
-int ByteCursor::checked_index(int64_t value, std::string_view what, int count) const {
-  if (value < 0 || value >= count)
-    fail(std::string(what) + " is " + std::to_string(value) +
-         (count == 0 ? ", but the file has none of these; get a complete copy"
-                     : "; it must be from 0 to " + std::to_string(count - 1)));
-  return static_cast<int>(value);
-}
-
 double ByteCursor::checked_finite(double value, std::string_view what) const {
   if (!std::isfinite(value)) fail(std::string(what) + " is infinite or not a number; it must be finite");
   return value;

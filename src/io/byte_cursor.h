@@ -37,7 +37,6 @@ class ByteCursor {
 
   // `value` things of at least `bytes` bytes each must fit into the rest of the file, so memory may be reserved.
   int checked_count(int64_t value, std::string_view what, size_t bytes) const;
-  int checked_index(int64_t value, std::string_view what, int count) const;  // in [0, count)
   double checked_finite(double value, std::string_view what) const;
 
   void skip(uint64_t bytes, std::string_view what);

@@ -225,7 +225,7 @@ class GmshReader {
       in.integer("the dimension of an entity");
       const int entity = in.integer("the tag of an entity");
       const GmshElementType& type = checked_type(in, in.integer("the type of an element"));
-      const auto words = static_cast<size_t>(1 + type.nodes);
+      const auto words = 1 + static_cast<size_t>(type.nodes);
       const int elements = in.checked_count(in.size("the number of elements of a block"),
                                             "the number of elements of a block", words, 8 * words);
       const auto group = volume_groups_.find(entity);

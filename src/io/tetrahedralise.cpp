@@ -19,7 +19,7 @@
 #include "io/mesh_file.h"
 #include "io/number_text.h"
 
-extern char** environ;
+extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves it to the program
 
 namespace aspic {
 namespace {

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "base/error.h"
 #include "io/base64.h"
@@ -46,7 +47,7 @@ class ByteSource {
 class ArrayReader {
  public:
   ArrayReader(const VtkFile& file, const XmlElement& array, ByteSource source)
-      : file_(file), array_(array), source_(source) {}
+      : file_(file), array_(array), source_(std::move(source)) {}
 
   std::string read(size_t size) { return file_.compressed ? read_blocks(size) : read_plain(size); }
 
@@ -120,7 +121,7 @@ std::vector<Number> convert(const std::string& bytes, bool swapped) {
     if (swapped) std::reverse(raw, raw + sizeof(Stored));
     Stored stored;
     std::memcpy(&stored, raw, sizeof(Stored));
-    numbers[i] = static_cast<Number>(stored);
+    numbers[i] = static_cast<Number>(stored);  // NOLINT(bugprone-signed-char-misuse): an Int8 has its sign
   }
   return numbers;
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "optimize/test_functions.h"
@@ -98,6 +99,60 @@ TEST(Minimize, TheObserverCanStopIt) {
       Minimizer().minimize(f, *newton(), x, tight(), [](const Iteration& iteration) { return iteration.index < 3; });
   EXPECT_EQ(report.status, Status::interrupted);
   EXPECT_EQ(report.iterations, 4);
+}
+
+// Its gradient points the wrong way, so that no step along -g decreases it.
+class Deceptive : public Rosenbrock {
+ public:
+  explicit Deceptive(double gradient_round_off) : gradient_round_off_(gradient_round_off) {}
+  void gradient(std::span<const double> x, std::span<double> g) override {
+    Rosenbrock::gradient(x, g);
+    for (double& gi : g) gi = -gi;
+  }
+  double gradient_round_off() const override { return gradient_round_off_; }
+
+ private:
+  double gradient_round_off_;
+};
+
+TEST(Minimize, AFailedLineSearchIsSuccessOnlyNearTheRoundOffOfTheGradient) {
+  const std::vector<double> start = {0, 0, 0};  // |g| = 2
+  const auto status = [&](double gradient_round_off) {
+    Deceptive f(gradient_round_off);
+    GradientDescent direction;
+    std::vector<double> x = start;
+    return Minimizer().minimize(f, direction, x, tight()).status;
+  };
+  EXPECT_EQ(status(0), Status::stuck);
+  EXPECT_EQ(status(0.01), Status::stuck);     // 200 times below |g|
+  EXPECT_EQ(status(0.1), Status::round_off);  // 20 times
+  EXPECT_EQ(status(3), Status::round_off);    // above: not even tried
+  EXPECT_FALSE(is_success(Status::stuck));
+}
+
+TEST(Minimize, TheToleranceIsRelativeToWhatTheCriterionNames) {
+  const auto threshold = [](Criterion criterion) {
+    Rosenbrock f;
+    std::vector<double> x = {0, 0.5, 0};  // g = (-2, 100, 0)
+    MinimizeOptions options;
+    options.tolerance = 0.5;
+    options.criterion = criterion;
+    return Minimizer().minimize(f, *newton(), x, options).threshold;
+  };
+  EXPECT_EQ(threshold(Criterion::absolute), 0.5);
+  EXPECT_EQ(threshold(Criterion::scale), 0.5);  // of a plain function the scale is 1
+  EXPECT_NEAR(threshold(Criterion::first_gradient), 0.5 * std::hypot(2, 100), 1e-12);
+}
+
+TEST(Minimize, EveryStatusAndCriterionHasItsOwnName) {
+  std::set<std::string_view> names;
+  for (const Status status : {Status::converged, Status::round_off, Status::iteration_limit, Status::stuck,
+                              Status::no_descent, Status::interrupted, Status::undefined})
+    names.insert(to_string(status));
+  for (const Criterion criterion : {Criterion::scale, Criterion::first_gradient, Criterion::absolute})
+    names.insert(to_string(criterion));
+  EXPECT_EQ(names.size(), 10u);
+  EXPECT_FALSE(names.contains("unknown"));
 }
 
 TEST(LineSearch, TextbookAndSlideTestsDifferByAlpha) {

@@ -12,7 +12,6 @@ namespace {
 
 const Range kPositive{.min = 0, .min_open = true};
 const Range kNotNegative{.min = 0};
-const Range kFraction{.min = 0, .max = 1, .min_open = true};
 
 void add_scene(Schema& s) {
   s.sections.push_back({"scene", "*.toml", "What is simulated: the top level of the file."});
