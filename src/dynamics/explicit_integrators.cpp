@@ -16,10 +16,10 @@ class ExplicitIntegrator : public Integrator {
 
   MinimizeReport advance(const StepTools& tools, double h, State& state) override {
     for (auto* v : {&pin_velocity_, &acceleration_, &force_, &drift_, &scratch_}) v->resize(state.q.size());
-    place_pin_velocity(tools.pins, h, state.time);
+    place_pin_velocity(tools, h, state.time);
     const SolveReport solved = solve_motion(tools, h, state);
     update(h, acceleration_, state);
-    state.time += h;
+    state.time = tools.end_time;
     tools.pins.place(state.time, state.q);
 
     MinimizeReport report;
@@ -31,16 +31,14 @@ class ExplicitIntegrator : public Integrator {
   }
 
  protected:
-  // When, relative to the end of the step, the velocity of a pinned vertex moves it.
-  virtual double pin_delay(double h) const = 0;
   virtual void update(double h, std::span<const double> acceleration, State& state) const = 0;
 
  private:
   // Velocities with which pinned vertices arrive where they are prescribed.
-  void place_pin_velocity(const Pins& pins, double h, double time) {
-    const double from = time + pin_delay(h), to = from + h;
-    pins.place(to, pin_velocity_);
-    pins.place(from, scratch_);
+  void place_pin_velocity(const StepTools& tools, double h, double time) {
+    const bool ahead = displacement() == Displacement::old_velocity;  // this velocity moves the next step
+    tools.pins.place(ahead ? tools.end_time + h : tools.end_time, pin_velocity_);
+    tools.pins.place(ahead ? tools.end_time : time, scratch_);
     for (size_t i = 0; i < scratch_.size(); ++i) pin_velocity_[i] = (pin_velocity_[i] - scratch_[i]) / h;
   }
 
@@ -89,7 +87,6 @@ class SymplecticEuler : public ExplicitIntegrator {
   Displacement displacement() const override { return Displacement::new_velocity; }
 
  protected:
-  double pin_delay(double) const override { return 0; }
   void update(double h, std::span<const double> acceleration, State& state) const override {
     for (size_t i = 0; i < state.q.size(); ++i) {
       state.qdot[i] += h * acceleration[i];
@@ -105,7 +102,6 @@ class ForwardEuler : public ExplicitIntegrator {
   Displacement displacement() const override { return Displacement::old_velocity; }
 
  protected:
-  double pin_delay(double h) const override { return h; }
   void update(double h, std::span<const double> acceleration, State& state) const override {
     for (size_t i = 0; i < state.q.size(); ++i) {
       state.q[i] += h * state.qdot[i];

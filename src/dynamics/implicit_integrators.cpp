@@ -21,21 +21,21 @@ class BackwardEuler : public Integrator {
     for (size_t i = 0; i < q_.size(); ++i) predicted_[i] = q_[i] + h * state.qdot[i];  // = 2 q_t - q_(t-1)
     tools.E.begin_step(predicted_, 1, h * h);
     MinimizeReport lead;
-    start(tools, state.time + h, state.q, lead);
+    start(tools, state.q, lead);
     MinimizeReport report =
         tools.minimizer.minimize(tools.E, tools.direction, state.q, adapted(tools.options), tools.observe);
     add_work(lead, report);
     for (size_t i = 0; i < q_.size(); ++i) state.qdot[i] = (state.q[i] - q_[i]) / h;
-    state.time += h;
+    state.time = tools.end_time;
     return finished(report);
   }
 
  protected:
   // Starts from the candidate of lower energy: where the body is, or where it would fly without forces. Pinned
   // vertices go where they must in both.
-  virtual void start(const StepTools& tools, double time, std::span<double> q, MinimizeReport& lead) {
-    lead_pins(tools, time, q_, q, lead);
-    tools.pins.place(time, predicted_);
+  virtual void start(const StepTools& tools, std::span<double> q, MinimizeReport& lead) {
+    lead_pins(tools, q_, q, lead);
+    tools.pins.place(tools.end_time, predicted_);
     if (tools.E.value(predicted_) <= tools.E.value(q)) std::copy(predicted_.begin(), predicted_.end(), q.begin());
   }
   virtual MinimizeOptions adapted(const MinimizeOptions& options) const { return options; }
@@ -51,8 +51,8 @@ class LinearlyImplicitEuler : public BackwardEuler {
   std::string_view name() const override { return "linearly_implicit_euler"; }
 
  protected:
-  void start(const StepTools& tools, double time, std::span<double> q, MinimizeReport&) override {
-    tools.pins.place(time, q);
+  void start(const StepTools& tools, std::span<double> q, MinimizeReport&) override {
+    tools.pins.place(tools.end_time, q);
   }
   MinimizeOptions adapted(const MinimizeOptions& options) const override {
     MinimizeOptions one = options;
@@ -79,15 +79,15 @@ class QuasiStatic : public Integrator {
   bool is_static() const override { return true; }
   Displacement displacement() const override { return Displacement::any; }
 
-  MinimizeReport advance(const StepTools& tools, double h, State& state) override {
+  MinimizeReport advance(const StepTools& tools, double, State& state) override {
     tools.E.begin_step(state.q, 0, 1);
     q_ = state.q;
     MinimizeReport lead;
-    lead_pins(tools, state.time + h, q_, state.q, lead);
+    lead_pins(tools, q_, state.q, lead);
     MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, state.q, tools.options, tools.observe);
     add_work(lead, report);
     std::fill(state.qdot.begin(), state.qdot.end(), 0.0);
-    state.time += h;
+    state.time = tools.end_time;
     return report;
   }
 

@@ -11,6 +11,10 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
+// A body at rest has no forces to measure against; those of this strain then serve. Far above round-off, and far below
+// what the default tolerance can see.
+constexpr double kLeastStrain = 1e-9;
+
 BlockPattern pattern_of(const Model& model) {
   Couplings couplings;
   model.mass->add_couplings(couplings);
@@ -43,7 +47,7 @@ IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
   for (Energy* V : potential_) V->bind(pattern_);
   for (Energy* D : damping_) D->bind(pattern_);
   for (auto* v : {&predicted_, &offset_, &term_}) v->resize(3 * pattern_.rows());
-  growth_stiffness_ = growth_stiffness(model.mesh);
+  measure(model.mesh);
 }
 
 void IncrementalPotential::begin_step(std::span<const double> predicted, double inertia, double factor) {
@@ -69,11 +73,11 @@ double IncrementalPotential::value(std::span<const double> q) {
 
 void IncrementalPotential::gradient(std::span<const double> q, std::span<double> g) {
   std::fill(g.begin(), g.end(), 0.0);
-  gradient_scale_ = 0;
+  gradient_scale_ = radius_ > 0 ? kLeastStrain * factor_ * growth_stiffness_ / radius_ : 0;
   if (inertia_ != 0) {
     for (size_t i = 0; i < q.size(); ++i) offset_[i] = inertia_ * (q[i] - predicted_[i]);
     model_.mass->multiply(offset_, g);
-    gradient_scale_ = free_norm(g);
+    gradient_scale_ += free_norm(g);
   }
   for (const Energy* V : potential_) add_term_gradient(*V, q, g);
   for (const Energy* D : damping_) add_term_gradient(*D, q, g);
@@ -116,19 +120,22 @@ void IncrementalPotential::add_term_gradient(const Energy& term, std::span<const
   for (size_t i = 0; i < g.size(); ++i) g[i] += term_[i];
 }
 
-double IncrementalPotential::growth_stiffness(const TetMesh& mesh) {
+void IncrementalPotential::measure(const TetMesh& mesh) {
   Vec3d center{};
   for (const Vec3d& X : mesh.rest) center = center + (1.0 / mesh.vertex_count()) * X;
   std::vector<double> rest(term_.size()), growth(term_.size());
-  for (int v = 0; v < mesh.vertex_count(); ++v)
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const Vec3d offset = mesh.rest[v] - center;
+    radius_ = std::max(radius_, std::sqrt(aspic::dot(offset, offset)));
     for (int r = 0; r < 3; ++r) {
       rest[3 * v + r] = mesh.rest[v][r];
-      growth[3 * v + r] = mesh.rest[v][r] - center[r];
+      growth[3 * v + r] = offset[r];
     }
+  }
   H_.set_zero();
   for (const Energy* V : potential_) V->add_hessian(rest, 1, Definiteness::absolute, H_);
   H_.multiply(growth, term_);
-  return dot(growth, term_);
+  growth_stiffness_ = dot(growth, term_);
 }
 
 }  // namespace aspic

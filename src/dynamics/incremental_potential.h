@@ -31,8 +31,9 @@ class IncrementalPotential : public Objective {
   const BlockPattern& pattern() const { return pattern_; }
 
  private:
-  // The second derivative of V along a uniform growth of the body at rest: a modulus times the volume [J].
-  double growth_stiffness(const TetMesh& mesh);
+  // Sets the second derivative of V along a uniform growth of the body at rest, a modulus times the volume [J], and
+  // the largest distance from its centre [m]: the sizes by which round-off is judged.
+  void measure(const TetMesh& mesh);
   double free_norm(std::span<const double> v) const;
   void add_term_gradient(const Energy& term, std::span<const double> q, std::span<double> g);
 
@@ -44,7 +45,7 @@ class IncrementalPotential : public Objective {
 
   std::vector<double> predicted_;
   double inertia_ = 1, factor_ = 1;
-  double growth_stiffness_ = 0;
+  double growth_stiffness_ = 0, radius_ = 0;
   double gradient_scale_ = 0, gradient_round_off_ = 0, value_round_off_ = 0;
   std::vector<double> offset_, term_;  // scratch: q - q~, one term's gradient
 };

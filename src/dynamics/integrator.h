@@ -22,6 +22,7 @@ struct StepTools {
   SearchDirection& direction;
   const MinimizeOptions& options;
   const IterationObserver& observe;
+  double end_time;  // of the step [s]
 };
 
 // How a scheme relates the step's displacement to velocities, on which its energy ledger depends.

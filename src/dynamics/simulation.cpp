@@ -117,8 +117,11 @@ struct Simulation::Impl {
       if (pins->holds(static_cast<int>(i / 3))) state.qdot[i] = (next[i] - state.q[i]) / options.h;
   }
 
-  StepTools tools(const IterationObserver& observe) const {
-    return {model, *pins, *E, const_cast<Minimizer&>(minimizer), *direction, options.solver.minimize, observe};
+  // A product, not a sum of steps, so that the end of a run is met exactly.
+  double end_of_next_step() const { return start.time + (steps_taken + 1) * options.h; }
+
+  StepTools tools(const IterationObserver& observe) {
+    return {model, *pins, *E, minimizer, *direction, options.solver.minimize, observe, end_of_next_step()};
   }
 
   // Tells every term that a step from `from` is about to end at `time`.
@@ -133,14 +136,14 @@ struct Simulation::Impl {
     const StepTools with = tools(observe);
     before = state;
     ledger.open(with, state);
-    begin_step(before.q, before.time + options.h);
+    begin_step(before.q, with.end_time);
     ledger.targets_moved(with, state);
 
     const MinimizeReport solved = integrator->advance(with, options.h, state);
     StepReport report = described(solved);
     if (solved.status == Status::interrupted || solved.status == Status::undefined) {
       state = before;  // there is nothing to go on from
-      if (solved.status == Status::undefined) state.time += options.h;
+      if (solved.status == Status::undefined) state.time = with.end_time;
     }
     report.time = state.time;
     if (solved.status != Status::interrupted) report.step = ++steps_taken;

@@ -81,6 +81,31 @@ TEST(Simulation, AStepWhoseEnergiesOverflowIsNoSuccess) {
   }
 }
 
+TEST(Simulation, AStepTooShortForDoublePrecisionIsNoSuccess) {
+  Simulation simulation = simulate(beam(2), {.h = 1e-9, .integrator = "backward_euler", .solver = {}});
+  bool success = true;
+  for (int i = 0; i < 5 && success; ++i) success = is_success(simulation.step().status);
+  EXPECT_FALSE(success);
+}
+
+TEST(Simulation, ABodyAtRestIsSuccessThoughItsForcesAreRoundOff) {
+  Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}), {.gravity = {}});
+  State start = at_rest(model.mesh);
+  for (size_t i = 0; i < start.q.size(); i += 3) {  // turned and moved, so that no force is exactly zero
+    const double x = start.q[i], y = start.q[i + 1];
+    start.q[i] = 0.6 * x - 0.8 * y + 0.3;
+    start.q[i + 1] = 0.8 * x + 0.6 * y - 7.1;
+  }
+  Simulation simulation(std::move(model), start, {});
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(is_success(simulation.step().status));
+}
+
+TEST(Simulation, TimeIsAMultipleOfTheStep) {
+  Simulation simulation = simulate(beam(1));
+  for (int i = 0; i < 100; ++i) simulation.step();
+  EXPECT_EQ(simulation.state().time, 100 * 0.01);
+}
+
 TEST(Simulation, AnExplodingExplicitSchemeEndsUndefined) {
   Simulation simulation = simulate(beam(2), {.h = 0.1, .integrator = "forward_euler", .solver = {}});
   Status last = Status::converged;

@@ -59,6 +59,14 @@ double forcing(double gradient_ratio, const MinimizeOptions& options) {
 
 // A line search that fails this close to the round-off of the gradient has nothing left to find.
 constexpr double kRoundOffMargin = 100;
+// Round-off is as good as convergence only where it is small beside what the gradient is made of.
+constexpr double kResolved = 1e-3;
+
+bool is_round_off(const Objective& E, double gradient_norm, double margin) {
+  const double round_off = E.gradient_round_off();
+  return std::isfinite(round_off) && gradient_norm <= margin * round_off &&
+         gradient_norm <= kResolved * E.gradient_scale();
+}
 
 }  // namespace
 
@@ -76,7 +84,7 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
     if (!std::isfinite(report.value) || !std::isfinite(report.gradient_norm))
       return report.status = Status::undefined, report;
     if (report.gradient_norm <= report.threshold) return report.status = Status::converged, report;
-    if (report.gradient_norm <= E.gradient_round_off()) return report.status = Status::round_off, report;
+    if (is_round_off(E, report.gradient_norm, 1)) return report.status = Status::round_off, report;
     if (i == options.max_iterations) return report.status = Status::iteration_limit, report;
 
     Iteration iteration;
@@ -95,8 +103,7 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
         backtrack(E, x, d_, report.value, slope, options.line_search, trial_, trial_gradient_);
     report.trials += step.trials;
     if (step.alpha == 0) {
-      const double round_off = E.gradient_round_off();
-      const bool at_floor = std::isfinite(round_off) && report.gradient_norm <= kRoundOffMargin * round_off;
+      const bool at_floor = is_round_off(E, report.gradient_norm, kRoundOffMargin);
       return report.status = at_floor ? Status::round_off : Status::stuck, report;
     }
     std::copy(trial_.begin(), trial_.end(), x.begin());

@@ -104,21 +104,23 @@ TEST(Minimize, TheObserverCanStopIt) {
 // Its gradient points the wrong way, so that no step along -g decreases it.
 class Deceptive : public Rosenbrock {
  public:
-  explicit Deceptive(double gradient_round_off) : gradient_round_off_(gradient_round_off) {}
+  Deceptive(double gradient_round_off, double gradient_scale)
+      : gradient_round_off_(gradient_round_off), gradient_scale_(gradient_scale) {}
   void gradient(std::span<const double> x, std::span<double> g) override {
     Rosenbrock::gradient(x, g);
     for (double& gi : g) gi = -gi;
   }
   double gradient_round_off() const override { return gradient_round_off_; }
+  double gradient_scale() const override { return gradient_scale_; }
 
  private:
-  double gradient_round_off_;
+  double gradient_round_off_, gradient_scale_;
 };
 
 TEST(Minimize, AFailedLineSearchIsSuccessOnlyNearTheRoundOffOfTheGradient) {
   const std::vector<double> start = {0, 0, 0};  // |g| = 2
-  const auto status = [&](double gradient_round_off) {
-    Deceptive f(gradient_round_off);
+  const auto status = [&](double gradient_round_off, double gradient_scale = 1e4) {
+    Deceptive f(gradient_round_off, gradient_scale);
     GradientDescent direction;
     std::vector<double> x = start;
     return Minimizer().minimize(f, direction, x, tight()).status;
@@ -127,6 +129,7 @@ TEST(Minimize, AFailedLineSearchIsSuccessOnlyNearTheRoundOffOfTheGradient) {
   EXPECT_EQ(status(0.01), Status::stuck);     // 200 times below |g|
   EXPECT_EQ(status(0.1), Status::round_off);  // 20 times
   EXPECT_EQ(status(3), Status::round_off);    // above: not even tried
+  EXPECT_EQ(status(3, 10), Status::stuck);    // round-off is all there is of this gradient
   EXPECT_FALSE(is_success(Status::stuck));
 }
 
