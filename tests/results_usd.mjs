@@ -1,7 +1,6 @@
 // Prints the USD layer that tinyusdz read from a file. Arguments: the folder of the npm package tinyusdz, the file.
 import fs from 'node:fs';
 import path from 'node:path';
-import { pathToFileURL } from 'node:url';
 
 const [folder, file] = process.argv.slice(2).map((name) => path.resolve(name));
 // The package is built for browsers and their workers and refuses Node; it runs there once told that it is a worker.
@@ -10,7 +9,9 @@ globalThis.WorkerGlobalScope = class {};
 globalThis.self = globalThis;
 globalThis.location = { href: 'http://localhost/' };
 
-const { default: start } = await import(pathToFileURL(path.join(folder, 'tinyusdz.js')));
+// The package does not say that it is a module, which older Node versions want to be told.
+const source = fs.readFileSync(path.join(folder, 'tinyusdz.js'), 'utf8');
+const { default: start } = await import('data:text/javascript,' + encodeURIComponent(source));
 const wasm = fs.readFileSync(path.join(folder, 'tinyusdz.wasm'));
 const tinyusdz = await start({
   instantiateWasm(imports, done) {
