@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <variant>
 
@@ -60,7 +61,7 @@ void print_quality(const TetMesh& mesh) {
   const int most = bins.empty() ? 0 : *std::max_element(bins.begin(), bins.end());
   fmt::print("mean ratio (1: regular, 0: flat)\n");
   for (size_t i = 0; i < bins.size(); ++i) {
-    const auto width = most > 0 ? static_cast<size_t>(40.0 * bins[i] / most + 0.5) : 0;
+    const auto width = most > 0 ? static_cast<size_t>(std::lround(40.0 * bins[i] / most)) : 0;
     fmt::print("  {:.1f} to {:.1f} {:>9}  {}\n", 0.1 * static_cast<double>(i), 0.1 * static_cast<double>(i + 1),
                bins[i], std::string(width, '#'));
   }

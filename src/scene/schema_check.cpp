@@ -185,13 +185,13 @@ class Checker {
   }
 
   void check_components(Value& value, const Key& key) {
+    const Value whole = value;  // as the user wrote it, for the messages
     for (Value& v : value.array()) {
       if (v.is_array()) {
         check_components(v, key);
       } else if (v.is_text()) {
         check_expression(v, key);
       } else {
-        const Value whole = value;
         check_float(v, whole, key);
       }
     }

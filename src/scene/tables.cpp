@@ -55,7 +55,7 @@ std::vector<double> from_vtu(const fs::path& path, const Value& table, const Tet
 
 std::vector<double> from_file(Table& table, const TetMesh& mesh, SceneFiles& files, const std::string& stem) {
   Value view{table, {}};
-  const Value name = view["file"];
+  const Value& name = view["file"];
   const fs::path path = files.find(name);
   std::vector<double> values;
   if (path.extension() == ".vtu" || path.extension() == ".VTU") {
