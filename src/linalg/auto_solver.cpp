@@ -13,8 +13,11 @@ namespace {
 // Flops of a factorisation that take as long as one iteration of CG per row: 30 ns at 50 Gflop/s, both measured on one
 // AVX-512 core; their ratio differs little between machines.
 constexpr double kFlopsPerIteration = 1500;
-constexpr double kDirectUpTo = 300;  // iterations; easy systems need about as many
-constexpr int kPatience = 10'000;    // iterations where there is nothing to fall back to
+constexpr double kDirectUpTo = 20;  // iterations; not worth a look at the matrix
+constexpr double kIterations = 4;   // fit to beams of 80 to 12 825 vertices, E = 1e4 to 1e8
+constexpr double kLoose = 3;        // a loose solve is followed by more Newton iterations than an exact one
+constexpr int kLeastCap = 300;      // iterations before giving up
+constexpr int kPatience = 10'000;   // iterations where there is nothing to fall back to
 
 template <class Visit>
 void for_each_neighbour(const BlockPattern& p, int row, Visit visit) {
@@ -65,6 +68,27 @@ CostPrediction predict_cholesky(const BlockPattern& pattern) {
   return cost;
 }
 
+double predict_iterations(const BlockSparse& H) {
+  const BlockPattern& p = *H.pattern;
+  double uniform = 0, diagonal = 0;  // 1' H 1 and 1' D 1, over the rows away from pinned vertices
+  for (int row = 0; row < p.rows(); ++row) {
+    double sum = 0;
+    bool beside_pin = false;  // a coupling that was cleared
+    const auto add = [&](int64_t slot) {
+      sum += trace(H.block[slot]);
+      beside_pin = beside_pin || squared_norm(H.block[slot]) == 0;
+    };
+    for (int64_t s = p.row_start[row]; s < p.diagonal(row); ++s) add(s);
+    for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u) add(p.upper_slot[u]);
+    if (beside_pin) continue;
+    const double own = trace(H.block[p.diagonal(row)]);
+    uniform += sum + own;
+    diagonal += own;
+  }
+  if (!(diagonal > 0) || uniform < 0) return 1;  // an indefinite matrix is found out soon
+  return uniform > 0 ? kIterations * std::sqrt(diagonal / uniform) : std::numeric_limits<double>::infinity();
+}
+
 AutoSolver::AutoSolver(int64_t memory_limit) : memory_limit_(memory_limit), cholesky_(memory_limit) {}
 
 void AutoSolver::analyze(const BlockPattern& pattern) {
@@ -72,16 +96,11 @@ void AutoSolver::analyze(const BlockPattern& pattern) {
   rows_ = pattern.rows();
   prediction_ = predict_cholesky(pattern);
   fits_ = prediction_.bytes < static_cast<double>(std::min(memory_limit_, free_memory()));
-  const double affordable = prediction_.flops / (kFlopsPerIteration * std::max(1, rows_));  // iterations
-  direct_ = fits_ && affordable <= kDirectUpTo;
-  cap_ = fits_ ? static_cast<int>(std::clamp(affordable, kDirectUpTo, double{kPatience})) : kPatience;
+  affordable_ = prediction_.flops / (kFlopsPerIteration * std::max(1, rows_));
+  cap_ = fits_ ? static_cast<int>(std::clamp<double>(affordable_, kLeastCap, kPatience)) : kPatience;
   cg_.set_max_iterations(cap_);
-  if (direct_) {
-    cholesky_.analyze(pattern);
-    analyzed_version_ = pattern.version;
-  } else {
-    cg_.analyze(pattern);
-  }
+  cg_.analyze(pattern);
+  direct_ = false;
 }
 
 AutoSolver::Factor AutoSolver::factorize_directly() {
@@ -96,12 +115,13 @@ AutoSolver::Factor AutoSolver::factorize_directly() {
 bool AutoSolver::factorize(const BlockSparse& H) {
   H_ = &H;
   factor_ = Factor::none;
+  expected_ = fits_ && affordable_ > kDirectUpTo && affordable_ < kPatience ? predict_iterations(H) : 0;
+  direct_ = fits_ && (affordable_ <= kDirectUpTo || kLoose * expected_ > affordable_);
   if (direct_) {
     factor_ = factorize_directly();
     if (factor_ != Factor::refused) return factor_ == Factor::ready;
     direct_ = fits_ = false;  // the prediction was too low
     cg_.set_max_iterations(cap_ = kPatience);
-    cg_.analyze(*H.pattern);
   }
   return cg_.factorize(H);
 }
@@ -123,14 +143,20 @@ SolveReport AutoSolver::solve(std::span<const double> b, std::span<double> x, do
   return report;
 }
 
+std::string AutoSolver::expected() const {
+  if (expected_ == 0) return "";
+  return std::isfinite(expected_) ? " (conjugate gradients: about " + approximate(expected_) + " iterations)"
+                                  : " (conjugate gradients would hardly converge)";
+}
+
 std::string AutoSolver::description() const {
   if (rows_ == 0) return "auto";
   const std::string flops = approximate(prediction_.flops) + " flops";
-  if (direct_) return "auto: cholesky, since a factorisation takes only about " + flops;
+  if (direct_) return "auto: cholesky, since a factorisation takes only about " + flops + expected();
   std::string text =
       "auto: block_jacobi for up to " + std::to_string(cap_) + " iterations, since a factorisation takes ";
   if (!fits_) return text + "about " + approximate(prediction_.bytes / 1e6) + " MB, more than is free";
-  text += "about " + flops + "; then cholesky";
+  text += "about " + flops + expected() + "; then cholesky";
   return fallbacks_ ? text + " (so far " + std::to_string(fallbacks_) + " times)" : text;
 }
 

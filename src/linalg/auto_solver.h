@@ -12,9 +12,14 @@ struct CostPrediction {
 };
 CostPrediction predict_cholesky(const BlockPattern& pattern);
 
-// Small or slender: Cholesky. Otherwise conjugate gradients for as long as a factorisation would take, then, if they
-// have not reached the tolerance and the factor fits into memory, Cholesky. Nothing but the matrix at hand decides
-// (never clocks or earlier matrices), so a resumed run takes the same path.
+// Iterations that block-Jacobi conjugate gradients will take for two digits, from how much softer a uniform
+// displacement is than the diagonal: time steps of soft bodies are easy, since the mass dominates; stiff bodies and
+// statics are hard.
+double predict_iterations(const BlockSparse& H);
+
+// Cholesky where a factorisation is cheaper than the predicted iterations. Otherwise conjugate gradients for as long as
+// a factorisation would take, then, if they have not reached the tolerance and the factor fits into memory, Cholesky.
+// Nothing but the matrix at hand decides (never clocks or earlier matrices), so a resumed run takes the same path.
 class AutoSolver : public LinearSolver {
  public:
   explicit AutoSolver(int64_t memory_limit = std::numeric_limits<int64_t>::max());
@@ -31,12 +36,15 @@ class AutoSolver : public LinearSolver {
  private:
   enum class Factor { none, ready, indefinite, refused };
   Factor factorize_directly();
+  std::string expected() const;
 
   int64_t memory_limit_;
   Cholesky cholesky_;
   ConjugateGradient cg_;
   CostPrediction prediction_;
   int rows_ = 0, cap_ = 0;
+  double affordable_ = 0;  // iterations that cost as much as a factorisation
+  double expected_ = 0;    // iterations for the matrix at hand
   bool direct_ = false, fits_ = false;
   const BlockSparse* H_ = nullptr;
   uint64_t analyzed_version_ = 0;  // of the pattern that cholesky_ has analyzed

@@ -105,7 +105,7 @@ void add_solver(Schema& s) {
         .fallback = toml_string(usual.linear),
         .choices = linear_solver_names(),
         .meaning = "the solver of the linear systems of Newton's method",
-        .reason = "chosen by the size of the mesh"},
+        .reason = "chosen by predicted cost"},
        {.name = "definiteness",
         .accepts = kText,
         .fallback = toml_string(usual.definiteness),
