@@ -120,9 +120,21 @@ void parallel_for(int count, FunctionRef<void(int)> body) {
   });
 }
 
+namespace {
+
+// Waking a thread costs about as much as working through a chunk: a few chunks are faster done alone.
+constexpr int kChunksWorthSharing = 4;
+
+void for_each_chunk(int count, FunctionRef<void(int)> body) {
+  const int chunks = chunk_count(count);
+  if (chunks >= kChunksWorthSharing) return parallel_for(chunks, body);
+  for (int chunk = 0; chunk < chunks; ++chunk) body(chunk);
+}
+
+}  // namespace
+
 void parallel_chunks(int count, FunctionRef<void(int, int)> body) {
-  parallel_for(chunk_count(count),
-               [&](int chunk) { body(chunk * kChunkSize, std::min(count, (chunk + 1) * kChunkSize)); });
+  for_each_chunk(count, [&](int chunk) { body(chunk * kChunkSize, std::min(count, (chunk + 1) * kChunkSize)); });
 }
 
 double parallel_sum(int count, FunctionRef<double(int, int)> body) {
@@ -130,9 +142,8 @@ double parallel_sum(int count, FunctionRef<double(int, int)> body) {
   thread_local std::vector<double> spare;
   std::vector<double> partial = std::move(spare);
   partial.resize(chunk_count(count));
-  parallel_for(chunk_count(count), [&](int chunk) {
-    partial[chunk] = body(chunk * kChunkSize, std::min(count, (chunk + 1) * kChunkSize));
-  });
+  for_each_chunk(
+      count, [&](int chunk) { partial[chunk] = body(chunk * kChunkSize, std::min(count, (chunk + 1) * kChunkSize)); });
   double sum = 0;
   for (const double term : partial) sum += term;
   spare = std::move(partial);

@@ -13,7 +13,7 @@ namespace {
 // Flops of a factorisation that take as long as one iteration of CG per row: 30 ns at 50 Gflop/s, both measured on one
 // AVX-512 core; their ratio differs little between machines.
 constexpr double kFlopsPerIteration = 1500;
-constexpr double kDirectUpTo = 20;  // iterations; not worth a look at the matrix
+constexpr double kDirectUpTo = 60;  // iterations; bodies of some 600 vertices are not worth a look at the matrix
 constexpr double kIterations = 4;   // fit to beams of 80 to 12 825 vertices, E = 1e4 to 1e8
 constexpr double kLoose = 3;        // a loose solve is followed by more Newton iterations than an exact one
 constexpr int kLeastCap = 300;      // iterations before giving up
