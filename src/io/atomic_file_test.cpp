@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/error.h"
+#include "io/folder_test.h"
 
 namespace aspic {
 namespace {
@@ -11,24 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-class AtomicFile : public testing::Test {
- protected:
-  AtomicFile() {
-    std::string name = (fs::temp_directory_path() / "aspic_test_XXXXXX").string();
-    folder = ::mkdtemp(name.data());
-  }
-  ~AtomicFile() override { fs::remove_all(folder); }
-
-  std::string error(auto&& action) {
-    try {
-      action();
-    } catch (const InvalidInput& e) {
-      return e.what();
-    }
-    return "";
-  }
-  fs::path folder;
-};
+using AtomicFile = FolderTest;
 
 TEST_F(AtomicFile, ReadsBackWhatWasWritten) {
   const std::string contents("a\0b\r\n\xff", 6);
@@ -61,12 +45,13 @@ TEST_F(AtomicFile, ALinkStaysALink) {
 }
 
 TEST_F(AtomicFile, WhatCannotBeReadOrWrittenIsNamed) {
-  EXPECT_THAT(error([&] { read_file(folder / "none"); }), HasSubstr("none: cannot be read: No such file"));
-  EXPECT_THAT(error([&] { read_file(folder); }), HasSubstr("is a folder"));
-  EXPECT_THAT(error([&] { read_file("/dev/zero"); }), HasSubstr("is not a regular file"));
-  EXPECT_THAT(error([&] { write_file(folder / "none" / "a", "1"); }), HasSubstr("a: cannot be written: No such file"));
-  EXPECT_THAT(error([&] { write_file("/dev/null", "1"); }), HasSubstr("is not a regular file"));
-  EXPECT_THAT(error([&] { write_file(folder, "1"); }), HasSubstr("is not a regular file"));
+  EXPECT_THAT(message_of([&] { read_file(folder / "none"); }), HasSubstr("none: cannot be read: No such file"));
+  EXPECT_THAT(message_of([&] { read_file(folder); }), HasSubstr("is a folder"));
+  EXPECT_THAT(message_of([&] { read_file("/dev/zero"); }), HasSubstr("is not a regular file"));
+  EXPECT_THAT(message_of([&] { write_file(folder / "none" / "a", "1"); }),
+              HasSubstr("a: cannot be written: No such file"));
+  EXPECT_THAT(message_of([&] { write_file("/dev/null", "1"); }), HasSubstr("is not a regular file"));
+  EXPECT_THAT(message_of([&] { write_file(folder, "1"); }), HasSubstr("is not a regular file"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A folder for one test, removed at its end.
+// A folder for one test, removed at its end, and what a call throws.
 #pragma once
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,34 +8,46 @@
 #include <string>
 #include <string_view>
 
+#include "base/error.h"
+
 namespace aspic {
 
-class FolderTest : public testing::Test {
- protected:
-  FolderTest() { std::filesystem::create_directories(folder_); }
-  ~FolderTest() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
+class TestFolder {
+ public:
+  TestFolder() {
+    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+    std::string name = std::string("aspic_") + test.test_suite_name() + "_" + test.name();
+    for (char& c : name)
+      if (c == '/') c = '_';  // of a test with parameters
+    path_ = std::filesystem::path(testing::TempDir()) / (name + "_" + std::to_string(::getpid()));
+    std::filesystem::remove_all(path_);
+    std::filesystem::create_directories(path_);
   }
+  ~TestFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TestFolder(const TestFolder&) = delete;
+  TestFolder& operator=(const TestFolder&) = delete;
 
-  const std::filesystem::path& folder() const { return folder_; }
-  std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+  const std::filesystem::path& path() const { return path_; }
+  operator const std::filesystem::path&() const { return path_; }
+  std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
 
   // Without waiting for the disk, since tests write many files.
-  static void put(const std::filesystem::path& path, std::string_view text) {
-    std::ofstream(path, std::ios::binary) << text;
+  std::filesystem::path write(const std::string& name, std::string_view text) const {
+    const std::filesystem::path file = path_ / name;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file, std::ios::binary) << text;
+    return file;
   }
 
  private:
-  static std::string name() {
-    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
-    return std::string("aspic_") + test.test_suite_name() + "_" + test.name() + "_" + std::to_string(::getpid());
-  }
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / name();
+  std::filesystem::path path_;
 };
 
 // What the call throws, as text; empty when it throws nothing.
-template <class Error, class Call>
+template <class Error = InvalidInput, class Call>
 std::string message_of(Call call) {
   try {
     call();
@@ -44,5 +56,15 @@ std::string message_of(Call call) {
   }
   return "";
 }
+
+class FolderTest : public testing::Test {
+ protected:
+  std::filesystem::path path(const std::string& name) const { return folder / name; }
+  static void put(const std::filesystem::path& path, std::string_view text) {
+    std::ofstream(path, std::ios::binary) << text;
+  }
+
+  const TestFolder folder;
+};
 
 }  // namespace aspic

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "io/atomic_file.h"
+#include "io/folder_test.h"
 #include "io/mesh_examples_test.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
@@ -20,24 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-class MeshFile : public testing::Test {
- protected:
-  MeshFile() {
-    std::string name = (fs::temp_directory_path() / "aspic_test_XXXXXX").string();
-    folder = ::mkdtemp(name.data());
-  }
-  ~MeshFile() override { fs::remove_all(folder); }
-
-  std::string error(auto&& action) {
-    try {
-      action();
-    } catch (const InvalidInput& e) {
-      return e.what();
-    }
-    return "no error";
-  }
-  fs::path folder;
-};
+using MeshFile = FolderTest;
 
 std::vector<uint64_t> bits(const std::vector<Vec3d>& points) {
   std::vector<uint64_t> result;
@@ -114,7 +98,7 @@ TEST_F(MeshFile, BinaryStlRoundsToSinglePrecision) {
   write_mesh(folder / "a.stl", mesh, FileEncoding::binary);
   EXPECT_EQ(fs::file_size(folder / "a.stl"), 84u + 50);
   EXPECT_EQ(read_tri_mesh(folder / "a.stl").vertices[0][0], double(0.1f));
-  EXPECT_THAT(error([&] { write_mesh(folder / "b.stl", awkward_triangles(), FileEncoding::binary); }),
+  EXPECT_THAT(message_of([&] { write_mesh(folder / "b.stl", awkward_triangles(), FileEncoding::binary); }),
               HasSubstr("single precision"));
 }
 
@@ -157,7 +141,7 @@ TEST_F(MeshFile, WritingDoesNotDependOnTheLocaleOrLeaveTemporaries) {
 TEST_F(MeshFile, WhatCannotBeReadIsNamedWithARemedy) {
   const auto read = [&](const fs::path& name, const char* contents) {
     write_file(folder / name, contents);
-    return error([&] { read_mesh(folder / name); });
+    return message_of([&] { read_mesh(folder / name); });
   };
   EXPECT_THAT(read("a.objj", ""), HasSubstr("no mesh format has the extension '.objj' (did you mean '.obj'?)"));
   EXPECT_THAT(read("a", ""), HasSubstr("no mesh format has the extension ''"));
@@ -166,22 +150,23 @@ TEST_F(MeshFile, WhatCannotBeReadIsNamedWithARemedy) {
   EXPECT_THAT(read("a.node", "0 3 0 0\n"), HasSubstr("a.ele: does not exist; a TetGen mesh is a pair"));
   for (const char* name : {"a.msh", "a.mesh", "a.ply", "a.stl", "a.off", "a.vtu"})
     EXPECT_THAT(read(name, ""), HasSubstr(name)) << name;
-  EXPECT_THAT(error([&] { read_mesh(folder / "none.msh"); }), HasSubstr("none.msh: cannot be read"));
+  EXPECT_THAT(message_of([&] { read_mesh(folder / "none.msh"); }), HasSubstr("none.msh: cannot be read"));
   fs::create_directory(folder / "folder.msh");
-  EXPECT_THAT(error([&] { read_mesh(folder / "folder.msh"); }), HasSubstr("is a folder"));
+  EXPECT_THAT(message_of([&] { read_mesh(folder / "folder.msh"); }), HasSubstr("is a folder"));
   write_mesh(folder / "skin.off", awkward_triangles());
-  EXPECT_THAT(error([&] { read_tet_mesh(folder / "skin.off"); }), HasSubstr("holds a surface, no tets; fill it with"));
+  EXPECT_THAT(message_of([&] { read_tet_mesh(folder / "skin.off"); }),
+              HasSubstr("holds a surface, no tets; fill it with"));
 }
 
 TEST_F(MeshFile, WhatAFormatCannotHoldIsRefusedBeforeAnythingIsWritten) {
   TetMesh tets = awkward_tets();
-  EXPECT_THAT(error([&] { write_mesh(folder / "a.obj", tets); }), HasSubstr("cannot hold tets; write .msh"));
-  EXPECT_THAT(error([&] { write_mesh(folder / "a.ele", awkward_triangles()); }),
+  EXPECT_THAT(message_of([&] { write_mesh(folder / "a.obj", tets); }), HasSubstr("cannot hold tets; write .msh"));
+  EXPECT_THAT(message_of([&] { write_mesh(folder / "a.ele", awkward_triangles()); }),
               HasSubstr("not written for triangles"));
-  EXPECT_THAT(error([&] { write_mesh(folder / "a.off", awkward_triangles(), FileEncoding::binary); }),
+  EXPECT_THAT(message_of([&] { write_mesh(folder / "a.off", awkward_triangles(), FileEncoding::binary); }),
               HasSubstr("text only"));
   tets.rest[5][1] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(error([&] { write_mesh(folder / "a.msh", tets); }),
+  EXPECT_THAT(message_of([&] { write_mesh(folder / "a.msh", tets); }),
               HasSubstr("vertex 5 has a coordinate that is not finite"));
   EXPECT_TRUE(fs::is_empty(folder));
 }

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "io/atomic_file.h"
+#include "io/folder_test.h"
 #include "io/mesh_file.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
@@ -16,34 +17,21 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 // The mesher's place is taken by shell scripts that keep to its command line: SURFACE -o OUT --size S.
-class Tetrahedralise : public testing::Test {
+class Tetrahedralise : public FolderTest {
  protected:
   Tetrahedralise() {
-    std::string name = (fs::temp_directory_path() / "aspic_test_XXXXXX").string();
-    folder = ::mkdtemp(name.data());
     fs::create_directory(folder / "temporary");
     surface = folder / "a b;c.off";  // no shell may see this name
     write_mesh(surface, boundary_surface(make_box({{0, 0, 0}}, {{2, 2, 1}}, {1, 1, 1})).surface);
     write_mesh(folder / "tets.mesh", make_box({{0, 0, 0}}, {{2, 2, 1}}, {1, 1, 1}));
     ::setenv("TMPDIR", (folder / "temporary").c_str(), 1);
   }
-  ~Tetrahedralise() override {
-    ::unsetenv("TMPDIR");
-    fs::remove_all(folder);
-  }
+  ~Tetrahedralise() override { ::unsetenv("TMPDIR"); }
 
   TetMesh run(const std::string& script, double size = 0) {
     write_file(folder / "mesher", "#!/bin/sh\n" + script);
     fs::permissions(folder / "mesher", fs::perms::owner_all);
     return tetrahedralise(surface, {.size = size, .program = folder / "mesher"});
-  }
-  std::string error(auto&& action) {
-    try {
-      action();
-    } catch (const InvalidInput& e) {
-      return e.what();
-    }
-    return "no error";
   }
   void expect_no_leftovers() { EXPECT_TRUE(fs::is_empty(folder / "temporary")); }
 
@@ -51,7 +39,7 @@ class Tetrahedralise : public testing::Test {
     return "echo \"$0 $1 $2 $4 $5\" > '" + (folder / "said").string() + "'; cp '" + (folder / "tets.mesh").string() +
            "' \"$3\"";
   }
-  fs::path folder, surface;
+  fs::path surface;
 };
 
 TEST_F(Tetrahedralise, ReturnsTheTetsThatTheProgramWrote) {
@@ -66,21 +54,22 @@ TEST_F(Tetrahedralise, TheDefaultSizeIsTheDiagonalOver25) {
 }
 
 TEST_F(Tetrahedralise, TheReasonOfAFailureIsPassedOn) {
-  EXPECT_THAT(error([&] { run("echo the surface is open >&2; exit 2"); }),
+  EXPECT_THAT(message_of([&] { run("echo the surface is open >&2; exit 2"); }),
               testing::AllOf(HasSubstr(surface.string()), HasSubstr("aspic-mesh failed: the surface is open")));
-  EXPECT_THAT(error([&] { run("exit 3"); }), HasSubstr("it gave no reason"));
-  EXPECT_THAT(error([&] { run("kill -KILL $$"); }), HasSubstr("signal 'Killed'"));
-  EXPECT_THAT(error([&] { run("true"); }), HasSubstr("wrote no mesh"));
-  EXPECT_THAT(error([&] { run("echo garbage > \"$3\""); }), HasSubstr("MeshVersionFormatted"));
+  EXPECT_THAT(message_of([&] { run("exit 3"); }), HasSubstr("it gave no reason"));
+  EXPECT_THAT(message_of([&] { run("kill -KILL $$"); }), HasSubstr("signal 'Killed'"));
+  EXPECT_THAT(message_of([&] { run("true"); }), HasSubstr("wrote no mesh"));
+  EXPECT_THAT(message_of([&] { run("echo garbage > \"$3\""); }), HasSubstr("MeshVersionFormatted"));
   expect_no_leftovers();
 }
 
 TEST_F(Tetrahedralise, BadSizesAndProgramsAreRefused) {
-  EXPECT_THAT(error([&] { run(good(), -1); }), HasSubstr("must be positive"));
-  EXPECT_THAT(error([&] { tetrahedralise(surface, {.program = folder / "none"}); }), HasSubstr("is not a program"));
+  EXPECT_THAT(message_of([&] { run(good(), -1); }), HasSubstr("must be positive"));
+  EXPECT_THAT(message_of([&] { tetrahedralise(surface, {.program = folder / "none"}); }),
+              HasSubstr("is not a program"));
   ::setenv("TMPDIR", "/nowhere", 1);
-  EXPECT_THAT(error([&] { run(good()); }), HasSubstr("set TMPDIR to a folder with space"));
-  EXPECT_THAT(error([&] { tetrahedralise(folder / "none.obj", {.program = "/bin/true"}); }),
+  EXPECT_THAT(message_of([&] { run(good()); }), HasSubstr("set TMPDIR to a folder with space"));
+  EXPECT_THAT(message_of([&] { tetrahedralise(folder / "none.obj", {.program = "/bin/true"}); }),
               HasSubstr("cannot be read"));
 }
 

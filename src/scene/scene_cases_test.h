@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "io/folder_test.h"
 #include "scene/scene.h"
-#include "scene/test_folder_test.h"
 
 namespace aspic {
 
