@@ -149,6 +149,7 @@ struct Simulation::Impl {
     if (solved.status != Status::interrupted) report.step = ++steps_taken;
     ledger.close(with, *integrator, options.h, state, report);
     if (is_success(report.status) && !is_finite(report)) report.status = Status::undefined;
+    if (solved.status == Status::interrupted) begin_step(state.q, state.time);  // targets go back where they stood
     report.min_det_F = INFINITY;
     for (const auto& V : model.elasticity) report.min_det_F = std::min(report.min_det_F, V->min_det_F(state.q));
     report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

@@ -62,6 +62,19 @@ TEST(Simulation, AnInterruptedStepLeavesTheStateAlone) {
   EXPECT_EQ(simulation.steps_taken(), 0);
 }
 
+TEST(Simulation, AStepTakenAgainAfterAnInterruptionIsTheSameToTheBit) {
+  Simulation smooth = simulate(damped_beam_with_moving_pins_and_targets());
+  Simulation disturbed = simulate(damped_beam_with_moving_pins_and_targets());
+  for (int i = 0; i < 3; ++i) {
+    const StepReport expected = smooth.step();
+    EXPECT_EQ(disturbed.step([](const Iteration&) { return false; }).status, Status::interrupted);
+    const StepReport report = disturbed.step();
+    EXPECT_EQ(report.pin_work, expected.pin_work);  // also of targets, which must not have stayed ahead
+    EXPECT_EQ(report.ledger_error, expected.ledger_error);
+    EXPECT_EQ(disturbed.state().q, smooth.state().q);
+  }
+}
+
 TEST(Simulation, AStepThatDoesNotConvergeSaysSo) {
   SimulationOptions options;
   options.solver.minimize.max_iterations = 1;

@@ -14,7 +14,7 @@ namespace {
 // AVX-512 core; their ratio differs little between machines.
 constexpr double kFlopsPerIteration = 1500;
 constexpr double kDirectUpTo = 60;  // iterations; bodies of some 600 vertices are not worth a look at the matrix
-constexpr double kIterations = 4;   // fit to beams of 80 to 12 825 vertices, E = 1e4 to 1e8
+constexpr double kIterations = 4;   // fit to beams of 425 to 12 825 vertices, E = 1e4 to 1e8
 constexpr double kLoose = 3;        // a loose solve is followed by more Newton iterations than an exact one
 constexpr int kLeastCap = 300;      // iterations before giving up
 constexpr int kPatience = 10'000;   // iterations where there is nothing to fall back to

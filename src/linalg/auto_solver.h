@@ -19,7 +19,8 @@ double predict_iterations(const BlockSparse& H);
 
 // Cholesky where a factorisation is cheaper than the predicted iterations. Otherwise conjugate gradients for as long as
 // a factorisation would take, then, if they have not reached the tolerance and the factor fits into memory, Cholesky.
-// Nothing but the matrix at hand decides (never clocks or earlier matrices), so a resumed run takes the same path.
+// The matrix at hand decides, never clocks or earlier matrices, so a resumed run takes the same path; only where the
+// factor comes close to the memory that is free may two runs differ.
 class AutoSolver : public LinearSolver {
  public:
   explicit AutoSolver(int64_t memory_limit = std::numeric_limits<int64_t>::max());
