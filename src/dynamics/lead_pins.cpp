@@ -28,8 +28,9 @@ void add_work(const MinimizeReport& spent, MinimizeReport& work) {
   work.projected_hessians += spent.projected_hessians;
 }
 
-void lead_pins(const StepTools& tools, std::span<const double> from, std::span<double> q, MinimizeReport& work) {
-  tools.pins.place(tools.end_time, q);
+void lead_pins(const StepTools& tools, double time, std::span<const double> from, std::span<double> q,
+               MinimizeReport& work) {
+  tools.pins.place(time, q);
   if (std::isfinite(tools.E.value(q))) return;
   const std::vector<double> to(q.begin(), q.end());
 

@@ -18,6 +18,8 @@ struct StepContext {
   Positions start;  // x at the start of the step
   double h = 0;     // length of the step [s]; 0 in statics
   double time = 0;  // the end of the step [s]
+  // Where coefficients that depend on x are taken, when not at `start`, which may be extrapolated and inside out.
+  Positions shape = {};
 };
 
 class Energy {

@@ -27,7 +27,8 @@ class RayleighDamping : public Energy {
     start_.assign(step.start.begin(), step.start.end());
     C_->set_zero();
     mass_.add_to(mass_factor_, *C_);
-    if (stiffness_factor_ > 0) elasticity_->add_hessian(step.start, stiffness_factor_, Definiteness::clamped, *C_);
+    const Positions x = step.shape.empty() ? step.start : step.shape;
+    if (stiffness_factor_ > 0) elasticity_->add_hessian(x, stiffness_factor_, Definiteness::clamped, *C_);
   }
 
   double value(Positions x) const override {
