@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -81,10 +82,14 @@ int unconverged_before(const fs::path& directory, int steps) {
   return count;
 }
 
+bool is_explicit(const std::string& integrator) {
+  const std::vector<std::string> names = explicit_integrator_names();
+  return std::find(names.begin(), names.end(), integrator) != names.end();
+}
+
 // What usually helps when a step did not converge.
 std::string_view remedy(Status status, const std::string& integrator) {
   const bool is_static = integrator == "quasi_static";
-  const bool is_explicit = integrator == "forward_euler" || integrator == "symplectic_euler";
   switch (status) {
     case Status::iteration_limit:
       return is_static ? "raise solver.max_iterations, or load the body in smaller steps"
@@ -95,8 +100,11 @@ std::string_view remedy(Status status, const std::string& integrator) {
       return is_static ? "a body that nothing holds has no single equilibrium: pin it"
                        : "try solver.definiteness = \"clamped\"; `aspic check` finds bad tets";
     case Status::undefined:
-      return is_explicit ? "explicit schemes blow up when time.step is too long: shorten it, or use backward_euler"
-                         : "shorten time.step, and look for pins, forces or velocities that move too far in one step";
+      return is_explicit(integrator)
+                 ? "explicit schemes blow up when time.step is too long: shorten it, or use backward_euler"
+                 : "shorten time.step, and look for pins, forces or velocities that move too far in one step";
+    case Status::inaccurate:
+      return "raise time.adaptive.tolerance; a pin, target or force that jumps cannot be resolved by shorter steps";
     case Status::converged:
     case Status::round_off:
     case Status::interrupted:
@@ -131,12 +139,19 @@ class Runner {
       });
       if (report.status == Status::interrupted) break;
       record(report);
+      // The body stays where it was, and an explicit scheme, which has nothing else to try, would fail again.
+      has_blown_up_ = report.status == Status::undefined && is_explicit(simulation.options().integrator);
+      if (has_blown_up_) break;
     }
     directory_.finish(simulation);
     if (progress_) progress_->finish();
     if (trace_) finish_trace();
+    if (has_blown_up_)
+      fmt::print(stderr, "stopped after step {} of {}: the explicit scheme blew up, and there is no state to go on from\n",
+                 simulation.steps_taken(), last_step_);
   }
 
+  bool has_blown_up() const { return has_blown_up_; }
   const RunTotals& totals() const { return totals_; }
   std::FILE* human() const { return human_; }
   int last_step() const { return last_step_; }
@@ -189,6 +204,7 @@ class Runner {
   RunDirectory& directory_;
   std::FILE* human_;
   int last_step_, first_step_;
+  bool has_blown_up_ = false;
   std::optional<Progress> progress_;
   std::optional<Trace> trace_;
   std::vector<Iteration> iterations_;  // of the step under way; recorded once it is whole
@@ -229,8 +245,10 @@ int run(const Arguments& arguments) {
                   {.last_step = runner.last_step(),
                    .steps_taken = scene.simulation.steps_taken(),
                    .interrupted = interrupt_signal() != 0,
+                   .blown_up = runner.has_blown_up(),
                    .directory = directory.path()});
   }
+  if (runner.has_blown_up()) return exit_unconverged;  // an unfinished run is not a matter of allowing
   return exit_code(arguments, earlier + runner.totals().unconverged);
 }
 
@@ -248,7 +266,8 @@ Examples:
   aspic run beam.toml --json | jq .iterations     one line of JSON per step
   aspic run beam.toml --landscape 12:0            why is step 12 slow? its first iteration, looked at closely
 
-Exit codes: 0 done, 2 bad input, 3 some step did not converge (unless --allow-unconverged),
+Exit codes: 0 done, 2 bad input, 3 some step did not converge (unless --allow-unconverged) or an explicit
+scheme blew up, which ends the run;
 130 interrupted by ctrl-C, 143 by kill: everything up to the last whole step is written.)");
   command->add_option("INPUT", arguments->input, "Scene (.toml), mesh, or with --resume a run directory")->required();
   command->add_option("--set", arguments->overrides, "Override a value: material.young=2e5; can be repeated")

@@ -109,7 +109,7 @@ class QuasiStatic : public Integrator {
         tools.minimizer.minimize(tools.E, tools.direction, end.q, tools.options, tools.observe);
     solve.add(report);
     add_work(lead, solve.work);
-    solve.threshold = report.threshold;
+    if (!judges_direction(tools.options.criterion)) solve.threshold = report.threshold;
     std::fill(end.qdot.begin(), end.qdot.end(), 0.0);
     forces.add(tools.E, 1, end.q, {});
     end.time = tools.end_time;

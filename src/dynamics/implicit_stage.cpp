@@ -46,20 +46,21 @@ void ImplicitStage::predict(const StepTools& tools, const PinPath* path, const S
 MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOptions& options, std::span<const double> q,
                                        std::span<const double> v, StepSolve& solve) {
   q_.assign(q.begin(), q.end());
-  MinimizeReport report;
+  MinimizeOptions minimize = options.once ? one_iteration(tools.options) : tools.options;
+  minimize.h = options.beta;
   if (options.once) {
     tools.pins.place(options.time, q_);
     solve.guess = InitialGuess::current;
-    report =
-        tools.minimizer.minimize(tools.E, tools.direction, q_, one_iteration(tools.options), tools.observe);
+    MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, minimize, tools.observe);
     // The scheme asks for one iteration, not for a small gradient; what is left over stays in the report.
     if (report.status == Status::iteration_limit) report.status = Status::converged;
     return report;
   }
   MinimizeReport lead;
   solve.guess = guesser_.guess(tools, tools.guess, {q, v, options.ahead, options.time}, q_, lead);
-  report = tools.minimizer.minimize(tools.E, tools.direction, q_, tools.options, tools.observe);
-  solve.threshold += options.weight * report.threshold / (options.beta * options.beta);
+  MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, minimize, tools.observe);
+  if (!judges_direction(minimize.criterion))
+    solve.threshold += options.weight * (report.threshold / tools.E.gradient_unit());
   add_work(lead, report);
   return report;
 }

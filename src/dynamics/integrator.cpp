@@ -60,10 +60,28 @@ bool StepSolve::add(const MinimizeReport& stage) {
   return stage.status != Status::undefined && stage.status != Status::interrupted;
 }
 
-std::vector<std::string> integrator_names() {
+namespace {
+
+template <class Predicate>
+std::vector<std::string> names_where(const Predicate& holds) {
   std::vector<std::string> names;
-  for (const Entry& entry : entries()) names.push_back(entry.name);
+  for (const Entry& entry : entries())
+    if (holds(*entry.make())) names.push_back(entry.name);
   return names;
+}
+
+}  // namespace
+
+std::vector<std::string> integrator_names() {
+  return names_where([](const Integrator&) { return true; });
+}
+
+std::vector<std::string> adaptive_integrator_names() {
+  return names_where([](const Integrator& i) { return !i.is_static() && !i.is_multistep(); });
+}
+
+std::vector<std::string> explicit_integrator_names() {
+  return names_where([](const Integrator& i) { return !i.is_implicit(); });
 }
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name) {

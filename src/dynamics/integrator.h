@@ -12,8 +12,8 @@
 
 namespace aspic {
 
-// What an integrator works with.
-struct StepTools {
+// What minimisations work with.
+struct SolveTools {
   const Model& model;
   const Pins& pins;
   IncrementalPotential& E;
@@ -22,6 +22,10 @@ struct StepTools {
   const MinimizeOptions& options;
   const IterationObserver& observe;
   InitialGuess guess;
+};
+
+// What an integrator works with.
+struct StepTools : SolveTools {
   const State& start;     // of the step
   const State* previous;  // where the step before started; null when none is known
   double h, end_time;     // of the step [s]
@@ -40,7 +44,7 @@ struct StepForces {
 
 // How a step went: counts are sums over its stages, the status is the worst of them.
 struct StepSolve {
-  MinimizeReport work;
+  MinimizeReport work = {.status = Status::converged};
   double threshold = 0;  // of |r| over the free vertices, that the solves were asked for [N]
   InitialGuess guess = InitialGuess::none;
 

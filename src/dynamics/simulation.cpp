@@ -1,10 +1,12 @@
 #include "dynamics/simulation.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
+#include "base/stopwatch.h"
+#include "dynamics/adaptive_step.h"
 #include "dynamics/integrator.h"
 #include "dynamics/ledger.h"
 
@@ -15,6 +17,12 @@ std::string listed(const std::vector<int>& indices) {
   std::string text;
   for (size_t i = 0; i < std::min<size_t>(indices.size(), 5); ++i) text += (i ? ", " : "") + std::to_string(indices[i]);
   return text + (indices.size() > 5 ? ", ..." : "");
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") + names[i];
+  return text;
 }
 
 // Squares overflow before positions do, so a state may be finite while its energies are not.
@@ -56,6 +64,24 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
   }
 }
 
+void require_possible(const SimulationOptions& options, const Integrator& integrator, InitialGuess guess) {
+  const double tolerance = options.adaptive.tolerance;
+  const std::string name(integrator.name());
+  if (!(tolerance >= 0) || !std::isfinite(tolerance))
+    throw InvalidInput("time.adaptive.tolerance = " + std::to_string(tolerance) + "; it must be positive, or 0 for none");
+  if (tolerance > 0 && (integrator.is_static() || integrator.is_multistep()))
+    throw InvalidInput("integrator = '" + name + "' cannot divide its steps (time.adaptive): " +
+                       (integrator.is_static() ? "it knows no time" : "it needs steps of one length") + "; " +
+                       joined(adaptive_integrator_names()) + " can");
+  const bool is_default = guess == InitialGuess::best;
+  if (!is_default && !integrator.chooses_guess())
+    throw InvalidInput("solver.initial_guess = '" + options.initial_guess + "' says nothing to integrator = '" + name +
+                       "': " + (integrator.is_implicit() ? "it starts from the current positions" : "it minimises nothing"));
+  if (guess == InitialGuess::extrapolated && integrator.is_static())
+    throw InvalidInput("solver.initial_guess = 'extrapolated' needs velocities, of which integrator = '" + name +
+                       "' knows none; try 'last_increment'");
+}
+
 }  // namespace
 
 struct Simulation::Impl {
@@ -65,88 +91,136 @@ struct Simulation::Impl {
         state(std::move(initial)),
         start(state),
         integrator(make_integrator(options.integrator)),
+        guess(initial_guess_named(options.initial_guess)),
         direction(make_search_direction(options.solver)),
         pins(std::make_unique<Pins>(model.pins, start.q)),
         E(std::make_unique<IncrementalPotential>(model, *pins)) {
     options.solver.minimize.h = options.h;
     if (!(options.h > 0) || !std::isfinite(options.h))
       throw InvalidInput("time.step = " + std::to_string(options.h) + "; it must be positive");
+    require_possible(options, *integrator, guess);
     if (!integrator->is_static()) require_mass(model, *pins);
     pins->place(state.time, state.q);
     require_finite_energy(model, state.q);
-    // The pinned vertices of a scheme that moves with the old velocity must know where they are going.
-    if (integrator->displacement() == Displacement::old_velocity) set_pin_velocity();
+    integrator->set_pin_velocity(*pins, options.h, state);
+    if (options.adaptive.tolerance > 0) adaptive.emplace(model, options.adaptive.tolerance, remembers());
   }
 
-  void set_pin_velocity() {
-    std::vector<double> next = state.q;
-    pins->place(state.time + options.h, next);
-    for (size_t i = 0; i < next.size(); ++i)
-      if (pins->holds(static_cast<int>(i / 3))) state.qdot[i] = (next[i] - state.q[i]) / options.h;
+  // Whether the start of the step before is needed.
+  bool remembers() const {
+    const bool by_best = guess == InitialGuess::best && integrator->tries_last_increment();
+    return integrator->is_multistep() || by_best || guess == InitialGuess::last_increment;
   }
 
   // A product, not a sum of steps, so that the end of a run is met exactly.
   double end_of_next_step() const { return start.time + (steps_taken + 1) * options.h; }
 
-  StepTools tools(const IterationObserver& observe) {
-    return {model, *pins, *E, minimizer, *direction, options.solver.minimize, observe, end_of_next_step()};
-  }
-
-  // Tells every term that a step from `from` is about to end at `time`.
-  void begin_step(Positions from, double time) const {
-    const StepContext context{from, integrator->is_static() ? 0 : options.h, time};
-    for (Energy* V : E->potential()) V->begin_step(context);
-    for (Energy* D : E->damping()) D->begin_step(context);
+  // Of a step from `before`.
+  StepTools tools(const IterationObserver& observe, double end_time) {
+    const SolveTools solve{model, *pins, *E, minimizer, *direction, options.solver.minimize, observe, guess};
+    return {solve, before, has_previous ? &previous : nullptr, options.h, end_time};
   }
 
   StepReport step(const IterationObserver& observe) {
-    const auto began = std::chrono::steady_clock::now();
-    const StepTools with = tools(observe);
+    Stopwatch stopwatch;
     before = state;
-    ledger.open(with, state);
-    begin_step(before.q, with.end_time);
-    ledger.targets_moved(with, state);
-
-    const MinimizeReport solved = integrator->advance(with, options.h, state);
-    StepReport report = described(solved);
-    if (solved.status == Status::interrupted || solved.status == Status::undefined) {
-      state = before;  // there is nothing to go on from
-      if (solved.status == Status::undefined) state.time = with.end_time;
+    const StepTools with = tools(observe, end_of_next_step());
+    StepReport report;
+    const StepSolve solved = adaptive ? adaptive->advance(*integrator, with, ledger, state, report)
+                                      : integrator->advance(with, state, forces);
+    describe(solved, report);
+    const bool is_interrupted = solved.work.status == Status::interrupted;
+    if (!can_go_on(report.status)) {
+      take_back(observe, is_interrupted ? before.time : with.end_time, report);
+    } else {
+      if (!adaptive) ledger.add(with, integrator->order(), state, forces, report);
+      if (!is_finite(report)) {
+        if (is_success(report.status)) report.status = Status::undefined;
+        take_back(observe, with.end_time, report);
+      } else if (remembers()) {
+        previous = adaptive ? adaptive->previous() : before;
+        has_previous = true;
+      }
     }
     report.time = state.time;
-    if (solved.status != Status::interrupted) report.step = ++steps_taken;
-    ledger.close(with, *integrator, options.h, state, report);
-    if (is_success(report.status) && !is_finite(report)) report.status = Status::undefined;
-    if (solved.status == Status::interrupted) begin_step(state.q, state.time);  // targets go back where they stood
+    if (!is_interrupted) report.step = ++steps_taken;
     report.min_det_F = INFINITY;
     for (const auto& V : model.elasticity) report.min_det_F = std::min(report.min_det_F, V->min_det_F(state.q));
-    report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    report.seconds = stopwatch.lap();
     return report;
   }
 
-  StepReport described(const MinimizeReport& solved) const {
-    StepReport report;
-    report.status = solved.status;
+  // A minimisation that stopped early leaves a state to go on from; a step divided for its accuracy does not.
+  bool can_go_on(Status status) const {
+    if (status == Status::interrupted || status == Status::undefined) return false;
+    return !adaptive || is_success(status);
+  }
+
+  // The body stays where the step began, though time and moving targets may go on to `time`; a scheme of several steps
+  // begins anew.
+  void take_back(const IterationObserver& observe, double time, StepReport& report) {
+    report.residual = report.pin_work = report.damping_loss = 0;
+    report.numerical_loss = report.residual_work = report.ledger_error = 0;
+    state = before;
+    state.time = time;
+    has_previous = has_previous && time == before.time;
+    const StepTools stand_still = tools(observe, time);
+    tell_potential(*E, {before.q, integrator->is_static() ? 0 : options.h, time});
+    forces.reset(state.q.size());
+    for (const Energy* V : E->potential()) V->add_gradient(state.q, 1, forces.gradient);
+    ledger.add(stand_still, integrator->order(), state, forces, report);
+  }
+
+  void describe(const StepSolve& solved, StepReport& report) const {
+    report.status = solved.work.status;
     report.criterion = options.solver.minimize.criterion;
-    report.iterations = solved.iterations;
-    report.trials = solved.trials;
-    report.linear_iterations = solved.linear_iterations;
-    report.hessians = solved.hessians;
-    report.projected_hessians = solved.projected_hessians;
-    const bool judges_forces = integrator->is_implicit() && !judges_direction(report.criterion);
-    if (judges_forces) report.residual_threshold = solved.threshold / E->gradient_unit();
-    return report;
+    report.iterations = solved.work.iterations;
+    report.trials = solved.work.trials;
+    report.linear_iterations = solved.work.linear_iterations;
+    report.hessians = solved.work.hessians;
+    report.projected_hessians = solved.work.projected_hessians;
+    report.residual_threshold = solved.threshold;
+    report.initial_guess = solved.guess;
+  }
+
+  // Nothing, or the level of the adaptive step and then, when it is remembered, where the last step or part began.
+  std::vector<double> history() const {
+    std::vector<double> history;
+    if (!adaptive && !has_previous) return history;
+    history.push_back(adaptive ? adaptive->level() : 0);
+    if (!has_previous) return history;
+    history.push_back(previous.time);
+    history.insert(history.end(), previous.q.begin(), previous.q.end());
+    history.insert(history.end(), previous.qdot.begin(), previous.qdot.end());
+    return history;
+  }
+
+  void set_history(const std::vector<double>& history) {
+    const size_t n = state.q.size();
+    if (history.size() > 1 && history.size() != 2 + 2 * n)
+      throw InvalidInput("the checkpoint's history has " + std::to_string(history.size()) +
+                         " entries; this scene needs " + std::to_string(2 + 2 * n));
+    if (adaptive && !history.empty()) adaptive->set_level(static_cast<int>(history[0]));
+    has_previous = remembers() && history.size() > 1;
+    if (!has_previous) return;
+    const auto q = history.begin() + 2;
+    previous = {{q, q + static_cast<long>(n)}, {q + static_cast<long>(n), history.end()}, history[1]};
   }
 
   Model model;
   SimulationOptions options;
   State state, start;
-  State before;  // the state before the last step
+  State before;    // the state before the last step
+  State previous;  // and before the one before that, when the integrator or the guess needs it
+  bool has_previous = false;
   std::unique_ptr<Integrator> integrator;
+  InitialGuess guess;
   std::unique_ptr<SearchDirection> direction;
   std::unique_ptr<Pins> pins;
   std::unique_ptr<IncrementalPotential> E;
   Minimizer minimizer;
+  std::optional<AdaptiveStep> adaptive;
+  StepForces forces;  // of the last step
   Ledger ledger;
   int steps_taken = 0;
 };
@@ -198,7 +272,9 @@ TetFields Simulation::tet_fields() const {
 
 std::string Simulation::solver_description() const { return impl_->direction->description(); }
 
-Simulation::Snapshot Simulation::snapshot() const { return {impl_->state, impl_->start, impl_->steps_taken, {}}; }
+Simulation::Snapshot Simulation::snapshot() const {
+  return {impl_->state, impl_->start, impl_->steps_taken, impl_->history()};
+}
 
 void Simulation::restore(const Snapshot& snapshot) {
   const size_t n = impl_->state.q.size();
@@ -210,7 +286,9 @@ void Simulation::restore(const Snapshot& snapshot) {
   impl_->start = snapshot.start;
   impl_->steps_taken = snapshot.steps_taken;
   *impl_->pins = Pins(impl_->model.pins, impl_->start.q);
-  impl_->begin_step(impl_->state.q, impl_->state.time);  // moving targets stand where they stood
+  impl_->set_history(snapshot.history);
+  const double h = impl_->integrator->is_static() ? 0 : impl_->options.h;
+  tell_potential(*impl_->E, {impl_->state.q, h, impl_->state.time});  // moving targets stand where they stood
 }
 
 }  // namespace aspic

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/initial_guess.h"
 #include "optimize/minimize.h"
 
 namespace aspic {
@@ -13,8 +14,10 @@ struct StepReport {
 
   Status status = Status::converged;
   Criterion criterion = Criterion::scale;
-  int iterations = 0, trials = 0, linear_iterations = 0, hessians = 0, projected_hessians = 0;
-  double residual = 0;            // |M a + dV/dx| over the free vertices [N]
+  int iterations = 0, trials = 0, linear_iterations = 0, hessians = 0, projected_hessians = 0;  // of all its solves
+  InitialGuess initial_guess = InitialGuess::none;  // where the last of its minimisations started
+  int substeps = 1, rejected = 0;                   // parts it was taken in; parts tried that were too long
+  double residual = 0;            // |M a + dV/dx| over the free vertices [N]; the largest of the parts
   double residual_threshold = 0;  // the residual that was asked for [N]; 0 for a scheme without a solve
   double min_det_F = 0;
 

@@ -24,6 +24,8 @@ std::string_view to_string(Status status) {
       return "interrupted";
     case Status::undefined:
       return "undefined";
+    case Status::inaccurate:
+      return "inaccurate";
   }
   return "unknown";
 }

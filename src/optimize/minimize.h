@@ -20,6 +20,7 @@ enum class Status {
   no_descent,       // no descent direction could be computed
   interrupted,      // the observer asked to stop
   undefined,        // value or gradient is not finite at the start
+  inaccurate,       // not of a minimisation: the smallest part of an adaptive time step misses its tolerance
 };
 std::string_view to_string(Status status);
 inline bool is_success(Status status) { return status == Status::converged || status == Status::round_off; }

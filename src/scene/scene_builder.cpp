@@ -85,6 +85,8 @@ SimulationOptions options_of(const Table& document) {
   SimulationOptions options;
   options.h = time["step"].number();
   options.integrator = time["integrator"].text();
+  options.adaptive.tolerance = time["adaptive"]["tolerance"].number();
+  options.initial_guess = solver["initial_guess"].text();
   options.solver.method = solver["method"].text();
   options.solver.linear = solver["linear"].text();
   options.solver.definiteness = solver["definiteness"].text();

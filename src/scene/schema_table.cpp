@@ -19,6 +19,14 @@ std::vector<std::string> criterion_names() {
   return names;
 }
 
+const char* const kIntegrators =
+    "the scheme that takes a step (formulas, orders, energies: [integrators](integrators.md)). Implicit, a minimisation "
+    "per stage: `backward_euler` first order, damps; `linearly_implicit_euler` one Newton iteration of it; `bdf2` and "
+    "`tr_bdf2` second order, damp only what the step does not resolve; `midpoint` and `trapezoid` second order, damp "
+    "nothing. Explicit, stable for short steps only: `symplectic_euler` (what the lecture's slide prints as \"Forward "
+    "Euler\"), `forward_euler` (the classical one, gains energy), `rk4` fourth order. `quasi_static`: equilibrium, no "
+    "inertia";
+
 void add_scene(Schema& s) {
   s.sections.push_back({"scene", "*.toml", "What is simulated: the top level of the file."});
   add_keys(s, "scene",
@@ -67,8 +75,26 @@ void add_time(Schema& s) {
              .accepts = kText,
              .fallback = toml_string(usual.integrator),
              .choices = integrator_names(),
-             .meaning = "the scheme that turns a step into a minimisation",
-             .reason = "stable for every step length"}});
+             .meaning = kIntegrators,
+             .reason = "stable for every step length"},
+            {.name = "adaptive",
+             .accepts = kTable,
+             .fallback = "{}",
+             .table = "adaptive",
+             .meaning = "steps in parts, as short as their error asks for"}});
+  s.sections.push_back({"adaptive", "adaptive = { ... } in [time]",
+                        "Each step is taken in parts of `step` / 2^k. A part is taken once whole and once in halves, "
+                        "whose difference estimates its error; parts too long are rejected and halved, and a step whose "
+                        "smallest part (2^-20) is still inaccurate is reported as such. Frames and restarts stay at "
+                        "multiples of `step`."});
+  add_keys(s, "adaptive",
+           {{.name = "tolerance",
+             .accepts = kNumber,
+             .fallback = number_text(usual.adaptive.tolerance),
+             .range = {.min = 0, .max = 1},
+             .meaning = "error in position that a step may add, relative to the diagonal of the body at rest; 0: steps "
+                        "are taken whole. Not for bdf2 and quasi_static",
+             .reason = "a step costs what it did before"}});
 }
 
 void add_solver(Schema& s) {
@@ -83,6 +109,14 @@ void add_solver(Schema& s) {
         .choices = minimizer_names(),
         .meaning = "how the search direction is found",
         .reason = "converges in a few iterations"},
+       {.name = "initial_guess",
+        .accepts = kText,
+        .fallback = toml_string(SimulationOptions().initial_guess),
+        .choices = initial_guess_names(),
+        .meaning = "where a minimisation starts: `zero` the shape at rest, `current` where the body is, `extrapolated` "
+                   "its flight without forces q + h qdot, `last_increment` what the step before added, `best` the one "
+                   "of the last three with the lowest energy. A guess of infinite energy gives way to the best",
+        .reason = "never worse than where the body is"},
        {.name = "max_iterations",
         .accepts = kInteger,
         .fallback = std::to_string(usual.minimize.max_iterations),
