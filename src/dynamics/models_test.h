@@ -1,5 +1,6 @@
 // Small models that several tests share.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -68,6 +69,11 @@ inline Model damped_beam_with_moving_pins_and_targets(int n = 2) {
   model.damping.push_back(make_rayleigh_damping(*model.mass, 0.5, model.elasticity[0].get(), 1e-3));
   model.damping.push_back(make_strain_rate_damping(model.mesh, 0, std::vector<double>(model.mesh.tet_count(), 50.0)));
   return model;
+}
+
+inline bool is_explicit(const std::string& integrator) {
+  const std::vector<std::string> names = explicit_integrator_names();
+  return std::find(names.begin(), names.end(), integrator) != names.end();
 }
 
 inline Simulation simulate(Model model, SimulationOptions options = {}) {
