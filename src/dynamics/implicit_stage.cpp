@@ -54,6 +54,7 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
     MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, minimize, tools.observe);
     // The scheme asks for one iteration, not for a small gradient; what is left over stays in the report.
     if (report.status == Status::iteration_limit) report.status = Status::converged;
+    solve.round_off += options.weight * (report.gradient_round_off / tools.E.gradient_unit());
     return report;
   }
   MinimizeReport lead;
@@ -61,6 +62,7 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
   MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, minimize, tools.observe);
   if (!judges_direction(minimize.criterion))
     solve.threshold += options.weight * (report.threshold / tools.E.gradient_unit());
+  solve.round_off += options.weight * (report.gradient_round_off / tools.E.gradient_unit());
   add_work(lead, report);
   return report;
 }

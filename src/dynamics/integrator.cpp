@@ -80,10 +80,6 @@ std::vector<std::string> adaptive_integrator_names() {
   return names_where([](const Integrator& i) { return !i.is_static() && !i.is_multistep(); });
 }
 
-std::vector<std::string> explicit_integrator_names() {
-  return names_where([](const Integrator& i) { return !i.is_implicit(); });
-}
-
 std::unique_ptr<Integrator> make_integrator(std::string_view name) {
   for (const Entry& entry : entries())
     if (entry.name == name) return entry.make();

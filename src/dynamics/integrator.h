@@ -46,6 +46,7 @@ struct StepForces {
 struct StepSolve {
   MinimizeReport work = {.status = Status::converged};
   double threshold = 0;  // of |r| over the free vertices, that the solves were asked for [N]
+  double round_off = 0;  // the part of |r| that is noise [N]
   InitialGuess guess = InitialGuess::none;
 
   // False when there is nothing to go on from.

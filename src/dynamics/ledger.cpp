@@ -34,10 +34,20 @@ double Ledger::target_work(const StepTools& tools, int order, const State& end, 
   return order > 1 ? (early + (total(V, end.q) - at_end)) / 2 : early;
 }
 
+void Ledger::note_worst_vertex(const Pins& pins, StepReport& report) const {
+  double most = 0;
+  for (size_t i = 0; i + 2 < residual_.size(); i += 3) {
+    const double size = std::hypot(residual_[i], residual_[i + 1], residual_[i + 2]);
+    const int vertex = static_cast<int>(i / 3);
+    if (size > most && !pins.holds(vertex)) most = size, report.worst_vertex = vertex;
+  }
+  report.worst_residual = most;
+}
+
 void Ledger::add(const StepTools& tools, int order, const State& end, const StepForces& forces, StepReport& report) {
   const State& start = tools.start;
   const size_t n = end.q.size();
-  for (auto* v : {&Ma_, &momentum_}) v->assign(n, 0.0);
+  for (auto* v : {&Ma_, &momentum_, &residual_}) v->assign(n, 0.0);
   double potential_before = 0;
   const double target = target_work(tools, order, end, potential_before);
   const double kinetic_before = kinetic_energy(*tools.model.mass, start.qdot, momentum_);
@@ -47,7 +57,7 @@ void Ledger::add(const StepTools& tools, int order, const State& end, const Step
   double inertia_work = 0, gradient_work = 0, damping_work = 0;
   for (size_t i = 0; i < n; ++i) {
     const double dx = end.q[i] - start.q[i];
-    const double r = Ma_[i] + forces.gradient[i] + forces.damping[i];
+    const double r = residual_[i] = Ma_[i] + forces.gradient[i] + forces.damping[i];
     const bool pinned = tools.pins.holds(static_cast<int>(i / 3));
     (pinned ? reaction_work : residual_work) += r * dx;
     if (!pinned) residual_squared += r * r;
@@ -67,7 +77,10 @@ void Ledger::add(const StepTools& tools, int order, const State& end, const Step
   const double pin_work = reaction_work + target;
   const double loss = (inertia_work - kinetic_gain) + gradient_work - (potential_gain - target);
   const double residual = std::sqrt(residual_squared);
-  if (!(residual <= report.residual)) report.residual = residual;  // NaN stays
+  if (!(residual <= report.residual)) {  // NaN stays
+    report.residual = residual;
+    note_worst_vertex(tools.pins, report);
+  }
   report.pin_work += pin_work;
   report.damping_loss += damping_work;
   report.numerical_loss += loss;

@@ -22,8 +22,9 @@ class Ledger {
 
  private:
   double target_work(const StepTools& tools, int order, const State& end, double& potential_before);
+  void note_worst_vertex(const Pins& pins, StepReport& report) const;
 
-  std::vector<double> Ma_, momentum_;
+  std::vector<double> Ma_, momentum_, residual_;
 };
 
 // 1/2 qdot' M qdot [J]; `momentum` receives M qdot.

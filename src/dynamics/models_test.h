@@ -1,10 +1,10 @@
 // Small models that several tests share.
 #pragma once
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
 
+#include "dynamics/integrator.h"
 #include "dynamics/simulation.h"
 #include "energy/linear_load.h"
 #include "energy/rayleigh_damping.h"
@@ -72,8 +72,7 @@ inline Model damped_beam_with_moving_pins_and_targets(int n = 2) {
 }
 
 inline bool is_explicit(const std::string& integrator) {
-  const std::vector<std::string> names = explicit_integrator_names();
-  return std::find(names.begin(), names.end(), integrator) != names.end();
+  return !make_integrator(integrator)->is_implicit();
 }
 
 inline Simulation simulate(Model model, SimulationOptions options = {}) {

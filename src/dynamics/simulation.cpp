@@ -156,6 +156,9 @@ struct Simulation::Impl {
     return !adaptive || is_success(status);
   }
 
+  // Tells the terms of V the time, as between steps.
+  void stand_at(double time) const { tell_potential(*E, {state.q, integrator->is_static() ? 0 : options.h, time}); }
+
   // The body stays where the step began, though time and moving targets may go on to `time`; a scheme of several steps
   // begins anew.
   void take_back(const IterationObserver& observe, double time, StepReport& report) {
@@ -165,7 +168,7 @@ struct Simulation::Impl {
     state.time = time;
     has_previous = has_previous && time == before.time;
     const StepTools stand_still = tools(observe, time);
-    tell_potential(*E, {before.q, integrator->is_static() ? 0 : options.h, time});
+    stand_at(time);
     forces.reset(state.q.size());
     for (const Energy* V : E->potential()) V->add_gradient(state.q, 1, forces.gradient);
     ledger.add(stand_still, integrator->order(), state, forces, report);
@@ -180,6 +183,7 @@ struct Simulation::Impl {
     report.hessians = solved.work.hessians;
     report.projected_hessians = solved.work.projected_hessians;
     report.residual_threshold = solved.threshold;
+    report.residual_round_off = solved.round_off;
     report.initial_guess = solved.guess;
   }
 
@@ -270,6 +274,14 @@ TetFields Simulation::tet_fields() const {
   return fields;
 }
 
+bool Simulation::is_implicit() const { return impl_->integrator->is_implicit(); }
+
+StableStep Simulation::stable_step() const {
+  const StableStep stable = aspic::stable_step(*impl_->E, impl_->model, *impl_->pins, impl_->start.q);
+  impl_->stand_at(impl_->state.time);
+  return stable;
+}
+
 std::string Simulation::solver_description() const { return impl_->direction->description(); }
 
 Simulation::Snapshot Simulation::snapshot() const {
@@ -287,8 +299,7 @@ void Simulation::restore(const Snapshot& snapshot) {
   impl_->steps_taken = snapshot.steps_taken;
   *impl_->pins = Pins(impl_->model.pins, impl_->start.q);
   impl_->set_history(snapshot.history);
-  const double h = impl_->integrator->is_static() ? 0 : impl_->options.h;
-  tell_potential(*impl_->E, {impl_->state.q, h, impl_->state.time});  // moving targets stand where they stood
+  impl_->stand_at(impl_->state.time);  // moving targets stand where they stood
 }
 
 }  // namespace aspic

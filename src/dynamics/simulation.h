@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dynamics/model.h"
+#include "dynamics/stable_step.h"
 #include "dynamics/state.h"
 #include "dynamics/step_report.h"
 #include "optimize/solver.h"
@@ -27,7 +28,6 @@ struct SimulationOptions {
 std::vector<std::string> integrator_names();
 std::vector<std::string> initial_guess_names();
 std::vector<std::string> adaptive_integrator_names();  // those whose steps can be divided
-std::vector<std::string> explicit_integrator_names();
 
 class Simulation {
  public:
@@ -49,6 +49,8 @@ class Simulation {
   double kinetic_energy() const;                     // [J]
   std::vector<double> potential_energies() const;    // [J]
   TetFields tet_fields() const;
+  bool is_implicit() const;                // the integrator minimises
+  StableStep stable_step() const;          // at the start: what an explicit integrator can take
   std::string solver_description() const;  // e.g. "cholesky (1 856 vertices)": what auto chose and why
 
   // Everything that the next steps depend on besides model and options; restoring continues to the same bits.

@@ -19,6 +19,9 @@ struct StepReport {
   int substeps = 1, rejected = 0;                   // parts it was taken in; parts tried that were too long
   double residual = 0;            // |M a + dV/dx| over the free vertices [N]; the largest of the parts
   double residual_threshold = 0;  // the residual that was asked for [N]; 0 for a scheme without a solve
+  double residual_round_off = 0;  // the part of a residual that double precision cannot tell from zero [N]
+  int worst_vertex = -1;          // where most of the residual is left
+  double worst_residual = 0;      // its size there [N]
   double min_det_F = 0;
 
   // The ledger: kinetic + potential changes by pin_work - damping_loss - numerical_loss + residual_work. [J]
