@@ -43,7 +43,7 @@ struct Beam {
     H = std::make_unique<BlockSparse>(pattern);
     H->set_zero();
     mass.add_to(1, *H);
-    elasticity->add_hessian(x, bench::kTimeStep * bench::kTimeStep, Definiteness::exact, *H);
+    elasticity->add_hessian(x, bench::kTimeStep * bench::kTimeStep, {Definiteness::exact}, *H);
   }
 };
 
@@ -68,7 +68,7 @@ void gradient(benchmark::State& state, const std::string& material) {
 
 void hessian(benchmark::State& state, const std::string& material, Definiteness definiteness) {
   Beam beam(material);
-  for (auto _ : state) beam.elasticity->add_hessian(beam.x, 1e-4, definiteness, *beam.H);
+  for (auto _ : state) beam.elasticity->add_hessian(beam.x, 1e-4, {definiteness}, *beam.H);
   report(state, beam.mesh.tet_count());
 }
 

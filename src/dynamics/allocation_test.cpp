@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "dynamics/models_test.h"
+#include "linalg/linear_solver.h"
 
 namespace aspic {
 namespace {

@@ -24,18 +24,6 @@ BlockPattern pattern_of(const Model& model) {
   return make_pattern(model.mesh.vertex_count(), std::move(couplings));
 }
 
-Definiteness definiteness(HessianKind kind) {
-  switch (kind) {
-    case HessianKind::clamped:
-      return Definiteness::clamped;
-    case HessianKind::absolute:
-      return Definiteness::absolute;
-    case HessianKind::exact:
-      break;
-  }
-  return Definiteness::exact;
-}
-
 }  // namespace
 
 IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
@@ -84,11 +72,12 @@ void IncrementalPotential::gradient(std::span<const double> q, std::span<double>
   pins_.set_zero(g);
 }
 
-const BlockSparse& IncrementalPotential::hessian(std::span<const double> q, HessianKind kind) {
+const BlockSparse& IncrementalPotential::hessian(std::span<const double> q, const Projection& projection) {
   H_.set_zero();
+  projected_elements_ = 0;
   if (inertia_ != 0) model_.mass->add_to(inertia_, H_);
-  for (const Energy* V : potential_) V->add_hessian(q, factor_, definiteness(kind), H_);
-  for (const Energy* D : damping_) D->add_hessian(q, factor_, definiteness(kind), H_);
+  for (const Energy* V : potential_) projected_elements_ += V->add_hessian(q, factor_, projection, H_);
+  for (const Energy* D : damping_) projected_elements_ += D->add_hessian(q, factor_, projection, H_);
   pins_.set_identity(H_);
 
   // Positions are known to eps |q|, so forces are to eps |q| times the stiffness that a vertex feels.
@@ -133,9 +122,11 @@ void IncrementalPotential::measure(const TetMesh& mesh) {
     }
   }
   H_.set_zero();
-  for (const Energy* V : potential_) V->add_hessian(rest, 1, Definiteness::absolute, H_);
+  for (const Energy* V : potential_) V->add_hessian(rest, 1, {Definiteness::absolute}, H_);
   H_.multiply(growth, term_);
   growth_stiffness_ = dot(growth, term_);
+  model_.mass->multiply(growth, term_);
+  growth_inertia_ = dot(growth, term_);
 }
 
 }  // namespace aspic

@@ -20,9 +20,13 @@ class IncrementalPotential : public Objective {
 
   double value(std::span<const double> q) override;
   void gradient(std::span<const double> q, std::span<double> g) override;
-  const BlockSparse& hessian(std::span<const double> q, HessianKind kind) override;
+  const BlockSparse& hessian(std::span<const double> q, const Projection& projection) override;
+  int projected_elements() const override { return projected_elements_; }
   double max_step(std::span<const double> q, std::span<const double> d) override;
+  // The energy of doubling the body in size, in the units of E: offsets of the potential do not count.
+  double value_scale() const override { return inertia_ * growth_inertia_ + factor_ * growth_stiffness_; }
   double gradient_scale() const override { return gradient_scale_; }
+  double gradient_unit() const override { return factor_; }  // g is a force times f
   double gradient_round_off() const override { return gradient_round_off_; }
   double value_round_off() const override { return value_round_off_; }
 
@@ -31,8 +35,9 @@ class IncrementalPotential : public Objective {
   const BlockPattern& pattern() const { return pattern_; }
 
  private:
-  // Sets the second derivative of V along a uniform growth of the body at rest, a modulus times the volume [J], and
-  // the largest distance from its centre [m]: the sizes by which round-off is judged.
+  // Sets the second derivative of V along a uniform growth of the body at rest, a modulus times the volume [J], its
+  // moment of inertia about the centre [kg m^2] and the largest distance from there [m]: the sizes by which errors are
+  // judged.
   void measure(const TetMesh& mesh);
   double free_norm(std::span<const double> v) const;
   void add_term_gradient(const Energy& term, std::span<const double> q, std::span<double> g);
@@ -45,7 +50,8 @@ class IncrementalPotential : public Objective {
 
   std::vector<double> predicted_;
   double inertia_ = 1, factor_ = 1;
-  double growth_stiffness_ = 0, radius_ = 0;
+  double growth_stiffness_ = 0, growth_inertia_ = 0, radius_ = 0;
+  int projected_elements_ = 0;
   double gradient_scale_ = 0, gradient_round_off_ = 0, value_round_off_ = 0;
   std::vector<double> offset_, term_;  // scratch: q - q~, one term's gradient
 };

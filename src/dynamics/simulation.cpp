@@ -11,31 +11,6 @@
 namespace aspic {
 namespace {
 
-struct NamedDefiniteness {
-  std::string name;
-  NewtonDefiniteness value;
-};
-const std::vector<NamedDefiniteness>& definiteness_table() {
-  static const std::vector<NamedDefiniteness> table = {{"on_demand", NewtonDefiniteness::on_demand},
-                                                       {"exact", NewtonDefiniteness::exact},
-                                                       {"clamped", NewtonDefiniteness::clamped},
-                                                       {"absolute", NewtonDefiniteness::absolute}};
-  return table;
-}
-
-NewtonDefiniteness definiteness_named(const std::string& name) {
-  for (const NamedDefiniteness& entry : definiteness_table())
-    if (entry.name == name) return entry.value;
-  throw InvalidInput("definiteness = '" + name + "' is unknown" + suggestion(name, definiteness_names()));
-}
-
-std::unique_ptr<SearchDirection> make_direction(const SolverOptions& options) {
-  if (options.method == "newton")
-    return std::make_unique<Newton>(make_linear_solver(options.linear), definiteness_named(options.definiteness));
-  if (options.method == "gradient_descent") return std::make_unique<GradientDescent>();
-  throw InvalidInput("method = '" + options.method + "' is unknown" + suggestion(options.method, minimizer_names()));
-}
-
 std::string listed(const std::vector<int>& indices) {
   std::string text;
   for (size_t i = 0; i < std::min<size_t>(indices.size(), 5); ++i) text += (i ? ", " : "") + std::to_string(indices[i]);
@@ -83,14 +58,6 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
 
 }  // namespace
 
-std::vector<std::string> minimizer_names() { return {"newton", "gradient_descent"}; }
-
-std::vector<std::string> definiteness_names() {
-  std::vector<std::string> names;
-  for (const NamedDefiniteness& entry : definiteness_table()) names.push_back(entry.name);
-  return names;
-}
-
 struct Simulation::Impl {
   Impl(Model m, State initial, SimulationOptions o)
       : model(std::move(m)),
@@ -98,9 +65,10 @@ struct Simulation::Impl {
         state(std::move(initial)),
         start(state),
         integrator(make_integrator(options.integrator)),
-        direction(make_direction(options.solver)),
+        direction(make_search_direction(options.solver)),
         pins(std::make_unique<Pins>(model.pins, start.q)),
         E(std::make_unique<IncrementalPotential>(model, *pins)) {
+    options.solver.minimize.h = options.h;
     if (!(options.h > 0) || !std::isfinite(options.h))
       throw InvalidInput("time.step = " + std::to_string(options.h) + "; it must be positive");
     if (!integrator->is_static()) require_mass(model, *pins);
@@ -165,8 +133,8 @@ struct Simulation::Impl {
     report.linear_iterations = solved.linear_iterations;
     report.hessians = solved.hessians;
     report.projected_hessians = solved.projected_hessians;
-    const double h = options.h;
-    if (integrator->is_implicit()) report.residual_threshold = solved.threshold / (integrator->is_static() ? 1 : h * h);
+    const bool judges_forces = integrator->is_implicit() && !judges_direction(report.criterion);
+    if (judges_forces) report.residual_threshold = solved.threshold / E->gradient_unit();
     return report;
   }
 

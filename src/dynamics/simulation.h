@@ -7,15 +7,9 @@
 #include "dynamics/model.h"
 #include "dynamics/state.h"
 #include "dynamics/step_report.h"
+#include "optimize/solver.h"
 
 namespace aspic {
-
-struct SolverOptions {
-  std::string method = "newton";           // "newton", "gradient_descent"
-  std::string linear = "auto";             // see linear_solver_names()
-  std::string definiteness = "on_demand";  // "exact", "clamped", "absolute", "on_demand"
-  MinimizeOptions minimize;
-};
 
 struct SimulationOptions {
   double h = 0.01;                            // time step [s]
@@ -24,8 +18,6 @@ struct SimulationOptions {
 };
 
 std::vector<std::string> integrator_names();
-std::vector<std::string> minimizer_names();
-std::vector<std::string> definiteness_names();
 
 class Simulation {
  public:

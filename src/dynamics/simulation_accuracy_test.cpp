@@ -36,7 +36,7 @@ class AffineLoad : public Energy {
   void add_gradient(Positions, double scale, std::span<double> g) const override {
     for (size_t i = 0; i < g.size(); ++i) g[i] -= scale * force_[i];
   }
-  void add_hessian(Positions, double, Definiteness, BlockSparse&) const override {}
+  int add_hessian(Positions, double, const Projection&, BlockSparse&) const override { return 0; }
 
  private:
   const MassMatrix& mass_;

@@ -26,7 +26,7 @@ inline Errors difference_errors(const Energy& V, const BlockPattern& pattern, co
   V.add_gradient(ahead, 1, g_ahead);
   V.add_gradient(behind, 1, g_behind);
   BlockSparse H(pattern);
-  V.add_hessian(x, 1, Definiteness::exact, H);
+  V.add_hessian(x, 1, {Definiteness::exact}, H);
   H.multiply(d, Hd);
   double slope = 0, scale = 0, largest = 0, worst = 0;
   for (size_t i = 0; i < n; ++i) {

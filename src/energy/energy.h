@@ -5,14 +5,11 @@
 #include <string_view>
 
 #include "linalg/block_sparse.h"
+#include "linalg/projection.h"
 
 namespace aspic {
 
 using Positions = std::span<const double>;  // x, 3 per vertex [m]
-
-// What to do with an element whose Hessian has negative eigenvalues: leave it, raise them to a small positive
-// number, or take their absolute value.
-enum class Definiteness { exact, clamped, absolute };
 
 struct StepContext {
   Positions start;  // x at the start of the step
@@ -32,7 +29,8 @@ class Energy {
   virtual void add_gradient(Positions x, double scale, std::span<double> g) const = 0;  // g += scale dV/dx
   virtual void add_couplings(Couplings&) const {}  // which vertices share a 3x3 block
   virtual void bind(const BlockPattern&) {}        // remember my slots
-  virtual void add_hessian(Positions x, double scale, Definiteness, BlockSparse& H) const = 0;  // H += scale d2V/dx2
+  // H += scale d2V/dx2; returns how many elements were projected.
+  virtual int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const = 0;
   virtual double max_step(Positions, std::span<const double>) const {  // largest safe alpha along d
     return std::numeric_limits<double>::infinity();
   }

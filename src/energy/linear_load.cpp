@@ -25,7 +25,7 @@ class LinearLoad : public Energy {
     for (size_t i = 0; i < x.size(); ++i) g[i] -= scale * force_[i];
   }
 
-  void add_hessian(Positions, double, Definiteness, BlockSparse&) const override {}
+  int add_hessian(Positions, double, const Projection&, BlockSparse&) const override { return 0; }
 
  private:
   std::string name_;

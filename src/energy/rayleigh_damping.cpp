@@ -27,7 +27,7 @@ class RayleighDamping : public Energy {
     start_.assign(step.start.begin(), step.start.end());
     C_->set_zero();
     mass_.add_to(mass_factor_, *C_);
-    if (stiffness_factor_ > 0) elasticity_->add_hessian(step.start, stiffness_factor_, Definiteness::clamped, *C_);
+    if (stiffness_factor_ > 0) elasticity_->add_hessian(step.start, stiffness_factor_, {Definiteness::clamped}, *C_);
   }
 
   double value(Positions x) const override {
@@ -46,10 +46,11 @@ class RayleighDamping : public Energy {
 
   void add_couplings(Couplings& couplings) const override { mass_.add_couplings(couplings); }
 
-  void add_hessian(Positions, double scale, Definiteness, BlockSparse& H) const override {
-    if (h_ == 0) return;
+  int add_hessian(Positions, double scale, const Projection&, BlockSparse& H) const override {
+    if (h_ == 0) return 0;
     for (size_t k = 0; k < H.block.size(); ++k)
       for (int i = 0; i < 9; ++i) H.block[k].a[i] += scale / h_ * C_->block[k].a[i];
+    return 0;
   }
 
  private:

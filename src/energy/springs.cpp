@@ -41,9 +41,10 @@ class PointSprings : public Energy {
     for (size_t s = 0; s < springs_.size(); ++s) slot_[s] = pattern.diagonal(springs_[s].vertex);
   }
 
-  void add_hessian(Positions, double scale, Definiteness, BlockSparse& H) const override {
+  int add_hessian(Positions, double scale, const Projection&, BlockSparse& H) const override {
     for (size_t s = 0; s < springs_.size(); ++s)
       for (int r = 0; r < 3; ++r) H.block[slot_[s]](r, r) += scale * springs_[s].stiffness;
+    return 0;
   }
 
  private:
@@ -98,14 +99,17 @@ class VertexSprings : public Energy {
   }
 
   // K = k (n n' + (1 - l0/l) (I - n n')); the second factor is negative for a compressed spring.
-  void add_hessian(Positions x, double scale, Definiteness definiteness, BlockSparse& H) const override {
+  int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override {
+    int projected = 0;
     for (size_t i = 0; i < springs_.size(); ++i) {
       const Spring& s = springs_[i];
       const double l = length(x, s);
       const Vec3d n = l > 0 ? (1 / l) * (point(x, s.a) - point(x, s.b)) : Vec3d{{1, 0, 0}};
       double across = l > 0 ? 1 - s.rest_length / l : 0;
-      if (definiteness == Definiteness::clamped) across = std::max(across, 0.0);
-      if (definiteness == Definiteness::absolute) across = std::abs(across);
+      if (across < 0 && projection.kind != Definiteness::exact && (projection.covers(s.a) || projection.covers(s.b))) {
+        across = projection.kind == Definiteness::clamped ? 0 : -across;
+        ++projected;
+      }
       for (int c = 0; c < 3; ++c)
         for (int r = 0; r < 3; ++r) {
           const double k = scale * s.stiffness * ((1 - across) * n[r] * n[c] + (r == c ? across : 0));
@@ -114,6 +118,7 @@ class VertexSprings : public Energy {
           H.block[slot_[i][2]](r, c) -= k;
         }
     }
+    return projected;
   }
 
  private:

@@ -102,7 +102,7 @@ Eigen::VectorXd eigenvalues(Energy& V, const std::vector<double>& x, Definitenes
   const BlockPattern pattern = make_pattern(static_cast<int>(x.size() / 3), couplings);
   V.bind(pattern);
   BlockSparse H(pattern);
-  V.add_hessian(x, 1, definiteness, H);
+  V.add_hessian(x, 1, {definiteness}, H);
   Eigen::MatrixXd dense(x.size(), x.size());
   std::vector<double> e(x.size(), 0.0), column(x.size());
   for (size_t j = 0; j < x.size(); ++j) {

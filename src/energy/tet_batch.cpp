@@ -31,6 +31,14 @@ void TetBatch::bind(const BlockPattern& pattern) {
       }
 }
 
+unsigned TetBatch::lanes_covered(const Projection& projection) const {
+  if (projection.vertices.empty()) return (1U << count) - 1;
+  unsigned lanes = 0;
+  for (int l = 0; l < count; ++l)
+    for (const auto& corner : vertex) lanes |= static_cast<unsigned>(projection.covers(corner[l])) << l;
+  return lanes;
+}
+
 void TetBatch::scatter_gradient(const Mat3<Pack>& P, Pack weight, std::span<double> g) const {
   const auto b = shape_gradients();
   for (int v = 0; v < 4; ++v) {

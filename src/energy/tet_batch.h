@@ -45,6 +45,8 @@ struct TetBatch {
     return b;
   }
 
+  unsigned lanes_covered(const Projection& projection) const;  // bit l: lane l is a tet to be projected
+
   void scatter_gradient(const Mat3<Pack>& P, Pack weight, std::span<double> g) const;  // g_v += weight P b_v
   void scatter_hessian(const Mat9<Pack>& A, Pack weight, BlockSparse& H) const;        // H_uv += weight b_u' A b_v
   void bind(const BlockPattern& pattern);

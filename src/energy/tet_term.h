@@ -1,8 +1,10 @@
 // The sum over tets of volume * psi(F) for one material M. Included only where it is instantiated.
 #pragma once
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <span>
 #include <string>
 #include <vector>
@@ -62,13 +64,14 @@ class TetTerm : public TetElasticity {
     parallel_for(static_cast<int>(batches_.size()), [&](int i) { batches_[i].bind(pattern); });
   }
 
-  void add_hessian(Positions x, double scale, Definiteness definiteness, BlockSparse& H) const override {
+  int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override {
+    projected_.assign(batches_.size(), 0);
     for_each_batch([&](int i) {
       Mat9<Pack> A = M::hessian(F(i, x), params_[i]);
-      if (definiteness == Definiteness::clamped) make_definite(A, EigenvalueFilter::clamp);
-      if (definiteness == Definiteness::absolute) make_definite(A, EigenvalueFilter::absolute);
+      if (projection.kind != Definiteness::exact) projected_[i] = project(A, batches_[i], projection);
       batches_[i].scatter_hessian(A, Pack(scale) * batches_[i].volume, H);
     });
+    return std::accumulate(projected_.begin(), projected_.end(), 0);
   }
 
   double min_det_F(Positions x) const override {
@@ -98,6 +101,14 @@ class TetTerm : public TetElasticity {
     std::vector<int> order = morton_order(std::span(center).subspan(first, count));
     for (int& tet : order) tet += first;
     return order;
+  }
+
+  static char project(Mat9<Pack>& A, const TetBatch& batch, const Projection& projection) {
+    const bool clamp = projection.kind == Definiteness::clamped;
+    const unsigned lanes = batch.lanes_covered(projection);
+    if (lanes == 0) return 0;
+    return static_cast<char>(
+        std::popcount(make_definite(A, clamp ? EigenvalueFilter::clamp : EigenvalueFilter::absolute, lanes)));
   }
 
   static void write(int tet, int lane, Pack psi, Pack J, const Mat3<Pack>& s, TetFields& fields) {
@@ -153,6 +164,7 @@ class TetTerm : public TetElasticity {
   std::string name_;
   ColorClasses colors_;
   mutable std::vector<double> partial_;  // scratch of reduce
+  mutable std::vector<char> projected_;  // per batch: lanes projected by the last Hessian
 };
 
 template <class M>

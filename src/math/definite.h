@@ -38,11 +38,11 @@ unsigned indefinite_lanes(const Mat9<T>& H, double tolerance = 1e-12) {
 // What becomes of an eigenvalue l: max(l, floor) or max(|l|, floor).
 enum class EigenvalueFilter { clamp, absolute };
 
-// Filters the eigenvalues of the lanes that fail indefinite_lanes, with floor = relative_floor * (largest
-// |eigenvalue|), and leaves the others alone to the last bit. Returns the lanes that failed.
+// Filters the eigenvalues of those of the `lanes` that fail indefinite_lanes, with floor = relative_floor * (largest
+// |eigenvalue|), and leaves the others alone to the last bit. Returns the lanes that were filtered.
 template <class T>
-unsigned make_definite(Mat9<T>& H, EigenvalueFilter filter, double relative_floor = 1e-9) {
-  const unsigned failed = indefinite_lanes(H);
+unsigned make_definite(Mat9<T>& H, EigenvalueFilter filter, unsigned lanes = ~0U, double relative_floor = 1e-9) {
+  const unsigned failed = indefinite_lanes(H) & lanes;
   if (failed == 0) return failed;
   std::array<T, 81> entries;
   std::copy(H.a, H.a + 81, entries.begin());

@@ -103,7 +103,7 @@ TEST(MakeDefinite, ClampsOrReflectsTheNegativeEigenvaluesOnly) {
     Spectrum expected = values;
     for (double& l : expected) l = std::fmax(filter == EigenvalueFilter::clamp ? l : std::abs(l), floor);
     Mat9d H = with_spectrum(values, Q);
-    make_definite(H, filter, 1e-8);
+    make_definite(H, filter, ~0U, 1e-8);
     const Mat9d H_expected = with_spectrum(expected, Q);
     for (int i = 0; i < 81; ++i) EXPECT_NEAR(H.a[i], H_expected.a[i], 1e-13);
     EXPECT_EQ(indefinite_lanes(H), 0u);

@@ -1,4 +1,4 @@
-#include "optimize/search_direction.h"
+#include "optimize/gradient_descent.h"
 
 namespace aspic {
 

@@ -7,32 +7,36 @@ namespace aspic {
 namespace {
 
 double allowed_value(double value, double alpha, double slope, const LineSearchOptions& options) {
+  if (options.test == DecreaseTest::none) return INFINITY;
   const double reach = options.test == DecreaseTest::slide ? 1.0 : alpha;
   return value + options.sufficient_decrease * reach * slope;
 }
 
 }  // namespace
 
-LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<const double> d, double value,
+LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<const double> d, const KnownValue& value,
                            double slope, const LineSearchOptions& options, std::span<double> trial,
-                           std::span<double> trial_gradient) {
-  const double noise = E.value_round_off();
+                           std::span<double> trial_gradient, std::vector<Trial>& trials) {
   LineSearchResult result;
+  trials.clear();
   double alpha = std::min(options.alpha_max, E.max_step(x, d));
   for (; alpha >= options.tolerance; alpha *= options.shrink) {
     for (size_t i = 0; i < x.size(); ++i) trial[i] = x[i] + alpha * d[i];
-    const double trial_value = E.value(trial);
-    ++result.trials;
-    bool accepted = options.test == DecreaseTest::none;
-    if (!accepted && std::abs(trial_value - value) <= noise) {
+    Trial& now = trials.emplace_back(Trial{alpha, E.value(trial), allowed_value(value.E, alpha, slope, options)});
+    if (options.test == DecreaseTest::none) {
+      now.accepted = true;
+    } else if (std::abs(now.value - value.E) <= value.round_off) {
       E.gradient(trial, trial_gradient);
-      accepted = result.gradient_known = E.dot(trial_gradient, d) <= (2 * options.sufficient_decrease - 1) * slope;
-    } else if (!accepted) {
-      accepted = trial_value <= allowed_value(value, alpha, slope, options);  // false for what is not a number
+      ++result.gradients;
+      now.by_slope = true;
+      now.accepted = E.dot(trial_gradient, d) <= (2 * options.sufficient_decrease - 1) * slope;
+    } else {
+      now.accepted = now.value <= now.bound;  // false for what is not a number
     }
-    if (accepted) {
+    if (now.accepted) {
       result.alpha = alpha;
-      result.value = trial_value;
+      result.value = {now.value, E.value_round_off()};
+      result.gradient_known = now.by_slope;
       return result;
     }
   }

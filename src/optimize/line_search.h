@@ -1,6 +1,7 @@
 // Backtracking line search: try alpha_max, then shrink by p until E has decreased enough.
 #pragma once
 #include <span>
+#include <vector>
 
 #include "optimize/objective.h"
 
@@ -20,17 +21,32 @@ struct LineSearchOptions {
   DecreaseTest test = DecreaseTest::textbook;
 };
 
+// What E is at x.
+struct KnownValue {
+  double E = 0;
+  double round_off = 0;  // the part of it that is noise
+};
+
+struct Trial {
+  double alpha = 0;
+  double value = 0;       // E(x + alpha d)
+  double bound = 0;       // the largest value that the test accepts
+  bool by_slope = false;  // the difference to E(x) drowns in round-off: judged by the slope at the trial
+  bool accepted = false;
+};
+
 struct LineSearchResult {
-  double alpha = 0;  // 0: stuck
-  double value = 0;  // E(x + alpha d)
-  int trials = 0;
+  double alpha = 0;             // 0: stuck
+  KnownValue value;             // at x + alpha d
+  int gradients = 0;            // evaluated
   bool gradient_known = false;  // `trial_gradient` holds the gradient at the accepted trial
 };
 
 // Near convergence the differences of E drown in round-off; a trial whose value lies within that noise is then judged
-// by the slope there (approximate Wolfe condition, [Hager and Zhang 2005]). `trial` receives x + alpha d.
-LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<const double> d, double value,
+// by the slope there (approximate Wolfe condition, [Hager and Zhang 2005]). `trial` receives x + alpha d, and `trials`
+// every one that was made.
+LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<const double> d, const KnownValue& value,
                            double slope /* g.d */, const LineSearchOptions& options, std::span<double> trial,
-                           std::span<double> trial_gradient);
+                           std::span<double> trial_gradient, std::vector<Trial>& trials);
 
 }  // namespace aspic

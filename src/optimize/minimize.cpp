@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
+#include "base/stopwatch.h"
+
 namespace aspic {
 
 std::string_view to_string(Status status) {
@@ -33,22 +36,70 @@ std::string_view to_string(Criterion criterion) {
       return "first_gradient";
     case Criterion::absolute:
       return "absolute";
+    case Criterion::decrement:
+      return "decrement";
+    case Criterion::velocity:
+      return "velocity";
+    case Criterion::acceleration:
+      return "acceleration";
   }
   return "unknown";
 }
 
+std::vector<Criterion> all_criteria() {
+  return {Criterion::scale,     Criterion::first_gradient, Criterion::absolute,
+          Criterion::decrement, Criterion::velocity,       Criterion::acceleration};
+}
+
+// Where a minimisation is, and the sizes by which it is judged: read when they are fresh, because an observer may
+// evaluate E elsewhere.
+struct Minimizer::Progress {
+  Objective& E;
+  SearchDirection& direction;
+  std::span<double> x;
+  const MinimizeOptions& options;
+  MinimizeReport report;
+  KnownValue value;
+  double gradient_scale = 0, gradient_round_off = 0;
+  double slope = 0;             // g.d
+  LineSearchResult step;        // the last one
+  bool last_direction = false;  // the criterion holds for it
+
+  bool judges_direction() const { return aspic::judges_direction(options.criterion); }
+};
+
 namespace {
 
-double threshold(const Objective& E, const MinimizeOptions& options, double first_gradient_norm) {
+double threshold(const Objective& E, const MinimizeOptions& options, double scale, double first_gradient_norm) {
   switch (options.criterion) {
     case Criterion::scale:
-      return options.tolerance * E.gradient_scale();
+      return options.tolerance * scale;
     case Criterion::first_gradient:
       return options.tolerance * first_gradient_norm;
     case Criterion::absolute:
+      return options.tolerance * E.gradient_unit();
+    default:
       return options.tolerance;
   }
-  return 0;
+}
+
+double largest_displacement(std::span<const double> d) {
+  double largest = 0;
+  for (size_t i = 0; i + 2 < d.size(); i += 3)
+    largest = std::max(largest, d[i] * d[i] + d[i + 1] * d[i + 1] + d[i + 2] * d[i + 2]);
+  return std::sqrt(largest);
+}
+
+// What a criterion that looks at the direction sees of it.
+double direction_size(const Objective& E, const MinimizeOptions& options, std::span<const double> d, double slope) {
+  switch (options.criterion) {
+    case Criterion::velocity:
+      return largest_displacement(d) / options.h;
+    case Criterion::acceleration:
+      return largest_displacement(d) / (options.h * options.h);
+    default:
+      return std::sqrt(-slope / 2 / E.value_scale());
+  }
 }
 
 // Inner solves are loose while the minimum is far away and tight near it, so that convergence stays superlinear
@@ -62,61 +113,116 @@ constexpr double kRoundOffMargin = 100;
 // Round-off is as good as convergence only where it is small beside what the gradient is made of.
 constexpr double kResolved = 1e-3;
 
-bool is_round_off(const Objective& E, double gradient_norm, double margin) {
-  const double round_off = E.gradient_round_off();
-  return std::isfinite(round_off) && gradient_norm <= margin * round_off &&
-         gradient_norm <= kResolved * E.gradient_scale();
+bool is_round_off(double gradient_norm, double scale, double round_off, double margin) {
+  return std::isfinite(round_off) && gradient_norm <= margin * round_off && gradient_norm <= kResolved * scale;
+}
+
+void add(const Iteration& iteration, MinimizeReport& report) {
+  const DirectionReport& direction = iteration.direction;
+  report.values += iteration.trials;
+  report.trials += iteration.trials;
+  report.gradients += direction.gradients;
+  report.hessians += direction.hessians;
+  report.factorizations += direction.factorizations;
+  report.linear_iterations += direction.linear_iterations;
+  report.projected_hessians += direction.projected;
+  report.projected_elements += direction.projected_elements;
+  report.retreats += iteration.retreats;
 }
 
 }  // namespace
 
+// A direction and a step along it, by ever more cautious ways. False when there is none: the status says why.
+bool Minimizer::find_step(Progress& at, Iteration& iteration) {
+  Objective& E = at.E;
+  SearchDirection& direction = at.direction;
+  const MinimizeOptions& options = at.options;
+  MinimizeReport& report = at.report;
+  const double loose = forcing(report.gradient_norm / report.first_gradient_norm, options);
+  for (;; ++iteration.retreats) {
+    const bool found = direction.compute(E, at.x, g_, loose, d_, iteration.direction);
+    at.slope = found ? E.dot(g_, d_) : 0;
+    report.status = Status::no_descent;
+    if (at.slope < 0) {
+      if (at.judges_direction()) {
+        report.reached = direction_size(E, options, d_, at.slope);
+        at.last_direction = report.reached <= options.tolerance;
+      }
+      Stopwatch stopwatch;
+      at.step = backtrack(E, at.x, d_, at.value, at.slope, options.line_search, trial_, trial_gradient_, trials_);
+      iteration.trials += static_cast<int>(trials_.size());
+      report.gradients += at.step.gradients;
+      iteration.line_search_seconds += stopwatch.lap();
+      if (at.step.alpha > 0) return true;
+      report.status = Status::stuck;
+      if (at.last_direction) return report.status = Status::converged, false;
+      if (is_round_off(report.gradient_norm, at.gradient_scale, E.gradient_round_off(), kRoundOffMargin))
+        return report.status = Status::round_off, false;
+    }
+    if (!direction.retreat()) return false;
+  }
+}
+
+// Afterwards `trial_` and `trial_gradient_` hold where the step began.
+void Minimizer::take_step(Progress& at, Iteration& iteration) {
+  Stopwatch stopwatch;
+  at.gradient_round_off = at.E.gradient_round_off();  // of the last Hessian
+  std::swap_ranges(trial_.begin(), trial_.end(), at.x.begin());
+  at.value = at.step.value;
+  if (!at.step.gradient_known) {
+    at.E.gradient(at.x, trial_gradient_);
+    ++at.report.gradients;
+  }
+  g_.swap(trial_gradient_);
+  at.gradient_scale = at.E.gradient_scale();
+  iteration.decrement = -0.5 * at.slope;
+  iteration.alpha = at.step.alpha;
+  iteration.gradient_seconds = stopwatch.lap();
+}
+
 MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std::span<double> x,
                                    const MinimizeOptions& options, const IterationObserver& observe) {
+  if (judges_direction(options.criterion) && !direction.estimates_minimiser())
+    throw InvalidInput("criterion = '" + std::string(to_string(options.criterion)) +
+                       "' needs Newton's method: " + std::string(direction.name()) +
+                       " finds directions that do not tell how far the minimum is (try 'scale')");
   for (auto* v : {&g_, &d_, &trial_, &trial_gradient_}) v->resize(x.size());
-  MinimizeReport report;
-  report.value = E.value(x);
+  trials_.reserve(64);
+  direction.begin();
+
+  Progress at{E, direction, x, options, {}, {}};
+  MinimizeReport& report = at.report;
+  at.value = {E.value(x), E.value_round_off()};
   E.gradient(x, g_);
+  at.gradient_scale = E.gradient_scale();
+  at.gradient_round_off = E.gradient_round_off();
+  report.values = report.gradients = 1;
   for (int i = 0;; ++i) {
     report.iterations = i;
+    report.value = at.value.E;
     report.gradient_norm = std::sqrt(E.dot(g_, g_));
     if (i == 0) report.first_gradient_norm = report.gradient_norm;
-    report.threshold = threshold(E, options, report.first_gradient_norm);
-    if (!std::isfinite(report.value) || !std::isfinite(report.gradient_norm))
-      return report.status = Status::undefined, report;
-    if (report.gradient_norm <= report.threshold) return report.status = Status::converged, report;
-    if (is_round_off(E, report.gradient_norm, 1)) return report.status = Status::round_off, report;
-    if (i == options.max_iterations) return report.status = Status::iteration_limit, report;
+    if (!at.judges_direction()) report.reached = report.gradient_norm;
+    report.threshold = threshold(E, options, at.gradient_scale, report.first_gradient_norm);
+    const auto ended = [&](Status status) { return report.status = status, report; };
+    if (!std::isfinite(report.value) || !std::isfinite(report.gradient_norm)) return ended(Status::undefined);
+    if (at.last_direction || report.gradient_norm == 0) return ended(Status::converged);
+    if (!at.judges_direction() && report.reached <= report.threshold) return ended(Status::converged);
+    if (is_round_off(report.gradient_norm, at.gradient_scale, at.gradient_round_off, 1))
+      return ended(Status::round_off);
+    if (i == options.max_iterations) return ended(Status::iteration_limit);
 
-    Iteration iteration;
-    iteration.index = i;
-    iteration.value = report.value;
-    iteration.gradient_norm = report.gradient_norm;
-    const double loose = forcing(report.gradient_norm / report.first_gradient_norm, options);
-    const bool found = direction.compute(E, x, g_, loose, d_, iteration.direction);
-    report.hessians += iteration.direction.hessians;
-    report.linear_iterations += iteration.direction.linear_iterations;
-    report.projected_hessians += iteration.direction.projected;
-    const double slope = found ? E.dot(g_, d_) : 0;
-    if (!(slope < 0)) return report.status = Status::no_descent, report;
-
-    const LineSearchResult step =
-        backtrack(E, x, d_, report.value, slope, options.line_search, trial_, trial_gradient_);
-    report.trials += step.trials;
-    if (step.alpha == 0) {
-      const bool at_floor = is_round_off(E, report.gradient_norm, kRoundOffMargin);
-      return report.status = at_floor ? Status::round_off : Status::stuck, report;
+    LiveIteration iteration{{.index = i, .value = report.value, .gradient_norm = report.gradient_norm}, E};
+    const bool found = find_step(at, iteration);
+    add(iteration, report);
+    if (!found) return report;
+    take_step(at, iteration);
+    iteration.x = trial_, iteration.g = trial_gradient_, iteration.d = d_;
+    iteration.x_next = x, iteration.tried = trials_;
+    if (observe && !observe(iteration)) {
+      report.iterations = i + 1;
+      return ended(Status::interrupted);
     }
-    std::copy(trial_.begin(), trial_.end(), x.begin());
-    report.value = step.value;
-    if (step.gradient_known)
-      g_.swap(trial_gradient_);
-    else
-      E.gradient(x, g_);
-
-    iteration.decrement = -0.5 * slope;
-    iteration.alpha = step.alpha;
-    iteration.trials = step.trials;
-    if (observe && !observe(iteration)) return report.iterations = i + 1, report.status = Status::interrupted, report;
   }
 }
 

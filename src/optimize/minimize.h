@@ -13,7 +13,7 @@
 namespace aspic {
 
 enum class Status {
-  converged,        // the gradient is within the tolerance
+  converged,        // the criterion is within the tolerance
   round_off,        // no more progress is possible in double precision: as good as converged
   iteration_limit,  // max_iterations reached first
   stuck,            // the line search found no decrease
@@ -24,18 +24,25 @@ enum class Status {
 std::string_view to_string(Status status);
 inline bool is_success(Status status) { return status == Status::converged || status == Status::round_off; }
 
-// What `tolerance` is relative to.
+// What must be small. The last three look at the direction d, of a method for which x + d estimates the minimiser; the
+// step along it is still taken.
 enum class Criterion {
   scale,           // |g| <= tolerance * objective.gradient_scale(): for a time step, the forces that balance
   first_gradient,  // |g| <= tolerance * |g at the first iterate|
-  absolute,        // |g| <= tolerance
+  absolute,        // |g| <= tolerance * objective.gradient_unit(): for a time step, newtons
+  decrement,       // Newton decrement: sqrt(-g.d / 2) <= tolerance * sqrt(objective.value_scale())
+  velocity,        // largest |d of a vertex| <= tolerance * h
+  acceleration,    // largest |d of a vertex| <= tolerance * h^2
 };
 std::string_view to_string(Criterion criterion);
+std::vector<Criterion> all_criteria();
+inline bool judges_direction(Criterion criterion) { return criterion >= Criterion::decrement; }
 
 struct MinimizeOptions {
   int max_iterations = 50;
   double tolerance = 1e-6;
   Criterion criterion = Criterion::scale;
+  double h = 1;              // [s], what velocity and acceleration are measured by
   double max_forcing = 0.1;  // the loosest inner linear solve, as a relative residual
   LineSearchOptions line_search;
 };
@@ -47,26 +54,45 @@ struct Iteration {
   double decrement = 0;      // Newton decrement: -g.d / 2
   double alpha = 0;          // accepted step length
   int trials = 0;            // evaluations by the line search
+  int retreats = 0;          // how often a direction was of no use and another way was taken
   DirectionReport direction;
+  double line_search_seconds = 0, gradient_seconds = 0;  // wall time
+};
+
+// An iteration and what it was made of. The references are valid only while the observer is being called, which may
+// evaluate E wherever it likes: that changes no bit of the result.
+struct LiveIteration : Iteration {
+  Objective& E;
+  std::span<const double> x, g, d;  // before the step
+  std::span<const double> x_next;   // after it
+  std::span<const Trial> tried;     // by the line search
 };
 
 struct MinimizeReport {
   Status status = Status::iteration_limit;
   int iterations = 0;
   double value = 0, gradient_norm = 0, first_gradient_norm = 0;
-  double threshold = 0;  // the |g| that was asked for
-  int trials = 0, hessians = 0, linear_iterations = 0, projected_hessians = 0;
+  double reached = 0, threshold = 0;  // what the criterion looks at (|g|, or a size of d), and what was asked for
+  int values = 0, gradients = 0;      // evaluations
+  int trials = 0, hessians = 0, factorizations = 0, linear_iterations = 0;
+  int projected_hessians = 0, projected_elements = 0, retreats = 0;
 };
 
-using IterationObserver = std::function<bool(const Iteration&)>;  // false: stop here
+using IterationObserver = std::function<bool(const LiveIteration&)>;  // false: stop here
 
 class Minimizer {  // holds the scratch vectors, so that repeated calls allocate nothing
  public:
+  // Throws InvalidInput when the criterion judges directions and those of the method say nothing about the distance.
   MinimizeReport minimize(Objective& E, SearchDirection& direction, std::span<double> x, const MinimizeOptions& options,
                           const IterationObserver& observe = {});
 
  private:
+  struct Progress;
+  bool find_step(Progress& at, Iteration& iteration);
+  void take_step(Progress& at, Iteration& iteration);
+
   std::vector<double> g_, d_, trial_, trial_gradient_;
+  std::vector<Trial> trials_;
 };
 
 }  // namespace aspic

@@ -6,6 +6,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "optimize/gradient_descent.h"
+#include "optimize/newton.h"
 #include "optimize/test_functions.h"
 
 namespace aspic {
@@ -164,13 +166,14 @@ TEST(LineSearch, TextbookAndSlideTestsDifferByAlpha) {
   Rosenbrock f;
   const std::vector<double> x = {0, 0, 0}, d = {0.5, 0, 0};
   std::vector<double> trial(3), g(3);
+  std::vector<Trial> trials;
   LineSearchOptions options;
   options.sufficient_decrease = 0.6;
-  const LineSearchResult textbook = backtrack(f, x, d, f.value(x), -1, options, trial, g);
+  const LineSearchResult textbook = backtrack(f, x, d, {f.value(x)}, -1, options, trial, g, trials);
   EXPECT_GT(textbook.alpha, 0);
   EXPECT_LE(f.value(std::vector<double>{textbook.alpha * 0.5, 0, 0}), 1 - 0.6 * textbook.alpha);
   options.test = DecreaseTest::slide;
-  EXPECT_EQ(backtrack(f, x, d, f.value(x), -1, options, trial, g).alpha, 0);  // stuck
+  EXPECT_EQ(backtrack(f, x, d, {f.value(x)}, -1, options, trial, g, trials).alpha, 0);  // stuck
 }
 
 // f(x) = 8 x^2 + 1e9, whose differences near the minimum are lost in the round-off of 1e9.
@@ -178,7 +181,9 @@ class DrownedParabola : public Objective {
  public:
   double value(std::span<const double> x) override { return 8 * x[0] * x[0] + 1e9; }
   void gradient(std::span<const double> x, std::span<double> g) override { g[0] = 16 * x[0]; }
-  const BlockSparse& hessian(std::span<const double>, HessianKind) override { throw std::logic_error("not needed"); }
+  const BlockSparse& hessian(std::span<const double>, const Projection&) override {
+    throw std::logic_error("not needed");
+  }
   double value_round_off() const override { return 1e-7; }
 };
 
@@ -197,7 +202,8 @@ TEST(LineSearch, AnAscentDirectionIsStuck) {
   Rosenbrock f;
   const std::vector<double> x = {0, 0, 0}, d = {-1, 0, 0};
   std::vector<double> trial(3), g(3);
-  EXPECT_EQ(backtrack(f, x, d, f.value(x), -2, {}, trial, g).alpha, 0);
+  std::vector<Trial> trials;
+  EXPECT_EQ(backtrack(f, x, d, {f.value(x)}, -2, {}, trial, g, trials).alpha, 0);
 }
 
 }  // namespace

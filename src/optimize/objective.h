@@ -3,27 +3,31 @@
 #include <span>
 
 #include "linalg/block_sparse.h"
+#include "linalg/projection.h"
 
 namespace aspic {
-
-// What a Hessian may be asked to be; the objective decides how (see Definiteness of the energies).
-enum class HessianKind { exact, clamped, absolute };
 
 class Objective {
  public:
   virtual ~Objective() = default;
   virtual double value(std::span<const double> x) = 0;  // +inf where it is not defined
   virtual void gradient(std::span<const double> x, std::span<double> g) = 0;
-  virtual const BlockSparse& hessian(std::span<const double> x, HessianKind kind) = 0;
+  virtual const BlockSparse& hessian(std::span<const double> x, const Projection& projection) = 0;
+  virtual int projected_elements() const { return 0; }  // of the last Hessian
   virtual double max_step(std::span<const double>, std::span<const double>) {
     return 1e300;
   }  // largest feasible alpha along d
 
-  // The size against which the last gradient is small or large, in its own units, and the part of it that is
-  // round-off. A plain function measures against 1.
+  // A constant positive definite matrix in which steps may be measured, such as the mass; null: the identity.
+  virtual const BlockSparse* metric() { return nullptr; }
+
+  // The sizes against which the last value and the last gradient are small or large, in their own units, and the part
+  // of them that is round-off. A plain function measures against 1.
+  virtual double value_scale() const { return 1; }
   virtual double gradient_scale() const { return 1; }
+  virtual double gradient_unit() const { return 1; }  // what a gradient of one physical unit is
+  virtual double value_round_off() const { return 0; }
   virtual double gradient_round_off() const { return 0; }
-  virtual double value_round_off() const { return 0; }  // of the last value
 
   virtual double dot(std::span<const double> a,
                      std::span<const double> b);  // a distributed objective reduces over ranks

@@ -1,18 +1,18 @@
-// Where to go next: d = -g, or H d = -g.
+// Where to go next: the open slot "d = ?" of the minimisation loop.
 #pragma once
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 
-#include "linalg/linear_solver.h"
 #include "optimize/objective.h"
 
 namespace aspic {
 
 struct DirectionReport {
-  int hessians = 0, factorizations = 0, linear_iterations = 0;
-  bool projected = false;  // the exact Hessian was indefinite, so a projected one was used
+  int hessians = 0, gradients = 0, factorizations = 0, linear_iterations = 0;
+  int projected_elements = 0;  // whose Hessians were made definite
+  bool projected = false;      // a projected Hessian was used where the exact one was wanted
+  double hessian_seconds = 0, factorize_seconds = 0, solve_seconds = 0;  // wall time
 };
 
 class SearchDirection {
@@ -20,38 +20,19 @@ class SearchDirection {
   virtual ~SearchDirection() = default;
   virtual std::string_view name() const = 0;
   virtual std::string description() const { return std::string(name()); }  // with what it decided, and why
+
+  // A minimisation begins: forget the last one.
+  virtual void begin() {}
   // Writes d; false when no descent direction could be found. An inner solve to the relative residual
   // `forcing` is enough.
   virtual bool compute(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,
                        std::span<double> d, DirectionReport& report) = 0;
-};
+  // The last direction was of no use: none was found, or no step along it decreases E. True: compute again, there is a
+  // more cautious way.
+  virtual bool retreat() { return false; }
 
-class GradientDescent : public SearchDirection {
- public:
-  std::string_view name() const override { return "gradient_descent"; }
-  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, double forcing, std::span<double> d,
-               DirectionReport& report) override;
-};
-
-// on_demand: exact first; clamped only when the exact Hessian turns out indefinite.
-enum class NewtonDefiniteness { exact, clamped, absolute, on_demand };
-
-class Newton : public SearchDirection {
- public:
-  explicit Newton(std::unique_ptr<LinearSolver> solver,
-                  NewtonDefiniteness definiteness = NewtonDefiniteness::on_demand);
-  std::string_view name() const override { return "newton"; }
-  std::string description() const override;
-  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, double forcing, std::span<double> d,
-               DirectionReport& report) override;
-  const LinearSolver& solver() const { return *solver_; }
-
- private:
-  bool solve(const BlockSparse& H, std::span<const double> g, double tolerance, std::span<double> d,
-             DirectionReport& report);
-  std::unique_ptr<LinearSolver> solver_;
-  NewtonDefiniteness definiteness_;
-  uint64_t analyzed_version_ = 0;
+  // Whether x + d estimates the minimiser, so that the size of d tells how far it is.
+  virtual bool estimates_minimiser() const { return false; }
 };
 
 }  // namespace aspic

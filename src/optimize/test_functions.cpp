@@ -7,13 +7,13 @@ namespace aspic {
 namespace {
 
 // Raises the eigenvalues of the symmetric 2x2 matrix [[a, b], [b, c]] in place, or takes their absolute values.
-void make_definite(double& a, double& b, double& c, HessianKind kind) {
-  if (kind == HessianKind::exact) return;
+void make_definite(double& a, double& b, double& c, Definiteness kind) {
+  if (kind == Definiteness::exact) return;
   const double mean = (a + c) / 2, radius = std::hypot((a - c) / 2, b), angle = std::atan2(b, (a - c) / 2) / 2;
   double high = mean + radius, low = mean - radius;
   const double floor = 1e-8 * std::max(std::abs(high), std::abs(low));
   for (double* lambda : {&high, &low})
-    *lambda = std::max(kind == HessianKind::absolute ? std::abs(*lambda) : *lambda, floor);
+    *lambda = std::max(kind == Definiteness::absolute ? std::abs(*lambda) : *lambda, floor);
   const double n = std::cos(angle), m = std::sin(angle);
   a = high * n * n + low * m * m;
   b = (high - low) * n * m;
@@ -36,9 +36,9 @@ void Rosenbrock::gradient(std::span<const double> x, std::span<double> g) {
   g[2] = x[2];
 }
 
-const BlockSparse& Rosenbrock::hessian(std::span<const double> x, HessianKind kind) {
+const BlockSparse& Rosenbrock::hessian(std::span<const double> x, const Projection& projection) {
   double xx = 2 - 400 * (x[1] - 3 * x[0] * x[0]), xy = -400 * x[0], yy = 200;
-  make_definite(xx, xy, yy, kind);
+  make_definite(xx, xy, yy, projection.kind);
   H_.block[0] = {{xx, xy, 0, xy, yy, 0, 0, 0, 1}};
   return H_;
 }

@@ -11,7 +11,7 @@ class Rosenbrock : public Objective {
   Rosenbrock();
   double value(std::span<const double> x) override;
   void gradient(std::span<const double> x, std::span<double> g) override;
-  const BlockSparse& hessian(std::span<const double> x, HessianKind kind) override;
+  const BlockSparse& hessian(std::span<const double> x, const Projection& projection) override;
 
  private:
   BlockPattern pattern_;

@@ -75,7 +75,7 @@ DecreaseTest test_named(const std::string& name) {
 }
 
 Criterion criterion_named(const std::string& name) {
-  for (const Criterion c : {Criterion::scale, Criterion::first_gradient, Criterion::absolute})
+  for (const Criterion c : all_criteria())
     if (to_string(c) == name) return c;
   throw InvalidInput("criterion '" + name + "' is unknown");
 }

@@ -13,6 +13,12 @@ namespace {
 const Range kPositive{.min = 0, .min_open = true};
 const Range kNotNegative{.min = 0};
 
+std::vector<std::string> criterion_names() {
+  std::vector<std::string> names;
+  for (const Criterion criterion : all_criteria()) names.emplace_back(to_string(criterion));
+  return names;
+}
+
 void add_scene(Schema& s) {
   s.sections.push_back({"scene", "*.toml", "What is simulated: the top level of the file."});
   add_keys(s, "scene",
@@ -87,13 +93,16 @@ void add_solver(Schema& s) {
         .accepts = kNumber,
         .fallback = number_text(usual.minimize.tolerance),
         .range = kNotNegative,
-        .meaning = "the gradient's norm at which a step has converged, relative to `criterion`",
+        .meaning = "how small `criterion` must be for a step to have converged",
         .reason = "positions are then right to about six digits"},
        {.name = "criterion",
         .accepts = kText,
         .fallback = toml_string(scale),
-        .choices = {"scale", "first_gradient", "absolute"},
-        .meaning = "what `tolerance` is relative to: the forces that balance, the first gradient of the step, or 1 N",
+        .choices = criterion_names(),
+        .meaning = "what must be small, and in which unit: the gradient's norm, relative to the forces that balance "
+                   "(`scale`), to the first gradient of the step, or in N (`absolute`); or Newton's direction, as the "
+                   "square root of its decrement relative to the energy of doubling the body in size (`decrement`), as "
+                   "a `velocity` in m/s or an `acceleration` in m/s^2",
         .reason = "means the same in every unit and for every start"},
        {.name = "line_search",
         .accepts = kTable,

@@ -1,0 +1,26 @@
+// How a function is minimised, by names: the methods and what each of them can be told.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "optimize/minimize.h"
+
+namespace aspic {
+
+struct SolverOptions {
+  std::string method = "newton";        // see minimizer_names()
+  std::vector<std::string> fallback;    // methods that take over, in this order, where the one before finds no step
+  std::string preconditioner = "auto";  // see preconditioner_names(); "auto": what suits the method
+  std::string linear = "auto";          // see linear_solver_names()
+  std::string definiteness = "auto";    // see definiteness_names(); "auto": on_demand for Newton's method
+  MinimizeOptions minimize;
+};
+
+std::vector<std::string> minimizer_names();
+std::vector<std::string> definiteness_names();
+
+// Throws InvalidInput for a name that is unknown, and for one that the method has no use for, naming those that have.
+std::unique_ptr<SearchDirection> make_search_direction(const SolverOptions& options);
+
+}  // namespace aspic
