@@ -19,6 +19,7 @@ struct SolverOptions {
 
 std::vector<std::string> minimizer_names();
 std::vector<std::string> definiteness_names();
+std::vector<std::string> preconditioner_names();
 
 // Throws InvalidInput for a name that is unknown, and for one that the method has no use for, naming those that have.
 std::unique_ptr<SearchDirection> make_search_direction(const SolverOptions& options);
