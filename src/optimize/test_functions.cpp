@@ -61,7 +61,7 @@ std::vector<TestFunction> test_functions() {
            .remarks = "a dip beside a bump: indefinite away from the dip, flat far away",
            .minimizer = {-std::sqrt(0.5), 0},
            .minimum = -std::exp(-0.5) * std::sqrt(0.5),
-           .start = {0.3, 0.8},
+           .start = {-0.4, 0.3},
            .lower = {-2, -2},
            .upper = {2, 2}},
           {.name = "quadratic",
