@@ -107,6 +107,8 @@ void AdaptiveStep::keep(Integrator& integrator, const StepTools& whole, Ledger& 
     if (part->solve.work.status == Status::round_off) total_.work.status = Status::round_off;
   }
   total_.guess = second_.solve.guess;
+  total_.work.value = second_.solve.work.value;
+  total_.work.gradient_norm = second_.solve.work.gradient_norm;
   std::swap(previous_, first_.end);
   std::swap(now_, second_.end);
   has_previous_ = remembers_;

@@ -56,6 +56,8 @@ void StepForces::add(const IncrementalPotential& E, double weight, Positions x, 
 
 bool StepSolve::add(const MinimizeReport& stage) {
   add_work(stage, work);
+  work.value = stage.value;
+  work.gradient_norm = stage.gradient_norm;
   if (badness(stage.status) > badness(work.status)) work.status = stage.status;
   return stage.status != Status::undefined && stage.status != Status::interrupted;
 }

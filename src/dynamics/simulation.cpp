@@ -182,6 +182,10 @@ struct Simulation::Impl {
     report.linear_iterations = solved.work.linear_iterations;
     report.hessians = solved.work.hessians;
     report.projected_hessians = solved.work.projected_hessians;
+    report.gradients = solved.work.gradients;
+    report.factorizations = solved.work.factorizations;
+    report.objective = solved.work.value;
+    report.objective_gradient = solved.work.gradient_norm;
     report.residual_threshold = solved.threshold;
     report.residual_round_off = solved.round_off;
     report.initial_guess = solved.guess;
@@ -272,6 +276,12 @@ TetFields Simulation::tet_fields() const {
                    std::vector<double>(tets)};
   for (const auto& V : impl_->model.elasticity) V->evaluate(impl_->state.q, fields);
   return fields;
+}
+
+void Simulation::set_solver(const SolverOptions& solver) {
+  impl_->direction = make_search_direction(solver);
+  impl_->options.solver = solver;
+  impl_->options.solver.minimize.h = impl_->options.h;
 }
 
 bool Simulation::is_implicit() const { return impl_->integrator->is_implicit(); }

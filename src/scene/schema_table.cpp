@@ -13,12 +13,6 @@ namespace {
 const Range kPositive{.min = 0, .min_open = true};
 const Range kNotNegative{.min = 0};
 
-std::vector<std::string> criterion_names() {
-  std::vector<std::string> names;
-  for (const Criterion criterion : all_criteria()) names.emplace_back(to_string(criterion));
-  return names;
-}
-
 const char* const kIntegrators =
     "the scheme that takes a step (formulas, orders, energies: [integrators](integrators.md)). Implicit, a minimisation "
     "per stage: `backward_euler` first order, damps; `linearly_implicit_euler` one Newton iteration of it; `bdf2` and "
@@ -195,7 +189,7 @@ void add_line_search(Schema& s) {
             {.name = "test",
              .accepts = kText,
              .fallback = "\"textbook\"",
-             .choices = {"textbook", "slide", "none"},
+             .choices = decrease_test_names(),
              .meaning = "`textbook`: E + c alpha g.d (Armijo); `slide`: E + c g.d, as printed in the lecture; `none`: "
                         "accept the first trial",
              .reason = "converges from everywhere"}});
