@@ -290,6 +290,32 @@ class Run(CommandLine):
         self.aspic("run", scene, *hard, "--force", "--allow-unconverged")
         self.aspic("run", scene, "--resume", code=3)  # also when the steps were taken before
 
+    def test_an_explicit_scheme_that_blows_up_ends_the_run(self):
+        done = self.aspic("run", self.beam(duration=100), "--set", "time.integrator=\"rk4\"", "--set", "time.step=0.1",
+                          "--allow-unconverged", code=3)
+        self.assertIn("stopped after step", done.stderr)
+        self.assertIn("blew up", done.stderr)
+        steps = self.steps("out/beam")
+        self.assertLess(len(steps), 1000)
+        self.assertEqual(steps[-1]["status"], "undefined")
+        self.assertTrue(all(step["status"] == "converged" for step in steps[:-1]))
+
+    def test_adaptive_steps_are_counted_in_table_json_and_summary(self):
+        done = self.aspic("run", self.beam(), "--set", "time.adaptive.tolerance=1e-5", "--set",
+                          "time.integrator=\"tr_bdf2\"", "--json")
+        lines = [json.loads(line) for line in done.stdout.splitlines()]
+        steps = self.steps("out/beam")
+        self.assertEqual([line["substeps"] for line in lines], [int(step["substeps"]) for step in steps])
+        self.assertEqual([line["rejected"] for line in lines], [int(step["rejected"]) for step in steps])
+        taken, rejected = sum(line["substeps"] for line in lines), sum(line["rejected"] for line in lines)
+        self.assertGreater(taken, 2 * len(steps))
+        self.assertIn(f"parts      {taken} taken, {rejected} rejected", done.stderr)
+
+    def test_an_adaptive_step_without_a_scheme_that_can_is_refused(self):
+        done = self.aspic("run", self.beam(), "--set", "time.adaptive.tolerance=1e-5", "--set",
+                          "time.integrator=\"bdf2\"", code=2)
+        self.assertIn("tr_bdf2", done.stderr)
+
     def test_a_terminal_gets_a_progress_bar(self):
         scene = self.beam()
         master, slave = pty.openpty()

@@ -122,7 +122,8 @@ class Runner {
     if (progress_) progress_->finish();
     if (trace_) finish_trace();
     if (has_blown_up_)
-      fmt::print(stderr, "stopped after step {} of {}: the explicit scheme blew up, and there is no state to go on from\n",
+      fmt::print(stderr,
+                 "stopped after step {} of {}: the explicit scheme blew up, and there is no state to go on from\n",
                  simulation.steps_taken(), last_step_);
   }
 

@@ -70,8 +70,9 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
   if (totals.steps == 0 && !end.interrupted) {
     fmt::print(stream, "nothing to do: step {} is taken already\n", end.steps_taken);
   } else {
-    fmt::print(stream, "{}  {} of {} steps, to t = {:g} s\n", end.interrupted || end.blown_up ? "stopped  " : "done     ",
-               end.steps_taken, end.last_step, totals.time);
+    fmt::print(stream, "{}  {} of {} steps, to t = {:g} s\n",
+               end.interrupted || end.blown_up ? "stopped  " : "done     ", end.steps_taken, end.last_step,
+               totals.time);
   }
   if (totals.steps > 0) {
     fmt::print(stream, "converged  {} of {}; iterations per step: mean {:.1f}, most {}\n",

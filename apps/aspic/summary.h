@@ -12,8 +12,8 @@ struct RunTotals {
   long iterations = 0;
   int most_iterations = 0;
   long substeps = 0, rejected = 0;  // of adaptive steps
-  double seconds = 0;  // in steps
-  double time = 0;     // of the last step [s]
+  double seconds = 0;               // in steps
+  double time = 0;                  // of the last step [s]
 
   void add(const StepReport& report);
 };

@@ -10,9 +10,9 @@
 namespace aspic {
 namespace {
 
-constexpr int kDeepest = 20;             // the smallest part is h / 2^20
-constexpr int kTicks = 1 << kDeepest;    // per step
-constexpr double kGrowthSafety = 0.5;    // of the error that twice the length is predicted to have
+constexpr int kDeepest = 20;           // the smallest part is h / 2^20
+constexpr int kTicks = 1 << kDeepest;  // per step
+constexpr double kGrowthSafety = 0.5;  // of the error that twice the length is predicted to have
 
 double diagonal(const TetMesh& mesh, const BodyRange& body) {
   double squared = 0;
@@ -60,7 +60,8 @@ AdaptiveStep::Verdict AdaptiveStep::attempt(Integrator& integrator, const StepTo
   const int half = size / 2;
   const State *before = has_previous_ ? &previous_ : nullptr, *now = remembers_ ? &now_ : nullptr;
   const auto unsuccessful = [&] { return failure_ == Status::interrupted ? Verdict::interrupted : Verdict::rejected; };
-  if (!knows_whole_ && !take(integrator, tools_of_part(whole, now_, before, first, size), whole_)) return unsuccessful();
+  if (!knows_whole_ && !take(integrator, tools_of_part(whole, now_, before, first, size), whole_))
+    return unsuccessful();
   knows_whole_ = false;
   if (!take(integrator, tools_of_part(whole, now_, before, first, half), first_)) return unsuccessful();
   const bool taken = take(integrator, tools_of_part(whole, first_.end, now, first + half, half), second_);

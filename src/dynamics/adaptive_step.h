@@ -11,8 +11,8 @@ namespace aspic {
 
 class AdaptiveStep {
  public:
-  // `tolerance`: the error that a step of length h may add, |dq| + (length of the part) |dv| of a vertex relative to the
-  // diagonal of its body at rest; a part may add its share.
+  // `tolerance`: the error that a step of length h may add, |dq| + (length of the part) |dv| of a vertex relative to
+  // the diagonal of its body at rest; a part may add its share.
   AdaptiveStep(const Model& model, double tolerance, bool remembers /* where the part before started */);
 
   // Takes the step, adds it to the ledger and counts its parts in the report. A status that is no success says that
@@ -21,7 +21,7 @@ class AdaptiveStep {
 
   // The length that the next part is tried with, h / 2^level: what a restart needs.
   int level() const { return level_; }
-  void set_level(int level);  // throws InvalidInput for one that there is not
+  void set_level(int level);                           // throws InvalidInput for one that there is not
   const State& previous() const { return previous_; }  // where the last part started
 
  private:

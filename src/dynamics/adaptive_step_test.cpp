@@ -52,7 +52,8 @@ TEST(AdaptiveStep, TakesPartsInNumbersThatItsOrderPredicts) {
   // The error of a whole step goes with (length of its parts)^order.
   for (const auto& [integrator, order] : {std::pair{"forward_euler", 1}, {"midpoint", 2}, {"rk4", 4}}) {
     const double factor = order == 4 ? 1e-6 : 1e-2;
-    const Outcome coarse = run(integrator, order == 1 ? 1e-2 : 1e-3), fine = run(integrator, (order == 1 ? 1e-2 : 1e-3) * factor);
+    const Outcome coarse = run(integrator, order == 1 ? 1e-2 : 1e-3),
+                  fine = run(integrator, (order == 1 ? 1e-2 : 1e-3) * factor);
     EXPECT_NEAR(std::log(static_cast<double>(fine.substeps) / coarse.substeps) / std::log(1 / factor), 1.0 / order,
                 0.12 / order)
         << integrator;
@@ -135,11 +136,9 @@ TEST(AdaptiveStep, InterruptedStartsOverFromTheSameState) {
 
 TEST(AdaptiveStep, FollowsPinsThatMoveWithEveryScheme) {
   for (const std::string& integrator : adaptive_integrator_names()) {
-    Simulation simulation =
-        simulate(damped_beam_with_moving_pins_and_targets(), {.h = is_explicit(integrator) ? 1e-3 : 0.02,
-                                                              .integrator = integrator,
-                                                              .adaptive = {1e-4},
-                                                              .solver = {}});
+    Simulation simulation = simulate(
+        damped_beam_with_moving_pins_and_targets(),
+        {.h = is_explicit(integrator) ? 1e-3 : 0.02, .integrator = integrator, .adaptive = {1e-4}, .solver = {}});
     for (int i = 0; i < 5; ++i) {
       const StepReport report = simulation.step();
       ASSERT_TRUE(is_success(report.status)) << integrator << " " << to_string(report.status);

@@ -22,8 +22,8 @@ class ExplicitEuler : public Integrator {
     set_pin_acceleration(tools, end);
     MinimizeReport report;
     report.iterations = 1;
-    const SolveReport solved = force_.solve(tools, start.time, end.q, end.qdot, DampingDifference::forward, 1,
-                                            acceleration_, forces);
+    const SolveReport solved =
+        force_.solve(tools, start.time, end.q, end.qdot, DampingDifference::forward, 1, acceleration_, forces);
     report.linear_iterations = solved.iterations;
     update(h, acceleration_, end);
     end.time = tools.end_time;

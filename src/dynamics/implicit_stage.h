@@ -12,11 +12,11 @@
 namespace aspic {
 
 struct StageOptions {
-  double beta = 0;      // [s]
-  double time = 0;      // of q* [s]
-  double weight = 1;    // of its forces in those of the step
-  double ahead = 0;     // from the known positions to q* [s]
-  bool once = false;    // one Newton iteration from the known positions, without line search
+  double beta = 0;    // [s]
+  double time = 0;    // of q* [s]
+  double weight = 1;  // of its forces in those of the step
+  double ahead = 0;   // from the known positions to q* [s]
+  bool once = false;  // one Newton iteration from the known positions, without line search
 };
 
 class ImplicitStage {

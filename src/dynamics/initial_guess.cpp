@@ -65,8 +65,8 @@ bool Guesser::propose(const StepTools& tools, InitialGuess candidate, const Gues
 
 InitialGuess Guesser::guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
                             MinimizeReport& work) {
-  const bool is_other = wanted == InitialGuess::zero || wanted == InitialGuess::extrapolated ||
-                        wanted == InitialGuess::last_increment;
+  const bool is_other =
+      wanted == InitialGuess::zero || wanted == InitialGuess::extrapolated || wanted == InitialGuess::last_increment;
   if (is_other && propose(tools, wanted, known) && std::isfinite(tools.E.value(trial_))) {
     std::copy(trial_.begin(), trial_.end(), q.begin());
     return wanted;

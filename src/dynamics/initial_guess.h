@@ -22,7 +22,7 @@ enum class InitialGuess {
 };
 std::string_view to_string(InitialGuess guess);
 
-std::vector<std::string> initial_guess_names();           // those to choose from
+std::vector<std::string> initial_guess_names();             // those to choose from
 InitialGuess initial_guess_named(const std::string& name);  // throws InvalidInput for an unknown name
 
 // What is known when a minimisation for a later time starts.

@@ -91,9 +91,11 @@ TEST(InitialGuess, TheLastIncrementSavesIterationsOfEvenLoading) {
   const auto iterations = [](const std::string& guess) {
     Model model = beam(1, {.gravity = {}});
     model.pins.push_back({"hand", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 4 - 1e-9; }),
-                          [](const Vec3d& X, double t) { return X + Vec3d{{t, 0, 0}}; }});
-    Simulation simulation = simulate(std::move(model), {.h = 0.1, .integrator = "quasi_static", .initial_guess = guess,
-                                                        .solver = {}});
+                          [](const Vec3d& X, double t) {
+                            return X + Vec3d{{t, 0, 0}};
+                          }});
+    Simulation simulation =
+        simulate(std::move(model), {.h = 0.1, .integrator = "quasi_static", .initial_guess = guess, .solver = {}});
     int sum = 0;
     for (int i = 0; i < 10; ++i) sum += simulation.step().iterations;
     return sum;
@@ -103,8 +105,7 @@ TEST(InitialGuess, TheLastIncrementSavesIterationsOfEvenLoading) {
 }
 
 TEST(InitialGuess, IsNoneWhereNothingIsMinimised) {
-  EXPECT_EQ(simulate(beam(1), {.h = 1e-4, .integrator = "rk4", .solver = {}}).step().initial_guess,
-            InitialGuess::none);
+  EXPECT_EQ(simulate(beam(1), {.h = 1e-4, .integrator = "rk4", .solver = {}}).step().initial_guess, InitialGuess::none);
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ class Integrator {
   virtual int order() const = 0;  // in time, for smooth motions
   virtual bool is_implicit() const = 0;
   virtual bool is_static() const { return false; }
-  virtual bool is_multistep() const { return false; }       // uses StepTools::previous, a step of the same length ago
+  virtual bool is_multistep() const { return false; }  // uses StepTools::previous, a step of the same length ago
   virtual bool chooses_guess() const { return is_implicit(); }  // whether StepTools::guess is heeded
   // What `best` tries besides the current positions and the extrapolated ones.
   virtual bool tries_last_increment() const { return chooses_guess(); }

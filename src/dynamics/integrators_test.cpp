@@ -32,15 +32,20 @@ TEST(Integrators, DampAndDelayAnOscillatorAsTheirFormulasSay) {
   };
   const double x = 0.1;  // w h
   const std::map<std::string, Expected> expected = {
-      {"backward_euler", {.535156, .99669}}, {"linearly_implicit_euler", {.535156, .99669}},
-      {"bdf2", {.996940, .99671}},           {"tr_bdf2", {.999954, .99960}},
-      {"midpoint", {1, .99917}},             {"trapezoid", {1, .99917}},
-      {"symplectic_euler", {1, 1.00042}},    {"forward_euler", {std::pow(1.01, 20 * std::numbers::pi), .99669}},
+      {"backward_euler", {.535156, .99669}},
+      {"linearly_implicit_euler", {.535156, .99669}},
+      {"bdf2", {.996940, .99671}},
+      {"tr_bdf2", {.999954, .99960}},
+      {"midpoint", {1, .99917}},
+      {"trapezoid", {1, .99917}},
+      {"symplectic_euler", {1, 1.00042}},
+      {"forward_euler", {std::pow(1.01, 20 * std::numbers::pi), .99669}},
       {"rk4", {1 - std::pow(x, 5) / 72 * 2 * std::numbers::pi, 1 - std::pow(x, 4) / 120}}};
   for (const auto& [integrator, value] : expected) {
     const std::complex<double> r = measured_factor(integrator, 0.01);
     const double periods = 2 * std::numbers::pi / x;  // in steps
-    EXPECT_NEAR(std::pow(std::norm(r), periods), value.energy_after_one_period, 6e-7 * std::max(1.0, value.energy_after_one_period))
+    EXPECT_NEAR(std::pow(std::norm(r), periods), value.energy_after_one_period,
+                6e-7 * std::max(1.0, value.energy_after_one_period))
         << integrator;
     EXPECT_NEAR(std::arg(r) / x, value.frequency_ratio, 6e-6) << integrator;
   }
@@ -65,8 +70,8 @@ TEST(Integrators, EulersMethodsGainLoseAndKeepEnergyOfAnOscillatorByFixedFactors
   const double E = oscillator_energy(simulation);
   // q moves with the new velocity, so the shadow energy has + h/2 w^2 x v.
   const auto invariant = [&] {
-    return oscillator_energy(simulation) - 0.5 * 0.01 * 100 * oscillator_position(simulation) *
-                                               oscillator_velocity(simulation);
+    return oscillator_energy(simulation) -
+           0.5 * 0.01 * 100 * oscillator_position(simulation) * oscillator_velocity(simulation);
   };
   for (int i = 0; i < 1000; ++i) {
     simulation.step();

@@ -73,7 +73,8 @@ void Ledger::add(const StepTools& tools, int order, const State& end, const Step
   for (const double V : report.potential) report.potential_total += V;
   report.kinetic = kinetic_energy(*tools.model.mass, end.qdot, momentum_);
 
-  const double kinetic_gain = report.kinetic - kinetic_before, potential_gain = report.potential_total - potential_before;
+  const double kinetic_gain = report.kinetic - kinetic_before,
+               potential_gain = report.potential_total - potential_before;
   const double pin_work = reaction_work + target;
   const double loss = (inertia_work - kinetic_gain) + gradient_work - (potential_gain - target);
   const double residual = std::sqrt(residual_squared);

@@ -71,9 +71,7 @@ inline Model damped_beam_with_moving_pins_and_targets(int n = 2) {
   return model;
 }
 
-inline bool is_explicit(const std::string& integrator) {
-  return !make_integrator(integrator)->is_implicit();
-}
+inline bool is_explicit(const std::string& integrator) { return !make_integrator(integrator)->is_implicit(); }
 
 inline Simulation simulate(Model model, SimulationOptions options = {}) {
   State start = at_rest(model.mesh);

@@ -9,8 +9,8 @@
 namespace aspic::testing_models {
 
 struct OscillatorOptions {
-  double stiffness = 100;  // [N/m]
-  double damping = 0;      // per mass [1/s]
+  double stiffness = 100;                                             // [N/m]
+  double damping = 0;                                                 // per mass [1/s]
   std::function<double(double)> offset = [](double) { return 0.0; };  // of the targets along x at a time [m]
 };
 
@@ -30,8 +30,7 @@ inline Model oscillator_model(const OscillatorOptions& options = {}) {
                        }});
   }
   model.loads.push_back(make_point_springs("springs", springs));
-  if (options.damping > 0)
-    model.damping.push_back(make_rayleigh_damping(*model.mass, options.damping, nullptr, 0));
+  if (options.damping > 0) model.damping.push_back(make_rayleigh_damping(*model.mass, options.damping, nullptr, 0));
   return model;
 }
 
@@ -44,7 +43,7 @@ inline Simulation oscillator(SimulationOptions options, const OscillatorOptions&
   return Simulation(std::move(model), std::move(start), std::move(options));
 }
 
-inline double oscillator_position(const Simulation& s) { return s.state().q[0]; }   // of the first vertex [m]
+inline double oscillator_position(const Simulation& s) { return s.state().q[0]; }     // of the first vertex [m]
 inline double oscillator_velocity(const Simulation& s) { return s.state().qdot[0]; }  // [m/s]
 
 // The factor r of a solution x_n = Re(c r^n): x_(n+1) = 2 Re(r) x_n - |r|^2 x_(n-1), twice, from four positions.

@@ -14,16 +14,16 @@ class PinPath {
   void sample(const Pins& pins, double time, double end_time, int points);
 
   // Write the entries of the pinned vertices only, for a time within the step.
-  void place_velocity(double time, std::span<double> v) const { differentiate(time, 1, v); }          // [m/s]
+  void place_velocity(double time, std::span<double> v) const { differentiate(time, 1, v); }      // [m/s]
   void place_acceleration(double time, std::span<double> a) const { differentiate(time, 2, a); }  // [m/s^2]
 
  private:
   void differentiate(double time, int derivative, std::span<double> out) const;
 
   const Pins* pins_ = nullptr;
-  double time_ = 0, h_ = 0;                // of the step [s]
-  int points_ = 0;                         // 0: nothing moves
-  std::vector<std::vector<double>> x_;     // per point, the positions of the pinned vertices [m]
+  double time_ = 0, h_ = 0;             // of the step [s]
+  int points_ = 0;                      // 0: nothing moves
+  std::vector<std::vector<double>> x_;  // per point, the positions of the pinned vertices [m]
 };
 
 }  // namespace aspic

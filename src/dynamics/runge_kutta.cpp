@@ -15,8 +15,7 @@ namespace {
 constexpr Tableau kMidpoint = {.name = "midpoint", .order = 2, .stages = 1, .A = {{0.5}}, .b = {1}};
 
 // Trapezoidal rule, Newmark's method with beta = 1/4 and gamma = 1/2 [Newmark 1959].
-constexpr Tableau kTrapezoid = {
-    .name = "trapezoid", .order = 2, .stages = 2, .A = {{0}, {0.5, 0.5}}, .b = {0.5, 0.5}};
+constexpr Tableau kTrapezoid = {.name = "trapezoid", .order = 2, .stages = 2, .A = {{0}, {0.5, 0.5}}, .b = {0.5, 0.5}};
 
 // The trapezoidal rule to t + gamma h, then BDF2 to t + h, with gamma such that both stages have one beta
 // [Bank et al. 1985; Hosea and Shampine 1996].

@@ -68,15 +68,17 @@ void require_possible(const SimulationOptions& options, const Integrator& integr
   const double tolerance = options.adaptive.tolerance;
   const std::string name(integrator.name());
   if (!(tolerance >= 0) || !std::isfinite(tolerance))
-    throw InvalidInput("time.adaptive.tolerance = " + std::to_string(tolerance) + "; it must be positive, or 0 for none");
+    throw InvalidInput("time.adaptive.tolerance = " + std::to_string(tolerance) +
+                       "; it must be positive, or 0 for none");
   if (tolerance > 0 && (integrator.is_static() || integrator.is_multistep()))
     throw InvalidInput("integrator = '" + name + "' cannot divide its steps (time.adaptive): " +
                        (integrator.is_static() ? "it knows no time" : "it needs steps of one length") + "; " +
                        joined(adaptive_integrator_names()) + " can");
   const bool is_default = guess == InitialGuess::best;
   if (!is_default && !integrator.chooses_guess())
-    throw InvalidInput("solver.initial_guess = '" + options.initial_guess + "' says nothing to integrator = '" + name +
-                       "': " + (integrator.is_implicit() ? "it starts from the current positions" : "it minimises nothing"));
+    throw InvalidInput(
+        "solver.initial_guess = '" + options.initial_guess + "' says nothing to integrator = '" + name +
+        "': " + (integrator.is_implicit() ? "it starts from the current positions" : "it minimises nothing"));
   if (guess == InitialGuess::extrapolated && integrator.is_static())
     throw InvalidInput("solver.initial_guess = 'extrapolated' needs velocities, of which integrator = '" + name +
                        "' knows none; try 'last_increment'");

@@ -71,8 +71,7 @@ double affine_motion_error(const std::string& integrator, double h, Held held) {
   Simulation simulation(std::move(model), start, options);
   for (int i = 0; i < std::lround(0.4 / h); ++i)
     EXPECT_TRUE(is_success(simulation.step().status)) << integrator << " step " << i;
-  const std::vector<double> exact =
-      at_vertices(simulation.model().mesh, [](const Vec3d& X) { return moved(X, 0.4); });
+  const std::vector<double> exact = at_vertices(simulation.model().mesh, [](const Vec3d& X) { return moved(X, 0.4); });
   double error = 0;
   for (size_t i = 0; i < exact.size(); ++i) error = std::max(error, std::abs(simulation.state().q[i] - exact[i]));
   return error;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "io/folder_test.h"
 #include "scene/scene_cases_test.h"
 
@@ -38,6 +39,22 @@ TEST(Scene, StepsCoverTheDuration) {
   EXPECT_EQ(load("[time]\nstep = 0.01\nduration = 2\n" + kCube).steps, 200);
   EXPECT_EQ(load("[time]\nstep = 0.03\nduration = 0.1\n" + kCube).steps, 4);
   EXPECT_EQ(load("[time]\nduration = 0\n" + kCube).steps, 0);
+}
+
+TEST(Scene, IntegratorPartsAndGuessReachTheSimulation) {
+  const Scene scene = load(
+      "[time]\nintegrator = \"midpoint\"\nadaptive = { tolerance = 1e-4 }\n"
+      "[solver]\ninitial_guess = \"last_increment\"\n" +
+      kCube);
+  const SimulationOptions& options = scene.simulation.options();
+  EXPECT_EQ(options.integrator, "midpoint");
+  EXPECT_EQ(options.adaptive.tolerance, 1e-4);
+  EXPECT_EQ(options.initial_guess, "last_increment");
+}
+
+TEST(Scene, AnIntegratorThatCannotDivideItsStepsIsRefusedWithThoseThatCan) {
+  EXPECT_THAT([] { load("[time]\nintegrator = \"bdf2\"\nadaptive = { tolerance = 1e-4 }\n" + kCube); },
+              testing::ThrowsMessage<InvalidInput>(AllOf(HasSubstr("'bdf2'"), HasSubstr("tr_bdf2"))));
 }
 
 TEST(Scene, PlacesTheRestShapeByScaleThenRotationThenTranslation) {

@@ -14,7 +14,8 @@ const Range kPositive{.min = 0, .min_open = true};
 const Range kNotNegative{.min = 0};
 
 const char* const kIntegrators =
-    "the scheme that takes a step (formulas, orders, energies: [integrators](integrators.md)). Implicit, a minimisation "
+    "the scheme that takes a step (formulas, orders, energies: [integrators](integrators.md)). Implicit, a "
+    "minimisation "
     "per stage: `backward_euler` first order, damps; `linearly_implicit_euler` one Newton iteration of it; `bdf2` and "
     "`tr_bdf2` second order, damp only what the step does not resolve; `midpoint` and `trapezoid` second order, damp "
     "nothing. Explicit, stable for short steps only: `symplectic_euler` (what the lecture's slide prints as \"Forward "
@@ -76,11 +77,12 @@ void add_time(Schema& s) {
              .fallback = "{}",
              .table = "adaptive",
              .meaning = "steps in parts, as short as their error asks for"}});
-  s.sections.push_back({"adaptive", "adaptive = { ... } in [time]",
-                        "Each step is taken in parts of `step` / 2^k. A part is taken once whole and once in halves, "
-                        "whose difference estimates its error; parts too long are rejected and halved, and a step whose "
-                        "smallest part (2^-20) is still inaccurate is reported as such. Frames and restarts stay at "
-                        "multiples of `step`."});
+  s.sections.push_back(
+      {"adaptive", "adaptive = { ... } in [time]",
+       "Each step is taken in parts of `step` / 2^k. A part is taken once whole and once in halves, "
+       "whose difference estimates its error; parts too long are rejected and halved, and a step whose "
+       "smallest part (2^-20) is still inaccurate is reported as such. Frames and restarts stay at "
+       "multiples of `step`."});
   add_keys(s, "adaptive",
            {{.name = "tolerance",
              .accepts = kNumber,
