@@ -33,7 +33,7 @@ void print_failure(const char* what, const DerivativeCheck& check, const TermDer
   if (check.row < 0)
     fmt::print("{} of {} ({}): not finite at any step\n", what, of.term, of.state);
   else
-    fmt::print("{} of {} ({}) is wrong at {}: it says {:.8g}, differences say {:.8g}\n", what, of.term, of.state,
+    fmt::print("{} of {} ({}) differs most at {}: it says {:.12g}, differences say {:.12g}\n", what, of.term, of.state,
                place(check, mesh), check.found, check.expected);
 }
 
@@ -86,6 +86,7 @@ Chart chart_of(const std::vector<TermDerivatives>& results, const std::string& s
   std::map<std::string, size_t> known;
   int color = 0;
   const auto add = [&](const std::string& label, const DerivativeCheck& check, SeriesStyle style, int of_term) {
+    if (std::all_of(check.error.begin(), check.error.end(), [](double e) { return e == 0; })) return;
     const auto [at, is_new] = known.emplace(label, chart.series.size());
     if (is_new) {
       chart.series.push_back({label, check.step, check.error, style, of_term});
