@@ -31,6 +31,8 @@ NewtonDefiniteness definiteness_named(const std::string& name) {
 
 std::vector<std::string> minimizer_names() { return {"newton", "gradient_descent"}; }
 
+std::vector<std::string> preconditioner_names() { return {"auto"}; }
+
 std::vector<std::string> definiteness_names() {
   std::vector<std::string> names;
   for (const NamedDefiniteness& entry : definiteness_table()) names.push_back(entry.name);

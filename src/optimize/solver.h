@@ -19,6 +19,7 @@ struct SolverOptions {
 
 std::vector<std::string> minimizer_names();
 std::vector<std::string> definiteness_names();
+std::vector<std::string> preconditioner_names();
 std::vector<std::string> criterion_names();
 std::vector<std::string> decrease_test_names();
 
