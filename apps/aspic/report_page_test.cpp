@@ -10,7 +10,6 @@
 namespace aspic::cli {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
 
