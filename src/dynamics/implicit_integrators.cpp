@@ -37,7 +37,7 @@ class BackwardEuler : public Integrator {
   std::vector<double> acceleration_;
 };
 
-// One Newton iteration from the current state, without line search [Baraff and Witkin 1998].
+// One Newton iteration from the current state, without line search [Baraff 1998].
 class LinearlyImplicitEuler : public BackwardEuler {
  public:
   std::string_view name() const override { return "linearly_implicit_euler"; }
@@ -48,7 +48,7 @@ class LinearlyImplicitEuler : public BackwardEuler {
 };
 
 // q* = a + beta v*,  v* = b + beta acc(q*, v*) with a = (4 q_n - q_(n-1)) / 3, b = (4 v_n - v_(n-1)) / 3, beta = 2h/3
-// [Hairer and Wanner 1996, section V.1]. The first step, which has no past, is one of TR-BDF2: of the same order, as
+// [Hairer 1996, section V.1]. The first step, which has no past, is one of TR-BDF2: of the same order, as
 // quick to damp what is stiff, and like BDF2 exact for a constant acceleration.
 class Bdf2 : public Integrator {
  public:

@@ -18,7 +18,7 @@ constexpr Tableau kMidpoint = {.name = "midpoint", .order = 2, .stages = 1, .A =
 constexpr Tableau kTrapezoid = {.name = "trapezoid", .order = 2, .stages = 2, .A = {{0}, {0.5, 0.5}}, .b = {0.5, 0.5}};
 
 // The trapezoidal rule to t + gamma h, then BDF2 to t + h, with gamma such that both stages have one beta
-// [Bank et al. 1985; Hosea and Shampine 1996].
+// [Bank 1985; Hosea 1996].
 constexpr double kGamma = 2 - std::numbers::sqrt2, kD = kGamma / 2, kW = std::numbers::sqrt2 / 4;
 constexpr Tableau kTrBdf2 = {
     .name = "tr_bdf2", .order = 2, .stages = 3, .A = {{0}, {kD, kD}, {kW, kW, kD}}, .b = {kW, kW, kD}};

@@ -18,7 +18,8 @@ const char* const kIntegrators =
     "minimisation "
     "per stage: `backward_euler` first order, damps; `linearly_implicit_euler` one Newton iteration of it; `bdf2` and "
     "`tr_bdf2` second order, damp only what the step does not resolve; `midpoint` and `trapezoid` second order, damp "
-    "nothing. Explicit, stable for short steps only: `symplectic_euler` (what the lecture's slide prints as \"Forward "
+    "nothing and may gain energy in large deformations. Explicit, stable for short steps only: `symplectic_euler` "
+    "(what the lecture's slide prints as \"Forward "
     "Euler\"), `forward_euler` (the classical one, gains energy), `rk4` fourth order. `quasi_static`: equilibrium, no "
     "inertia";
 
@@ -76,7 +77,7 @@ void add_time(Schema& s) {
              .accepts = kTable,
              .fallback = "{}",
              .table = "adaptive",
-             .meaning = "steps in parts, as short as their error asks for"}});
+             .meaning = "steps in parts, as short as their error asks for: [integrators](integrators.md)"}});
   s.sections.push_back(
       {"adaptive", "adaptive = { ... } in [time]",
        "Each step is taken in parts of `step` / 2^k. A part is taken once whole and once in halves, "
@@ -111,7 +112,8 @@ void add_solver(Schema& s) {
         .choices = initial_guess_names(),
         .meaning = "where a minimisation starts: `zero` the shape at rest, `current` where the body is, `extrapolated` "
                    "its flight without forces q + h qdot, `last_increment` what the step before added, `best` the one "
-                   "of the last three with the lowest energy. A guess of infinite energy gives way to the best",
+                   "of the last three with the lowest energy. A guess of infinite energy, or not known yet, gives way "
+                   "to the best",
         .reason = "never worse than where the body is"},
        {.name = "max_iterations",
         .accepts = kInteger,
