@@ -11,10 +11,12 @@ namespace aspic {
 
 using Positions = std::span<const double>;  // x, 3 per vertex [m]
 
+// A step, or a stage of one: what an integrator says is a step from `start` that takes h, so that (x - start) / h is
+// the velocity.
 struct StepContext {
   Positions start;  // x at the start of the step
   double h = 0;     // length of the step [s]; 0 in statics
-  double time = 0;  // the end of the step [s]
+  double time = 0;  // of the forces: the end of the step [s], the start in explicit schemes
   // Where coefficients that depend on x are taken, when not at `start`, which may be extrapolated and inside out.
   Positions shape = {};
 };
@@ -24,7 +26,7 @@ class Energy {
   virtual ~Energy() = default;
   virtual std::string_view name() const = 0;
 
-  // Called before each step: moving targets follow the time, damping remembers the start.
+  // Called before each stage of a step: moving targets follow the time, damping remembers the start.
   virtual void begin_step(const StepContext&) {}
 
   virtual double value(Positions x) const = 0;  // V(x) [J]; +inf where undefined
