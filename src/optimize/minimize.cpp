@@ -102,12 +102,6 @@ double direction_size(const Objective& E, const MinimizeOptions& options, std::s
   }
 }
 
-// Inner solves are loose while the minimum is far away and tight near it, so that convergence stays superlinear
-// [Eisenstat and Walker 1996].
-double forcing(double gradient_ratio, const MinimizeOptions& options) {
-  return std::min(options.max_forcing, std::max(1e-8, std::sqrt(gradient_ratio)));
-}
-
 // A line search that fails this close to the round-off of the gradient has nothing left to find.
 constexpr double kRoundOffMargin = 100;
 // Round-off is as good as convergence only where it is small beside what the gradient is made of.
@@ -138,9 +132,11 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
   SearchDirection& direction = at.direction;
   const MinimizeOptions& options = at.options;
   MinimizeReport& report = at.report;
-  const double loose = forcing(report.gradient_norm / report.first_gradient_norm, options);
+  const bool judges_gradient = !at.judges_direction();
+  const InnerAccuracy accuracy = {options.max_forcing,
+                                  judges_gradient ? 0.5 * report.threshold / report.gradient_norm : 0};
   for (;; ++iteration.retreats) {
-    const bool found = direction.compute(E, at.x, g_, loose, d_, iteration.direction);
+    const bool found = direction.compute(E, at.x, g_, accuracy, d_, iteration.direction);
     at.slope = found ? E.dot(g_, d_) : 0;
     report.status = Status::no_descent;
     if (at.slope < 0) {

@@ -1,0 +1,40 @@
+#include "scene/solver_options.h"
+
+namespace aspic {
+namespace {
+
+DecreaseTest test_named(const std::string& name) {
+  if (name == "slide") return DecreaseTest::slide;
+  return name == "none" ? DecreaseTest::none : DecreaseTest::textbook;
+}
+
+Criterion criterion_named(const std::string& name) {
+  for (const Criterion c : all_criteria())
+    if (to_string(c) == name) return c;
+  throw InvalidInput("criterion '" + name + "' is unknown");
+}
+
+}  // namespace
+
+SolverOptions solver_options(const Value& solver) {
+  const Value& search = solver["line_search"];
+  SolverOptions options;
+  options.method = solver["method"].text();
+  for (const Value& name : solver["fallback"].array()) options.fallback.push_back(name.text());
+  options.preconditioner = solver["preconditioner"].text();
+  options.linear = solver["linear"].text();
+  options.definiteness = solver["definiteness"].text();
+  MinimizeOptions& minimize = options.minimize;
+  minimize.max_iterations = solver["max_iterations"].integer();
+  minimize.tolerance = solver["tolerance"].number();
+  minimize.criterion = criterion_named(solver["criterion"].text());
+  minimize.line_search = {.alpha_max = search["alpha_max"].number(),
+                          .sufficient_decrease = search["c"].number(),
+                          .shrink = search["p"].number(),
+                          .tolerance = search["tol"].number(),
+                          .test = test_named(search["test"].text())};
+  if (const auto conflict = find_conflict(options)) throw error_at(solver[conflict->option].place, conflict->reason);
+  return options;
+}
+
+}  // namespace aspic
