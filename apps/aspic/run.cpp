@@ -13,8 +13,10 @@
 #include "aspic/summary.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "dynamics/explanation.h"
 #include "scene/run_directory.h"
 #include "scene/scene.h"
+#include "scene/trace.h"
 
 namespace aspic::cli {
 namespace {
@@ -23,12 +25,24 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   fs::path input, out;
-  std::vector<std::string> overrides;
+  std::vector<std::string> overrides, landscapes;
   int threads = 0, steps = 0;  // 0: not given
-  bool force = false, resume = false, quiet = false, json = false, allow_unconverged = false;
+  bool force = false, resume = false, trace = false, quiet = false, json = false, allow_unconverged = false;
 };
 
 constexpr int kWarningsShown = 5;
+
+std::string explanation_text(const Explanation& why) {
+  std::string text = fmt::format("\n  cause:  {}", why.cause);
+  if (!why.place.empty()) text += fmt::format("\n  where:  {}", why.place);
+  return text + fmt::format("\n  remedy: {}", why.remedy);
+}
+
+std::vector<LandscapeAt> landscapes(const Arguments& arguments) {
+  std::vector<LandscapeAt> places;
+  for (const std::string& text : arguments.landscapes) places.push_back(parse_landscape(text));
+  return places;
+}
 
 // The directory to continue: the one named, or the one where a run of the input would have gone.
 fs::path directory_to_resume(const Arguments& arguments) {
@@ -74,30 +88,6 @@ int unconverged_before(const fs::path& directory, int steps) {
   return count;
 }
 
-// What usually helps when a step did not converge.
-std::string_view remedy(Status status, const std::string& integrator) {
-  const bool is_static = integrator == "quasi_static";
-  const bool is_explicit = integrator == "forward_euler" || integrator == "symplectic_euler";
-  switch (status) {
-    case Status::iteration_limit:
-      return is_static ? "raise solver.max_iterations, or load the body in smaller steps"
-                       : "raise solver.max_iterations, or shorten time.step";
-    case Status::stuck:
-      return "shorten time.step; `aspic check` finds bad tets";
-    case Status::no_descent:
-      return is_static ? "a body that nothing holds has no single equilibrium: pin it"
-                       : "try solver.definiteness = \"clamped\"; `aspic check` finds bad tets";
-    case Status::undefined:
-      return is_explicit ? "explicit schemes blow up when time.step is too long: shorten it, or use backward_euler"
-                         : "shorten time.step, and look for pins, forces or velocities that move too far in one step";
-    case Status::converged:
-    case Status::round_off:
-    case Status::interrupted:
-      break;
-  }
-  return "";
-}
-
 // Takes the steps of one run and tells everyone who listens.
 class Runner {
  public:
@@ -109,6 +99,7 @@ class Runner {
         last_step_(arguments.steps > 0 ? arguments.steps : scene.steps),
         first_step_(scene.simulation.steps_taken()) {
     if (!arguments.quiet) progress_.emplace(human_, first_step_, last_step_);
+    if (arguments.trace || !arguments.landscapes.empty()) start_trace();
   }
 
   // Stops early when a signal asks for it; a step cut short is dropped, so what is written ends with a whole one.
@@ -116,8 +107,9 @@ class Runner {
     Simulation& simulation = scene_.simulation;
     while (simulation.steps_taken() < last_step_ && !interrupt_signal()) {
       iterations_.clear();
-      const StepReport report = simulation.step([this](const Iteration& iteration) {
+      const StepReport report = simulation.step([&](const LiveIteration& iteration) {
         iterations_.push_back(iteration);
+        if (trace_) trace_->on_iteration(simulation.steps_taken() + 1, iteration);
         return !interrupt_signal();
       });
       if (report.status == Status::interrupted) break;
@@ -125,6 +117,7 @@ class Runner {
     }
     directory_.finish(simulation);
     if (progress_) progress_->finish();
+    if (trace_) finish_trace();
   }
 
   const RunTotals& totals() const { return totals_; }
@@ -136,22 +129,37 @@ class Runner {
     for (const Iteration& iteration : iterations_) directory_.on_iteration(report.step, iteration);
     directory_.on_step(report, scene_.simulation);
     totals_.add(report);
-    if (!is_success(report.status)) warn(report);
+    const Explanation why = explain(scene_.simulation, report);
+    if (!is_success(report.status)) warn(report, why);
     if (arguments_.json) {
-      fmt::print("{}\n", step_json(report, scene_.simulation.potential_names()));
+      fmt::print("{}\n", step_json(report, why, scene_.simulation.potential_names()));
       if (std::fflush(stdout) != 0) throw InvalidInput("--json: standard output cannot be written; is the disk full?");
     }
     if (progress_) progress_->show(report);
   }
 
-  void warn(const StepReport& report) {
+  void start_trace() {
+    const LineSearchOptions& line_search = scene_.simulation.options().solver.minimize.line_search;
+    trace_.emplace(directory_.trace_folder(first_step_),
+                   TraceOptions{landscapes(arguments_), line_search.sufficient_decrease});
+  }
+
+  void finish_trace() {
+    trace_->close();
+    for (const LandscapeAt& at : trace_->missed())
+      fmt::print(stderr, "warning: no landscape {0}:{1}: the run has no iteration {1} of step {0}\n", at.step,
+                 at.iteration);
+    if (!arguments_.quiet) fmt::print(human_, "trace      {}\n", trace_->folder().string());
+  }
+
+  void warn(const StepReport& report, const Explanation& why) {
     const int count = totals_.unconverged;
     if (count > kWarningsShown) return;
     std::string line = fmt::format(
         "warning: step {} did not converge: {} after {} iterations; residual {:.3g} N, wanted {:.3g} N", report.step,
         to_string(report.status), report.iterations, report.residual, report.residual_threshold);
-    if (count == 1)
-      line += fmt::format("\n  remedy: {}", remedy(report.status, scene_.simulation.options().integrator));
+    if (why.cause != last_cause_) line += explanation_text(why);
+    last_cause_ = why.cause;
     if (count == kWarningsShown) line += " (further ones are only counted)";
     if (progress_) {
       progress_->message(line);
@@ -166,8 +174,10 @@ class Runner {
   std::FILE* human_;
   int last_step_, first_step_;
   std::optional<Progress> progress_;
+  std::optional<Trace> trace_;
   std::vector<Iteration> iterations_;  // of the step under way; recorded once it is whole
   RunTotals totals_;
+  std::string last_cause_;  // explained already
 };
 
 void print_start(std::FILE* stream, const Arguments& arguments, const Scene& scene, const fs::path& directory) {
@@ -188,6 +198,7 @@ int exit_code(const Arguments& arguments, int unconverged) {
 
 int run(const Arguments& arguments) {
   if (arguments.threads > 0) set_thread_count(arguments.threads);
+  landscapes(arguments);  // bad input is told before anything is written
   Scene scene = load(arguments);
   RunDirectory directory = open_directory(arguments, scene);
   catch_interrupts();  // not before there is something to keep
@@ -220,6 +231,7 @@ Examples:
   aspic run beam.toml --set material.young=2e5 --set time.step=0.005 --out out/soft
   aspic run beam.toml --resume                    continues an interrupted run, to the same bits
   aspic run beam.toml --json | jq .iterations     one line of JSON per step
+  aspic run beam.toml --landscape 12:0            why is step 12 slow? its first iteration, looked at closely
 
 Exit codes: 0 done, 2 bad input, 3 some step did not converge (unless --allow-unconverged),
 130 interrupted by ctrl-C, 143 by kill: everything up to the last whole step is written.)");
@@ -233,6 +245,13 @@ Exit codes: 0 done, 2 bad input, 3 some step did not converge (unless --allow-un
   command->add_option("--out", arguments->out, "Directory of the results; out/NAME by default");
   command->add_flag("--force", arguments->force, "Replace the results of an earlier run");
   command->add_flag("--resume", arguments->resume, "Continue the run in the directory")->excludes("--force");
+  command->add_flag("--trace", arguments->trace,
+                    "Write what every iteration did, trial by trial, into DIRECTORY/trace; changes no result");
+  command
+      ->add_option("--landscape", arguments->landscapes,
+                   "STEP or STEP:ITERATION: with the trace, E along that iteration's direction and over a plane "
+                   "through it; can be repeated")
+      ->allow_extra_args(false);
   command->add_flag("--quiet", arguments->quiet, "Only warnings and errors");
   command->add_flag("--json", arguments->json, "One line of JSON per step on stdout, all else on stderr");
   command->add_flag("--allow-unconverged", arguments->allow_unconverged,

@@ -138,7 +138,9 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
   for (;; ++iteration.retreats) {
     const bool found = direction.compute(E, at.x, g_, accuracy, d_, iteration.direction);
     at.slope = found ? E.dot(g_, d_) : 0;
+    iteration.decrement = -0.5 * at.slope;
     report.status = Status::no_descent;
+    trials_.clear();
     if (at.slope < 0) {
       if (at.judges_direction()) {
         report.reached = direction_size(E, options, d_, at.slope);
@@ -162,7 +164,7 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
 // Afterwards `trial_` and `trial_gradient_` hold where the step began.
 void Minimizer::take_step(Progress& at, Iteration& iteration) {
   Stopwatch stopwatch;
-  at.gradient_round_off = at.E.gradient_round_off();  // of the last Hessian
+  at.gradient_round_off = at.report.gradient_round_off = at.E.gradient_round_off();  // of the last Hessian
   std::swap_ranges(trial_.begin(), trial_.end(), at.x.begin());
   at.value = at.step.value;
   if (!at.step.gradient_known) {
@@ -171,7 +173,6 @@ void Minimizer::take_step(Progress& at, Iteration& iteration) {
   }
   g_.swap(trial_gradient_);
   at.gradient_scale = at.E.gradient_scale();
-  iteration.decrement = -0.5 * at.slope;
   iteration.alpha = at.step.alpha;
   iteration.gradient_seconds = stopwatch.lap();
 }
@@ -211,11 +212,13 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
     LiveIteration iteration{{.index = i, .value = report.value, .gradient_norm = report.gradient_norm}, E};
     const bool found = find_step(at, iteration);
     add(iteration, report);
+    if (found) take_step(at, iteration);
+    iteration.x = found ? trial_ : x;
+    iteration.g = found ? trial_gradient_ : g_;
+    iteration.d = d_, iteration.x_next = x, iteration.tried = trials_;
+    const bool go_on = !observe || observe(iteration);
     if (!found) return report;
-    take_step(at, iteration);
-    iteration.x = trial_, iteration.g = trial_gradient_, iteration.d = d_;
-    iteration.x_next = x, iteration.tried = trials_;
-    if (observe && !observe(iteration)) {
+    if (!go_on) {
       report.iterations = i + 1;
       return ended(Status::interrupted);
     }
