@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
@@ -40,6 +41,31 @@ inline Errors difference_errors(const Energy& V, const BlockPattern& pattern, co
           largest > 0 ? worst / largest : worst};
 }
 
+// The systems of single vertices are parts of the whole gradient and Hessian, up to the order of summation.
+inline void expect_vertex_systems_to_be_parts(Energy& V, const BlockPattern& pattern, const std::vector<double>& x,
+                                              const std::string& what) {
+  constexpr double kRoundOff = 1e-13;  // of sums of some hundred terms
+  const int vertices = pattern.rows();
+  ASSERT_TRUE(V.prepare_vertex_systems(vertices)) << what;
+  std::vector<double> whole(x.size());
+  V.add_gradient(x, 2, whole);
+  BlockSparse H(pattern);
+  V.add_hessian(x, 2, {Definiteness::exact}, H);
+  std::vector<int> all(vertices);
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<Vec3d> g(vertices, Vec3d{});
+  std::vector<Mat3d> blocks(vertices, Mat3d{});
+  V.add_vertex_systems(x, 2, all, g, blocks);
+  double largest_force = 0, largest_entry = 0;
+  for (const double gi : whole) largest_force = std::max(largest_force, std::abs(gi));
+  for (const Mat3d& block : H.block) largest_entry = std::max(largest_entry, std::sqrt(squared_norm(block)));
+  for (int v = 0; v < vertices; ++v) {
+    for (int r = 0; r < 3; ++r) EXPECT_NEAR(g[v][r], whole[3 * v + r], kRoundOff * largest_force) << what;
+    const Mat3d difference = blocks[v] - H.block[pattern.diagonal(v)];
+    EXPECT_LE(std::sqrt(squared_norm(difference)), kRoundOff * largest_entry) << what;
+  }
+}
+
 // The error of central differences falls by 100 when their width falls by 10, until round-off takes over; a wrong
 // derivative leaves an error that does not fall.
 inline void expect_consistent(Energy& V, int vertices, const std::vector<double>& x, double width,
@@ -58,6 +84,7 @@ inline void expect_consistent(Energy& V, int vertices, const std::vector<double>
   EXPECT_LT(fine.hessian, std::max(coarse.hessian / 50, 1e-7)) << what << ", Hessian; coarse " << coarse.hessian;
   EXPECT_LT(fine.gradient, 1e-4) << what;
   EXPECT_LT(fine.hessian, 1e-4) << what;
+  expect_vertex_systems_to_be_parts(V, pattern, x, what);
 }
 
 }  // namespace aspic::testing_derivatives

@@ -231,6 +231,29 @@ TEST(MassMatrix, TheConsistentOneIntegratesSquaresOfLinearFieldsExactly) {
   EXPECT_NEAR(integral, 0.8 * 0.6 / 3, 1e-14);  // of X^2 over [0, 1] x [0, .8] x [0, .6]
 }
 
+TEST(MassMatrix, SystemsOfSingleVerticesArePartsOfTheWhole) {
+  for (const MassKind kind : {MassKind::consistent, MassKind::lumped}) {
+    const MassMatrix mass(mesh(), std::vector<double>(mesh().tet_count(), 1.0), kind);
+    const std::vector<double> x = deformed(0.1), origin = deformed(0.1, 5);
+    std::vector<double> offset(x.size()), whole(x.size()), unit(x.size(), 0.0), column(x.size());
+    for (size_t i = 0; i < x.size(); ++i) offset[i] = x[i] - origin[i];
+    mass.multiply(offset, whole);
+    const std::vector<int> vertices = {5, 20};
+    std::vector<Vec3d> g(2, Vec3d{});
+    std::vector<Mat3d> H(2, Mat3d{});
+    mass.add_vertex_systems(3, x, origin, vertices, g, H);
+    for (int k = 0; k < 2; ++k) {
+      const int v = vertices[k];
+      for (int r = 0; r < 3; ++r) EXPECT_NEAR(g[k][r], 3 * whole[3 * v + r], 1e-15) << v;
+      unit[3 * v] = 1;
+      mass.multiply(unit, column);
+      unit[3 * v] = 0;
+      EXPECT_DOUBLE_EQ(H[k](0, 0), 3 * column[3 * v]);
+      EXPECT_EQ(H[k](1, 0), 0);
+    }
+  }
+}
+
 TEST(MassMatrix, AddedIntoAMatrixItIsTheSameOperator) {
   MassMatrix mass(mesh(), std::vector<double>(mesh().tet_count(), 1.0), MassKind::consistent);
   Couplings couplings;
