@@ -36,9 +36,9 @@ SimulationOptions tight(const SolverOptions& solver) {
 }
 
 TEST(Methods, AllReachTheSameMinimumOfATimeStep) {
-  // So near to rest the Hessian is at least the mass, whose smallest eigenvalue is at least a fifth of the smallest
-  // vertex mass [Wathen 1987], so that a gradient of norm e leaves an error of at most e / (m / 5); twice that between
-  // two methods.
+  // So near to rest the Hessian is at least the mass M. That of one tet has the eigenvalues m/20 and m/4, so that M is
+  // at least a fifth of the lumped mass, and a gradient of norm e leaves an error of at most 5 e / (the least vertex
+  // mass); twice that lies between two methods.
   const Model model = damped_beam_with_moving_pins_and_targets();
   const auto masses = model.mass->vertex_mass();
   const double least = *std::min_element(masses.begin(), masses.end()) / 5;

@@ -291,7 +291,7 @@ TEST(SolverOptions, EveryMethodSaysItsName) {
     EXPECT_EQ(direction->description().find(method), 0u);
   }
   EXPECT_EQ(make_search_direction({.method = "newton", .fallback = {"gradient_descent"}})->description(),
-            "newton, auto; where it finds no step, gradient_descent, preconditioner none");
+            "newton, definiteness on_demand, auto; where it finds no step, gradient_descent, preconditioner none");
 }
 
 }  // namespace

@@ -181,8 +181,8 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
                                    const MinimizeOptions& options, const IterationObserver& observe) {
   if (judges_direction(options.criterion) && !direction.estimates_minimiser())
     throw InvalidInput("criterion = '" + std::string(to_string(options.criterion)) +
-                       "' needs Newton's method: " + std::string(direction.name()) +
-                       " finds directions that do not tell how far the minimum is (try 'scale')");
+                       "' needs the method newton or newton_cg: directions of " + std::string(direction.name()) +
+                       " do not tell how far the minimum is (try 'scale')");
   for (auto* v : {&g_, &d_, &trial_, &trial_gradient_}) v->resize(x.size());
   trials_.reserve(64);
   direction.begin();

@@ -1,6 +1,7 @@
 #include "optimize/newton.h"
 
 #include <cmath>
+#include <utility>
 
 #include "base/stopwatch.h"
 #include "linalg/conjugate_gradient.h"
@@ -21,6 +22,27 @@ Definiteness first_choice(NewtonDefiniteness definiteness) {
 
 }  // namespace
 
+std::string_view to_string(NewtonDefiniteness definiteness) {
+  switch (definiteness) {
+    case NewtonDefiniteness::exact:
+      return "exact";
+    case NewtonDefiniteness::clamped:
+      return "clamped";
+    case NewtonDefiniteness::absolute:
+      return "absolute";
+    case NewtonDefiniteness::on_demand:
+      return "on_demand";
+    case NewtonDefiniteness::progressive:
+      return "progressive";
+  }
+  return "unknown";
+}
+
+std::vector<NewtonDefiniteness> all_definiteness() {
+  return {NewtonDefiniteness::on_demand, NewtonDefiniteness::progressive, NewtonDefiniteness::clamped,
+          NewtonDefiniteness::absolute, NewtonDefiniteness::exact};
+}
+
 Newton::Newton(std::unique_ptr<LinearSolver> solver, NewtonDefiniteness definiteness)
     : solver_(std::move(solver)), definiteness_(definiteness) {}
 
@@ -31,10 +53,13 @@ std::unique_ptr<Newton> make_newton_cg(NewtonDefiniteness definiteness) {
   return direction;
 }
 
-std::string Newton::description() const { return std::string(name()) + ", " + solver_->description(); }
+std::string Newton::description() const {
+  return std::string(name()) + ", definiteness " + std::string(to_string(definiteness_)) + ", " +
+         solver_->description();
+}
 
 void Newton::begin() {
-  clamp_next_ = clamped_ = false;
+  cautious_next_ = clamped_ = false;
   forcing_.begin();
   progressive_.begin();
 }
@@ -43,20 +68,12 @@ void Newton::begin() {
 bool Newton::compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
                      std::span<double> d, DirectionReport& report) {
   const double forcing = forcing_.at(std::sqrt(E.dot(g, g)), accuracy);
+  const bool cautious = std::exchange(cautious_next_, false);
   if (definiteness_ == NewtonDefiniteness::progressive) {
-    if (clamp_next_) progressive_.tighten(g);
-    clamp_next_ = false;
-    for (;; progressive_.tighten(g)) {
-      const Projection projection = progressive_.at(g);
-      report.projected = report.projected || projection.kind != Definiteness::exact;
-      if (solve(E, x, projection, g, forcing, d, report)) break;
-      if (progressive_.is_complete()) return false;
-    }
-    progressive_.relax();
-    return true;
+    if (cautious) progressive_.tighten(g);
+    return solve_progressively(E, x, g, forcing, d, report);
   }
-  clamped_ = clamp_next_;
-  clamp_next_ = false;
+  clamped_ = cautious;
   if (!clamped_ && solve(E, x, {first_choice(definiteness_)}, g, forcing, d, report)) return true;
   if (definiteness_ != NewtonDefiniteness::on_demand) return false;
   clamped_ = report.projected = true;
@@ -64,8 +81,22 @@ bool Newton::compute(Objective& E, std::span<const double> x, std::span<const do
 }
 
 bool Newton::retreat() {
-  if (definiteness_ == NewtonDefiniteness::progressive) return clamp_next_ = !progressive_.is_complete();
-  return clamp_next_ = definiteness_ == NewtonDefiniteness::on_demand && !clamped_;
+  cautious_next_ = definiteness_ == NewtonDefiniteness::progressive
+                       ? !progressive_.is_complete()
+                       : definiteness_ == NewtonDefiniteness::on_demand && !clamped_;
+  return cautious_next_;
+}
+
+bool Newton::solve_progressively(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,
+                                 std::span<double> d, DirectionReport& report) {
+  for (;; progressive_.tighten(g)) {
+    const Projection projection = progressive_.at(g);
+    report.projected = report.projected || projection.kind != Definiteness::exact;
+    if (solve(E, x, projection, g, forcing, d, report)) break;
+    if (progressive_.is_complete()) return false;
+  }
+  progressive_.relax();
+  return true;
 }
 
 bool Newton::solve(Objective& E, std::span<const double> x, const Projection& projection, std::span<const double> g,

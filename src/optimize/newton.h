@@ -1,6 +1,7 @@
 // Newton's method: minimise the quadratic approximation, H d = -g.
 #pragma once
 #include <memory>
+#include <vector>
 
 #include "linalg/linear_solver.h"
 #include "optimize/forcing.h"
@@ -12,6 +13,8 @@ namespace aspic {
 // on_demand: exact first; clamped only when the exact Hessian turns out indefinite or its direction of no use.
 // progressive: exact first; then clamped where the residual is largest, and further around, as far as it takes.
 enum class NewtonDefiniteness { exact, clamped, absolute, on_demand, progressive };
+std::string_view to_string(NewtonDefiniteness definiteness);
+std::vector<NewtonDefiniteness> all_definiteness();
 
 class Newton : public SearchDirection {
  public:
@@ -29,6 +32,8 @@ class Newton : public SearchDirection {
  private:
   friend std::unique_ptr<Newton> make_newton_cg(NewtonDefiniteness definiteness);
 
+  bool solve_progressively(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,
+                           std::span<double> d, DirectionReport& report);
   bool solve(Objective& E, std::span<const double> x, const Projection& projection, std::span<const double> g,
              double forcing, std::span<double> d, DirectionReport& report);
   std::unique_ptr<LinearSolver> solver_;
@@ -37,7 +42,8 @@ class Newton : public SearchDirection {
   Forcing forcing_;
   ProgressiveProjection progressive_;
   uint64_t analyzed_version_ = 0;
-  bool clamp_next_ = false, clamped_ = false;  // on_demand: at the next compute(), at the last one
+  bool cautious_next_ = false;  // after a retreat: project, or more than before
+  bool clamped_ = false;        // on_demand: the last direction
 };
 
 // Truncated Newton: conjugate gradients that stop where they meet negative curvature and keep what they have, so that

@@ -6,7 +6,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kTighten = 0.5, kRelax = 2;  // [Fernandez-Fernandez et al. 2026, sec. 4]
+constexpr double kTighten = 0.5, kRelax = 2;  // as in [Fernandez-Fernandez et al. 2026]
 constexpr double kAll = 1e-6;                 // below this part of the largest residual every element is covered
 
 double residual(std::span<const double> g, size_t vertex) {

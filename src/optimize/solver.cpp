@@ -17,22 +17,10 @@ namespace {
 
 using Direction = std::unique_ptr<SearchDirection>;
 
-struct Definite {
-  std::string name;
-  NewtonDefiniteness value;
-};
-const std::vector<Definite>& definiteness_table() {
-  static const std::vector<Definite> table = {
-      {"auto", NewtonDefiniteness::on_demand},    {"on_demand", NewtonDefiniteness::on_demand},
-      {"exact", NewtonDefiniteness::exact},       {"clamped", NewtonDefiniteness::clamped},
-      {"absolute", NewtonDefiniteness::absolute}, {"progressive", NewtonDefiniteness::progressive}};
-  return table;
-}
-
 NewtonDefiniteness definiteness(const SolverOptions& options) {
-  const auto& table = definiteness_table();
-  return std::find_if(table.begin(), table.end(), [&](const Definite& d) { return d.name == options.definiteness; })
-      ->value;
+  for (const NewtonDefiniteness d : all_definiteness())
+    if (to_string(d) == options.definiteness) return d;
+  return NewtonDefiniteness::on_demand;
 }
 
 // The preconditioner of a method whose own choice is `usual`.
@@ -136,8 +124,8 @@ std::vector<std::string> preconditioner_names() {
 }
 
 std::vector<std::string> definiteness_names() {
-  std::vector<std::string> names;
-  for (const Definite& entry : definiteness_table()) names.push_back(entry.name);
+  std::vector<std::string> names = {"auto"};
+  for (const NewtonDefiniteness d : all_definiteness()) names.emplace_back(to_string(d));
   return names;
 }
 
