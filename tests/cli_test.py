@@ -310,6 +310,33 @@ class Run(CommandLine):
         self.assertIn(b"[####################] 100%", text)
 
 
+class Compare(CommandLine):
+    def test_methods_reach_the_same_minimiser(self):
+        out = self.aspic("compare", self.beam(), "--methods", "newton,newton:clamped:cholesky,gradient_descent",
+                         "--step", "2").stdout
+        self.assertEqual(out.count("same minimiser"), 3)
+        folder = self.folder / "out" / "compare_beam"
+        for name in ("index.html", "methods.csv", "work.csv", "comparison.json"):
+            self.assertTrue((folder / name).exists(), name)
+        methods = {m["method"]: m for m in json.loads((folder / "comparison.json").read_text())["methods"]}
+        self.assertGreater(methods["gradient_descent"]["iterations"], 10 * methods["newton"]["iterations"])
+        self.assertLess(methods["newton"]["excess"], 1e-9)
+        with open(folder / "work.csv", newline="") as file:
+            values = [float(row["value"]) for row in csv.DictReader(file) if row["method"] == "newton"]
+        self.assertEqual(len(values), methods["newton"]["iterations"] + 1)
+        self.assertEqual(values, sorted(values, reverse=True))
+
+    def test_a_method_that_is_cut_off_shows_in_the_exit_code(self):
+        out = self.aspic("compare", self.beam(cells="40, 10, 10"), "--methods", "newton,gradient_descent",
+                         "--max-seconds", "0.01", code=3).stdout
+        self.assertIn("interrupted", out)
+
+    def test_bad_input_is_named(self):
+        for arguments, message in ((["--methods", "newtn"], "newton"), (["--methods", "newton:clampd"], "clamped"),
+                                   (["--methods", "newton", "--set", "time.integrator=forward_euler"], "implicit")):
+            self.assertIn(message, self.aspic("compare", self.beam(), *arguments, code=2).stderr)
+
+
 class Interruption(CommandLine):
     """A run of a hundred steps is stopped in its middle, in three ways, and continued."""
 

@@ -5,7 +5,7 @@ build_dir=$root/build/release
 log_dir=$root/build/log
 
 # A name after ':' is the program to look for where it is not called like its package.
-core_programs="g++ cmake ninja-build:ninja ccache"
+core_programs="g++ cmake ninja-build:ninja ccache gnuplot-nox:gnuplot"
 core_packages="libeigen3-dev libmetis-dev libmuparser-dev libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
   libfmt-dev zlib1g-dev"
 mesher_packages="libcgal-dev"

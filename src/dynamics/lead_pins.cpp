@@ -24,6 +24,8 @@ void add_work(const MinimizeReport& spent, MinimizeReport& work) {
   work.iterations += spent.iterations;
   work.trials += spent.trials;
   work.hessians += spent.hessians;
+  work.gradients += spent.gradients;
+  work.factorizations += spent.factorizations;
   work.linear_iterations += spent.linear_iterations;
   work.projected_hessians += spent.projected_hessians;
 }

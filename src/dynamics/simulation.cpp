@@ -133,6 +133,10 @@ struct Simulation::Impl {
     report.linear_iterations = solved.linear_iterations;
     report.hessians = solved.hessians;
     report.projected_hessians = solved.projected_hessians;
+    report.gradients = solved.gradients;
+    report.factorizations = solved.factorizations;
+    report.objective = solved.value;
+    report.objective_gradient = solved.gradient_norm;
     const bool judges_forces = integrator->is_implicit() && !judges_direction(report.criterion);
     if (judges_forces) report.residual_threshold = solved.threshold / E->gradient_unit();
     if (integrator->is_implicit()) report.residual_round_off = solved.gradient_round_off / E->gradient_unit();
@@ -195,6 +199,12 @@ TetFields Simulation::tet_fields() const {
                    std::vector<double>(tets)};
   for (const auto& V : impl_->model.elasticity) V->evaluate(impl_->state.q, fields);
   return fields;
+}
+
+void Simulation::set_solver(const SolverOptions& solver) {
+  impl_->direction = make_search_direction(solver);
+  impl_->options.solver = solver;
+  impl_->options.solver.minimize.h = impl_->options.h;
 }
 
 bool Simulation::is_implicit() const { return impl_->integrator->is_implicit(); }

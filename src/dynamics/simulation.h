@@ -29,6 +29,7 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
 
   StepReport step(const IterationObserver& observe = {});
+  void set_solver(const SolverOptions& solver);  // from the next step on; throws InvalidInput as the constructor does
 
   const Model& model() const;
   const State& state() const;

@@ -115,7 +115,7 @@ void add(const Iteration& iteration, MinimizeReport& report) {
   const DirectionReport& direction = iteration.direction;
   report.values += iteration.trials;
   report.trials += iteration.trials;
-  report.gradients += direction.gradients;
+  report.gradients += iteration.gradients;
   report.hessians += direction.hessians;
   report.factorizations += direction.factorizations;
   report.linear_iterations += direction.linear_iterations;
@@ -149,7 +149,7 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
       Stopwatch stopwatch;
       at.step = backtrack(E, at.x, d_, at.value, at.slope, options.line_search, trial_, trial_gradient_, trials_);
       iteration.trials += static_cast<int>(trials_.size());
-      report.gradients += at.step.gradients;
+      iteration.gradients += at.step.gradients;
       iteration.line_search_seconds += stopwatch.lap();
       if (at.step.alpha > 0) return true;
       report.status = Status::stuck;
@@ -169,7 +169,7 @@ void Minimizer::take_step(Progress& at, Iteration& iteration) {
   at.value = at.step.value;
   if (!at.step.gradient_known) {
     at.E.gradient(at.x, trial_gradient_);
-    ++at.report.gradients;
+    ++iteration.gradients;
   }
   g_.swap(trial_gradient_);
   at.gradient_scale = at.E.gradient_scale();
@@ -211,8 +211,9 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
 
     LiveIteration iteration{{.index = i, .value = report.value, .gradient_norm = report.gradient_norm}, E};
     const bool found = find_step(at, iteration);
-    add(iteration, report);
     if (found) take_step(at, iteration);
+    iteration.gradients += iteration.direction.gradients;
+    add(iteration, report);
     iteration.x = found ? trial_ : x;
     iteration.g = found ? trial_gradient_ : g_;
     iteration.d = d_, iteration.x_next = x, iteration.tried = trials_;

@@ -54,6 +54,7 @@ struct Iteration {
   double decrement = 0;      // Newton decrement: -g.d / 2
   double alpha = 0;          // accepted step length; 0 when there was none, which ends the minimisation
   int trials = 0;            // evaluations by the line search
+  int gradients = 0;         // evaluations in all
   int retreats = 0;          // how often a direction was of no use and another way was taken
   DirectionReport direction;
   double line_search_seconds = 0, gradient_seconds = 0;  // wall time

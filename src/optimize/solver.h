@@ -21,6 +21,11 @@ struct SolverOptions {
 std::vector<std::string> minimizer_names();
 std::vector<std::string> preconditioner_names();
 std::vector<std::string> definiteness_names();
+std::vector<std::string> criterion_names();
+std::vector<std::string> decrease_test_names();
+
+Criterion criterion_named(const std::string& name);         // throws InvalidInput: an unknown name
+DecreaseTest decrease_test_named(const std::string& name);  // throws InvalidInput: an unknown name
 
 // A name that is unknown, or that none of the chosen methods has a use for.
 struct SolverConflict {

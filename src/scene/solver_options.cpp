@@ -1,21 +1,6 @@
 #include "scene/solver_options.h"
 
 namespace aspic {
-namespace {
-
-DecreaseTest test_named(const std::string& name) {
-  if (name == "slide") return DecreaseTest::slide;
-  return name == "none" ? DecreaseTest::none : DecreaseTest::textbook;
-}
-
-Criterion criterion_named(const std::string& name) {
-  for (const Criterion c : all_criteria())
-    if (to_string(c) == name) return c;
-  throw InvalidInput("criterion '" + name + "' is unknown");
-}
-
-}  // namespace
-
 SolverOptions solver_options(const Value& solver) {
   const Value& search = solver["line_search"];
   SolverOptions options;
@@ -32,7 +17,7 @@ SolverOptions solver_options(const Value& solver) {
                           .sufficient_decrease = search["c"].number(),
                           .shrink = search["p"].number(),
                           .tolerance = search["tol"].number(),
-                          .test = test_named(search["test"].text())};
+                          .test = decrease_test_named(search["test"].text())};
   if (const auto conflict = find_conflict(options)) throw error_at(solver[conflict->option].place, conflict->reason);
   return options;
 }

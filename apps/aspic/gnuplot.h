@@ -1,0 +1,40 @@
+// One run of gnuplot: data files and a script in a temporary folder, the picture moved to its place.
+#pragma once
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "aspic/plot.h"
+#include "io/external_program.h"
+
+namespace aspic::cli {
+
+class Gnuplot {
+ public:
+  // Throws InvalidInput for a file name that is neither .svg nor .png, and when gnuplot is not installed.
+  Gnuplot(const std::filesystem::path& picture, const PictureSize& size);
+
+  void add(std::string_view commands) { script_ += commands, script_ += '\n'; }
+  std::string data_file(const std::string& contents);  // its name, quoted
+  void draw();                                         // runs the script; writes the picture
+
+ private:
+  std::filesystem::path picture_, program_;
+  TemporaryFolder folder_;
+  std::string script_;
+  int files_ = 0;
+};
+
+std::string literal(std::string_view text);  // as a string of gnuplot in which nothing has a meaning
+// "'text' noenhanced": the same, for titles and labels.
+std::string label(std::string_view text);
+std::string number(double value);  // "NaN" where not finite, which gnuplot takes as a gap
+std::string range(const std::optional<double>& min, const std::optional<double>& max);  // "[0:*]"
+void append_row(std::string& text, std::initializer_list<double> values);
+
+std::string color(int index);  // '#rrggbb': colours that are told apart by all eyes [Okabe and Ito 2008]
+inline constexpr const char* kInk = "#3a3a3a";
+inline constexpr const char* kGrid = "#e2e2e2";
+
+}  // namespace aspic::cli

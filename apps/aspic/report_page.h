@@ -1,0 +1,42 @@
+// A report as one HTML file that needs nothing else: pictures are inside, nothing is fetched. Text is escaped.
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aspic::cli {
+
+enum class Verdict { pass, fail, neutral };
+
+struct Cell {
+  std::string text;
+  std::optional<Verdict> verdict = {};  // as a badge around the text
+};
+
+struct Figure {
+  std::filesystem::path picture;  // .svg or .png; read when it is added
+  std::string caption;
+};
+
+class ReportPage {
+ public:
+  explicit ReportPage(std::string_view title, std::string_view subtitle = "");
+
+  void heading(std::string_view text);  // entry of the table of contents
+  void paragraph(std::string_view text);
+  void code(std::string_view text);  // a command or a formula, as it is
+  void verdict(Verdict verdict, std::string_view label, std::string_view text);
+  void table(const std::vector<std::string>& header, const std::vector<std::vector<Cell>>& rows);
+  void figures(const std::vector<Figure>& row);  // side by side where there is room; throws InvalidInput
+
+  std::string html() const;
+  void write(const std::filesystem::path& path) const;  // throws InvalidInput
+
+ private:
+  std::string title_, subtitle_, contents_, body_;
+  int headings_ = 0, pictures_ = 0;
+};
+
+}  // namespace aspic::cli
