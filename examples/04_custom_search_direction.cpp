@@ -17,8 +17,8 @@ class HeavyBall : public SearchDirection {
 
   void begin() override { before_.clear(); }  // a new minimisation remembers nothing
 
-  bool compute(Objective& E, std::span<const double>, std::span<const double> g, double, std::span<double> d,
-               DirectionReport&) override {
+  bool compute(Objective& E, std::span<const double>, std::span<const double> g, const InnerAccuracy&,
+               std::span<double> d, DirectionReport&) override {
     before_.resize(g.size());
     for (size_t i = 0; i < d.size(); ++i) d[i] = -g[i] + beta_ * before_[i];
     if (!(E.dot(g, d) < 0))  // the ball rolls uphill: stop it

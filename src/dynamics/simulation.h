@@ -52,7 +52,7 @@ class Simulation {
   TetFields tet_fields() const;
   bool is_implicit() const;                // the integrator minimises
   StableStep stable_step() const;          // at the start: what an explicit integrator can take
-  std::string solver_description() const;  // e.g. "cholesky (1 856 vertices)": what auto chose and why
+  std::string solver_description() const;  // the methods and what each of them chose, and why
 
   // Everything that the next steps depend on besides model and options; restoring continues to the same bits.
   struct Snapshot {

@@ -35,6 +35,11 @@ class Energy {
   virtual void bind(const BlockPattern&) {}        // remember my slots
   // H += scale d2V/dx2; returns how many elements were projected.
   virtual int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const = 0;
+  // For methods that move one vertex at a time: makes what add_vertex_systems needs, once. False: not offered; those
+  // methods then take the whole gradient and Hessian.
+  virtual bool prepare_vertex_systems(int /*vertex_count*/) { return false; }
+  // g[k] += scale dV/dx_v, H[k] += scale d2V/dx_v^2 for v = vertices[k]. Several threads may call it at once.
+  virtual void add_vertex_systems(Positions, double, std::span<const int>, std::span<Vec3d>, std::span<Mat3d>) const {}
   virtual double max_step(Positions, std::span<const double>) const {  // largest safe alpha along d
     return std::numeric_limits<double>::infinity();
   }

@@ -54,6 +54,25 @@ class RayleighDamping : public Energy {
     return 0;
   }
 
+  bool prepare_vertex_systems(int) override { return true; }
+  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
+                          std::span<Mat3d> H) const override {
+    if (h_ == 0) return;
+    const BlockPattern& p = *C_->pattern;
+    const auto moved = [&](int j) {
+      return Vec3d{{x[3 * j] - start_[3 * j], x[3 * j + 1] - start_[3 * j + 1], x[3 * j + 2] - start_[3 * j + 2]}};
+    };
+    for (size_t k = 0; k < vertices.size(); ++k) {
+      const int v = vertices[k];
+      Vec3d Cu{};
+      for (int64_t s = p.row_start[v]; s < p.row_start[v + 1]; ++s) Cu = Cu + C_->block[s] * moved(p.column[s]);
+      for (int64_t u = p.upper_start[v]; u < p.upper_start[v + 1]; ++u)
+        Cu = Cu + transpose(C_->block[p.upper_slot[u]]) * moved(p.upper_row[u]);
+      g[k] = g[k] + (scale / h_) * Cu;
+      H[k] = H[k] + (scale / h_) * C_->block[p.diagonal(v)];
+    }
+  }
+
  private:
   void multiply(Positions x) const {
     for (size_t i = 0; i < x.size(); ++i) u_[i] = x[i] - start_[i];
