@@ -42,11 +42,11 @@ AdaptiveStep::AdaptiveStep(const Model& model, double tolerance, bool remembers)
   for (const BodyRange& body : model.bodies) size_.push_back(diagonal(model.mesh, body));
 }
 
-void AdaptiveStep::set_level(int level) {
-  if (level < 0 || level >= kDeepest)
+void AdaptiveStep::set_level(double level) {
+  if (!(level >= 0 && level < kDeepest))
     throw InvalidInput("the checkpoint's adaptive step has level " + std::to_string(level) + "; it must be from 0 to " +
                        std::to_string(kDeepest - 1));
-  level_ = level;
+  level_ = static_cast<int>(level);
 }
 
 bool AdaptiveStep::take(Integrator& integrator, const StepTools& tools, Part& part) {

@@ -21,7 +21,7 @@ class AdaptiveStep {
 
   // The length that the next part is tried with, h / 2^level: what a restart needs.
   int level() const { return level_; }
-  void set_level(int level);                           // throws InvalidInput for one that there is not
+  void set_level(double level);  // as a checkpoint holds it; throws InvalidInput for one that there is not
   const State& previous() const { return previous_; }  // where the last part started
 
  private:

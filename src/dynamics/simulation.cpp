@@ -145,7 +145,7 @@ struct Simulation::Impl {
     if (history.size() > 1 && history.size() != 2 + 2 * n)
       throw InvalidInput("the checkpoint's history has " + std::to_string(history.size()) +
                          " entries; this scene needs " + std::to_string(2 + 2 * n));
-    if (adaptive && !history.empty()) adaptive->set_level(static_cast<int>(history[0]));
+    if (adaptive && !history.empty()) adaptive->set_level(history[0]);
     has_previous = remembers() && history.size() > 1;
     if (!has_previous) return;
     const auto q = history.begin() + 2;

@@ -89,9 +89,11 @@ TEST(Simulation, ACheckpointOfAnotherSizeIsRefused) {
   Simulation::Snapshot snapshot = simulation.snapshot();
   snapshot.history.pop_back();
   EXPECT_THROW(simulation.restore(snapshot), InvalidInput);
-  snapshot.history = {99};  // a level of the adaptive step that there is not
   Simulation adaptive = simulate(beam(1), {.adaptive = {.tolerance = 1e-3}, .solver = {}});
-  EXPECT_THROW(adaptive.restore(snapshot), InvalidInput);
+  for (const double level : {99.0, -1.0, 1e300, static_cast<double>(NAN)}) {
+    snapshot.history = {level};
+    EXPECT_THROW(adaptive.restore(snapshot), InvalidInput) << level;
+  }
 }
 
 TEST(Simulation, AnInterruptedStepLeavesTheStateAlone) {
