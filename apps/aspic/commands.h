@@ -13,8 +13,8 @@ enum ExitCode {
   exit_done = 0,
   exit_internal_error = 1,
   exit_bad_input = 2,
-  exit_unconverged = 3,
-  exit_signal = 128,  // plus the number of the signal: 130 after ctrl-C, 143 after a plain kill
+  exit_unconverged = 3,  // a step, a minimisation; of a check of derivatives: one is wrong
+  exit_signal = 128,     // plus the number of the signal: 130 after ctrl-C, 143 after a plain kill
 };
 
 using Action = std::function<int()>;  // returns the exit code

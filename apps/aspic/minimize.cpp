@@ -55,14 +55,7 @@ Problem problem_of(const Arguments& arguments) {
                .function = std::make_unique<ExpressionFunction>(arguments.expression)};
     if (arguments.start.empty()) throw InvalidInput("--expression needs --start x,y");
   } else {
-    const TestFunction info = test_function_info(arguments.function);
-    problem = {.name = info.name,
-               .formula = info.formula,
-               .function = make_test_function(info.name),
-               .start = info.start,
-               .minimizer = info.minimizer,
-               .minimum = info.minimum,
-               .region = std::pair(info.lower, info.upper)};
+    problem = known_problem(arguments.function);
   }
   if (!arguments.start.empty()) problem.start = parse_start(arguments.start);
   if (!std::isfinite(problem.function->at(problem.start)))
@@ -70,21 +63,6 @@ Problem problem_of(const Arguments& arguments) {
                                    problem.start[0], problem.start[1]));
   return problem;
 }
-
-void check(const SolverOptions& solver) {
-  const auto require = [](bool holds, const char* option, double value, const char* range) {
-    if (!holds) throw InvalidInput(fmt::format("{} {}: it must be {}", option, value, range));
-  };
-  const LineSearchOptions& search = solver.minimize.line_search;
-  require(solver.minimize.tolerance >= 0, "--tolerance", solver.minimize.tolerance, "0 or more");
-  require(std::isfinite(search.alpha_max) && search.alpha_max > 0, "--alpha-max", search.alpha_max, "positive");
-  const double c = search.sufficient_decrease, p = search.shrink;
-  require(c > 0 && c < 1, "--decrease", c, "between 0 and 1");
-  require(p > 0 && p < 1, "--shrink", p, "between 0 and 1");
-  require(search.tolerance > 0, "--alpha-min", search.tolerance, "positive");
-}
-
-Planar planar(std::span<const double> x) { return {x[0], x[1]}; }
 
 void print_header() {
   fmt::print("{:>4} {:>13} {:>13} {:>15} {:>10} {:>10} {:>6}\n", "", "x", "y", "f", "|g|", "alpha", "trials");
@@ -118,34 +96,22 @@ Minimization minimize(const Problem& problem, const Arguments& arguments) {
   SolverOptions solver = arguments.solver;
   solver.minimize.criterion = criterion_named(arguments.criterion);
   solver.minimize.line_search.test = decrease_test_named(arguments.test);
-  check(solver);
-  const auto direction = make_search_direction(solver);
   std::optional<Trace> trace;
   if (!arguments.trace.empty())
     trace.emplace(arguments.trace,
                   TraceOptions{{}, /*sufficient_decrease=*/solver.minimize.line_search.sufficient_decrease});
-
-  Minimization done{.method = solver.method, .definiteness = solver.definiteness};
-  std::replace(done.method.begin(), done.method.end(), '_', ' ');
-  std::vector<double> x = {problem.start[0], problem.start[1], 0};
-  const auto observe = [&](const LiveIteration& live) {
-    done.iterations.push_back(
-        {live, planar(live.x), planar(live.d), planar(live.x_next), {live.tried.begin(), live.tried.end()}});
+  if (!arguments.json) {
+    fmt::print("{}: f = {}\n{}, from ({:g}, {:g})\n", problem.name, problem.formula,
+               make_search_direction(solver)->description(), problem.start[0], problem.start[1]);
+    print_header();
+  }
+  Minimization done = minimize(problem, solver, [&](const IterationRecord& record, const LiveIteration& live) {
     if (trace) trace->on_iteration(1, live);
-    const IterationRecord& record = done.iterations.back();
     if (arguments.json)
       fmt::print("{}\n", json_row(record));
     else
       print_row(record);
-    return true;
-  };
-  if (!arguments.json) {
-    fmt::print("{}: f = {}\n{}, from ({:g}, {:g})\n", problem.name, problem.formula, direction->description(),
-               problem.start[0], problem.start[1]);
-    print_header();
-  }
-  done.report = Minimizer().minimize(*problem.function, *direction, x, solver.minimize, observe);
-  done.end = planar(x);
+  });
   if (trace) trace->close();
   return done;
 }
@@ -234,14 +200,20 @@ int run(const Arguments& arguments) {
   for (const fs::path& picture : {arguments.plot, arguments.model})
     if (!picture.empty()) require_drawable(picture);
   const Problem problem = problem_of(arguments);
-  const Minimization done = minimize(problem, arguments);
+  Minimization done = minimize(problem, arguments);
   if (arguments.json)
     print_json_summary(problem, done);
   else
     print_summary(problem, done);
-  if (!arguments.plot.empty()) draw_path(arguments.plot, problem, done);
+  const int code = is_success(done.report.status) ? exit_done : exit_unconverged;
   if (!arguments.model.empty()) draw_model(arguments.model, problem, done, arguments.iteration);
-  return is_success(done.report.status) ? exit_done : exit_unconverged;
+  if (!arguments.plot.empty()) {
+    const std::string title = fmt::format("{} on f = {}", done.method, problem.formula);
+    std::vector<Minimization> methods;
+    methods.push_back(std::move(done));
+    draw_paths(arguments.plot, title, problem, methods);
+  }
+  return code;
 }
 
 void add_solver_options(CLI::App* command, Arguments& arguments) {

@@ -1,13 +1,15 @@
-// What `aspic minimize` found out, for its table and its pictures.
+// A minimisation of a function of two variables, step by step: for the table and pictures of `aspic minimize`, and for
+// comparisons of methods.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "optimize/minimize.h"
 #include "optimize/planar_function.h"
+#include "optimize/solver.h"
 
 namespace aspic::cli {
 
@@ -18,8 +20,9 @@ struct Problem {
   Planar start{};
   std::optional<Planar> minimizer = {};
   std::optional<double> minimum = {};
-  std::optional<std::pair<Planar, Planar>> region = {};  // worth looking at
+  std::optional<std::pair<Planar, Planar>> region = {};  // worth looking at: lower and upper corner
 };
+Problem known_problem(const std::string& name);  // one of test_functions(). Throws InvalidInput.
 
 struct IterationRecord {
   Iteration iteration;
@@ -35,8 +38,13 @@ struct Minimization {
   Planar end{};
 };
 
-// A contour map with the path and the rejected trials. Throws InvalidInput.
-void draw_path(const std::filesystem::path& path, const Problem& problem, const Minimization& done);
+// From problem.start. Each iteration is shown as it is recorded. Throws InvalidInput for options that make no sense.
+using ShowIteration = std::function<void(const IterationRecord&, const LiveIteration&)>;
+Minimization minimize(const Problem& problem, const SolverOptions& options, const ShowIteration& show = {});
+
+// A contour map with the paths and the rejected trials of several methods. Throws InvalidInput.
+void draw_paths(const std::filesystem::path& path, const std::string& title, const Problem& problem,
+                const std::vector<Minimization>& methods);
 // The surface, and over it the quadratic model that an iteration minimised. Throws InvalidInput.
 void draw_model(const std::filesystem::path& path, const Problem& problem, const Minimization& done, int iteration);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "aspic/minimize.h"
 #include "aspic/plot.h"
@@ -21,7 +22,7 @@ struct Region {
 };
 
 // The region that is known to be worth looking at, or around the path; wider where the path leaves it, within reason.
-Region region(const Problem& problem, const Minimization& done) {
+Region region(const Problem& problem, std::span<const Minimization> methods) {
   Region all{problem.start, problem.start};
   if (problem.region) all = {problem.region->first, problem.region->second};
   const Region core = all;
@@ -31,7 +32,8 @@ Region region(const Problem& problem, const Minimization& done) {
                       p[1] < core.upper[1] + size;
     if (near) all.include(p);
   };
-  for (const IterationRecord& record : done.iterations) include(record.next);
+  for (const Minimization& done : methods)
+    for (const IterationRecord& record : done.iterations) include(record.next);
   include(problem.start);
   if (problem.region) return all;
   for (size_t i = 0; i < 2; ++i) {
@@ -75,17 +77,22 @@ Region neighbourhood(const IterationRecord& record, const Region& whole) {
 
 }  // namespace
 
-void draw_path(const std::filesystem::path& path, const Problem& problem, const Minimization& done) {
+void draw_paths(const std::filesystem::path& path, const std::string& title, const Problem& problem,
+                const std::vector<Minimization>& methods) {
   const PlanarFunction& f = *problem.function;
-  ContourMap map{.title = fmt::format("{} on f = {}", done.method, problem.formula),
-                 .function = sampled(region(problem, done), 241, [&](const Planar& p) { return f.at(p); }),
-                 .paths = {{.label = done.method, .points = {problem.start}}},
+  ContourMap map{.title = title,
+                 .function = sampled(region(problem, methods), 241, [&](const Planar& p) { return f.at(p); }),
+                 .paths = {},
                  .minimizer = problem.minimizer};
-  for (const IterationRecord& record : done.iterations) {
-    map.paths[0].points.push_back(record.next);
-    for (const Trial& trial : record.tried)
-      if (!trial.accepted && map.paths[0].rejected.size() < kRejectedShown)
-        map.paths[0].rejected.push_back(along(record, trial.alpha));
+  for (const Minimization& done : methods) {
+    PlanarPath line{.label = done.method, .points = {problem.start}};
+    for (const IterationRecord& record : done.iterations) {
+      line.points.push_back(record.next);
+      for (const Trial& trial : record.tried)
+        if (!trial.accepted && line.rejected.size() < kRejectedShown)
+          line.rejected.push_back(along(record, trial.alpha));
+    }
+    map.paths.push_back(std::move(line));
   }
   draw(path, map);
 }
@@ -98,7 +105,7 @@ void draw_model(const std::filesystem::path& path, const Problem& problem, const
   const IterationRecord& record = done.iterations[static_cast<size_t>(iteration)];
   const QuadraticModel model = f.model(record.x, projection(done, record));
   const Planar target = along(record, 1);
-  const Region box = neighbourhood(record, region(problem, done));
+  const Region box = neighbourhood(record, region(problem, {&done, 1}));
   SurfacePlot plot{.title = fmt::format("{}, iteration {}: f = {}", done.method, iteration, problem.formula),
                    .z_label = "f",
                    .function = sampled(box, 45, [&](const Planar& p) { return f.at(p); }),

@@ -114,7 +114,7 @@ void draw(const std::filesystem::path& path, const SurfacePlot& surface) {
   plot.add(fmt::format("set view {},{}\nset xyplane relative 0.02", number(90 - surface.elevation),
                        number(surface.azimuth)));
   plot.add("set pm3d clip z depthorder base lighting primary 0.4 specular 0.15 border lc rgb '#90203040' lw 0.3");
-  plot.add("set key at screen 0.5, 0.07 center center horizontal width -2 maxrows 2");
+  plot.add("set key at screen 0.52, 0.085 center center horizontal width -2 maxrows 2");
   if (surface.model) plot.add("set style fill transparent solid 0.7");
   plot.add("set palette defined (0 '#2c5f8a', 0.4 '#7fb0cf', 1 '#f2f6f9')\nunset colorbox");
   plot.add(

@@ -12,6 +12,9 @@ constexpr int kDecades = 9;
 // A part of the variation over one length counts as the size of a gradient that vanishes, as that of a body at rest.
 constexpr double kRestShare = 0.01;
 
+// Errors below are round-off, whatever the steps are.
+constexpr double kNoise = 1e-12;
+
 using Vector = std::vector<double>;
 
 struct Range {
@@ -131,7 +134,7 @@ class Checker {
   static double fitted_order(const DerivativeCheck& check) {
     Vector u, v;
     for (size_t i = 0; i < check.step.size() && check.error[i] != check.smallest_error; ++i) {
-      if (!(check.error[i] > 30 * check.smallest_error)) continue;
+      if (!(check.error[i] > std::max(30 * check.smallest_error, kNoise))) continue;
       u.push_back(std::log10(check.step[i]));
       v.push_back(std::log10(check.error[i]));
     }
