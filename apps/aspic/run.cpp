@@ -163,9 +163,10 @@ class Runner {
   void warn(const StepReport& report, const Explanation& why) {
     const int count = totals_.unconverged;
     if (count > kWarningsShown) return;
-    std::string line = fmt::format(
-        "warning: step {} did not converge: {} after {} iterations; residual {:.3g} N, wanted {:.3g} N", report.step,
-        to_string(report.status), report.iterations, report.residual, report.residual_threshold);
+    std::string line = fmt::format("warning: step {} did not converge: {}", report.step, to_string(report.status));
+    if (report.residual_threshold > 0)
+      line += fmt::format(" after {} iterations; residual {:.3g} N, wanted {:.3g} N", report.iterations,
+                          report.residual, report.residual_threshold);
     if (why.cause != last_cause_) line += explanation_text(why);
     last_cause_ = why.cause;
     if (count == kWarningsShown) line += " (further ones are only counted)";
