@@ -107,11 +107,12 @@ class Runner {
     Simulation& simulation = scene_.simulation;
     while (simulation.steps_taken() < last_step_ && !interrupt_signal()) {
       iterations_.clear();
-      const StepReport report = simulation.step([&](const LiveIteration& iteration) {
+      const auto observe = [&](const LiveIteration& iteration) {
         iterations_.push_back(iteration);
         if (trace_) trace_->on_iteration(simulation.steps_taken() + 1, iteration);
         return !interrupt_signal();
-      });
+      };
+      const StepReport report = simulation.step(observe, [] { return !interrupt_signal(); });
       if (report.status == Status::interrupted) break;
       record(report);
       // The body stays where it was, and an explicit scheme, which has nothing else to try, would fail again.

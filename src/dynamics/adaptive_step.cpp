@@ -57,6 +57,8 @@ bool AdaptiveStep::take(Integrator& integrator, const StepTools& tools, Part& pa
 }
 
 AdaptiveStep::Verdict AdaptiveStep::attempt(Integrator& integrator, const StepTools& whole, int first, int size) {
+  // Explicit schemes, which no observer can stop, take many parts in silence.
+  if (whole.go_on && !whole.go_on()) return failure_ = Status::interrupted, Verdict::interrupted;
   const int half = size / 2;
   const State *before = has_previous_ ? &previous_ : nullptr, *now = remembers_ ? &now_ : nullptr;
   const auto unsuccessful = [&] { return failure_ == Status::interrupted ? Verdict::interrupted : Verdict::rejected; };
@@ -124,9 +126,11 @@ StepSolve AdaptiveStep::advance(Integrator& integrator, const StepTools& whole, 
   knows_whole_ = false;
   total_ = {};
   report.substeps = 0;
+  const int first_level = level_;
   for (int done = 0; done < kTicks;) {
     const int size = kTicks >> level_;
     const Verdict verdict = attempt(integrator, whole, done, size);
+    if (verdict == Verdict::interrupted) level_ = first_level;  // the step is going to be taken again, the same way
     if (verdict == Verdict::accepted) {
       keep(integrator, whole, ledger, done, size, report);
       done += size;

@@ -23,14 +23,12 @@ class BackwardEuler : public Integrator {
     stage_.a = end.q;
     stage_.b = end.qdot;
     acceleration_.resize(end.q.size());
-    const StageOptions options{.beta = tools.h, .time = tools.end_time, .ahead = tools.h, .once = is_linearised()};
+    const StageOptions options{
+        .beta = tools.h, .time = tools.end_time, .ahead = tools.h, .once = takes_one_iteration()};
     stage_.solve(tools, nullptr, options, end.q, end.qdot, acceleration_, solve, forces);
     end.time = tools.end_time;
     return solve;
   }
-
- protected:
-  virtual bool is_linearised() const { return false; }
 
  private:
   ImplicitStage stage_;
@@ -42,9 +40,7 @@ class LinearlyImplicitEuler : public BackwardEuler {
  public:
   std::string_view name() const override { return "linearly_implicit_euler"; }
   bool chooses_guess() const override { return false; }
-
- protected:
-  bool is_linearised() const override { return true; }
+  bool takes_one_iteration() const override { return true; }
 };
 
 // q* = a + beta v*,  v* = b + beta acc(q*, v*) with a = (4 q_n - q_(n-1)) / 3, b = (4 v_n - v_(n-1)) / 3, beta = 2h/3

@@ -7,6 +7,7 @@
 #include "dynamics/incremental_potential.h"
 #include "dynamics/initial_guess.h"
 #include "dynamics/state.h"
+#include "dynamics/step_report.h"
 #include "linalg/linear_solver.h"
 #include "optimize/minimize.h"
 
@@ -21,6 +22,7 @@ struct SolveTools {
   SearchDirection& direction;
   const MinimizeOptions& options;
   const IterationObserver& observe;
+  const Consent& go_on;
   InitialGuess guess;
 };
 
@@ -64,6 +66,7 @@ class Integrator {
   virtual bool chooses_guess() const { return is_implicit(); }  // whether StepTools::guess is heeded
   // What `best` tries besides the current positions and the extrapolated ones.
   virtual bool tries_last_increment() const { return chooses_guess(); }
+  virtual bool takes_one_iteration() const { return false; }  // of Newton's method, in place of a minimisation
   // Gives the pinned vertices of the first state the velocities that the scheme expects there.
   virtual void set_pin_velocity(const Pins&, double /* h */, State&) const {}
   // Writes the state at the end of the step, and what acted in it.

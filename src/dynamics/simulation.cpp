@@ -35,7 +35,7 @@ struct Simulation::Impl {
     options.solver.minimize.h = options.h;
     if (!(options.h > 0) || !std::isfinite(options.h))
       throw InvalidInput("time.step = " + std::to_string(options.h) + "; it must be positive");
-    require_possible(options, *integrator, guess);
+    require_possible(options);
     if (!integrator->is_static()) require_mass(model, *pins);
     pins->place(state.time, state.q);
     require_finite_energy(model, state.q);
@@ -53,27 +53,27 @@ struct Simulation::Impl {
   double end_of_next_step() const { return start.time + (steps_taken + 1) * options.h; }
 
   // Of a step from `before`.
-  StepTools tools(const IterationObserver& observe, double end_time) {
-    const SolveTools solve{model, *pins, *E, minimizer, *direction, options.solver.minimize, observe, guess};
+  StepTools tools(const IterationObserver& observe, const Consent& go_on, double end_time) {
+    const SolveTools solve{model, *pins, *E, minimizer, *direction, options.solver.minimize, observe, go_on, guess};
     return {solve, before, has_previous ? &previous : nullptr, options.h, end_time};
   }
 
-  StepReport step(const IterationObserver& observe) {
+  StepReport step(const IterationObserver& observe, const Consent& go_on) {
     Stopwatch stopwatch;
     before = state;
-    const StepTools with = tools(observe, end_of_next_step());
+    const StepTools with = tools(observe, go_on, end_of_next_step());
     StepReport report;
     const StepSolve solved = adaptive ? adaptive->advance(*integrator, with, ledger, state, report)
                                       : integrator->advance(with, state, forces);
     describe(solved, report);
     const bool is_interrupted = solved.work.status == Status::interrupted;
     if (!can_go_on(report.status)) {
-      take_back(observe, is_interrupted ? before.time : with.end_time, report);
+      take_back(with, is_interrupted ? before.time : with.end_time, report);
     } else {
       if (!adaptive) ledger.add(with, integrator->order(), state, forces, report);
       if (!is_finite(report)) {
         if (is_success(report.status)) report.status = Status::undefined;
-        take_back(observe, with.end_time, report);
+        take_back(with, with.end_time, report);
       } else if (remembers()) {
         previous = adaptive ? adaptive->previous() : before;
         has_previous = true;
@@ -98,13 +98,13 @@ struct Simulation::Impl {
 
   // The body stays where the step began, though time and moving targets may go on to `time`; a scheme of several steps
   // begins anew.
-  void take_back(const IterationObserver& observe, double time, StepReport& report) {
+  void take_back(const StepTools& with, double time, StepReport& report) {
     report.residual = report.pin_work = report.damping_loss = 0;
     report.numerical_loss = report.residual_work = report.ledger_error = 0;
     state = before;
     state.time = time;
     has_previous = has_previous && time == before.time;
-    const StepTools stand_still = tools(observe, time);
+    const StepTools stand_still = tools(with.observe, with.go_on, time);
     stand_at(time);
     forces.reset(state.q.size());
     for (const Energy* V : E->potential()) V->add_gradient(state.q, 1, forces.gradient);
@@ -180,7 +180,9 @@ Simulation::Simulation(Model model, State initial, SimulationOptions options) {
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 
-StepReport Simulation::step(const IterationObserver& observe) { return impl_->step(observe); }
+StepReport Simulation::step(const IterationObserver& observe, const Consent& go_on) {
+  return impl_->step(observe, go_on);
+}
 const Model& Simulation::model() const { return impl_->model; }
 const State& Simulation::state() const { return impl_->state; }
 const SimulationOptions& Simulation::options() const { return impl_->options; }
@@ -216,9 +218,13 @@ TetFields Simulation::tet_fields() const {
 }
 
 void Simulation::set_solver(const SolverOptions& solver) {
-  impl_->direction = make_search_direction(solver);
-  impl_->options.solver = solver;
-  impl_->options.solver.minimize.h = impl_->options.h;
+  SimulationOptions options = impl_->options;
+  options.solver = solver;
+  options.solver.minimize.h = options.h;
+  auto direction = make_search_direction(solver);
+  require_possible(options);
+  impl_->direction = std::move(direction);
+  impl_->options = std::move(options);
 }
 
 bool Simulation::is_implicit() const { return impl_->integrator->is_implicit(); }

@@ -1,6 +1,7 @@
 // Advances a model in time, one minimisation per step.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,9 @@ std::vector<std::string> integrator_names();
 std::vector<std::string> initial_guess_names();
 std::vector<std::string> adaptive_integrator_names();  // those whose steps can be divided
 
+// What the integrator cannot do or has no use for: "adaptive", or a member of SolverOptions, or "initial_guess".
+std::optional<SolverConflict> find_conflict(const SimulationOptions& options);
+
 class Simulation {
  public:
   // `initial` holds one entry per vertex of the model. Throws InvalidInput for an unknown name in the options, for
@@ -38,7 +42,8 @@ class Simulation {
   ~Simulation();
   Simulation(Simulation&&) noexcept;
 
-  StepReport step(const IterationObserver& observe = {});
+  // A step that the observer stops, or that may not go on, is dropped with the status `interrupted`.
+  StepReport step(const IterationObserver& observe = {}, const Consent& go_on = {});
   void set_solver(const SolverOptions& solver);  // from the next step on; throws InvalidInput as the constructor does
 
   const Model& model() const;

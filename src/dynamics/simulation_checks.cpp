@@ -56,24 +56,40 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
   }
 }
 
-void require_possible(const SimulationOptions& options, const Integrator& integrator, InitialGuess guess) {
+std::optional<SolverConflict> find_conflict(const SimulationOptions& options) {
+  const std::unique_ptr<Integrator> integrator = make_integrator(options.integrator);
+  const std::string name = "integrator = '" + options.integrator + "'";
+  if (options.adaptive.tolerance > 0 && (integrator->is_static() || integrator->is_multistep()))
+    return SolverConflict{"adaptive",
+                          name + " cannot divide its steps (time.adaptive): " +
+                              (integrator->is_static() ? "it knows no time" : "it needs steps of one length") + "; " +
+                              joined(adaptive_integrator_names()) + " can"};
+  const InitialGuess guess = initial_guess_named(options.initial_guess);
+  const std::string chosen_guess = "solver.initial_guess = '" + options.initial_guess + "'";
+  if (guess != InitialGuess::best && !integrator->chooses_guess())
+    return SolverConflict{"initial_guess", chosen_guess + " says nothing to " + name + ": " +
+                                               (integrator->is_implicit() ? "it starts from the current positions"
+                                                                          : "it minimises nothing")};
+  if (guess == InitialGuess::extrapolated && integrator->is_static())
+    return SolverConflict{"initial_guess",
+                          chosen_guess + " needs velocities, of which " + name + " knows none; try 'last_increment'"};
+  if (!integrator->takes_one_iteration()) return std::nullopt;
+  const auto unfit = [&](const char* option, const std::string& method) {
+    return SolverConflict{option, std::string("solver.") + option + " = '" + method + "' does not do for " + name +
+                                      ", which is one iteration of Newton's method: newton and newton_cg can"};
+  };
+  if (!estimates_minimiser(options.solver.method)) return unfit("method", options.solver.method);
+  for (const std::string& method : options.solver.fallback)
+    if (!estimates_minimiser(method)) return unfit("fallback", method);
+  return std::nullopt;
+}
+
+void require_possible(const SimulationOptions& options) {
   const double tolerance = options.adaptive.tolerance;
-  const std::string name(integrator.name());
   if (!(tolerance >= 0) || !std::isfinite(tolerance))
     throw InvalidInput("time.adaptive.tolerance = " + std::to_string(tolerance) +
                        "; it must be positive, or 0 for none");
-  if (tolerance > 0 && (integrator.is_static() || integrator.is_multistep()))
-    throw InvalidInput("integrator = '" + name + "' cannot divide its steps (time.adaptive): " +
-                       (integrator.is_static() ? "it knows no time" : "it needs steps of one length") + "; " +
-                       joined(adaptive_integrator_names()) + " can");
-  const bool is_default = guess == InitialGuess::best;
-  if (!is_default && !integrator.chooses_guess())
-    throw InvalidInput(
-        "solver.initial_guess = '" + options.initial_guess + "' says nothing to integrator = '" + name +
-        "': " + (integrator.is_implicit() ? "it starts from the current positions" : "it minimises nothing"));
-  if (guess == InitialGuess::extrapolated && integrator.is_static())
-    throw InvalidInput("solver.initial_guess = 'extrapolated' needs velocities, of which integrator = '" + name +
-                       "' knows none; try 'last_increment'");
+  if (const auto conflict = find_conflict(options)) throw InvalidInput(conflict->reason);
 }
 
 }  // namespace aspic

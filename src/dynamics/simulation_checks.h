@@ -9,6 +9,6 @@ namespace aspic {
 
 void require_mass(const Model& model, const Pins& pins);                    // in every free vertex
 void require_finite_energy(const Model& model, std::span<const double> x);  // nothing inside out at the start
-void require_possible(const SimulationOptions& options, const Integrator& integrator, InitialGuess guess);
+void require_possible(const SimulationOptions& options);
 
 }  // namespace aspic

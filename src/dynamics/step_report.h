@@ -1,5 +1,6 @@
 // What is known of a step after it was taken. A step that did not converge says so here.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,8 @@
 #include "optimize/minimize.h"
 
 namespace aspic {
+
+using Consent = std::function<bool()>;  // asked between the parts of an adaptive step; empty: always given
 
 struct StepReport {
   int step = 0;     // 1 for the first

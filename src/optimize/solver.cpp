@@ -174,6 +174,11 @@ std::optional<SolverConflict> find_conflict(const SolverOptions& options) {
   return criterion_conflict(options, chosen);
 }
 
+bool estimates_minimiser(const std::string& method) {
+  const Method* known = method_named(method);
+  return known && known->estimates_minimiser;
+}
+
 std::unique_ptr<SearchDirection> make_search_direction(const SolverOptions& options) {
   if (const auto conflict = find_conflict(options)) throw InvalidInput(conflict->reason);
   if (options.fallback.empty()) return method_named(options.method)->make(options);

@@ -34,6 +34,9 @@ struct SolverConflict {
 };
 std::optional<SolverConflict> find_conflict(const SolverOptions& options);
 
+// Whether the directions of the method tell how far the minimum is; false for an unknown name.
+bool estimates_minimiser(const std::string& method);
+
 // Throws InvalidInput where there is a conflict.
 std::unique_ptr<SearchDirection> make_search_direction(const SolverOptions& options);
 

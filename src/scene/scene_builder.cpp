@@ -77,8 +77,13 @@ SimulationOptions options_of(const Table& document, std::vector<std::string>& no
   options.h = time["step"].number();
   options.integrator = time["integrator"].text();
   options.adaptive.tolerance = time["adaptive"]["tolerance"].number();
-  options.initial_guess = (*document.find("solver"))["initial_guess"].text();
-  options.solver = solver_options(*document.find("solver"));
+  const Value& solver = *document.find("solver");
+  options.initial_guess = solver["initial_guess"].text();
+  options.solver = solver_options(solver);
+  if (const auto conflict = find_conflict(options)) {
+    const Value& table = conflict->option == "adaptive" ? time : solver;
+    throw error_at(table[conflict->option].place, conflict->reason);
+  }
   if (!make_integrator(options.integrator)->is_implicit() && options.solver.method != SolverOptions().method)
     notes.push_back("integrator = '" + options.integrator + "' minimises nothing: solver.method = '" +
                     options.solver.method + "' has no effect");

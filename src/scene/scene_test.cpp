@@ -57,6 +57,29 @@ TEST(Scene, AnIntegratorThatCannotDivideItsStepsIsRefusedWithThoseThatCan) {
               testing::ThrowsMessage<InvalidInput>(AllOf(HasSubstr("'bdf2'"), HasSubstr("tr_bdf2"))));
 }
 
+TEST(Scene, WhatTheIntegratorCannotDoIsAnErrorWithItsPlace) {
+  const auto refused = [](const std::string& integrator, const std::string& time, const std::string& solver) {
+    return refusal("[time]\nintegrator = \"" + integrator + "\"\n" + time + "[solver]\n" + solver + kCube);
+  };
+  EXPECT_THAT(refused("bdf2", "adaptive = { tolerance = 1e-4 }\n", ""), HasSubstr("beam.toml:3:"));
+  EXPECT_THAT(refused("rk4", "", "initial_guess = \"zero\"\n"), HasSubstr("beam.toml:4:"));
+  EXPECT_THAT(refused("quasi_static", "", "initial_guess = \"extrapolated\"\n"), HasSubstr("beam.toml:4:"));
+}
+
+// One iteration of gradient descent would end anywhere, and the scheme asks for no small gradient.
+TEST(Scene, TheLinearisedIntegratorTakesOneIterationOfNewtonsMethodAndOfNoOther) {
+  const auto refused = [](const std::string& solver) {
+    return refusal("[time]\nintegrator = \"linearly_implicit_euler\"\n[solver]\n" + solver + kCube);
+  };
+  for (const char* method : {"lbfgs", "nonlinear_cg", "gradient_descent", "vertex_descent"}) {
+    const std::string name = std::string("\"") + method + "\"";
+    EXPECT_THAT(refused("method = " + name + "\n"),
+                AllOf(HasSubstr("beam.toml:4:"), HasSubstr(method), HasSubstr("newton and newton_cg can")));
+    EXPECT_THAT(refused("fallback = [" + name + "]\n"), HasSubstr("beam.toml:4:"));
+  }
+  load("[time]\nintegrator = \"linearly_implicit_euler\"\n[solver]\nmethod = \"newton_cg\"\n" + kCube);
+}
+
 TEST(Scene, PlacesTheRestShapeByScaleThenRotationThenTranslation) {
   const Scene scene = load(kCube +
                            "scale = [1, 2, 3]\nrotate = { axis = [0, 0, 5], angle_deg = 90 }\n"
