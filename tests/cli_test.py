@@ -170,6 +170,20 @@ class Minimize(CommandLine):
         self.assertIn("converged after", text)
         self.assertIn("distance to the minimum at (1, 1)", text)
 
+    def test_help_names_every_definiteness(self):
+        text = self.aspic("minimize", "--help").stdout
+        self.assertIn("auto, on_demand, progressive, clamped, absolute, exact", text)
+
+    def test_a_function_without_a_model_to_minimise_is_not_blamed_on_the_projection(self):
+        start = ("minimize", "--expression", "x", "--start", "1,2")
+        self.assertNotIn("--definiteness", self.aspic(*start, code=3).stdout)
+        self.assertIn("--definiteness on_demand", self.aspic(*start, "--definiteness", "exact", code=3).stdout)
+
+    def test_a_gradient_that_is_no_number_has_no_sign(self):
+        text = self.aspic("minimize", "--expression", "-x^2-y^2", "--start", "1,2", code=3).stdout
+        self.assertIn("|g| = nan; nan was reached", text)
+        self.assertNotIn("-nan", text)
+
     def test_a_flat_place_is_not_taken_for_the_minimum(self):
         self.assertIn("not the minimum", self.aspic("minimize", "two_bump", "--start", "4,4").stdout)
 
@@ -472,6 +486,21 @@ class Compare(CommandLine):
         for arguments, message in ((["--methods", "newtn"], "newton"), (["--methods", "newton:clampd"], "clamped"),
                                    (["--methods", "newton", "--set", "time.integrator=forward_euler"], "implicit")):
             self.assertIn(message, self.aspic("compare", self.beam(), *arguments, code=2).stderr)
+
+    def test_a_step_that_is_not_one_minimisation_is_refused(self):
+        for setting, message in (("time.integrator=tr_bdf2", "minimises twice"),
+                                 ("time.integrator=bdf2", "--step 2"),
+                                 ("time.integrator=linearly_implicit_euler", "one iteration"),
+                                 ("time.adaptive.tolerance=1e-3", "time.adaptive.tolerance=0")):
+            refused = self.aspic("compare", self.beam(), "--methods", "newton,lbfgs", "--set", setting, code=2)
+            self.assertIn(message, refused.stderr)
+        self.aspic("compare", self.beam(), "--methods", "newton,lbfgs", "--set", "time.integrator=bdf2", "--step", "2")
+
+    def test_a_folder_that_cannot_be_made_is_found_before_the_work(self):
+        (self.folder / "taken").write_text("")
+        refused = self.aspic("compare", self.beam(), "--methods", "newton", "--out", "taken/here", code=2)
+        self.assertIn("cannot be created", refused.stderr)
+        self.assertNotIn("newton ...", refused.stderr)
 
 
 class Interruption(CommandLine):

@@ -40,9 +40,18 @@ void print_table(const Comparison& comparison) {
   }
 }
 
+// Before the work, which may take long.
+void create(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InvalidInput(folder.string() + ": cannot be created: " + error.message());
+}
+
 int compare(const Arguments& arguments) {
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides, .mesher = {}});
+  const fs::path folder = arguments.out.empty() ? fs::path("out") / ("compare_" + scene.name) : arguments.out;
+  create(folder);
   const Model& model = scene.simulation.model();
   fmt::print("{}: {} vertices, {} tets; step {} by each method, {} threads\n", scene.name, model.mesh.vertex_count(),
              model.mesh.tet_count(), arguments.step, thread_count());
@@ -55,7 +64,6 @@ int compare(const Arguments& arguments) {
              comparison.reference.objective, comparison.reference.iterations, comparison.reference.objective_gradient);
   print_table(comparison);
 
-  const fs::path folder = arguments.out.empty() ? fs::path("out") / ("compare_" + scene.name) : arguments.out;
   const std::string missing = write_comparison(folder, scene.name, comparison);
   if (!missing.empty()) fmt::print(stderr, "note: no pictures: {}\n", missing);
   fmt::print("\nresults    {}\n", (folder / "index.html").string());

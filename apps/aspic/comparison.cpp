@@ -29,9 +29,7 @@ class Comparer {
   Comparer(Simulation& simulation, const ComparisonOptions& options)
       : simulation_(simulation), options_(options), base_(simulation.options().solver) {
     for (const std::string& method : options.methods) solvers_.push_back(method_named(method, base_));
-    if (!simulation.is_implicit())
-      throw InvalidInput("time.integrator = '" + simulation.options().integrator +
-                         "' minimises nothing; compare methods with an implicit one, such as backward_euler");
+    require_one_minimisation();
   }
 
   Comparison compare() {
@@ -47,6 +45,26 @@ class Comparer {
   }
 
  private:
+  // Where a step is one minimisation, all methods have the same minimiser to find. A later stage begins with what an
+  // earlier one left, and one iteration looks for none.
+  void require_one_minimisation() const {
+    const std::string& integrator = simulation_.options().integrator;
+    const auto require = [&](bool holds, const char* reason) {
+      if (!holds)
+        throw InvalidInput("time.integrator = '" + integrator + "' " + reason +
+                           "; compare methods with an implicit one of one minimisation per step, such as "
+                           "backward_euler");
+    };
+    require(simulation_.is_implicit(), "minimises nothing");
+    require(integrator != "linearly_implicit_euler", "takes one iteration, wherever it leads");
+    require(integrator != "tr_bdf2", "minimises twice per step, the second time from what the first one left");
+    require(integrator != "bdf2" || options_.step > 1, "minimises twice in its first step (try --step 2)");
+    if (simulation_.options().adaptive.tolerance > 0)
+      throw InvalidInput(
+          "time.adaptive divides a step into parts, each from what the one before left; compare methods with "
+          "--set time.adaptive.tolerance=0");
+  }
+
   void take_steps_before() {
     while (simulation_.steps_taken() < options_.step - 1) {
       const StepReport report = simulation_.step();

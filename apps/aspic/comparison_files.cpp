@@ -136,9 +136,6 @@ void write_page(const fs::path& folder, const std::string& scene, const Comparis
 }  // namespace
 
 std::string write_comparison(const fs::path& folder, const std::string& scene, const Comparison& comparison) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw InvalidInput(folder.string() + ": cannot be created: " + error.message());
   write_methods(folder / "methods.csv", comparison);
   write_work(folder / "work.csv", comparison);
   write_json(folder / "comparison.json", scene, comparison);

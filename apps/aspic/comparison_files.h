@@ -7,7 +7,7 @@
 namespace aspic::cli {
 
 // methods.csv, work.csv, comparison.json, iterations.svg, time.svg, index.html. Without gnuplot the pictures are left
-// out; returns why, or an empty text. Throws InvalidInput when the folder cannot be written.
+// out; returns why, or an empty text. The folder exists. Throws InvalidInput when it cannot be written.
 std::string write_comparison(const std::filesystem::path& folder, const std::string& scene,
                              const Comparison& comparison);
 

@@ -24,7 +24,8 @@ void set_option(const std::string& option, SolverOptions& solver) {
   } else {
     std::vector<std::string> known = definiteness_names();
     for (const auto& names : {linear_solver_names(), preconditioner_names()})
-      known.insert(known.end(), names.begin(), names.end());
+      for (const std::string& name : names)
+        if (!contains(known, name)) known.push_back(name);
     throw InvalidInput("method option '" + option + "' is unknown" + suggestion(option, known));
   }
 }

@@ -138,9 +138,10 @@ std::string in_words(const Minimization& done) {
           report.iterations);
     case Status::no_descent:
       return fmt::format(
-          "no descent direction after {} iterations: the Hessian is not positive definite; try "
-          "--definiteness clamped",
-          report.iterations);
+          "no descent direction after {} iterations: {}", report.iterations,
+          done.definiteness == "exact"
+              ? "the Hessian is not positive definite; try --definiteness on_demand"
+              : "the quadratic model has no minimum here, so f may have none this way; try --method gradient_descent");
     case Status::undefined:
       return fmt::format(
           "after {} iterations f or its gradient is not finite: f has no lower bound this way, or is not "
@@ -153,13 +154,14 @@ std::string in_words(const Minimization& done) {
   return "interrupted";
 }
 
+// Norms go through abs, which takes the sign from what is not a number.
 void print_summary(const Problem& problem, const Minimization& done) {
   const MinimizeReport& report = done.report;
   fmt::print("{:>4} {:>13.6g} {:>13.6g} {:>15.8g} {:>10.3g}\n\n", report.iterations, done.end[0], done.end[1],
-             report.value, report.gradient_norm);
+             report.value, std::abs(report.gradient_norm));
   fmt::print("{}\n", in_words(done));
   fmt::print("f = {:.12g} at ({:.10g}, {:.10g}); |g| = {:.3g}; {:.3g} was reached, {:.3g} asked for\n", report.value,
-             done.end[0], done.end[1], report.gradient_norm, report.reached, report.threshold);
+             done.end[0], done.end[1], std::abs(report.gradient_norm), std::abs(report.reached), report.threshold);
   fmt::print("evaluations: {} of f, {} of its gradient, {} of its Hessian ({} projected)\n", report.values,
              report.gradients, report.hessians, report.projected_hessians);
   if (!problem.minimizer) return;
@@ -223,7 +225,7 @@ void add_solver_options(CLI::App* command, Arguments& arguments) {
   minimize.max_iterations = 200;
   command->add_option("--method", solver.method, "newton by default; --list names all");
   command->add_option("--definiteness", solver.definiteness,
-                      "Of Newton's Hessian: exact, clamped, absolute, on_demand");
+                      fmt::format("Of Newton's Hessian: {}", fmt::join(definiteness_names(), ", ")));
   command->add_option("--criterion", arguments.criterion,
                       fmt::format("What must be small: {}", fmt::join(criterion_names(), ", ")));
   command->add_option("--tolerance", minimize.tolerance, "How small; 1e-6 by default");

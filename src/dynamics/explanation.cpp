@@ -76,6 +76,9 @@ std::string residual_place(const Model& model, const StepReport& report, std::sp
          "balance: " + text(report.worst_residual) + " N are left over";
 }
 
+// A relative tolerance above this accepts what is no solution.
+constexpr double kLoosest = 1e-2;
+
 class Explainer {
  public:
   Explainer(const Simulation& simulation, const StepReport& report)
@@ -188,11 +191,15 @@ class Explainer {
   Explanation iteration_limit() const {
     const std::string cause = "not converged after " + std::to_string(report_.iterations) + " iterations";
     const MinimizeOptions& options = solver_.minimize;
-    if (report_.residual_threshold > 0 && report_.residual_threshold < report_.residual_round_off)
+    if (report_.residual_threshold > 0 && report_.residual_threshold < report_.residual_round_off) {
+      const double reachable = options.tolerance * 10 * report_.residual_round_off / report_.residual_threshold;
+      const bool is_useful = options.criterion == Criterion::absolute || is_static() || reachable <= kLoosest;
       return {cause + ": round-off alone is " + text(report_.residual_round_off) + " N, and less is asked for",
-              "solver.tolerance = " + text(options.tolerance),
-              "solver.tolerance = " +
-                  text(options.tolerance * 10 * report_.residual_round_off / report_.residual_threshold)};
+              is_useful ? "solver.tolerance = " + text(options.tolerance) : step_text(),
+              is_useful
+                  ? "solver.tolerance = " + text(reachable)
+                  : "lengthen time.step: positions have 16 digits, and too few of them change in so short a time"};
+    }
     if (!is_newton())
       return {cause + ": methods without the Hessian take many more for stiff bodies",
               "solver.method = \"" + solver_.method + "\"",

@@ -98,6 +98,13 @@ TEST(Explanation, OfAnIterationLimitOtherwiseNamesTheVertexFurthestFromBalance) 
   EXPECT_LE(report.worst_residual, report.residual);
 }
 
+TEST(Explanation, OfAStepTooShortForRoundOffAsksForALongerOneAndNotForAnyTolerance) {
+  const Explanation why = first_failure({.h = 1e-9, .solver = {}}, Status::iteration_limit);
+  EXPECT_THAT(why.cause, HasSubstr("round-off"));
+  EXPECT_THAT(why.place, HasSubstr("time.step = 1e-09"));
+  EXPECT_THAT(why.remedy, HasSubstr("lengthen time.step"));
+}
+
 TEST(Explanation, OfALineSearchThatAsksForTooMuchNamesItsParameter) {
   SimulationOptions slide;
   slide.solver.minimize.line_search.test = DecreaseTest::slide;
