@@ -184,6 +184,15 @@ class Minimize(CommandLine):
         self.assertIn("|g| = nan; nan was reached", text)
         self.assertNotIn("-nan", text)
 
+    @unittest.skipUnless(os.path.exists("/dev/full"), "needs a device that is always full")
+    def test_output_that_does_not_arrive_is_an_error(self):
+        for arguments in (["--list"], ["rosenbrock", "--json"],
+                          ["rosenbrock", "--json", "--method", "gradient_descent", "--max-iterations", "2000"]):
+            with open("/dev/full", "w") as full:
+                done = subprocess.run([ASPIC, "minimize", *arguments], stdout=full, stderr=subprocess.PIPE, text=True)
+            self.assertEqual(done.returncode, 2, arguments)
+            self.assertIn("standard output: cannot be written", done.stderr)
+
     def test_a_flat_place_is_not_taken_for_the_minimum(self):
         self.assertIn("not the minimum", self.aspic("minimize", "two_bump", "--start", "4,4").stdout)
 

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <new>
 #include <string>
@@ -24,6 +25,11 @@ Examples:
 'aspic COMMAND --help' tells more about a command.
 
 Exit codes: 0 done, 1 internal error, 2 bad input, 3 not converged or a wrong derivative, 130 interrupted.)";
+
+constexpr char kOutputLost[] = "standard output: cannot be written; free some space or choose another disk";
+
+// Tables and JSON that did not arrive are no success.
+bool is_output_lost() { return std::fflush(stdout) != 0 || std::ferror(stdout) != 0; }
 
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
@@ -95,7 +101,9 @@ int run_program(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return report_parse_error(app, error, {argv + 1, argv + argc});
   }
-  return action();
+  const int code = action();
+  if (is_output_lost()) throw InvalidInput(kOutputLost);
+  return code;
 }
 
 }  // namespace
@@ -111,6 +119,10 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "error: out of memory\n");
   } catch (const std::exception& error) {
+    if (cli::is_output_lost()) {
+      fmt::print(stderr, "error: {}\n", cli::kOutputLost);
+      return cli::exit_bad_input;
+    }
     fmt::print(stderr, "internal error: {}\nThis should not happen; please report it with the command and its input.\n",
                error.what());
   }

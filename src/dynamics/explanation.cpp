@@ -89,6 +89,11 @@ class Explainer {
         x_(simulation.state().q) {}
 
   Explanation explain() const {
+    const bool is_unsolved = report_.status == Status::stuck || report_.status == Status::no_descent ||
+                             report_.status == Status::iteration_limit;
+    if (is_unsolved && is_static() && !is_held())
+      return {"there is no single equilibrium: nothing holds the body", "no pins in the scene",
+              "pin some vertices, or use time.integrator = \"backward_euler\""};
     switch (report_.status) {
       case Status::undefined:
         return simulation_.is_implicit() ? undefined_start() : blow_up();
@@ -111,6 +116,22 @@ class Explainer {
  private:
   bool is_static() const { return simulation_.options().integrator == "quasi_static"; }
   bool is_newton() const { return solver_.method.starts_with("newton"); }
+  // Pins, or loads such as springs to points, which differ where the body is moved as a whole.
+  bool is_held() const {
+    if (!model_.pins.empty()) return true;
+    std::vector<double> moved = x_, here(x_.size()), there(x_.size());
+    for (double& xi : moved) xi += 1;
+    for (const auto& V : model_.loads) {
+      V->add_gradient(x_, 1, here);
+      V->add_gradient(moved, 1, there);
+    }
+    double largest = 0, change = 0;
+    for (size_t i = 0; i < here.size(); ++i) {
+      largest = std::max({largest, std::abs(here[i]), std::abs(there[i])});
+      change = std::max(change, std::abs(there[i] - here[i]));
+    }
+    return change > 1e-6 * largest;
+  }
   std::string step_text() const { return "time.step = " + text(simulation_.options().h); }
   std::string smaller_steps() const {
     return is_static() ? "load the body in smaller steps (" + step_text() + " now)"
@@ -218,9 +239,6 @@ class Explainer {
     if (is_newton() && solver_.definiteness == "exact")
       return {"the exact Hessian has directions of negative curvature, along which Newton's method would climb",
               "solver.definiteness = \"exact\"", "solver.definiteness = \"on_demand\""};
-    if (is_static() && model_.pins.empty())
-      return {"the linear system has no single solution: nothing holds the body", "no pins in the scene",
-              "pin some vertices, or use time.integrator = \"backward_euler\""};
     return {"no direction could be computed along which the energy falls", squashed_place(model_, x_),
             is_newton() ? "solver.linear = \"cholesky\"; `aspic check` finds bad tets" : smaller_steps()};
   }

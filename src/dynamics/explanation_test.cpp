@@ -105,6 +105,24 @@ TEST(Explanation, OfAStepTooShortForRoundOffAsksForALongerOneAndNotForAnyToleran
   EXPECT_THAT(why.remedy, HasSubstr("lengthen time.step"));
 }
 
+TEST(Explanation, OfStaticsNamesWhatIsMissingWhenNothingHoldsTheBodyWhateverTheMethod) {
+  for (const char* method : {"newton", "newton_cg", "gradient_descent", "vertex_descent"}) {
+    const auto explained = [&](bool is_held) {
+      Model model = beam(2);
+      model.pins.clear();
+      if (is_held) model.loads.push_back(make_point_springs("spring", {{0, 100, [](double) { return Vec3d{}; }}}));
+      SimulationOptions options{.integrator = "quasi_static", .solver = {.method = method}};
+      options.solver.minimize.max_iterations = 2;
+      Simulation simulation = simulate(std::move(model), options);
+      const StepReport report = simulation.step();
+      EXPECT_FALSE(is_success(report.status)) << method;
+      return explain(simulation, report).cause;
+    };
+    EXPECT_THAT(explained(false), HasSubstr("nothing holds the body")) << method;
+    EXPECT_THAT(explained(true), testing::Not(HasSubstr("nothing holds the body"))) << method;
+  }
+}
+
 TEST(Explanation, OfALineSearchThatAsksForTooMuchNamesItsParameter) {
   SimulationOptions slide;
   slide.solver.minimize.line_search.test = DecreaseTest::slide;
