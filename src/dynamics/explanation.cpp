@@ -134,6 +134,9 @@ class Explainer {
   }
   std::string step_text() const { return "time.step = " + text(simulation_.options().h); }
   std::string smaller_steps() const {
+    const double tolerance = simulation_.options().adaptive.tolerance;
+    if (tolerance > 0)  // the smallest part, time.step / 2^20, failed as well
+      return "raise time.adaptive.tolerance (" + text(tolerance) + " now): shorter parts of the step failed as well";
     return is_static() ? "load the body in smaller steps (" + step_text() + " now)"
                        : "shorten the step (" + step_text() + " now)";
   }

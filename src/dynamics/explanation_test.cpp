@@ -149,6 +149,11 @@ TEST(Explanation, OfAnAdaptiveStepThatStaysInaccurateNamesTheTolerance) {
   EXPECT_THAT(explain(simulation, report).place, HasSubstr("time.adaptive.tolerance = 1e-16"));
 }
 
+TEST(Explanation, OfAnAdaptiveStepDoesNotAskForShorterOnes) {
+  const Explanation why = first_failure({.adaptive = {1e-14}, .solver = {}}, Status::iteration_limit);
+  EXPECT_THAT(why.remedy, testing::AllOf(HasSubstr("time.adaptive.tolerance"), testing::Not(HasSubstr("shorten"))));
+}
+
 TEST(Explanation, OfPinsThatInvertATetNamesIt) {
   Model model = beam(2);
   model.pins.push_back({"press", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 4 - 1e-9; }),
