@@ -259,6 +259,30 @@ class Run(CommandLine):
         self.write("bad.mesh", box_mesh(flip=5))
         self.assertIn("inverted", self.aspic("run", "bad.mesh", code=2).stderr)
 
+    def test_a_trace_changes_no_result(self):
+        self.aspic("run", self.beam(), "--out", "plain")
+        out = self.aspic("run", self.beam(), "--out", "traced", "--trace", "--landscape", "2:1",
+                         "--landscape", "999").stdout
+        trace = self.folder / "traced" / "trace"
+        self.assertIn("traced/trace", out)
+        self.assertEqual(len((trace / "curve_2_1.csv").read_text().splitlines()), 102)
+        rows = [json.loads(line) for line in (trace / "trace.jsonl").read_text().splitlines()]
+        self.assertEqual(len(rows), len((self.folder / "plain" / "iterations.csv").read_text().splitlines()) - 1)
+        shutil.rmtree(trace)
+        self.assert_same_results("plain", "traced")
+
+    def test_force_replaces_a_trace_too(self):
+        scene = self.beam()
+        self.aspic("run", scene, "--trace")
+        self.aspic("run", scene, "--force")
+        self.assertFalse((self.folder / "out" / "beam" / "trace").exists())
+
+    def test_a_landscape_without_its_iteration_is_told(self):
+        error = self.aspic("run", self.beam(), "--landscape", "1:77").stderr
+        self.assertIn("no landscape 1:77", error)
+        self.assertIn("STEP:ITERATION", self.aspic("run", self.beam("b.toml"), "--landscape", "x", code=2).stderr)
+        self.assertFalse((self.folder / "out" / "b").exists())
+
     def test_a_step_that_does_not_converge_shows_in_the_exit_code(self):
         scene = self.beam()
         hard = ["--set", "solver.max_iterations=1", "--set", "solver.tolerance=1e-12", "--set", "material.young=1e3"]

@@ -15,6 +15,7 @@
 #include "base/parallel.h"
 #include "scene/run_directory.h"
 #include "scene/scene.h"
+#include "scene/trace.h"
 
 namespace aspic::cli {
 namespace {
@@ -23,12 +24,18 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   fs::path input, out;
-  std::vector<std::string> overrides;
+  std::vector<std::string> overrides, landscapes;
   int threads = 0, steps = 0;  // 0: not given
-  bool force = false, resume = false, quiet = false, json = false, allow_unconverged = false;
+  bool force = false, resume = false, trace = false, quiet = false, json = false, allow_unconverged = false;
 };
 
 constexpr int kWarningsShown = 5;
+
+std::vector<LandscapeAt> landscapes(const Arguments& arguments) {
+  std::vector<LandscapeAt> places;
+  for (const std::string& text : arguments.landscapes) places.push_back(parse_landscape(text));
+  return places;
+}
 
 // The directory to continue: the one named, or the one where a run of the input would have gone.
 fs::path directory_to_resume(const Arguments& arguments) {
@@ -109,6 +116,7 @@ class Runner {
         last_step_(arguments.steps > 0 ? arguments.steps : scene.steps),
         first_step_(scene.simulation.steps_taken()) {
     if (!arguments.quiet) progress_.emplace(human_, first_step_, last_step_);
+    if (arguments.trace || !arguments.landscapes.empty()) start_trace();
   }
 
   // Stops early when a signal asks for it; a step cut short is dropped, so what is written ends with a whole one.
@@ -116,8 +124,9 @@ class Runner {
     Simulation& simulation = scene_.simulation;
     while (simulation.steps_taken() < last_step_ && !interrupt_signal()) {
       iterations_.clear();
-      const StepReport report = simulation.step([this](const Iteration& iteration) {
+      const StepReport report = simulation.step([&](const LiveIteration& iteration) {
         iterations_.push_back(iteration);
+        if (trace_) trace_->on_iteration(simulation.steps_taken() + 1, iteration);
         return !interrupt_signal();
       });
       if (report.status == Status::interrupted) break;
@@ -125,6 +134,7 @@ class Runner {
     }
     directory_.finish(simulation);
     if (progress_) progress_->finish();
+    if (trace_) finish_trace();
   }
 
   const RunTotals& totals() const { return totals_; }
@@ -142,6 +152,20 @@ class Runner {
       if (std::fflush(stdout) != 0) throw InvalidInput("--json: standard output cannot be written; is the disk full?");
     }
     if (progress_) progress_->show(report);
+  }
+
+  void start_trace() {
+    const LineSearchOptions& line_search = scene_.simulation.options().solver.minimize.line_search;
+    trace_.emplace(directory_.trace_folder(first_step_),
+                   TraceOptions{landscapes(arguments_), line_search.sufficient_decrease});
+  }
+
+  void finish_trace() {
+    trace_->close();
+    for (const LandscapeAt& at : trace_->missed())
+      fmt::print(stderr, "warning: no landscape {0}:{1}: the run has no iteration {1} of step {0}\n", at.step,
+                 at.iteration);
+    if (!arguments_.quiet) fmt::print(human_, "trace      {}\n", trace_->folder().string());
   }
 
   void warn(const StepReport& report) {
@@ -166,6 +190,7 @@ class Runner {
   std::FILE* human_;
   int last_step_, first_step_;
   std::optional<Progress> progress_;
+  std::optional<Trace> trace_;
   std::vector<Iteration> iterations_;  // of the step under way; recorded once it is whole
   RunTotals totals_;
 };
@@ -188,6 +213,7 @@ int exit_code(const Arguments& arguments, int unconverged) {
 
 int run(const Arguments& arguments) {
   if (arguments.threads > 0) set_thread_count(arguments.threads);
+  landscapes(arguments);  // bad input is told before anything is written
   Scene scene = load(arguments);
   RunDirectory directory = open_directory(arguments, scene);
   catch_interrupts();  // not before there is something to keep
@@ -220,6 +246,7 @@ Examples:
   aspic run beam.toml --set material.young=2e5 --set time.step=0.005 --out out/soft
   aspic run beam.toml --resume                    continues an interrupted run, to the same bits
   aspic run beam.toml --json | jq .iterations     one line of JSON per step
+  aspic run beam.toml --landscape 12:0            why is step 12 slow? its first iteration, looked at closely
 
 Exit codes: 0 done, 2 bad input, 3 some step did not converge (unless --allow-unconverged),
 130 interrupted by ctrl-C, 143 by kill: everything up to the last whole step is written.)");
@@ -233,6 +260,13 @@ Exit codes: 0 done, 2 bad input, 3 some step did not converge (unless --allow-un
   command->add_option("--out", arguments->out, "Directory of the results; out/NAME by default");
   command->add_flag("--force", arguments->force, "Replace the results of an earlier run");
   command->add_flag("--resume", arguments->resume, "Continue the run in the directory")->excludes("--force");
+  command->add_flag("--trace", arguments->trace,
+                    "Write what every iteration did, trial by trial, into DIRECTORY/trace; changes no result");
+  command
+      ->add_option("--landscape", arguments->landscapes,
+                   "STEP or STEP:ITERATION: with the trace, E along that iteration's direction and over a plane "
+                   "through it; can be repeated")
+      ->allow_extra_args(false);
   command->add_flag("--quiet", arguments->quiet, "Only warnings and errors");
   command->add_flag("--json", arguments->json, "One line of JSON per step on stdout, all else on stderr");
   command->add_flag("--allow-unconverged", arguments->allow_unconverged,

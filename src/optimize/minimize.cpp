@@ -142,7 +142,9 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
   for (;; ++iteration.retreats) {
     const bool found = direction.compute(E, at.x, g_, loose, d_, iteration.direction);
     at.slope = found ? E.dot(g_, d_) : 0;
+    iteration.decrement = -0.5 * at.slope;
     report.status = Status::no_descent;
+    trials_.clear();
     if (at.slope < 0) {
       if (at.judges_direction()) {
         report.reached = direction_size(E, options, d_, at.slope);
@@ -175,7 +177,6 @@ void Minimizer::take_step(Progress& at, Iteration& iteration) {
   }
   g_.swap(trial_gradient_);
   at.gradient_scale = at.E.gradient_scale();
-  iteration.decrement = -0.5 * at.slope;
   iteration.alpha = at.step.alpha;
   iteration.gradient_seconds = stopwatch.lap();
 }
@@ -215,11 +216,13 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
     LiveIteration iteration{{.index = i, .value = report.value, .gradient_norm = report.gradient_norm}, E};
     const bool found = find_step(at, iteration);
     add(iteration, report);
+    if (found) take_step(at, iteration);
+    iteration.x = found ? trial_ : x;
+    iteration.g = found ? trial_gradient_ : g_;
+    iteration.d = d_, iteration.x_next = x, iteration.tried = trials_;
+    const bool go_on = !observe || observe(iteration);
     if (!found) return report;
-    take_step(at, iteration);
-    iteration.x = trial_, iteration.g = trial_gradient_, iteration.d = d_;
-    iteration.x_next = x, iteration.tried = trials_;
-    if (observe && !observe(iteration)) {
+    if (!go_on) {
       report.iterations = i + 1;
       return ended(Status::interrupted);
     }

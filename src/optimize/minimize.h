@@ -52,7 +52,7 @@ struct Iteration {
   double value = 0;          // E before the step
   double gradient_norm = 0;  // |g| before the step
   double decrement = 0;      // Newton decrement: -g.d / 2
-  double alpha = 0;          // accepted step length
+  double alpha = 0;          // accepted step length; 0 when there was none, which ends the minimisation
   int trials = 0;            // evaluations by the line search
   int retreats = 0;          // how often a direction was of no use and another way was taken
   DirectionReport direction;

@@ -208,6 +208,7 @@ void RunDirectory::finish(const Simulation& simulation) {
 }
 
 const fs::path& RunDirectory::path() const { return impl_->layout.root(); }
+fs::path RunDirectory::trace_folder(int first_step) const { return impl_->layout.trace(first_step); }
 
 fs::path scene_of_run(const fs::path& run) {
   const RunLayout layout(run);

@@ -24,6 +24,7 @@ class RunDirectory {
   void finish(const Simulation& simulation);                             // last checkpoint, indices, closes files
 
   const std::filesystem::path& path() const;
+  std::filesystem::path trace_folder(int first_step) const;  // where a trace that begins after that step belongs
 
  private:
   struct Impl;

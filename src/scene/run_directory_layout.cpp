@@ -50,6 +50,23 @@ void remove_file(const fs::path& file) {
   if (error) throw InvalidInput(file.string() + ": cannot be removed: " + error.message());
 }
 
+bool is_trace_file(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return name == "iterations.csv" || name == "trials.csv" || name == "timings.csv" || name == "trace.jsonl" ||
+         (file.extension() == ".csv" && (name.starts_with("curve_") || name.starts_with("slice_")));
+}
+
+std::vector<fs::path> trace_folders(const fs::path& root) {
+  std::error_code error;
+  std::vector<fs::path> folders;
+  for (fs::directory_iterator entry(root, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    const bool is_trace = name == "trace" || name.starts_with("trace_after_");
+    if (is_trace && fs::is_directory(entry->symlink_status())) folders.push_back(entry->path());
+  }
+  return folders;
+}
+
 template <class Condition>
 std::vector<fs::path> files_in(const fs::path& folder, Condition is_wanted) {
   std::error_code error;
@@ -83,6 +100,10 @@ fs::path RunLayout::skin_frame(const std::string& skin, int frame, const std::st
   return frames() / ("skin_" + skin + "_" + six_digits(frame) + extension);
 }
 
+fs::path RunLayout::trace(int first_step) const {
+  return root_ / (first_step == 0 ? "trace" : "trace_after_" + std::to_string(first_step));
+}
+
 bool RunLayout::holds_run() const {
   std::ifstream in(steps());
   std::string head;
@@ -96,6 +117,10 @@ void RunLayout::remove_run(const std::vector<fs::path>& needed) const {
     files.push_back(file);
   }
   for (const fs::path& file : files_in(skins(), is_skin_file)) files.push_back(file);
+  std::vector<fs::path> folders = trace_folders(root_);
+  for (const fs::path& folder : folders) {
+    for (const fs::path& file : files_in(folder, is_trace_file)) files.push_back(file);
+  }
   for (const fs::path& file :
        {scene(), iterations(), timings(), checkpoint(), previous_checkpoint(checkpoint()), index(), usd()}) {
     files.push_back(file);
@@ -108,7 +133,8 @@ void RunLayout::remove_run(const std::vector<fs::path>& needed) const {
     };
     if (std::none_of(needed.begin(), needed.end(), is_same)) remove_file(file);
   }
-  for (const fs::path& folder : {frames(), skins(), root_ / "inputs"}) {
+  folders.insert(folders.end(), {frames(), skins(), root_ / "inputs"});
+  for (const fs::path& folder : folders) {
     std::error_code not_empty;
     fs::remove(folder, not_empty);
   }

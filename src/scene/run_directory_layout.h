@@ -20,6 +20,7 @@ class RunLayout {
   std::filesystem::path usd() const { return root_ / "run.usda"; }
   std::filesystem::path frames() const { return root_ / "frames"; }
   std::filesystem::path skins() const { return root_ / "skins"; }
+  std::filesystem::path trace(int first_step) const;  // "trace", or "trace_after_12" of a run resumed there
 
   static std::string frame_file(int frame);  // "frames/body_000123.vtu", relative to the root
   std::filesystem::path skin_frame(const std::string& skin, int frame, const std::string& extension) const;

@@ -1,0 +1,81 @@
+#include "optimize/landscape.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+
+namespace aspic {
+namespace {
+
+using Vector = std::vector<double>;
+
+double between(double first, double last, int i, int samples) { return first + (last - first) * i / (samples - 1); }
+
+// u times the exact Hessian at the iterate.
+Vector hessian_times(const LiveIteration& at, std::span<const double> u) {
+  Vector product(u.size());
+  at.E.hessian(at.x, {Definiteness::exact}).multiply(u, product);
+  return product;
+}
+
+// What is left of u across d, with the length of d; empty when u is along d.
+Vector across(Objective& E, std::span<const double> u, std::span<const double> d) {
+  const double dd = E.dot(d, d), along = E.dot(u, d) / dd;
+  Vector v(u.size());
+  for (size_t i = 0; i < v.size(); ++i) v[i] = u[i] - along * d[i];
+  const double vv = E.dot(v, v);
+  if (!(vv > 1e-16 * E.dot(u, u))) return {};
+  for (double& vi : v) vi *= std::sqrt(dd / vv);
+  return v;
+}
+
+Vector across_direction(const LiveIteration& at) {
+  Vector downhill(at.g.begin(), at.g.end());
+  for (double& gi : downhill) gi = -gi;
+  Vector v = across(at.E, downhill, at.d);
+  if (v.empty()) v = across(at.E, hessian_times(at, at.g), at.d);
+  if (v.empty()) v.assign(at.d.size(), 0.0);  // E is isotropic here: every plane through d is alike
+  return v;
+}
+
+}  // namespace
+
+std::vector<CurvePoint> curve_along(const LiveIteration& at, double c, int samples) {
+  ASPIC_CHECK(samples >= 2);
+  const double slope = at.E.dot(at.g, at.d), curvature = at.E.dot(at.d, hessian_times(at, at.d));
+  double last = at.tried.empty() ? 1 : 1.25 * at.alpha;
+  for (const Trial& trial : at.tried) last = std::max(last, 1.25 * trial.alpha);
+  std::vector<CurvePoint> curve(samples);
+  Vector x(at.x.size());
+  for (int i = 0; i < samples; ++i) {
+    CurvePoint& point = curve[i];
+    const double alpha = point.alpha = between(-0.2 * last, last, i, samples);
+    for (size_t k = 0; k < x.size(); ++k) x[k] = at.x[k] + alpha * at.d[k];
+    point.value = at.E.value(x);
+    point.model = at.value + alpha * slope + alpha * alpha / 2 * curvature;
+    point.textbook_bound = at.value + c * alpha * slope;
+    point.slide_bound = at.value + c * slope;
+  }
+  return curve;
+}
+
+Slice slice_through(const LiveIteration& at, int samples) {
+  ASPIC_CHECK(samples >= 2);
+  Objective& E = at.E;
+  const Vector v = across_direction(at), Hd = hessian_times(at, at.d), Hv = hessian_times(at, v);
+  const double gd = E.dot(at.g, at.d), gv = E.dot(at.g, v);
+  const double dHd = E.dot(at.d, Hd), dHv = E.dot(v, Hd), vHv = E.dot(v, Hv);
+  Slice slice{samples, samples, {}};
+  Vector x(at.x.size());
+  for (int row = 0; row < samples; ++row)
+    for (int column = 0; column < samples; ++column) {
+      const double s = between(-0.5, 1.5, column, samples), t = between(-1, 1, row, samples);
+      for (size_t k = 0; k < x.size(); ++k) x[k] = at.x[k] + s * at.d[k] + t * v[k];
+      slice.point.push_back(
+          {s, t, E.value(x), at.value + s * gd + t * gv + s * s / 2 * dHd + s * t * dHv + t * t / 2 * vHv});
+    }
+  return slice;
+}
+
+}  // namespace aspic

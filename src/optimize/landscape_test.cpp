@@ -1,0 +1,91 @@
+#include "optimize/landscape.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "optimize/gradient_descent.h"
+#include "optimize/newton.h"
+#include "optimize/test_functions.h"
+
+namespace aspic {
+namespace {
+
+template <class Direction, class Look>
+void look_at_first_iteration(Direction&& direction, const Look& look) {
+  Rosenbrock f;
+  std::vector<double> x = {-0.8, 0.6, 0};
+  Minimizer().minimize(f, direction, x, {.max_iterations = 1}, [&](const LiveIteration& iteration) {
+    look(iteration);
+    return true;
+  });
+}
+
+Newton newton() { return Newton(make_linear_solver("cholesky")); }
+
+TEST(Landscape, TheCurveTouchesItsQuadraticModelToThirdOrder) {
+  look_at_first_iteration(newton(), [](const LiveIteration& iteration) {
+    for (const CurvePoint& point : curve_along(iteration, 1e-4, 201))
+      EXPECT_LE(std::abs(point.value - point.model),
+                (std::abs(iteration.value) + 200) * std::pow(std::abs(point.alpha), 3) * 10 + 1e-9)
+          << point.alpha;
+  });
+}
+
+TEST(Landscape, TheCurvePassesThroughTheTrialsOfTheLineSearch) {
+  look_at_first_iteration(GradientDescent(), [](const LiveIteration& iteration) {
+    ASSERT_GT(iteration.tried.size(), 1u);
+    const double last = 1.25 * iteration.tried[0].alpha;
+    const auto curve = curve_along(iteration, 0.25, 101);
+    EXPECT_NEAR(curve.back().alpha, last, 1e-12);
+    EXPECT_LT(curve.front().alpha, 0);
+    const Trial& first = iteration.tried[0];
+    std::vector<double> x(3);
+    for (int i = 0; i < 3; ++i) x[i] = iteration.x[i] + first.alpha * iteration.d[i];
+    EXPECT_EQ(iteration.E.value(x), first.value);
+    EXPECT_NEAR(curve.back().textbook_bound, iteration.value - 0.25 * last * 2 * iteration.decrement, 1e-9);
+    EXPECT_NEAR(curve.back().slide_bound, iteration.value - 0.25 * 2 * iteration.decrement, 1e-9);
+  });
+}
+
+// At (s, t) = (1, 0) stands the end of the full step, where the model of Newton's method has its minimum.
+TEST(Landscape, TheSliceHoldsTheIterateAndTheMinimumOfTheModel) {
+  look_at_first_iteration(newton(), [](const LiveIteration& iteration) {
+    const Slice slice = slice_through(iteration, 41);
+    const SlicePoint* lowest = &slice.point[0];
+    for (const SlicePoint& point : slice.point) {
+      if (point.model < lowest->model) lowest = &point;
+      if (std::abs(point.s) < 1e-12 && std::abs(point.t) < 1e-12) {
+        EXPECT_NEAR(point.value, iteration.value, 1e-12);
+        EXPECT_NEAR(point.model, iteration.value, 1e-12);
+      }
+    }
+    EXPECT_NEAR(lowest->s, 1, 1e-9);
+    EXPECT_NEAR(lowest->t, 0, 1e-9);
+  });
+}
+
+// The plane of gradient descent is spanned by g and H g, so it is not a line.
+TEST(Landscape, TheSliceOfGradientDescentIsAPlane) {
+  look_at_first_iteration(GradientDescent(), [](const LiveIteration& iteration) {
+    const Slice slice = slice_through(iteration, 5);
+    EXPECT_GT(std::abs(slice.point[0].value - slice.point[4 * 5].value), 1e-3);
+  });
+}
+
+TEST(Landscape, LookingChangesNoBitOfTheMinimisation) {
+  const auto minimum = [](bool look) {
+    Rosenbrock f;
+    std::vector<double> x = {-0.8, 0.6, 0};
+    Newton direction = newton();
+    Minimizer().minimize(f, direction, x, {}, [&](const LiveIteration& iteration) {
+      if (look) slice_through(iteration), curve_along(iteration, 1e-4);
+      return true;
+    });
+    return x;
+  };
+  EXPECT_EQ(minimum(false), minimum(true));
+}
+
+}  // namespace
+}  // namespace aspic
