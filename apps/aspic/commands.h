@@ -24,6 +24,7 @@ void add_check(CLI::App& app, Action& action);
 void add_mesh(CLI::App& app, Action& action);
 void add_convert(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
+void add_lecture(CLI::App& app, Action& action);
 
 std::string version_text();
 
