@@ -18,6 +18,7 @@ import subprocess
 import tempfile
 import time
 import unittest
+import xml.etree.ElementTree
 
 ASPIC = os.environ["ASPIC"]
 MESHER = pathlib.Path(ASPIC).with_name("aspic-mesh")
@@ -100,7 +101,7 @@ class CommandLine(unittest.TestCase):
 
 class Help(CommandLine):
     def test_every_level_has_examples(self):
-        for arguments in ([], ["run"], ["check"], ["convert"], ["materials"]):
+        for arguments in ([], ["run"], ["check"], ["convert"], ["materials"], ["minimize"]):
             self.assertIn("Examples:", self.aspic(*arguments, "--help").stdout)
 
     def test_version_states_how_the_program_was_built(self):
@@ -134,6 +135,116 @@ class Materials(CommandLine):
 
     def test_a_misspelt_name_is_corrected(self):
         self.assertIn("did you mean 'neo_hookean'", self.aspic("materials", "neo_hokean", code=2).stderr)
+
+
+class Minimize(CommandLine):
+    def rows(self, *arguments, code=0):
+        lines = self.aspic("minimize", *arguments, "--json", code=code).stdout.splitlines()
+        return [json.loads(line) for line in lines[:-1]], json.loads(lines[-1])
+
+    def test_newton_with_a_line_search_descends_to_the_known_minimum(self):
+        for function in ("rosenbrock", "two_bump", "quadratic"):
+            rows, end = self.rows(function)
+            values = [row["value"] for row in rows] + [end["value"]]
+            self.assertTrue(all(b < a for a, b in zip(values, values[1:])), function)
+            self.assertLess(end["distance"], 1e-6, function)
+            self.assertEqual(end["status"], "converged")
+
+    def test_newton_without_a_line_search_overshoots(self):
+        rows, _ = self.rows("rosenbrock", "--test", "none")
+        values = [row["value"] for row in rows]
+        self.assertTrue(any(b > a for a, b in zip(values, values[1:])))
+        self.assertTrue(all(row["alpha"] == 1 for row in rows))
+
+    def test_gradient_descent_crosses_the_valley_at_every_iteration(self):
+        rows, end = self.rows("rosenbrock", "--method", "gradient_descent", "--max-iterations", "300", code=3)
+        self.assertEqual(end["status"], "iteration_limit")
+        # The part of each direction at right angles to the floor of the valley, y = x^2.
+        across = [row["direction"][1] - 2 * row["x"][0] * row["direction"][0] for row in rows]
+        self.assertEqual(len(across), 300)
+        self.assertTrue(all(a * b < 0 for a, b in zip(across, across[1:])))
+
+    def test_the_table_ends_in_words(self):
+        text = self.aspic("minimize", "rosenbrock", "--start", "-0.8,0.6").stdout
+        self.assertIn("from (-0.8, 0.6)", text)
+        self.assertIn("converged after", text)
+        self.assertIn("distance to the minimum at (1, 1)", text)
+
+    def test_a_flat_place_is_not_taken_for_the_minimum(self):
+        self.assertIn("not the minimum", self.aspic("minimize", "two_bump", "--start", "4,4").stdout)
+
+    def test_a_formula_of_your_own(self):
+        _, end = self.rows("--expression", "cosh(x - 1) + 2 * (y + 0.5)^2", "--start", "2.5,1")
+        self.assertAlmostEqual(end["x"][0], 1, places=5)
+        self.assertAlmostEqual(end["x"][1], -0.5, places=5)
+
+    def test_functions_without_a_bound_end_with_a_status(self):
+        for formula, method, status in (("x + y", "gradient_descent", "iteration_limit"), ("x + y", "newton", "no_descent"),
+                                        ("0 - exp(x)", "gradient_descent", "undefined")):
+            _, end = self.rows("--expression", formula, "--start", "0,0", "--method", method, code=3)
+            self.assertEqual(end["status"], status)
+            self.assertFalse(end["converged"])
+
+    def test_bad_input_names_the_remedy(self):
+        for arguments, message in ((["rosenbrok"], "did you mean 'rosenbrock'"),
+                                   (["rosenbrock", "--method", "newtn"], "did you mean 'newton'"),
+                                   (["rosenbrock", "--test", "slid"], "did you mean 'slide'"),
+                                   (["rosenbrock", "--criterion", "scal"], "did you mean 'scale'"),
+                                   (["rosenbrock", "--start", "nan,1"], "two finite numbers"),
+                                   (["rosenbrock", "--start", "1"], "two finite numbers"),
+                                   (["rosenbrock", "--shrink", "1"], "between 0 and 1"),
+                                   (["--expression", "log(x)", "--start", "-1,0"], "not finite at the start"),
+                                   (["--expression", "x + z", "--start", "0,0"], "unknown name 'z'"),
+                                   (["--expression", "x^2"], "needs --start"),
+                                   (["rosenbrock", "--plot", "a.jpeg"], ".svg or .png"),
+                                   ([], "--list")):
+            self.assertIn(message, self.aspic("minimize", *arguments, code=2).stderr)
+
+    def test_every_listed_function_can_be_minimised(self):
+        text = self.aspic("minimize", "--list").stdout
+        names = re.findall(r"(?m)^(\w+)\n  f = ", text)
+        self.assertEqual(len(names), 3)
+        for name in names:
+            self.aspic("minimize", name)
+
+    def test_pictures_and_trace(self):
+        self.aspic("minimize", "rosenbrock", "--plot", "path.svg", "--plot-model", "model.png", "--iteration", "6",
+                   "--trace", "trace")
+        self.assertEqual(xml.etree.ElementTree.parse(self.folder / "path.svg").getroot().tag.split("}")[-1], "svg")
+        self.assertTrue((self.folder / "model.png").read_bytes().startswith(b"\x89PNG"))
+        with open(self.folder / "trace" / "iterations.csv", newline="") as file:
+            self.assertEqual(len(list(csv.DictReader(file))), 18)
+
+    def test_without_gnuplot_its_package_is_named_before_anything_is_done(self):
+        done = subprocess.run([ASPIC, "minimize", "rosenbrock", "--plot", "path.svg"], cwd=self.folder,
+                              capture_output=True, text=True, env={**os.environ, "PATH": str(self.folder)})
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("gnuplot-nox", done.stderr)
+        self.assertEqual(done.stdout, "")
+
+
+class Derivatives(CommandLine):
+    def test_those_of_a_scene_are_right(self):
+        text = self.aspic("check", self.beam(), "--derivatives", "--plot", "errors.svg").stdout
+        for term in ("elasticity", "gravity", "inertia", "E"):
+            for state in ("start", "rest", "deformed"):
+                self.assertRegex(text, rf"(?m)^{term} +{state} .* passed$")
+        self.assertIn("slope 2", (self.folder / "errors.svg").read_text())
+
+    def test_json_has_the_error_for_every_step(self):
+        lines = [json.loads(line) for line in self.aspic("check", self.beam(), "--derivatives", "--json").stdout.splitlines()]
+        elastic = next(line for line in lines if line["term"] == "elasticity" and line["state"] == "deformed")
+        self.assertEqual(len(elastic["gradient"]["error"]), 9)
+        for what in ("gradient", "hessian"):
+            self.assertAlmostEqual(elastic[what]["order"], 2, delta=0.1)
+
+    def test_what_is_not_right_enough_is_named_with_its_own_exit_code(self):
+        text = self.aspic("check", self.beam(), "--derivatives", "--tolerance", "1e-13", code=3).stdout
+        self.assertRegex(text, r"(?m)^elasticity +deformed .* WRONG$")
+        self.assertRegex(text, r"the gradient of elasticity \(deformed\) differs most at vertex \d+, [xyz] \(tet \d+\)")
+
+    def test_options_that_do_not_go_together(self):
+        self.assertIn("--derivatives", self.aspic("check", self.beam(), "--json", code=2).stderr)
 
 
 class Check(CommandLine):

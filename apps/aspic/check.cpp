@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <variant>
 
+#include "aspic/check_derivatives.h"
 #include "aspic/commands.h"
 #include "base/error.h"
 #include "io/mesh_file.h"
@@ -19,9 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Arguments {
-  fs::path input, output;
+  fs::path input, output, plot;
   std::vector<std::string> overrides;
-  bool repair = false;
+  double tolerance = 1e-6;  // of derivatives
+  bool repair = false, derivatives = false, json = false;
 };
 
 constexpr size_t kIndicesShown = 8;
@@ -131,6 +133,12 @@ int check_scene(const Arguments& arguments) {
 }
 
 int check(const Arguments& arguments) {
+  if (arguments.derivatives) {
+    if (arguments.repair) throw InvalidInput("--repair and --derivatives exclude each other");
+    const Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides, .mesher = {}});
+    return check_derivatives(scene, {.plot = arguments.plot, .tolerance = arguments.tolerance, .json = arguments.json});
+  }
+  if (!arguments.plot.empty() || arguments.json) throw InvalidInput("--plot and --json belong to --derivatives");
   if (arguments.input.extension() == ".toml") return check_scene(arguments);
   return std::visit([&](auto mesh) { return check_mesh(arguments, std::move(mesh)); }, read_mesh(arguments.input));
 }
@@ -143,7 +151,8 @@ void add_check(CLI::App& app, Action& action) {
   command->footer(
       "\nExamples:\n  aspic check bunny.mesh\n  aspic check scenes/bunny.toml\n"
       "  aspic check broken.mesh --repair -o mended.mesh\n"
-      "Exit code 2 when there are errors (after the repair, when one was asked for).");
+      "  aspic check scenes/bunny.toml --derivatives --plot errors.svg\n"
+      "Exit code 2 when there are errors (after the repair, when one was asked for), 3 when a derivative is wrong.");
   command->add_option("INPUT", arguments->input, "Scene (.toml) or mesh")->required();
   command->add_option("--set", arguments->overrides, "Override a value of the scene: material.young=2e5")
       ->allow_extra_args(false);
@@ -153,6 +162,12 @@ void add_check(CLI::App& app, Action& action) {
                                           "drop unreferenced ones");
   repair->needs(output);
   output->needs(repair);
+  command->add_flag("--derivatives", arguments->derivatives,
+                    "Central differences of every term of the next step against its gradient and Hessian");
+  command->add_option("--tolerance", arguments->tolerance, "With --derivatives: of the smallest error; 1e-6 by default")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--plot", arguments->plot, "With --derivatives: error over step (.svg or .png)");
+  command->add_flag("--json", arguments->json, "With --derivatives: one line of JSON per term and state");
   command->callback([arguments, &action] { action = [arguments] { return check(*arguments); }; });
 }
 

@@ -13,8 +13,8 @@ enum ExitCode {
   exit_done = 0,
   exit_internal_error = 1,
   exit_bad_input = 2,
-  exit_unconverged = 3,
-  exit_signal = 128,  // plus the number of the signal: 130 after ctrl-C, 143 after a plain kill
+  exit_unconverged = 3,  // a step, a minimisation; of a check of derivatives: one is wrong
+  exit_signal = 128,     // plus the number of the signal: 130 after ctrl-C, 143 after a plain kill
 };
 
 using Action = std::function<int()>;  // returns the exit code
@@ -24,6 +24,7 @@ void add_check(CLI::App& app, Action& action);
 void add_mesh(CLI::App& app, Action& action);
 void add_convert(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
+void add_minimize(CLI::App& app, Action& action);
 void add_lecture(CLI::App& app, Action& action);
 
 std::string version_text();

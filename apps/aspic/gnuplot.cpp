@@ -24,13 +24,21 @@ std::string terminal(const fs::path& picture, const PictureSize& size) {
       fmt::format("{}: a picture is .svg or .png, not '{}'", picture.string(), picture.extension().string()));
 }
 
+fs::path find_gnuplot() {
+  return find_program("gnuplot", {},
+                      "pictures need it; install the Debian package gnuplot-nox (apt-get install "
+                      "--no-install-recommends gnuplot-nox)");
+}
+
 }  // namespace
 
+void require_drawable(const fs::path& picture) {
+  terminal(picture, {});
+  find_gnuplot();
+}
+
 Gnuplot::Gnuplot(const fs::path& picture, const PictureSize& size)
-    : picture_(picture), script_("set encoding utf8\n" + terminal(picture, size) + '\n') {
-  program_ = find_program("gnuplot", {},
-                          "pictures need it; install the Debian package gnuplot-nox (apt-get install "
-                          "--no-install-recommends gnuplot-nox)");
+    : picture_(picture), program_(find_gnuplot()), script_("set encoding utf8\n" + terminal(picture, size) + '\n') {
   add(fmt::format("set output {}", literal((folder_.path() / "picture").string())));
   add(fmt::format("set border 3 lc rgb '{0}' lw 0.8\nset tics nomirror scale 0.5 textcolor rgb '{0}'", kInk));
   add(

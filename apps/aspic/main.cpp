@@ -23,7 +23,7 @@ Examples:
   aspic materials                           the materials and their formulas
 'aspic COMMAND --help' tells more about a command.
 
-Exit codes: 0 done, 1 internal error, 2 bad input, 3 some step did not converge, 130 interrupted.)";
+Exit codes: 0 done, 1 internal error, 2 bad input, 3 not converged or a wrong derivative, 130 interrupted.)";
 
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
@@ -84,6 +84,7 @@ int run_program(int argc, char** argv) {
   add_mesh(app, action);
   add_convert(app, action);
   add_materials(app, action);
+  add_minimize(app, action);
   add_lecture(app, action);
   if (argc == 1) {
     fmt::print("{}", app.help());

@@ -16,6 +16,9 @@
 
 namespace aspic::cli {
 
+// Throws what a function below would throw for this file name: to be asked before work whose picture is wanted.
+void require_drawable(const std::filesystem::path& picture);
+
 struct PictureSize {
   int width = 720, height = 440;  // [px] of an SVG; a PNG has twice as many, for sharp print
 };

@@ -17,7 +17,7 @@ namespace {
 using Color = std::array<double, 3>;  // red, green, blue in [0, 1]
 
 constexpr Color kPlain = {0.62, 0.75, 0.87}, kUndefined = {0.72, 0.72, 0.72};
-// Viridis: even in lightness, told apart by all eyes [Smith and van der Walt 2015].
+// matplotlib's viridis: even in lightness, told apart by all eyes.
 constexpr Color kViridis[] = {{0.267, 0.005, 0.329}, {0.283, 0.141, 0.458}, {0.254, 0.265, 0.530},
                               {0.207, 0.372, 0.553}, {0.164, 0.471, 0.558}, {0.128, 0.567, 0.551},
                               {0.135, 0.659, 0.518}, {0.267, 0.749, 0.441}, {0.478, 0.821, 0.318},

@@ -11,14 +11,13 @@
 namespace aspic::cli {
 namespace {
 
-// Rows of equal y, with an empty line between them; what is outside [low, high] is cut off.
-std::string grid_table(const SampledFunction& f, double low = -INFINITY, double high = INFINITY) {
+// Rows of equal y, with an empty line between them.
+std::string grid_table(const SampledFunction& f) {
   ASPIC_CHECK(f.z.size() == f.x.size() * f.y.size());
   std::string text;
   for (size_t j = 0; j < f.y.size(); ++j) {
     for (size_t i = 0; i < f.x.size(); ++i) {
-      const double z = f.z[j * f.x.size() + i];
-      append_row(text, {f.x[i], f.y[j], z >= low && z <= high ? z : NAN});
+      append_row(text, {f.x[i], f.y[j], f.z[j * f.x.size() + i]});
     }
     text += '\n';
   }
@@ -114,20 +113,20 @@ void draw(const std::filesystem::path& path, const SurfacePlot& surface) {
   plot.add(fmt::format("set zlabel {} rotate", label(surface.z_label)));
   plot.add(fmt::format("set view {},{}\nset xyplane relative 0.02", number(90 - surface.elevation),
                        number(surface.azimuth)));
-  plot.add("set pm3d depthorder base lighting primary 0.4 specular 0.15 border lc rgb '#90203040' lw 0.3");
-  plot.add("set key width -2");
+  plot.add("set pm3d clip z depthorder base lighting primary 0.4 specular 0.15 border lc rgb '#90203040' lw 0.3");
+  plot.add("set key at screen 0.52, 0.085 center center horizontal width -2 maxrows 2");
   if (surface.model) plot.add("set style fill transparent solid 0.7");
   plot.add("set palette defined (0 '#2c5f8a', 0.4 '#7fb0cf', 1 '#f2f6f9')\nunset colorbox");
   plot.add(
       fmt::format("set border 127+256+512 lc rgb '#9a9a9a' lw 0.6\nset grid x y z lc rgb '{}' lw 0.6 lt 1", kGrid));
   plot.add(fmt::format("set xrange {}\nset yrange {}", range(f.x.front(), f.x.back()), range(f.y.front(), f.y.back())));
   plot.add(fmt::format("set zrange {0}\nset cbrange {0}", range(low, high)));
-  std::string layers = fmt::format("splot {} using 1:2:3 with pm3d notitle", plot.data_file(grid_table(f, low, high)));
+  std::string layers = fmt::format("splot {} using 1:2:3 with pm3d notitle", plot.data_file(grid_table(f)));
   if (surface.model)
     layers += fmt::format(
         ", {} using 1:2:3 with pm3d fillcolor rgb '#e69f00' notitle, NaN with points pt 5 ps 1.6 "
         "lc rgb '#e69f00' title {}",
-        plot.data_file(grid_table(*surface.model, low, high)), label(surface.model_label));
+        plot.data_file(grid_table(*surface.model)), label(surface.model_label));
   int next = 1;
   for (const MarkedPoint& point : surface.points) {  // labels, since the surfaces would be drawn over points
     const std::string mark = fmt::format("pt 7 ps 1.1 lc rgb {}", color(next++));

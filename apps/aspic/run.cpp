@@ -13,6 +13,7 @@
 #include "aspic/summary.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "dynamics/explanation.h"
 #include "scene/run_directory.h"
 #include "scene/scene.h"
 #include "scene/trace.h"
@@ -30,6 +31,12 @@ struct Arguments {
 };
 
 constexpr int kWarningsShown = 5;
+
+std::string explanation_text(const Explanation& why) {
+  std::string text = fmt::format("\n  cause:  {}", why.cause);
+  if (!why.place.empty()) text += fmt::format("\n  where:  {}", why.place);
+  return text + fmt::format("\n  remedy: {}", why.remedy);
+}
 
 std::vector<LandscapeAt> landscapes(const Arguments& arguments) {
   std::vector<LandscapeAt> places;
@@ -81,30 +88,6 @@ int unconverged_before(const fs::path& directory, int steps) {
   return count;
 }
 
-// What usually helps when a step did not converge.
-std::string_view remedy(Status status, const std::string& integrator) {
-  const bool is_static = integrator == "quasi_static";
-  const bool is_explicit = integrator == "forward_euler" || integrator == "symplectic_euler";
-  switch (status) {
-    case Status::iteration_limit:
-      return is_static ? "raise solver.max_iterations, or load the body in smaller steps"
-                       : "raise solver.max_iterations, or shorten time.step";
-    case Status::stuck:
-      return "shorten time.step; `aspic check` finds bad tets";
-    case Status::no_descent:
-      return is_static ? "a body that nothing holds has no single equilibrium: pin it"
-                       : "try solver.definiteness = \"clamped\"; `aspic check` finds bad tets";
-    case Status::undefined:
-      return is_explicit ? "explicit schemes blow up when time.step is too long: shorten it, or use backward_euler"
-                         : "shorten time.step, and look for pins, forces or velocities that move too far in one step";
-    case Status::converged:
-    case Status::round_off:
-    case Status::interrupted:
-      break;
-  }
-  return "";
-}
-
 // Takes the steps of one run and tells everyone who listens.
 class Runner {
  public:
@@ -146,9 +129,10 @@ class Runner {
     for (const Iteration& iteration : iterations_) directory_.on_iteration(report.step, iteration);
     directory_.on_step(report, scene_.simulation);
     totals_.add(report);
-    if (!is_success(report.status)) warn(report);
+    const Explanation why = explain(scene_.simulation, report);
+    if (!is_success(report.status)) warn(report, why);
     if (arguments_.json) {
-      fmt::print("{}\n", step_json(report, scene_.simulation.potential_names()));
+      fmt::print("{}\n", step_json(report, why, scene_.simulation.potential_names()));
       if (std::fflush(stdout) != 0) throw InvalidInput("--json: standard output cannot be written; is the disk full?");
     }
     if (progress_) progress_->show(report);
@@ -168,14 +152,14 @@ class Runner {
     if (!arguments_.quiet) fmt::print(human_, "trace      {}\n", trace_->folder().string());
   }
 
-  void warn(const StepReport& report) {
+  void warn(const StepReport& report, const Explanation& why) {
     const int count = totals_.unconverged;
     if (count > kWarningsShown) return;
     std::string line = fmt::format(
         "warning: step {} did not converge: {} after {} iterations; residual {:.3g} N, wanted {:.3g} N", report.step,
         to_string(report.status), report.iterations, report.residual, report.residual_threshold);
-    if (count == 1)
-      line += fmt::format("\n  remedy: {}", remedy(report.status, scene_.simulation.options().integrator));
+    if (why.cause != last_cause_) line += explanation_text(why);
+    last_cause_ = why.cause;
     if (count == kWarningsShown) line += " (further ones are only counted)";
     if (progress_) {
       progress_->message(line);
@@ -193,6 +177,7 @@ class Runner {
   std::optional<Trace> trace_;
   std::vector<Iteration> iterations_;  // of the step under way; recorded once it is whole
   RunTotals totals_;
+  std::string last_cause_;  // explained already
 };
 
 void print_start(std::FILE* stream, const Arguments& arguments, const Scene& scene, const fs::path& directory) {

@@ -4,10 +4,11 @@
 
 namespace aspic::cli {
 
-std::string step_json(const StepReport& report, const std::vector<std::string>& potential_names) {
+std::string step_json(const StepReport& report, const Explanation& why,
+                      const std::vector<std::string>& potential_names) {
   nlohmann::ordered_json potential = nlohmann::json::object();
   for (size_t i = 0; i < report.potential.size(); ++i) potential[potential_names.at(i)] = report.potential[i];
-  const nlohmann::ordered_json line = {
+  nlohmann::ordered_json line = {
       {"step", report.step},
       {"time", report.time},
       {"status", to_string(report.status)},
@@ -20,6 +21,9 @@ std::string step_json(const StepReport& report, const std::vector<std::string>& 
       {"projected_hessians", report.projected_hessians},
       {"residual", report.residual},
       {"residual_threshold", report.residual_threshold},
+      {"residual_round_off", report.residual_round_off},
+      {"worst_vertex", report.worst_vertex},
+      {"worst_residual", report.worst_residual},
       {"min_det_F", report.min_det_F},
       {"kinetic", report.kinetic},
       {"potential", potential},
@@ -31,6 +35,8 @@ std::string step_json(const StepReport& report, const std::vector<std::string>& 
       {"ledger_error", report.ledger_error},
       {"seconds", report.seconds},
   };
+  if (!is_success(report.status))
+    line["explanation"] = {{"cause", why.cause}, {"place", why.place}, {"remedy", why.remedy}};
   return line.dump();
 }
 

@@ -2,11 +2,12 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/step_report.h"
+#include "dynamics/explanation.h"
 
 namespace aspic::cli {
 
 // One line of JSON; numbers that are not finite are null.
-std::string step_json(const StepReport& report, const std::vector<std::string>& potential_names);
+std::string step_json(const StepReport& report, const Explanation& why,
+                      const std::vector<std::string>& potential_names);
 
 }  // namespace aspic::cli

@@ -32,10 +32,20 @@ void Ledger::targets_moved(const StepTools& tools, const State& state) {
   target_work_ = total(tools.E.potential(), state.q) - potential_;
 }
 
+void Ledger::note_worst_vertex(const Pins& pins, StepReport& report) const {
+  double most = 0;
+  for (size_t i = 0; i + 2 < residual_.size(); i += 3) {
+    const double size = std::hypot(residual_[i], residual_[i + 1], residual_[i + 2]);
+    const int vertex = static_cast<int>(i / 3);
+    if (size > most && !pins.holds(vertex)) most = size, report.worst_vertex = vertex;
+  }
+  report.worst_residual = most;
+}
+
 void Ledger::close(const StepTools& tools, const Integrator& integrator, double h, const State& state,
                    StepReport& report) {
   const size_t n = state.q.size();
-  for (auto* v : {&gradient_, &damping_, &dv_, &Mdv_, &at_}) v->assign(n, 0.0);
+  for (auto* v : {&gradient_, &damping_, &dv_, &Mdv_, &at_, &residual_}) v->assign(n, 0.0);
 
   // Where the forces of the step act.
   const bool implicit = integrator.is_implicit();
@@ -52,7 +62,7 @@ void Ledger::close(const StepTools& tools, const Integrator& integrator, double 
   report.damping_loss = report.residual_work = 0;
   for (size_t i = 0; i < n; ++i) {
     const double dx = state.q[i] - before_.q[i];
-    const double r = Mdv_[i] / h + gradient_[i] + damping_[i];
+    const double r = residual_[i] = Mdv_[i] / h + gradient_[i] + damping_[i];
     const bool pinned = tools.pins.holds(static_cast<int>(i / 3));
     (pinned ? reaction_work : report.residual_work) += r * dx;
     if (!pinned) residual_squared += r * r;
@@ -68,6 +78,7 @@ void Ledger::close(const StepTools& tools, const Integrator& integrator, double 
   for (const double V : report.potential) report.potential_total += V;
   report.kinetic = kinetic_energy(*tools.model.mass, state.qdot, momentum_);
   report.residual = std::sqrt(residual_squared);
+  note_worst_vertex(tools.pins, report);
   report.pin_work = reaction_work + target_work_;
   const double s = integrator.displacement() == Displacement::old_velocity ? -1 : 1;
   report.numerical_loss = s / 2 * velocity_jump + gradient_work - (report.potential_total - potential_ - target_work_);

@@ -23,9 +23,11 @@ class Ledger {
   void close(const StepTools& tools, const Integrator& integrator, double h, const State& state, StepReport& report);
 
  private:
+  void note_worst_vertex(const Pins& pins, StepReport& report) const;
+
   State before_;
   double kinetic_ = 0, potential_ = 0, target_work_ = 0;  // [J]
-  std::vector<double> gradient_, damping_, dv_, Mdv_, at_, momentum_;
+  std::vector<double> gradient_, damping_, dv_, Mdv_, at_, momentum_, residual_;
 };
 
 // 1/2 qdot' M qdot [J]; `momentum` receives M qdot.

@@ -135,6 +135,7 @@ struct Simulation::Impl {
     report.projected_hessians = solved.projected_hessians;
     const bool judges_forces = integrator->is_implicit() && !judges_direction(report.criterion);
     if (judges_forces) report.residual_threshold = solved.threshold / E->gradient_unit();
+    if (integrator->is_implicit()) report.residual_round_off = solved.gradient_round_off / E->gradient_unit();
     return report;
   }
 
@@ -194,6 +195,14 @@ TetFields Simulation::tet_fields() const {
                    std::vector<double>(tets)};
   for (const auto& V : impl_->model.elasticity) V->evaluate(impl_->state.q, fields);
   return fields;
+}
+
+bool Simulation::is_implicit() const { return impl_->integrator->is_implicit(); }
+
+StableStep Simulation::stable_step() const {
+  const StableStep stable = aspic::stable_step(*impl_->E, impl_->model, *impl_->pins, impl_->start.q);
+  impl_->begin_step(impl_->state.q, impl_->state.time);
+  return stable;
 }
 
 std::string Simulation::solver_description() const { return impl_->direction->description(); }

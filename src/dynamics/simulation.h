@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dynamics/model.h"
+#include "dynamics/stable_step.h"
 #include "dynamics/state.h"
 #include "dynamics/step_report.h"
 #include "optimize/solver.h"
@@ -38,6 +39,8 @@ class Simulation {
   double kinetic_energy() const;                     // [J]
   std::vector<double> potential_energies() const;    // [J]
   TetFields tet_fields() const;
+  bool is_implicit() const;                // the integrator minimises
+  StableStep stable_step() const;          // at the start: what an explicit integrator can take
   std::string solver_description() const;  // e.g. "cholesky (1 856 vertices)": what auto chose and why
 
   // Everything that the next steps depend on besides model and options; restoring continues to the same bits.

@@ -16,6 +16,9 @@ struct StepReport {
   int iterations = 0, trials = 0, linear_iterations = 0, hessians = 0, projected_hessians = 0;
   double residual = 0;            // |M a + dV/dx| over the free vertices [N]
   double residual_threshold = 0;  // the residual that was asked for [N]; 0 for a scheme without a solve
+  double residual_round_off = 0;  // the part of a residual that double precision cannot tell from zero [N]
+  int worst_vertex = -1;          // where most of the residual is left
+  double worst_residual = 0;      // its size there [N]
   double min_det_F = 0;
 
   // The ledger: kinetic + potential changes by pin_work - damping_loss - numerical_loss + residual_work. [J]

@@ -25,7 +25,7 @@ LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<co
     Trial& now = trials.emplace_back(Trial{alpha, E.value(trial), allowed_value(value.E, alpha, slope, options)});
     if (options.test == DecreaseTest::none) {
       now.accepted = true;
-    } else if (std::abs(now.value - value.E) <= value.round_off) {
+    } else if (std::abs(now.value - value.E) <= value.round_off && value.E - now.bound <= value.round_off) {
       E.gradient(trial, trial_gradient);
       ++result.gradients;
       now.by_slope = true;

@@ -42,9 +42,9 @@ struct LineSearchResult {
   bool gradient_known = false;  // `trial_gradient` holds the gradient at the accepted trial
 };
 
-// Near convergence the differences of E drown in round-off; a trial whose value lies within that noise is then judged
-// by the slope there (approximate Wolfe condition, [Hager and Zhang 2005]). `trial` receives x + alpha d, and `trials`
-// every one that was made.
+// Near convergence the differences of E drown in round-off; a trial whose value lies within that noise, when the
+// decrease that is asked for does too, is judged by the slope there (approximate Wolfe condition, [Hager and Zhang
+// 2005]). `trial` receives x + alpha d, and `trials` every one that was made.
 LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<const double> d, const KnownValue& value,
                            double slope /* g.d */, const LineSearchOptions& options, std::span<double> trial,
                            std::span<double> trial_gradient, std::vector<Trial>& trials);

@@ -168,7 +168,7 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
 // Afterwards `trial_` and `trial_gradient_` hold where the step began.
 void Minimizer::take_step(Progress& at, Iteration& iteration) {
   Stopwatch stopwatch;
-  at.gradient_round_off = at.E.gradient_round_off();  // of the last Hessian
+  at.gradient_round_off = at.report.gradient_round_off = at.E.gradient_round_off();  // of the last Hessian
   std::swap_ranges(trial_.begin(), trial_.end(), at.x.begin());
   at.value = at.step.value;
   if (!at.step.gradient_known) {

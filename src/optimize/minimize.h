@@ -73,6 +73,7 @@ struct MinimizeReport {
   int iterations = 0;
   double value = 0, gradient_norm = 0, first_gradient_norm = 0;
   double reached = 0, threshold = 0;  // what the criterion looks at (|g|, or a size of d), and what was asked for
+  double gradient_round_off = 0;      // the part of |g| that is noise
   int values = 0, gradients = 0;      // evaluations
   int trials = 0, hessians = 0, factorizations = 0, linear_iterations = 0;
   int projected_hessians = 0, projected_elements = 0, retreats = 0;

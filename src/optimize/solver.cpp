@@ -37,6 +37,27 @@ std::vector<std::string> definiteness_names() {
   return names;
 }
 
+std::vector<std::string> criterion_names() {
+  std::vector<std::string> names;
+  for (const Criterion criterion : all_criteria()) names.emplace_back(to_string(criterion));
+  return names;
+}
+
+std::vector<std::string> decrease_test_names() { return {"textbook", "slide", "none"}; }
+
+Criterion criterion_named(const std::string& name) {
+  for (const Criterion criterion : all_criteria())
+    if (to_string(criterion) == name) return criterion;
+  throw InvalidInput("criterion = '" + name + "' is unknown" + suggestion(name, criterion_names()));
+}
+
+DecreaseTest decrease_test_named(const std::string& name) {
+  if (name == "textbook") return DecreaseTest::textbook;
+  if (name == "slide") return DecreaseTest::slide;
+  if (name == "none") return DecreaseTest::none;
+  throw InvalidInput("test = '" + name + "' is unknown" + suggestion(name, decrease_test_names()));
+}
+
 std::unique_ptr<SearchDirection> make_search_direction(const SolverOptions& options) {
   if (options.method == "newton")
     return std::make_unique<Newton>(make_linear_solver(options.linear), definiteness_named(options.definiteness));

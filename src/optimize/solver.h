@@ -19,6 +19,11 @@ struct SolverOptions {
 
 std::vector<std::string> minimizer_names();
 std::vector<std::string> definiteness_names();
+std::vector<std::string> criterion_names();
+std::vector<std::string> decrease_test_names();
+
+Criterion criterion_named(const std::string& name);         // throws InvalidInput: an unknown name
+DecreaseTest decrease_test_named(const std::string& name);  // throws InvalidInput: an unknown name
 
 // Throws InvalidInput for a name that is unknown, and for one that the method has no use for, naming those that have.
 std::unique_ptr<SearchDirection> make_search_direction(const SolverOptions& options);

@@ -1,21 +1,52 @@
-// Functions with known minima, as objectives of the minimisers. Vectors are padded to whole 3x3 blocks: a function of
-// x and y ignores z, whose gradient is z itself.
+// Functions with known minima, on which methods are compared.
 #pragma once
-#include "optimize/objective.h"
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "optimize/planar_function.h"
 
 namespace aspic {
 
-// f(x, y) = (1 - x)^2 + 100 (y - x^2)^2: minimum 0 at (1, 1) at the end of a curved valley.
-class Rosenbrock : public Objective {
+// f(x, y) = (1 - x)^2 + 100 (y - x^2)^2: minimum 0 at (1, 1) at the end of a curved valley [Rosenbrock 1960].
+class Rosenbrock : public PlanarFunction {
  public:
-  Rosenbrock();
-  double value(std::span<const double> x) override;
-  void gradient(std::span<const double> x, std::span<double> g) override;
-  const BlockSparse& hessian(std::span<const double> x, const Projection& projection) override;
+  double at(const Planar& p) const override;
+  Planar gradient_at(const Planar& p) const override;
+  PlanarHessian hessian_at(const Planar& p) const override;
+};
+
+// f(x, y) = x exp(-x^2 - y^2): a dip with minimum -1/sqrt(2 e) at (-1/sqrt(2), 0) beside a bump; flat far away.
+class TwoBump : public PlanarFunction {
+ public:
+  double at(const Planar& p) const override;
+  Planar gradient_at(const Planar& p) const override;
+  PlanarHessian hessian_at(const Planar& p) const override;
+};
+
+// f(p) = 1/2 p' R diag(1, condition) R' p: minimum 0 at the origin of a straight valley that is rotated by `angle`.
+class Quadratic : public PlanarFunction {
+ public:
+  explicit Quadratic(double condition = 100, double angle = 0.5235987755982988 /* 30 degrees */);
+  double at(const Planar& p) const override;
+  Planar gradient_at(const Planar& p) const override;
+  PlanarHessian hessian_at(const Planar&) const override { return H_; }
 
  private:
-  BlockPattern pattern_;
-  BlockSparse H_;
+  PlanarHessian H_;
 };
+
+// What is known of a function.
+struct TestFunction {
+  std::string name, formula, remarks;
+  Planar minimizer{};
+  double minimum = 0;
+  Planar start{};           // from where it is usually minimised
+  Planar lower{}, upper{};  // the region that is worth looking at
+};
+std::vector<TestFunction> test_functions();
+TestFunction test_function_info(const std::string& name);                     // throws InvalidInput: an unknown name
+std::unique_ptr<PlanarFunction> make_test_function(const std::string& name);  // throws InvalidInput: an unknown name
 
 }  // namespace aspic

@@ -100,7 +100,8 @@ void check_text(const std::string& text) {
 }
 
 std::vector<std::string> known_names(ExpressionVariables variables) {
-  std::vector<std::string> names = {"x", "y", "z", "X", "Y", "Z"};
+  std::vector<std::string> names = {"x", "y", "X", "Y"};
+  if (variables != ExpressionVariables::plane_position) names.insert(names.end(), {"z", "Z"});
   if (variables == ExpressionVariables::position_and_time) names.push_back("t");
   for (const NamedMeaning& f : expression_functions()) names.push_back(f.name);
   for (const NamedMeaning& c : expression_constants()) names.push_back(c.name);
@@ -113,7 +114,8 @@ std::string reason_of(const mu::ParserError& e, ExpressionVariables variables) {
       if (e.GetToken() == "t" && variables == ExpressionVariables::position)
         return "'t' has no meaning here: this is evaluated once, at the start";
       if (e.GetToken().size() == 1)  // near to every other letter
-        return "unknown name '" + e.GetToken() + "' (a point is x, y, z or X, Y, Z)";
+        return "unknown name '" + e.GetToken() + "' (a point is " +
+               (variables == ExpressionVariables::plane_position ? "x, y or X, Y)" : "x, y, z or X, Y, Z)");
       return "unknown name '" + e.GetToken() + "'" + suggestion(e.GetToken(), known_names(variables));
     case mu::ecUNEXPECTED_EOF:
       return "ends too early";
@@ -161,9 +163,12 @@ Expression::Expression(const std::string& text, ExpressionVariables variables) {
     parser.DefineInfixOprt("!", negation);
     const char* upper[] = {"X", "Y", "Z", "t"};
     const char* lower[] = {"x", "y", "z"};
-    const int count = variables == ExpressionVariables::position_and_time ? 4 : 3;
-    for (int i = 0; i < count; ++i) parser.DefineVar(upper[i], &impl->value[i]);
-    for (int i = 0; i < 3; ++i) parser.DefineVar(lower[i], &impl->value[i]);
+    const int space = variables == ExpressionVariables::plane_position ? 2 : 3;
+    for (int i = 0; i < space; ++i) {
+      parser.DefineVar(upper[i], &impl->value[i]);
+      parser.DefineVar(lower[i], &impl->value[i]);
+    }
+    if (variables == ExpressionVariables::position_and_time) parser.DefineVar(upper[3], &impl->value[3]);
     parser.SetExpr(text);
     parser.Eval();
     if (parser.GetNumResults() != 1)
@@ -175,17 +180,18 @@ Expression::Expression(const std::string& text, ExpressionVariables variables) {
   impl_ = std::move(impl);
 }
 
-double Expression::at(const Vec3d& X, double t) const {
-  double result = 0;
-  {
-    const std::lock_guard lock(impl_->evaluation);
-    impl_->value = {X[0], X[1], X[2], t};
-    try {
-      result = impl_->parser.Eval();
-    } catch (const mu::ParserError& e) {
-      throw InvalidInput("\"" + shortened(impl_->text) + "\": " + e.GetMsg());
-    }
+double Expression::evaluate(const Vec3d& X, double t) const {
+  const std::lock_guard lock(impl_->evaluation);
+  impl_->value = {X[0], X[1], X[2], t};
+  try {
+    return impl_->parser.Eval();
+  } catch (const mu::ParserError& e) {
+    throw InvalidInput("\"" + shortened(impl_->text) + "\": " + e.GetMsg());
   }
+}
+
+double Expression::at(const Vec3d& X, double t) const {
+  const double result = evaluate(X, t);
   if (!std::isfinite(result)) {
     const bool timed = impl_->variables == ExpressionVariables::position_and_time;
     throw InvalidInput("\"" + shortened(impl_->text) + "\" is " + number_text(result) + " at " + point_text(X) +

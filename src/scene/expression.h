@@ -13,6 +13,7 @@ inline constexpr size_t kMaxExpressionLength = 1000;  // characters: a formula f
 inline constexpr int kMaxExpressionDepth = 50;        // open parentheses
 
 enum class ExpressionVariables {
+  plane_position,     // X, Y, or x, y for the same
   position,           // X, Y, Z, or x, y, z for the same
   position_and_time,  // and t
 };
@@ -24,6 +25,7 @@ class Expression {
 
   // The value is finite, or InvalidInput names the formula and the point. Safe to call from several threads.
   double at(const Vec3d& X, double t = 0) const;
+  double evaluate(const Vec3d& X, double t = 0) const;  // the same, but infinite or NaN where it is not defined
   bool holds_at(const Vec3d& X) const { return at(X) != 0; }
   const std::string& text() const;
 

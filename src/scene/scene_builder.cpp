@@ -69,17 +69,6 @@ void append(const TetMesh& mesh, TetMesh& all) {
   all.region.resize(all.tets.size(), 0);
 }
 
-DecreaseTest test_named(const std::string& name) {
-  if (name == "slide") return DecreaseTest::slide;
-  return name == "none" ? DecreaseTest::none : DecreaseTest::textbook;
-}
-
-Criterion criterion_named(const std::string& name) {
-  for (const Criterion c : all_criteria())
-    if (to_string(c) == name) return c;
-  throw InvalidInput("criterion '" + name + "' is unknown");
-}
-
 SimulationOptions options_of(const Table& document) {
   const Value &time = *document.find("time"), &solver = *document.find("solver"), &search = solver["line_search"];
   SimulationOptions options;
@@ -96,7 +85,7 @@ SimulationOptions options_of(const Table& document) {
                           .sufficient_decrease = search["c"].number(),
                           .shrink = search["p"].number(),
                           .tolerance = search["tol"].number(),
-                          .test = test_named(search["test"].text())};
+                          .test = decrease_test_named(search["test"].text())};
   return options;
 }
 

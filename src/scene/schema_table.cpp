@@ -13,12 +13,6 @@ namespace {
 const Range kPositive{.min = 0, .min_open = true};
 const Range kNotNegative{.min = 0};
 
-std::vector<std::string> criterion_names() {
-  std::vector<std::string> names;
-  for (const Criterion criterion : all_criteria()) names.emplace_back(to_string(criterion));
-  return names;
-}
-
 void add_scene(Schema& s) {
   s.sections.push_back({"scene", "*.toml", "What is simulated: the top level of the file."});
   add_keys(s, "scene",
@@ -161,7 +155,7 @@ void add_line_search(Schema& s) {
             {.name = "test",
              .accepts = kText,
              .fallback = "\"textbook\"",
-             .choices = {"textbook", "slide", "none"},
+             .choices = decrease_test_names(),
              .meaning = "`textbook`: E + c alpha g.d (Armijo); `slide`: E + c g.d, as printed in the lecture; `none`: "
                         "accept the first trial",
              .reason = "converges from everywhere"}});

@@ -1,0 +1,125 @@
+// `aspic check --derivatives`: is every gradient the gradient of its energy, every Hessian the Hessian?
+#include "aspic/check_derivatives.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "aspic/commands.h"
+#include "aspic/plot.h"
+#include "dynamics/step_derivatives.h"
+
+namespace aspic::cli {
+namespace {
+
+std::string order_text(const DerivativeCheck& check) {
+  return std::isfinite(check.order) ? fmt::format("{:.2f}", check.order) : "-";
+}
+
+// "vertex 12, y", or of a Hessian "vertex 12, y; vertex 3, x (tet 57)".
+std::string place(const DerivativeCheck& check, const TetMesh& mesh) {
+  if (check.row < 0) return "";
+  std::string text = entry_name(check.row);
+  if (check.column >= 0 && check.column != check.row) text += "; " + entry_name(check.column);
+  const int tet = tet_with(mesh, check.row / 3, (check.column >= 0 ? check.column : check.row) / 3);
+  return tet >= 0 ? fmt::format("{} (tet {})", text, tet) : text;
+}
+
+void print_failure(const char* what, const DerivativeCheck& check, const TermDerivatives& of, const TetMesh& mesh) {
+  if (check.passed) return;
+  if (check.row < 0)
+    fmt::print("{} of {} ({}): not finite at any step\n", what, of.term, of.state);
+  else
+    fmt::print("{} of {} ({}) differs most at {}: it says {:.12g}, differences say {:.12g}\n", what, of.term, of.state,
+               place(check, mesh), check.found, check.expected);
+}
+
+nlohmann::ordered_json to_json(const DerivativeCheck& check, const TetMesh& mesh) {
+  return {{"passed", check.passed},
+          {"smallest_error", check.smallest_error},
+          {"order", check.order},  // null: no error but round-off
+          {"step", check.step},
+          {"error", check.error},
+          {"worst", {{"place", place(check, mesh)}, {"found", check.found}, {"expected", check.expected}}}};
+}
+
+void print_json(const std::vector<TermDerivatives>& results, const TetMesh& mesh) {
+  for (const TermDerivatives& of : results) {
+    const nlohmann::ordered_json line = {{"term", of.term},
+                                         {"state", of.state},
+                                         {"passed", of.report.passed()},
+                                         {"gradient", to_json(of.report.gradient, mesh)},
+                                         {"hessian", to_json(of.report.hessian, mesh)}};
+    fmt::print("{}\n", line.dump());
+  }
+}
+
+void print_table(const std::vector<TermDerivatives>& results, const TetMesh& mesh, double tolerance) {
+  size_t width = 4;
+  for (const TermDerivatives& of : results) width = std::max(width, of.term.size());
+  fmt::print("{:<{}}  {:<8}  {:^18}  {:^18}\n", "", width, "", "gradient", "Hessian");
+  fmt::print("{:<{}}  {:<8}  {:>6} {:>11}  {:>6} {:>11}\n", "term", width, "state", "order", "error", "order", "error");
+  for (const TermDerivatives& of : results) {
+    const DerivativeCheck &g = of.report.gradient, &H = of.report.hessian;
+    fmt::print("{:<{}}  {:<8}  {:>6} {:>11.2e}  {:>6} {:>11.2e}  {}\n", of.term, width, of.state, order_text(g),
+               g.smallest_error, order_text(H), H.smallest_error, of.report.passed() ? "passed" : "WRONG");
+  }
+  fmt::print(
+      "\norder: how the error of central differences falls with their step; 2 is right, - is round-off alone\n"
+      "error: the smallest over steps of 1e-1 to 1e-9 edges, relative to the derivative; {:g} is asked for\n",
+      tolerance);
+  for (const TermDerivatives& of : results) {
+    print_failure("the gradient", of.report.gradient, of, mesh);
+    print_failure("the Hessian", of.report.hessian, of, mesh);
+  }
+}
+
+// The largest error over the states, for each term and derivative.
+Chart chart_of(const std::vector<TermDerivatives>& results, const std::string& scene) {
+  Chart chart{.title = fmt::format("Derivatives of {}: differences against formulas", scene),
+              .x = {"step / mean edge length", AxisScale::logarithmic},
+              .y = {"relative error", AxisScale::logarithmic},
+              .size = {780, 520}};
+  std::map<std::string, size_t> known;
+  int color = 0;
+  const auto add = [&](const std::string& label, const DerivativeCheck& check, SeriesStyle style, int of_term) {
+    if (std::all_of(check.error.begin(), check.error.end(), [](double e) { return e == 0; })) return;
+    const auto [at, is_new] = known.emplace(label, chart.series.size());
+    if (is_new) {
+      chart.series.push_back({label, check.step, check.error, style, of_term});
+      return;
+    }
+    std::vector<double>& error = chart.series[at->second].y;
+    for (size_t i = 0; i < error.size(); ++i) error[i] = std::fmax(error[i], check.error[i]);
+  };
+  std::map<std::string, int> colors;
+  for (const TermDerivatives& of : results) {
+    const int of_term = colors.emplace(of.term, color).second ? color++ : colors[of.term];
+    add(of.term + ": gradient", of.report.gradient, SeriesStyle::line_and_points, of_term);
+    add(of.term + ": Hessian", of.report.hessian, SeriesStyle::dashed, of_term);
+  }
+  chart.series.push_back({"slope 2", {1e-1, 1e-5}, {1e-2, 1e-10}, SeriesStyle::line, 6});
+  return chart;
+}
+
+}  // namespace
+
+int check_derivatives(const Scene& scene, const CheckDerivativesOptions& options) {
+  if (!options.plot.empty()) require_drawable(options.plot);
+  const std::vector<TermDerivatives> results = check_step_derivatives(scene.simulation, options.tolerance);
+  const TetMesh& mesh = scene.simulation.model().mesh;
+  if (options.json) {
+    print_json(results, mesh);
+  } else {
+    fmt::print("{}: {} vertices, {} tets\n\n", scene.name, mesh.vertex_count(), mesh.tet_count());
+    print_table(results, mesh, options.tolerance);
+  }
+  if (!options.plot.empty()) draw(options.plot, chart_of(results, scene.name));
+  const bool passed = std::all_of(results.begin(), results.end(), [](const auto& of) { return of.report.passed(); });
+  return passed ? exit_done : exit_unconverged;
+}
+
+}  // namespace aspic::cli

@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "aspic/minimize.h"
+#include "base/error.h"
+#include "optimize/test_functions.h"
+
+namespace aspic::cli {
+namespace {
+
+void check(const SolverOptions& solver) {
+  const auto require = [](bool holds, const char* option, double value, const char* range) {
+    if (!holds) throw InvalidInput(fmt::format("{} {}: it must be {}", option, value, range));
+  };
+  const LineSearchOptions& search = solver.minimize.line_search;
+  require(solver.minimize.tolerance >= 0, "--tolerance", solver.minimize.tolerance, "0 or more");
+  require(std::isfinite(search.alpha_max) && search.alpha_max > 0, "--alpha-max", search.alpha_max, "positive");
+  const double c = search.sufficient_decrease, p = search.shrink;
+  require(c > 0 && c < 1, "--decrease", c, "between 0 and 1");
+  require(p > 0 && p < 1, "--shrink", p, "between 0 and 1");
+  require(search.tolerance > 0, "--alpha-min", search.tolerance, "positive");
+}
+
+Planar planar(std::span<const double> x) { return {x[0], x[1]}; }
+
+}  // namespace
+
+Problem known_problem(const std::string& name) {
+  const TestFunction info = test_function_info(name);
+  return {.name = info.name,
+          .formula = info.formula,
+          .function = make_test_function(info.name),
+          .start = info.start,
+          .minimizer = info.minimizer,
+          .minimum = info.minimum,
+          .region = std::pair(info.lower, info.upper)};
+}
+
+Minimization minimize(const Problem& problem, const SolverOptions& options, const ShowIteration& show) {
+  check(options);
+  const auto direction = make_search_direction(options);
+  Minimization done{.method = options.method, .definiteness = options.definiteness};
+  std::replace(done.method.begin(), done.method.end(), '_', ' ');
+  std::vector<double> x = {problem.start[0], problem.start[1], 0};
+  const auto observe = [&](const LiveIteration& live) {
+    done.iterations.push_back(
+        {live, planar(live.x), planar(live.d), planar(live.x_next), {live.tried.begin(), live.tried.end()}});
+    if (show) show(done.iterations.back(), live);
+    return true;
+  };
+  done.report = Minimizer().minimize(*problem.function, *direction, x, options.minimize, observe);
+  done.end = planar(x);
+  return done;
+}
+
+}  // namespace aspic::cli

@@ -1,0 +1,269 @@
+// `aspic minimize`: the minimisers of the simulation on functions of two variables.
+#include "aspic/minimize.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "aspic/commands.h"
+#include "aspic/plot.h"
+#include "base/error.h"
+#include "optimize/solver.h"
+#include "optimize/test_functions.h"
+#include "scene/expression_function.h"
+#include "scene/trace.h"
+
+namespace aspic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string function, expression, start;
+  std::string criterion = "scale", test = "textbook";
+  SolverOptions solver;
+  fs::path trace, plot, model;
+  int iteration = 0;
+  bool list = false, json = false;
+};
+
+Planar parse_start(const std::string& text) {
+  Planar p{};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (size_t i = 0; i < 2; ++i) {
+    const auto [rest, error] = std::from_chars(at, end, p[i]);
+    const bool closed = i == 0 ? rest != end && *rest == ',' : rest == end;
+    if (error != std::errc() || !closed || !std::isfinite(p[i]))
+      throw InvalidInput(fmt::format("--start {}: two finite numbers x,y are expected, such as -0.8,0.6", text));
+    at = rest + (i == 0 ? 1 : 0);
+  }
+  return p;
+}
+
+Problem problem_of(const Arguments& arguments) {
+  if (arguments.function.empty() == arguments.expression.empty())
+    throw InvalidInput("name one function (see aspic minimize --list), or give --expression \"...\"");
+  Problem problem;
+  if (!arguments.expression.empty()) {
+    problem = {.name = "expression",
+               .formula = arguments.expression,
+               .function = std::make_unique<ExpressionFunction>(arguments.expression)};
+    if (arguments.start.empty()) throw InvalidInput("--expression needs --start x,y");
+  } else {
+    problem = known_problem(arguments.function);
+  }
+  if (!arguments.start.empty()) problem.start = parse_start(arguments.start);
+  if (!std::isfinite(problem.function->at(problem.start)))
+    throw InvalidInput(fmt::format("the function is not finite at the start ({:g}, {:g}); choose another --start",
+                                   problem.start[0], problem.start[1]));
+  return problem;
+}
+
+void print_header() {
+  fmt::print("{:>4} {:>13} {:>13} {:>15} {:>10} {:>10} {:>6}\n", "", "x", "y", "f", "|g|", "alpha", "trials");
+}
+
+void print_row(const IterationRecord& record) {
+  const Iteration& it = record.iteration;
+  fmt::print("{:>4} {:>13.6g} {:>13.6g} {:>15.8g} {:>10.3g} {:>10.4g} {:>6}{}\n", it.index, record.x[0], record.x[1],
+             it.value, it.gradient_norm, it.alpha, it.trials, it.direction.projected ? "  projected" : "");
+}
+
+std::string json_row(const IterationRecord& record) {
+  nlohmann::ordered_json trials = nlohmann::json::array();
+  for (const Trial& trial : record.tried)
+    trials.push_back(
+        {{"alpha", trial.alpha}, {"value", trial.value}, {"bound", trial.bound}, {"accepted", trial.accepted}});
+  const Iteration& it = record.iteration;
+  const nlohmann::ordered_json line = {{"iteration", it.index},
+                                       {"x", record.x},
+                                       {"value", it.value},
+                                       {"gradient_norm", it.gradient_norm},
+                                       {"direction", record.direction},
+                                       {"decrement", it.decrement},
+                                       {"alpha", it.alpha},
+                                       {"trials", trials},
+                                       {"projected", it.direction.projected}};
+  return line.dump();
+}
+
+Minimization minimize(const Problem& problem, const Arguments& arguments) {
+  SolverOptions solver = arguments.solver;
+  solver.minimize.criterion = criterion_named(arguments.criterion);
+  solver.minimize.line_search.test = decrease_test_named(arguments.test);
+  std::optional<Trace> trace;
+  if (!arguments.trace.empty())
+    trace.emplace(arguments.trace,
+                  TraceOptions{{}, /*sufficient_decrease=*/solver.minimize.line_search.sufficient_decrease});
+  if (!arguments.json) {
+    fmt::print("{}: f = {}\n{}, from ({:g}, {:g})\n", problem.name, problem.formula,
+               make_search_direction(solver)->description(), problem.start[0], problem.start[1]);
+    print_header();
+  }
+  Minimization done = minimize(problem, solver, [&](const IterationRecord& record, const LiveIteration& live) {
+    if (trace) trace->on_iteration(1, live);
+    if (arguments.json)
+      fmt::print("{}\n", json_row(record));
+    else
+      print_row(record);
+  });
+  if (trace) trace->close();
+  return done;
+}
+
+double distance(const Planar& a, const Planar& b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
+
+// What the status means here, and what usually helps.
+std::string in_words(const Minimization& done) {
+  const MinimizeReport& report = done.report;
+  switch (report.status) {
+    case Status::converged:
+      return fmt::format("converged after {} iterations", report.iterations);
+    case Status::round_off:
+      return fmt::format("as good as double precision allows, after {} iterations", report.iterations);
+    case Status::iteration_limit:
+      return fmt::format(
+          "not converged: the limit of {} iterations was reached; raise --max-iterations, or the "
+          "function has no minimum this way",
+          report.iterations);
+    case Status::stuck:
+      return fmt::format(
+          "stuck after {} iterations: no trial along the direction decreases f enough; lower --decrease "
+          "or --alpha-min",
+          report.iterations);
+    case Status::no_descent:
+      return fmt::format(
+          "no descent direction after {} iterations: the Hessian is not positive definite; try "
+          "--definiteness clamped",
+          report.iterations);
+    case Status::undefined:
+      return fmt::format(
+          "after {} iterations f or its gradient is not finite: f has no lower bound this way, or is not "
+          "defined there",
+          report.iterations);
+    case Status::interrupted:
+      break;
+  }
+  return "interrupted";
+}
+
+void print_summary(const Problem& problem, const Minimization& done) {
+  const MinimizeReport& report = done.report;
+  fmt::print("{:>4} {:>13.6g} {:>13.6g} {:>15.8g} {:>10.3g}\n\n", report.iterations, done.end[0], done.end[1],
+             report.value, report.gradient_norm);
+  fmt::print("{}\n", in_words(done));
+  fmt::print("f = {:.12g} at ({:.10g}, {:.10g}); |g| = {:.3g}; {:.3g} was reached, {:.3g} asked for\n", report.value,
+             done.end[0], done.end[1], report.gradient_norm, report.reached, report.threshold);
+  fmt::print("evaluations: {} of f, {} of its gradient, {} of its Hessian ({} projected)\n", report.values,
+             report.gradients, report.hessians, report.projected_hessians);
+  if (!problem.minimizer) return;
+  const double error = distance(done.end, *problem.minimizer);
+  fmt::print("distance to the minimum at ({:.10g}, {:.10g}), where f = {:.12g}: {:.3g}\n", (*problem.minimizer)[0],
+             (*problem.minimizer)[1], *problem.minimum, error);
+  if (is_success(report.status) && error > 0.1)
+    fmt::print("note: |g| is small here as well, but this is not the minimum; try another --start or --tolerance\n");
+}
+
+void print_json_summary(const Problem& problem, const Minimization& done) {
+  const MinimizeReport& report = done.report;
+  nlohmann::ordered_json line = {{"status", to_string(report.status)},
+                                 {"converged", is_success(report.status)},
+                                 {"iterations", report.iterations},
+                                 {"x", done.end},
+                                 {"value", report.value},
+                                 {"gradient_norm", report.gradient_norm},
+                                 {"reached", report.reached},
+                                 {"threshold", report.threshold},
+                                 {"values", report.values},
+                                 {"gradients", report.gradients},
+                                 {"hessians", report.hessians},
+                                 {"projected_hessians", report.projected_hessians}};
+  if (problem.minimizer) line["distance"] = distance(done.end, *problem.minimizer);
+  fmt::print("{}\n", line.dump());
+}
+
+int list() {
+  for (const TestFunction& f : test_functions())
+    fmt::print("{}\n  f = {}\n  {}\n  minimum {:.10g} at ({:.10g}, {:.10g}); usual start ({:g}, {:g})\n\n", f.name,
+               f.formula, f.remarks, f.minimum, f.minimizer[0], f.minimizer[1], f.start[0], f.start[1]);
+  fmt::print("methods: {}\n", fmt::join(minimizer_names(), ", "));
+  return exit_done;
+}
+
+int run(const Arguments& arguments) {
+  if (arguments.list) return list();
+  for (const fs::path& picture : {arguments.plot, arguments.model})
+    if (!picture.empty()) require_drawable(picture);
+  const Problem problem = problem_of(arguments);
+  Minimization done = minimize(problem, arguments);
+  if (arguments.json)
+    print_json_summary(problem, done);
+  else
+    print_summary(problem, done);
+  const int code = is_success(done.report.status) ? exit_done : exit_unconverged;
+  if (!arguments.model.empty()) draw_model(arguments.model, problem, done, arguments.iteration);
+  if (!arguments.plot.empty()) {
+    const std::string title = fmt::format("{} on f = {}", done.method, problem.formula);
+    std::vector<Minimization> methods;
+    methods.push_back(std::move(done));
+    draw_paths(arguments.plot, title, problem, methods);
+  }
+  return code;
+}
+
+void add_solver_options(CLI::App* command, Arguments& arguments) {
+  SolverOptions& solver = arguments.solver;
+  MinimizeOptions& minimize = solver.minimize;
+  minimize.max_iterations = 200;
+  command->add_option("--method", solver.method, "newton by default; --list names all");
+  command->add_option("--definiteness", solver.definiteness,
+                      "Of Newton's Hessian: exact, clamped, absolute, on_demand");
+  command->add_option("--criterion", arguments.criterion,
+                      fmt::format("What must be small: {}", fmt::join(criterion_names(), ", ")));
+  command->add_option("--tolerance", minimize.tolerance, "How small; 1e-6 by default");
+  command->add_option("--max-iterations", minimize.max_iterations, "200 by default")->check(CLI::Range(0, 1000000000));
+  LineSearchOptions& search = minimize.line_search;
+  command->add_option("--test", arguments.test,
+                      fmt::format("Of the line search: {}", fmt::join(decrease_test_names(), ", ")));
+  command->add_option("--alpha-max", search.alpha_max, "The first trial; 1 by default");
+  command->add_option("--decrease", search.sufficient_decrease, "c, the sufficient decrease; 1e-4 by default");
+  command->add_option("--shrink", search.shrink, "p, the factor between trials; 0.5 by default");
+  command->add_option("--alpha-min", search.tolerance, "tol: smaller trials are given up; 1e-10 by default");
+}
+
+}  // namespace
+
+void add_minimize(CLI::App& app, Action& action) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("minimize", "Minimises a function of two variables with the simulation's own methods");
+  command->footer(R"(
+Examples:
+  aspic minimize rosenbrock
+  aspic minimize rosenbrock --method gradient_descent --max-iterations 20000 --plot zigzag.svg
+  aspic minimize rosenbrock --test none                 Newton's method overshoots
+  aspic minimize rosenbrock --plot-model model.png --iteration 1
+  aspic minimize --expression "cosh(x) + (y - x)^2" --start 2,-1
+  aspic minimize --list
+
+Exit codes: 0 done, 2 bad input, 3 not converged.)");
+  command->add_option("FUNCTION", arguments->function, "One of --list");
+  command->add_option("--expression", arguments->expression, "A formula of x and y instead");
+  command->add_option("--start", arguments->start, "x,y where it begins");
+  add_solver_options(command, *arguments);
+  command->add_option("--trace", arguments->trace, "Directory for every trial of every iteration");
+  command->add_option("--plot", arguments->plot, "Contour map with the path and the rejected trials (.svg or .png)");
+  command->add_option("--plot-model", arguments->model, "The surface and the quadratic model of --iteration (.png)");
+  command->add_option("--iteration", arguments->iteration, "Whose model is drawn; 0 by default")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--list", arguments->list, "The functions and the methods");
+  command->add_flag("--json", arguments->json, "One line of JSON per iteration, and one for the end");
+  command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+}
+
+}  // namespace aspic::cli

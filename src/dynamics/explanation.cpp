@@ -1,0 +1,223 @@
+#include "dynamics/explanation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "material/registry.h"
+
+namespace aspic {
+namespace {
+
+std::string text(double number) {
+  std::array<char, 32> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "%.3g", number);
+  return buffer.data();
+}
+
+std::string point_text(std::span<const double> x, int vertex) {
+  const size_t i = 3 * static_cast<size_t>(vertex);
+  return "(" + text(x[i]) + ", " + text(x[i + 1]) + ", " + text(x[i + 2]) + ") m";
+}
+
+// "vertex 12", "vertex 12 of body 'arm'": by the numbers of the body's own mesh.
+std::string named(const Model& model, const char* kind, int index, int BodyRange::*first, int BodyRange::*count) {
+  for (const BodyRange& body : model.bodies) {
+    const int own = index - body.*first;
+    if (own < 0 || own >= body.*count) continue;
+    const std::string name = std::string(kind) + " " + std::to_string(own);
+    return model.bodies.size() > 1 ? name + " of body '" + body.name + "'" : name;
+  }
+  return std::string(kind) + " " + std::to_string(index);
+}
+std::string vertex_name(const Model& model, int vertex) {
+  return named(model, "vertex", vertex, &BodyRange::first_vertex, &BodyRange::vertex_count);
+}
+std::string tet_name(const Model& model, int tet) {
+  return named(model, "tet", tet, &BodyRange::first_tet, &BodyRange::tet_count);
+}
+
+double signed_volume(const TetMesh& mesh, int tet, std::span<const double> x) {
+  const auto corner = [&](int v) {
+    const size_t i = 3 * static_cast<size_t>(mesh.tets[tet][v]);
+    return Vec3d{{x[i], x[i + 1], x[i + 2]}};
+  };
+  const Vec3d a = corner(0);
+  return determinant(from_columns(corner(1) - a, corner(2) - a, corner(3) - a)) / 6;
+}
+
+struct WorstTet {
+  int tet = -1;
+  double det_F = INFINITY;
+};
+
+WorstTet most_squashed(const TetMesh& mesh, std::span<const double> x) {
+  std::vector<double> rest;
+  for (const Vec3d& X : mesh.rest) rest.insert(rest.end(), {X[0], X[1], X[2]});
+  WorstTet worst;
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const double det_F = signed_volume(mesh, t, x) / signed_volume(mesh, t, rest);
+    if (!(det_F >= worst.det_F)) worst = {t, det_F};
+  }
+  return worst;
+}
+
+std::string squashed_place(const Model& model, std::span<const double> x) {
+  const WorstTet worst = most_squashed(model.mesh, x);
+  if (worst.tet < 0) return "";
+  return tet_name(model, worst.tet) + (worst.det_F > 0 ? " is squeezed most: " : " is inverted: ") + text(worst.det_F) +
+         " of its volume";
+}
+
+std::string residual_place(const Model& model, const StepReport& report, std::span<const double> x) {
+  if (report.worst_vertex < 0) return "";
+  return vertex_name(model, report.worst_vertex) + " at " + point_text(x, report.worst_vertex) + " is furthest from " +
+         "balance: " + text(report.worst_residual) + " N are left over";
+}
+
+class Explainer {
+ public:
+  Explainer(const Simulation& simulation, const StepReport& report)
+      : simulation_(simulation),
+        report_(report),
+        model_(simulation.model()),
+        solver_(simulation.options().solver),
+        x_(simulation.state().q) {}
+
+  Explanation explain() const {
+    switch (report_.status) {
+      case Status::undefined:
+        return simulation_.is_implicit() ? undefined_start() : blow_up();
+      case Status::stuck:
+        return stuck();
+      case Status::iteration_limit:
+        return iteration_limit();
+      case Status::no_descent:
+        return no_descent();
+      case Status::converged:
+      case Status::round_off:
+      case Status::interrupted:
+        break;
+    }
+    return {};
+  }
+
+ private:
+  bool is_static() const { return simulation_.options().integrator == "quasi_static"; }
+  bool is_newton() const { return solver_.method.starts_with("newton"); }
+  std::string step_text() const { return "time.step = " + text(simulation_.options().h); }
+  std::string smaller_steps() const {
+    return is_static() ? "load the body in smaller steps (" + step_text() + " now)"
+                       : "shorten the step (" + step_text() + " now)";
+  }
+
+  Explanation blow_up() const {
+    const StableStep stable = simulation_.stable_step();
+    const double h = simulation_.options().h;
+    const std::string& name = simulation_.options().integrator;
+    if (h < stable.h)
+      return {
+          "the explicit scheme " + name + " left the range of numbers",
+          step_text() + " is below " + text(stable.h) + " s, where it is stable for small motions, but not for these",
+          "shorten time.step, or use time.integrator = \"backward_euler\""};
+    return {
+        "the explicit scheme " + name + " blew up: its steps of " + text(h) + " s are longer than the " +
+            text(stable.h) + " s up to which it can be stable here",
+        stable.vertex < 0 ? "" : vertex_name(model_, stable.vertex) + " vibrates fastest: small, stiff or light tets",
+        "time.step = " + text(stable.h / 2) + " or less, or time.integrator = \"backward_euler\""};
+  }
+
+  Explanation undefined_start() const {
+    std::vector<double> placed = x_;
+    const std::vector<double>& start = simulation_.snapshot().start.q;
+    for (const Pin& pin : model_.pins)
+      for (const int v : pin.vertices) {
+        if (!pin.motion) continue;
+        const size_t i = 3 * static_cast<size_t>(v);
+        const Vec3d to = pin.motion({{start[i], start[i + 1], start[i + 2]}}, report_.time);
+        for (int r = 0; r < 3; ++r) placed[i + r] = to[r];
+      }
+    const WorstTet worst = most_squashed(model_.mesh, placed);
+    if (!(worst.det_F > 0) && worst.tet >= 0)
+      return {"the pins move so far in one step that a tet is inverted, where the material has no energy",
+              tet_name(model_, worst.tet) + ": " + text(worst.det_F) + " of its volume",
+              smaller_steps() + ", or move the pins more slowly"};
+    int fastest = 0;
+    double most = -1;
+    const std::vector<double>& v = simulation_.state().qdot;
+    for (size_t i = 0; i + 2 < v.size(); i += 3) {
+      const double speed = std::hypot(v[i], v[i + 1], v[i + 2]);
+      if (!(speed <= most)) most = speed, fastest = static_cast<int>(i / 3);
+    }
+    return {"the energy at the start of the step is not a finite number",
+            vertex_name(model_, fastest) + " is fastest: " + text(most) + " m/s",
+            smaller_steps() + ", and look for forces, pins or velocities that are too large"};
+  }
+
+  Explanation too_much_asked(const std::string& cause) const {
+    return {cause + ": a full Newton step lowers the energy by half of g.d, and more is asked for",
+            "solver.line_search.c = " + text(solver_.minimize.line_search.sufficient_decrease),
+            "solver.line_search.c = 1e-4"};
+  }
+
+  Explanation stuck() const {
+    const LineSearchOptions& search = solver_.minimize.line_search;
+    const std::string cause = "the line search found no step that lowers the energy enough";
+    if (search.test == DecreaseTest::slide)
+      return {cause + ": the slide's test asks for the decrease c g.d of a full step, however short the step is",
+              "solver.line_search.test = \"slide\"", "solver.line_search.test = \"textbook\""};
+    if (search.sufficient_decrease > 0.5) return too_much_asked(cause);
+    if (search.tolerance > 1e-5)
+      return {cause + " before it became shorter than tol", "solver.line_search.tol = " + text(search.tolerance),
+              "solver.line_search.tol = 1e-10"};
+    return {cause, squashed_place(model_, x_), smaller_steps() + "; `aspic check` finds bad tets"};
+  }
+
+  Explanation iteration_limit() const {
+    const std::string cause = "not converged after " + std::to_string(report_.iterations) + " iterations";
+    const MinimizeOptions& options = solver_.minimize;
+    if (report_.residual_threshold > 0 && report_.residual_threshold < report_.residual_round_off)
+      return {cause + ": round-off alone is " + text(report_.residual_round_off) + " N, and less is asked for",
+              "solver.tolerance = " + text(options.tolerance),
+              "solver.tolerance = " +
+                  text(options.tolerance * 10 * report_.residual_round_off / report_.residual_threshold)};
+    if (!is_newton())
+      return {cause + ": methods without the Hessian take many more for stiff bodies",
+              "solver.method = \"" + solver_.method + "\"",
+              "solver.method = \"newton\", or raise solver.max_iterations"};
+    if (options.line_search.sufficient_decrease > 0.5) return too_much_asked(cause);
+    if (options.line_search.test == DecreaseTest::none)
+      return {cause + ": without a line search Newton's method overshoots", "solver.line_search.test = \"none\"",
+              "solver.line_search.test = \"textbook\""};
+    if (options.max_iterations < MinimizeOptions().max_iterations)
+      return {cause, "solver.max_iterations = " + std::to_string(options.max_iterations),
+              "solver.max_iterations = " + std::to_string(MinimizeOptions().max_iterations)};
+    return {cause, residual_place(model_, report_, x_), smaller_steps() + ", or raise solver.max_iterations"};
+  }
+
+  Explanation no_descent() const {
+    if (is_newton() && solver_.definiteness == "exact")
+      return {"the exact Hessian has directions of negative curvature, along which Newton's method would climb",
+              "solver.definiteness = \"exact\"", "solver.definiteness = \"on_demand\""};
+    if (is_static() && model_.pins.empty())
+      return {"the linear system has no single solution: nothing holds the body", "no pins in the scene",
+              "pin some vertices, or use time.integrator = \"backward_euler\""};
+    return {"no direction could be computed along which the energy falls", squashed_place(model_, x_),
+            is_newton() ? "solver.linear = \"cholesky\"; `aspic check` finds bad tets" : smaller_steps()};
+  }
+
+  const Simulation& simulation_;
+  const StepReport& report_;
+  const Model& model_;
+  const SolverOptions& solver_;
+  const std::vector<double>& x_;
+};
+
+}  // namespace
+
+Explanation explain(const Simulation& simulation, const StepReport& report) {
+  return Explainer(simulation, report).explain();
+}
+
+}  // namespace aspic

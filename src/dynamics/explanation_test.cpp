@@ -1,0 +1,123 @@
+#include "dynamics/explanation.h"
+
+#include <gmock/gmock.h>
+
+#include "dynamics/models_test.h"
+
+namespace aspic {
+namespace {
+
+using namespace testing_models;
+using testing::HasSubstr;
+
+// Of the first step that fails within ten.
+Explanation first_failure(Simulation& simulation, Status wanted) {
+  for (int i = 0; i < 10; ++i) {
+    const StepReport report = simulation.step();
+    if (is_success(report.status)) {
+      EXPECT_TRUE(explain(simulation, report).cause.empty());
+      continue;
+    }
+    EXPECT_EQ(report.status, wanted) << to_string(report.status);
+    return explain(simulation, report);
+  }
+  ADD_FAILURE() << "no step failed";
+  return {};
+}
+Explanation first_failure(const SimulationOptions& options, Status wanted) {
+  Simulation simulation = simulate(beam(2), options);
+  return first_failure(simulation, wanted);
+}
+
+TEST(StableStep, SeparatesStepsThatSurviveFromStepsThatBlowUp) {
+  for (const MassKind mass : {MassKind::consistent, MassKind::lumped}) {
+    const double limit = simulate(beam(2, {.mass = mass})).stable_step().h;
+    const auto survives = [&](double h) {
+      Simulation simulation = simulate(beam(2, {.mass = mass}), {.h = h, .integrator = "symplectic_euler"});
+      for (int i = 0; i < 400; ++i)
+        if (!is_success(simulation.step().status)) return false;
+      return std::isfinite(simulation.kinetic_energy()) && simulation.kinetic_energy() < 1e6;
+    };
+    EXPECT_TRUE(survives(0.9 * limit)) << limit;
+    EXPECT_FALSE(survives(1.15 * limit)) << limit;
+  }
+}
+
+TEST(StableStep, IsThatOfASpringInClosedForm) {
+  Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}), {.young = 1e-6, .mass = MassKind::lumped});
+  double lightest = INFINITY;
+  int vertex = -1;
+  for (int v = 0; v < model.mesh.vertex_count(); ++v)
+    if (model.mass->vertex_mass()[v] < lightest) lightest = model.mass->vertex_mass()[v], vertex = v;
+  model.loads.push_back(make_point_springs("spring", {{vertex, 1e7, [](double) { return Vec3d{}; }}}));
+  const StableStep stable = simulate(std::move(model)).stable_step();
+  EXPECT_NEAR(stable.h, 2 / std::sqrt(1e7 / lightest), 1e-3 * stable.h);
+  EXPECT_EQ(stable.vertex, vertex);
+}
+
+TEST(Explanation, OfAnExplicitBlowUpNamesTheStableStep) {
+  Simulation simulation = simulate(beam(2), {.h = 0.05, .integrator = "forward_euler"});
+  StepReport report;
+  for (int i = 0; i < 2000 && is_success(report.status); ++i) report = simulation.step();
+  ASSERT_EQ(report.status, Status::undefined);
+  const Explanation why = explain(simulation, report);
+  EXPECT_THAT(why.cause, HasSubstr("blew up"));
+  EXPECT_THAT(why.place, HasSubstr("vertex"));
+  EXPECT_THAT(why.remedy, HasSubstr("time.step"));
+}
+
+TEST(Explanation, OfAnIterationLimitNamesTheParameterAtFault) {
+  SimulationOptions few;
+  few.solver.minimize.max_iterations = 1;
+  EXPECT_THAT(first_failure(few, Status::iteration_limit).place, HasSubstr("max_iterations = 1"));
+
+  SimulationOptions first_order;
+  first_order.solver.method = "gradient_descent";
+  EXPECT_THAT(first_failure(first_order, Status::iteration_limit).remedy, HasSubstr("newton"));
+}
+
+TEST(Explanation, OfAnIterationLimitOtherwiseNamesTheVertexFurthestFromBalance) {
+  Simulation simulation = simulate(beam(2, {.young = 1e4, .gravity = {{0, -1e3, 0}}}), {.h = 10});
+  simulation.step();
+  StepReport report = simulation.step();
+  report.status = Status::iteration_limit;
+  const Explanation why = explain(simulation, report);
+  EXPECT_THAT(why.place, HasSubstr("vertex " + std::to_string(report.worst_vertex)));
+  EXPECT_GT(report.worst_residual, 0);
+  EXPECT_LE(report.worst_residual, report.residual);
+}
+
+TEST(Explanation, OfALineSearchThatAsksForTooMuchNamesItsParameter) {
+  SimulationOptions slide;
+  slide.solver.minimize.line_search.test = DecreaseTest::slide;
+  slide.solver.minimize.line_search.sufficient_decrease = 0.9;
+  EXPECT_THAT(first_failure(slide, Status::stuck).remedy, HasSubstr("textbook"));
+
+  SimulationOptions greedy;
+  greedy.solver.minimize.line_search.sufficient_decrease = 0.9;
+  EXPECT_THAT(first_failure(greedy, Status::iteration_limit).place, HasSubstr("c = 0.9"));
+}
+
+TEST(Explanation, OfAnIndefiniteExactHessianNamesTheDefiniteness) {
+  SimulationOptions options{.integrator = "quasi_static"};
+  options.solver.definiteness = "exact";
+  Simulation simulation = simulate(beam(2, {.young = 1e5, .gravity = {{0, -2e3, 0}}}), options);
+  EXPECT_THAT(first_failure(simulation, Status::no_descent).remedy, HasSubstr("on_demand"));
+}
+
+TEST(Explanation, OfPinsThatInvertATetNamesIt) {
+  Model model = beam(2);
+  model.pins.push_back({"press", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 4 - 1e-9; }),
+                        [](const Vec3d& X, double t) {
+                          return X - Vec3d{{1e3 * t, 0, 0}};
+                        }});
+  Simulation simulation = simulate(std::move(model));
+  const StepReport report = simulation.step();
+  ASSERT_FALSE(is_success(report.status));
+  const Explanation why = explain(simulation, report);
+  EXPECT_THAT(why.cause, HasSubstr("pins"));
+  EXPECT_THAT(why.place, HasSubstr("tet "));
+}
+
+}  // namespace
+}  // namespace aspic

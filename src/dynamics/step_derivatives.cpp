@@ -1,0 +1,188 @@
+#include "dynamics/step_derivatives.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "dynamics/incremental_potential.h"
+
+namespace aspic {
+namespace {
+
+struct NamedState {
+  std::string name;
+  std::vector<double> q;
+};
+
+double mean_edge(const TetMesh& mesh) {
+  double sum = 0;
+  for (const Tet& t : mesh.tets)
+    for (size_t i = 0; i < 4; ++i)
+      for (size_t j = 0; j < i; ++j) {
+        const Vec3d e = mesh.rest[t[i]] - mesh.rest[t[j]];
+        sum += std::sqrt(dot(e, e));
+      }
+  return mesh.tets.empty() ? 1 : sum / (6 * static_cast<double>(mesh.tets.size()));
+}
+
+// Uniform in [-1, 1] and the same on every system.
+class Noise {
+ public:
+  double operator()() { return 2 * (static_cast<double>(random_() >> 11) * 0x1p-53) - 1; }
+
+ private:
+  std::mt19937_64 random_{11};
+};
+
+std::vector<double> near_rest(const TetMesh& mesh, double edge) {
+  Noise noise;
+  std::vector<double> q;
+  for (const Vec3d& X : mesh.rest)
+    for (int r = 0; r < 3; ++r) q.push_back(X[r] + 0.01 * edge * noise());
+  return q;
+}
+
+// About the origin: a stretch of `amount` along x, half of it back along y, a shear, and vertices out of line.
+std::vector<double> deformed(const std::vector<double>& q, double amount, double edge) {
+  Noise noise;
+  std::vector<double> x(q.size());
+  for (size_t i = 0; i < q.size(); i += 3) {
+    x[i] = (1 + amount) * q[i] + 0.5 * amount * q[i + 1];
+    x[i + 1] = (1 - 0.5 * amount) * q[i + 1];
+    x[i + 2] = q[i + 2] + 0.3 * amount * q[i];
+    for (size_t r = 0; r < 3; ++r) x[i + r] += 0.3 * amount * edge * noise();
+  }
+  return x;
+}
+
+class StepCheck {
+ public:
+  StepCheck(const Simulation& simulation, double tolerance)
+      : simulation_(simulation),
+        model_(simulation.model()),
+        state_(simulation.state()),
+        start_(simulation.snapshot().start.q),
+        pins_(model_.pins, start_),
+        E_(model_, pins_),
+        edge_(mean_edge(model_.mesh)),
+        tolerance_(tolerance) {
+    const double h = simulation.options().h;
+    const bool is_static = simulation.options().integrator == "quasi_static";
+    const StepContext context{state_.q, is_static ? 0 : h, state_.time + h};
+    for (Energy* V : E_.potential()) V->begin_step(context);
+    for (Energy* D : E_.damping()) D->begin_step(context);
+    std::vector<double> predicted = state_.q;
+    if (!is_static)
+      for (size_t i = 0; i < predicted.size(); ++i) predicted[i] += h * state_.qdot[i];
+    inertia_ = is_static ? 0 : 1;
+    E_.begin_step(predicted, inertia_, is_static ? 1 : h * h);
+    predicted_ = std::move(predicted);
+  }
+
+  std::vector<TermDerivatives> run() {
+    for (const NamedState& at : states()) {
+      const std::vector<std::string> names = simulation_.potential_names();
+      for (size_t k = 0; k < names.size(); ++k) check(names[k], at, differentiable(*E_.potential()[k], E_.pattern()));
+      for (const Energy* D : E_.damping()) check(std::string(D->name()), at, differentiable(*D, E_.pattern()));
+      if (inertia_ != 0) check("inertia", at, inertia());
+      check_E(at);
+    }
+    return std::move(results_);
+  }
+
+ private:
+  std::vector<NamedState> states() {
+    std::vector<NamedState> all = {{"start", state_.q}, {"rest", near_rest(model_.mesh, edge_)}};
+    if (!is_finite(all.back().q)) all.pop_back();
+    for (double amount = 0.15; amount > 1e-4; amount /= 2) {
+      NamedState strained{"deformed", deformed(state_.q, amount, edge_)};
+      if (!is_finite(strained.q)) continue;
+      all.push_back(std::move(strained));
+      break;
+    }
+    return all;
+  }
+  bool is_finite(const std::vector<double>& q) { return std::isfinite(E_.value(q)); }
+
+  void check(const std::string& term, const NamedState& at, const Differentiable& f) {
+    results_.push_back({term, at.name, check_derivatives(f, at.q, {.length = edge_, .tolerance = tolerance_})});
+  }
+
+  void check_E(const NamedState& at) {
+    DerivativeCheckOptions options{.length = edge_, .tolerance = tolerance_, .fixed = std::vector<char>(at.q.size())};
+    for (size_t i = 0; i < at.q.size(); ++i) options.fixed[i] = pins_.holds(static_cast<int>(i / 3));
+    results_.push_back({"E", at.name, check_derivatives(differentiable(E_), at.q, options)});
+  }
+
+  // 1/2 (q - q~)' M (q - q~)
+  Differentiable inertia() const {
+    const auto offset = [this](std::span<const double> q) {
+      std::vector<double> r(q.begin(), q.end());
+      for (size_t i = 0; i < r.size(); ++i) r[i] -= predicted_[i];
+      return r;
+    };
+    return {.value =
+                [this, offset](std::span<const double> q) {
+                  const std::vector<double> r = offset(q);
+                  std::vector<double> Mr(r.size());
+                  model_.mass->multiply(r, Mr);
+                  double sum = 0;
+                  for (size_t i = 0; i < r.size(); ++i) sum += 0.5 * r[i] * Mr[i];
+                  return sum;
+                },
+            .gradient = [this, offset](std::span<const double> q,
+                                       std::span<double> g) { model_.mass->multiply(offset(q), g); },
+            .hessian_times =
+                [this](std::span<const double>, std::span<const double> d, std::span<double> Hd) {
+                  BlockSparse H(E_.pattern());
+                  model_.mass->add_to(1, H);
+                  H.multiply(d, Hd);
+                }};
+  }
+
+  const Simulation& simulation_;
+  const Model& model_;
+  const State& state_;
+  std::vector<double> start_;
+  Pins pins_;
+  IncrementalPotential E_;
+  double edge_, tolerance_, inertia_ = 1;
+  std::vector<double> predicted_;
+  std::vector<TermDerivatives> results_;
+};
+
+}  // namespace
+
+Differentiable differentiable(const Energy& V, const BlockPattern& pattern) {
+  return {.value = [&V](std::span<const double> x) { return V.value(x); },
+          .gradient =
+              [&V](std::span<const double> x, std::span<double> g) {
+                std::fill(g.begin(), g.end(), 0.0);
+                V.add_gradient(x, 1, g);
+              },
+          .hessian_times =
+              [&V, &pattern](std::span<const double> x, std::span<const double> d, std::span<double> Hd) {
+                BlockSparse H(pattern);
+                V.add_hessian(x, 1, {}, H);
+                H.multiply(d, Hd);
+              }};
+}
+
+std::vector<TermDerivatives> check_step_derivatives(const Simulation& simulation, double tolerance) {
+  return StepCheck(simulation, tolerance).run();
+}
+
+std::string entry_name(int entry) {
+  return "vertex " + std::to_string(entry / 3) + ", " + std::string(1, "xyz"[entry % 3]);
+}
+
+int tet_with(const TetMesh& mesh, int vertex, int other) {
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const Tet& tet = mesh.tets[t];
+    const auto holds = [&](int v) { return std::find(tet.begin(), tet.end(), v) != tet.end(); };
+    if (holds(vertex) && holds(other)) return t;
+  }
+  return -1;
+}
+
+}  // namespace aspic

@@ -1,0 +1,51 @@
+// "Gradient of what equals this?": central differences of a function against its own derivatives. Their error falls by
+// 100 when the step falls by 10, until round-off takes over; a wrong derivative leaves an error that does not fall.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "optimize/objective.h"
+
+namespace aspic {
+
+struct Differentiable {
+  std::function<double(std::span<const double> x)> value;
+  std::function<void(std::span<const double> x, std::span<double> g)> gradient;
+  std::function<void(std::span<const double> x, std::span<const double> d, std::span<double> Hd)> hessian_times;
+};
+Differentiable differentiable(Objective& E);  // refers to E; with the exact Hessian
+
+struct DerivativeCheckOptions {
+  double length = 1;        // steps are multiples of it: a displacement that changes the function considerably
+  int directions = 3;       // random ones; the largest error of any of them counts
+  uint64_t seed = 7;        // of their entries, which are uniform in [-1, 1]
+  double tolerance = 1e-6;  // of the smallest error
+  std::vector<char> fixed;  // marks entries of x that are no variables; empty: none
+};
+
+// How one derivative compares with the differences of what it is the derivative of.
+struct DerivativeCheck {
+  std::vector<double> step, error;  // step relative to the length: 1e-1 ... 1e-9; error relative to the derivative
+  double smallest_error = 0;
+  double order = 0;  // the fitted slope of log error over log step where the error falls; NaN: round-off alone
+  bool passed = false;
+
+  // Where the derivative is worst, at the step of the smallest error: an entry of the gradient, or of the Hessian.
+  int row = -1, column = -1;       // column: -1 for a gradient, and for a Hessian that passed
+  double found = 0, expected = 0;  // the derivative there, and the difference quotient
+};
+
+struct DerivativeReport {
+  DerivativeCheck gradient;  // against differences of the value
+  DerivativeCheck hessian;   // against differences of the gradient
+  bool passed() const { return gradient.passed && hessian.passed; }
+};
+
+// At the point x, where the function must be finite. Steps that leave the domain have the error NaN.
+DerivativeReport check_derivatives(const Differentiable& f, std::span<const double> x,
+                                   const DerivativeCheckOptions& options = {});
+
+}  // namespace aspic

@@ -1,0 +1,50 @@
+// A smooth function f(x, y) as an objective of the minimisers. Vectors are padded to one whole 3x3 block: z takes no
+// part, so that the minimum is at z = 0.
+#pragma once
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "optimize/objective.h"
+
+namespace aspic {
+
+using Planar = std::array<double, 2>;  // a point of the plane, or a gradient
+
+struct PlanarHessian {
+  double xx = 0, xy = 0, yy = 0;
+};
+
+// The quadratic approximation of a function about a point: what Newton's method minimises.
+struct QuadraticModel {
+  Planar center{};
+  double value = 0;
+  Planar gradient{};
+  PlanarHessian hessian;
+  double at(const Planar& p) const;
+};
+
+class PlanarFunction : public Objective {
+ public:
+  PlanarFunction();
+
+  virtual double at(const Planar& p) const = 0;  // +-inf or NaN where it is not defined
+  virtual Planar gradient_at(const Planar& p) const = 0;
+  virtual PlanarHessian hessian_at(const Planar& p) const = 0;
+  QuadraticModel model(const Planar& p, Definiteness kind = Definiteness::exact) const;
+
+  double value(std::span<const double> x) override;
+  void gradient(std::span<const double> x, std::span<double> g) override;
+  const BlockSparse& hessian(std::span<const double> x, const Projection& projection) override;
+  int projected_elements() const override { return projected_; }
+  double value_round_off() const override { return value_round_off_; }
+  double gradient_round_off() const override { return gradient_round_off_; }
+
+ private:
+  BlockPattern pattern_;
+  BlockSparse H_;
+  int projected_ = 0;
+  double value_round_off_ = 0, gradient_round_off_ = 0;
+};
+
+}  // namespace aspic

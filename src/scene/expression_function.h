@@ -1,0 +1,27 @@
+// A formula of x and y as a function to be minimised.
+#pragma once
+#include "optimize/planar_function.h"
+#include "scene/expression.h"
+
+namespace aspic {
+
+// The derivatives are central differences of order 4, with steps where truncation and round-off are about equal. For a
+// smooth function of values and lengths of order 1 the gradient is right to about 1e-12, the Hessian to about 1e-9:
+// tolerances below 1e-10 ask for more than there is. Where the formula is not defined, value and derivatives are
+// infinite or NaN.
+class ExpressionFunction : public PlanarFunction {
+ public:
+  explicit ExpressionFunction(const std::string& formula);  // throws InvalidInput
+
+  double at(const Planar& p) const override { return formula_.evaluate({{p[0], p[1], 0}}); }
+  Planar gradient_at(const Planar& p) const override;
+  PlanarHessian hessian_at(const Planar& p) const override;
+  double gradient_round_off() const override { return gradient_round_off_; }
+  void gradient(std::span<const double> x, std::span<double> g) override;
+
+ private:
+  Expression formula_;
+  double gradient_round_off_ = 0;
+};
+
+}  // namespace aspic
