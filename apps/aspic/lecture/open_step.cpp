@@ -95,6 +95,12 @@ Vector smooth_direction(const OpenStep& step) {
   return d;
 }
 
+std::vector<char> fixed_entries(const OpenStep& step) {
+  std::vector<char> fixed(step.q_t.size());
+  for (size_t i = 0; i < fixed.size(); ++i) fixed[i] = step.pins.holds(static_cast<int>(i / 3));
+  return fixed;
+}
+
 double observed_order(const Vector& step, const Vector& error) {
   return std::log(error.front() / error.back()) / std::log(step.front() / step.back());
 }

@@ -44,7 +44,9 @@ double inner(std::span<const double> a, std::span<const double> b);
 // A fixed smooth displacement of the free vertices [1], of the size 1.
 Vector smooth_direction(const OpenStep& step);
 
-// The exponent p of error ~ step^p: the slope between the first and the last entry, over equal errors none.
+std::vector<char> fixed_entries(const OpenStep& step);  // marks the entries of q that belong to pinned vertices
+
+// The exponent p of error ~ step^p: the slope between the first and the last entry, of the table.
 double observed_order(const Vector& step, const Vector& error);
 
 // The boundary where the vertices stand, for pictures.

@@ -6,6 +6,7 @@
 
 #include "aspic/lecture/course.h"
 #include "aspic/lecture/run_scene.h"
+#include "optimize/derivative_check.h"
 #include "optimize/newton.h"
 
 namespace aspic::cli::lecture {
@@ -34,6 +35,12 @@ Root find_root(OpenStep& step) {
   return root;
 }
 
+void write_derivatives(const Sheet& sheet, const DerivativeReport& check) {
+  CsvFile table = sheet.table("derivatives.csv", {"relative_step", "gradient_error", "hessian_error"});
+  for (size_t i = 0; i < check.gradient.step.size(); ++i)
+    table.append(CsvRow().add(check.gradient.step[i]).add(check.gradient.error[i]).add(check.hessian.error[i]));
+}
+
 }  // namespace
 
 void show_optimisation(const Stage& stage, Sheet& sheet) {
@@ -46,16 +53,13 @@ void show_optimisation(const Stage& stage, Sheet& sheet) {
   const Vector r = step.residual(q);
   sheet.at_most("|dE/dq - (M (q - q~) + h^2 dV/dq)| / |dE/dq|", norm(plus(g, -1, r)) / norm(g), 1e-12, "",
                 "the same sums in another order");
-  double best = INFINITY;
-  CsvFile table = sheet.table("gradient.csv", {"width_m", "relative_error"});
-  for (double s = 0.1; s > 1e-6; s /= 10) {
-    const double slope = (step.E.value(plus(q, s, d)) - step.E.value(plus(q, -s, d))) / (2 * s);
-    const double error = std::abs(slope - inner(g, d)) / std::abs(inner(g, d));
-    table.append(CsvRow().add(s).add(error));
-    best = std::min(best, error);
-  }
-  sheet.at_most("the gradient of what? of E: against differences of E, relative", best, 1e-8, "",
-                "the best width loses a third of the 16 digits, the sum over the tets some more");
+  const DerivativeReport check = check_derivatives(
+      differentiable(step.E), q, {.length = 0.1 / std::sqrt(static_cast<double>(q.size())), .fixed = fixed_entries(step)});
+  write_derivatives(sheet, check);
+  sheet.at_most("the gradient of what? of E: against differences of E, relative", check.gradient.smallest_error, 1e-8,
+                "", "the best width loses a third of the 16 digits, the sum over the tets some more");
+  sheet.at_most("order of that error, distance from 2", std::abs(check.gradient.order - 2), 0.2, "",
+                "central differences are of second order");
 
   const Root root = find_root(step);
   Vector minimiser = step.start;

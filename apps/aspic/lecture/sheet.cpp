@@ -81,6 +81,13 @@ void Sheet::keep(const Scene& scene) const {
   write_inputs(scene, folder_);
 }
 
+void Sheet::draw_by(const std::string& name, const std::string& caption,
+                    const std::function<void(const std::filesystem::path&)>& write) {
+  if (!can_draw()) return;
+  write(folder_ / name);
+  figures_.push_back({folder_ / name, caption});
+}
+
 bool Sheet::passes() const {
   const auto is_judged = [](const Measure& m) { return m.relation != Relation::shown; };
   return std::any_of(measures_.begin(), measures_.end(), is_judged) &&

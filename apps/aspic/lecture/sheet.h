@@ -1,6 +1,7 @@
 // What one demonstration of the lecture measured, wrote and drew.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -40,10 +41,10 @@ class Sheet {
   void keep(const Scene& scene) const;  // as scene NAME.toml beside the data, ready to be run
   template <class Picture>
   void draw(const std::string& name, const std::string& caption, const Picture& picture) {
-    if (!can_draw()) return;
-    cli::draw(folder_ / name, picture);
-    figures_.push_back({folder_ / name, caption});
+    draw_by(name, caption, [&](const std::filesystem::path& path) { cli::draw(path, picture); });
   }
+  void draw_by(const std::string& name, const std::string& caption,
+               const std::function<void(const std::filesystem::path&)>& write);
 
   const std::filesystem::path& folder() const { return folder_; }
   const std::vector<Measure>& measures() const { return measures_; }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "aspic/lecture/course.h"
 #include "aspic/lecture/run_scene.h"
@@ -27,8 +28,8 @@ class Rescaled : public Objective {
   }
   const BlockSparse& hessian(std::span<const double> x, const Projection& projection) override {
     H_ = E_.hessian(x, projection);
-    for (Mat3d& block : H_.block) block = (1 / unit_) * block;
-    return H_;
+    for (Mat3d& block : H_->block) block = (1 / unit_) * block;
+    return *H_;
   }
   double gradient_scale() const override { return E_.gradient_scale() / unit_; }
   double value_round_off() const override { return E_.value_round_off() / unit_; }
@@ -36,7 +37,7 @@ class Rescaled : public Objective {
  private:
   Objective& E_;
   double unit_;
-  BlockSparse H_;
+  std::optional<BlockSparse> H_;
 };
 
 std::vector<Vector> iterates(Objective& E, SearchDirection& direction, Vector x, int most) {
