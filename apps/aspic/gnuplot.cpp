@@ -70,11 +70,14 @@ void Gnuplot::draw() {
 }
 
 std::string literal(std::string_view text) {
-  // Gnuplot would end the string at a quotation mark in its first place.
-  std::string result = text.starts_with('\'') ? "' " : "'";
-  for (const char c : text) {
-    if (c == '\'') result += '\'';
+  // Nothing but the apostrophe has a meaning between apostrophes. Gnuplot misreads two of them that are escaped by
+  // doubling, so they stand between quotation marks and are joined to the rest.
+  std::string result = "'";
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\'' && (i == 0 || text[i - 1] != c)) result += "' . \"";
     result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+    if (c == '\'' && (i + 1 == text.size() || text[i + 1] != c)) result += "\" . '";
   }
   return result + '\'';
 }
