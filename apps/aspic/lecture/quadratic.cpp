@@ -61,8 +61,8 @@ double gradient_left(Objective& E, Vector x) {
 
 void show_on_rosenbrock(Sheet& sheet) {
   Problem problem = known_problem("rosenbrock");
-  problem.start = {-0.6, 0.8};
-  const Vector x = {-0.6, 0.8, 0};
+  problem.start = {-0.8, 0.3};  // where H is positive definite
+  const Vector x = {-0.8, 0.3, 0};
   const Departure d = departure(*problem.function, x, {0.05, 0.02, 0});
   sheet.at_most("Rosenbrock: order of E - model along d, distance from 3", std::abs(observed_order(d.s, d.error) - 3),
                 0.1, "", "the model has the value, the slope and the curvature; the next term is below 10 %");

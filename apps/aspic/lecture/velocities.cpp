@@ -120,6 +120,10 @@ void show_velocity_form(const Stage& stage, Sheet& sheet) {
   const double apart = distance(descent_scaled, descent_v, form);
   sheet.at_least("gradient descent on E(q) / h^2 and on E(v): largest distance of 5 iterates", apart, 1e3 * noise, "m",
                  "gradient descent depends on the units of the variables");
+  sheet.remark(
+      "Newton's iterates are the same points in both forms. So are those of gradient descent, because E(q) = h^2 E(v): "
+      "the factor h^2 undoes the change of variables. Of one and the same function, E(q) / h^2 over q and E(v) over v, "
+      "gradient descent takes different paths, and Newton's method the same.");
   CsvFile table = sheet.table("iterates.csv", {"iteration", "newton_distance_m"});
   for (size_t k = 0; k < std::min(q.size(), v.size()); ++k)
     table.append(CsvRow().add(static_cast<int>(k)).add(largest(plus(position_of(form, v[k]), -1, q[k]))));
