@@ -101,7 +101,7 @@ Vector counted(size_t n) {
 
 void show_gradient_descent(const Stage& stage, Sheet& sheet) {
   descend_in_the_plane("two_bump", {-0.3, 0.9}, 0, sheet);
-  descend_in_the_plane("rosenbrock", {-0.8, 0.3}, 100, sheet);
+  descend_in_the_plane("rosenbrock", {-1, -0.5}, 100, sheet);
 
   OpenStep step(in_motion(stage.on_real_mesh("05_swing")));
   sheet.keep(step.scene);

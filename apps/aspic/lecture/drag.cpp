@@ -134,6 +134,9 @@ void show_explosion(const Stage& stage, Sheet& sheet) {
   for (int i = 0; i < 2; ++i)
     sheet.at_least(drags[i].integrator + ": largest energy / that of backward_euler",
                    drags[i].run.largest_energy / implicit.run.largest_energy, 1e3, "", why);
+  for (int i = 0; i < 2; ++i)
+    sheet.show(drags[i].integrator + ": steps before numbers end", static_cast<double>(drags[i].time.size()), "",
+               fmt::format("of {}", scene.steps));
   Chart chart{"the same motion of the mouse", {"time [s]"}, {"energy [J]", AxisScale::logarithmic}, {}};
   MeshPicture picture{.panels = {}, .eye = {{0.3, 0.3, 1}}, .up = {{0, 1, 0}}, .size = {1000, 480}};
   chart.y.max = 1e12;

@@ -123,7 +123,8 @@ void show_overshoot(const Stage&, Sheet& sheet) {
 
 namespace {
 
-// The first iteration of a step that rejects a trial, with its curve.
+// The curve of an iteration that rejects trials: the first that rejects one or two, where they can be seen together
+// with the accepted one; otherwise the first that rejects any.
 struct Curve {
   int iteration = -1;
   double slope = 0, measured_slope = 0, value = 0;  // d'g, and the same by differences
@@ -131,30 +132,39 @@ struct Curve {
   std::vector<CurvePoint> points;
 };
 
+Curve curve_through(const LiveIteration& it, double sufficient_decrease) {
+  Curve curve{it.index, inner(it.g, it.d), 0, it.value, {it.tried.begin(), it.tried.end()}, {}};
+  constexpr double kSmall = 1e-5;
+  const Vector ahead = plus(it.x, kSmall, it.d), behind = plus(it.x, -kSmall, it.d);
+  curve.measured_slope = (it.E.value(ahead) - it.E.value(behind)) / (2 * kSmall);
+  curve.points = curve_along(it, sufficient_decrease, 81);
+  return curve;
+}
+
 Curve curve_of(OpenStep& step, const LineSearchOptions& search) {
   Curve curve;
   Vector q = step.start;
   Newton newton(make_linear_solver("cholesky"));
   Minimizer().minimize(step.E, newton, q, {.max_iterations = kMostIterations, .line_search = search},
                        [&](const LiveIteration& it) {
-                         if (it.tried.size() < 2) return true;
-                         curve.iteration = it.index;
-                         curve.value = it.value;
-                         curve.slope = inner(it.g, it.d);
-                         const Vector ahead = plus(it.x, 1e-5, it.d), behind = plus(it.x, -1e-5, it.d);
-                         curve.measured_slope = (it.E.value(ahead) - it.E.value(behind)) / 2e-5;
-                         curve.tried.assign(it.tried.begin(), it.tried.end());
-                         curve.points = curve_along(it, search.sufficient_decrease, 81);
-                         return false;
+                         const bool is_clear = it.tried.size() == 2 || it.tried.size() == 3;
+                         if (is_clear || (it.tried.size() > 3 && curve.iteration < 0))
+                           curve = curve_through(it, search.sufficient_decrease);
+                         return !is_clear;
                        });
   return curve;
 }
 
-void draw_curve(const Curve& curve, Sheet& sheet) {
+void write_curve(const Sheet& sheet, const Curve& curve) {
   CsvFile table = sheet.table("curve.csv", {"alpha", "value", "model", "textbook_bound", "slide_bound"});
+  for (const CurvePoint& p : curve.points)
+    table.append(CsvRow().add(p.alpha).add(p.value).add(p.model).add(p.textbook_bound).add(p.slide_bound));
+}
+
+// E(alpha) near its start; what rises far above is cut off.
+void draw_curve(const Curve& curve, const std::string& name, const std::string& caption, Sheet& sheet) {
   Vector alpha, value, model, textbook, slide;
   for (const CurvePoint& p : curve.points) {
-    table.append(CsvRow().add(p.alpha).add(p.value).add(p.model).add(p.textbook_bound).add(p.slide_bound));
     alpha.push_back(p.alpha);
     value.push_back(p.value);
     model.push_back(p.model);
@@ -162,13 +172,18 @@ void draw_curve(const Curve& curve, Sheet& sheet) {
     slide.push_back(p.slide_bound);
   }
   Series rejected{"rejected", {}, {}, SeriesStyle::points}, accepted{"accepted", {}, {}, SeriesStyle::points};
+  double highest = curve.value;  // of the accepted trial and of the lowest one that was rejected
   for (const Trial& t : curve.tried) {
     Series& series = t.accepted ? accepted : rejected;
     series.x.push_back(t.alpha);
     series.y.push_back(t.value);
   }
-  sheet.draw("curve.svg", fmt::format("E along d in iteration {} of a step of the real mesh", curve.iteration),
-             Chart{"backtracking", {"alpha"}, {"E [kg m^2]"},
+  if (!rejected.y.empty()) highest = *std::min_element(rejected.y.begin(), rejected.y.end());
+  const double lowest = *std::min_element(model.begin(), model.end());
+  sheet.draw(name, caption,
+             Chart{"backtracking",
+                   {"alpha"},
+                   {"E [kg m^2]", AxisScale::linear, lowest, std::max(highest, curve.value) + 0.5 * (curve.value - lowest)},
                    {{"E(q + alpha d)", alpha, value},
                     {"quadratic model", alpha, model},
                     {"E + c alpha d'g (textbook)", alpha, textbook, SeriesStyle::dashed},
@@ -190,6 +205,7 @@ MinimizeReport overshoot_with(double tol) {
 void check_settings(OpenStep& step, Sheet& sheet) {
   const LineSearchOptions other{.alpha_max = 2, .sufficient_decrease = 0.3, .shrink = 0.7};
   const Curve curve = curve_of(step, other);
+  draw_curve(curve, "other_settings.svg", "alpha_max = 2, p = 0.7, c = 0.3: the two lines can be told apart", sheet);
   double worst = 0, alpha = other.alpha_max;
   for (const Trial& t : curve.tried) {
     worst = std::max(worst, std::abs(t.alpha / alpha - 1));
@@ -221,7 +237,9 @@ void show_backtracking(const Stage& stage, Sheet& sheet) {
   sheet.at_most("|bound - (E + c alpha d'g)| / E", off / std::abs(curve.value), 1e-14, "", "the line of the textbook");
   sheet.at_most("slope of E along d at 0 against d'g, relative", std::abs(curve.measured_slope / curve.slope - 1), 1e-4,
                 "", "central differences over alpha = 1e-5; their error falls with the square of it");
-  draw_curve(curve, sheet);
+  write_curve(sheet, curve);
+  draw_curve(curve, "curve.svg", fmt::format("E along d in iteration {} of a step of the real mesh", curve.iteration),
+             sheet);
   check_settings(step, sheet);
 
   const MinimizeReport stuck = overshoot_with(0.3), fine = overshoot_with(1e-10);
