@@ -32,8 +32,14 @@ Turns turns_of(const Minimization& path) {
 void write_path(const Sheet& sheet, const std::string& name, const Minimization& path) {
   CsvFile table = sheet.table(name, {"iteration", "x", "y", "value", "gradient_norm", "alpha", "trials"});
   for (const IterationRecord& r : path.iterations)
-    table.append(CsvRow().add(r.iteration.index).add(r.x[0]).add(r.x[1]).add(r.iteration.value)
-                     .add(r.iteration.gradient_norm).add(r.iteration.alpha).add(r.iteration.trials));
+    table.append(CsvRow()
+                     .add(r.iteration.index)
+                     .add(r.x[0])
+                     .add(r.x[1])
+                     .add(r.iteration.value)
+                     .add(r.iteration.gradient_norm)
+                     .add(r.iteration.alpha)
+                     .add(r.iteration.trials));
 }
 
 void descend_in_the_plane(const std::string& function, Planar start, double least_ratio, Sheet& sheet) {
@@ -81,12 +87,12 @@ Descent descend(OpenStep& step, SearchDirection& direction) {
   Descent result;
   Vector q = step.start;
   Stopwatch stopwatch;
-  result.report = Minimizer().minimize(
-      step.E, direction, q, {.max_iterations = 20000, .tolerance = 1e-3}, [&](const LiveIteration& iteration) {
-        result.value.push_back(iteration.value);
-        result.gradient.push_back(iteration.gradient_norm);
-        return true;
-      });
+  result.report = Minimizer().minimize(step.E, direction, q, {.max_iterations = 20000, .tolerance = 1e-3},
+                                       [&](const LiveIteration& iteration) {
+                                         result.value.push_back(iteration.value);
+                                         result.gradient.push_back(iteration.gradient_norm);
+                                         return true;
+                                       });
   result.seconds = stopwatch.lap();
   return result;
 }
@@ -122,7 +128,8 @@ void show_gradient_descent(const Stage& stage, Sheet& sheet) {
   sheet.show("real step: time of gradient descent", slow.seconds, "s");
   sheet.show("real step: time of Newton's method", fast.seconds, "s");
   sheet.draw("step.svg", "One step of the real mesh, to the same tolerance",
-             Chart{"gradient descent against Newton", {"iteration", AxisScale::logarithmic},
+             Chart{"gradient descent against Newton",
+                   {"iteration", AxisScale::logarithmic},
                    {"|dE/dq| [kg m]", AxisScale::logarithmic},
                    {{"gradient descent", counted(slow.gradient.size()), slow.gradient},
                     {"Newton", counted(fast.gradient.size()), fast.gradient, SeriesStyle::line_and_points}}});

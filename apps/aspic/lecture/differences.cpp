@@ -116,9 +116,10 @@ namespace {
 constexpr int kComparedSteps = 60;
 
 struct Trajectory {
-  Vector time, tip;        // [s], [m]
-  Vector at_old, at_new;   // |M (q_(i+1) - q~)/h^2 + dV/dq| with dV/dq at q_i and at q_(i+1), of each step [N]
-  double threshold = 0;    // what the steps were asked for [N]
+  Vector time, tip;       // [s], [m]
+  Vector at_old, at_new;  // |M (q_(i+1) - q~)/h^2 + dV/dq| with dV/dq at q_i and at q_(i+1), of each step [N]
+  double threshold = 0;   // what the steps were asked for [N]
+  double noise = 0;       // of M (q_(i+1) - q~)/h^2: four roundings of positions, over h^2, times the masses [N]
 };
 
 Trajectory follow(Scene scene, int tip) {
@@ -127,6 +128,8 @@ Trajectory follow(Scene scene, int tip) {
   const Pins pins(model.pins, simulation.state().q);
   const double h = simulation.options().h;
   Trajectory path;
+  path.noise = 4 * kEpsilon * largest(simulation.state().q) / (h * h) *
+               norm(mass_times(model, Vector(simulation.state().q.size(), 1.0)));
   for (int i = 0; i < kComparedSteps; ++i) {
     const State old = simulation.state();
     const StepReport report = simulation.step();
@@ -159,25 +162,31 @@ void show_explicit_or_implicit(const Stage& stage, Sheet& sheet) {
   const int tip = highest_vertex(scene.simulation.model().mesh);
   const Trajectory a = follow(std::move(scene), tip);
   const Trajectory b = follow(stage.on_real_mesh("05_swing", {h}), tip);
-  CsvFile table = sheet.table("tip.csv", {"time_s", "explicit_m", "implicit_m", "explicit_at_old_N", "explicit_at_new_N",
-                                          "implicit_at_old_N", "implicit_at_new_N"});
+  CsvFile table = sheet.table("tip.csv", {"time_s", "explicit_m", "implicit_m", "explicit_at_old_N",
+                                          "explicit_at_new_N", "implicit_at_old_N", "implicit_at_new_N"});
   for (size_t i = 0; i < a.time.size(); ++i)
-    table.append(CsvRow().add(a.time[i]).add(a.tip[i]).add(b.tip[i]).add(a.at_old[i]).add(a.at_new[i]).add(b.at_old[i])
+    table.append(CsvRow()
+                     .add(a.time[i])
+                     .add(a.tip[i])
+                     .add(b.tip[i])
+                     .add(a.at_old[i])
+                     .add(a.at_new[i])
+                     .add(b.at_old[i])
                      .add(b.at_new[i]));
-  // Accelerations come from positions of the size 1 m by division by h^2, so eps / h^2 times the largest mass is noise.
-  const double noise = kEpsilon * 1e8 * 10;
   sheet.remark("time.integrator switches: symplectic_euler takes dV/dq at q_i, backward_euler at q_(i+1).");
-  sheet.at_most("explicit: |M q'' + dV/dq(q_i)|", largest(a.at_old), std::max(noise, 1e-9 * largest(a.at_new)), "N",
-                "the acceleration from three positions is noisy by eps |q| / h^2 times the masses");
+  sheet.at_most("explicit: |M q'' + dV/dq(q_i)|", largest(a.at_old), a.noise, "N",
+                "M times four roundings of q over h^2, as q'' comes from three positions");
   sheet.at_least("explicit: the same with q_(i+1) / with q_i", largest(a.at_new) / largest(a.at_old), 1e3, "",
                  "it is not the implicit equation");
-  sheet.at_most("implicit: |M q'' + dV/dq(q_(i+1))|", largest(b.at_new), b.threshold + noise, "N",
+  sheet.at_most("implicit: |M q'' + dV/dq(q_(i+1))|", largest(b.at_new), b.threshold + b.noise, "N",
                 "what the steps were asked for");
   sheet.at_least("implicit: the same with q_i / with q_(i+1)", largest(b.at_old) / largest(b.at_new), 1e3, "",
                  "it is not the explicit equation");
   sheet.show("largest difference of the tip", largest(plus(a.tip, -1, b.tip)), "m", "both are of first order in h");
   sheet.draw("tip.svg", "The highest vertex, sideways; same start, same h",
-             Chart{"explicit or implicit", {"time [s]"}, {"x of the tip [m]"},
+             Chart{"explicit or implicit",
+                   {"time [s]"},
+                   {"x of the tip [m]"},
                    {{"explicit", a.time, a.tip}, {"implicit", b.time, b.tip, SeriesStyle::dashed}}});
 }
 

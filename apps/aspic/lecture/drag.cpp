@@ -63,10 +63,10 @@ void show_drag(const Stage& stage, Sheet& sheet) {
     mismatch = std::max(mismatch, length(F - pull_by_differences(leash, q)));
     time.push_back(report.time);
     force.push_back(length(F));
-    ear.push_back(std::hypot(q[3 * tip] - rest[3 * tip], q[3 * tip + 1] - rest[3 * tip + 1],
-                             q[3 * tip + 2] - rest[3 * tip + 2]));
-    table.append(CsvRow().add(report.time).add(F[0]).add(F[1]).add(F[2]).add(q[3 * tip] - rest[3 * tip]).add(
-        report.iterations));
+    ear.push_back(
+        std::hypot(q[3 * tip] - rest[3 * tip], q[3 * tip + 1] - rest[3 * tip + 1], q[3 * tip + 2] - rest[3 * tip + 2]));
+    table.append(
+        CsvRow().add(report.time).add(F[0]).add(F[1]).add(F[2]).add(q[3 * tip] - rest[3 * tip]).add(report.iterations));
     if (report.step == 35) frames.push_back(surface_at(simulation.model(), q));
   });
   const double strongest = *std::max_element(force.begin(), force.end());
@@ -80,10 +80,10 @@ void show_drag(const Stage& stage, Sheet& sheet) {
                 "work of the cursor = kinetic + potential + losses, an identity");
   sheet.draw("force.svg", "The pull of the cursor",
              Chart{"force of the spring", {"time [s]"}, {"force [N]"}, {{"", time, force}}});
-  sheet.draw("drag.png", "At rest, and dragged (0.35 s)",
-             MeshPicture{.panels = {{"at rest", frames[0]}, {"dragged", frames.back()}},
-                         .eye = {{0.4, 0.3, 1}},
-                         .up = {{0, 1, 0}}});
+  sheet.draw(
+      "drag.png", "At rest, and dragged (0.35 s)",
+      MeshPicture{
+          .panels = {{"at rest", frames[0]}, {"dragged", frames.back()}}, .eye = {{0.4, 0.3, 1}}, .up = {{0, 1, 0}}});
 }
 
 namespace {
@@ -126,10 +126,10 @@ void show_explosion(const Stage& stage, Sheet& sheet) {
   double made = 0;
   for (const StepReport& report : implicit.run.reports) made = std::max(made, -report.numerical_loss);
   sheet.show("backward_euler: largest energy", implicit.run.largest_energy, "J");
-  sheet.at_most("backward_euler: most energy that a step made of nothing", made, 1e-9 * implicit.run.largest_energy, "J",
-                "it only ever loses some: kinetic + potential <= what the cursor put in");
-  sheet.at_most("backward_euler: energy at the end / largest", implicit.energy.back() / implicit.run.largest_energy, 0.2,
-                "", "the swing dies down once the cursor has stopped");
+  sheet.at_most("backward_euler: most energy that a step made of nothing", made, 1e-9 * implicit.run.largest_energy,
+                "J", "it only ever loses some: kinetic + potential <= what the cursor put in");
+  sheet.at_most("backward_euler: energy at the end / largest", implicit.energy.back() / implicit.run.largest_energy,
+                0.2, "", "the swing dies down once the cursor has stopped");
   const std::string why = "explodes: far more than the implicit scheme ever holds; inf where numbers end";
   for (int i = 0; i < 2; ++i)
     sheet.at_least(drags[i].integrator + ": largest energy / that of backward_euler",

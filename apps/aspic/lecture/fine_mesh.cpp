@@ -27,8 +27,9 @@ void show_fine_mesh(const Stage& stage, Sheet& sheet) {
                 "the balance is an identity; sums of 1e5 terms keep 11 digits");
   sheet.at_least("smallest det F", result.reports.back().min_det_F, 1e-3, "", "no tet is inverted or flat");
   sheet.show("wall time per step", seconds / kSteps, "s");
-  sheet.draw("mesh.png", fmt::format("{} tets after {} steps; {} triangles are drawn", model.mesh.tet_count(), kSteps,
-                                     surface.triangle_count()),
+  sheet.draw("mesh.png",
+             fmt::format("{} tets after {} steps; {} triangles are drawn", model.mesh.tet_count(), kSteps,
+                         surface.triangle_count()),
              MeshPicture{.panels = {{"", surface}}, .eye = {{0.4, 0.3, 1}}, .up = {{0, 1, 0}}, .size = {900, 800}});
 }
 

@@ -36,7 +36,7 @@ Simulation make_oscillator(const std::string& integrator) {
 }
 
 struct Oscillation {
-  Vector time, energy, modified;  // relative to the start; modified: what symplectic Euler conserves
+  Vector time, energy, modified;                  // relative to the start; modified: what symplectic Euler conserves
   double least_ratio = INFINITY, most_ratio = 0;  // of the energy from one step to the next
 };
 
@@ -75,22 +75,25 @@ void check_oscillator(Sheet& sheet) {
                     backward = oscillate("backward_euler", kSteps);
   CsvFile table = sheet.table("oscillator.csv", {"time_s", "forward_euler", "symplectic_euler", "backward_euler"});
   for (size_t i = 0; i < forward.time.size(); ++i)
-    table.append(
-        CsvRow().add(forward.time[i]).add(forward.energy[i]).add(printed.energy[i]).add(backward.energy[i]));
+    table.append(CsvRow().add(forward.time[i]).add(forward.energy[i]).add(printed.energy[i]).add(backward.energy[i]));
   const double growth = 1 + kStep * kStep * kStiffness;  // 1.01
   const std::string why = "1 + w^2 h^2 exactly, to round-off of 1e-16 per operation";
   sheet.at_most("classical forward Euler: |growth of the energy per step - 1.01|",
                 std::max(growth - forward.least_ratio, forward.most_ratio - growth), 1e-12, "", why);
   sheet.at_most("backward Euler: |shrinking of the energy per step - 1.01|",
                 std::max(1 / backward.least_ratio - growth, growth - 1 / backward.most_ratio), 1e-12, "", why);
-  sheet.at_least("symplectic Euler: least energy / first", *std::min_element(printed.energy.begin(), printed.energy.end()),
-                 1 / 1.05 - 1e-12, "", "1 / (1 + w h / 2) but for round-off");
+  sheet.at_least("symplectic Euler: least energy / first",
+                 *std::min_element(printed.energy.begin(), printed.energy.end()), 1 / 1.05 - 1e-12, "",
+                 "1 / (1 + w h / 2) but for round-off");
   sheet.at_most("symplectic Euler: largest energy / first",
-                *std::max_element(printed.energy.begin(), printed.energy.end()), 1 / 0.95 + 1e-12, "", "1 / (1 - w h / 2) but for round-off");
+                *std::max_element(printed.energy.begin(), printed.energy.end()), 1 / 0.95 + 1e-12, "",
+                "1 / (1 - w h / 2) but for round-off");
   sheet.at_most("symplectic Euler: drift of 1/2 v^2 + 1/2 w^2 x^2 - h/2 w^2 x v, relative",
                 distance_from(printed.modified, 1), kSteps * 10 * kEpsilon, "", "conserved but for round-off");
   sheet.draw("oscillator.svg", "m = 1 kg, k = 100 N/m, h = 0.01 s",
-             Chart{"energy of an oscillator", {"time [s]"}, {"energy / first", AxisScale::logarithmic},
+             Chart{"energy of an oscillator",
+                   {"time [s]"},
+                   {"energy / first", AxisScale::logarithmic},
                    {{"forward_euler (classical)", forward.time, forward.energy},
                     {"symplectic_euler (as printed)", printed.time, printed.energy},
                     {"backward_euler", backward.time, backward.energy}}});
@@ -124,8 +127,7 @@ Vector simulated(Scene scene, int steps) {
 void show_printed_forward_euler(const Stage& stage, Sheet& sheet) {
   constexpr int kSteps = 50;
   const auto scene = [&](const std::string& integrator) {
-    return stage.on_real_mesh("05_swing",
-                              {"time.step=5e-5", "solver.mass=lumped", "time.integrator=" + integrator});
+    return stage.on_real_mesh("05_swing", {"time.step=5e-5", "solver.mass=lumped", "time.integrator=" + integrator});
   };
   sheet.keep(scene("symplectic_euler"));
   const Vector printed = as_printed(scene("symplectic_euler"), kSteps);
@@ -135,8 +137,8 @@ void show_printed_forward_euler(const Stage& stage, Sheet& sheet) {
   sheet.at_most(fmt::format("|printed formula - symplectic_euler| after {} steps", kSteps),
                 largest(plus(printed, -1, symplectic)), bound, "m",
                 "n^2 roundings of q: a second difference sums them up twice");
-  sheet.at_least("|printed formula - classical forward_euler|", largest(plus(printed, -1, classical)), 1e4 * bound,
-                 "m", "another scheme, not another rounding");
+  sheet.at_least("|printed formula - classical forward_euler|", largest(plus(printed, -1, classical)), 1e4 * bound, "m",
+                 "another scheme, not another rounding");
   check_oscillator(sheet);
 }
 

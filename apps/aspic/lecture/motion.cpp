@@ -131,8 +131,8 @@ void show_springs_beside_elements(const Stage& stage, Sheet& sheet) {
   sheet.equals("vertices of both", elements.vertex_count, springs.vertex_count, "", "one mesh twice");
   sheet.show("springs", static_cast<double>(edge_springs(model.mesh, springs.first_tet, springs.tet_count, 1).size()),
              "", "one along each edge");
-  sheet.at_most("difference of the masses, relative",
-                std::abs(mass_of(model, elements) / mass_of(model, springs) - 1), 1e-10, "", "sums in another order");
+  sheet.at_most("difference of the masses, relative", std::abs(mass_of(model, elements) / mass_of(model, springs) - 1),
+                1e-10, "", "sums in another order");
   sheet.equals("steps that converged", scene.steps - result.unconverged, scene.steps, "", "all of them");
   sheet.at_least("largest mean drop of the elements", *std::max_element(drop_elements.begin(), drop_elements.end()),
                  1e-4, "m", "it sags under its weight");
@@ -146,7 +146,9 @@ void show_springs_beside_elements(const Stage& stage, Sheet& sheet) {
              volume_of(model, springs, q) / volume_of(model, springs, start.q), "",
              "springs along edges know nothing of volumes");
   sheet.draw("drop.svg", "Mean drop under gravity",
-             Chart{"one mesh, two potentials V", {"time [s]"}, {"mean drop [m]"},
+             Chart{"one mesh, two potentials V",
+                   {"time [s]"},
+                   {"mean drop [m]"},
                    {{"finite elements", time, drop_elements}, {"masses and springs", time, drop_springs}}});
   sheet.draw("both.png", "Finite elements on the left, masses and springs on the right, at the end",
              MeshPicture{.panels = {{"", surface_at(model, q)}}, .eye = {{0.2, 0.2, 1}}, .up = {{0, 1, 0}}});

@@ -180,16 +180,17 @@ void draw_curve(const Curve& curve, const std::string& name, const std::string& 
   }
   if (!rejected.y.empty()) highest = *std::min_element(rejected.y.begin(), rejected.y.end());
   const double lowest = *std::min_element(model.begin(), model.end());
-  sheet.draw(name, caption,
-             Chart{"backtracking",
-                   {"alpha"},
-                   {"E [kg m^2]", AxisScale::linear, lowest, std::max(highest, curve.value) + 0.5 * (curve.value - lowest)},
-                   {{"E(q + alpha d)", alpha, value},
-                    {"quadratic model", alpha, model},
-                    {"E + c alpha d'g (textbook)", alpha, textbook, SeriesStyle::dashed},
-                    {"E + c d'g (slide)", alpha, slide, SeriesStyle::dashed},
-                    rejected,
-                    accepted}});
+  sheet.draw(
+      name, caption,
+      Chart{"backtracking",
+            {"alpha"},
+            {"E [kg m^2]", AxisScale::linear, lowest, std::max(highest, curve.value) + 0.5 * (curve.value - lowest)},
+            {{"E(q + alpha d)", alpha, value},
+             {"quadratic model", alpha, model},
+             {"E + c alpha d'g (textbook)", alpha, textbook, SeriesStyle::dashed},
+             {"E + c d'g (slide)", alpha, slide, SeriesStyle::dashed},
+             rejected,
+             accepted}});
 }
 
 // Rosenbrock from (0, 0), where alpha must shrink to 1/4.

@@ -26,7 +26,7 @@ struct OpenStep {
   double smallest_mass() const;
 
   Scene scene;
-  double h;  // [s]
+  double h;                            // [s]
   Vector q_t, qdot, predicted, start;  // start: q_t with the pins where they must be at the end
   Pins pins;
   IncrementalPotential E;
@@ -37,7 +37,7 @@ double potential(const Model& model, std::span<const double> q);              //
 Vector mass_times(const Model& model, std::span<const double> a);             // M a
 
 double norm(std::span<const double> v);
-double largest(std::span<const double> v);  // absolute value of an entry
+double largest(std::span<const double> v);                                         // absolute value of an entry
 Vector plus(std::span<const double> a, double factor, std::span<const double> b);  // a + factor b
 Vector scaled(std::span<const double> a, double factor);
 double inner(std::span<const double> a, std::span<const double> b);

@@ -53,8 +53,9 @@ void show_optimisation(const Stage& stage, Sheet& sheet) {
   const Vector r = step.residual(q);
   sheet.at_most("|dE/dq - (M (q - q~) + h^2 dV/dq)| / |dE/dq|", norm(plus(g, -1, r)) / norm(g), 1e-12, "",
                 "the same sums in another order");
-  const DerivativeReport check = check_derivatives(
-      differentiable(step.E), q, {.length = 0.1 / std::sqrt(static_cast<double>(q.size())), .fixed = fixed_entries(step)});
+  const DerivativeReport check =
+      check_derivatives(differentiable(step.E), q,
+                        {.length = 0.1 / std::sqrt(static_cast<double>(q.size())), .fixed = fixed_entries(step)});
   write_derivatives(sheet, check);
   sheet.at_most("the gradient of what? of E: against differences of E, relative", check.gradient.smallest_error, 1e-8,
                 "", "the best width loses a third of the 16 digits, the sum over the tets some more");
@@ -86,7 +87,9 @@ void show_optimisation(const Stage& stage, Sheet& sheet) {
     residuals.append(CsvRow().add(static_cast<int>(i)).add(root.residuals[i]));
   }
   sheet.draw("root_finding.svg", "Newton's method on the equation",
-             Chart{"M (q - q~) + h^2 dV/dq = 0", {"iteration"}, {"|residual| [kg m]", AxisScale::logarithmic},
+             Chart{"M (q - q~) + h^2 dV/dq = 0",
+                   {"iteration"},
+                   {"|residual| [kg m]", AxisScale::logarithmic},
                    {{"", iteration, root.residuals, SeriesStyle::line_and_points}}});
 }
 

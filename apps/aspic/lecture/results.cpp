@@ -75,9 +75,12 @@ Json to_json(const Measure& m) {
 
 Json to_json(const Result& result) {
   const Demonstration& d = *result.demonstration;
-  Json json = {{"key", d.key},         {"pages", d.pages},
-               {"title", d.title},     {"claim", d.claim},
-               {"passes", result.sheet.passes()}, {"seconds", result.seconds}};
+  Json json = {{"key", d.key},
+               {"pages", d.pages},
+               {"title", d.title},
+               {"claim", d.claim},
+               {"passes", result.sheet.passes()},
+               {"seconds", result.seconds}};
   json["measures"] = Json::array();
   for (const Measure& m : result.sheet.measures()) json["measures"].push_back(to_json(m));
   json["remarks"] = result.sheet.remarks();
@@ -123,7 +126,8 @@ void add_result(ReportPage& page, const Result& result) {
   std::vector<std::vector<Cell>> rows;
   for (const Measure& m : result.sheet.measures()) {
     Cell judged{""};
-    if (m.relation != Relation::shown) judged = {m.holds() ? "pass" : "fail", m.holds() ? Verdict::pass : Verdict::fail};
+    if (m.relation != Relation::shown)
+      judged = {m.holds() ? "pass" : "fail", m.holds() ? Verdict::pass : Verdict::fail};
     rows.push_back({{m.what}, {value_text(m)}, {bound_text(m)}, judged, {m.reason}});
   }
   page.table({"measured", "value", "bound", "", "why"}, rows);
@@ -161,8 +165,8 @@ void print(const Result& result) {
 
 std::string count_text(const std::vector<Result>& results) {
   std::string text;
-  for (const PageVerdict verdict : {PageVerdict::pass, PageVerdict::fail, PageVerdict::nothing_to_check,
-                                    PageVerdict::not_available}) {
+  for (const PageVerdict verdict :
+       {PageVerdict::pass, PageVerdict::fail, PageVerdict::nothing_to_check, PageVerdict::not_available}) {
     const std::vector<int> pages = pages_with(verdict, results);
     if (pages.empty() && verdict != PageVerdict::fail) continue;
     text += fmt::format("{}{} pages: {}", text.empty() ? "" : "; ", pages.size(), to_text(verdict));

@@ -50,8 +50,10 @@ double largest_extent(const std::vector<Vec3d>& X, const fs::path& path) {
 double extent_of(const fs::path& path) {
   return std::visit(
       [&](const auto& mesh) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(mesh)>, TetMesh>) return largest_extent(mesh.rest, path);
-        else return largest_extent(mesh.vertices, path);
+        if constexpr (std::is_same_v<std::decay_t<decltype(mesh)>, TetMesh>)
+          return largest_extent(mesh.rest, path);
+        else
+          return largest_extent(mesh.vertices, path);
       },
       read_mesh(path));
 }
@@ -61,8 +63,8 @@ bool holds_tets(const fs::path& path) { return std::holds_alternative<TetMesh>(r
 // Tets that fill the surface, made once and kept under a name that tells surface and size.
 fs::path filled(const fs::path& surface, double size, const fs::path& cache) {
   const std::string hash = fingerprint_of_file(surface);
-  const fs::path kept = cache / fmt::format("{}_{}_{:.4g}.mesh", surface.stem().string(),
-                                            hash.substr(hash.find(':') + 1), size);
+  const fs::path kept =
+      cache / fmt::format("{}_{}_{:.4g}.mesh", surface.stem().string(), hash.substr(hash.find(':') + 1), size);
   std::error_code error;
   if (fs::exists(kept, error)) return kept;
   fs::create_directories(cache, error);
@@ -78,8 +80,9 @@ Stage::Stage(fs::path mesh, fs::path cache) : scenes_(found("scenes/lecture")), 
         "the lecture's scenes are not found: there is no scenes/lecture in this folder, beside the program or in a "
         "folder above them; start in the folder of Aspic's sources, or install it");
   if (!mesh.empty()) {
-    surface_ = fs::absolute(mesh);
-    mesh_ = holds_tets(mesh) ? surface_ : filled(surface_, 0, cache_);
+    const fs::path path = fs::absolute(mesh);
+    if (!holds_tets(path)) surface_ = path;
+    mesh_ = surface_.empty() ? path : filled(surface_, 0, cache_);
     note_ = "real mesh: " + mesh.string() + ", made one metre large";
     return;
   }
@@ -92,8 +95,9 @@ Stage::Stage(fs::path mesh, fs::path cache) : scenes_(found("scenes/lecture")), 
       note_ = std::string(error.what()) + "; ";
     }
   }
-  note_ = mesh_.empty() ? note_ + "no real mesh: assets/bunny.mesh is not found (./run makes it), nor was --mesh given; "
-                                  "each scene keeps the shape that it describes"
+  note_ = mesh_.empty() ? note_ +
+                              "no real mesh: assets/bunny.mesh is not found (./run makes it), nor was --mesh given; "
+                              "each scene keeps the shape that it describes"
                         : "real mesh: the bunny, made one metre large";
 }
 
@@ -110,9 +114,10 @@ Scene Stage::on_fine_mesh(const std::string& name, int tets, Sheet& sheet) const
   try {
     fine = finer(tets);
   } catch (const InvalidInput& error) {  // no aspic-mesh, or a surface that it refuses
-    sheet.remark(std::string("a generated ring instead of the real mesh: ") + error.what());
+    sheet.remark(error.what());
   }
   if (!fine.empty()) return load(name, fine, {});
+  if (!mesh_.empty()) sheet.remark("the real mesh has fewer tets and no surface is known to fill: a generated ring");
   // A ring has about 35 tets per cube of its edge length in 0.2 m^3: refine its description until there are enough.
   for (double size = 0.025;; size *= 0.8) {
     Scene scene = load(name, {}, {fmt::format("body.0.shape.torus.size={}", size)});

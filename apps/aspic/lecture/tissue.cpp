@@ -128,14 +128,17 @@ void show_tissue(const Stage& stage, Sheet& sheet) {
   sheet.show("compression of the fat under the indenter", strain[1], "");
   sheet.show("compression of the muscle there", strain[0], "");
   sheet.at_least("compression of fat / of muscle", strain[1] / strain[0], 2, "",
-                "the layers show: fat is 10 times softer than muscle, but stiffens where it is squeezed");
+                 "the layers show: fat is 10 times softer than muscle, but stiffens where it is squeezed");
   sheet.at_least("force of the layered / of a uniform slab of fat", layered.force.back() / soft.force.back(), 1.5, "",
                  "layers that are stiffer stiffen the whole");
   sheet.remark("Capture and fitting of the material are not part of Aspic yet: the layers' moduli are given.");
 
   sheet.draw("force.svg", "Force against depth",
-             Chart{"a poke", {"depth [mm]"}, {"force [N]"},
-                   {{"layered", scaled(layered.depth, 1e3), layered.force}, {"uniform fat", scaled(soft.depth, 1e3), soft.force}}});
+             Chart{"a poke",
+                   {"depth [mm]"},
+                   {"force [N]"},
+                   {{"layered", scaled(layered.depth, 1e3), layered.force},
+                    {"uniform fat", scaled(soft.depth, 1e3), soft.force}}});
   ShadedSurface panel{"cut through the middle", {}};
   panel.surface = half_slab(model, scene.simulation.state().q, panel.values);
   sheet.draw("slab.png", "The slab at the largest depth",

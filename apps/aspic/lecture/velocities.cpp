@@ -114,7 +114,8 @@ void show_velocity_form(const Stage& stage, Sheet& sheet) {
   const auto newton_s = iterates(same_values, newton_scaled, step.start, 50);
   sheet.at_most("Newton on E(q) / h^2 and on E(v): largest distance", distance(newton_s, v, form), noise, "m",
                 "Newton's method knows neither units nor variables");
-  const double ratio = norm(plus(descent_scaled[1], -1, descent_scaled[0])) / norm(plus(descent_v[1], -1, descent_v[0])) / h;
+  const double ratio =
+      norm(plus(descent_scaled[1], -1, descent_scaled[0])) / norm(plus(descent_v[1], -1, descent_v[0])) / h;
   sheet.show("gradient descent on E(q) / h^2: first step / that on E(v)", ratio, "",
              "of one function, written over q or over v");
   const double apart = distance(descent_scaled, descent_v, form);
