@@ -401,6 +401,32 @@ class Run(CommandLine):
         self.aspic("run", scene, *hard, "--force", "--allow-unconverged")
         self.aspic("run", scene, "--resume", code=3)  # also when the steps were taken before
 
+    def test_an_explicit_scheme_that_blows_up_ends_the_run(self):
+        done = self.aspic("run", self.beam(duration=100), "--set", "time.integrator=\"rk4\"", "--set", "time.step=0.1",
+                          "--allow-unconverged", code=3)
+        self.assertIn("stopped after step", done.stderr)
+        self.assertIn("blew up", done.stderr)
+        steps = self.steps("out/beam")
+        self.assertLess(len(steps), 1000)
+        self.assertEqual(steps[-1]["status"], "undefined")
+        self.assertTrue(all(step["status"] == "converged" for step in steps[:-1]))
+
+    def test_adaptive_steps_are_counted_in_table_json_and_summary(self):
+        done = self.aspic("run", self.beam(), "--set", "time.adaptive.tolerance=1e-5", "--set",
+                          "time.integrator=\"tr_bdf2\"", "--json")
+        lines = [json.loads(line) for line in done.stdout.splitlines()]
+        steps = self.steps("out/beam")
+        self.assertEqual([line["substeps"] for line in lines], [int(step["substeps"]) for step in steps])
+        self.assertEqual([line["rejected"] for line in lines], [int(step["rejected"]) for step in steps])
+        taken, rejected = sum(line["substeps"] for line in lines), sum(line["rejected"] for line in lines)
+        self.assertGreater(taken, 2 * len(steps))
+        self.assertIn(f"parts      {taken} taken, {rejected} rejected", done.stderr)
+
+    def test_an_adaptive_step_without_a_scheme_that_can_is_refused(self):
+        done = self.aspic("run", self.beam(), "--set", "time.adaptive.tolerance=1e-5", "--set",
+                          "time.integrator=\"bdf2\"", code=2)
+        self.assertIn("tr_bdf2", done.stderr)
+
     def test_a_terminal_gets_a_progress_bar(self):
         scene = self.beam()
         master, slave = pty.openpty()
@@ -421,6 +447,31 @@ class Run(CommandLine):
         self.assertIn(b"[####################] 100%", text)
 
 
+class Compare(CommandLine):
+    def test_methods_reach_the_same_minimiser(self):
+        out = self.aspic("compare", self.beam(), "--methods", "newton,newton:clamped:cholesky,gradient_descent",
+                         "--step", "2").stdout
+        self.assertEqual(out.count("same minimiser"), 3)
+        folder = self.folder / "out" / "compare_beam"
+        for name in ("index.html", "methods.csv", "work.csv", "comparison.json"):
+            self.assertTrue((folder / name).exists(), name)
+        methods = {m["method"]: m for m in json.loads((folder / "comparison.json").read_text())["methods"]}
+        self.assertGreater(methods["gradient_descent"]["iterations"], 10 * methods["newton"]["iterations"])
+        self.assertLess(methods["newton"]["excess"], 1e-9)
+        with open(folder / "work.csv", newline="") as file:
+            values = [float(row["value"]) for row in csv.DictReader(file) if row["method"] == "newton"]
+        self.assertEqual(len(values), methods["newton"]["iterations"] + 1)
+        self.assertEqual(values, sorted(values, reverse=True))
+
+    def test_a_method_that_is_cut_off_shows_in_the_exit_code(self):
+        out = self.aspic("compare", self.beam(cells="40, 10, 10"), "--methods", "newton,gradient_descent",
+                         "--max-seconds", "0.01", code=3).stdout
+        self.assertIn("interrupted", out)
+
+    def test_bad_input_is_named(self):
+        for arguments, message in ((["--methods", "newtn"], "newton"), (["--methods", "newton:clampd"], "clamped"),
+                                   (["--methods", "newton", "--set", "time.integrator=forward_euler"], "implicit")):
+            self.assertIn(message, self.aspic("compare", self.beam(), *arguments, code=2).stderr)
 class Lecture(CommandLine):
     def lecture(self, *arguments, code=0):
         return self.aspic("lecture", *arguments, code=code).stdout

@@ -45,8 +45,11 @@ Minimization minimize(const Problem& problem, const SolverOptions& options, cons
   std::replace(done.method.begin(), done.method.end(), '_', ' ');
   std::vector<double> x = {problem.start[0], problem.start[1], 0};
   const auto observe = [&](const LiveIteration& live) {
-    done.iterations.push_back(
-        {live, planar(live.x), planar(live.d), planar(live.x_next), {live.tried.begin(), live.tried.end()}});
+    done.iterations.push_back({static_cast<const Iteration&>(live),
+                               planar(live.x),
+                               planar(live.d),
+                               planar(live.x_next),
+                               {live.tried.begin(), live.tried.end()}});
     if (show) show(done.iterations.back(), live);
     return true;
   };

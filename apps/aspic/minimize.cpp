@@ -147,6 +147,7 @@ std::string in_words(const Minimization& done) {
           "defined there",
           report.iterations);
     case Status::interrupted:
+    case Status::inaccurate:  // of time steps only
       break;
   }
   return "interrupted";

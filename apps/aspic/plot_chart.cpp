@@ -77,7 +77,7 @@ void draw(const std::filesystem::path& path, const Chart& chart) {
   const auto [x_data, y_data] = data_ranges(chart);
   plot.add("set title " + label(chart.title));
   plot.add(fmt::format("set grid lc rgb '{}' lw 0.8 lt 1", kGrid));
-  if (chart.series.size() > 6) plot.add(fmt::format("set key maxrows {} font ',9'", (chart.series.size() + 2) / 3));
+  if (chart.series.size() > 6) plot.add(fmt::format("set key maxrows {} font ',10'", (chart.series.size() + 2) / 3));
   add_axis(plot, 'x', chart.x, x_data);
   add_axis(plot, 'y', chart.y, y_data);
   std::string curves;

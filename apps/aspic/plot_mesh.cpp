@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "aspic/gnuplot.h"
+#include "aspic/viridis.h"
 #include "base/check.h"
 #include "base/error.h"
 #include "mesh/topology.h"
@@ -14,23 +15,7 @@
 namespace aspic::cli {
 namespace {
 
-using Color = std::array<double, 3>;  // red, green, blue in [0, 1]
-
 constexpr Color kPlain = {0.62, 0.75, 0.87}, kUndefined = {0.72, 0.72, 0.72};
-// matplotlib's viridis: even in lightness, told apart by all eyes.
-constexpr Color kViridis[] = {{0.267, 0.005, 0.329}, {0.283, 0.141, 0.458}, {0.254, 0.265, 0.530},
-                              {0.207, 0.372, 0.553}, {0.164, 0.471, 0.558}, {0.128, 0.567, 0.551},
-                              {0.135, 0.659, 0.518}, {0.267, 0.749, 0.441}, {0.478, 0.821, 0.318},
-                              {0.741, 0.873, 0.150}, {0.993, 0.906, 0.144}};
-
-Color viridis(double t) {
-  const double at = std::clamp(t, 0.0, 1.0) * (std::size(kViridis) - 1);
-  const size_t i = std::min(static_cast<size_t>(at), std::size(kViridis) - 2);
-  const double s = at - static_cast<double>(i);
-  Color c;
-  for (size_t k = 0; k < 3; ++k) c[k] = (1 - s) * kViridis[i][k] + s * kViridis[i + 1][k];
-  return c;
-}
 
 Vec3d unit(const Vec3d& v) { return (1 / std::sqrt(dot(v, v))) * v; }
 
@@ -217,8 +202,8 @@ class Panel {
 void check(const std::filesystem::path& path, const MeshPicture& picture) {
   if (picture.panels.empty()) throw InvalidInput(path.string() + ": there is no surface to draw");
   for (const ShadedSurface& panel : picture.panels) {
-    const size_t count = panel.values.size();
-    ASPIC_CHECK(count == 0 || count == panel.surface.triangles.size() || count == panel.surface.vertices.size());
+    ASPIC_CHECK(panel.values.empty() || panel.values.size() == panel.surface.triangles.size() ||
+                panel.values.size() == panel.surface.vertices.size());
     if (panel.surface.triangles.empty())
       throw InvalidInput(fmt::format("{}: the surface '{}' has no triangles", path.string(), panel.caption));
   }

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "io/atomic_file.h"
+#include "io/folder_test.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
 
@@ -20,17 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-class Pictures : public testing::Test {
- protected:
-  Pictures() : folder(fs::path(testing::TempDir()) / ("aspic_pictures_" + std::to_string(::getpid()))) {
-    if (const char* kept = ::getenv("ASPIC_PICTURES")) folder = kept;  // to look at them
-    fs::create_directories(folder);
-  }
-  ~Pictures() override {
-    if (!::getenv("ASPIC_PICTURES")) fs::remove_all(folder);
-  }
-  fs::path folder;
-};
+using Pictures = FolderTest;
 
 // The size that the header of a PNG states; {0, 0} when the file is none.
 std::pair<unsigned, unsigned> png_size(const fs::path& path) {
@@ -118,7 +109,7 @@ TEST_F(Pictures, TextInTitlesIsNeitherCommandNorMarkup) {
   chart.y.label = "ends in '";
   chart.x.label = chart.series[0].label = "'; system('touch pwned'); '\nset output 'pwned";
   const fs::path before = fs::current_path();
-  fs::current_path(folder);
+  fs::current_path(folder.path());
   draw("special.svg", chart);
   EXPECT_FALSE(fs::exists("pwned"));
   fs::current_path(before);
@@ -231,24 +222,16 @@ TEST_F(Pictures, AMeshWithoutTrianglesIsRefused) {
 }
 
 TEST_F(Pictures, AnotherExtensionIsRefusedByName) {
-  try {
-    draw(folder / "chart.jpeg", convergence());
-    FAIL();
-  } catch (const InvalidInput& error) {
-    EXPECT_THAT(error.what(), HasSubstr("a picture is .svg or .png, not '.jpeg'"));
-  }
+  EXPECT_THAT(message_of([&] { draw(folder / "chart.jpeg", convergence()); }),
+              HasSubstr("a picture is .svg or .png, not '.jpeg'"));
 }
 
 TEST_F(Pictures, WithoutGnuplotTheMessageNamesItsPackage) {
-  const std::string path = ::getenv("PATH");
-  ::setenv("PATH", folder.c_str(), 1);
-  std::string message;
-  try {
-    draw(folder / "missing.svg", convergence());
-  } catch (const InvalidInput& error) {
-    message = error.what();
-  }
-  ::setenv("PATH", path.c_str(), 1);
+  const char* const path = ::getenv("PATH");
+  const std::string before = path ? path : "";
+  ::setenv("PATH", folder.path().c_str(), 1);
+  const std::string message = message_of([&] { draw(folder / "missing.svg", convergence()); });
+  ::setenv("PATH", before.c_str(), 1);
   EXPECT_THAT(message, HasSubstr("gnuplot-nox"));
   EXPECT_FALSE(fs::exists(folder / "missing.svg"));
 }

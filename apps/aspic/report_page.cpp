@@ -99,6 +99,7 @@ std::string inline_svg(std::string svg, int index) {
   svg.erase(0, begin);
   const std::string prefix = fmt::format("p{}_", index);
   replace_all(svg, " id=\"", " id=\"" + prefix);
+  replace_all(svg, " id='", " id='" + prefix);
   replace_all(svg, "href='#", "href='#" + prefix);
   replace_all(svg, "href=\"#", "href=\"#" + prefix);
   replace_all(svg, "url(#", "url(#" + prefix);

@@ -2,26 +2,18 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "base/error.h"
 #include "io/atomic_file.h"
+#include "io/folder_test.h"
 
 namespace aspic::cli {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
 
-class Report : public testing::Test {
- protected:
-  Report() : folder(fs::path(testing::TempDir()) / ("aspic_report_" + std::to_string(::getpid()))) {
-    fs::create_directories(folder);
-  }
-  ~Report() override { fs::remove_all(folder); }
-  fs::path folder;
-};
+using Report = FolderTest;
 
 TEST_F(Report, TextIsEscapedEverywhere) {
   const std::string evil = "<script>alert(\"1\")</script> & more";
@@ -44,14 +36,15 @@ TEST_F(Report, VerdictsAreBadges) {
 }
 
 TEST_F(Report, PicturesAreInsideWithNamesOfTheirOwn) {
-  write_file(folder / "a.svg", "<?xml version=\"1.0\"?><svg><g id=\"dot\"/><use xlink:href='#dot'/></svg>");
+  write_file(folder / "a.svg",
+             "<?xml version=\"1.0\"?><svg><g id=\"dot\"/><g id='box'/><use xlink:href='#dot'/></svg>");
   write_file(folder / "b.png", "abc");
   ReportPage page("t");
   page.figures({{folder / "a.svg", "first"}, {folder / "a.svg", "second"}, {folder / "b.png", "third"}});
   const std::string html = page.html();
   EXPECT_THAT(html, Not(HasSubstr("<?xml")));
-  EXPECT_THAT(html, HasSubstr("<g id=\"p1_dot\"/><use xlink:href='#p1_dot'/>"));
-  EXPECT_THAT(html, HasSubstr("<g id=\"p2_dot\"/><use xlink:href='#p2_dot'/>"));
+  EXPECT_THAT(html, HasSubstr("<g id=\"p1_dot\"/><g id='p1_box'/><use xlink:href='#p1_dot'/>"));
+  EXPECT_THAT(html, HasSubstr("<g id=\"p2_dot\"/><g id='p2_box'/><use xlink:href='#p2_dot'/>"));
   EXPECT_THAT(html, HasSubstr("data:image/png;base64,YWJj"));
   EXPECT_THAT(html, Not(HasSubstr("http")));
   page.write(folder / "page.html");

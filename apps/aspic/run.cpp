@@ -114,12 +114,20 @@ class Runner {
       });
       if (report.status == Status::interrupted) break;
       record(report);
+      // The body stays where it was, and an explicit scheme, which has nothing else to try, would fail again.
+      has_blown_up_ = report.status == Status::undefined && !simulation.is_implicit();
+      if (has_blown_up_) break;
     }
     directory_.finish(simulation);
     if (progress_) progress_->finish();
     if (trace_) finish_trace();
+    if (has_blown_up_)
+      fmt::print(stderr,
+                 "stopped after step {} of {}: the explicit scheme blew up, and there is no state to go on from\n",
+                 simulation.steps_taken(), last_step_);
   }
 
+  bool has_blown_up() const { return has_blown_up_; }
   const RunTotals& totals() const { return totals_; }
   std::FILE* human() const { return human_; }
   int last_step() const { return last_step_; }
@@ -173,6 +181,7 @@ class Runner {
   RunDirectory& directory_;
   std::FILE* human_;
   int last_step_, first_step_;
+  bool has_blown_up_ = false;
   std::optional<Progress> progress_;
   std::optional<Trace> trace_;
   std::vector<Iteration> iterations_;  // of the step under way; recorded once it is whole
@@ -214,8 +223,10 @@ int run(const Arguments& arguments) {
                   {.last_step = runner.last_step(),
                    .steps_taken = scene.simulation.steps_taken(),
                    .interrupted = interrupt_signal() != 0,
+                   .blown_up = runner.has_blown_up(),
                    .directory = directory.path()});
   }
+  if (runner.has_blown_up()) return exit_unconverged;  // an unfinished run is not a matter of allowing
   return exit_code(arguments, earlier + runner.totals().unconverged);
 }
 
@@ -233,7 +244,8 @@ Examples:
   aspic run beam.toml --json | jq .iterations     one line of JSON per step
   aspic run beam.toml --landscape 12:0            why is step 12 slow? its first iteration, looked at closely
 
-Exit codes: 0 done, 2 bad input, 3 some step did not converge (unless --allow-unconverged),
+Exit codes: 0 done, 2 bad input, 3 some step did not converge (unless --allow-unconverged) or an explicit
+scheme blew up, which ends the run;
 130 interrupted by ctrl-C, 143 by kill: everything up to the last whole step is written.)");
   command->add_option("INPUT", arguments->input, "Scene (.toml), mesh, or with --resume a run directory")->required();
   command->add_option("--set", arguments->overrides, "Override a value: material.young=2e5; can be repeated")

@@ -60,6 +60,8 @@ void RunTotals::add(const StepReport& report) {
   if (!is_success(report.status)) ++unconverged;
   iterations += report.iterations;
   most_iterations = std::max(most_iterations, report.iterations);
+  substeps += report.substeps;
+  rejected += report.rejected;
   seconds += report.seconds;
   time = report.time;
 }
@@ -68,13 +70,17 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
   if (totals.steps == 0 && !end.interrupted) {
     fmt::print(stream, "nothing to do: step {} is taken already\n", end.steps_taken);
   } else {
-    fmt::print(stream, "{}  {} of {} steps, to t = {:g} s\n", end.interrupted ? "stopped  " : "done     ",
-               end.steps_taken, end.last_step, totals.time);
+    fmt::print(stream, "{}  {} of {} steps, to t = {:g} s\n",
+               end.interrupted || end.blown_up ? "stopped  " : "done     ", end.steps_taken, end.last_step,
+               totals.time);
   }
   if (totals.steps > 0) {
     fmt::print(stream, "converged  {} of {}; iterations per step: mean {:.1f}, most {}\n",
                totals.steps - totals.unconverged, totals.steps, static_cast<double>(totals.iterations) / totals.steps,
                totals.most_iterations);
+    if (totals.substeps + totals.rejected != totals.steps)
+      fmt::print(stream, "parts      {} taken, {} rejected as too long; {:.1f} per step\n", totals.substeps,
+                 totals.rejected, static_cast<double>(totals.substeps) / totals.steps);
     fmt::print(stream, "took       {} in steps, {} each; peak memory {:.0f} MB\n", duration_text(totals.seconds),
                step_duration_text(totals.seconds / totals.steps), peak_megabytes());
   }

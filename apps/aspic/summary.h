@@ -11,15 +11,16 @@ struct RunTotals {
   int steps = 0, unconverged = 0;
   long iterations = 0;
   int most_iterations = 0;
-  double seconds = 0;  // in steps
-  double time = 0;     // of the last step [s]
+  long substeps = 0, rejected = 0;  // of adaptive steps
+  double seconds = 0;               // in steps
+  double time = 0;                  // of the last step [s]
 
   void add(const StepReport& report);
 };
 
 struct RunEnd {
   int last_step = 0, steps_taken = 0;
-  bool interrupted = false;
+  bool interrupted = false, blown_up = false;
   std::filesystem::path directory;
 };
 

@@ -18,7 +18,8 @@ void expect_steady_steps_to_allocate_only_their_report(const SimulationOptions& 
   for (int i = 0; i < 3; ++i) {
     const test::AllocationCounter counter;
     const StepReport report = simulation.step();
-    EXPECT_EQ(counter.count(), 1) << options.integrator << ", " << options.solver.linear
+    EXPECT_EQ(counter.count(), 1) << options.integrator << ", " << options.solver.method << ", "
+                                  << options.solver.linear
                                   << ": more than the vector StepReport::potential, which goes to the caller";
     EXPECT_TRUE(is_success(report.status) || report.status == Status::iteration_limit) << to_string(report.status);
   }
@@ -36,18 +37,26 @@ TEST(Allocations, ASteadyStepMakesNoneWithAnyLinearSolverAndNumberOfThreads) {
 
 TEST(Allocations, ASteadyStepMakesNoneWithAnyIntegrator) {
   for (const std::string& integrator : integrator_names()) {
-    const bool is_explicit = integrator == "symplectic_euler" || integrator == "forward_euler";
     expect_steady_steps_to_allocate_only_their_report(
-        {.h = is_explicit ? 5e-5 : 0.01, .integrator = integrator, .solver = {}});
+        {.h = is_explicit(integrator) ? 5e-5 : 0.01, .integrator = integrator, .solver = {}});
   }
 }
 
-TEST(Allocations, ASteadyStepMakesNoneByGradientDescentAndWithAnyDefiniteness) {
-  for (const std::string& definiteness : definiteness_names())
-    expect_steady_steps_to_allocate_only_their_report({.solver = {.definiteness = definiteness, .minimize = {}}});
-  SimulationOptions options;
-  options.solver.method = "gradient_descent";
-  options.solver.minimize.max_iterations = 20;
+TEST(Allocations, ASteadyStepMakesNoneByAnyMethod) {
+  for (const std::string& method : minimizer_names())
+    for (const std::string& preconditioner : preconditioner_names())
+      for (const std::string& definiteness : definiteness_names()) {
+        SimulationOptions options{
+            .solver = {.method = method, .preconditioner = preconditioner, .definiteness = definiteness}};
+        if (find_conflict(options.solver)) continue;
+        options.solver.minimize.max_iterations = 5;
+        expect_steady_steps_to_allocate_only_their_report(options);
+      }
+}
+
+TEST(Allocations, ASteadyStepMakesNoneWithFallbacks) {
+  SimulationOptions options{.solver = {.method = "newton", .fallback = {"lbfgs", "gradient_descent"}}};
+  options.solver.minimize.max_iterations = 5;
   expect_steady_steps_to_allocate_only_their_report(options);
 }
 

@@ -95,6 +95,8 @@ class Explainer {
         return iteration_limit();
       case Status::no_descent:
         return no_descent();
+      case Status::inaccurate:
+        return inaccurate();
       case Status::converged:
       case Status::round_off:
       case Status::interrupted:
@@ -153,6 +155,12 @@ class Explainer {
     return {"the energy at the start of the step is not a finite number",
             vertex_name(model_, fastest) + " is fastest: " + text(most) + " m/s",
             smaller_steps() + ", and look for forces, pins or velocities that are too large"};
+  }
+
+  Explanation inaccurate() const {
+    return {"the error estimate of the smallest part of the step, time.step / 2^20, is above its share",
+            "time.adaptive.tolerance = " + text(simulation_.options().adaptive.tolerance),
+            "raise time.adaptive.tolerance; pins that jump cannot be resolved by shorter steps"};
   }
 
   Explanation too_much_asked(const std::string& cause) const {

@@ -105,6 +105,14 @@ TEST(Explanation, OfAnIndefiniteExactHessianNamesTheDefiniteness) {
   EXPECT_THAT(first_failure(simulation, Status::no_descent).remedy, HasSubstr("on_demand"));
 }
 
+TEST(Explanation, OfAnAdaptiveStepThatStaysInaccurateNamesTheTolerance) {
+  Simulation simulation =
+      simulate(beam(1), {.h = 0.01, .integrator = "forward_euler", .adaptive = {.tolerance = 1e-16}, .solver = {}});
+  const StepReport report = simulation.step();
+  ASSERT_EQ(report.status, Status::inaccurate);
+  EXPECT_THAT(explain(simulation, report).place, HasSubstr("time.adaptive.tolerance = 1e-16"));
+}
+
 TEST(Explanation, OfPinsThatInvertATetNamesIt) {
   Model model = beam(2);
   model.pins.push_back({"press", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 4 - 1e-9; }),

@@ -1,104 +1,131 @@
-// Backward Euler, its linearisation, and the static limit.
+// Backward Euler, its linearisation, the second-order backward difference, and the static limit.
 #include <algorithm>
-#include <cmath>
 
-#include "dynamics/integrator.h"
+#include "dynamics/implicit_stage.h"
 #include "dynamics/lead_pins.h"
+#include "dynamics/runge_kutta.h"
 
 namespace aspic {
 namespace {
 
-// q_new = argmin 1/2 (q - q~)' M (q - q~) + h^2 V(q),  qdot_new = (q_new - q_t) / h
+// q_new = argmin 1/2 (q - q~)' M (q - q~) + h^2 V(q),  q~ = q_t + h qdot_t,  qdot_new = (q_new - q_t) / h
 class BackwardEuler : public Integrator {
  public:
   std::string_view name() const override { return "backward_euler"; }
+  int order() const override { return 1; }
   bool is_implicit() const override { return true; }
-  Displacement displacement() const override { return Displacement::new_velocity; }
+  bool tries_last_increment() const override { return false; }  // it is the extrapolated one
 
-  MinimizeReport advance(const StepTools& tools, double h, State& state) override {
-    q_ = state.q;
-    predicted_.resize(q_.size());
-    for (size_t i = 0; i < q_.size(); ++i) predicted_[i] = q_[i] + h * state.qdot[i];  // = 2 q_t - q_(t-1)
-    tools.E.begin_step(predicted_, 1, h * h);
-    MinimizeReport lead;
-    start(tools, state.q, lead);
-    MinimizeReport report =
-        tools.minimizer.minimize(tools.E, tools.direction, state.q, adapted(tools.options), tools.observe);
-    add_work(lead, report);
-    for (size_t i = 0; i < q_.size(); ++i) state.qdot[i] = (state.q[i] - q_[i]) / h;
-    state.time = tools.end_time;
-    return finished(report);
+  StepSolve advance(const StepTools& tools, State& end, StepForces& forces) override {
+    StepSolve solve;
+    forces.reset(tools.start.q.size());
+    end = tools.start;
+    stage_.a = end.q;
+    stage_.b = end.qdot;
+    acceleration_.resize(end.q.size());
+    const StageOptions options{.beta = tools.h, .time = tools.end_time, .ahead = tools.h, .once = is_linearised()};
+    stage_.solve(tools, nullptr, options, end.q, end.qdot, acceleration_, solve, forces);
+    end.time = tools.end_time;
+    return solve;
   }
 
  protected:
-  // Starts from the candidate of lower energy: where the body is, or where it would fly without forces. Pinned
-  // vertices go where they must in both.
-  virtual void start(const StepTools& tools, std::span<double> q, MinimizeReport& lead) {
-    lead_pins(tools, q_, q, lead);
-    tools.pins.place(tools.end_time, predicted_);
-    if (tools.E.value(predicted_) <= tools.E.value(q)) std::copy(predicted_.begin(), predicted_.end(), q.begin());
-  }
-  virtual MinimizeOptions adapted(const MinimizeOptions& options) const { return options; }
-  virtual MinimizeReport finished(const MinimizeReport& report) const { return report; }
+  virtual bool is_linearised() const { return false; }
 
  private:
-  std::vector<double> q_, predicted_;  // q_t, q~
+  ImplicitStage stage_;
+  std::vector<double> acceleration_;
 };
 
-// One Newton iteration from the current state, without line search [Baraff and Witkin 1998].
+// One Newton iteration from the current state, without line search [Baraff 1998].
 class LinearlyImplicitEuler : public BackwardEuler {
  public:
   std::string_view name() const override { return "linearly_implicit_euler"; }
+  bool chooses_guess() const override { return false; }
 
  protected:
-  void start(const StepTools& tools, std::span<double> q, MinimizeReport&) override {
-    tools.pins.place(tools.end_time, q);
+  bool is_linearised() const override { return true; }
+};
+
+// q* = a + beta v*,  v* = b + beta acc(q*, v*) with a = (4 q_n - q_(n-1)) / 3, b = (4 v_n - v_(n-1)) / 3, beta = 2h/3
+// [Hairer 1996, section V.1]. The first step, which has no past, is one of TR-BDF2: of the same order, as
+// quick to damp what is stiff, and like BDF2 exact for a constant acceleration.
+class Bdf2 : public Integrator {
+ public:
+  std::string_view name() const override { return "bdf2"; }
+  int order() const override { return 2; }
+  bool is_implicit() const override { return true; }
+  bool is_multistep() const override { return true; }
+  void set_pin_velocity(const Pins& pins, double h, State& state) const override {
+    start_->set_pin_velocity(pins, h, state);
   }
-  MinimizeOptions adapted(const MinimizeOptions& options) const override {
-    MinimizeOptions one = options;
-    one.max_iterations = 1;
-    one.max_forcing = 1e-10;
-    one.line_search.test = DecreaseTest::none;
-    one.line_search.alpha_max = 1;
-    return one;
+
+  StepSolve advance(const StepTools& tools, State& end, StepForces& forces) override {
+    if (!tools.previous) return start_->advance(tools, end, forces);
+    const State &now = tools.start, &last = *tools.previous;
+    const size_t n = now.q.size();
+    for (auto* v : {&stage_.a, &stage_.b, &acceleration_}) v->resize(n);
+    for (size_t i = 0; i < n; ++i) {
+      stage_.a[i] = now.q[i] + (now.q[i] - last.q[i]) / 3;
+      stage_.b[i] = now.qdot[i] + (now.qdot[i] - last.qdot[i]) / 3;
+    }
+    StepSolve solve;
+    forces.reset(n);
+    end = now;
+    path_.sample(tools.pins, now.time, tools.end_time, pin_path_points(order()));
+    const StageOptions options{.beta = 2 * tools.h / 3, .time = tools.end_time, .ahead = tools.h};
+    stage_.solve(tools, &path_, options, end.q, end.qdot, acceleration_, solve, forces);
+    end.time = tools.end_time;
+    return solve;
   }
-  // The scheme asks for one iteration, not for a small gradient; what is left over stays in the report.
-  MinimizeReport finished(const MinimizeReport& report) const override {
-    MinimizeReport done = report;
-    if (done.status == Status::iteration_limit) done.status = Status::converged;
-    done.threshold = 0;
-    return done;
-  }
+
+ private:
+  std::unique_ptr<Integrator> start_ = make_tr_bdf2();
+  ImplicitStage stage_;
+  PinPath path_;
+  std::vector<double> acceleration_;
 };
 
 // q_new = argmin V(q)
 class QuasiStatic : public Integrator {
  public:
   std::string_view name() const override { return "quasi_static"; }
+  int order() const override { return 0; }
   bool is_implicit() const override { return true; }
   bool is_static() const override { return true; }
-  Displacement displacement() const override { return Displacement::any; }
 
-  MinimizeReport advance(const StepTools& tools, double, State& state) override {
-    tools.E.begin_step(state.q, 0, 1);
-    q_ = state.q;
+  StepSolve advance(const StepTools& tools, State& end, StepForces& forces) override {
+    const State& start = tools.start;
+    StepSolve solve;
+    forces.reset(start.q.size());
+    end = start;
+    const StepContext context{start.q, 0, tools.end_time};
+    tell_potential(tools.E, context);
+    tell_damping(tools.E, context);
+    tools.E.begin_step(start.q, 0, 1);
     MinimizeReport lead;
-    lead_pins(tools, q_, state.q, lead);
-    MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, state.q, tools.options, tools.observe);
-    add_work(lead, report);
-    std::fill(state.qdot.begin(), state.qdot.end(), 0.0);
-    state.time = tools.end_time;
-    return report;
+    solve.guess = guesser_.guess(tools, tools.guess, {start.q, start.qdot, 0, tools.end_time}, end.q, lead);
+    const MinimizeReport report =
+        tools.minimizer.minimize(tools.E, tools.direction, end.q, tools.options, tools.observe);
+    solve.add(report);
+    add_work(lead, solve.work);
+    if (!judges_direction(tools.options.criterion)) solve.threshold = report.threshold;
+    solve.round_off = report.gradient_round_off;
+    std::fill(end.qdot.begin(), end.qdot.end(), 0.0);
+    forces.add(tools.E, 1, end.q, {});
+    end.time = tools.end_time;
+    return solve;
   }
 
  private:
-  std::vector<double> q_;  // where the step starts
+  Guesser guesser_;
 };
 
 }  // namespace
 
 std::unique_ptr<Integrator> make_backward_euler() { return std::make_unique<BackwardEuler>(); }
 std::unique_ptr<Integrator> make_linearly_implicit_euler() { return std::make_unique<LinearlyImplicitEuler>(); }
+std::unique_ptr<Integrator> make_bdf2() { return std::make_unique<Bdf2>(); }
 std::unique_ptr<Integrator> make_quasi_static() { return std::make_unique<QuasiStatic>(); }
 
 }  // namespace aspic

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/check.h"
+#include "base/parallel.h"
 
 namespace aspic {
 namespace {
@@ -14,6 +15,8 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // A body at rest has no forces to measure against; those of this strain then serve. Far above round-off, and far below
 // what the default tolerance can see.
 constexpr double kLeastStrain = 1e-9;
+
+constexpr int kVerticesPerTask = 16;  // some 400 tets
 
 BlockPattern pattern_of(const Model& model) {
   Couplings couplings;
@@ -87,6 +90,43 @@ const BlockSparse& IncrementalPotential::hessian(std::span<const double> q, cons
     if (!pins_.holds(i)) stiffness += squared_norm(H_.block[pattern_.diagonal(i)]);
   gradient_round_off_ = kEpsilon * size * std::sqrt(stiffness);
   return H_;
+}
+
+const BlockSparse* IncrementalPotential::metric() {
+  if (!metric_) {
+    metric_.emplace(pattern_);
+    model_.mass->add_to(1, *metric_);
+    pins_.set_identity(*metric_);
+  }
+  return &*metric_;
+}
+
+bool IncrementalPotential::prepare_vertex_systems() {
+  bool all = true;
+  for (Energy* V : potential_) all = V->prepare_vertex_systems(pattern_.rows()) && all;
+  for (Energy* D : damping_) all = D->prepare_vertex_systems(pattern_.rows()) && all;
+  return all;
+}
+
+bool IncrementalPotential::vertex_systems(std::span<const double> q, std::span<const int> vertices, std::span<Vec3d> g,
+                                          std::span<Mat3d> H) {
+  if (!offers_vertex_systems_) offers_vertex_systems_ = prepare_vertex_systems();
+  if (!*offers_vertex_systems_) return false;
+  const int count = static_cast<int>(vertices.size());
+  parallel_for((count + kVerticesPerTask - 1) / kVerticesPerTask, [&](int task) {
+    const int first = task * kVerticesPerTask, size = std::min(kVerticesPerTask, count - first);
+    const auto own = vertices.subspan(first, size);
+    const auto own_g = g.subspan(first, size);
+    const auto own_H = H.subspan(first, size);
+    std::fill(own_g.begin(), own_g.end(), Vec3d{});
+    std::fill(own_H.begin(), own_H.end(), Mat3d{});
+    if (inertia_ != 0) model_.mass->add_vertex_systems(inertia_, q, predicted_, own, own_g, own_H);
+    for (const Energy* V : potential_) V->add_vertex_systems(q, factor_, own, own_g, own_H);
+    for (const Energy* D : damping_) D->add_vertex_systems(q, factor_, own, own_g, own_H);
+    for (int k = 0; k < size; ++k)
+      if (pins_.holds(own[k])) own_g[k] = {}, own_H[k] = identity3<double>();
+  });
+  return true;
 }
 
 double IncrementalPotential::max_step(std::span<const double> q, std::span<const double> d) {

@@ -2,6 +2,7 @@
 //   backward Euler: w = 1, f = h^2, q~ = q_t + h qdot_t          statics: w = 0, f = 1
 // Pinned vertices are not variables: their gradient is zero and their rows of the Hessian are those of the identity.
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,10 @@ class IncrementalPotential : public Objective {
   void gradient(std::span<const double> q, std::span<double> g) override;
   const BlockSparse& hessian(std::span<const double> q, const Projection& projection) override;
   int projected_elements() const override { return projected_elements_; }
+  const BlockSparse* metric() override;  // M, with the rows of the identity for pinned vertices
+  const BlockPattern* coupling() override { return &pattern_; }
+  bool vertex_systems(std::span<const double> q, std::span<const int> vertices, std::span<Vec3d> g,
+                      std::span<Mat3d> H) override;
   double max_step(std::span<const double> q, std::span<const double> d) override;
   // The energy of doubling the body in size, in the units of E: offsets of the potential do not count.
   double value_scale() const override { return inertia_ * growth_inertia_ + factor_ * growth_stiffness_; }
@@ -40,6 +45,7 @@ class IncrementalPotential : public Objective {
   // judged.
   void measure(const TetMesh& mesh);
   double free_norm(std::span<const double> v) const;
+  bool prepare_vertex_systems();
   void add_term_gradient(const Energy& term, std::span<const double> q, std::span<double> g);
 
   const Model& model_;
@@ -47,6 +53,8 @@ class IncrementalPotential : public Objective {
   std::vector<Energy*> potential_, damping_;
   BlockPattern pattern_;
   BlockSparse H_;
+  std::optional<BlockSparse> metric_;          // made when it is first asked for
+  std::optional<bool> offers_vertex_systems_;  // likewise
 
   std::vector<double> predicted_;
   double inertia_ = 1, factor_ = 1;

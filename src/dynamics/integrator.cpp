@@ -1,6 +1,9 @@
 #include "dynamics/integrator.h"
 
+#include <array>
+
 #include "base/error.h"
+#include "dynamics/lead_pins.h"
 #include "dynamics/simulation.h"
 
 namespace aspic {
@@ -13,25 +16,84 @@ struct Entry {
 
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> table = {
-      {"backward_euler", make_backward_euler},     {"linearly_implicit_euler", make_linearly_implicit_euler},
-      {"symplectic_euler", make_symplectic_euler}, {"forward_euler", make_forward_euler},
+      {"backward_euler", make_backward_euler},
+      {"linearly_implicit_euler", make_linearly_implicit_euler},
+      {"bdf2", make_bdf2},
+      {"tr_bdf2", make_tr_bdf2},
+      {"midpoint", make_midpoint},
+      {"trapezoid", make_trapezoid},
+      {"symplectic_euler", make_symplectic_euler},
+      {"forward_euler", make_forward_euler},
+      {"rk4", make_rk4},
       {"quasi_static", make_quasi_static},
   };
   return table;
 }
 
+// From the best to the worst.
+int badness(Status status) {
+  constexpr std::array kOrder = {Status::converged,  Status::round_off, Status::iteration_limit, Status::stuck,
+                                 Status::no_descent, Status::undefined, Status::interrupted};
+  int rank = 0;
+  for (const Status s : kOrder) {
+    if (s == status) break;
+    ++rank;
+  }
+  return rank;
+}
+
+}  // namespace
+
+void StepForces::reset(size_t size) {
+  for (auto* v : {&gradient, &damping, &acceleration}) v->assign(size, 0.0);
+}
+
+void StepForces::add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc) {
+  for (const Energy* V : E.potential()) V->add_gradient(x, weight, gradient);
+  for (const Energy* D : E.damping()) D->add_gradient(x, weight, damping);
+  for (size_t i = 0; i < acc.size(); ++i) acceleration[i] += weight * acc[i];
+}
+
+bool StepSolve::add(const MinimizeReport& stage) {
+  add_work(stage, work);
+  work.value = stage.value;
+  work.gradient_norm = stage.gradient_norm;
+  if (badness(stage.status) > badness(work.status)) work.status = stage.status;
+  return stage.status != Status::undefined && stage.status != Status::interrupted;
+}
+
+namespace {
+
+template <class Predicate>
+std::vector<std::string> names_where(const Predicate& holds) {
+  std::vector<std::string> names;
+  for (const Entry& entry : entries())
+    if (holds(*entry.make())) names.push_back(entry.name);
+  return names;
+}
+
 }  // namespace
 
 std::vector<std::string> integrator_names() {
-  std::vector<std::string> names;
-  for (const Entry& entry : entries()) names.push_back(entry.name);
-  return names;
+  return names_where([](const Integrator&) { return true; });
+}
+
+std::vector<std::string> adaptive_integrator_names() {
+  return names_where([](const Integrator& i) { return !i.is_static() && !i.is_multistep(); });
 }
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name) {
   for (const Entry& entry : entries())
     if (entry.name == name) return entry.make();
   throw InvalidInput("integrator = '" + std::string(name) + "' is unknown" + suggestion(name, integrator_names()));
+}
+
+void tell_potential(const IncrementalPotential& E, const StepContext& context) {
+  for (Energy* V : E.potential()) V->begin_step(context);
+}
+
+void tell_damping(const IncrementalPotential& E, const StepContext& context) {
+  for (Energy* D : E.damping()) D->begin_step(context);
 }
 
 }  // namespace aspic

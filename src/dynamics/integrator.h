@@ -1,20 +1,19 @@
-// One step of an integrator. An implicit one is a predicted position, a factor in front of V, and a state update.
+// One step of an integrator. An implicit stage is a predicted position, a factor in front of V, and a state update.
 #pragma once
 #include <memory>
-#include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
 #include "dynamics/incremental_potential.h"
+#include "dynamics/initial_guess.h"
 #include "dynamics/state.h"
 #include "linalg/linear_solver.h"
 #include "optimize/minimize.h"
 
 namespace aspic {
 
-// What an integrator works with.
-struct StepTools {
+// What minimisations work with.
+struct SolveTools {
   const Model& model;
   const Pins& pins;
   IncrementalPotential& E;
@@ -22,25 +21,53 @@ struct StepTools {
   SearchDirection& direction;
   const MinimizeOptions& options;
   const IterationObserver& observe;
-  double end_time;  // of the step [s]
+  InitialGuess guess;
 };
 
-// How a scheme relates the step's displacement to velocities, on which its energy ledger depends.
-enum class Displacement {
-  new_velocity,  // q_new - q = h qdot_new
-  old_velocity,  // q_new - q = h qdot_old
-  any,           // statics: there is no velocity
+// What an integrator works with.
+struct StepTools : SolveTools {
+  const State& start;     // of the step
+  const State* previous;  // where the step before started; null when none is known
+  double h, end_time;     // of the step [s]
+};
+
+// What acted in a step, weighted over its stages so that r = M a + G + C is what the solves left over, and on pinned
+// vertices the force of the pins.
+struct StepForces {
+  std::vector<double> gradient, damping;  // G = sum w dV/dx and C = sum w dD/dx [N]
+  std::vector<double> acceleration;       // a = sum w acc [m/s^2]; zero in statics
+
+  void reset(size_t size);
+  // Of the terms as they are told, at x.
+  void add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc);
+};
+
+// How a step went: counts are sums over its stages, the status is the worst of them.
+struct StepSolve {
+  MinimizeReport work = {.status = Status::converged};
+  double threshold = 0;  // of |r| over the free vertices, that the solves were asked for [N]
+  double round_off = 0;  // the part of |r| that is noise [N]
+  InitialGuess guess = InitialGuess::none;
+
+  // False when there is nothing to go on from.
+  bool add(const MinimizeReport& stage);
 };
 
 class Integrator {
  public:
   virtual ~Integrator() = default;
   virtual std::string_view name() const = 0;
+  virtual int order() const = 0;  // in time, for smooth motions
   virtual bool is_implicit() const = 0;
   virtual bool is_static() const { return false; }
-  virtual Displacement displacement() const = 0;
-  // Writes the state at time + h. The terms of V and D have been told of the step.
-  virtual MinimizeReport advance(const StepTools& tools, double h, State& state) = 0;
+  virtual bool is_multistep() const { return false; }  // uses StepTools::previous, a step of the same length ago
+  virtual bool chooses_guess() const { return is_implicit(); }  // whether StepTools::guess is heeded
+  // What `best` tries besides the current positions and the extrapolated ones.
+  virtual bool tries_last_increment() const { return chooses_guess(); }
+  // Gives the pinned vertices of the first state the velocities that the scheme expects there.
+  virtual void set_pin_velocity(const Pins&, double /* h */, State&) const {}
+  // Writes the state at the end of the step, and what acted in it.
+  virtual StepSolve advance(const StepTools& tools, State& end, StepForces& forces) = 0;
 };
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name);  // throws InvalidInput for an unknown name
@@ -48,7 +75,16 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name);  // throws I
 std::unique_ptr<Integrator> make_backward_euler();
 std::unique_ptr<Integrator> make_linearly_implicit_euler();
 std::unique_ptr<Integrator> make_quasi_static();
-std::unique_ptr<Integrator> make_symplectic_euler();
+std::unique_ptr<Integrator> make_symplectic_euler();  // printed as "Forward Euler" on the lecture's slide
 std::unique_ptr<Integrator> make_forward_euler();
+std::unique_ptr<Integrator> make_midpoint();
+std::unique_ptr<Integrator> make_trapezoid();
+std::unique_ptr<Integrator> make_tr_bdf2();
+std::unique_ptr<Integrator> make_bdf2();
+std::unique_ptr<Integrator> make_rk4();
+
+// Tells the terms of V, and those of D, that they are about to be evaluated at context.time.
+void tell_potential(const IncrementalPotential& E, const StepContext& context);
+void tell_damping(const IncrementalPotential& E, const StepContext& context);
 
 }  // namespace aspic

@@ -22,14 +22,20 @@ MinimizeOptions rough(const MinimizeOptions& options) {
 
 void add_work(const MinimizeReport& spent, MinimizeReport& work) {
   work.iterations += spent.iterations;
+  work.values += spent.values;
+  work.gradients += spent.gradients;
   work.trials += spent.trials;
   work.hessians += spent.hessians;
+  work.factorizations += spent.factorizations;
   work.linear_iterations += spent.linear_iterations;
   work.projected_hessians += spent.projected_hessians;
+  work.projected_elements += spent.projected_elements;
+  work.retreats += spent.retreats;
 }
 
-void lead_pins(const StepTools& tools, std::span<const double> from, std::span<double> q, MinimizeReport& work) {
-  tools.pins.place(tools.end_time, q);
+void lead_pins(const StepTools& tools, double time, std::span<const double> from, std::span<double> q,
+               MinimizeReport& work) {
+  tools.pins.place(time, q);
   if (std::isfinite(tools.E.value(q))) return;
   const std::vector<double> to(q.begin(), q.end());
 

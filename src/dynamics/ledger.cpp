@@ -1,6 +1,5 @@
 #include "dynamics/ledger.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace aspic {
@@ -21,15 +20,18 @@ double kinetic_energy(const MassMatrix& mass, std::span<const double> qdot, std:
   return T;
 }
 
-void Ledger::open(const StepTools& tools, const State& state) {
-  before_ = state;
-  momentum_.resize(state.qdot.size());
-  kinetic_ = kinetic_energy(*tools.model.mass, state.qdot, momentum_);
-  potential_ = total(tools.E.potential(), state.q);
-}
-
-void Ledger::targets_moved(const StepTools& tools, const State& state) {
-  target_work_ = total(tools.E.potential(), state.q) - potential_;
+// What V gains because targets move from where they are at the start to where they are at the end: with the body where
+// it starts, and for schemes of higher order the mean of that and of the body where it ends.
+double Ledger::target_work(const StepTools& tools, int order, const State& end, double& potential_before) {
+  const std::vector<Energy*>& V = tools.E.potential();
+  const State& start = tools.start;
+  const StepContext before{start.q, tools.h, start.time}, after{start.q, tools.h, tools.end_time};
+  tell_potential(tools.E, before);
+  potential_before = total(V, start.q);
+  const double at_end = order > 1 ? total(V, end.q) : 0;
+  tell_potential(tools.E, after);
+  const double early = total(V, start.q) - potential_before;
+  return order > 1 ? (early + (total(V, end.q) - at_end)) / 2 : early;
 }
 
 void Ledger::note_worst_vertex(const Pins& pins, StepReport& report) const {
@@ -42,48 +44,49 @@ void Ledger::note_worst_vertex(const Pins& pins, StepReport& report) const {
   report.worst_residual = most;
 }
 
-void Ledger::close(const StepTools& tools, const Integrator& integrator, double h, const State& state,
-                   StepReport& report) {
-  const size_t n = state.q.size();
-  for (auto* v : {&gradient_, &damping_, &dv_, &Mdv_, &at_, &residual_}) v->assign(n, 0.0);
+void Ledger::add(const StepTools& tools, int order, const State& end, const StepForces& forces, StepReport& report) {
+  const State& start = tools.start;
+  const size_t n = end.q.size();
+  for (auto* v : {&Ma_, &momentum_, &residual_}) v->assign(n, 0.0);
+  double potential_before = 0;
+  const double target = target_work(tools, order, end, potential_before);
+  const double kinetic_before = kinetic_energy(*tools.model.mass, start.qdot, momentum_);
+  tools.model.mass->multiply(forces.acceleration, Ma_);
 
-  // Where the forces of the step act.
-  const bool implicit = integrator.is_implicit();
-  const std::vector<double>& x = implicit ? state.q : before_.q;
-  for (size_t i = 0; i < n; ++i) at_[i] = implicit ? state.q[i] : before_.q[i] + h * before_.qdot[i];
-  for (const Energy* V : tools.E.potential()) V->add_gradient(x, 1, gradient_);
-  for (const Energy* D : tools.E.damping()) D->add_gradient(at_, 1, damping_);
-  if (!integrator.is_static()) {
-    for (size_t i = 0; i < n; ++i) dv_[i] = state.qdot[i] - before_.qdot[i];
-    tools.model.mass->multiply(dv_, Mdv_);
-  }
-
-  double gradient_work = 0, residual_squared = 0, reaction_work = 0, velocity_jump = 0;
-  report.damping_loss = report.residual_work = 0;
+  double residual_squared = 0, reaction_work = 0, residual_work = 0;
+  double inertia_work = 0, gradient_work = 0, damping_work = 0;
   for (size_t i = 0; i < n; ++i) {
-    const double dx = state.q[i] - before_.q[i];
-    const double r = residual_[i] = Mdv_[i] / h + gradient_[i] + damping_[i];
+    const double dx = end.q[i] - start.q[i];
+    const double r = residual_[i] = Ma_[i] + forces.gradient[i] + forces.damping[i];
     const bool pinned = tools.pins.holds(static_cast<int>(i / 3));
-    (pinned ? reaction_work : report.residual_work) += r * dx;
+    (pinned ? reaction_work : residual_work) += r * dx;
     if (!pinned) residual_squared += r * r;
-    gradient_work += gradient_[i] * dx;
-    report.damping_loss += damping_[i] * dx;
-    velocity_jump += dv_[i] * Mdv_[i];
+    inertia_work += Ma_[i] * dx;
+    gradient_work += forces.gradient[i] * dx;
+    damping_work += forces.damping[i] * dx;
   }
 
   report.potential.clear();
   report.potential.reserve(tools.E.potential().size());
   report.potential_total = 0;
-  for (const Energy* V : tools.E.potential()) report.potential.push_back(V->value(state.q));
+  for (const Energy* V : tools.E.potential()) report.potential.push_back(V->value(end.q));
   for (const double V : report.potential) report.potential_total += V;
-  report.kinetic = kinetic_energy(*tools.model.mass, state.qdot, momentum_);
-  report.residual = std::sqrt(residual_squared);
-  note_worst_vertex(tools.pins, report);
-  report.pin_work = reaction_work + target_work_;
-  const double s = integrator.displacement() == Displacement::old_velocity ? -1 : 1;
-  report.numerical_loss = s / 2 * velocity_jump + gradient_work - (report.potential_total - potential_ - target_work_);
-  report.ledger_error = (report.kinetic - kinetic_) + (report.potential_total - potential_) - report.pin_work +
-                        report.damping_loss + report.numerical_loss - report.residual_work;
+  report.kinetic = kinetic_energy(*tools.model.mass, end.qdot, momentum_);
+
+  const double kinetic_gain = report.kinetic - kinetic_before,
+               potential_gain = report.potential_total - potential_before;
+  const double pin_work = reaction_work + target;
+  const double loss = (inertia_work - kinetic_gain) + gradient_work - (potential_gain - target);
+  const double residual = std::sqrt(residual_squared);
+  if (!(residual <= report.residual)) {  // NaN stays
+    report.residual = residual;
+    note_worst_vertex(tools.pins, report);
+  }
+  report.pin_work += pin_work;
+  report.damping_loss += damping_work;
+  report.numerical_loss += loss;
+  report.residual_work += residual_work;
+  report.ledger_error += kinetic_gain + potential_gain - pin_work + damping_work + loss - residual_work;
 }
 
 }  // namespace aspic

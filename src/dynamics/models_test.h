@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "dynamics/integrator.h"
 #include "dynamics/simulation.h"
 #include "energy/linear_load.h"
 #include "energy/rayleigh_damping.h"
@@ -69,6 +70,8 @@ inline Model damped_beam_with_moving_pins_and_targets(int n = 2) {
   model.damping.push_back(make_strain_rate_damping(model.mesh, 0, std::vector<double>(model.mesh.tet_count(), 50.0)));
   return model;
 }
+
+inline bool is_explicit(const std::string& integrator) { return !make_integrator(integrator)->is_implicit(); }
 
 inline Simulation simulate(Model model, SimulationOptions options = {}) {
   State start = at_rest(model.mesh);

@@ -11,6 +11,7 @@ class Pins {
  public:
   Pins(const std::vector<Pin>& pins, std::span<const double> start /* x at time 0 */);
 
+  int vertex_count() const { return static_cast<int>(pinned_.size()); }
   bool holds(int vertex) const { return pinned_[vertex]; }
   bool any_moves() const;
 

@@ -1,59 +1,22 @@
 #include "dynamics/simulation.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
+#include "base/stopwatch.h"
+#include "dynamics/adaptive_step.h"
 #include "dynamics/integrator.h"
 #include "dynamics/ledger.h"
+#include "dynamics/simulation_checks.h"
 
 namespace aspic {
 namespace {
 
-std::string listed(const std::vector<int>& indices) {
-  std::string text;
-  for (size_t i = 0; i < std::min<size_t>(indices.size(), 5); ++i) text += (i ? ", " : "") + std::to_string(indices[i]);
-  return text + (indices.size() > 5 ? ", ..." : "");
-}
-
 // Squares overflow before positions do, so a state may be finite while its energies are not.
 bool is_finite(const StepReport& report) {
   return std::isfinite(report.residual) && std::isfinite(report.kinetic) && std::isfinite(report.potential_total);
-}
-
-void require_mass(const Model& model, const Pins& pins) {
-  std::vector<int> massless;
-  for (int v = 0; v < model.mesh.vertex_count(); ++v)
-    if (!pins.holds(v) && !(model.mass->vertex_mass()[v] > 0)) massless.push_back(v);
-  if (!massless.empty())
-    throw InvalidInput(std::to_string(massless.size()) + " vertices have no mass (" + listed(massless) +
-                       "): they belong to no tet, or the density there is zero; remove them (--repair) or pin them");
-}
-
-void require_finite_energy(const Model& model, std::span<const double> x) {
-  for (const double xi : x)
-    if (!std::isfinite(xi)) throw InvalidInput("the initial positions or velocities are not finite");
-  for (size_t body = 0; body < model.elasticity.size(); ++body) {
-    if (std::isfinite(model.elasticity[body]->value(x))) continue;
-    TetFields fields;
-    fields.energy_density.resize(model.mesh.tet_count());
-    fields.det_F = fields.von_mises = fields.energy_density;
-    fields.cauchy.resize(6 * fields.det_F.size());
-    std::fill(fields.det_F.begin(), fields.det_F.end(), 1.0);
-    model.elasticity[body]->evaluate(x, fields);
-    std::vector<int> inverted;
-    for (int t = 0; t < model.mesh.tet_count(); ++t)
-      if (!(fields.det_F[t] > 0)) inverted.push_back(t);
-    if (inverted.empty())
-      throw InvalidInput(
-          "the initial shape has infinite energy: its strain is more than the material can take; choose a "
-          "smaller initial deformation or another material");
-    throw InvalidInput("the initial shape has infinite energy: " + std::to_string(inverted.size()) +
-                       " tets are inverted or flat (" + listed(inverted) +
-                       "); choose a smaller initial deformation, or a material that tolerates inversion, such as "
-                       "neo_hookean or stable_neo_hookean");
-  }
 }
 
 }  // namespace
@@ -65,89 +28,144 @@ struct Simulation::Impl {
         state(std::move(initial)),
         start(state),
         integrator(make_integrator(options.integrator)),
+        guess(initial_guess_named(options.initial_guess)),
         direction(make_search_direction(options.solver)),
         pins(std::make_unique<Pins>(model.pins, start.q)),
         E(std::make_unique<IncrementalPotential>(model, *pins)) {
     options.solver.minimize.h = options.h;
     if (!(options.h > 0) || !std::isfinite(options.h))
       throw InvalidInput("time.step = " + std::to_string(options.h) + "; it must be positive");
+    require_possible(options, *integrator, guess);
     if (!integrator->is_static()) require_mass(model, *pins);
     pins->place(state.time, state.q);
     require_finite_energy(model, state.q);
-    // The pinned vertices of a scheme that moves with the old velocity must know where they are going.
-    if (integrator->displacement() == Displacement::old_velocity) set_pin_velocity();
+    integrator->set_pin_velocity(*pins, options.h, state);
+    if (options.adaptive.tolerance > 0) adaptive.emplace(model, options.adaptive.tolerance, remembers());
   }
 
-  void set_pin_velocity() {
-    std::vector<double> next = state.q;
-    pins->place(state.time + options.h, next);
-    for (size_t i = 0; i < next.size(); ++i)
-      if (pins->holds(static_cast<int>(i / 3))) state.qdot[i] = (next[i] - state.q[i]) / options.h;
+  // Whether the start of the step before is needed.
+  bool remembers() const {
+    const bool by_best = guess == InitialGuess::best && integrator->tries_last_increment();
+    return integrator->is_multistep() || by_best || guess == InitialGuess::last_increment;
   }
 
   // A product, not a sum of steps, so that the end of a run is met exactly.
   double end_of_next_step() const { return start.time + (steps_taken + 1) * options.h; }
 
-  StepTools tools(const IterationObserver& observe) {
-    return {model, *pins, *E, minimizer, *direction, options.solver.minimize, observe, end_of_next_step()};
-  }
-
-  // Tells every term that a step from `from` is about to end at `time`.
-  void begin_step(Positions from, double time) const {
-    const StepContext context{from, integrator->is_static() ? 0 : options.h, time};
-    for (Energy* V : E->potential()) V->begin_step(context);
-    for (Energy* D : E->damping()) D->begin_step(context);
+  // Of a step from `before`.
+  StepTools tools(const IterationObserver& observe, double end_time) {
+    const SolveTools solve{model, *pins, *E, minimizer, *direction, options.solver.minimize, observe, guess};
+    return {solve, before, has_previous ? &previous : nullptr, options.h, end_time};
   }
 
   StepReport step(const IterationObserver& observe) {
-    const auto began = std::chrono::steady_clock::now();
-    const StepTools with = tools(observe);
+    Stopwatch stopwatch;
     before = state;
-    ledger.open(with, state);
-    begin_step(before.q, with.end_time);
-    ledger.targets_moved(with, state);
-
-    const MinimizeReport solved = integrator->advance(with, options.h, state);
-    StepReport report = described(solved);
-    if (solved.status == Status::interrupted || solved.status == Status::undefined) {
-      state = before;  // there is nothing to go on from
-      if (solved.status == Status::undefined) state.time = with.end_time;
+    const StepTools with = tools(observe, end_of_next_step());
+    StepReport report;
+    const StepSolve solved = adaptive ? adaptive->advance(*integrator, with, ledger, state, report)
+                                      : integrator->advance(with, state, forces);
+    describe(solved, report);
+    const bool is_interrupted = solved.work.status == Status::interrupted;
+    if (!can_go_on(report.status)) {
+      take_back(observe, is_interrupted ? before.time : with.end_time, report);
+    } else {
+      if (!adaptive) ledger.add(with, integrator->order(), state, forces, report);
+      if (!is_finite(report)) {
+        if (is_success(report.status)) report.status = Status::undefined;
+        take_back(observe, with.end_time, report);
+      } else if (remembers()) {
+        previous = adaptive ? adaptive->previous() : before;
+        has_previous = true;
+      }
     }
     report.time = state.time;
-    if (solved.status != Status::interrupted) report.step = ++steps_taken;
-    ledger.close(with, *integrator, options.h, state, report);
-    if (is_success(report.status) && !is_finite(report)) report.status = Status::undefined;
-    if (solved.status == Status::interrupted) begin_step(state.q, state.time);  // targets go back where they stood
+    if (!is_interrupted) report.step = ++steps_taken;
     report.min_det_F = INFINITY;
     for (const auto& V : model.elasticity) report.min_det_F = std::min(report.min_det_F, V->min_det_F(state.q));
-    report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    report.seconds = stopwatch.lap();
     return report;
   }
 
-  StepReport described(const MinimizeReport& solved) const {
-    StepReport report;
-    report.status = solved.status;
+  // A minimisation that stopped early leaves a state to go on from; a step divided for its accuracy does not.
+  bool can_go_on(Status status) const {
+    if (status == Status::interrupted || status == Status::undefined) return false;
+    return !adaptive || is_success(status);
+  }
+
+  // Tells the terms of V the time, as between steps.
+  void stand_at(double time) const { tell_potential(*E, {state.q, integrator->is_static() ? 0 : options.h, time}); }
+
+  // The body stays where the step began, though time and moving targets may go on to `time`; a scheme of several steps
+  // begins anew.
+  void take_back(const IterationObserver& observe, double time, StepReport& report) {
+    report.residual = report.pin_work = report.damping_loss = 0;
+    report.numerical_loss = report.residual_work = report.ledger_error = 0;
+    state = before;
+    state.time = time;
+    has_previous = has_previous && time == before.time;
+    const StepTools stand_still = tools(observe, time);
+    stand_at(time);
+    forces.reset(state.q.size());
+    for (const Energy* V : E->potential()) V->add_gradient(state.q, 1, forces.gradient);
+    ledger.add(stand_still, integrator->order(), state, forces, report);
+  }
+
+  void describe(const StepSolve& solved, StepReport& report) const {
+    report.status = solved.work.status;
     report.criterion = options.solver.minimize.criterion;
-    report.iterations = solved.iterations;
-    report.trials = solved.trials;
-    report.linear_iterations = solved.linear_iterations;
-    report.hessians = solved.hessians;
-    report.projected_hessians = solved.projected_hessians;
-    const bool judges_forces = integrator->is_implicit() && !judges_direction(report.criterion);
-    if (judges_forces) report.residual_threshold = solved.threshold / E->gradient_unit();
-    if (integrator->is_implicit()) report.residual_round_off = solved.gradient_round_off / E->gradient_unit();
-    return report;
+    report.iterations = solved.work.iterations;
+    report.trials = solved.work.trials;
+    report.linear_iterations = solved.work.linear_iterations;
+    report.hessians = solved.work.hessians;
+    report.projected_hessians = solved.work.projected_hessians;
+    report.gradients = solved.work.gradients;
+    report.factorizations = solved.work.factorizations;
+    report.objective = solved.work.value;
+    report.objective_gradient = solved.work.gradient_norm;
+    report.residual_threshold = solved.threshold;
+    report.residual_round_off = solved.round_off;
+    report.initial_guess = solved.guess;
+  }
+
+  // Nothing, or the level of the adaptive step and then, when it is remembered, where the last step or part began.
+  std::vector<double> history() const {
+    std::vector<double> history;
+    if (!adaptive && !has_previous) return history;
+    history.push_back(adaptive ? adaptive->level() : 0);
+    if (!has_previous) return history;
+    history.push_back(previous.time);
+    history.insert(history.end(), previous.q.begin(), previous.q.end());
+    history.insert(history.end(), previous.qdot.begin(), previous.qdot.end());
+    return history;
+  }
+
+  void set_history(const std::vector<double>& history) {
+    const size_t n = state.q.size();
+    if (history.size() > 1 && history.size() != 2 + 2 * n)
+      throw InvalidInput("the checkpoint's history has " + std::to_string(history.size()) +
+                         " entries; this scene needs " + std::to_string(2 + 2 * n));
+    if (adaptive && !history.empty()) adaptive->set_level(history[0]);
+    has_previous = remembers() && history.size() > 1;
+    if (!has_previous) return;
+    const auto q = history.begin() + 2;
+    previous = {{q, q + static_cast<long>(n)}, {q + static_cast<long>(n), history.end()}, history[1]};
   }
 
   Model model;
   SimulationOptions options;
   State state, start;
-  State before;  // the state before the last step
+  State before;    // the state before the last step
+  State previous;  // and before the one before that, when the integrator or the guess needs it
+  bool has_previous = false;
   std::unique_ptr<Integrator> integrator;
+  InitialGuess guess;
   std::unique_ptr<SearchDirection> direction;
   std::unique_ptr<Pins> pins;
   std::unique_ptr<IncrementalPotential> E;
   Minimizer minimizer;
+  std::optional<AdaptiveStep> adaptive;
+  StepForces forces;  // of the last step
   Ledger ledger;
   int steps_taken = 0;
 };
@@ -197,17 +215,25 @@ TetFields Simulation::tet_fields() const {
   return fields;
 }
 
+void Simulation::set_solver(const SolverOptions& solver) {
+  impl_->direction = make_search_direction(solver);
+  impl_->options.solver = solver;
+  impl_->options.solver.minimize.h = impl_->options.h;
+}
+
 bool Simulation::is_implicit() const { return impl_->integrator->is_implicit(); }
 
 StableStep Simulation::stable_step() const {
   const StableStep stable = aspic::stable_step(*impl_->E, impl_->model, *impl_->pins, impl_->start.q);
-  impl_->begin_step(impl_->state.q, impl_->state.time);
+  impl_->stand_at(impl_->state.time);
   return stable;
 }
 
 std::string Simulation::solver_description() const { return impl_->direction->description(); }
 
-Simulation::Snapshot Simulation::snapshot() const { return {impl_->state, impl_->start, impl_->steps_taken, {}}; }
+Simulation::Snapshot Simulation::snapshot() const {
+  return {impl_->state, impl_->start, impl_->steps_taken, impl_->history()};
+}
 
 void Simulation::restore(const Snapshot& snapshot) {
   const size_t n = impl_->state.q.size();
@@ -219,7 +245,8 @@ void Simulation::restore(const Snapshot& snapshot) {
   impl_->start = snapshot.start;
   impl_->steps_taken = snapshot.steps_taken;
   *impl_->pins = Pins(impl_->model.pins, impl_->start.q);
-  impl_->begin_step(impl_->state.q, impl_->state.time);  // moving targets stand where they stood
+  impl_->set_history(snapshot.history);
+  impl_->stand_at(impl_->state.time);  // moving targets stand where they stood
 }
 
 }  // namespace aspic

@@ -12,23 +12,34 @@
 
 namespace aspic {
 
+// Steps are divided into parts of h / 2^k as an error estimate asks for.
+struct AdaptiveOptions {
+  double tolerance = 0;  // error that a step may add, relative to the size of each body; 0: steps are taken whole
+};
+
 struct SimulationOptions {
   double h = 0.01;                            // time step [s]
   std::string integrator = "backward_euler";  // see integrator_names()
+  AdaptiveOptions adaptive = {};
+  std::string initial_guess = "best";  // see initial_guess_names()
   SolverOptions solver;
 };
 
 std::vector<std::string> integrator_names();
+std::vector<std::string> initial_guess_names();
+std::vector<std::string> adaptive_integrator_names();  // those whose steps can be divided
 
 class Simulation {
  public:
-  // `initial` holds one entry per vertex of the model. Throws InvalidInput for an unknown name in the options and for
-  // a model that cannot be simulated: a vertex without mass in dynamics, a start with infinite energy.
+  // `initial` holds one entry per vertex of the model. Throws InvalidInput for an unknown name in the options, for
+  // options that the integrator has no use for, and for a model that cannot be simulated: a vertex without mass in
+  // dynamics, a start with infinite energy.
   Simulation(Model model, State initial, SimulationOptions options);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
 
   StepReport step(const IterationObserver& observe = {});
+  void set_solver(const SolverOptions& solver);  // from the next step on; throws InvalidInput as the constructor does
 
   const Model& model() const;
   const State& state() const;
@@ -41,14 +52,14 @@ class Simulation {
   TetFields tet_fields() const;
   bool is_implicit() const;                // the integrator minimises
   StableStep stable_step() const;          // at the start: what an explicit integrator can take
-  std::string solver_description() const;  // e.g. "cholesky (1 856 vertices)": what auto chose and why
+  std::string solver_description() const;  // the methods and what each of them chose, and why
 
   // Everything that the next steps depend on besides model and options; restoring continues to the same bits.
   struct Snapshot {
     State state;
     State start;  // the state at time 0, to which pins and ledger refer
     int steps_taken = 0;
-    std::vector<double> history;  // what the integrator and the minimiser remember
+    std::vector<double> history;  // what the integrator remembers: the length of its parts, where the last one began
   };
   Snapshot snapshot() const;
   void restore(const Snapshot& snapshot);  // throws InvalidInput when the sizes do not fit the model

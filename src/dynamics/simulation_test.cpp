@@ -13,42 +13,86 @@ namespace {
 
 using namespace testing_models;
 
-std::vector<double> state_after(int steps, int threads) {
+std::vector<double> state_after(const SimulationOptions& options, int threads) {
   set_thread_count(threads);
-  Simulation simulation = simulate(beam(3, {.young = 1e5}));
-  for (int i = 0; i < steps; ++i) simulation.step();
+  Simulation simulation = simulate(damped_beam_with_moving_pins_and_targets(3), options);
+  for (int i = 0; i < 3; ++i) simulation.step();
   std::vector<double> result = simulation.state().q;
   result.insert(result.end(), simulation.state().qdot.begin(), simulation.state().qdot.end());
   return result;
 }
 
+// Every integrator, with the usual guess and with one that remembers, and every one that can also with adaptive steps.
+std::vector<SimulationOptions> all_ways() {
+  std::vector<SimulationOptions> ways;
+  for (const std::string& integrator : integrator_names()) {
+    const SimulationOptions plain{.h = is_explicit(integrator) ? 1e-4 : 0.01, .integrator = integrator, .solver = {}};
+    ways.push_back(plain);
+    if (make_integrator(integrator)->chooses_guess()) {
+      ways.push_back(plain);
+      ways.back().initial_guess = "last_increment";
+    }
+  }
+  for (const std::string& integrator : adaptive_integrator_names())
+    ways.push_back({.h = is_explicit(integrator) ? 5e-4 : 0.01,
+                    .integrator = integrator,
+                    .adaptive = {.tolerance = 1e-4},
+                    .solver = {}});
+  return ways;
+}
+
+std::string description(const SimulationOptions& way) {
+  return way.integrator + ", " + way.initial_guess + (way.adaptive.tolerance > 0 ? ", adaptive" : "");
+}
+
 TEST(Simulation, TheBitsDoNotDependOnTheNumberOfThreads) {
   const int before = thread_count();
-  const std::vector<double> one = state_after(5, 1);
-  for (const int threads : {2, 3, 8}) EXPECT_EQ(state_after(5, threads), one) << threads << " threads";
+  for (const SimulationOptions& way : all_ways()) {
+    const std::vector<double> one = state_after(way, 1);
+    for (const int threads : {2, 3}) EXPECT_EQ(state_after(way, threads), one) << description(way) << " " << threads;
+  }
   set_thread_count(before);
 }
 
-TEST(Simulation, ARestoredSimulationContinuesToTheSameBits) {
-  for (const std::string& integrator : integrator_names()) {
-    const double h = integrator == "symplectic_euler" || integrator == "forward_euler" ? 1e-4 : 0.01;
-    const SimulationOptions options{.h = h, .integrator = integrator, .solver = {}};
-    Simulation whole = simulate(damped_beam_with_moving_pins_and_targets(), options);
-    for (int i = 0; i < 4; ++i) whole.step();
-    const Simulation::Snapshot snapshot = whole.snapshot();
+TEST(Simulation, RestoredAfterAnyStepItContinuesToTheSameBits) {
+  constexpr int kSteps = 4;
+  for (const SimulationOptions& way : all_ways()) {
+    Simulation whole = simulate(damped_beam_with_moving_pins_and_targets(), way);
+    std::vector<Simulation::Snapshot> snapshots = {whole.snapshot()};
     std::vector<StepReport> reports;
-    for (int i = 0; i < 4; ++i) reports.push_back(whole.step());
-
-    Simulation resumed = simulate(damped_beam_with_moving_pins_and_targets(), options);
-    resumed.restore(snapshot);
-    for (int i = 0; i < 4; ++i) {
-      const StepReport report = resumed.step();
-      EXPECT_EQ(report.step, reports[i].step);
-      EXPECT_EQ(report.potential, reports[i].potential) << integrator;
-      EXPECT_EQ(report.pin_work, reports[i].pin_work) << integrator;
+    for (int i = 0; i < kSteps; ++i) {
+      reports.push_back(whole.step());
+      ASSERT_TRUE(is_success(reports.back().status)) << description(way) << to_string(reports.back().status);
+      snapshots.push_back(whole.snapshot());
     }
-    EXPECT_EQ(resumed.state().q, whole.state().q) << integrator;
-    EXPECT_EQ(resumed.state().qdot, whole.state().qdot) << integrator;
+    for (int k = 0; k <= kSteps; ++k) {
+      Simulation resumed = simulate(damped_beam_with_moving_pins_and_targets(), way);
+      resumed.restore(snapshots[k]);
+      for (int i = k; i < kSteps; ++i) {
+        const StepReport report = resumed.step();
+        EXPECT_EQ(report.step, reports[i].step);
+        EXPECT_EQ(report.initial_guess, reports[i].initial_guess) << description(way);
+        EXPECT_EQ(report.substeps, reports[i].substeps) << description(way);
+        EXPECT_EQ(report.rejected, reports[i].rejected) << description(way);
+        EXPECT_EQ(report.potential, reports[i].potential) << description(way);
+        EXPECT_EQ(report.pin_work, reports[i].pin_work) << description(way);
+      }
+      EXPECT_EQ(resumed.state().q, whole.state().q) << description(way) << " from " << k;
+      EXPECT_EQ(resumed.state().qdot, whole.state().qdot) << description(way) << " from " << k;
+    }
+  }
+}
+
+TEST(Simulation, ACheckpointOfAnotherSizeIsRefused) {
+  Simulation simulation = simulate(beam(1), {.integrator = "bdf2", .solver = {}});
+  simulation.step();
+  Simulation::Snapshot snapshot = simulation.snapshot();
+  snapshot.history.pop_back();
+  EXPECT_THROW(simulation.restore(snapshot), InvalidInput);
+  Simulation adaptive = simulate(beam(1), {.adaptive = {.tolerance = 1e-3}, .solver = {}});
+  for (const double level : {99.0, -1.0, 1e300, static_cast<double>(NAN)}) {
+    snapshot.history = {level};
+    EXPECT_THROW(adaptive.restore(snapshot), InvalidInput) << level;
   }
 }
 
@@ -124,6 +168,43 @@ TEST(Simulation, AnExplodingExplicitSchemeEndsUndefined) {
   Status last = Status::converged;
   for (int i = 0; i < 400 && is_success(last); ++i) last = simulation.step().status;
   EXPECT_EQ(last, Status::undefined);
+}
+
+TEST(Simulation, AStepThatBlowsUpLeavesTheBodyWhereItWasWhileTimeGoesOn) {
+  Simulation simulation = simulate(beam(2), {.h = 0.1, .integrator = "rk4", .solver = {}});
+  for (int i = 0; i < 400; ++i) {
+    const State before = simulation.state();
+    const StepReport report = simulation.step();
+    if (is_success(report.status)) continue;
+    EXPECT_EQ(report.status, Status::undefined);
+    EXPECT_EQ(simulation.state().q, before.q);
+    EXPECT_EQ(simulation.state().time, 0.1 * (i + 1));
+    EXPECT_TRUE(std::isfinite(report.kinetic + report.potential_total + report.residual));
+    return;
+  }
+  ADD_FAILURE() << "steps far above the stable one did not blow up";
+}
+
+TEST(Simulation, OptionsThatAnIntegratorCannotHeedAreRefusedInWords) {
+  const auto refusal = [](const SimulationOptions& options) -> std::string {
+    try {
+      simulate(beam(1), options);
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  using testing::AllOf, testing::HasSubstr;
+  for (const char* integrator : {"bdf2", "quasi_static"})
+    EXPECT_THAT(refusal({.integrator = integrator, .adaptive = {.tolerance = 1e-3}, .solver = {}}),
+                AllOf(HasSubstr(integrator), HasSubstr("tr_bdf2"), HasSubstr("rk4")));
+  EXPECT_THAT(refusal({.adaptive = {.tolerance = -1}, .solver = {}}), HasSubstr("time.adaptive.tolerance"));
+  EXPECT_THAT(refusal({.initial_guess = "curent", .solver = {}}), HasSubstr("did you mean 'current'"));
+  for (const char* integrator : {"rk4", "forward_euler", "linearly_implicit_euler"})
+    EXPECT_THAT(refusal({.integrator = integrator, .initial_guess = "zero", .solver = {}}),
+                AllOf(HasSubstr("initial_guess"), HasSubstr(integrator)));
+  EXPECT_THAT(refusal({.integrator = "quasi_static", .initial_guess = "extrapolated", .solver = {}}),
+              HasSubstr("last_increment"));
 }
 
 TEST(Simulation, BadModelsAreRefusedInWords) {

@@ -94,7 +94,8 @@ class StepCheck {
   std::vector<NamedState> states() {
     std::vector<NamedState> all = {{"start", state_.q}, {"rest", near_rest(model_.mesh, edge_)}};
     if (!is_finite(all.back().q)) all.pop_back();
-    for (double amount = 0.15; amount > 1e-4; amount /= 2) {
+    double amount = 0.15;
+    for (int attempt = 0; attempt < 10; ++attempt, amount /= 2) {
       NamedState strained{"deformed", deformed(state_.q, amount, edge_)};
       if (!is_finite(strained.q)) continue;
       all.push_back(std::move(strained));

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/initial_guess.h"
 #include "optimize/minimize.h"
 
 namespace aspic {
@@ -13,8 +14,12 @@ struct StepReport {
 
   Status status = Status::converged;
   Criterion criterion = Criterion::scale;
-  int iterations = 0, trials = 0, linear_iterations = 0, hessians = 0, projected_hessians = 0;
-  double residual = 0;            // |M a + dV/dx| over the free vertices [N]
+  int iterations = 0, trials = 0, linear_iterations = 0, hessians = 0, projected_hessians = 0;  // of all its solves
+  int gradients = 0, factorizations = 0;
+  double objective = 0, objective_gradient = 0;     // E and |g| at the end of the last minimisation
+  InitialGuess initial_guess = InitialGuess::none;  // where that started
+  int substeps = 1, rejected = 0;                   // parts it was taken in; parts tried that were too long
+  double residual = 0;            // |M a + dV/dx + dD/dx| over the free vertices; of parts the largest [N]
   double residual_threshold = 0;  // the residual that was asked for [N]; 0 for a scheme without a solve
   double residual_round_off = 0;  // the part of a residual that double precision cannot tell from zero [N]
   int worst_vertex = -1;          // where most of the residual is left

@@ -27,6 +27,13 @@ class LinearLoad : public Energy {
 
   int add_hessian(Positions, double, const Projection&, BlockSparse&) const override { return 0; }
 
+  bool prepare_vertex_systems(int) override { return true; }
+  void add_vertex_systems(Positions, double scale, std::span<const int> vertices, std::span<Vec3d> g,
+                          std::span<Mat3d>) const override {
+    for (size_t k = 0; k < vertices.size(); ++k)
+      for (int r = 0; r < 3; ++r) g[k][r] -= scale * force_[3 * vertices[k] + r];
+  }
+
  private:
   std::string name_;
   std::vector<double> force_;  // [N]

@@ -38,23 +38,34 @@ double MassMatrix::total() const {
   return sum;
 }
 
+template <class Visit>
+void MassMatrix::for_each_in_row(int row, const Visit& visit) const {
+  if (kind_ == MassKind::lumped) return visit(lumped_[row], row);
+  for (int64_t k = pattern_.row_start[row]; k < pattern_.row_start[row + 1]; ++k) visit(entry_[k], pattern_.column[k]);
+  for (int64_t k = pattern_.upper_start[row]; k < pattern_.upper_start[row + 1]; ++k)
+    visit(entry_[pattern_.upper_slot[k]], pattern_.upper_row[k]);
+}
+
 void MassMatrix::multiply(std::span<const double> x, std::span<double> y) const {
   parallel_chunks(static_cast<int>(lumped_.size()), [&](int first, int last) {
     for (int i = first; i < last; ++i) {
       double s[3] = {0, 0, 0};
-      const auto add = [&](double m, int j) {
+      for_each_in_row(i, [&](double m, int j) {
         for (int r = 0; r < 3; ++r) s[r] += m * x[3 * j + r];
-      };
-      if (kind_ == MassKind::lumped) {
-        add(lumped_[i], i);
-      } else {
-        for (int64_t k = pattern_.row_start[i]; k < pattern_.row_start[i + 1]; ++k) add(entry_[k], pattern_.column[k]);
-        for (int64_t k = pattern_.upper_start[i]; k < pattern_.upper_start[i + 1]; ++k)
-          add(entry_[pattern_.upper_slot[k]], pattern_.upper_row[k]);
-      }
+      });
       for (int r = 0; r < 3; ++r) y[3 * i + r] = s[r];
     }
   });
+}
+
+void MassMatrix::add_vertex_systems(double scale, std::span<const double> x, std::span<const double> origin,
+                                    std::span<const int> vertices, std::span<Vec3d> g, std::span<Mat3d> H) const {
+  for (size_t k = 0; k < vertices.size(); ++k)
+    for_each_in_row(vertices[k], [&](double m, int j) {
+      for (int r = 0; r < 3; ++r) g[k][r] += scale * m * (x[3 * j + r] - origin[3 * j + r]);
+      if (j == vertices[k])
+        for (int r = 0; r < 3; ++r) H[k](r, r) += scale * m;
+    });
 }
 
 void MassMatrix::add_couplings(Couplings& couplings) const {

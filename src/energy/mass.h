@@ -19,11 +19,17 @@ class MassMatrix {
   double total() const;                                            // [kg]
 
   void multiply(std::span<const double> x, std::span<double> y) const;  // y = M x; 3 numbers per vertex
+  // g[k] += scale (M (x - origin))_v, H[k] += scale M_vv I for v = vertices[k].
+  void add_vertex_systems(double scale, std::span<const double> x, std::span<const double> origin,
+                          std::span<const int> vertices, std::span<Vec3d> g, std::span<Mat3d> H) const;
   void add_couplings(Couplings& couplings) const;
   void bind(const BlockPattern& target);            // remembers where add_to writes
   void add_to(double scale, BlockSparse& H) const;  // H += scale M
 
  private:
+  template <class Visit>
+  void for_each_in_row(int row, const Visit& visit) const;  // visit(entry, column)
+
   MassKind kind_;
   std::vector<double> lumped_;
   BlockPattern pattern_;

@@ -27,7 +27,8 @@ class RayleighDamping : public Energy {
     start_.assign(step.start.begin(), step.start.end());
     C_->set_zero();
     mass_.add_to(mass_factor_, *C_);
-    if (stiffness_factor_ > 0) elasticity_->add_hessian(step.start, stiffness_factor_, {Definiteness::clamped}, *C_);
+    const Positions x = step.shape.empty() ? step.start : step.shape;
+    if (stiffness_factor_ > 0) elasticity_->add_hessian(x, stiffness_factor_, {Definiteness::clamped}, *C_);
   }
 
   double value(Positions x) const override {
@@ -51,6 +52,25 @@ class RayleighDamping : public Energy {
     for (size_t k = 0; k < H.block.size(); ++k)
       for (int i = 0; i < 9; ++i) H.block[k].a[i] += scale / h_ * C_->block[k].a[i];
     return 0;
+  }
+
+  bool prepare_vertex_systems(int) override { return true; }
+  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
+                          std::span<Mat3d> H) const override {
+    if (h_ == 0) return;
+    const BlockPattern& p = *C_->pattern;
+    const auto moved = [&](int j) {
+      return Vec3d{{x[3 * j] - start_[3 * j], x[3 * j + 1] - start_[3 * j + 1], x[3 * j + 2] - start_[3 * j + 2]}};
+    };
+    for (size_t k = 0; k < vertices.size(); ++k) {
+      const int v = vertices[k];
+      Vec3d Cu{};
+      for (int64_t s = p.row_start[v]; s < p.row_start[v + 1]; ++s) Cu = Cu + C_->block[s] * moved(p.column[s]);
+      for (int64_t u = p.upper_start[v]; u < p.upper_start[v + 1]; ++u)
+        Cu = Cu + transpose(C_->block[p.upper_slot[u]]) * moved(p.upper_row[u]);
+      g[k] = g[k] + (scale / h_) * Cu;
+      H[k] = H[k] + (scale / h_) * C_->block[p.diagonal(v)];
+    }
   }
 
  private:

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "energy/incidence.h"
+
 namespace aspic {
 namespace {
 
@@ -47,6 +49,24 @@ class PointSprings : public Energy {
     return 0;
   }
 
+  bool prepare_vertex_systems(int vertex_count) override {
+    if (around_.is_made()) return true;
+    std::vector<std::pair<int, int>> ends;
+    for (size_t s = 0; s < springs_.size(); ++s) ends.emplace_back(springs_[s].vertex, static_cast<int>(s));
+    around_ = {vertex_count, ends};
+    return true;
+  }
+
+  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
+                          std::span<Mat3d> H) const override {
+    for (size_t k = 0; k < vertices.size(); ++k)
+      for (const int s : around_.around(vertices[k])) {
+        const double stiffness = scale * springs_[s].stiffness;
+        g[k] = g[k] + stiffness * (point(x, vertices[k]) - target_[s]);
+        for (int r = 0; r < 3; ++r) H[k](r, r) += stiffness;
+      }
+  }
+
  private:
   void follow(double time) {
     for (size_t s = 0; s < springs_.size(); ++s) target_[s] = springs_[s].target(time);
@@ -56,6 +76,7 @@ class PointSprings : public Energy {
   std::vector<PointSpring> springs_;
   std::vector<Vec3d> target_;
   std::vector<int64_t> slot_;
+  Incidence around_;
 };
 
 class VertexSprings : public Energy {
@@ -79,12 +100,9 @@ class VertexSprings : public Energy {
 
   void add_gradient(Positions x, double scale, std::span<double> g) const override {
     for (const Spring& s : springs_) {
-      const double l = length(x, s);
-      if (l == 0) continue;  // no direction: the force of a collapsed spring is undefined, taken as zero
-      const Vec3d u = point(x, s.a) - point(x, s.b);
-      const double tension_per_length = s.stiffness * (1 - s.rest_length / l);
-      add_at(g, s.a, scale * tension_per_length, u);
-      add_at(g, s.b, -scale * tension_per_length, u);
+      const Vec3d tension = pull(x, s);
+      add_at(g, s.a, scale, tension);
+      add_at(g, s.b, -scale, tension);
     }
   }
 
@@ -98,30 +116,66 @@ class VertexSprings : public Energy {
                   pattern.slot(springs_[i].a, springs_[i].b)};
   }
 
-  // K = k (n n' + (1 - l0/l) (I - n n')); the second factor is negative for a compressed spring.
   int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override {
     int projected = 0;
     for (size_t i = 0; i < springs_.size(); ++i) {
       const Spring& s = springs_[i];
-      const double l = length(x, s);
-      const Vec3d n = l > 0 ? (1 / l) * (point(x, s.a) - point(x, s.b)) : Vec3d{{1, 0, 0}};
-      double across = l > 0 ? 1 - s.rest_length / l : 0;
+      double across = stretch_across(x, s);
       if (across < 0 && projection.kind != Definiteness::exact && (projection.covers(s.a) || projection.covers(s.b))) {
         across = projection.kind == Definiteness::clamped ? 0 : -across;
         ++projected;
       }
-      for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < 3; ++r) {
-          const double k = scale * s.stiffness * ((1 - across) * n[r] * n[c] + (r == c ? across : 0));
-          H.block[slot_[i][0]](r, c) += k;
-          H.block[slot_[i][1]](r, c) += k;
-          H.block[slot_[i][2]](r, c) -= k;
-        }
+      const Mat3d K = block(x, s, across);
+      for (int m = 0; m < 9; ++m) {
+        H.block[slot_[i][0]].a[m] += scale * K.a[m];
+        H.block[slot_[i][1]].a[m] += scale * K.a[m];
+        H.block[slot_[i][2]].a[m] -= scale * K.a[m];
+      }
     }
     return projected;
   }
 
+  bool prepare_vertex_systems(int vertex_count) override {
+    if (around_.is_made()) return true;
+    std::vector<std::pair<int, int>> ends;
+    for (size_t i = 0; i < springs_.size(); ++i) {
+      ends.emplace_back(springs_[i].a, static_cast<int>(i));
+      ends.emplace_back(springs_[i].b, static_cast<int>(i));
+    }
+    around_ = {vertex_count, ends};
+    return true;
+  }
+
+  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
+                          std::span<Mat3d> H) const override {
+    for (size_t k = 0; k < vertices.size(); ++k)
+      for (const int i : around_.around(vertices[k])) {
+        const Spring& s = springs_[i];
+        g[k] = g[k] + (vertices[k] == s.a ? scale : -scale) * pull(x, s);
+        H[k] = H[k] + scale * block(x, s, stretch_across(x, s));
+      }
+  }
+
  private:
+  // dV/dx of vertex a, minus that of vertex b; zero for a collapsed spring, whose direction is undefined.
+  static Vec3d pull(Positions x, const Spring& s) {
+    const double l = length(x, s);
+    return l == 0 ? Vec3d{} : (s.stiffness * (1 - s.rest_length / l)) * (point(x, s.a) - point(x, s.b));
+  }
+  static double stretch_across(Positions x, const Spring& s) {
+    const double l = length(x, s);
+    return l > 0 ? 1 - s.rest_length / l : 0;
+  }
+  // K = k (n n' + across (I - n n')), across = 1 - l0/l, which is negative for a compressed spring.
+  static Mat3d block(Positions x, const Spring& s, double across) {
+    const double l = length(x, s);
+    const Vec3d n = l > 0 ? (1 / l) * (point(x, s.a) - point(x, s.b)) : Vec3d{{1, 0, 0}};
+    Mat3d K;
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r) K(r, c) = s.stiffness * ((1 - across) * n[r] * n[c] + (r == c ? across : 0));
+    return K;
+  }
+
   static double length(Positions x, const Spring& s) {
     const Vec3d u = point(x, s.a) - point(x, s.b);
     return std::sqrt(dot(u, u));
@@ -130,6 +184,7 @@ class VertexSprings : public Energy {
   std::string name_;
   std::vector<Spring> springs_;
   std::vector<std::array<int64_t, 3>> slot_;  // blocks (a, a), (b, b), (a, b)
+  Incidence around_;
 };
 
 }  // namespace

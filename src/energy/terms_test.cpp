@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include "base/parallel.h"
@@ -42,6 +43,31 @@ std::vector<double> deformed(double amount, unsigned seed = 3) {
   return x;
 }
 
+// The systems of single vertices are parts of the whole gradient and Hessian, up to the order of summation.
+void expect_vertex_systems_to_be_parts(Energy& V, const BlockPattern& pattern, const std::vector<double>& x,
+                                       const std::string& what) {
+  constexpr double kRoundOff = 1e-13;  // of sums of some hundred terms
+  const int vertices = pattern.rows();
+  ASSERT_TRUE(V.prepare_vertex_systems(vertices)) << what;
+  std::vector<double> whole(x.size());
+  V.add_gradient(x, 2, whole);
+  BlockSparse H(pattern);
+  V.add_hessian(x, 2, {Definiteness::exact}, H);
+  std::vector<int> all(vertices);
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<Vec3d> g(vertices, Vec3d{});
+  std::vector<Mat3d> blocks(vertices, Mat3d{});
+  V.add_vertex_systems(x, 2, all, g, blocks);
+  double largest_force = 0, largest_entry = 0;
+  for (const double gi : whole) largest_force = std::max(largest_force, std::abs(gi));
+  for (const Mat3d& block : H.block) largest_entry = std::max(largest_entry, std::sqrt(squared_norm(block)));
+  for (int v = 0; v < vertices; ++v) {
+    for (int r = 0; r < 3; ++r) EXPECT_NEAR(g[v][r], whole[3 * v + r], kRoundOff * largest_force) << what;
+    const Mat3d difference = blocks[v] - H.block[pattern.diagonal(v)];
+    EXPECT_LE(std::sqrt(squared_norm(difference)), kRoundOff * largest_entry) << what;
+  }
+}
+
 // Lengths are those of the tets, about a third of the box.
 void expect_consistent(Energy& V, const std::vector<double>& x, const std::string& what) {
   Couplings couplings;
@@ -53,6 +79,7 @@ void expect_consistent(Energy& V, const std::vector<double>& x, const std::strin
     EXPECT_TRUE(check->passed) << what << ", " << entry_name(check->row) << ": " << check->smallest_error;
     EXPECT_TRUE(std::isnan(check->order) || std::abs(check->order - 2) < 0.2) << what << ": " << check->order;
   }
+  expect_vertex_systems_to_be_parts(V, pattern, x, what);
 }
 
 TEST(TetElasticity, DerivativesAreThoseOfTheEnergyForEveryMaterial) {
@@ -240,6 +267,29 @@ TEST(MassMatrix, TheConsistentOneIntegratesSquaresOfLinearFieldsExactly) {
   double integral = 0;
   for (size_t i = 0; i < x.size(); ++i) integral += x[i] * Mx[i];
   EXPECT_NEAR(integral, 0.8 * 0.6 / 3, 1e-14);  // of X^2 over [0, 1] x [0, .8] x [0, .6]
+}
+
+TEST(MassMatrix, SystemsOfSingleVerticesArePartsOfTheWhole) {
+  for (const MassKind kind : {MassKind::consistent, MassKind::lumped}) {
+    const MassMatrix mass(mesh(), std::vector<double>(mesh().tet_count(), 1.0), kind);
+    const std::vector<double> x = deformed(0.1), origin = deformed(0.1, 5);
+    std::vector<double> offset(x.size()), whole(x.size()), unit(x.size(), 0.0), column(x.size());
+    for (size_t i = 0; i < x.size(); ++i) offset[i] = x[i] - origin[i];
+    mass.multiply(offset, whole);
+    const std::vector<int> vertices = {5, 20};
+    std::vector<Vec3d> g(2, Vec3d{});
+    std::vector<Mat3d> H(2, Mat3d{});
+    mass.add_vertex_systems(3, x, origin, vertices, g, H);
+    for (int k = 0; k < 2; ++k) {
+      const int v = vertices[k];
+      for (int r = 0; r < 3; ++r) EXPECT_NEAR(g[k][r], 3 * whole[3 * v + r], 1e-15) << v;
+      unit[3 * v] = 1;
+      mass.multiply(unit, column);
+      unit[3 * v] = 0;
+      EXPECT_DOUBLE_EQ(H[k](0, 0), 3 * column[3 * v]);
+      EXPECT_EQ(H[k](1, 0), 0);
+    }
+  }
 }
 
 TEST(MassMatrix, AddedIntoAMatrixItIsTheSameOperator) {

@@ -14,6 +14,7 @@
 #include "energy/make_tet_term.h"
 #include "energy/tet_batch.h"
 #include "energy/tet_elasticity.h"
+#include "energy/vertex_tets.h"
 #include "material/material.h"
 #include "math/definite.h"
 #include "mesh/order.h"
@@ -72,6 +73,24 @@ class TetTerm : public TetElasticity {
       batches_[i].scatter_hessian(A, Pack(scale) * batches_[i].volume, H);
     });
     return std::accumulate(projected_.begin(), projected_.end(), 0);
+  }
+
+  bool prepare_vertex_systems(int vertex_count) override {
+    if (!corners_.is_made()) corners_ = corners_around_vertices(batches_, vertex_count);
+    return true;
+  }
+
+  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
+                          std::span<Mat3d> H) const override {
+    for (size_t k = 0; k < vertices.size(); ++k) {
+      const std::span<const int> around = corners_.around(vertices[k]);
+      for (size_t i = 0; i < around.size(); i += kPackWidth) {
+        const auto corners = around.subspan(i, std::min<size_t>(kPackWidth, around.size() - i));
+        const VertexPack tets = gather_corners(batches_, x, corners);
+        const Params<Pack> p = gather_params<M>(params_, corners);
+        add_vertex_system(tets, M::pk1(tets.F, p), M::hessian(tets.F, p), scale, g[k], H[k]);
+      }
+    }
   }
 
   double min_det_F(Positions x) const override {
@@ -163,6 +182,7 @@ class TetTerm : public TetElasticity {
 
   std::string name_;
   ColorClasses colors_;
+  Incidence corners_;                    // for single vertices
   mutable std::vector<double> partial_;  // scratch of reduce
   mutable std::vector<char> projected_;  // per batch: lanes projected by the last Hessian
 };

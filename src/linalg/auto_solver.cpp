@@ -89,14 +89,15 @@ double predict_iterations(const BlockSparse& H) {
   return uniform > 0 ? kIterations * std::sqrt(diagonal / uniform) : std::numeric_limits<double>::infinity();
 }
 
-AutoSolver::AutoSolver(int64_t memory_limit) : memory_limit_(memory_limit), cholesky_(memory_limit) {}
+AutoSolver::AutoSolver(int64_t memory_limit, int solves)
+    : memory_limit_(memory_limit), solves_(solves), cholesky_(memory_limit) {}
 
 void AutoSolver::analyze(const BlockPattern& pattern) {
   H_ = nullptr;
   rows_ = pattern.rows();
   prediction_ = predict_cholesky(pattern);
   fits_ = prediction_.bytes < static_cast<double>(std::min(memory_limit_, free_memory()));
-  affordable_ = prediction_.flops / (kFlopsPerIteration * std::max(1, rows_));
+  affordable_ = prediction_.flops / (kFlopsPerIteration * solves_ * std::max(1, rows_));
   cap_ = fits_ ? static_cast<int>(std::clamp<double>(affordable_, kLeastCap, kPatience)) : kPatience;
   cg_.set_max_iterations(cap_);
   cg_.analyze(pattern);

@@ -23,7 +23,8 @@ double predict_iterations(const BlockSparse& H);
 // factor comes close to the memory that is free may two runs differ.
 class AutoSolver : public LinearSolver {
  public:
-  explicit AutoSolver(int64_t memory_limit = std::numeric_limits<int64_t>::max());
+  // `solves`: how many right-hand sides share a factorisation, roughly.
+  explicit AutoSolver(int64_t memory_limit = std::numeric_limits<int64_t>::max(), int solves = 1);
 
   std::string_view name() const override { return "auto"; }
   std::string description() const override;
@@ -40,11 +41,12 @@ class AutoSolver : public LinearSolver {
   std::string expected() const;
 
   int64_t memory_limit_;
+  int solves_;
   Cholesky cholesky_;
   ConjugateGradient cg_;
   CostPrediction prediction_;
   int rows_ = 0, cap_ = 0;
-  double affordable_ = 0;  // iterations that cost as much as a factorisation
+  double affordable_ = 0;  // iterations per solve that cost as much as a factorisation
   double expected_ = 0;    // iterations for the matrix at hand
   bool direct_ = false, fits_ = false;
   const BlockSparse* H_ = nullptr;

@@ -56,6 +56,16 @@ TEST(AutoSolver, FactorisesTheSmallAndTheStiffAndIteratesOtherwise) {
   }
 }
 
+TEST(AutoSolver, FactorisesForManyRightHandSidesWhereItIteratesForOne) {
+  const Matrix H = spring_lattice({28, 7, 7, 1, 1});
+  for (const int solves : {1, 20}) {
+    AutoSolver solver(std::numeric_limits<int64_t>::max(), solves);
+    solver.analyze(*H.pattern);
+    ASSERT_TRUE(solver.factorize(H.values));
+    EXPECT_EQ(solver.is_direct(), solves == 20) << solver.description();
+  }
+}
+
 TEST(AutoSolver, PredictsIterationsOfSoftBodiesWithinAFactorOfTwo) {
   for (const double stiffness : {1.0, 10.0, 100.0}) {  // stiffer ones need fewer than predicted: size limits them
     const Matrix H = spring_lattice({.nx = 12, .ny = 6, .nz = 6, .stiffness = stiffness});

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "math/eigen3.h"
 
 namespace aspic {
 
@@ -30,6 +31,29 @@ bool invert_positive_definite(const Mat3d& A, Mat3d& inverse) {
   return std::isfinite(trace(inverse));
 }
 
+bool invert_made_definite(const Mat3d& A, Mat3d& inverse) {
+  if (invert_positive_definite(A, inverse)) return true;
+  if (!std::isfinite(squared_norm(A)) || squared_norm(A) == 0) return false;
+  constexpr double kFloor = 1e-6;
+  const Eigen3 e = symmetric_eigen(A);
+  const double largest = std::max(std::abs(e.values[0]), std::abs(e.values[2]));
+  inverse = {};
+  for (int k = 0; k < 3; ++k) {
+    const double l = std::max(std::abs(e.values[k]), kFloor * largest);
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r) inverse(r, c) += e.vectors(r, k) * e.vectors(c, k) / l;
+  }
+  return true;
+}
+
+void multiply_blocks(std::span<const Mat3d> blocks, std::span<const double> r, std::span<double> z) {
+  ASPIC_CHECK(r.size() == 3 * blocks.size() && z.size() == r.size());
+  for (size_t i = 0; i < blocks.size(); ++i) {
+    const Vec3d product = blocks[i] * Vec3d{{r[3 * i], r[3 * i + 1], r[3 * i + 2]}};
+    std::copy_n(product.a, 3, &z[3 * i]);
+  }
+}
+
 void ConjugateGradient::analyze(const BlockPattern& pattern) {
   const size_t rows = pattern.rows();
   H_ = nullptr;
@@ -42,11 +66,12 @@ bool ConjugateGradient::factorize(const BlockSparse& H) {
   ASPIC_CHECK(H.pattern->rows() == static_cast<int>(inverse_diagonal_.size()));
   H_ = &H;
   std::atomic<bool> definite = true;
-  auto invert = [&](int first, int last) {
+  const auto invert = blocks_ == Blocks::made_definite ? invert_made_definite : invert_positive_definite;
+  auto invert_rows = [&](int first, int last) {
     for (int row = first; row < last; ++row)
-      if (!invert_positive_definite(H.block[H.pattern->diagonal(row)], inverse_diagonal_[row])) definite = false;
+      if (!invert(H.block[H.pattern->diagonal(row)], inverse_diagonal_[row])) definite = false;
   };
-  parallel_chunks(H.pattern->rows(), invert);
+  parallel_chunks(H.pattern->rows(), invert_rows);
   if (!definite) H_ = nullptr;
   return definite;
 }

@@ -108,6 +108,32 @@ TEST(ConjugateGradient, RefusesAnIndefiniteDiagonalBlockAndIsReusable) {
   EXPECT_TRUE(solver.solve(b, x, 1e-10).ok);
 }
 
+TEST(BlockInverse, OfAnIndefiniteBlockHasTheAbsoluteEigenvalues) {
+  // Eigenvalues 3 and -1 in the plane of x and y, and 5 along z.
+  const Mat3d A = {{1, 2, 0, 2, 1, 0, 0, 0, 5}};
+  Mat3d inverse;
+  ASSERT_TRUE(invert_made_definite(A, inverse));
+  // |A| = [[2, 1], [1, 2]] and 5, whose inverse is [[2, -1], [-1, 2]] / 3 and 1 / 5.
+  const Mat3d expected = {{2.0 / 3, -1.0 / 3, 0, -1.0 / 3, 2.0 / 3, 0, 0, 0, 0.2}};
+  for (int i = 0; i < 9; ++i) EXPECT_NEAR(inverse.a[i], expected.a[i], 1e-15);
+  EXPECT_FALSE(invert_made_definite({}, inverse));
+  EXPECT_FALSE(invert_made_definite({{NAN, 0, 0, 0, 1, 0, 0, 0, 1}}, inverse));
+}
+
+TEST(ConjugateGradient, WithBlocksMadeDefiniteItDescendsWhereADiagonalBlockIsIndefinite) {
+  Matrix H = spring_lattice({.nx = 3, .ny = 3, .nz = 3});
+  Mat3d& block = H.values.block[H.pattern->diagonal(7)];
+  block = -1.0 * block;
+  const std::vector<double> b = random_vector(3 * H.rows(), 6);
+  std::vector<double> x(b.size());
+  ConjugateGradient solver(ConjugateGradient::Blocks::made_definite);
+  solver.analyze(*H.pattern);
+  ASSERT_TRUE(solver.factorize(H.values));
+  const SolveReport report = solver.solve(b, x, 1e-6);
+  EXPECT_TRUE(report.indefinite);
+  EXPECT_GT(dot(b, x), 0);
+}
+
 TEST(ConjugateGradient, SolvesNothingAndZero) {
   for (const int rows : {0, 1, 2}) {
     const Matrix H = random_dominant(rows, {}, 7);

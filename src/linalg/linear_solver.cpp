@@ -9,8 +9,8 @@ namespace aspic {
 
 std::vector<std::string> linear_solver_names() { return {"auto", "cholesky", "block_jacobi"}; }
 
-std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name) {
-  if (name == "auto") return std::make_unique<AutoSolver>();
+std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name, int solves) {
+  if (name == "auto") return std::make_unique<AutoSolver>(std::numeric_limits<int64_t>::max(), solves);
   if (name == "cholesky") return std::make_unique<Cholesky>();
   if (name == "block_jacobi") return std::make_unique<ConjugateGradient>();
   throw InvalidInput("no linear solver is called '" + std::string(name) + "'" +

@@ -31,7 +31,8 @@ class LinearSolver {
 };
 
 // "auto", "cholesky", "block_jacobi" (conjugate gradients). Throws InvalidInput for another name.
-std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name);
+// `solves`: how many right-hand sides share a factorisation, roughly; for "auto".
+std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name, int solves = 1);
 std::vector<std::string> linear_solver_names();
 
 }  // namespace aspic

@@ -2,9 +2,12 @@
 
 namespace aspic {
 
-bool GradientDescent::compute(Objective&, std::span<const double>, std::span<const double> g, double,
-                              std::span<double> d, DirectionReport&) {
-  for (size_t i = 0; i < g.size(); ++i) d[i] = -g[i];
+std::string GradientDescent::description() const { return "gradient_descent, preconditioner " + B_.description(); }
+
+bool GradientDescent::compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy&,
+                              std::span<double> d, DirectionReport& report) {
+  if (!B_.apply(E, x, g, d, report)) return false;
+  for (double& di : d) di = -di;
   return true;
 }
 

@@ -24,6 +24,8 @@ std::string_view to_string(Status status) {
       return "interrupted";
     case Status::undefined:
       return "undefined";
+    case Status::inaccurate:
+      return "inaccurate";
   }
   return "unknown";
 }
@@ -102,12 +104,6 @@ double direction_size(const Objective& E, const MinimizeOptions& options, std::s
   }
 }
 
-// Inner solves are loose while the minimum is far away and tight near it, so that convergence stays superlinear
-// [Eisenstat and Walker 1996].
-double forcing(double gradient_ratio, const MinimizeOptions& options) {
-  return std::min(options.max_forcing, std::max(1e-8, std::sqrt(gradient_ratio)));
-}
-
 // A line search that fails this close to the round-off of the gradient has nothing left to find.
 constexpr double kRoundOffMargin = 100;
 // Round-off is as good as convergence only where it is small beside what the gradient is made of.
@@ -121,7 +117,7 @@ void add(const Iteration& iteration, MinimizeReport& report) {
   const DirectionReport& direction = iteration.direction;
   report.values += iteration.trials;
   report.trials += iteration.trials;
-  report.gradients += direction.gradients;
+  report.gradients += iteration.gradients;
   report.hessians += direction.hessians;
   report.factorizations += direction.factorizations;
   report.linear_iterations += direction.linear_iterations;
@@ -138,9 +134,11 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
   SearchDirection& direction = at.direction;
   const MinimizeOptions& options = at.options;
   MinimizeReport& report = at.report;
-  const double loose = forcing(report.gradient_norm / report.first_gradient_norm, options);
+  const bool judges_gradient = !at.judges_direction();
+  const InnerAccuracy accuracy = {options.max_forcing,
+                                  judges_gradient ? 0.5 * report.threshold / report.gradient_norm : 0};
   for (;; ++iteration.retreats) {
-    const bool found = direction.compute(E, at.x, g_, loose, d_, iteration.direction);
+    const bool found = direction.compute(E, at.x, g_, accuracy, d_, iteration.direction);
     at.slope = found ? E.dot(g_, d_) : 0;
     iteration.decrement = -0.5 * at.slope;
     report.status = Status::no_descent;
@@ -153,7 +151,7 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
       Stopwatch stopwatch;
       at.step = backtrack(E, at.x, d_, at.value, at.slope, options.line_search, trial_, trial_gradient_, trials_);
       iteration.trials += static_cast<int>(trials_.size());
-      report.gradients += at.step.gradients;
+      iteration.gradients += at.step.gradients;
       iteration.line_search_seconds += stopwatch.lap();
       if (at.step.alpha > 0) return true;
       report.status = Status::stuck;
@@ -173,7 +171,7 @@ void Minimizer::take_step(Progress& at, Iteration& iteration) {
   at.value = at.step.value;
   if (!at.step.gradient_known) {
     at.E.gradient(at.x, trial_gradient_);
-    ++at.report.gradients;
+    ++iteration.gradients;
   }
   g_.swap(trial_gradient_);
   at.gradient_scale = at.E.gradient_scale();
@@ -185,8 +183,8 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
                                    const MinimizeOptions& options, const IterationObserver& observe) {
   if (judges_direction(options.criterion) && !direction.estimates_minimiser())
     throw InvalidInput("criterion = '" + std::string(to_string(options.criterion)) +
-                       "' needs Newton's method: " + std::string(direction.name()) +
-                       " finds directions that do not tell how far the minimum is (try 'scale')");
+                       "' needs the method newton or newton_cg: directions of " + std::string(direction.name()) +
+                       " do not tell how far the minimum is (try 'scale')");
   for (auto* v : {&g_, &d_, &trial_, &trial_gradient_}) v->resize(x.size());
   trials_.reserve(64);
   direction.begin();
@@ -215,8 +213,9 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
 
     LiveIteration iteration{{.index = i, .value = report.value, .gradient_norm = report.gradient_norm}, E};
     const bool found = find_step(at, iteration);
-    add(iteration, report);
     if (found) take_step(at, iteration);
+    iteration.gradients += iteration.direction.gradients;
+    add(iteration, report);
     iteration.x = found ? trial_ : x;
     iteration.g = found ? trial_gradient_ : g_;
     iteration.d = d_, iteration.x_next = x, iteration.tried = trials_;

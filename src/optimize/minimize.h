@@ -20,6 +20,7 @@ enum class Status {
   no_descent,       // no descent direction could be computed
   interrupted,      // the observer asked to stop
   undefined,        // value or gradient is not finite at the start
+  inaccurate,       // not of a minimisation: the smallest part of an adaptive time step misses its tolerance
 };
 std::string_view to_string(Status status);
 inline bool is_success(Status status) { return status == Status::converged || status == Status::round_off; }
@@ -54,6 +55,7 @@ struct Iteration {
   double decrement = 0;      // Newton decrement: -g.d / 2
   double alpha = 0;          // accepted step length; 0 when there was none, which ends the minimisation
   int trials = 0;            // evaluations by the line search
+  int gradients = 0;         // evaluations in all
   int retreats = 0;          // how often a direction was of no use and another way was taken
   DirectionReport direction;
   double line_search_seconds = 0, gradient_seconds = 0;  // wall time

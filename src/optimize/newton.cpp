@@ -1,6 +1,10 @@
 #include "optimize/newton.h"
 
+#include <cmath>
+#include <utility>
+
 #include "base/stopwatch.h"
+#include "linalg/conjugate_gradient.h"
 
 namespace aspic {
 namespace {
@@ -18,30 +22,87 @@ Definiteness first_choice(NewtonDefiniteness definiteness) {
 
 }  // namespace
 
+std::string_view to_string(NewtonDefiniteness definiteness) {
+  switch (definiteness) {
+    case NewtonDefiniteness::exact:
+      return "exact";
+    case NewtonDefiniteness::clamped:
+      return "clamped";
+    case NewtonDefiniteness::absolute:
+      return "absolute";
+    case NewtonDefiniteness::on_demand:
+      return "on_demand";
+    case NewtonDefiniteness::progressive:
+      return "progressive";
+  }
+  return "unknown";
+}
+
+std::vector<NewtonDefiniteness> all_definiteness() {
+  return {NewtonDefiniteness::on_demand, NewtonDefiniteness::progressive, NewtonDefiniteness::clamped,
+          NewtonDefiniteness::absolute, NewtonDefiniteness::exact};
+}
+
 Newton::Newton(std::unique_ptr<LinearSolver> solver, NewtonDefiniteness definiteness)
     : solver_(std::move(solver)), definiteness_(definiteness) {}
 
-std::string Newton::description() const { return "newton, " + solver_->description(); }
-
-void Newton::begin() { clamp_next_ = clamped_ = false; }
-
-// H d = -g
-bool Newton::compute(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,
-                     std::span<double> d, DirectionReport& report) {
-  clamped_ = clamp_next_;
-  clamp_next_ = false;
-  if (!clamped_ && solve(E, x, first_choice(definiteness_), g, forcing, d, report)) return true;
-  if (definiteness_ != NewtonDefiniteness::on_demand) return false;
-  clamped_ = report.projected = true;
-  return solve(E, x, Definiteness::clamped, g, forcing, d, report);
+std::unique_ptr<Newton> make_newton_cg(NewtonDefiniteness definiteness) {
+  auto direction = std::make_unique<Newton>(
+      std::make_unique<ConjugateGradient>(ConjugateGradient::Blocks::made_definite), definiteness);
+  direction->truncated_ = true;
+  return direction;
 }
 
-bool Newton::retreat() { return clamp_next_ = definiteness_ == NewtonDefiniteness::on_demand && !clamped_; }
+std::string Newton::description() const {
+  return std::string(name()) + ", definiteness " + std::string(to_string(definiteness_)) + ", " +
+         solver_->description();
+}
 
-bool Newton::solve(Objective& E, std::span<const double> x, Definiteness kind, std::span<const double> g,
+void Newton::begin() {
+  cautious_next_ = clamped_ = false;
+  forcing_.begin();
+  progressive_.begin();
+}
+
+// H d = -g
+bool Newton::compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
+                     std::span<double> d, DirectionReport& report) {
+  const double forcing = forcing_.at(std::sqrt(E.dot(g, g)), accuracy);
+  const bool cautious = std::exchange(cautious_next_, false);
+  if (definiteness_ == NewtonDefiniteness::progressive) {
+    if (cautious) progressive_.tighten(g);
+    return solve_progressively(E, x, g, forcing, d, report);
+  }
+  clamped_ = cautious;
+  if (!clamped_ && solve(E, x, {first_choice(definiteness_)}, g, forcing, d, report)) return true;
+  if (definiteness_ != NewtonDefiniteness::on_demand) return false;
+  clamped_ = report.projected = true;
+  return solve(E, x, {Definiteness::clamped}, g, forcing, d, report);
+}
+
+bool Newton::retreat() {
+  cautious_next_ = definiteness_ == NewtonDefiniteness::progressive
+                       ? !progressive_.is_complete()
+                       : definiteness_ == NewtonDefiniteness::on_demand && !clamped_;
+  return cautious_next_;
+}
+
+bool Newton::solve_progressively(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,
+                                 std::span<double> d, DirectionReport& report) {
+  for (;; progressive_.tighten(g)) {
+    const Projection projection = progressive_.at(g);
+    report.projected = report.projected || projection.kind != Definiteness::exact;
+    if (solve(E, x, projection, g, forcing, d, report)) break;
+    if (progressive_.is_complete()) return false;
+  }
+  progressive_.relax();
+  return true;
+}
+
+bool Newton::solve(Objective& E, std::span<const double> x, const Projection& projection, std::span<const double> g,
                    double forcing, std::span<double> d, DirectionReport& report) {
   Stopwatch stopwatch;
-  const BlockSparse& H = E.hessian(x, {kind});
+  const BlockSparse& H = E.hessian(x, projection);
   ++report.hessians;
   report.projected_elements += E.projected_elements();
   report.hessian_seconds += stopwatch.lap();
@@ -56,7 +117,7 @@ bool Newton::solve(Objective& E, std::span<const double> x, Definiteness kind, s
   const SolveReport solved = solver_->solve(g, d, forcing);
   report.linear_iterations += solved.iterations;
   report.solve_seconds += stopwatch.lap();
-  if (!solved.ok || solved.indefinite) return false;
+  if (solved.indefinite ? !truncated_ : !solved.ok) return false;
   for (double& di : d) di = -di;
   return true;
 }

@@ -1,35 +1,54 @@
 // Newton's method: minimise the quadratic approximation, H d = -g.
 #pragma once
 #include <memory>
+#include <vector>
 
 #include "linalg/linear_solver.h"
+#include "optimize/forcing.h"
+#include "optimize/progressive_projection.h"
 #include "optimize/search_direction.h"
 
 namespace aspic {
 
 // on_demand: exact first; clamped only when the exact Hessian turns out indefinite or its direction of no use.
-enum class NewtonDefiniteness { exact, clamped, absolute, on_demand };
+// progressive: exact first; then clamped where the residual is largest, and further around, as far as it takes.
+enum class NewtonDefiniteness { exact, clamped, absolute, on_demand, progressive };
+std::string_view to_string(NewtonDefiniteness definiteness);
+std::vector<NewtonDefiniteness> all_definiteness();
 
 class Newton : public SearchDirection {
  public:
   explicit Newton(std::unique_ptr<LinearSolver> solver,
                   NewtonDefiniteness definiteness = NewtonDefiniteness::on_demand);
-  std::string_view name() const override { return "newton"; }
+  std::string_view name() const override { return truncated_ ? "newton_cg" : "newton"; }
   std::string description() const override;
   void begin() override;
-  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, double forcing, std::span<double> d,
-               DirectionReport& report) override;
+  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
+               std::span<double> d, DirectionReport& report) override;
   bool retreat() override;
   bool estimates_minimiser() const override { return true; }
   const LinearSolver& solver() const { return *solver_; }
 
  private:
-  bool solve(Objective& E, std::span<const double> x, Definiteness kind, std::span<const double> g, double forcing,
-             std::span<double> d, DirectionReport& report);
+  friend std::unique_ptr<Newton> make_newton_cg(NewtonDefiniteness definiteness);
+
+  bool solve_progressively(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,
+                           std::span<double> d, DirectionReport& report);
+  bool solve(Objective& E, std::span<const double> x, const Projection& projection, std::span<const double> g,
+             double forcing, std::span<double> d, DirectionReport& report);
   std::unique_ptr<LinearSolver> solver_;
   NewtonDefiniteness definiteness_;
+  bool truncated_ = false;  // a solve that met negative curvature is used as far as it came
+  Forcing forcing_;
+  ProgressiveProjection progressive_;
   uint64_t analyzed_version_ = 0;
-  bool clamp_next_ = false, clamped_ = false;  // on_demand: at the next compute(), at the last one
+  bool cautious_next_ = false;  // after a retreat: project, or more than before
+  bool clamped_ = false;        // on_demand: the last direction
 };
+
+// Truncated Newton: conjugate gradients that stop where they meet negative curvature and keep what they have, so that
+// an indefinite Hessian needs no projection [Nocedal and Wright 2006, alg. 7.1]. The systems are solved as exactly as
+// Eisenstat and Walker ask. Where such a direction is of no use, the Hessian is clamped, if `definiteness` allows.
+std::unique_ptr<Newton> make_newton_cg(NewtonDefiniteness definiteness = NewtonDefiniteness::on_demand);
 
 }  // namespace aspic

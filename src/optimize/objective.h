@@ -21,6 +21,15 @@ class Objective {
   // A constant positive definite matrix in which steps may be measured, such as the mass; null: the identity.
   virtual const BlockSparse* metric() { return nullptr; }
 
+  // Which vertices interact, for methods that move one vertex at a time; null: ask the Hessian.
+  virtual const BlockPattern* coupling() { return nullptr; }
+  // g[k] = dE/dx_v and H[k] = d2E/dx_v^2 (3 x 3, perhaps indefinite) for v = vertices[k], no two of which interact.
+  // False: not offered; whole gradients and Hessians serve instead.
+  virtual bool vertex_systems(std::span<const double> /*x*/, std::span<const int> /*vertices*/, std::span<Vec3d> /*g*/,
+                              std::span<Mat3d> /*H*/) {
+    return false;
+  }
+
   // The sizes against which the last value and the last gradient are small or large, in their own units, and the part
   // of them that is round-off. A plain function measures against 1.
   virtual double value_scale() const { return 1; }

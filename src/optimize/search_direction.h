@@ -15,6 +15,13 @@ struct DirectionReport {
   double hessian_seconds = 0, factorize_seconds = 0, solve_seconds = 0;  // wall time
 };
 
+// Relative residuals between which an inner solve may choose: as loose as the method bears, and no tighter than is
+// enough for the end of the minimisation [Kelley 1995, eq. 6.20].
+struct InnerAccuracy {
+  double loosest = 0.1;
+  double enough = 0;
+};
+
 class SearchDirection {
  public:
   virtual ~SearchDirection() = default;
@@ -23,10 +30,10 @@ class SearchDirection {
 
   // A minimisation begins: forget the last one.
   virtual void begin() {}
-  // Writes d; false when no descent direction could be found. An inner solve to the relative residual
-  // `forcing` is enough.
-  virtual bool compute(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,
-                       std::span<double> d, DirectionReport& report) = 0;
+  // Writes d; false when no descent direction could be found. Inner solves need be no more exact than
+  // `accuracy` says.
+  virtual bool compute(Objective& E, std::span<const double> x, std::span<const double> g,
+                       const InnerAccuracy& accuracy, std::span<double> d, DirectionReport& report) = 0;
   // The last direction was of no use: none was found, or no step along it decreases E. True: compute again, there is a
   // more cautious way.
   virtual bool retreat() { return false; }

@@ -1,39 +1,131 @@
 #include "optimize/solver.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "linalg/linear_solver.h"
+#include "optimize/fallback_chain.h"
 #include "optimize/gradient_descent.h"
+#include "optimize/lbfgs.h"
 #include "optimize/newton.h"
+#include "optimize/nonlinear_cg.h"
+#include "optimize/preconditioner.h"
+#include "optimize/vertex_descent.h"
 
 namespace aspic {
 namespace {
 
-struct NamedDefiniteness {
+using Direction = std::unique_ptr<SearchDirection>;
+
+NewtonDefiniteness definiteness(const SolverOptions& options) {
+  for (const NewtonDefiniteness d : all_definiteness())
+    if (to_string(d) == options.definiteness) return d;
+  return NewtonDefiniteness::on_demand;
+}
+
+// The preconditioner of a method whose own choice is `usual`.
+Preconditioner preconditioner(const SolverOptions& options, PreconditionerKind usual) {
+  for (const PreconditionerKind kind : all_preconditioners())
+    if (to_string(kind) == options.preconditioner) usual = kind;
+  return Preconditioner(usual, options.linear);
+}
+
+struct Method {
   std::string name;
-  NewtonDefiniteness value;
+  Direction (*make)(const SolverOptions&);
+  bool estimates_minimiser, solves_systems, uses_preconditioner, uses_definiteness;
+  bool prefers_hessian = false;  // as its preconditioner
 };
-const std::vector<NamedDefiniteness>& definiteness_table() {
-  static const std::vector<NamedDefiniteness> table = {{"auto", NewtonDefiniteness::on_demand},
-                                                       {"on_demand", NewtonDefiniteness::on_demand},
-                                                       {"exact", NewtonDefiniteness::exact},
-                                                       {"clamped", NewtonDefiniteness::clamped},
-                                                       {"absolute", NewtonDefiniteness::absolute}};
+
+const std::vector<Method>& methods() {
+  static const std::vector<Method> table = {
+      {"newton",
+       [](const SolverOptions& o) -> Direction {
+         return std::make_unique<Newton>(make_linear_solver(o.linear), definiteness(o));
+       },
+       true, true, false, true},
+      {"newton_cg", [](const SolverOptions& o) -> Direction { return make_newton_cg(definiteness(o)); }, true, false,
+       false, true},
+      {"lbfgs",
+       [](const SolverOptions& o) -> Direction {
+         return std::make_unique<LBFGS>(preconditioner(o, PreconditionerKind::hessian));
+       },
+       false, false, true, false, true},
+      {"nonlinear_cg",
+       [](const SolverOptions& o) -> Direction {
+         return std::make_unique<NonlinearCG>(preconditioner(o, PreconditionerKind::hessian));
+       },
+       false, false, true, false, true},
+      {"gradient_descent",
+       [](const SolverOptions& o) -> Direction {
+         return std::make_unique<GradientDescent>(preconditioner(o, PreconditionerKind::none));
+       },
+       false, false, true, false},
+      {"vertex_descent", [](const SolverOptions&) -> Direction { return std::make_unique<VertexDescent>(); }, false,
+       false, false, false}};
   return table;
 }
 
-NewtonDefiniteness definiteness_named(const std::string& name) {
-  for (const NamedDefiniteness& entry : definiteness_table())
-    if (entry.name == name) return entry.value;
-  throw InvalidInput("definiteness = '" + name + "' is unknown" + suggestion(name, definiteness_names()));
+const Method* method_named(const std::string& name) {
+  for (const Method& method : methods())
+    if (method.name == name) return &method;
+  return nullptr;
+}
+
+std::string quoted(const std::string& option, const std::string& value) { return option + " = '" + value + "'"; }
+
+std::optional<SolverConflict> unknown(const std::string& option, const std::string& value,
+                                      const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), value) != known.end()) return std::nullopt;
+  return SolverConflict{option, quoted(option, value) + " is unknown" + suggestion(value, known)};
+}
+
+bool factorizes(const Method& method, const SolverOptions& options) {
+  const bool by_hessian =
+      options.preconditioner == "hessian" || (options.preconditioner == "auto" && method.prefers_hessian);
+  return method.solves_systems || (method.uses_preconditioner && by_hessian);
+}
+
+// That `value` of an option is used by one of the chosen methods.
+template <class Uses>
+std::optional<SolverConflict> unused(const std::string& option, const std::string& value,
+                                     const std::vector<const Method*>& chosen, const Uses& uses) {
+  if (value == "auto" || std::any_of(chosen.begin(), chosen.end(), uses)) return std::nullopt;
+  std::string others;
+  for (const Method& method : methods())
+    if (uses(&method)) others += (others.empty() ? "" : ", ") + method.name;
+  return SolverConflict{option, quoted(option, value) + " is of no use to " + chosen.front()->name +
+                                    "; these have a use for it: " + others + " (or leave it at 'auto')"};
+}
+
+std::optional<SolverConflict> criterion_conflict(const SolverOptions& options,
+                                                 const std::vector<const Method*>& chosen) {
+  if (!judges_direction(options.minimize.criterion)) return std::nullopt;
+  for (const Method* method : chosen)
+    if (!method->estimates_minimiser)
+      return SolverConflict{"criterion", quoted("criterion", std::string(to_string(options.minimize.criterion))) +
+                                             " needs the method newton or newton_cg: directions of " + method->name +
+                                             " do not tell how far the minimum is (try 'scale')"};
+  return std::nullopt;
 }
 
 }  // namespace
 
-std::vector<std::string> minimizer_names() { return {"newton", "gradient_descent"}; }
+std::vector<std::string> minimizer_names() {
+  std::vector<std::string> names;
+  for (const Method& method : methods()) names.push_back(method.name);
+  return names;
+}
+
+std::vector<std::string> preconditioner_names() {
+  std::vector<std::string> names = {"auto"};
+  for (const PreconditionerKind kind : all_preconditioners()) names.emplace_back(to_string(kind));
+  return names;
+}
 
 std::vector<std::string> definiteness_names() {
-  std::vector<std::string> names;
-  for (const NamedDefiniteness& entry : definiteness_table()) names.push_back(entry.name);
+  std::vector<std::string> names = {"auto"};
+  for (const NewtonDefiniteness d : all_definiteness()) names.emplace_back(to_string(d));
   return names;
 }
 
@@ -58,11 +150,34 @@ DecreaseTest decrease_test_named(const std::string& name) {
   throw InvalidInput("test = '" + name + "' is unknown" + suggestion(name, decrease_test_names()));
 }
 
+std::optional<SolverConflict> find_conflict(const SolverOptions& options) {
+  if (auto wrong = unknown("method", options.method, minimizer_names())) return wrong;
+  std::vector<const Method*> chosen = {method_named(options.method)};
+  for (const std::string& name : options.fallback) {
+    if (auto wrong = unknown("fallback", name, minimizer_names())) return wrong;
+    chosen.push_back(method_named(name));
+  }
+  if (auto wrong = unknown("preconditioner", options.preconditioner, preconditioner_names())) return wrong;
+  if (auto wrong = unknown("linear", options.linear, linear_solver_names())) return wrong;
+  if (auto wrong = unknown("definiteness", options.definiteness, definiteness_names())) return wrong;
+  if (auto wrong = unused("preconditioner", options.preconditioner, chosen,
+                          [](const Method* m) { return m->uses_preconditioner; }))
+    return wrong;
+  if (auto wrong = unused("linear", options.linear, chosen, [&](const Method* m) { return factorizes(*m, options); }))
+    return wrong;
+  if (auto wrong =
+          unused("definiteness", options.definiteness, chosen, [](const Method* m) { return m->uses_definiteness; }))
+    return wrong;
+  return criterion_conflict(options, chosen);
+}
+
 std::unique_ptr<SearchDirection> make_search_direction(const SolverOptions& options) {
-  if (options.method == "newton")
-    return std::make_unique<Newton>(make_linear_solver(options.linear), definiteness_named(options.definiteness));
-  if (options.method == "gradient_descent") return std::make_unique<GradientDescent>();
-  throw InvalidInput("method = '" + options.method + "' is unknown" + suggestion(options.method, minimizer_names()));
+  if (const auto conflict = find_conflict(options)) throw InvalidInput(conflict->reason);
+  if (options.fallback.empty()) return method_named(options.method)->make(options);
+  std::vector<Direction> chain;
+  chain.push_back(method_named(options.method)->make(options));
+  for (const std::string& name : options.fallback) chain.push_back(method_named(name)->make(options));
+  return std::make_unique<FallbackChain>(std::move(chain));
 }
 
 }  // namespace aspic

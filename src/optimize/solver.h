@@ -1,6 +1,7 @@
 // How a function is minimised, by names: the methods and what each of them can be told.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,11 +14,12 @@ struct SolverOptions {
   std::vector<std::string> fallback;    // methods that take over, in this order, where the one before finds no step
   std::string preconditioner = "auto";  // see preconditioner_names(); "auto": what suits the method
   std::string linear = "auto";          // see linear_solver_names()
-  std::string definiteness = "auto";    // see definiteness_names(); "auto": on_demand for Newton's method
+  std::string definiteness = "auto";    // see definiteness_names(); "auto": on_demand
   MinimizeOptions minimize;
 };
 
 std::vector<std::string> minimizer_names();
+std::vector<std::string> preconditioner_names();
 std::vector<std::string> definiteness_names();
 std::vector<std::string> criterion_names();
 std::vector<std::string> decrease_test_names();
@@ -25,7 +27,14 @@ std::vector<std::string> decrease_test_names();
 Criterion criterion_named(const std::string& name);         // throws InvalidInput: an unknown name
 DecreaseTest decrease_test_named(const std::string& name);  // throws InvalidInput: an unknown name
 
-// Throws InvalidInput for a name that is unknown, and for one that the method has no use for, naming those that have.
+// A name that is unknown, or that none of the chosen methods has a use for.
+struct SolverConflict {
+  std::string option;  // the member of SolverOptions; "criterion" for that of `minimize`
+  std::string reason;  // the option, its value, why it does not do and what would
+};
+std::optional<SolverConflict> find_conflict(const SolverOptions& options);
+
+// Throws InvalidInput where there is a conflict.
 std::unique_ptr<SearchDirection> make_search_direction(const SolverOptions& options);
 
 }  // namespace aspic

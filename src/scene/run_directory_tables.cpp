@@ -15,6 +15,9 @@ std::vector<std::string> step_columns(const std::vector<std::string>& potential_
                                       "linear_iterations",
                                       "hessians",
                                       "projected_hessians",
+                                      "initial_guess",
+                                      "substeps",
+                                      "rejected",
                                       "residual",
                                       "residual_threshold",
                                       "min_det_F",
@@ -55,6 +58,7 @@ void RunTables::add(const StepReport& report) {
   row.add(report.step).add(report.time).add(to_string(report.status)).add(to_string(report.criterion));
   row.add(report.iterations).add(report.trials).add(report.linear_iterations);
   row.add(report.hessians).add(report.projected_hessians);
+  row.add(to_string(report.initial_guess)).add(report.substeps).add(report.rejected);
   row.add(report.residual).add(report.residual_threshold).add(report.min_det_F).add(report.kinetic);
   for (const double energy : report.potential) row.add(energy);
   row.add(report.potential_total).add(report.pin_work).add(report.damping_loss).add(report.numerical_loss);

@@ -43,7 +43,7 @@ Model sagging_bar() {
   return model;
 }
 
-Scene sagging_scene(const OutputOptions& output = {.checkpoint_every = 0}) {
+Scene sagging_scene(const OutputOptions& output = {.checkpoint_every = 0}, const SimulationOptions& options = {}) {
   Model model = sagging_bar();
   State state;
   for (const Vec3d& X : model.mesh.rest) state.q.insert(state.q.end(), X.a, X.a + 3);
@@ -53,7 +53,7 @@ Scene sagging_scene(const OutputOptions& output = {.checkpoint_every = 0}) {
   return {.name = "bar",
           .resolved = "name = \"bar\"\nyoung = 1e5\n",
           .notes = {},
-          .simulation = Simulation(std::move(model), std::move(state), {}),
+          .simulation = Simulation(std::move(model), std::move(state), options),
           .skins = {std::move(skin)},
           .steps = kSteps,
           .output = output,
@@ -165,6 +165,31 @@ TEST_F(RunResults, AnInterruptedRunContinuesToTheSameBytes) {
       run.finish(scene.simulation);
       EXPECT_EQ(contents(torn), contents(path(whole))) << "stopped after step " << stop << ", every " << every;
     }
+  }
+}
+
+// What an integrator remembers goes through the checkpoint's file: the step before, the length of parts.
+TEST_F(RunResults, EveryIntegratorContinuesFromItsCheckpointToTheSameBits) {
+  const OutputOptions output{.vtu = false, .pc2 = false, .usd = false, .checkpoint_every = 1e9};
+  std::vector<SimulationOptions> ways = {{.initial_guess = "last_increment"}};
+  for (const std::string& integrator : integrator_names()) ways.push_back({.h = 1e-3, .integrator = integrator});
+  for (const char* integrator : {"tr_bdf2", "rk4"})
+    ways.push_back({.h = 4e-3, .integrator = integrator, .adaptive = {.tolerance = 1e-4}});
+  for (const SimulationOptions& way : ways) {
+    Scene whole = sagging_scene(output, way);
+    for (int i = 0; i < kSteps; ++i) whole.simulation.step();
+    {
+      Scene scene = sagging_scene(output, way);
+      RunDirectory run = RunDirectory::create(path("run"), scene, ExistingRun::overwrite);
+      run_to(run, scene.simulation, 3);
+      run.finish(scene.simulation);
+    }
+    Scene scene = sagging_scene(output, way);
+    RunDirectory run = RunDirectory::resume(path("run"), scene);
+    EXPECT_EQ(scene.simulation.steps_taken(), 3);
+    run_to(run, scene.simulation, kSteps);
+    EXPECT_EQ(scene.simulation.state().q, whole.simulation.state().q) << way.integrator;
+    EXPECT_EQ(scene.simulation.state().qdot, whole.simulation.state().qdot) << way.integrator;
   }
 }
 

@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "dynamics/integrator.h"
 #include "material/registry.h"
 #include "scene/body_actions.h"
 #include "scene/placement.h"
 #include "scene/schema.h"
+#include "scene/solver_options.h"
 #include "scene/tables.h"
 
 namespace aspic {
@@ -69,23 +71,17 @@ void append(const TetMesh& mesh, TetMesh& all) {
   all.region.resize(all.tets.size(), 0);
 }
 
-SimulationOptions options_of(const Table& document) {
-  const Value &time = *document.find("time"), &solver = *document.find("solver"), &search = solver["line_search"];
+SimulationOptions options_of(const Table& document, std::vector<std::string>& notes) {
+  const Value& time = *document.find("time");
   SimulationOptions options;
   options.h = time["step"].number();
   options.integrator = time["integrator"].text();
-  options.solver.method = solver["method"].text();
-  options.solver.linear = solver["linear"].text();
-  options.solver.definiteness = solver["definiteness"].text();
-  MinimizeOptions& minimize = options.solver.minimize;
-  minimize.max_iterations = solver["max_iterations"].integer();
-  minimize.tolerance = solver["tolerance"].number();
-  minimize.criterion = criterion_named(solver["criterion"].text());
-  minimize.line_search = {.alpha_max = search["alpha_max"].number(),
-                          .sufficient_decrease = search["c"].number(),
-                          .shrink = search["p"].number(),
-                          .tolerance = search["tol"].number(),
-                          .test = decrease_test_named(search["test"].text())};
+  options.adaptive.tolerance = time["adaptive"]["tolerance"].number();
+  options.initial_guess = (*document.find("solver"))["initial_guess"].text();
+  options.solver = solver_options(*document.find("solver"));
+  if (!make_integrator(options.integrator)->is_implicit() && options.solver.method != SolverOptions().method)
+    notes.push_back("integrator = '" + options.integrator + "' minimises nothing: solver.method = '" +
+                    options.solver.method + "' has no effect");
   return options;
 }
 
@@ -118,7 +114,7 @@ class SceneBuilder {
     add_bodies();
     add_model();
     State state = start();
-    const SimulationOptions options = options_of(source_.document);
+    const SimulationOptions options = options_of(source_.document, source_.notes);
     const int steps = steps_of(*source_.document.find("time"));
     put_in_order(source_.document);
     std::string resolved = to_toml(source_.document);

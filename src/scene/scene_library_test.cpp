@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "dynamics/step_derivatives.h"
 #include "io/atomic_file.h"
 #include "scene/scene_cases_test.h"
 
@@ -50,6 +51,15 @@ TEST_P(SceneFile, ResolvedSceneGivesTheSameBits) {
   again.simulation.step();
   EXPECT_EQ(scene.simulation.state().q, again.simulation.state().q);
   EXPECT_EQ(scene.simulation.state().qdot, again.simulation.state().qdot);
+}
+
+TEST_P(SceneFile, EveryTermHasTheDerivativesThatItClaims) {
+  Scene scene = load_scene(GetParam());
+  scene.simulation.step();
+  for (const TermDerivatives& of : check_step_derivatives(scene.simulation))
+    for (const DerivativeCheck* check : {&of.report.gradient, &of.report.hessian})
+      EXPECT_TRUE(check->passed) << of.term << " (" << of.state << "), " << entry_name(check->row) << ": "
+                                 << check->smallest_error;
 }
 
 TEST_P(SceneFile, IsShort) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "io/folder_test.h"
 #include "scene/scene_cases_test.h"
 
@@ -38,6 +39,22 @@ TEST(Scene, StepsCoverTheDuration) {
   EXPECT_EQ(load("[time]\nstep = 0.01\nduration = 2\n" + kCube).steps, 200);
   EXPECT_EQ(load("[time]\nstep = 0.03\nduration = 0.1\n" + kCube).steps, 4);
   EXPECT_EQ(load("[time]\nduration = 0\n" + kCube).steps, 0);
+}
+
+TEST(Scene, IntegratorPartsAndGuessReachTheSimulation) {
+  const Scene scene = load(
+      "[time]\nintegrator = \"midpoint\"\nadaptive = { tolerance = 1e-4 }\n"
+      "[solver]\ninitial_guess = \"last_increment\"\n" +
+      kCube);
+  const SimulationOptions& options = scene.simulation.options();
+  EXPECT_EQ(options.integrator, "midpoint");
+  EXPECT_EQ(options.adaptive.tolerance, 1e-4);
+  EXPECT_EQ(options.initial_guess, "last_increment");
+}
+
+TEST(Scene, AnIntegratorThatCannotDivideItsStepsIsRefusedWithThoseThatCan) {
+  EXPECT_THAT([] { load("[time]\nintegrator = \"bdf2\"\nadaptive = { tolerance = 1e-4 }\n" + kCube); },
+              testing::ThrowsMessage<InvalidInput>(AllOf(HasSubstr("'bdf2'"), HasSubstr("tr_bdf2"))));
 }
 
 TEST(Scene, PlacesTheRestShapeByScaleThenRotationThenTranslation) {
@@ -216,6 +233,41 @@ TEST(Scene, GeneratedShapesAreBounded) {
   EXPECT_THAT(refusal("[[body]]\nshape = { box = { upper = [1, 1, 1], cells = [9999, 9999, 9999] } }\n"),
               HasSubstr("tets; at most"));
   EXPECT_THAT(refusal("[[body]]\nshape = { box = { upper = [1, 1, 1], size = 1e-300 } }\n"), HasSubstr("larger size"));
+}
+
+TEST(Scene, SolverChoicesThatTheMethodHasNoUseForAreErrorsWithTheirPlace) {
+  const auto refused = [](const std::string& lines) { return refusal("[solver]\n" + lines + kCube); };
+  EXPECT_THAT(refused("method = \"lbfgs\"\ndefiniteness = \"clamped\"\n"),
+              AllOf(HasSubstr("beam.toml:3:"), HasSubstr("definiteness = 'clamped'"), HasSubstr("newton, newton_cg")));
+  EXPECT_THAT(refused("preconditioner = \"mass\"\n"), AllOf(HasSubstr("beam.toml:2:"), HasSubstr("nonlinear_cg")));
+  EXPECT_THAT(refused("linear = \"cholesky\"\nmethod = \"vertex_descent\"\n"), HasSubstr("beam.toml:2:"));
+  EXPECT_THAT(refused("method = \"nonlinear_cg\"\ncriterion = \"velocity\"\n"),
+              AllOf(HasSubstr("beam.toml:3:"), HasSubstr("newton or newton_cg")));
+  EXPECT_THAT(refused("fallback = [\"lbfgs\", \"gradient_decent\"]\n"),
+              AllOf(HasSubstr("beam.toml:2:"), HasSubstr("did you mean 'gradient_descent'")));
+  EXPECT_THAT(refused("fallback = \"lbfgs\"\n"), HasSubstr("a list of names"));
+}
+
+TEST(Scene, SolverChoicesReachTheSimulationAndAResolvedSceneRunsToTheSameBits) {
+  const std::string text =
+      "[time]\nstep = 0.02\n[solver]\nmethod = \"lbfgs\"\npreconditioner = \"diagonal\"\n"
+      "fallback = [\"newton\"]\ndefiniteness = \"progressive\"\n" +
+      kCube + "[[body.pin]]\nwhere = \"x < 0.001\"\n";
+  Scene scene = load(text);
+  EXPECT_THAT(scene.simulation.solver_description(),
+              AllOf(HasSubstr("lbfgs, preconditioner diagonal"), HasSubstr("newton")));
+  Scene again = load(scene.resolved);
+  for (int i = 0; i < 3; ++i) {
+    scene.simulation.step();
+    again.simulation.step();
+  }
+  EXPECT_EQ(scene.simulation.state().q, again.simulation.state().q);
+}
+
+TEST(Scene, AMethodWithoutEffectIsNoted) {
+  const std::string text = "[time]\nstep = 1e-5\nintegrator = \"symplectic_euler\"\n" + kCube;
+  EXPECT_THAT(load(text, {"solver.method=lbfgs"}).notes, Contains(HasSubstr("method = 'lbfgs' has no effect")));
+  EXPECT_THAT(load(text).notes, Not(Contains(HasSubstr("no effect"))));
 }
 
 }  // namespace

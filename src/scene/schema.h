@@ -22,9 +22,10 @@ enum Accepts : unsigned {
   kMatrix = 256,      // three rows of three numbers
   kPairs = 512,       // a list of pairs of integers
   kTable = 1024,
-  kTables = 2048,            // [[...]], or a single table
-  kAnyTable = 4096,          // keys are chosen by the user; all values are numbers
-  kMovingExpressions = 8192  // three numbers or formulas of X, Y, Z and t
+  kTables = 2048,             // [[...]], or a single table
+  kAnyTable = 4096,           // keys are chosen by the user; all values are numbers
+  kMovingExpressions = 8192,  // three numbers or formulas of X, Y, Z and t
+  kNames = 16384              // a list of any length of `choices`
 };
 
 struct Range {

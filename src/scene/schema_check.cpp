@@ -25,6 +25,7 @@ bool is_array_of(const Value& value, size_t size, bool (*accepted)(const Value&)
 bool is_number(const Value& v) { return v.is_number(); }
 bool is_integer(const Value& v) { return std::holds_alternative<std::int64_t>(v.data); }
 bool is_number_or_text(const Value& v) { return v.is_number() || v.is_text(); }
+bool is_text(const Value& v) { return v.is_text(); }
 bool is_row(const Value& v) { return is_array_of(v, 3, is_number); }
 bool is_pair(const Value& v) { return is_array_of(v, 2, is_integer); }
 bool is_table(const Value& v) { return v.is_table(); }
@@ -43,6 +44,7 @@ unsigned kind_of(const Value& v, unsigned accepts) {
   if (is(kIntegers, is_array_of(v, 0, is_integer))) return kIntegers;
   if (is(kMatrix, is_array_of(v, 3, is_row))) return kMatrix;
   if (is(kPairs, is_array_of(v, 0, is_pair))) return kPairs;
+  if (is(kNames, is_array_of(v, 0, is_text))) return kNames;
   if (is(kTable, v.is_table())) return kTable;
   if (is(kTables, v.is_table() || is_array_of(v, 0, is_table))) return kTables;
   if (is(kAnyTable, v.is_table())) return kAnyTable;
@@ -65,6 +67,7 @@ std::string expected(const Key& key) {
   add(kIntegers, "a list of integers");
   add(kMatrix, "three rows of three numbers");
   add(kPairs, "a list of pairs of integers");
+  add(kNames, "a list of names");
   add(kTable, "a table { ... }");
   add(kTables, "one or more tables");
   add(kAnyTable, "a table { name = number }");
@@ -156,6 +159,9 @@ class Checker {
       case kMovingExpressions:
       case kMatrix:
         return check_components(value, key);
+      case kNames:
+        for (const Value& name : value.array()) check_choice(name, key);
+        return;
       case kTable:
         return check_section(value.table(), key.table, value.place);
       case kTables:

@@ -13,6 +13,16 @@ namespace {
 const Range kPositive{.min = 0, .min_open = true};
 const Range kNotNegative{.min = 0};
 
+const char* const kIntegrators =
+    "the scheme that takes a step (formulas, orders, energies: [integrators](integrators.md)). Implicit, a "
+    "minimisation "
+    "per stage: `backward_euler` first order, damps; `linearly_implicit_euler` one Newton iteration of it; `bdf2` and "
+    "`tr_bdf2` second order, damp only what the step does not resolve; `midpoint` and `trapezoid` second order, damp "
+    "nothing and may gain energy in large deformations. Explicit, stable for short steps only: `symplectic_euler` "
+    "(what the lecture's slide prints as \"Forward "
+    "Euler\"), `forward_euler` (the classical one, gains energy), `rk4` fourth order. `quasi_static`: equilibrium, no "
+    "inertia";
+
 void add_scene(Schema& s) {
   s.sections.push_back({"scene", "*.toml", "What is simulated: the top level of the file."});
   add_keys(s, "scene",
@@ -61,8 +71,27 @@ void add_time(Schema& s) {
              .accepts = kText,
              .fallback = toml_string(usual.integrator),
              .choices = integrator_names(),
-             .meaning = "the scheme that turns a step into a minimisation",
-             .reason = "stable for every step length"}});
+             .meaning = kIntegrators,
+             .reason = "stable for every step length"},
+            {.name = "adaptive",
+             .accepts = kTable,
+             .fallback = "{}",
+             .table = "adaptive",
+             .meaning = "steps in parts, as short as their error asks for: [integrators](integrators.md)"}});
+  s.sections.push_back(
+      {"adaptive", "adaptive = { ... } in [time]",
+       "Each step is taken in parts of `step` / 2^k. A part is taken once whole and once in halves, "
+       "whose difference estimates its error; parts too long are rejected and halved, and a step whose "
+       "smallest part (2^-20) is still inaccurate is reported as such. Frames and restarts stay at "
+       "multiples of `step`."});
+  add_keys(s, "adaptive",
+           {{.name = "tolerance",
+             .accepts = kNumber,
+             .fallback = number_text(usual.adaptive.tolerance),
+             .range = {.min = 0, .max = 1},
+             .meaning = "error in position that a step may add, relative to the diagonal of the body at rest; 0: steps "
+                        "are taken whole. Not for bdf2 and quasi_static",
+             .reason = "a step costs what it did before"}});
 }
 
 void add_solver(Schema& s) {
@@ -77,6 +106,29 @@ void add_solver(Schema& s) {
         .choices = minimizer_names(),
         .meaning = "how the search direction is found",
         .reason = "converges in a few iterations"},
+       {.name = "fallback",
+        .accepts = kNames,
+        .fallback = "[]",
+        .choices = minimizer_names(),
+        .meaning = "methods that take over, in this order, where the one before finds no step; the next iteration "
+                   "begins with `method` again",
+        .reason = "Newton's method finds a step by itself"},
+       {.name = "preconditioner",
+        .accepts = kText,
+        .fallback = "\"auto\"",
+        .choices = preconditioner_names(),
+        .meaning = "the matrix that stands for the Hessian in `lbfgs`, `nonlinear_cg` and `gradient_descent`: made at "
+                   "the first iterate of each step and kept",
+        .reason = "`hessian`, for `gradient_descent` `none`, as in the lecture"},
+       {.name = "initial_guess",
+        .accepts = kText,
+        .fallback = toml_string(SimulationOptions().initial_guess),
+        .choices = initial_guess_names(),
+        .meaning = "where a minimisation starts: `zero` the shape at rest, `current` where the body is, `extrapolated` "
+                   "its flight without forces q + h qdot, `last_increment` what the step before added, `best` the one "
+                   "of the last three with the lowest energy. A guess of infinite energy, or not known yet, gives way "
+                   "to the best",
+        .reason = "never worse than where the body is"},
        {.name = "max_iterations",
         .accepts = kInteger,
         .fallback = std::to_string(usual.minimize.max_iterations),
@@ -107,13 +159,16 @@ void add_solver(Schema& s) {
         .accepts = kText,
         .fallback = toml_string(usual.linear),
         .choices = linear_solver_names(),
-        .meaning = "the solver of the linear systems of Newton's method",
+        .meaning = "the solver of the linear systems of Newton's method and of the preconditioner `hessian`",
         .reason = "chosen by predicted cost"},
        {.name = "definiteness",
         .accepts = kText,
         .fallback = toml_string(usual.definiteness),
         .choices = definiteness_names(),
-        .meaning = "what is done to an indefinite Hessian",
+        .meaning = "what is done to an indefinite Hessian: refuse it (`exact`), or raise the negative eigenvalues of "
+                   "elements always (`clamped`, or to their `absolute` values), where a direction is of no use "
+                   "(`on_demand`), and there only of elements with large residuals (`progressive`); for `newton` and "
+                   "`newton_cg`",
         .reason = "projects only when it has to"},
        {.name = "mass",
         .accepts = kText,

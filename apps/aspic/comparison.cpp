@@ -1,0 +1,167 @@
+#include "aspic/comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "aspic/method_text.h"
+#include "base/error.h"
+#include "base/stopwatch.h"
+
+namespace aspic::cli {
+namespace {
+
+constexpr int kMostIterations = 1'000'000;  // the clock limits them
+constexpr int kRepetitions = 3;
+constexpr double kWorthRepeating = 0.5;  // [s]; what takes longer is not disturbed by a single hiccup
+
+// Linear tets: the smallest eigenvalue of the consistent mass matrix is at least a fifth of the smallest lumped mass.
+double smallest_mass_eigenvalue(const MassMatrix& mass) {
+  double least = INFINITY;
+  for (const double m : mass.vertex_mass())
+    if (m > 0) least = std::min(least, m);
+  return mass.kind() == MassKind::lumped ? least : least / 5;
+}
+
+class Comparer {
+ public:
+  Comparer(Simulation& simulation, const ComparisonOptions& options)
+      : simulation_(simulation), options_(options), base_(simulation.options().solver) {
+    for (const std::string& method : options.methods) solvers_.push_back(method_named(method, base_));
+    if (!simulation.is_implicit())
+      throw InvalidInput("time.integrator = '" + simulation.options().integrator +
+                         "' minimises nothing; compare methods with an implicit one, such as backward_euler");
+  }
+
+  Comparison compare() {
+    take_steps_before();
+    Comparison comparison;
+    comparison.step = options_.step;
+    comparison.reference = solve_reference();
+    for (size_t i = 0; i < solvers_.size(); ++i) {
+      if (options_.begun) options_.begun(options_.methods[i]);
+      comparison.results.push_back(run(options_.methods[i], solvers_[i], comparison.reference));
+    }
+    return comparison;
+  }
+
+ private:
+  void take_steps_before() {
+    while (simulation_.steps_taken() < options_.step - 1) {
+      const StepReport report = simulation_.step();
+      if (!is_success(report.status))
+        throw InvalidInput(
+            fmt::format("step {} of the scene did not converge ({}), so there is no state to compare "
+                        "from; choose an earlier step",
+                        report.step, to_string(report.status)));
+    }
+    start_ = simulation_.snapshot();
+  }
+
+  StepReport solve_reference() {
+    SolverOptions exact;
+    exact.minimize = base_.minimize;
+    exact.minimize.criterion = Criterion::scale;
+    exact.minimize.tolerance = 0;  // as far as double precision goes
+    exact.minimize.max_iterations = 1000;
+    exact.minimize.line_search = {};
+    simulation_.set_solver(exact);
+    const StepReport report = simulation_.step();
+    if (!is_success(report.status))
+      throw InvalidInput(fmt::format("Newton's method found no minimiser of step {} to compare with ({})",
+                                     options_.step, to_string(report.status)));
+    reference_ = simulation_.state().q;
+    return report;
+  }
+
+  MethodResult run(const std::string& method, SolverOptions solver, const StepReport& reference) {
+    solver.minimize.max_iterations = kMostIterations;
+    MethodResult best;
+    for (int i = 0; i < kRepetitions; ++i) {
+      simulation_.restore(start_);
+      simulation_.set_solver(solver);
+      MethodResult result = run_once();
+      if (i == 0 || result.seconds < best.seconds) best = std::move(result);
+      if (best.seconds > kWorthRepeating) break;
+    }
+    best.method = method;
+    best.description = simulation_.solver_description();
+    judge(reference, best);
+    return best;
+  }
+
+  MethodResult run_once() {
+    MethodResult result;
+    Stopwatch stopwatch;
+    double seconds = 0;
+    int gradients = 1, hessians = 0;
+    result.report = simulation_.step([&](const LiveIteration& iteration) {
+      seconds += stopwatch.lap();
+      if (result.work.empty()) result.work.push_back({.gradients = 1});
+      // What an iteration begins with is what the one before ended with.
+      result.work.back().value = iteration.value;
+      result.work.back().gradient_norm = iteration.gradient_norm;
+      gradients += iteration.gradients;
+      hessians += iteration.direction.hessians;
+      result.work.push_back({.iteration = static_cast<int>(result.work.size()),
+                             .gradients = gradients,
+                             .hessians = hessians,
+                             .seconds = seconds});
+      stopwatch.lap();
+      return seconds < options_.max_seconds;
+    });
+    result.seconds = seconds;
+    if (!result.work.empty()) {
+      result.work.back().value = result.report.objective;
+      result.work.back().gradient_norm = result.report.objective_gradient;
+    }
+    return result;
+  }
+
+  // E lies above its quadratic form M wherever V is convex, so |x - x*|_M <= |g(x)| / sqrt(smallest eigenvalue of M):
+  // a method that is further away than its own gradient and that of the reference allow found another minimiser.
+  void judge(const StepReport& reference, MethodResult& result) const {
+    const std::vector<double>& x = simulation_.state().q;
+    std::vector<double> dx(x.size()), Mdx(x.size());
+    for (size_t i = 0; i < x.size(); ++i) dx[i] = x[i] - reference_[i];
+    for (size_t i = 0; i + 2 < x.size(); i += 3)
+      result.distance = std::max(result.distance, std::hypot(dx[i], dx[i + 1], dx[i + 2]));
+    const MassMatrix& mass = *simulation_.model().mass;
+    mass.multiply(dx, Mdx);
+    double square = 0, norm = 0;
+    for (size_t i = 0; i < x.size(); ++i) square += dx[i] * Mdx[i], norm += dx[i] * dx[i];
+    result.mass_distance = std::sqrt(square);
+    const double excess = result.report.objective - reference.objective;
+    result.excess = result.work.empty() ? 0 : excess / (result.work.front().value - reference.objective);
+
+    const double gradients = result.report.objective_gradient + reference.objective_gradient;
+    const bool is_static = simulation_.options().integrator == "quasi_static";
+    result.allowed_distance = is_static ? INFINITY : gradients / std::sqrt(smallest_mass_eigenvalue(mass));
+    const double noise = 1e-12 * std::abs(reference.objective);
+    const bool energies_agree = std::abs(excess) <= gradients * std::sqrt(norm) + noise;
+    result.same_minimiser = is_success(result.report.status) && energies_agree &&
+                            (result.mass_distance <= result.allowed_distance || result.distance <= 1e-12 * size());
+  }
+
+  double size() const {
+    double size = 0;
+    for (const double q : reference_) size = std::max(size, std::abs(q));
+    return size;
+  }
+
+  Simulation& simulation_;
+  const ComparisonOptions& options_;
+  const SolverOptions base_;
+  std::vector<SolverOptions> solvers_;
+  Simulation::Snapshot start_;
+  std::vector<double> reference_;  // q after the step
+};
+
+}  // namespace
+
+Comparison compare_methods(Simulation& simulation, const ComparisonOptions& options) {
+  return Comparer(simulation, options).compare();
+}
+
+}  // namespace aspic::cli

@@ -1,0 +1,46 @@
+#include "aspic/method_text.h"
+
+#include <algorithm>
+#include <sstream>
+#include <vector>
+
+#include "base/error.h"
+#include "linalg/linear_solver.h"
+
+namespace aspic::cli {
+namespace {
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void set_option(const std::string& option, SolverOptions& solver) {
+  if (contains(definiteness_names(), option)) {
+    solver.definiteness = option;
+  } else if (contains(linear_solver_names(), option)) {
+    solver.linear = option;
+  } else if (contains(preconditioner_names(), option)) {
+    solver.preconditioner = option;
+  } else {
+    std::vector<std::string> known = definiteness_names();
+    for (const auto& names : {linear_solver_names(), preconditioner_names()})
+      known.insert(known.end(), names.begin(), names.end());
+    throw InvalidInput("method option '" + option + "' is unknown" + suggestion(option, known));
+  }
+}
+
+}  // namespace
+
+SolverOptions method_named(const std::string& text, const SolverOptions& base) {
+  SolverOptions solver;
+  solver.minimize = base.minimize;
+  std::istringstream words(text);
+  std::getline(words, solver.method, ':');
+  if (!contains(minimizer_names(), solver.method))
+    throw InvalidInput("method '" + solver.method + "' is unknown" + suggestion(solver.method, minimizer_names()));
+  for (std::string option; std::getline(words, option, ':');) set_option(option, solver);
+  make_search_direction(solver);  // throws when they do not go together
+  return solver;
+}
+
+}  // namespace aspic::cli

@@ -1,0 +1,12 @@
+// A method of minimisation as one word: NAME[:OPTION...], such as newton:clamped or lbfgs:diagonal.
+#pragma once
+#include <string>
+
+#include "optimize/solver.h"
+
+namespace aspic::cli {
+
+// The method with the options of `base` that are not about the method. Throws InvalidInput for an unknown name.
+SolverOptions method_named(const std::string& text, const SolverOptions& base);
+
+}  // namespace aspic::cli

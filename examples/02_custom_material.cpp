@@ -1,0 +1,77 @@
+// A material of your own from its energy density alone: stress and Hessian come by automatic differentiation.
+//
+// Soft tissue stiffens exponentially when stretched [Demiray 1972]:
+//   psi = mu / (2 b) (exp(b (I1 - 3 - 2 ln J)) - 1) + lambda / 2 (ln J)^2,   I1 = tr(F'F), J = det F.
+// A bar of it is pulled to 1.6 times its length; the force grows faster and faster.
+#include <cstdio>
+
+#include "dynamics/simulation.h"
+#include "energy/tet_term.h"
+#include "material/barrier.h"
+#include "material/from_energy.h"
+#include "mesh/generators.h"
+
+using namespace aspic;
+
+struct TissueEnergy {
+  template <class T>
+  struct Params {
+    T mu, lambda;  // [Pa]
+    T b;           // [1]
+  };
+
+  template <class T>  // double, SIMD lanes or a jet of derivatives
+  static T psi(const Mat3<T>& F, const Params<T>& p) {
+    const T J = determinant(F), log_J = log(J);
+    const T growth = exp(p.b * (squared_norm(F) - T(3.0) - T(2.0) * log_J)) - T(1.0);
+    return infinite_unless_positive(J, T(0.5) * p.mu / p.b * growth + T(0.5) * p.lambda * log_J * log_J);
+  }
+};
+using Tissue = FromEnergy<TissueEnergy>;
+
+int main() {
+  const double density = 1000;                     // [kg/m^3]
+  const double length = 0.1, width = 0.02;         // [m]
+  const double pull = 0.06, seconds = 1;           // how far the end is pulled [m], how long it takes [s]
+  const Tissue::Params<double> skin{2e4, 8e4, 3};  // the same in every tet; it need not be
+
+  Model model;
+  model.mesh = make_box({0, 0, 0}, {length, width, width}, {10, 2, 2});
+  const TetMesh& mesh = model.mesh;
+  model.bodies = {{"bar", 0, mesh.vertex_count(), 0, mesh.tet_count()}};
+  model.density.assign(mesh.tet_count(), density);
+  model.mass = std::make_unique<MassMatrix>(mesh, model.density, MassKind::consistent);
+  const std::vector<Tissue::Params<double>> parameters(mesh.tet_count(), skin);
+  model.elasticity.push_back(std::make_unique<TetTerm<Tissue>>("tissue", mesh, 0, parameters));
+
+  Pin fixed{.name = "fixed", .vertices = {}, .motion = {}};
+  Pin pulled{.name = "pulled", .vertices = {}, .motion = [&](const Vec3d& X, double t) {
+               return X + Vec3d{pull * t / seconds, 0, 0};
+             }};
+  State start;
+  for (int i = 0; i < mesh.vertex_count(); ++i) {
+    const Vec3d& X = mesh.rest[i];
+    if (X[0] == 0) fixed.vertices.push_back(i);
+    if (X[0] == length) pulled.vertices.push_back(i);
+    start.q.insert(start.q.end(), {X[0], X[1], X[2]});
+  }
+  start.qdot.assign(start.q.size(), 0.0);
+  model.pins = {fixed, pulled};
+
+  // Each step of a quasi-static pull minimises V itself.
+  Simulation simulation(std::move(model), start, {.h = 0.05, .integrator = "quasi_static", .solver = {}});
+  double first_force = 0, force = 0, before = 0;  // [N]
+  for (int i = 1; i <= 20; ++i) {
+    const StepReport report = simulation.step();
+    if (!is_success(report.status)) {
+      std::printf("step %d did not converge\n", i);
+      return 1;
+    }
+    before = force;
+    force = report.pin_work / (pull * 0.05 / seconds);  // the work of the end over the way that it went
+    if (i == 1) first_force = force;
+    if (i % 5 == 0) std::printf("stretch %.2f: %.2f N\n", 1 + pull * report.time / seconds / length, force);
+  }
+  std::printf("the last step adds %.1f times as much force as the first\n", (force - before) / first_force);
+  return force - before > 3 * first_force ? 0 : 1;  // the neo-Hookean materials soften instead
+}

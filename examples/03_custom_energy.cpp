@@ -1,0 +1,77 @@
+// An energy of your own: a floor that pushes back. Every vertex below y = 0 adds
+//   V = k/2 y^2,   dV/dy = k y,   d2V/dy2 = k,
+// to the potential. A jelly cube is dropped onto it, and every step still minimises one function.
+#include <algorithm>
+#include <cstdio>
+
+#include "dynamics/simulation.h"
+#include "energy/linear_load.h"
+#include "mesh/generators.h"
+
+using namespace aspic;
+
+class Floor : public Energy {
+ public:
+  explicit Floor(double stiffness) : k_(stiffness) {}
+  std::string_view name() const override { return "floor"; }
+
+  double value(Positions x) const override {
+    double V = 0;
+    for (size_t i = 1; i < x.size(); i += 3) V += 0.5 * k_ * depth(x[i]) * depth(x[i]);
+    return V;
+  }
+  void add_gradient(Positions x, double scale, std::span<double> g) const override {
+    for (size_t i = 1; i < x.size(); i += 3) g[i] += scale * k_ * depth(x[i]);
+  }
+  // A vertex is coupled to nothing but itself, so the diagonal blocks are enough.
+  void bind(const BlockPattern& pattern) override { pattern_ = &pattern; }
+  int add_hessian(Positions x, double scale, const Projection&, BlockSparse& H) const override {
+    for (int v = 0; v < pattern_->rows(); ++v)
+      if (depth(x[3 * v + 1]) < 0) H.block[pattern_->diagonal(v)](1, 1) += scale * k_;
+    return 0;  // nothing had to be projected: the energy is convex
+  }
+
+ private:
+  static double depth(double y) { return std::min(y, 0.0); }
+  double k_;  // [N/m]
+  const BlockPattern* pattern_ = nullptr;
+};
+
+int main() {
+  const double density = 1000;            // [kg/m^3]
+  const double edge = 0.1, height = 0.2;  // [m]
+  const MaterialParameters jelly{.lame = lame_from_young_poisson(2e4 /* [Pa] */, 0.4)};
+
+  Model model;
+  model.mesh = make_box({0, 0, 0}, {edge, edge, edge}, {4, 4, 4});
+  const TetMesh& mesh = model.mesh;
+  model.bodies = {{"jelly", 0, mesh.vertex_count(), 0, mesh.tet_count()}};
+  model.density.assign(mesh.tet_count(), density);
+  model.mass = std::make_unique<MassMatrix>(mesh, model.density, MassKind::consistent);
+  model.elasticity.push_back(
+      make_tet_elasticity("neo_hookean_log", mesh, 0, std::vector<MaterialParameters>(mesh.tet_count(), jelly)));
+  std::vector<double> weight(3 * mesh.vertex_count());  // [N]
+  for (int t = 0; t < mesh.tet_count(); ++t) add_body_force(mesh, t, {0, -9.81 * density, 0}, weight);
+  model.loads.push_back(make_linear_load("gravity", weight));
+  model.loads.push_back(std::make_unique<Floor>(500 /* [N/m] for each vertex */));
+
+  State start;
+  for (const Vec3d& X : mesh.rest) start.q.insert(start.q.end(), {X[0], X[1] + height, X[2]});
+  start.qdot.assign(start.q.size(), 0.0);
+
+  Simulation simulation(std::move(model), start, {.h = 0.005, .solver = {}});
+  double deepest = 0, highest_after = -1;  // lowest vertex so far; how high that is after the bounce
+  for (int i = 1; i <= 160; ++i) {
+    const StepReport report = simulation.step();
+    if (!is_success(report.status)) return std::printf("step %d did not converge\n", i), 1;
+    double lowest = 1;
+    for (size_t k = 1; k < start.q.size(); k += 3) lowest = std::min(lowest, simulation.state().q[k]);
+    deepest = std::min(deepest, lowest);
+    if (deepest < 0) highest_after = std::max(highest_after, lowest);
+    if (i % 20 == 0)
+      std::printf("t = %.2f s: lowest vertex at %+.4f m, energy of the floor %.4f J\n", report.time, lowest,
+                  report.potential[2]);
+  }
+  std::printf("it went %.1f mm into the floor and bounced %.1f cm high\n", -1e3 * deepest, 1e2 * highest_after);
+  return deepest < 0 && deepest > -edge / 2 && highest_after > 0.01 ? 0 : 1;
+}

@@ -1,0 +1,62 @@
+#include "dynamics/acceleration.h"
+
+#include <algorithm>
+
+namespace aspic {
+namespace {
+
+constexpr double kSolveTolerance = 1e-12;  // the mass matrix is well conditioned
+
+}  // namespace
+
+void Acceleration::add_damping(const StepTools& tools, std::span<const double> q, std::span<const double> v, double h,
+                               double scale) {
+  for (size_t i = 0; i < q.size(); ++i) drift_[i] = q[i] + h * v[i];
+  for (const Energy* D : tools.E.damping()) D->add_gradient(drift_, scale, damping_);
+}
+
+SolveReport Acceleration::solve(const StepTools& tools, double time, std::span<const double> q,
+                                std::span<const double> v, DampingDifference difference, double weight,
+                                std::span<double> acc, StepForces& forces) {
+  const size_t n = q.size();
+  for (auto* w : {&gradient_, &damping_, &drift_, &force_, &scratch_}) w->assign(n, 0.0);
+  const StepContext context{q, tools.h, time};
+  tell_potential(tools.E, context);
+  tell_damping(tools.E, context);
+  for (const Energy* V : tools.E.potential()) V->add_gradient(q, 1, gradient_);
+  if (difference == DampingDifference::forward) {
+    add_damping(tools, q, v, tools.h, 1);
+  } else {
+    add_damping(tools, q, v, tools.h, 0.5);
+    add_damping(tools, q, v, -tools.h, -0.5);
+  }
+
+  for (size_t i = 0; i < n; ++i)
+    if (!tools.pins.holds(static_cast<int>(i / 3))) acc[i] = 0;
+  tools.model.mass->multiply(acc, scratch_);
+  for (size_t i = 0; i < n; ++i) force_[i] = -gradient_[i] - damping_[i] - scratch_[i];
+  tools.pins.set_zero(force_);
+  const SolveReport solved = solve_mass(tools, force_, scratch_);
+  tools.pins.set_zero(scratch_);
+  for (size_t i = 0; i < n; ++i) {
+    acc[i] += scratch_[i];
+    forces.gradient[i] += weight * gradient_[i];
+    forces.damping[i] += weight * damping_[i];
+    forces.acceleration[i] += weight * acc[i];
+  }
+  return solved;
+}
+
+SolveReport Acceleration::solve_mass(const StepTools& tools, std::span<const double> force, std::span<double> acc) {
+  if (!solver_) {
+    solver_ = make_linear_solver("auto");
+    M_.emplace(tools.E.pattern());
+    tools.model.mass->add_to(1, *M_);
+    tools.pins.set_identity(*M_);
+    solver_->analyze(tools.E.pattern());
+    factorized_ = solver_->factorize(*M_);
+  }
+  return factorized_ ? solver_->solve(force, acc, kSolveTolerance) : SolveReport{};
+}
+
+}  // namespace aspic

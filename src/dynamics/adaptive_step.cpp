@@ -1,0 +1,148 @@
+#include "dynamics/adaptive_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+#include "dynamics/lead_pins.h"
+
+namespace aspic {
+namespace {
+
+constexpr int kDeepest = 20;           // the smallest part is h / 2^20
+constexpr int kTicks = 1 << kDeepest;  // per step
+constexpr double kGrowthSafety = 0.5;  // of the error that twice the length is predicted to have
+
+double diagonal(const TetMesh& mesh, const BodyRange& body) {
+  double squared = 0;
+  for (int r = 0; r < 3; ++r) {
+    double low = INFINITY, high = -INFINITY;
+    for (int v = body.first_vertex; v < body.first_vertex + body.vertex_count; ++v) {
+      low = std::min(low, mesh.rest[v][r]);
+      high = std::max(high, mesh.rest[v][r]);
+    }
+    squared += (high - low) * (high - low);
+  }
+  return std::sqrt(squared);
+}
+
+double time_at(const StepTools& whole, int tick) {
+  return tick == kTicks ? whole.end_time : whole.start.time + whole.h * tick / kTicks;
+}
+
+StepTools tools_of_part(const StepTools& whole, const State& start, const State* previous, int first, int size) {
+  return {whole, start, previous, whole.h * size / kTicks, time_at(whole, first + size)};
+}
+
+}  // namespace
+
+AdaptiveStep::AdaptiveStep(const Model& model, double tolerance, bool remembers)
+    : model_(model), tolerance_(tolerance), remembers_(remembers) {
+  for (const BodyRange& body : model.bodies) size_.push_back(diagonal(model.mesh, body));
+}
+
+void AdaptiveStep::set_level(double level) {
+  if (!(level >= 0 && level < kDeepest))
+    throw InvalidInput("the checkpoint's adaptive step has level " + std::to_string(level) + "; it must be from 0 to " +
+                       std::to_string(kDeepest - 1));
+  level_ = static_cast<int>(level);
+}
+
+bool AdaptiveStep::take(Integrator& integrator, const StepTools& tools, Part& part) {
+  part.solve = integrator.advance(tools, part.end, part.forces);
+  add_work(part.solve.work, total_.work);
+  failure_ = part.solve.work.status;
+  return is_success(failure_);
+}
+
+AdaptiveStep::Verdict AdaptiveStep::attempt(Integrator& integrator, const StepTools& whole, int first, int size) {
+  const int half = size / 2;
+  const State *before = has_previous_ ? &previous_ : nullptr, *now = remembers_ ? &now_ : nullptr;
+  const auto unsuccessful = [&] { return failure_ == Status::interrupted ? Verdict::interrupted : Verdict::rejected; };
+  if (!knows_whole_ && !take(integrator, tools_of_part(whole, now_, before, first, size), whole_))
+    return unsuccessful();
+  knows_whole_ = false;
+  if (!take(integrator, tools_of_part(whole, now_, before, first, half), first_)) return unsuccessful();
+  const bool taken = take(integrator, tools_of_part(whole, first_.end, now, first + half, half), second_);
+  knows_whole_ = true;  // should the attempt be rejected
+  if (!taken) return std::swap(whole_, first_), unsuccessful();
+
+  const double h = whole.h * size / kTicks;
+  error_ = error(whole.pins, h) / (std::pow(2, integrator.order()) - 1) / (static_cast<double>(size) / kTicks);
+  if (error_ <= 1) return Verdict::accepted;
+  failure_ = Status::inaccurate;
+  std::swap(whole_, first_);
+  return Verdict::rejected;
+}
+
+double AdaptiveStep::error(const Pins& pins, double h) const {
+  const State &a = whole_.end, &b = second_.end;
+  double largest = 0;
+  for (size_t body = 0; body < size_.size(); ++body) {
+    const BodyRange& range = model_.bodies[body];
+    for (int v = range.first_vertex; v < range.first_vertex + range.vertex_count; ++v) {
+      if (pins.holds(v)) continue;
+      double dq = 0, dv = 0;
+      for (int i = 3 * v; i < 3 * v + 3; ++i) {
+        dq += (a.q[i] - b.q[i]) * (a.q[i] - b.q[i]);
+        dv += (a.qdot[i] - b.qdot[i]) * (a.qdot[i] - b.qdot[i]);
+      }
+      const double e = (std::sqrt(dq) + h * std::sqrt(dv)) / (tolerance_ * size_[body]);
+      if (!(e <= largest)) largest = e;  // NaN stays
+    }
+  }
+  return largest;
+}
+
+void AdaptiveStep::keep(Integrator& integrator, const StepTools& whole, Ledger& ledger, int first, int size,
+                        StepReport& report) {
+  const int half = size / 2;
+  ledger.add(tools_of_part(whole, now_, nullptr, first, half), integrator.order(), first_.end, first_.forces, report);
+  ledger.add(tools_of_part(whole, first_.end, nullptr, first + half, half), integrator.order(), second_.end,
+             second_.forces, report);
+  report.substeps += 2;
+  for (const Part* part : {&first_, &second_}) {
+    total_.threshold = std::max(total_.threshold, part->solve.threshold);
+    total_.round_off = std::max(total_.round_off, part->solve.round_off);
+    if (part->solve.work.status == Status::round_off) total_.work.status = Status::round_off;
+  }
+  total_.guess = second_.solve.guess;
+  total_.work.value = second_.solve.work.value;
+  total_.work.gradient_norm = second_.solve.work.gradient_norm;
+  std::swap(previous_, first_.end);
+  std::swap(now_, second_.end);
+  has_previous_ = remembers_;
+  knows_whole_ = false;
+}
+
+StepSolve AdaptiveStep::advance(Integrator& integrator, const StepTools& whole, Ledger& ledger, State& end,
+                                StepReport& report) {
+  now_ = whole.start;
+  has_previous_ = whole.previous != nullptr;
+  if (has_previous_) previous_ = *whole.previous;
+  knows_whole_ = false;
+  total_ = {};
+  report.substeps = 0;
+  for (int done = 0; done < kTicks;) {
+    const int size = kTicks >> level_;
+    const Verdict verdict = attempt(integrator, whole, done, size);
+    if (verdict == Verdict::accepted) {
+      keep(integrator, whole, ledger, done, size, report);
+      done += size;
+      const double predicted = error_ * std::pow(2, integrator.order());  // of twice the length, in its share
+      if (level_ > 0 && done % (2 * size) == 0 && predicted <= kGrowthSafety) --level_;
+      continue;
+    }
+    ++report.rejected;
+    if (verdict == Verdict::interrupted || level_ + 1 == kDeepest) {
+      total_.work.status = failure_;
+      return total_;
+    }
+    ++level_;
+  }
+  end = now_;
+  return total_;
+}
+
+}  // namespace aspic

@@ -1,0 +1,91 @@
+#include "dynamics/implicit_stage.h"
+
+#include <algorithm>
+
+#include "dynamics/lead_pins.h"
+
+namespace aspic {
+namespace {
+
+MinimizeOptions one_iteration(const MinimizeOptions& options) {
+  MinimizeOptions one = options;
+  one.max_iterations = 1;
+  one.max_forcing = 1e-10;
+  one.line_search.test = DecreaseTest::none;
+  one.line_search.alpha_max = 1;
+  return one;
+}
+
+}  // namespace
+
+// Pinned vertices: with x'' known, q~ = x(t*) - beta^2 x'' makes their inertia M_fp x'' on the free ones, and
+// a = x(t*) - beta x' their part in damping.
+void ImplicitStage::predict(const StepTools& tools, const PinPath* path, const StageOptions& options) {
+  const double beta = options.beta;
+  predicted_.resize(a.size());
+  if (!path) {
+    for (size_t i = 0; i < a.size(); ++i) predicted_[i] = a[i] + beta * b[i];
+    return;
+  }
+  // For the pinned vertices a, b and predicted_ receive x, x' and x'' first.
+  tools.pins.place(options.time, a);
+  path->place_velocity(options.time, b);
+  path->place_acceleration(options.time, predicted_);
+  for (size_t i = 0; i < a.size(); ++i) {
+    if (!tools.pins.holds(static_cast<int>(i / 3))) {
+      predicted_[i] = a[i] + beta * b[i];
+      continue;
+    }
+    const double x = a[i], dx = b[i], ddx = predicted_[i];
+    predicted_[i] = x - beta * beta * ddx;
+    a[i] = x - beta * dx;
+    b[i] = dx - beta * ddx;
+  }
+}
+
+MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOptions& options, std::span<const double> q,
+                                       std::span<const double> v, StepSolve& solve) {
+  q_.assign(q.begin(), q.end());
+  MinimizeOptions minimize = options.once ? one_iteration(tools.options) : tools.options;
+  minimize.h = options.beta;
+  if (options.once) {
+    tools.pins.place(options.time, q_);
+    solve.guess = InitialGuess::current;
+    MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, minimize, tools.observe);
+    // The scheme asks for one iteration, not for a small gradient; what is left over stays in the report.
+    if (report.status == Status::iteration_limit) report.status = Status::converged;
+    solve.round_off += options.weight * (report.gradient_round_off / tools.E.gradient_unit());
+    return report;
+  }
+  MinimizeReport lead;
+  solve.guess = guesser_.guess(tools, tools.guess, {q, v, options.ahead, options.time}, q_, lead);
+  MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, minimize, tools.observe);
+  if (!judges_direction(minimize.criterion))
+    solve.threshold += options.weight * (report.threshold / tools.E.gradient_unit());
+  solve.round_off += options.weight * (report.gradient_round_off / tools.E.gradient_unit());
+  add_work(lead, report);
+  return report;
+}
+
+bool ImplicitStage::solve(const StepTools& tools, const PinPath* path, const StageOptions& options, std::span<double> q,
+                          std::span<double> v, std::span<double> acc, StepSolve& solve, StepForces& forces) {
+  const double beta = options.beta;
+  predict(tools, path, options);
+  const StepContext context{a, beta, options.time, tools.start.q};
+  tell_potential(tools.E, context);
+  tell_damping(tools.E, context);
+  tools.E.begin_step(predicted_, 1, beta * beta);
+  if (!solve.add(minimize(tools, options, q, v, solve))) return false;
+
+  std::copy(q_.begin(), q_.end(), q.begin());
+  for (size_t i = 0; i < q.size(); ++i) v[i] = (q[i] - a[i]) / beta;
+  for (size_t i = 0; i < q.size(); ++i) acc[i] = (v[i] - b[i]) / beta;
+  if (path) {  // free of the round-off of the two differences
+    path->place_velocity(options.time, v);
+    path->place_acceleration(options.time, acc);
+  }
+  forces.add(tools.E, options.weight, q, acc);
+  return true;
+}
+
+}  // namespace aspic

@@ -1,0 +1,92 @@
+#include "dynamics/initial_guess.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "dynamics/integrator.h"
+#include "dynamics/lead_pins.h"
+
+namespace aspic {
+
+std::string_view to_string(InitialGuess guess) {
+  switch (guess) {
+    case InitialGuess::none:
+      return "none";
+    case InitialGuess::best:
+      return "best";
+    case InitialGuess::zero:
+      return "zero";
+    case InitialGuess::current:
+      return "current";
+    case InitialGuess::extrapolated:
+      return "extrapolated";
+    case InitialGuess::last_increment:
+      return "last_increment";
+  }
+  return "unknown";
+}
+
+namespace {
+
+constexpr InitialGuess kChoices[] = {InitialGuess::best, InitialGuess::zero, InitialGuess::current,
+                                     InitialGuess::extrapolated, InitialGuess::last_increment};
+
+}  // namespace
+
+std::vector<std::string> initial_guess_names() {
+  std::vector<std::string> names;
+  for (const InitialGuess guess : kChoices) names.emplace_back(to_string(guess));
+  return names;
+}
+
+InitialGuess initial_guess_named(const std::string& name) {
+  for (const InitialGuess guess : kChoices)
+    if (to_string(guess) == name) return guess;
+  throw InvalidInput("initial_guess = '" + name + "' is unknown" + suggestion(name, initial_guess_names()));
+}
+
+bool Guesser::propose(const StepTools& tools, InitialGuess candidate, const GuessContext& known) {
+  trial_.assign(known.q.begin(), known.q.end());
+  if (candidate == InitialGuess::zero) {
+    for (size_t i = 0; i < trial_.size(); ++i) trial_[i] = tools.model.mesh.rest[i / 3][static_cast<int>(i % 3)];
+  } else if (candidate == InitialGuess::extrapolated) {
+    if (known.ahead == 0) return false;
+    for (size_t i = 0; i < trial_.size(); ++i) trial_[i] += known.ahead * known.qdot[i];
+  } else if (candidate == InitialGuess::last_increment) {
+    if (!tools.previous) return false;
+    const State &last = *tools.previous, &start = tools.start;
+    const double part = known.ahead > 0 ? known.ahead / (start.time - last.time) : 1;
+    for (size_t i = 0; i < trial_.size(); ++i) trial_[i] += part * (start.q[i] - last.q[i]);
+  }
+  tools.pins.place(known.time, trial_);
+  return true;
+}
+
+InitialGuess Guesser::guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
+                            MinimizeReport& work) {
+  const bool is_other =
+      wanted == InitialGuess::zero || wanted == InitialGuess::extrapolated || wanted == InitialGuess::last_increment;
+  if (is_other && propose(tools, wanted, known) && std::isfinite(tools.E.value(trial_))) {
+    std::copy(trial_.begin(), trial_.end(), q.begin());
+    return wanted;
+  }
+
+  std::copy(known.q.begin(), known.q.end(), q.begin());
+  lead_pins(tools, known.time, known.q, q, work);
+  InitialGuess used = InitialGuess::current;
+  if (wanted == InitialGuess::current) return used;
+  double lowest = tools.E.value(q);
+  for (const InitialGuess candidate : {InitialGuess::extrapolated, InitialGuess::last_increment}) {
+    if (!propose(tools, candidate, known)) continue;
+    const double energy = tools.E.value(trial_);
+    // A body at rest flies nowhere; the comparison fails for NaN.
+    if (!(candidate == InitialGuess::extrapolated ? energy <= lowest : energy < lowest)) continue;
+    std::copy(trial_.begin(), trial_.end(), q.begin());
+    lowest = energy;
+    used = candidate;
+  }
+  return used;
+}
+
+}  // namespace aspic

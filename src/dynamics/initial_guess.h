@@ -1,0 +1,50 @@
+// Where the minimisation of a step starts.
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dynamics/state.h"
+#include "optimize/minimize.h"
+
+namespace aspic {
+
+struct StepTools;
+
+enum class InitialGuess {
+  none,            // nothing is minimised: explicit schemes
+  best,            // the lowest energy of current, extrapolated and last_increment
+  zero,            // no displacement: the shape at rest
+  current,         // q
+  extrapolated,    // q + h qdot, the flight without forces
+  last_increment,  // q + what the previous step added
+};
+std::string_view to_string(InitialGuess guess);
+
+std::vector<std::string> initial_guess_names();             // those to choose from
+InitialGuess initial_guess_named(const std::string& name);  // throws InvalidInput for an unknown name
+
+// What is known when a minimisation for a later time starts.
+struct GuessContext {
+  std::span<const double> q, qdot;  // the latest positions and velocities
+  double ahead = 0;                 // from them to the minimisation's time [s]; 0 in statics
+  double time = 0;                  // of the minimisation [s]
+};
+
+class Guesser {  // holds the scratch vectors
+ public:
+  // Writes the start into `q` and returns which it was. Pinned vertices stand where they are at the time. A guess of
+  // infinite energy gives way to the best; when all are infinite, the pins are led (see lead_pins), which adds to
+  // `work`.
+  InitialGuess guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
+                     MinimizeReport& work);
+
+ private:
+  // Writes the candidate into trial_; false when there is none.
+  bool propose(const StepTools& tools, InitialGuess candidate, const GuessContext& known);
+
+  std::vector<double> trial_;
+};
+
+}  // namespace aspic

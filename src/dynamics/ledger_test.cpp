@@ -1,0 +1,100 @@
+// Where energy goes, for every integrator.
+#include "dynamics/ledger.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "dynamics/oscillator_test.h"
+
+namespace aspic {
+namespace {
+
+using namespace testing_models;
+
+double largest_term(const StepReport& report) {
+  double largest = std::abs(report.kinetic);
+  for (const double V : report.potential) largest = std::max(largest, std::abs(V));
+  return largest;
+}
+
+void expect_closed(const SimulationOptions& options) {
+  Simulation simulation = simulate(damped_beam_with_moving_pins_and_targets(), options);
+  double largest = 0, pin_work = 0, damping_loss = 0;
+  double energy = simulation.kinetic_energy(), flows = 0;
+  for (const double V : simulation.potential_energies()) energy += V;
+  for (int i = 0; i < 20; ++i) {
+    const StepReport report = simulation.step();
+    ASSERT_TRUE(is_success(report.status)) << options.integrator << " " << to_string(report.status);
+    largest = std::max(largest, largest_term(report));
+    pin_work += std::abs(report.pin_work);
+    damping_loss += report.damping_loss;
+    EXPECT_LT(std::abs(report.ledger_error), 1e-11 * largest) << options.integrator;
+    flows += report.pin_work - report.damping_loss - report.numerical_loss + report.residual_work;
+    // From step to step, too: energies at the end of one are those at the start of the next.
+    EXPECT_NEAR(report.kinetic + report.potential_total, energy + flows, 1e-10 * largest) << options.integrator;
+  }
+  EXPECT_GT(pin_work, 0) << options.integrator;
+  if (options.integrator != "quasi_static") {
+    EXPECT_GT(damping_loss, 0) << options.integrator;
+  }
+}
+
+TEST(Ledger, AddsUpForEveryIntegratorWithPinsTargetsAndDamping) {
+  for (const std::string& integrator : integrator_names())
+    expect_closed({.h = is_explicit(integrator) ? 1e-4 : 0.01, .integrator = integrator, .solver = {}});
+}
+
+TEST(Ledger, AddsUpOverThePartsOfAnAdaptiveStep) {
+  for (const std::string& integrator : adaptive_integrator_names())
+    expect_closed({.h = is_explicit(integrator) ? 4e-4 : 0.01,
+                   .integrator = integrator,
+                   .adaptive = {.tolerance = 1e-4},
+                   .solver = {}});
+}
+
+TEST(Ledger, TheResidualIsWithinWhatTheStagesWereAskedFor) {
+  for (const std::string& integrator : integrator_names()) {
+    if (is_explicit(integrator) || integrator == "linearly_implicit_euler") continue;
+    Simulation simulation =
+        simulate(damped_beam_with_moving_pins_and_targets(), {.integrator = integrator, .solver = {}});
+    for (int i = 0; i < 10; ++i) {
+      const StepReport report = simulation.step();
+      ASSERT_EQ(report.status, Status::converged) << integrator;
+      EXPECT_GT(report.residual_threshold, 0) << integrator;
+      EXPECT_LE(report.residual, report.residual_threshold * (1 + 1e-6)) << integrator << " step " << i;
+    }
+  }
+}
+
+TEST(Ledger, TheResidualOfAnExplicitSchemeIsThatOfItsSolvesWithTheMassMatrix) {
+  for (const std::string& integrator : integrator_names()) {
+    if (!is_explicit(integrator)) continue;
+    Simulation simulation =
+        simulate(damped_beam_with_moving_pins_and_targets(), {.h = 1e-4, .integrator = integrator, .solver = {}});
+    const double weight = 9.81 * simulation.model().mass->total();
+    for (int i = 0; i < 10; ++i) EXPECT_LT(simulation.step().residual, 1e-9 * weight) << integrator;
+  }
+}
+
+TEST(Ledger, MidpointLosesNothingWhereForcesAreLinearAndTargetsMoveEvenly) {
+  Simulation simulation = oscillator({.h = 0.05, .integrator = "midpoint", .solver = {}},
+                                     {.damping = 1, .offset = [](double t) { return 3 * t; }});
+  double work = 0;
+  for (int i = 0; i < 50; ++i) {
+    const StepReport report = simulation.step();
+    EXPECT_LT(std::abs(report.numerical_loss), 1e-12 * 200);  // four springs of 50 J
+    work += report.pin_work;
+  }
+  EXPECT_GT(work, 1);
+}
+
+TEST(Ledger, TheNumericalLossOfBackwardEulerIsHalfTheVelocityJumpForConstantForces) {
+  Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}), {});
+  Simulation simulation = simulate(std::move(model));
+  const double mass = simulation.model().mass->total(), jump = 9.81 * 0.01;
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(simulation.step().numerical_loss, mass * jump * jump / 2, 1e-7);
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,219 @@
+// Every method of minimisation on elastic bodies.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "dynamics/models_test.h"
+
+namespace aspic {
+namespace {
+
+using namespace testing_models;
+
+// Every combination that has a use: methods, their preconditioners and ways to make a Hessian definite.
+std::vector<SolverOptions> all_methods() {
+  std::vector<SolverOptions> all;
+  for (const std::string& method : minimizer_names())
+    for (const std::string& preconditioner : preconditioner_names())
+      for (const std::string& definiteness : definiteness_names()) {
+        const SolverOptions options{.method = method, .preconditioner = preconditioner, .definiteness = definiteness};
+        if (!find_conflict(options)) all.push_back(options);
+      }
+  return all;
+}
+
+std::string name_of(const SolverOptions& o) { return o.method + " " + o.preconditioner + " " + o.definiteness; }
+
+SimulationOptions tight(const SolverOptions& solver) {
+  SimulationOptions options{.solver = solver};
+  options.solver.minimize.tolerance = 1e-9;
+  options.solver.minimize.max_iterations = 20'000;
+  return options;
+}
+
+TEST(Methods, AllReachTheSameMinimumOfATimeStep) {
+  // So near to rest the Hessian is at least the mass M. That of one tet has the eigenvalues m/20 and m/4, so that M is
+  // at least a fifth of the lumped mass, and a gradient of norm e leaves an error of at most 5 e / (the least vertex
+  // mass); twice that lies between two methods.
+  const Model model = damped_beam_with_moving_pins_and_targets();
+  const auto masses = model.mass->vertex_mass();
+  const double least = *std::min_element(masses.begin(), masses.end()) / 5;
+  std::vector<double> expected;
+  for (const SolverOptions& solver : all_methods()) {
+    Simulation simulation = simulate(damped_beam_with_moving_pins_and_targets(), tight(solver));
+    const StepReport report = simulation.step();
+    ASSERT_TRUE(is_success(report.status)) << name_of(solver) << ": " << to_string(report.status);
+    const auto& q = simulation.state().q;
+    if (expected.empty()) expected = q;
+    const double h = simulation.options().h, allowed = 2 * h * h * report.residual_threshold / least;
+    EXPECT_LT(allowed, 1e-6);
+    for (size_t i = 0; i < q.size(); ++i) EXPECT_NEAR(q[i], expected[i], allowed) << name_of(solver);
+  }
+}
+
+TEST(Methods, GiveTheSameBitsForAnyNumberOfThreads) {
+  const int before = thread_count();
+  for (const SolverOptions& solver : all_methods()) {
+    std::vector<double> expected;
+    for (const int threads : {1, 2, 5}) {
+      set_thread_count(threads);
+      SimulationOptions options{.solver = solver};
+      options.solver.minimize.max_iterations = 5;
+      Simulation simulation = simulate(damped_beam_with_moving_pins_and_targets(), options);
+      for (int i = 0; i < 2; ++i) simulation.step();
+      if (expected.empty()) expected = simulation.state().q;
+      EXPECT_EQ(simulation.state().q, expected) << name_of(solver);
+    }
+  }
+  set_thread_count(before);
+}
+
+TEST(Methods, KnowingMoreOfTheCurvatureTakesFewerIterations) {
+  std::map<std::string, int> iterations;
+  for (const std::string& method : minimizer_names()) {
+    SimulationOptions options{.h = 0.03, .solver = {.method = method}};
+    options.solver.minimize.max_iterations = 20'000;
+    Simulation simulation = simulate(beam(2, {.young = 1e5}), options);
+    for (int i = 0; i < 3; ++i) iterations[method] += simulation.step().iterations;
+  }
+  EXPECT_LE(iterations["newton"], iterations["newton_cg"]);
+  EXPECT_LT(iterations["newton"], iterations["lbfgs"]);
+  for (const std::string method : {"lbfgs", "nonlinear_cg", "vertex_descent"})
+    EXPECT_LT(5 * iterations[method], iterations["gradient_descent"]) << method;
+}
+
+TEST(Methods, GradientDescentFindsItsStepsOnAStiffBodyByBacktracking) {
+  SimulationOptions options{.solver = {.method = "gradient_descent"}};
+  options.solver.minimize.max_iterations = 20;
+  Simulation simulation = simulate(beam(1, {.young = 1e9}), options);
+  double last = INFINITY;
+  const StepReport report = simulation.step([&](const Iteration& iteration) {
+    EXPECT_LT(iteration.value, last);
+    last = iteration.value;
+    return true;
+  });
+  EXPECT_EQ(report.status, Status::iteration_limit);
+  EXPECT_GT(report.trials, 5 * report.iterations);
+}
+
+struct Work {
+  long projected_elements = 0;
+  int iterations = 0;
+  double residual = 0;
+};
+
+// A beam is pushed together to half its length within half a second.
+Work work_of_compression(const std::string& method, const std::string& definiteness) {
+  Model model = beam(3, {.material = "neo_hookean", .gravity = {{0, 0, 0}}});
+  model.pins.push_back({"press", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 4 - 1e-9; }),
+                        [](const Vec3d& X, double t) {
+                          return X + Vec3d{{-4 * t, 0, 0}};
+                        }});
+  SimulationOptions options{.h = 0.05, .solver = {.method = method, .definiteness = definiteness}};
+  options.solver.minimize.max_iterations = 500;
+  Simulation simulation = simulate(std::move(model), options);
+  Work work;
+  for (int i = 0; i < 10; ++i) {
+    const StepReport report = simulation.step([&](const Iteration& iteration) {
+      work.projected_elements += iteration.direction.projected_elements;
+      return true;
+    });
+    EXPECT_TRUE(is_success(report.status)) << method << ", " << definiteness;
+    work.iterations += report.iterations;
+  }
+  return work;
+}
+
+TEST(Newton, ProgressiveProjectionTouchesFewElementsOfACompressedBeam) {
+  const Work clamped = work_of_compression("newton", "clamped"), on_demand = work_of_compression("newton", "on_demand"),
+             progressive = work_of_compression("newton", "progressive");
+  EXPECT_GT(progressive.projected_elements, 0);
+  EXPECT_LT(5 * progressive.projected_elements, on_demand.projected_elements);
+  EXPECT_LT(5 * on_demand.projected_elements, clamped.projected_elements);
+  EXPECT_LT(2 * progressive.iterations, clamped.iterations);
+}
+
+TEST(Newton, TruncatedNewtonNeedsNoProjectionWhereTheHessianIsIndefinite) {
+  EXPECT_EQ(work_of_compression("newton_cg", "auto").projected_elements, 0);
+}
+
+// Offers no systems of single vertices.
+class Opaque : public Energy {
+ public:
+  explicit Opaque(std::unique_ptr<Energy> term) : term_(std::move(term)) {}
+  std::string_view name() const override { return "opaque"; }
+  double value(Positions x) const override { return term_->value(x); }
+  void add_gradient(Positions x, double scale, std::span<double> g) const override { term_->add_gradient(x, scale, g); }
+  void add_couplings(Couplings& couplings) const override { term_->add_couplings(couplings); }
+  void bind(const BlockPattern& pattern) override { term_->bind(pattern); }
+  int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override {
+    return term_->add_hessian(x, scale, projection, H);
+  }
+
+ private:
+  std::unique_ptr<Energy> term_;
+};
+
+TEST(VertexDescent, TakesTermsThatOfferNoSystemsOfSingleVerticesFromTheWholeGradient) {
+  std::vector<double> expected;
+  for (const bool opaque : {false, true}) {
+    Model model = beam(1);
+    if (opaque) model.loads[0] = std::make_unique<Opaque>(std::move(model.loads[0]));
+    Simulation simulation = simulate(std::move(model), {.solver = {.method = "vertex_descent"}});
+    EXPECT_TRUE(is_success(simulation.step().status));
+    if (!opaque) expected = simulation.state().q;
+    EXPECT_EQ(simulation.solver_description().find("whole gradients") != std::string::npos, opaque);
+    // The same numbers summed in another order.
+    for (size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(simulation.state().q[i], expected[i], 1e-12);
+  }
+}
+
+TEST(IncrementalPotential, SystemsOfSingleVerticesArePartsOfGradientAndHessian) {
+  Model model = damped_beam_with_moving_pins_and_targets();
+  const State start = at_rest(model.mesh);
+  const Pins pins(model.pins, start.q);
+  IncrementalPotential E(model, pins);
+  std::vector<double> x = start.q;
+  for (size_t i = 0; i < x.size(); ++i) x[i] += 0.02 * std::sin(3.0 * static_cast<double>(i));
+  for (Energy* V : E.potential()) V->begin_step({start.q, 0.01, 0.1});
+  for (Energy* D : E.damping()) D->begin_step({start.q, 0.01, 0.1});
+  E.begin_step(start.q, 1, 1e-4);
+  std::vector<double> g(x.size());
+  E.gradient(x, g);
+  const BlockSparse& H = E.hessian(x, {});
+  std::vector<int> all(x.size() / 3);
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<Vec3d> vertex_g(all.size());
+  std::vector<Mat3d> vertex_H(all.size());
+  ASSERT_TRUE(E.vertex_systems(x, all, vertex_g, vertex_H));
+  const double largest = std::sqrt(E.dot(g, g));
+  for (const int v : all) {
+    for (int r = 0; r < 3; ++r) EXPECT_NEAR(vertex_g[v][r], g[3 * v + r], 1e-12 * largest);
+    const Mat3d& block = H.block[H.pattern->diagonal(v)];
+    EXPECT_LT(std::sqrt(squared_norm(vertex_H[v] - block)), 1e-12 * std::sqrt(squared_norm(block)));
+  }
+}
+
+TEST(IncrementalPotential, ItsMetricIsTheMassWithTheIdentityForPinnedVertices) {
+  const Model model = beam(1);
+  const State start = at_rest(model.mesh);
+  const Pins pins(model.pins, start.q);
+  IncrementalPotential E(model, pins);
+  std::vector<double> v(start.q.size()), product(v.size()), expected(v.size());
+  for (size_t i = 0; i < v.size(); ++i)
+    v[i] = pins.holds(static_cast<int>(i / 3)) ? 0 : std::cos(static_cast<double>(i));
+  E.metric()->multiply(v, product);
+  model.mass->multiply(v, expected);
+  pins.set_zero(expected);
+  for (size_t i = 0; i < v.size(); ++i) EXPECT_NEAR(product[i], expected[i], 1e-12);
+  for (size_t i = 0; i < v.size(); ++i) v[i] = pins.holds(static_cast<int>(i / 3)) ? 2 : 0;
+  E.metric()->multiply(v, product);
+  EXPECT_EQ(product, v);
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,57 @@
+// Four harmonic oscillators: the vertices of a tet without stiffness, 1 kg each, held to where they rest by springs.
+#pragma once
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "dynamics/models_test.h"
+
+namespace aspic::testing_models {
+
+struct OscillatorOptions {
+  double stiffness = 100;                                             // [N/m]
+  double damping = 0;                                                 // per mass [1/s]
+  std::function<double(double)> offset = [](double) { return 0.0; };  // of the targets along x at a time [m]
+};
+
+inline Model oscillator_model(const OscillatorOptions& options = {}) {
+  Model model;
+  model.mesh.rest = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}};
+  model.mesh.tets = {{0, 1, 2, 3}};
+  model.bodies = {{"tet", 0, 4, 0, 1}};
+  model.density = {24};
+  model.mass = std::make_unique<MassMatrix>(model.mesh, model.density, MassKind::lumped);
+  model.elasticity.push_back(make_tet_elasticity("neo_hookean", model.mesh, 0, std::vector<MaterialParameters>(1)));
+  std::vector<PointSpring> springs;
+  for (int v = 0; v < 4; ++v) {
+    const Vec3d rest = model.mesh.rest[v];
+    springs.push_back({v, options.stiffness, [rest, offset = options.offset](double t) {
+                         return rest + Vec3d{{offset(t), 0, 0}};
+                       }});
+  }
+  model.loads.push_back(make_point_springs("springs", springs));
+  if (options.damping > 0) model.damping.push_back(make_rayleigh_damping(*model.mass, options.damping, nullptr, 0));
+  return model;
+}
+
+// Released 1 m from where it rests.
+inline Simulation oscillator(SimulationOptions options, const OscillatorOptions& physics = {}) {
+  Model model = oscillator_model(physics);
+  State start = at_rest(model.mesh);
+  for (size_t i = 0; i < start.q.size(); i += 3) start.q[i] += 1;
+  options.solver.minimize.tolerance = 1e-15;
+  return Simulation(std::move(model), std::move(start), std::move(options));
+}
+
+inline double oscillator_position(const Simulation& s) { return s.state().q[0]; }     // of the first vertex [m]
+inline double oscillator_velocity(const Simulation& s) { return s.state().qdot[0]; }  // [m/s]
+
+// The factor r of a solution x_n = Re(c r^n): x_(n+1) = 2 Re(r) x_n - |r|^2 x_(n-1), twice, from four positions.
+inline std::complex<double> factor_per_step(const std::vector<double>& x) {
+  const double determinant = x[1] * x[1] - x[0] * x[2];
+  const double trace = (x[2] * x[1] - x[0] * x[3]) / determinant;
+  const double product = (x[2] * x[2] - x[1] * x[3]) / determinant;
+  return {trace / 2, std::sqrt(product - trace * trace / 4)};
+}
+
+}  // namespace aspic::testing_models

@@ -1,0 +1,53 @@
+#include "dynamics/pin_path.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/check.h"
+
+namespace aspic {
+namespace {
+
+constexpr int kMostPoints = 8;
+
+// First (1) or second (2) derivative at z of the polynomial that is 1 at j / (points - 1) and 0 at the other points.
+double basis_derivative(int j, int points, double z, int derivative) {
+  double p = 1, dp = 0, ddp = 0;
+  for (int k = 0; k < points; ++k) {
+    if (k == j) continue;
+    const double slope = (points - 1.0) / (j - k), factor = slope * (z - k / (points - 1.0));
+    ddp = ddp * factor + 2 * dp * slope;
+    dp = dp * factor + p * slope;
+    p *= factor;
+  }
+  return derivative == 1 ? dp : ddp;
+}
+
+}  // namespace
+
+void PinPath::sample(const Pins& pins, double time, double end_time, int points) {
+  ASPIC_CHECK(points >= 3 && points <= kMostPoints);
+  pins_ = &pins;
+  time_ = time;
+  h_ = end_time - time;
+  points_ = pins.any_moves() ? points : 0;
+  x_.resize(points_);
+  for (int j = 0; j < points_; ++j) {
+    x_[j].resize(3 * static_cast<size_t>(pins.vertex_count()));
+    pins.place(j == points - 1 ? end_time : time + h_ * j / (points - 1), x_[j]);
+  }
+}
+
+void PinPath::differentiate(double time, int derivative, std::span<double> out) const {
+  std::array<double, kMostPoints> weight{};
+  for (int j = 0; j < points_; ++j)
+    weight[j] = basis_derivative(j, points_, (time - time_) / h_, derivative) / (derivative == 1 ? h_ : h_ * h_);
+  for (size_t i = 0; i < out.size(); ++i) {
+    if (!pins_->holds(static_cast<int>(i / 3))) continue;
+    double sum = 0;  // the weights add up to zero, so one that stands still has exactly no velocity
+    for (int j = 1; j < points_; ++j) sum += weight[j] * (x_[j][i] - x_[0][i]);
+    out[i] = sum;
+  }
+}
+
+}  // namespace aspic

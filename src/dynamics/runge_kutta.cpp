@@ -1,0 +1,159 @@
+#include "dynamics/runge_kutta.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "dynamics/acceleration.h"
+#include "dynamics/implicit_stage.h"
+
+namespace aspic {
+namespace {
+
+// Implicit midpoint: conserves momenta and, where forces are linear, energy.
+constexpr Tableau kMidpoint = {.name = "midpoint", .order = 2, .stages = 1, .A = {{0.5}}, .b = {1}};
+
+// Trapezoidal rule, Newmark's method with beta = 1/4 and gamma = 1/2 [Newmark 1959].
+constexpr Tableau kTrapezoid = {.name = "trapezoid", .order = 2, .stages = 2, .A = {{0}, {0.5, 0.5}}, .b = {0.5, 0.5}};
+
+// The trapezoidal rule to t + gamma h, then BDF2 to t + h, with gamma such that both stages have one beta
+// [Bank 1985; Hosea 1996].
+constexpr double kGamma = 2 - std::numbers::sqrt2, kD = kGamma / 2, kW = std::numbers::sqrt2 / 4;
+constexpr Tableau kTrBdf2 = {
+    .name = "tr_bdf2", .order = 2, .stages = 3, .A = {{0}, {kD, kD}, {kW, kW, kD}}, .b = {kW, kW, kD}};
+
+// The classical method.
+constexpr Tableau kRk4 = {.name = "rk4",
+                          .order = 4,
+                          .stages = 4,
+                          .A = {{0}, {0.5}, {0, 0.5}, {0, 0, 1}},
+                          .b = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}};
+
+class RungeKutta : public Integrator {
+ public:
+  explicit RungeKutta(const Tableau& tableau) : t_(tableau) {
+    for (int i = 0; i < t_.stages; ++i) {
+      is_implicit_ = is_implicit_ || t_.A[i][i] > 0;
+      for (int j = 0; j <= i; ++j) c_[i] += t_.A[i][j];
+      if (std::abs(c_[i] - 1) < 1e-14) c_[i] = 1;  // the step's end exactly
+    }
+    const double* last = t_.A[t_.stages - 1];
+    ends_with_last_stage_ = std::equal(last, last + t_.stages, t_.b);
+  }
+  std::string_view name() const override { return t_.name; }
+  int order() const override { return t_.order; }
+  bool is_implicit() const override { return is_implicit_; }
+
+  void set_pin_velocity(const Pins& pins, double h, State& state) const override {
+    PinPath path;
+    path.sample(pins, state.time, state.time + h, pin_path_points(t_.order));
+    path.place_velocity(state.time, state.qdot);
+  }
+
+  StepSolve advance(const StepTools& tools, State& end, StepForces& forces) override {
+    const State& start = tools.start;
+    resize(start.q.size());
+    forces.reset(start.q.size());
+    path_.sample(tools.pins, start.time, tools.end_time, pin_path_points(t_.order));
+    StepSolve solve;
+    for (int i = 0; i < t_.stages; ++i) {
+      const bool ok = t_.A[i][i] > 0 ? solve_implicitly(tools, i, solve, forces) : evaluate(tools, i, solve, forces);
+      if (!ok) return solve;
+    }
+    finish(tools, forces, end);
+    const bool finite = std::all_of(end.q.begin(), end.q.end(), [](double x) { return std::isfinite(x); });
+    if (!finite) solve.work.status = Status::undefined;
+    return solve;
+  }
+
+ private:
+  void resize(size_t n) {
+    for (auto* all : {&q_, &v_, &acc_})
+      for (int i = 0; i < t_.stages; ++i) (*all)[i].resize(n);
+    for (auto* v : {&stage_.a, &stage_.b}) v->resize(n);
+  }
+
+  double time_of(const StepTools& tools, int i) const {
+    return c_[i] == 1 ? tools.end_time : tools.start.time + c_[i] * tools.h;
+  }
+
+  // What the stages before give: all but A_ii.
+  void combine(const StepTools& tools, int i, std::span<double> q, std::span<double> v) const {
+    std::copy(tools.start.q.begin(), tools.start.q.end(), q.begin());
+    std::copy(tools.start.qdot.begin(), tools.start.qdot.end(), v.begin());
+    for (int j = 0; j < i; ++j) {
+      const double weight = tools.h * t_.A[i][j];
+      if (weight == 0) continue;
+      for (size_t k = 0; k < q.size(); ++k) {
+        q[k] += weight * v_[j][k];
+        v[k] += weight * acc_[j][k];
+      }
+    }
+  }
+
+  bool solve_implicitly(const StepTools& tools, int i, StepSolve& solve, StepForces& forces) {
+    combine(tools, i, stage_.a, stage_.b);
+    q_[i] = i > 0 ? q_[i - 1] : tools.start.q;
+    v_[i] = i > 0 ? v_[i - 1] : tools.start.qdot;
+    const StageOptions options{.beta = tools.h * t_.A[i][i],
+                               .time = time_of(tools, i),
+                               .weight = t_.b[i],
+                               .ahead = tools.h * (c_[i] - (i > 0 ? c_[i - 1] : 0))};
+    return stage_.solve(tools, &path_, options, q_[i], v_[i], acc_[i], solve, forces);
+  }
+
+  bool evaluate(const StepTools& tools, int i, StepSolve& solve, StepForces& forces) {
+    combine(tools, i, q_[i], v_[i]);
+    const double time = time_of(tools, i);
+    if (i > 0) tools.pins.place(time, q_[i]);
+    path_.place_velocity(time, v_[i]);
+    path_.place_acceleration(time, acc_[i]);
+    const SolveReport solved =
+        force_.solve(tools, time, q_[i], v_[i], DampingDifference::central, t_.b[i], acc_[i], forces);
+    const bool finite = std::all_of(acc_[i].begin(), acc_[i].end(), [](double x) { return std::isfinite(x); });
+    MinimizeReport report;
+    report.iterations = is_implicit_ ? 0 : 1;
+    report.linear_iterations = solved.iterations;
+    report.status = finite && solved.ok ? Status::converged : Status::undefined;
+    return solve.add(report);
+  }
+
+  void finish(const StepTools& tools, const StepForces& forces, State& end) const {
+    end.time = tools.end_time;
+    if (ends_with_last_stage_) {
+      end.q = q_[t_.stages - 1];
+      end.qdot = v_[t_.stages - 1];
+      return;
+    }
+    end.q = tools.start.q;
+    end.qdot = tools.start.qdot;
+    for (size_t k = 0; k < end.q.size(); ++k) {
+      double velocity = 0;
+      for (int i = 0; i < t_.stages; ++i) velocity += t_.b[i] * v_[i][k];
+      end.q[k] += tools.h * velocity;
+      end.qdot[k] += tools.h * forces.acceleration[k];
+    }
+    tools.pins.place(end.time, end.q);
+    path_.place_velocity(end.time, end.qdot);
+  }
+
+  Tableau t_;
+  std::array<double, kMostStages> c_{};  // the stages' times, in steps
+  bool is_implicit_ = false, ends_with_last_stage_ = false;
+
+  std::array<std::vector<double>, kMostStages> q_, v_, acc_;
+  ImplicitStage stage_;
+  Acceleration force_;
+  PinPath path_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_runge_kutta(const Tableau& tableau) { return std::make_unique<RungeKutta>(tableau); }
+std::unique_ptr<Integrator> make_midpoint() { return make_runge_kutta(kMidpoint); }
+std::unique_ptr<Integrator> make_trapezoid() { return make_runge_kutta(kTrapezoid); }
+std::unique_ptr<Integrator> make_tr_bdf2() { return make_runge_kutta(kTrBdf2); }
+std::unique_ptr<Integrator> make_rk4() { return make_runge_kutta(kRk4); }
+
+}  // namespace aspic

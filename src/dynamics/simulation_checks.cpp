@@ -1,0 +1,79 @@
+#include "dynamics/simulation_checks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace aspic {
+namespace {
+
+std::string listed(const std::vector<int>& indices) {
+  std::string text;
+  for (size_t i = 0; i < std::min<size_t>(indices.size(), 5); ++i) text += (i ? ", " : "") + std::to_string(indices[i]);
+  return text + (indices.size() > 5 ? ", ..." : "");
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") + names[i];
+  return text;
+}
+
+}  // namespace
+
+void require_mass(const Model& model, const Pins& pins) {
+  std::vector<int> massless;
+  for (int v = 0; v < model.mesh.vertex_count(); ++v)
+    if (!pins.holds(v) && !(model.mass->vertex_mass()[v] > 0)) massless.push_back(v);
+  if (!massless.empty())
+    throw InvalidInput(std::to_string(massless.size()) + " vertices have no mass (" + listed(massless) +
+                       "): they belong to no tet, or the density there is zero; remove them (--repair) or pin them");
+}
+
+void require_finite_energy(const Model& model, std::span<const double> x) {
+  for (const double xi : x)
+    if (!std::isfinite(xi)) throw InvalidInput("the initial positions or velocities are not finite");
+  for (size_t body = 0; body < model.elasticity.size(); ++body) {
+    if (std::isfinite(model.elasticity[body]->value(x))) continue;
+    TetFields fields;
+    fields.energy_density.resize(model.mesh.tet_count());
+    fields.det_F = fields.von_mises = fields.energy_density;
+    fields.cauchy.resize(6 * fields.det_F.size());
+    std::fill(fields.det_F.begin(), fields.det_F.end(), 1.0);
+    model.elasticity[body]->evaluate(x, fields);
+    std::vector<int> inverted;
+    for (int t = 0; t < model.mesh.tet_count(); ++t)
+      if (!(fields.det_F[t] > 0)) inverted.push_back(t);
+    if (inverted.empty())
+      throw InvalidInput(
+          "the initial shape has infinite energy: its strain is more than the material can take; choose a "
+          "smaller initial deformation or another material");
+    throw InvalidInput("the initial shape has infinite energy: " + std::to_string(inverted.size()) +
+                       " tets are inverted or flat (" + listed(inverted) +
+                       "); choose a smaller initial deformation, or a material that tolerates inversion, such as "
+                       "neo_hookean or stable_neo_hookean");
+  }
+}
+
+void require_possible(const SimulationOptions& options, const Integrator& integrator, InitialGuess guess) {
+  const double tolerance = options.adaptive.tolerance;
+  const std::string name(integrator.name());
+  if (!(tolerance >= 0) || !std::isfinite(tolerance))
+    throw InvalidInput("time.adaptive.tolerance = " + std::to_string(tolerance) +
+                       "; it must be positive, or 0 for none");
+  if (tolerance > 0 && (integrator.is_static() || integrator.is_multistep()))
+    throw InvalidInput("integrator = '" + name + "' cannot divide its steps (time.adaptive): " +
+                       (integrator.is_static() ? "it knows no time" : "it needs steps of one length") + "; " +
+                       joined(adaptive_integrator_names()) + " can");
+  const bool is_default = guess == InitialGuess::best;
+  if (!is_default && !integrator.chooses_guess())
+    throw InvalidInput(
+        "solver.initial_guess = '" + options.initial_guess + "' says nothing to integrator = '" + name +
+        "': " + (integrator.is_implicit() ? "it starts from the current positions" : "it minimises nothing"));
+  if (guess == InitialGuess::extrapolated && integrator.is_static())
+    throw InvalidInput("solver.initial_guess = 'extrapolated' needs velocities, of which integrator = '" + name +
+                       "' knows none; try 'last_increment'");
+}
+
+}  // namespace aspic

@@ -1,0 +1,21 @@
+// Which elements touch each vertex.
+#pragma once
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace aspic {
+
+struct Incidence {
+  std::vector<int> start;    // one entry per vertex, and the end; empty: not made yet
+  std::vector<int> element;  // of one vertex after another, in the order in which they were given
+
+  Incidence() = default;
+  Incidence(int vertex_count, std::span<const std::pair<int, int>> vertex_and_element);
+  bool is_made() const { return !start.empty(); }
+  std::span<const int> around(int vertex) const {
+    return std::span(element).subspan(start[vertex], start[vertex + 1] - start[vertex]);
+  }
+};
+
+}  // namespace aspic

@@ -1,0 +1,50 @@
+#include "optimize/fallback_chain.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+
+namespace aspic {
+
+FallbackChain::FallbackChain(std::vector<std::unique_ptr<SearchDirection>> methods) : methods_(std::move(methods)) {
+  ASPIC_CHECK(!methods_.empty());
+}
+
+std::string FallbackChain::description() const {
+  std::string text;
+  for (const auto& method : methods_)
+    text += (text.empty() ? "" : "; where it finds no step, ") + method->description();
+  return text;
+}
+
+// What a method remembers is of a path that another one has left since.
+void FallbackChain::start(size_t method) {
+  current_ = method;
+  methods_[method]->begin();
+}
+
+void FallbackChain::begin() {
+  start(0);
+  retreated_ = false;
+}
+
+bool FallbackChain::compute(Objective& E, std::span<const double> x, std::span<const double> g,
+                            const InnerAccuracy& accuracy, std::span<double> d, DirectionReport& report) {
+  if (!retreated_ && current_ != 0) start(0);
+  retreated_ = false;
+  return methods_[current_]->compute(E, x, g, accuracy, d, report);
+}
+
+bool FallbackChain::retreat() {
+  retreated_ = true;
+  if (methods_[current_]->retreat()) return true;
+  if (current_ + 1 == methods_.size()) return false;
+  start(current_ + 1);
+  return true;
+}
+
+bool FallbackChain::estimates_minimiser() const {
+  return std::all_of(methods_.begin(), methods_.end(), [](const auto& m) { return m->estimates_minimiser(); });
+}
+
+}  // namespace aspic

@@ -1,0 +1,90 @@
+#include "optimize/lbfgs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aspic {
+namespace {
+
+// A pair with a smaller cosine between s and y says nothing certain of the curvature.
+constexpr double kLeastCosine = 1e-8;
+
+void add_multiple(double factor, std::span<const double> v, std::span<double> to) {
+  for (size_t i = 0; i < v.size(); ++i) to[i] += factor * v[i];
+}
+
+}  // namespace
+
+std::string LBFGS::description() const { return "lbfgs, preconditioner " + B_.description(); }
+
+void LBFGS::begin() {
+  B_.begin();
+  length_.begin();
+  count_ = 0;
+  has_last_ = corrected_ = false;
+}
+
+bool LBFGS::retreat() {
+  count_ = 0;
+  return corrected_;
+}
+
+void LBFGS::resize(size_t n) {
+  for (auto* v : {&last_x_, &last_g_, &r_}) v->resize(n);
+  for (Pair& pair : pairs_) pair.s.resize(n), pair.y.resize(n);
+}
+
+// The last step as a pair, if E curves upwards along it. A second call at the same x adds none.
+void LBFGS::remember(Objective& E, std::span<const double> x, std::span<const double> g) {
+  if (has_last_) {
+    Pair& pair = pairs_[next_];
+    for (size_t i = 0; i < x.size(); ++i) pair.s[i] = x[i] - last_x_[i], pair.y[i] = g[i] - last_g_[i];
+    const double sy = E.dot(pair.s, pair.y);
+    if (sy > kLeastCosine * std::sqrt(E.dot(pair.s, pair.s) * E.dot(pair.y, pair.y))) {
+      pair.rho = 1 / sy;
+      next_ = (next_ + 1) % kPairs;
+      count_ = std::min(count_ + 1, kPairs);
+    }
+  }
+  std::copy(x.begin(), x.end(), last_x_.begin());
+  std::copy(g.begin(), g.end(), last_g_.begin());
+  has_last_ = true;
+}
+
+bool LBFGS::compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy&,
+                    std::span<double> d, DirectionReport& report) {
+  resize(x.size());
+  remember(E, x, g);
+  corrected_ = count_ > 0;
+  for (size_t i = 0; i < g.size(); ++i) r_[i] = -g[i];
+  for (int age = 0; age < count_; ++age) {
+    Pair& pair = recent(age);
+    pair.weight = pair.rho * E.dot(pair.s, r_);
+    add_multiple(-pair.weight, pair.y, r_);
+  }
+  if (!B_.apply(E, x, r_, d, report) || !scale(E, x, g, d, report)) return false;
+  for (int age = count_ - 1; age >= 0; --age) {
+    const Pair& pair = recent(age);
+    add_multiple(pair.weight - pair.rho * E.dot(pair.y, d), pair.s, d);
+  }
+  return true;
+}
+
+// A Hessian has the right size. What else B is, it is scaled by the last change [Nocedal and Wright 2006, eq. 7.20],
+// and the first direction by the quadratic model along it.
+bool LBFGS::scale(Objective& E, std::span<const double> x, std::span<const double> g, std::span<double> d,
+                  DirectionReport& report) {
+  if (B_.kind() == PreconditionerKind::hessian) return true;
+  double factor = 0;
+  if (count_ == 0) {
+    factor = length_.along(E, x, g, d, report);
+  } else {
+    const Pair& last = recent(0);
+    if (!B_.apply(E, x, last.y, r_, report)) return false;
+    factor = 1 / (last.rho * E.dot(last.y, r_));
+  }
+  for (double& di : d) di *= factor;
+  return true;
+}
+
+}  // namespace aspic

@@ -1,0 +1,38 @@
+#include "optimize/model_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aspic {
+namespace {
+
+// The width of the difference, relative to the size of x: about the square root of the machine epsilon, where its
+// errors by truncation and by round-off balance.
+constexpr double kWidth = 1.5e-8;
+
+double largest_entry(std::span<const double> v) {
+  double largest = 0;
+  for (const double vi : v) largest = std::max(largest, std::abs(vi));
+  return largest;
+}
+
+}  // namespace
+
+double ModelStep::along(Objective& E, std::span<const double> x, std::span<const double> g, std::span<const double> p,
+                        DirectionReport& report) {
+  const double size = largest_entry(p);
+  if (!(size > 0) || !std::isfinite(size)) return 0;
+  for (auto* v : {&ahead_, &gradient_}) v->resize(x.size());
+  const double width = kWidth * std::max(1e-3, largest_entry(x)) / size;
+  for (size_t i = 0; i < x.size(); ++i) ahead_[i] = x[i] + width * p[i];
+  E.gradient(ahead_, gradient_);
+  ++report.gradients;
+  for (size_t i = 0; i < x.size(); ++i) gradient_[i] -= g[i];
+  const double curvature = E.dot(gradient_, p) / width;
+  const double step = -E.dot(g, p) / curvature;
+  const double chosen = curvature > 0 && std::isfinite(step) ? step : (last_ > 0 ? 2 * last_ : 1) / size;
+  last_ = chosen * size;
+  return chosen;
+}
+
+}  // namespace aspic

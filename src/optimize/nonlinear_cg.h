@@ -1,0 +1,31 @@
+// Nonlinear conjugate gradients: p = -B^-1 g + beta p_before, and d = p at the length of the quadratic model along p.
+#pragma once
+#include <vector>
+
+#include "optimize/model_step.h"
+#include "optimize/preconditioner.h"
+#include "optimize/search_direction.h"
+
+namespace aspic {
+
+class NonlinearCG : public SearchDirection {
+ public:
+  explicit NonlinearCG(Preconditioner B) : B_(std::move(B)) {}
+  std::string_view name() const override { return "nonlinear_cg"; }
+  std::string description() const override;
+  void begin() override;
+  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
+               std::span<double> d, DirectionReport& report) override;
+  bool retreat() override;  // starts anew along -B^-1 g
+
+ private:
+  double beta(Objective& E, std::span<const double> g);
+
+  Preconditioner B_;
+  ModelStep length_;
+  bool remembers_ = false, conjugate_ = false;  // there is a last direction; the last one was not -B^-1 g
+  std::vector<double> p_, z_;                   // direction, B^-1 g
+  std::vector<double> last_g_, last_z_;
+};
+
+}  // namespace aspic

@@ -1,0 +1,46 @@
+#include "optimize/progressive_projection.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aspic {
+namespace {
+
+constexpr double kTighten = 0.5, kRelax = 2;  // as in [Fernandez-Fernandez et al. 2026]
+constexpr double kAll = 1e-6;                 // below this part of the largest residual every element is covered
+
+double residual(std::span<const double> g, size_t vertex) {
+  return std::max({std::abs(g[3 * vertex]), std::abs(g[3 * vertex + 1]), std::abs(g[3 * vertex + 2])});
+}
+
+double largest_residual(std::span<const double> g) {
+  double largest = 0;
+  for (size_t v = 0; 3 * v < g.size(); ++v) largest = std::max(largest, residual(g, v));
+  return largest;
+}
+
+}  // namespace
+
+Projection ProgressiveProjection::at(std::span<const double> g) {
+  covers_all_ = false;
+  if (threshold_ == kNone) return {};
+  const double largest = largest_residual(g);
+  covers_all_ = threshold_ < kAll * largest;
+  if (covers_all_) return {Definiteness::clamped};
+  if (threshold_ >= largest) return {};
+  marked_.resize(g.size() / 3);
+  for (size_t v = 0; v < marked_.size(); ++v) marked_[v] = residual(g, v) > threshold_;
+  return {Definiteness::clamped, marked_};
+}
+
+// The first half of the range, or what is left of it, and always below the largest residual, so that something changes.
+void ProgressiveProjection::tighten(std::span<const double> g) {
+  const double largest = largest_residual(g);
+  threshold_ = kTighten * (threshold_ == kNone ? largest : std::min(threshold_, largest));
+}
+
+void ProgressiveProjection::relax() {
+  if (threshold_ != kNone) threshold_ *= kRelax;
+}
+
+}  // namespace aspic
