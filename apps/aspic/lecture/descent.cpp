@@ -70,10 +70,10 @@ void descend_in_the_plane(const std::string& function, Planar start, double leas
     sheet.at_least(function + ": share of turns by more than a right angle", turns_of(descent).share(), 0.3, "",
                    "it zig-zags across the valley");
   }
-  sheet.draw_by(function + ".svg", function + ": gradient descent and Newton's method", [&](const auto& path) {
+  sheet.draw_by(function + ".png", function + ": gradient descent and Newton's method", [&](const auto& path) {
     draw_paths(path, problem.formula, problem, {descent, newton});
   });
-  sheet.draw_by(function + "_surface.svg", function + " as a surface, with the model at the start",
+  sheet.draw_by(function + "_surface.png", function + " as a surface, with the model at the start",
                 [&](const auto& path) { draw_model(path, problem, newton, 0); });
 }
 

@@ -115,7 +115,7 @@ void show_overshoot(const Stage&, Sheet& sheet) {
   sheet.at_most("distance from (1, 1) at the end", std::hypot(done.end[0] - 1, done.end[1] - 1), 1e-6 / 0.39, "",
                 "|g| <= 1e-6 over the least eigenvalue of H there");
   sheet.show("iterations", done.report.iterations, "");
-  sheet.draw_by("model.svg", "The surface, the model, its minimiser and the backtracked point",
+  sheet.draw_by("model.png", "The surface, the model, its minimiser and the backtracked point",
                 [&](const auto& path) { draw_model(path, problem, done, 0); });
   sheet.draw_by("path.svg", "The path with the rejected trials",
                 [&](const auto& path) { draw_paths(path, problem.formula, problem, {done}); });

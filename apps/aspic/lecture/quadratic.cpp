@@ -77,7 +77,7 @@ void show_on_rosenbrock(Sheet& sheet) {
   sheet.at_most("Rosenbrock: |H d + g| / |g|", residual_of_direction(*problem.function, x), 1e-12, "",
                 "the model's gradient is zero at its minimiser");
   const Minimization done = minimize(problem, {});
-  sheet.draw_by("model.svg", "Rosenbrock's function and its quadratic model at the start, with the model's minimiser",
+  sheet.draw_by("model.png", "Rosenbrock's function and its quadratic model at the start, with the model's minimiser",
                 [&](const auto& path) { draw_model(path, problem, done, 0); });
 }
 

@@ -13,12 +13,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+std::string short_text(double value) {
+  const bool is_count = std::abs(value) < 1e9 && value == std::floor(value);
+  return is_count ? fmt::format("{:.0f}", value) : fmt::format("{:.4g}", value);
+}
 std::string value_text(const Measure& m) {
-  return fmt::format("{:.6g}{}{}", m.value, m.unit.empty() ? "" : " ", m.unit);
+  return fmt::format("{}{}{}", short_text(m.value), m.unit.empty() ? "" : " ", m.unit);
 }
 std::string bound_text(const Measure& m) {
-  if (m.relation == Relation::shown) return "";
-  return fmt::format("{} {:.6g}{}{}", to_string(m.relation), m.bound, m.unit.empty() ? "" : " ", m.unit);
+  return m.relation == Relation::shown ? "" : fmt::format("{} {}", to_string(m.relation), short_text(m.bound));
 }
 
 enum class PageVerdict { pass, fail, nothing_to_check, not_available };
@@ -61,7 +64,8 @@ std::vector<int> pages_with(PageVerdict verdict, const std::vector<Result>& resu
   return pages;
 }
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+// JSON has no infinity: what exploded is the word "inf".
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(fmt::format("{}", value)); }
 
 Json to_json(const Measure& m) {
   Json json = {{"what", m.what}, {"value", number(m.value)}, {"unit", m.unit}};
@@ -128,9 +132,9 @@ void add_result(ReportPage& page, const Result& result) {
     Cell judged{""};
     if (m.relation != Relation::shown)
       judged = {m.holds() ? "pass" : "fail", m.holds() ? Verdict::pass : Verdict::fail};
-    rows.push_back({{m.what}, {value_text(m)}, {bound_text(m)}, judged, {m.reason}});
+    rows.push_back({{m.what}, {short_text(m.value)}, {bound_text(m)}, {m.unit}, judged, {m.reason}});
   }
-  page.table({"measured", "value", "bound", "", "why"}, rows);
+  page.table({"measured", "value", "bound", "unit", "", "why"}, rows);
   if (!result.sheet.figures().empty()) page.figures(result.sheet.figures());
 }
 
