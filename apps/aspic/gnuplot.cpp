@@ -39,6 +39,7 @@ void require_drawable(const fs::path& picture) {
 
 Gnuplot::Gnuplot(const fs::path& picture, const PictureSize& size)
     : picture_(picture), program_(find_gnuplot()), script_("set encoding utf8\n" + terminal(picture, size) + '\n') {
+  add("apostrophe = \"'\"");
   add(fmt::format("set output {}", literal((folder_.path() / "picture").string())));
   add(fmt::format("set border 3 lc rgb '{0}' lw 0.8\nset tics nomirror scale 0.5 textcolor rgb '{0}'", kInk));
   add(
@@ -70,14 +71,16 @@ void Gnuplot::draw() {
 }
 
 std::string literal(std::string_view text) {
-  // Nothing but the apostrophe has a meaning between apostrophes. Gnuplot misreads two of them that are escaped by
-  // doubling, so they stand between quotation marks and are joined to the rest.
+  // Between apostrophes only the apostrophe has a meaning. Doubled it stands for itself, but not in the first place nor
+  // beside another one: there a variable joins in.
   std::string result = "'";
   for (size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    if (c == '\'' && (i == 0 || text[i - 1] != c)) result += "' . \"";
-    result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
-    if (c == '\'' && (i + 1 == text.size() || text[i + 1] != c)) result += "\" . '";
+    const bool alone = i > 0 && text[i - 1] != '\'' && (i + 1 == text.size() || text[i + 1] != '\'');
+    if (c == '\'')
+      result += alone ? "''" : "' . apostrophe . '";
+    else
+      result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
   }
   return result + '\'';
 }
