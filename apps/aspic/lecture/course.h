@@ -17,7 +17,7 @@ class Stage {
  public:
   // `mesh`: for the demonstrations on a real mesh, tets or a closed surface; empty: the bunny where it is found.
   // `cache` keeps meshes that take long to make. Throws InvalidInput when the lecture's scenes are not found.
-  Stage(std::filesystem::path mesh, std::filesystem::path cache);
+  Stage(const std::filesystem::path& mesh, std::filesystem::path cache);
 
   // A scene of scenes/lecture on the shape that it describes.
   Scene scene(const std::string& name, const std::vector<std::string>& overrides = {}) const;

@@ -17,10 +17,11 @@ struct SlopeCheck {
 };
 
 // (V(q + s d) - V(q - s d)) / 2s against d'dV/dq.
-SlopeCheck check_slope(const Model& model, const Vector& q, const Vector& d, double widest) {
+SlopeCheck check_slope(const Model& model, const Vector& q, const Vector& d) {
   const double exact = inner(gradient_of_potential(model, q), d);
   SlopeCheck check;
-  for (double s = widest; s > widest * 1e-5; s /= std::sqrt(10.0)) {
+  for (int k = 2; k <= 11; ++k) {
+    const double s = std::pow(10, -0.5 * k);
     const double difference = potential(model, plus(q, s, d)) - potential(model, plus(q, -s, d));
     check.step.push_back(s);
     check.error.push_back(std::abs(difference / (2 * s) - exact) / std::abs(exact));
@@ -55,7 +56,7 @@ void show_equation_of_motion(const Stage& stage, Sheet& sheet) {
   write_stacked(sheet, model, step.q_t);
 
   const Vector d = smooth_direction(step);
-  const SlopeCheck check = check_slope(model, step.q_t, d, 0.1);
+  const SlopeCheck check = check_slope(model, step.q_t, d);
   CsvFile table = sheet.table("gradient.csv", {"width_m", "relative_error"});
   for (size_t i = 0; i < check.step.size(); ++i) table.append(CsvRow().add(check.step[i]).add(check.error[i]));
   const Vector two_steps(check.step.begin(), check.step.begin() + 3);

@@ -25,7 +25,7 @@ Departure departure(Objective& E, const Vector& x, const Vector& d) {
   E.gradient(x, g);
   E.hessian(x, {Definiteness::exact}).multiply(d, Hd);
   Departure result;
-  for (double s = 1; s > 0.05; s /= 2) {
+  for (const double s : {1.0, 0.5, 0.25, 0.125, 0.0625}) {
     const double model = value + s * inner(g, d) + s * s / 2 * inner(d, Hd);
     result.s.push_back(s);
     result.error.push_back(std::abs(E.value(plus(x, s, d)) - model));

@@ -74,7 +74,7 @@ fs::path filled(const fs::path& surface, double size, const fs::path& cache) {
 
 }  // namespace
 
-Stage::Stage(fs::path mesh, fs::path cache) : scenes_(found("scenes/lecture")), cache_(std::move(cache)) {
+Stage::Stage(const fs::path& mesh, fs::path cache) : scenes_(found("scenes/lecture")), cache_(std::move(cache)) {
   if (scenes_.empty())
     throw InvalidInput(
         "the lecture's scenes are not found: there is no scenes/lecture in this folder, beside the program or in a "
