@@ -377,6 +377,9 @@ class Run(CommandLine):
         trace = self.folder / "traced" / "trace"
         self.assertIn("traced/trace", out)
         self.assertEqual(len((trace / "curve_2_1.csv").read_text().splitlines()), 102)
+        if shutil.which("gnuplot"):
+            self.assertIn("Line search", (trace / "curve_2_1.svg").read_text())
+            self.assertEqual((trace / "slice_2_1.png").read_bytes()[1:4], b"PNG")
         rows = [json.loads(line) for line in (trace / "trace.jsonl").read_text().splitlines()]
         self.assertEqual(len(rows), len((self.folder / "plain" / "iterations.csv").read_text().splitlines()) - 1)
         shutil.rmtree(trace)

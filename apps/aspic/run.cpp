@@ -8,6 +8,7 @@
 
 #include "aspic/commands.h"
 #include "aspic/interrupt.h"
+#include "aspic/landscape_picture.h"
 #include "aspic/progress.h"
 #include "aspic/step_json.h"
 #include "aspic/summary.h"
@@ -157,15 +158,29 @@ class Runner {
     for (const LandscapeAt& at : trace_->missed())
       fmt::print(stderr, "warning: no landscape {0}:{1}: the run has no iteration {1} of step {0}\n", at.step,
                  at.iteration);
+    draw_landscapes();
     if (!arguments_.quiet) fmt::print(human_, "trace      {}\n", trace_->folder().string());
+  }
+
+  void draw_landscapes() const {
+    try {
+      for (const Landscape& landscape : trace_->landscapes()) {
+        const std::string name = landscape_name(landscape.at);
+        draw(trace_->folder() / ("curve_" + name + ".svg"), line_search_chart(landscape));
+        draw(trace_->folder() / ("slice_" + name + ".png"), slice_surface(landscape));
+      }
+    } catch (const InvalidInput& missing) {
+      fmt::print(stderr, "note: no pictures: {}\n", missing.what());
+    }
   }
 
   void warn(const StepReport& report, const Explanation& why) {
     const int count = totals_.unconverged;
     if (count > kWarningsShown) return;
-    std::string line = fmt::format(
-        "warning: step {} did not converge: {} after {} iterations; residual {:.3g} N, wanted {:.3g} N", report.step,
-        to_string(report.status), report.iterations, report.residual, report.residual_threshold);
+    std::string line = fmt::format("warning: step {} did not converge: {}", report.step, to_string(report.status));
+    if (report.residual_threshold > 0)
+      line += fmt::format(" after {} iterations; residual {:.3g} N, wanted {:.3g} N", report.iterations,
+                          report.residual, report.residual_threshold);
     if (why.cause != last_cause_) line += explanation_text(why);
     last_cause_ = why.cause;
     if (count == kWarningsShown) line += " (further ones are only counted)";

@@ -118,6 +118,9 @@ class Explainer {
     const StableStep stable = simulation_.stable_step();
     const double h = simulation_.options().h;
     const std::string& name = simulation_.options().integrator;
+    if (name == "forward_euler" && h < stable.h)
+      return {"forward_euler adds energy in every step, however short, and left the range of numbers",
+              "time.integrator = \"forward_euler\"", "time.integrator = \"symplectic_euler\" or \"backward_euler\""};
     if (h < stable.h)
       return {
           "the explicit scheme " + name + " left the range of numbers",

@@ -55,6 +55,17 @@ TEST(StableStep, IsThatOfASpringInClosedForm) {
   EXPECT_EQ(stable.vertex, vertex);
 }
 
+TEST(StableStep, LeavesDampingOutAndKnowsTheScheme) {
+  const auto damped = [](const char* integrator) {
+    return simulate(damped_beam_with_moving_pins_and_targets(), {.h = 1e-6, .integrator = integrator});
+  };
+  Simulation simulation = damped("symplectic_euler");
+  const double limit = simulation.stable_step().h;
+  simulation.step();
+  EXPECT_EQ(simulation.stable_step().h, limit);
+  EXPECT_DOUBLE_EQ(damped("rk4").stable_step().h, std::sqrt(2.0) * limit);
+}
+
 TEST(Explanation, OfAnExplicitBlowUpNamesTheStableStep) {
   Simulation simulation = simulate(beam(2), {.h = 0.05, .integrator = "forward_euler"});
   StepReport report;

@@ -59,7 +59,7 @@ inline Model beam(int n, const ModelOptions& options = {}) {
   return model;
 }
 
-inline Model damped_beam_with_moving_pins_and_targets(int n = 2) {
+inline Model damped_beam_with_moving_pins_and_targets(int n = 2) {  // n >= 2
   Model model = beam(n, {.young = 1e5, .poisson = 0.3});
   model.pins.push_back({"crank", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 4 - 1e-9; }),
                         [](const Vec3d& X, double t) {

@@ -38,6 +38,7 @@ StableStep stable_step(IncrementalPotential& E, const Model& model, const Pins& 
   const auto solver = make_linear_solver("auto");
   solver->analyze(E.pattern());
   if (!solver->factorize(M)) return {.h = 0};
+  for (Energy* D : E.damping()) D->begin_step({.start = x});  // h = 0: no damping
   E.begin_step(x, 0, 1);
   const BlockSparse& K = E.hessian(x, {Definiteness::clamped});
 

@@ -23,46 +23,49 @@ NewtonDefiniteness definiteness(const SolverOptions& options) {
   return NewtonDefiniteness::on_demand;
 }
 
-// The preconditioner of a method whose own choice is `usual`.
-Preconditioner preconditioner(const SolverOptions& options, PreconditionerKind usual) {
-  for (const PreconditionerKind kind : all_preconditioners())
-    if (to_string(kind) == options.preconditioner) usual = kind;
-  return Preconditioner(usual, options.linear);
-}
-
 struct Method {
   std::string name;
   Direction (*make)(const SolverOptions&);
-  bool estimates_minimiser, solves_systems, uses_preconditioner, uses_definiteness;
-  bool prefers_hessian = false;  // as its preconditioner
+  bool estimates_minimiser = false, solves_systems = false, uses_definiteness = false;
+  std::optional<PreconditionerKind> preconditioner = {};  // the one that suits it, if it uses any
 };
+const Method* method_named(const std::string& name);
+
+// The one that was asked for, or the one that suits the method.
+Preconditioner preconditioner(const SolverOptions& options, const std::string& method) {
+  PreconditionerKind chosen = *method_named(method)->preconditioner;
+  for (const PreconditionerKind kind : all_preconditioners())
+    if (to_string(kind) == options.preconditioner) chosen = kind;
+  return Preconditioner(chosen, options.linear);
+}
+
+Direction make_newton(const SolverOptions& options) {
+  return std::make_unique<Newton>(make_linear_solver(options.linear), definiteness(options));
+}
+Direction make_truncated_newton(const SolverOptions& options) { return make_newton_cg(definiteness(options)); }
+Direction make_lbfgs(const SolverOptions& options) { return std::make_unique<LBFGS>(preconditioner(options, "lbfgs")); }
+Direction make_nonlinear_cg(const SolverOptions& options) {
+  return std::make_unique<NonlinearCG>(preconditioner(options, "nonlinear_cg"));
+}
+Direction make_gradient_descent(const SolverOptions& options) {
+  return std::make_unique<GradientDescent>(preconditioner(options, "gradient_descent"));
+}
+Direction make_vertex_descent(const SolverOptions&) { return std::make_unique<VertexDescent>(); }
 
 const std::vector<Method>& methods() {
+  using enum PreconditionerKind;
   static const std::vector<Method> table = {
-      {"newton",
-       [](const SolverOptions& o) -> Direction {
-         return std::make_unique<Newton>(make_linear_solver(o.linear), definiteness(o));
-       },
-       true, true, false, true},
-      {"newton_cg", [](const SolverOptions& o) -> Direction { return make_newton_cg(definiteness(o)); }, true, false,
-       false, true},
-      {"lbfgs",
-       [](const SolverOptions& o) -> Direction {
-         return std::make_unique<LBFGS>(preconditioner(o, PreconditionerKind::hessian));
-       },
-       false, false, true, false, true},
-      {"nonlinear_cg",
-       [](const SolverOptions& o) -> Direction {
-         return std::make_unique<NonlinearCG>(preconditioner(o, PreconditionerKind::hessian));
-       },
-       false, false, true, false, true},
-      {"gradient_descent",
-       [](const SolverOptions& o) -> Direction {
-         return std::make_unique<GradientDescent>(preconditioner(o, PreconditionerKind::none));
-       },
-       false, false, true, false},
-      {"vertex_descent", [](const SolverOptions&) -> Direction { return std::make_unique<VertexDescent>(); }, false,
-       false, false, false}};
+      {.name = "newton",
+       .make = make_newton,
+       .estimates_minimiser = true,
+       .solves_systems = true,
+       .uses_definiteness = true},
+      {.name = "newton_cg", .make = make_truncated_newton, .estimates_minimiser = true, .uses_definiteness = true},
+      {.name = "lbfgs", .make = make_lbfgs, .preconditioner = hessian},
+      {.name = "nonlinear_cg", .make = make_nonlinear_cg, .preconditioner = hessian},
+      {.name = "gradient_descent", .make = make_gradient_descent, .preconditioner = none},
+      {.name = "vertex_descent", .make = make_vertex_descent},
+  };
   return table;
 }
 
@@ -81,9 +84,9 @@ std::optional<SolverConflict> unknown(const std::string& option, const std::stri
 }
 
 bool factorizes(const Method& method, const SolverOptions& options) {
-  const bool by_hessian =
-      options.preconditioner == "hessian" || (options.preconditioner == "auto" && method.prefers_hessian);
-  return method.solves_systems || (method.uses_preconditioner && by_hessian);
+  if (!method.preconditioner) return method.solves_systems;
+  if (options.preconditioner != "auto") return options.preconditioner == to_string(PreconditionerKind::hessian);
+  return method.preconditioner == PreconditionerKind::hessian;
 }
 
 // That `value` of an option is used by one of the chosen methods.
@@ -161,7 +164,7 @@ std::optional<SolverConflict> find_conflict(const SolverOptions& options) {
   if (auto wrong = unknown("linear", options.linear, linear_solver_names())) return wrong;
   if (auto wrong = unknown("definiteness", options.definiteness, definiteness_names())) return wrong;
   if (auto wrong = unused("preconditioner", options.preconditioner, chosen,
-                          [](const Method* m) { return m->uses_preconditioner; }))
+                          [](const Method* m) { return m->preconditioner.has_value(); }))
     return wrong;
   if (auto wrong = unused("linear", options.linear, chosen, [&](const Method* m) { return factorizes(*m, options); }))
     return wrong;
