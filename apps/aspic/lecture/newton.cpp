@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "aspic/landscape_picture.h"
 #include "aspic/lecture/course.h"
 #include "aspic/lecture/run_scene.h"
 #include "aspic/minimize.h"
@@ -161,36 +162,11 @@ void write_curve(const Sheet& sheet, const Curve& curve) {
     table.append(CsvRow().add(p.alpha).add(p.value).add(p.model).add(p.textbook_bound).add(p.slide_bound));
 }
 
-// E(alpha) near its start; what rises far above is cut off.
 void draw_curve(const Curve& curve, const std::string& name, const std::string& caption, Sheet& sheet) {
-  Vector alpha, value, model, textbook, slide;
-  for (const CurvePoint& p : curve.points) {
-    alpha.push_back(p.alpha);
-    value.push_back(p.value);
-    model.push_back(p.model);
-    textbook.push_back(p.textbook_bound);
-    slide.push_back(p.slide_bound);
-  }
-  Series rejected{"rejected", {}, {}, SeriesStyle::points}, accepted{"accepted", {}, {}, SeriesStyle::points};
-  double highest = curve.value;  // of the accepted trial and of the lowest one that was rejected
-  for (const Trial& t : curve.tried) {
-    Series& series = t.accepted ? accepted : rejected;
-    series.x.push_back(t.alpha);
-    series.y.push_back(t.value);
-  }
-  if (!rejected.y.empty()) highest = *std::min_element(rejected.y.begin(), rejected.y.end());
-  const double lowest = *std::min_element(model.begin(), model.end());
-  sheet.draw(
-      name, caption,
-      Chart{"backtracking",
-            {"alpha"},
-            {"E [kg m^2]", AxisScale::linear, lowest, std::max(highest, curve.value) + 0.5 * (curve.value - lowest)},
-            {{"E(q + alpha d)", alpha, value},
-             {"quadratic model", alpha, model},
-             {"E + c alpha d'g (textbook)", alpha, textbook, SeriesStyle::dashed},
-             {"E + c d'g (slide)", alpha, slide, SeriesStyle::dashed},
-             rejected,
-             accepted}});
+  Chart chart = line_search_chart(
+      {.at = {1, curve.iteration}, .value = curve.value, .tried = curve.tried, .curve = curve.points, .slice = {}});
+  chart.y.label = "E [kg m^2]";
+  sheet.draw(name, caption, chart);
 }
 
 // Rosenbrock from (0, 0), where alpha must shrink to 1/4.

@@ -173,7 +173,8 @@ std::string count_text(const std::vector<Result>& results) {
        {PageVerdict::pass, PageVerdict::fail, PageVerdict::nothing_to_check, PageVerdict::not_available}) {
     const std::vector<int> pages = pages_with(verdict, results);
     if (pages.empty() && verdict != PageVerdict::fail) continue;
-    text += fmt::format("{}{} pages: {}", text.empty() ? "" : "; ", pages.size(), to_text(verdict));
+    text += fmt::format("{}{} page{}: {}", text.empty() ? "" : "; ", pages.size(), pages.size() == 1 ? "" : "s",
+                        to_text(verdict));
     if (verdict != PageVerdict::pass && !pages.empty()) text += fmt::format(" ({})", pages_text(pages));
   }
   return text;
