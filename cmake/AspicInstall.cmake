@@ -11,4 +11,7 @@ configure_package_config_file(cmake/aspic-config.cmake.in ${CMAKE_BINARY_DIR}/as
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/aspic-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/aspic-config.cmake ${CMAKE_BINARY_DIR}/aspic-config-version.cmake
               cmake/AspicDependencies.cmake DESTINATION ${package_dir})
+# `aspic lecture` finds its scenes there, and the bunny where ./run has made it.
+install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/aspic)
+install(DIRECTORY assets DESTINATION ${CMAKE_INSTALL_DATADIR}/aspic OPTIONAL FILES_MATCHING PATTERN "bunny.*")
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -400,6 +400,9 @@ class Run(CommandLine):
         trace = self.folder / "traced" / "trace"
         self.assertIn("traced/trace", out)
         self.assertEqual(len((trace / "curve_2_1.csv").read_text().splitlines()), 102)
+        if shutil.which("gnuplot"):
+            self.assertIn("Line search", (trace / "curve_2_1.svg").read_text())
+            self.assertEqual((trace / "slice_2_1.png").read_bytes()[1:4], b"PNG")
         rows = [json.loads(line) for line in (trace / "trace.jsonl").read_text().splitlines()]
         self.assertEqual(len(rows), len((self.folder / "plain" / "iterations.csv").read_text().splitlines()) - 1)
         shutil.rmtree(trace)
@@ -495,6 +498,64 @@ class Compare(CommandLine):
         for arguments, message in ((["--methods", "newtn"], "newton"), (["--methods", "newton:clampd"], "clamped"),
                                    (["--methods", "newton", "--set", "time.integrator=forward_euler"], "implicit")):
             self.assertIn(message, self.aspic("compare", self.beam(), *arguments, code=2).stderr)
+class Lecture(CommandLine):
+    def lecture(self, *arguments, code=0):
+        return self.aspic("lecture", *arguments, code=code).stdout
+
+    def mesh(self, cells):
+        return self.write(f"box{cells}.mesh", box_mesh(cells))
+
+    def test_every_page_is_listed(self):
+        rows = self.lecture().splitlines()
+        self.assertEqual([int(row.split()[0]) for row in rows], list(range(1, 63)))
+        self.assertTrue(all(len(row.split()) > 1 for row in rows))
+
+    def test_a_page_says_what_it_claims_measured_and_judged(self):
+        text = self.lecture("54")
+        self.assertIn("claim: ", text)
+        self.assertRegex(text, r"pass  .*: \S+.*\((<=|>=|=) \S+")
+        self.assertIn("PASS", text)
+        with open(self.folder / "out/lecture/54-59_overshoot/trials.csv", newline="") as file:
+            alphas = [float(row["alpha"]) for row in csv.DictReader(file)]
+        self.assertEqual(alphas, [1, 0.5, 0.25])
+
+    def test_pages_run_on_a_given_mesh_and_keep_its_scene(self):
+        text = self.lecture("26", "--mesh", self.mesh(4), "--out", "here")
+        self.assertIn("PASS", text)
+        self.assertIn("box4.mesh", text)
+        self.aspic("run", "here/26-31_optimisation/05_swing.toml", "--steps", "1")
+
+    def test_a_demonstration_that_does_not_show_the_claim_fails(self):
+        text = self.lecture("53", "--mesh", self.mesh(1), code=3)  # too few tets to make Newton's method fail
+        self.assertRegex(text, r"FAIL  without line search: converged: 1")
+
+    def test_what_cannot_be_judged_is_no_pass(self):
+        for page, words in (("6", "not available: bunnies fall on chutes: needs contact"), ("4", "nothing to check")):
+            text = self.lecture(page)
+            self.assertIn(words, text)
+            self.assertNotIn("pass", text.lower())
+
+    def test_a_bad_page_is_named(self):
+        for page in ("0", "63", "5x", "first"):
+            self.assertIn(f"'{page}' is no page", self.aspic("lecture", page, code=2).stderr)
+        self.aspic("lecture", "5", "--mesh", "missing.mesh", code=2)
+
+    def test_all_pages_are_summed_up(self):
+        self.lecture("all", "--mesh", self.mesh(6))
+        with open(self.folder / "out/lecture/lecture.json") as file:
+            summary = json.load(file)
+        verdicts = {page["page"]: page["verdict"] for page in summary["pages"]}
+        self.assertEqual([n for n, v in verdicts.items() if v == "nothing to check"], [1, 4, 35, 52])
+        self.assertEqual([n for n, v in verdicts.items() if v == "not available"], [6])
+        self.assertEqual(sum(v == "pass" for v in verdicts.values()), 57)
+        for demonstration in summary["demonstrations"]:
+            self.assertTrue(any("bound" in m for m in demonstration["measures"]), demonstration["key"])
+            folder = self.folder / "out/lecture" / demonstration["key"]
+            self.assertTrue(list(folder.glob("*.csv")), demonstration["key"])
+        page = (self.folder / "out/lecture/index.html").read_text()
+        for demonstration in summary["demonstrations"]:
+            self.assertIn(demonstration["title"], page)
+        self.assertNotIn("http://", page.replace("http://www.w3.org", ""))
 
     def test_a_step_that_is_not_one_minimisation_is_refused(self):
         for setting, message in (("time.integrator=tr_bdf2", "minimises twice"),

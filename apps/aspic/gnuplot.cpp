@@ -39,6 +39,7 @@ void require_drawable(const fs::path& picture) {
 
 Gnuplot::Gnuplot(const fs::path& picture, const PictureSize& size)
     : picture_(picture), program_(find_gnuplot()), script_("set encoding utf8\n" + terminal(picture, size) + '\n') {
+  add("apostrophe = \"'\"");
   add(fmt::format("set output {}", literal((folder_.path() / "picture").string())));
   add(fmt::format("set border 3 lc rgb '{0}' lw 0.8\nset tics nomirror scale 0.5 textcolor rgb '{0}'", kInk));
   add(
@@ -70,11 +71,16 @@ void Gnuplot::draw() {
 }
 
 std::string literal(std::string_view text) {
-  // Gnuplot would end the string at a quotation mark in its first place.
-  std::string result = text.starts_with('\'') ? "' " : "'";
-  for (const char c : text) {
-    if (c == '\'') result += '\'';
-    result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+  // Between apostrophes only the apostrophe has a meaning. Doubled it stands for itself, but not in the first place nor
+  // beside another one: there a variable joins in.
+  std::string result = "'";
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const bool alone = i > 0 && text[i - 1] != '\'' && (i + 1 == text.size() || text[i + 1] != '\'');
+    if (c == '\'')
+      result += alone ? "''" : "' . apostrophe . '";
+    else
+      result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
   }
   return result + '\'';
 }

@@ -92,6 +92,7 @@ int run_program(int argc, char** argv) {
   add_compare(app, action);
   add_materials(app, action);
   add_minimize(app, action);
+  add_lecture(app, action);
   if (argc == 1) {
     fmt::print("{}", app.help());
     return exit_bad_input;

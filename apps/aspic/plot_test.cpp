@@ -107,6 +107,7 @@ TEST_F(Pictures, TextInTitlesIsNeitherCommandNorMarkup) {
   Chart chart = convergence();
   chart.title = text;
   chart.y.label = "ends in '";
+  chart.series[1].label = "q'' @y at '''";
   chart.x.label = chart.series[0].label = "'; system('touch pwned'); '\nset output 'pwned";
   const fs::path before = fs::current_path();
   fs::current_path(folder.path());
@@ -115,6 +116,7 @@ TEST_F(Pictures, TextInTitlesIsNeitherCommandNorMarkup) {
   fs::current_path(before);
   const std::string svg = read_file(folder / "special.svg");
   EXPECT_TRUE(has(svg, "it's &lt;b>a_1^2 &amp; \"%s\"&lt;/b> `touch pwned` $x @y {/Bold z} \\n \xce\xbc"));
+  EXPECT_TRUE(has(svg, "q'' @y at '''"));
   EXPECT_EQ(count(svg, "<svg"), 1u);
 }
 

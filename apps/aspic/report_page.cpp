@@ -30,6 +30,7 @@ table { border-collapse: collapse; margin: 1rem 0; font-size: .93rem; font-varia
 th { text-align: left; font-weight: 600; border-bottom: 2px solid #bbb; padding: .3rem .9rem .3rem 0; }
 td { border-bottom: 1px solid #ececec; padding: .3rem .9rem .3rem 0; vertical-align: top; }
 td.number, th.number { text-align: right; }
+td.number, td.short { white-space: nowrap; }
 .badge { display: inline-block; border-radius: 3px; padding: 0 .45em; font-size: .85em; font-weight: 600;
   white-space: nowrap; }
 .pass { background: #d9efe6; color: #00573f; } .pass::before { content: "\2713\00a0"; }
@@ -85,6 +86,12 @@ std::string badge(Verdict verdict, std::string_view text) {
 bool is_number(const std::string& text) {
   return !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) || text[0] == '-' || text[0] == '+') &&
          text.find_first_not_of("0123456789+-.eE% ") == std::string::npos;
+}
+
+// Numbers stand to the right; what is short, such as "<= 1e-6", is not broken into lines.
+std::string_view cell_class(const std::string& text) {
+  if (is_number(text)) return " class=\"number\"";
+  return text.size() <= 14 ? " class=\"short\"" : "";
 }
 
 void replace_all(std::string& text, std::string_view from, const std::string& to) {
@@ -150,7 +157,7 @@ void ReportPage::table(const std::vector<std::string>& header, const std::vector
   for (const auto& row : rows) {
     body_ += "<tr>";
     for (const Cell& cell : row)
-      body_ += fmt::format("<td{}>{}</td>", is_number(cell.text) ? " class=\"number\"" : "",
+      body_ += fmt::format("<td{}>{}</td>", cell_class(cell.text),
                            cell.verdict ? badge(*cell.verdict, cell.text) : escaped(cell.text));
     body_ += "</tr>\n";
   }

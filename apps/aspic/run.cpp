@@ -8,6 +8,7 @@
 
 #include "aspic/commands.h"
 #include "aspic/interrupt.h"
+#include "aspic/landscape_picture.h"
 #include "aspic/progress.h"
 #include "aspic/step_json.h"
 #include "aspic/summary.h"
@@ -158,7 +159,20 @@ class Runner {
     for (const LandscapeAt& at : trace_->missed())
       fmt::print(stderr, "warning: no landscape {0}:{1}: the run has no iteration {1} of step {0}\n", at.step,
                  at.iteration);
+    draw_landscapes();
     if (!arguments_.quiet) fmt::print(human_, "trace      {}\n", trace_->folder().string());
+  }
+
+  void draw_landscapes() const {
+    try {
+      for (const Landscape& landscape : trace_->landscapes()) {
+        const std::string name = landscape_name(landscape.at);
+        draw(trace_->folder() / ("curve_" + name + ".svg"), line_search_chart(landscape));
+        draw(trace_->folder() / ("slice_" + name + ".png"), slice_surface(landscape));
+      }
+    } catch (const InvalidInput& missing) {
+      fmt::print(stderr, "note: no pictures: {}\n", missing.what());
+    }
   }
 
   void warn(const StepReport& report, const Explanation& why) {

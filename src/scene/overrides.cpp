@@ -35,6 +35,23 @@ Value value_of(const std::string& text, const std::string& source) {
   }
 }
 
+// Where one of several keys must be given, the one from the command line takes the place of the document's: a mesh that
+// of a generated shape, a sphere that of a box.
+void drop_alternatives(Table& table, const std::string& section, const std::string& chosen) {
+  const Alternatives* alternatives = scene_schema().alternatives_of(section);
+  if (!alternatives || !alternatives->required) return;
+  const auto has = [&](const std::vector<std::string>& group, const std::string& key) {
+    return std::find(group.begin(), group.end(), key) != group.end();
+  };
+  const auto& groups = alternatives->groups;
+  const auto own = std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return has(group, chosen); });
+  if (own == groups.end()) return;
+  std::erase_if(table.members, [&](const Member& member) {
+    const bool other = std::any_of(groups.begin(), groups.end(), [&](const auto& g) { return has(g, member.key); });
+    return other && !has(*own, member.key) && !member.place.is_override();
+  });
+}
+
 struct Assignment {
   std::vector<std::string> words;
   Value value;
@@ -45,6 +62,7 @@ struct Assignment {
     const Key* key = scene_schema().find(section, words[i]);
     if (i + 1 == words.size()) {
       table.set(words[i], value);  // an unknown key is reported with all the others
+      drop_alternatives(table, section, words[i]);
     } else if (key && (key->accepts & kTables)) {
       apply_to_list(table, *key, i);
     } else if (key && (key->accepts & (kTable | kAnyTable))) {

@@ -53,7 +53,7 @@ void remove_file(const fs::path& file) {
 bool is_trace_file(const fs::path& file) {
   const std::string name = file.filename().string();
   return name == "iterations.csv" || name == "trials.csv" || name == "timings.csv" || name == "trace.jsonl" ||
-         (file.extension() == ".csv" && (name.starts_with("curve_") || name.starts_with("slice_")));
+         name.starts_with("curve_") || name.starts_with("slice_");
 }
 
 std::vector<fs::path> trace_folders(const fs::path& root) {

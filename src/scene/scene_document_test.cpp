@@ -7,7 +7,9 @@
 #include <random>
 
 #include "base/error.h"
+#include "scene/overrides.h"
 #include "scene/schema.h"
+#include "scene/toml_reader.h"
 
 namespace aspic {
 namespace {
@@ -153,6 +155,22 @@ TEST(Override, ReplacesValuesAnywhere) {
   EXPECT_EQ(body(scene, 0)["material"]["density"].number(), 900);
   EXPECT_EQ(body(scene, 1)["material"]["density"].number(), 1000);
   EXPECT_EQ(body(scene, 0)["pin"].array()[0]["where"].text(), "y < 0.5");
+}
+
+TEST(Override, AMeshTakesThePlaceOfAShapeAndASphereThatOfABox) {
+  const std::string box = "[[body]]\nshape = { box = { upper = [1, 1, 1], cells = [1, 1, 1] } }\n";
+  Table document = read_toml(box, "box.toml");
+  apply_override(document, "body.0.shape.sphere={radius=1, size=0.5}");
+  const Table& shape = document.find("body")->array()[0]["shape"].table();
+  EXPECT_FALSE(shape.find("box"));
+  EXPECT_TRUE(shape.find("sphere"));
+  apply_override(document, "mesh=bunny.mesh");
+  const Table& body = document.find("body")->array()[0].table();
+  EXPECT_FALSE(body.find("shape"));
+  EXPECT_EQ(body.find("mesh")->text(), "bunny.mesh");
+  // Two overrides that exclude each other are for the user to settle.
+  apply_override(document, "shape={sphere={radius=1, size=0.5}}");
+  EXPECT_TRUE(document.find("body")->array()[0].table().find("mesh"));
 }
 
 TEST(Override, ErrorsNameTheOverride) {

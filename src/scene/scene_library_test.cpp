@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 const std::vector<fs::path>& scene_files() {
   static const std::vector<fs::path> files = [] {
     std::vector<fs::path> found;
-    for (const auto& entry : fs::directory_iterator(fs::path(ASPIC_SOURCE_DIR) / "scenes"))
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(ASPIC_SOURCE_DIR) / "scenes"))
       if (entry.path().extension() == ".toml" && entry.path().stem() != "bunny") found.push_back(entry.path());
     std::sort(found.begin(), found.end());
     return found;

@@ -94,6 +94,10 @@ LandscapeAt parse_landscape(const std::string& text) {
   return at;
 }
 
+std::string landscape_name(const LandscapeAt& at) {
+  return std::to_string(at.step) + "_" + std::to_string(at.iteration);
+}
+
 Trace::Trace(std::filesystem::path folder, TraceOptions options)
     : folder_(std::move(folder)), options_(std::move(options)), met_(options_.landscapes.size(), 0) {
   std::error_code error;
@@ -112,7 +116,7 @@ void Trace::on_iteration(int step, const LiveIteration& iteration) {
   for (size_t i = 0; i < met_.size(); ++i) {
     const LandscapeAt& at = options_.landscapes[i];
     if (met_[i] || at.step != step || at.iteration != iteration.index) continue;
-    write_landscape(at, iteration);
+    add_landscape(at, iteration);
     met_[i] = 1;
   }
 }
@@ -139,10 +143,16 @@ void Trace::add_rows(int step, const LiveIteration& iteration) {
   json_.append(json_of(step, solve_, iteration).dump() + "\n");
 }
 
-void Trace::write_landscape(const LandscapeAt& at, const LiveIteration& iteration) {
-  const std::string place = std::to_string(at.step) + "_" + std::to_string(at.iteration) + ".csv";
-  write_curve(folder_ / ("curve_" + place), curve_along(iteration, options_.sufficient_decrease));
-  write_slice(folder_ / ("slice_" + place), slice_through(iteration));
+void Trace::add_landscape(const LandscapeAt& at, const LiveIteration& iteration) {
+  const Landscape& made =
+      landscapes_.emplace_back(Landscape{.at = at,
+                                         .value = iteration.value,
+                                         .alpha = iteration.alpha,
+                                         .tried = {iteration.tried.begin(), iteration.tried.end()},
+                                         .curve = curve_along(iteration, options_.sufficient_decrease),
+                                         .slice = slice_through(iteration)});
+  write_curve(folder_ / ("curve_" + landscape_name(at) + ".csv"), made.curve);
+  write_slice(folder_ / ("slice_" + landscape_name(at) + ".csv"), made.slice);
 }
 
 void Trace::close() {

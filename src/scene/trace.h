@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/csv.h"
-#include "optimize/minimize.h"
+#include "optimize/landscape.h"
 
 namespace aspic {
 
@@ -15,6 +15,16 @@ struct LandscapeAt {
   int step = 1, iteration = 0;
 };
 LandscapeAt parse_landscape(const std::string& text);  // "12" or "12:3". Throws InvalidInput.
+std::string landscape_name(const LandscapeAt& at);     // "12_3", a part of file names
+
+// E around the iteration, and the trials that its line search made.
+struct Landscape {
+  LandscapeAt at;
+  double value = 0, alpha = 0;  // E at the iterate; the accepted step
+  std::vector<Trial> tried;
+  std::vector<CurvePoint> curve;
+  Slice slice;
+};
 
 struct TraceOptions {
   std::vector<LandscapeAt> landscapes;
@@ -31,16 +41,18 @@ class Trace {
   void close();  // everything is on the disk afterwards
 
   const std::filesystem::path& folder() const { return folder_; }
+  const std::vector<Landscape>& landscapes() const { return landscapes_; }  // met so far
   // The landscapes that were asked for and not met, such as iterations that a step did not need.
   std::vector<LandscapeAt> missed() const;
 
  private:
   void add_rows(int step, const LiveIteration& iteration);
-  void write_landscape(const LandscapeAt& at, const LiveIteration& iteration);
+  void add_landscape(const LandscapeAt& at, const LiveIteration& iteration);
 
   std::filesystem::path folder_;
   TraceOptions options_;
   std::vector<char> met_;  // one per landscape
+  std::vector<Landscape> landscapes_;
   CsvFile iterations_, trials_, timings_;
   OutputFile json_;
   int step_ = 0, solve_ = 0;  // a step of several stages is several minimisations

@@ -1,0 +1,122 @@
+// `aspic lecture`: the pages of the lecture as demonstrations that are judged by numbers.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <filesystem>
+
+#include "aspic/commands.h"
+#include "aspic/lecture/course.h"
+#include "aspic/lecture/results.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/stopwatch.h"
+
+namespace aspic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace lecture;
+
+struct Arguments {
+  std::string page;
+  fs::path mesh, out = fs::path("out") / "lecture";
+  int threads = 0;
+};
+
+void list_pages() {
+  for (int page = 1; page <= kPages; ++page) {
+    std::string titles;
+    for (const Demonstration* d : demonstrations_of(page)) titles += (titles.empty() ? "" : "; ") + d->title;
+    const std::string reason = reason_for_none(page);
+    if (!reason.empty()) titles = fmt::format("({}: {})", is_unavailable(page) ? "not available" : "nothing", reason);
+    fmt::print("{:>2}  {}\n", page, titles);
+  }
+}
+
+int parse_page(const std::string& text) {
+  int page = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), page);
+  if (error != std::errc() || end != text.data() + text.size() || page < 1 || page > kPages)
+    throw InvalidInput(fmt::format("'{}' is no page of the lecture; there are 1 to {}, and 'all'", text, kPages));
+  return page;
+}
+
+Result run_one(const Demonstration& demonstration, const Stage& stage, const fs::path& out) {
+  Stopwatch stopwatch;
+  Sheet sheet(out / demonstration.key);
+  demonstration.run(stage, sheet);
+  return {&demonstration, std::move(sheet), stopwatch.lap()};
+}
+
+int run_page(int page, const Arguments& arguments) {
+  if (const std::string reason = reason_for_none(page); !reason.empty()) {
+    fmt::print("page {}: {}: {}\n", page, is_unavailable(page) ? "not available" : "nothing to check", reason);
+    return exit_done;
+  }
+  const Stage stage(arguments.mesh, arguments.out / "meshes");
+  fmt::print("{}\n", stage.mesh_note());
+  bool passes = true;
+  for (const Demonstration* demonstration : demonstrations_of(page)) {
+    std::fflush(stdout);
+    const Result result = run_one(*demonstration, stage, arguments.out);
+    print(result);
+    passes = passes && result.sheet.passes();
+  }
+  return passes ? exit_done : exit_unconverged;
+}
+
+int run_all(const Arguments& arguments) {
+  const Stage stage(arguments.mesh, arguments.out / "meshes");
+  fmt::print("{}\n", stage.mesh_note());
+  std::vector<Result> results;
+  bool passes = true;
+  for (const Demonstration& demonstration : demonstrations()) {
+    const std::string head =
+        fmt::format("[{:>2}/{}] {:<30}", results.size() + 1, demonstrations().size(), demonstration.key);
+    fmt::print("{} ...", head);
+    std::fflush(stdout);
+    const Result& result = results.emplace_back(run_one(demonstration, stage, arguments.out));
+    passes = passes && result.sheet.passes();
+    fmt::print(" {} ({:.1f} s)\n", result.sheet.passes() ? "pass" : "FAIL", result.seconds);
+  }
+  for (const Result& result : results)
+    if (!result.sheet.passes()) print(result);
+  write_summary(arguments.out, stage.mesh_note(), results);
+  fmt::print("{}\n{}\n", count_text(results), (arguments.out / "index.html").string());
+  return passes ? exit_done : exit_unconverged;
+}
+
+int run(const Arguments& arguments) {
+  if (arguments.threads > 0) set_thread_count(arguments.threads);
+  if (arguments.page.empty()) {
+    list_pages();
+    return exit_done;
+  }
+  return arguments.page == "all" ? run_all(arguments) : run_page(parse_page(arguments.page), arguments);
+}
+
+}  // namespace
+
+void add_lecture(CLI::App& app, Action& action) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("lecture", "The lecture's pages as demonstrations judged by numbers");
+  command->footer(R"(
+Examples:
+  aspic lecture                       lists the 62 pages
+  aspic lecture 53                    what page 53 claims, what was measured, pass or fail
+  aspic lecture all                   all of them; out/lecture/index.html shows them
+  aspic lecture 33 --mesh bunny.mesh  on another mesh of tets or closed surface
+
+Exit codes: 0 everything that was judged holds (a page without anything to judge says so), 2 no such page or bad
+input, 3 something does not hold.)");
+  command->add_option("PAGE", arguments->page, "1 to 62, or 'all'; without it, the list of pages");
+  command->add_option("--mesh", arguments->mesh, "Tets or a closed surface for the demonstrations on a real mesh")
+      ->check(CLI::ExistingFile);
+  command->add_option("--out", arguments->out, "Folder of data, pictures and summary")->capture_default_str();
+  command->add_option("--threads", arguments->threads, "Threads; all cores by default; the result is the same")
+      ->check(CLI::Range(1, 1024));
+  command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+}
+
+}  // namespace aspic::cli

@@ -1,0 +1,115 @@
+#include "aspic/lecture/course.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace aspic::cli::lecture {
+namespace {
+
+std::vector<int> range(int first, int last) {
+  std::vector<int> pages(last - first + 1);
+  std::iota(pages.begin(), pages.end(), first);
+  return pages;
+}
+
+}  // namespace
+
+const std::vector<Demonstration>& demonstrations() {
+  static const std::vector<Demonstration> list = {
+      {"02_fine_mesh",
+       {2},
+       "a very fine mesh",
+       "A mesh of very many tets can be simulated, and drawn shaded with thin wires.",
+       show_fine_mesh},
+      {"03_tissue",
+       {3},
+       "soft tissue in layers",
+       "Capture and modelling of non-linear heterogeneous soft tissue [Bickel et al. 2009]: a slab of layers is poked, "
+       "its force measured. Capture and fitting are not part of Aspic yet.",
+       show_tissue},
+      {"05-09_equation_of_motion",
+       {5, 7, 8, 9},
+       "the equation of motion",
+       "M q'' = -dV/dq; q stacks the positions of the vertices of a finite element mesh.",
+       show_equation_of_motion},
+      {"08-10_springs_beside_elements",
+       {8, 10},
+       "masses and springs beside finite elements",
+       "The same equation moves a mesh of masses and springs; four of its vertices are shown with their entries of q.",
+       show_springs_beside_elements},
+      {"10-18_differences", range(10, 18), "finite differences of q",
+       "qdot = (q_i - q_(i-1)) / h, q'' = (q_(i+1) - 2 q_i + q_(i-1)) / h^2, "
+       "q~ = 2 q_i - q_(i-1) = q_i + h qdot_i (the slide misprints the sign under the brace).",
+       show_differences},
+      {"19-22_explicit_or_implicit", range(19, 22), "explicit or implicit",
+       "M (q_(i+1) - q~) / h^2 = -dV/dq, evaluated at q_i (explicit) or at q_(i+1) (implicit).",
+       show_explicit_or_implicit},
+      {"23_printed_forward_euler",
+       {23},
+       "what is printed as forward Euler",
+       "q_(i+1) = 2 q_i - q_(i-1) - h^2 M^-1 dV/dq(q_i), printed as \"Forward Euler\": it is symplectic Euler.",
+       show_printed_forward_euler},
+      {"24_backward_euler",
+       {24},
+       "backward Euler",
+       "q_(i+1) = 2 q_i - q_(i-1) - h^2 M^-1 dV/dq(q_(i+1)): more stable, harder to solve.",
+       show_backward_euler},
+      {"25_drag",
+       {25},
+       "dragged by the ear",
+       "A spring between an ear and the cursor bends it; the spring's force is shown.",
+       show_drag},
+      {"26-31_optimisation", range(26, 31), "from finding a root to minimising",
+       "M (q - q~) + h^2 dV/dq = 0 is the gradient of E(q) = 1/2 (q - q~)' M (q - q~) + h^2 V(q).", show_optimisation},
+      {"32_one_minimisation_per_step",
+       {32},
+       "for each time step, use optimisation",
+       "q_(i+1) = argmin E(q), once for each time step.",
+       show_one_minimisation_per_step},
+      {"33-34_explosion",
+       {33, 34},
+       "explicit and linearised schemes explode",
+       "Dragged by the same motion, the explicit and the linearised scheme explode; the implicit one is stable.",
+       show_explosion},
+      {"36-40_velocity_form", range(36, 40), "the same in velocities",
+       "E(v) = 1/2 (v - v_i)' M (v - v_i) + V(q_i + h v) with q = q_i + h v: the same problem.", show_velocity_form},
+      {"38-42_gradient_descent", range(38, 42), "the loop, and gradient descent",
+       "Choose a guess; repeat until converged: choose a direction d, a step length, move. d = -gradient zig-zags.",
+       show_gradient_descent},
+      {"43-51_quadratic_model", range(43, 51), "Newton's method",
+       "E(x + d) ~ E + g'd + 1/2 d'H d; its minimiser solves H d = -g; g and H of E(v) are M (v - v_i) + h dV/dq and "
+       "M + h^2 d2V/dq2.",
+       show_quadratic_model},
+      {"53+62_pure_newton",
+       {53, 62},
+       "Newton without and with a line search",
+       "Newton's method without a line search fails on a step of a real mesh (53); with one it succeeds (62).",
+       show_pure_newton},
+      {"54-59_overshoot", range(54, 59), "Newton overshoots",
+       "The minimiser of the model may lie higher than the start; a shorter step along the same direction lies lower.",
+       show_overshoot},
+      {"60-61_backtracking",
+       {60, 61},
+       "backtracking line search",
+       "alpha = alpha_max; while E(x + alpha d) > E + c alpha d'g (printed without alpha): alpha = p alpha; shorter "
+       "than tol, or you get stuck.",
+       show_backtracking},
+  };
+  return list;
+}
+
+std::vector<const Demonstration*> demonstrations_of(int page) {
+  std::vector<const Demonstration*> found;
+  for (const Demonstration& d : demonstrations())
+    if (std::binary_search(d.pages.begin(), d.pages.end(), page)) found.push_back(&d);
+  return found;
+}
+
+bool is_unavailable(int page) { return page == 6; }
+
+std::string reason_for_none(int page) {
+  if (is_unavailable(page)) return "bunnies fall on chutes: needs contact, which Aspic does not have yet";
+  return demonstrations_of(page).empty() ? "neither a formula nor a demonstration" : "";
+}
+
+}  // namespace aspic::cli::lecture

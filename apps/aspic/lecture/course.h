@@ -1,0 +1,73 @@
+// The lecture "From Energy to Motion": its 62 pages, and the demonstration that stands for each.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "aspic/lecture/sheet.h"
+#include "scene/scene.h"
+
+namespace aspic::cli::lecture {
+
+inline constexpr int kPages = 62;
+
+// Where the scenes and meshes come from.
+class Stage {
+ public:
+  // `mesh`: for the demonstrations on a real mesh, tets or a closed surface; empty: the bunny where it is found.
+  // `cache` keeps meshes that take long to make. Throws InvalidInput when the lecture's scenes are not found.
+  Stage(const std::filesystem::path& mesh, std::filesystem::path cache);
+
+  // A scene of scenes/lecture on the shape that it describes.
+  Scene scene(const std::string& name, const std::vector<std::string>& overrides = {}) const;
+  // The same with its bodies of the real mesh, made one metre large; where there is none, of the scene's own shape.
+  Scene on_real_mesh(const std::string& name, const std::vector<std::string>& overrides = {}) const;
+  // The same with a mesh of at least `tets` tets.
+  Scene on_fine_mesh(const std::string& name, int tets, Sheet& sheet) const;
+
+  const std::string& mesh_note() const { return note_; }  // which mesh it is, and why
+
+ private:
+  Scene load(const std::string& name, const std::filesystem::path& mesh, std::vector<std::string> overrides) const;
+  std::filesystem::path finer(int tets) const;
+
+  std::filesystem::path scenes_, mesh_, surface_, cache_;
+  std::string note_;
+};
+
+struct Demonstration {
+  std::string key;         // the name of its folder, "10-18_differences"
+  std::vector<int> pages;  // ascending
+  std::string title;
+  std::string claim;  // what the slides say, with their formulas
+  std::function<void(const Stage&, Sheet&)> run;
+};
+const std::vector<Demonstration>& demonstrations();
+std::vector<const Demonstration*> demonstrations_of(int page);
+
+// Why a page has no demonstration; empty for one that has.
+std::string reason_for_none(int page);
+bool is_unavailable(int page);  // what it shows cannot be done yet
+
+// The demonstrations, by file.
+void show_fine_mesh(const Stage& stage, Sheet& sheet);
+void show_tissue(const Stage& stage, Sheet& sheet);
+void show_equation_of_motion(const Stage& stage, Sheet& sheet);
+void show_springs_beside_elements(const Stage& stage, Sheet& sheet);
+void show_differences(const Stage& stage, Sheet& sheet);
+void show_explicit_or_implicit(const Stage& stage, Sheet& sheet);
+void show_printed_forward_euler(const Stage& stage, Sheet& sheet);
+void show_backward_euler(const Stage& stage, Sheet& sheet);
+void show_drag(const Stage& stage, Sheet& sheet);
+void show_optimisation(const Stage& stage, Sheet& sheet);
+void show_one_minimisation_per_step(const Stage& stage, Sheet& sheet);
+void show_explosion(const Stage& stage, Sheet& sheet);
+void show_velocity_form(const Stage& stage, Sheet& sheet);
+void show_gradient_descent(const Stage& stage, Sheet& sheet);
+void show_quadratic_model(const Stage& stage, Sheet& sheet);
+void show_pure_newton(const Stage& stage, Sheet& sheet);
+void show_overshoot(const Stage& stage, Sheet& sheet);
+void show_backtracking(const Stage& stage, Sheet& sheet);
+
+}  // namespace aspic::cli::lecture

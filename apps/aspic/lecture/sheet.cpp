@@ -1,0 +1,103 @@
+#include "aspic/lecture/sheet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+
+#include "base/error.h"
+#include "io/atomic_file.h"
+#include "io/external_program.h"
+
+namespace aspic::cli::lecture {
+namespace {
+
+bool has_gnuplot() {
+  static const bool found = [] {
+    try {
+      find_program("gnuplot", {}, "");
+      return true;
+    } catch (const InvalidInput&) {
+      return false;
+    }
+  }();
+  return found;
+}
+
+}  // namespace
+
+std::string to_string(Relation relation) {
+  switch (relation) {
+    case Relation::at_most:
+      return "<=";
+    case Relation::at_least:
+      return ">=";
+    case Relation::equals:
+      return "=";
+    case Relation::shown:
+      return "";
+  }
+  return "";
+}
+
+bool Measure::holds() const {
+  switch (relation) {
+    case Relation::at_most:
+      return value <= bound;
+    case Relation::at_least:
+      return value >= bound;
+    case Relation::equals:
+      return value == bound;
+    case Relation::shown:
+      return true;
+  }
+  return false;
+}
+
+Sheet::Sheet(std::filesystem::path folder) : folder_(std::move(folder)) {
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error) throw InvalidInput(folder_.string() + ": cannot be created: " + error.message());
+}
+
+void Sheet::at_most(std::string what, double value, double bound, std::string unit, std::string reason) {
+  measures_.push_back({std::move(what), value, std::move(unit), Relation::at_most, bound, std::move(reason)});
+}
+void Sheet::at_least(std::string what, double value, double bound, std::string unit, std::string reason) {
+  measures_.push_back({std::move(what), value, std::move(unit), Relation::at_least, bound, std::move(reason)});
+}
+void Sheet::equals(std::string what, double value, double expected, std::string unit, std::string reason) {
+  measures_.push_back({std::move(what), value, std::move(unit), Relation::equals, expected, std::move(reason)});
+}
+void Sheet::show(std::string what, double value, std::string unit, std::string meaning) {
+  measures_.push_back({std::move(what), value, std::move(unit), Relation::shown, 0, std::move(meaning)});
+}
+
+CsvFile Sheet::table(const std::string& name, const std::vector<std::string>& columns) const {
+  return CsvFile::create(folder_ / name, columns);
+}
+
+void Sheet::keep(const Scene& scene) const {
+  write_file(folder_ / (scene.name + ".toml"), scene.resolved);
+  write_inputs(scene, folder_);
+}
+
+void Sheet::draw_by(const std::string& name, const std::string& caption,
+                    const std::function<void(const std::filesystem::path&)>& write) {
+  if (!can_draw()) return;
+  write(folder_ / name);
+  figures_.push_back({folder_ / name, caption});
+}
+
+bool Sheet::passes() const {
+  const auto is_judged = [](const Measure& m) { return m.relation != Relation::shown; };
+  return std::any_of(measures_.begin(), measures_.end(), is_judged) &&
+         std::all_of(measures_.begin(), measures_.end(), [](const Measure& m) { return m.holds(); });
+}
+
+bool Sheet::can_draw() {
+  if (!has_gnuplot() && !told_missing_) remark("no pictures: gnuplot is not installed (Debian package gnuplot-nox)");
+  told_missing_ = !has_gnuplot();
+  return has_gnuplot();
+}
+
+}  // namespace aspic::cli::lecture

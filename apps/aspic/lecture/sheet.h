@@ -1,0 +1,65 @@
+// What one demonstration of the lecture measured, wrote and drew.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "aspic/plot.h"
+#include "aspic/report_page.h"
+#include "io/csv.h"
+#include "scene/scene.h"
+
+namespace aspic::cli::lecture {
+
+enum class Relation { at_most, at_least, equals, shown };  // shown: a number that nothing is judged by
+
+struct Measure {
+  std::string what;
+  double value = 0;
+  std::string unit;
+  Relation relation = Relation::shown;
+  double bound = 0;
+  std::string reason;  // where the bound comes from
+
+  bool holds() const;  // false for what is not a number
+};
+std::string to_string(Relation relation);
+
+class Sheet {
+ public:
+  // Everything goes into `folder`, which is created. Throws InvalidInput.
+  explicit Sheet(std::filesystem::path folder);
+
+  void at_most(std::string what, double value, double bound, std::string unit, std::string reason);
+  void at_least(std::string what, double value, double bound, std::string unit, std::string reason);
+  void equals(std::string what, double value, double expected, std::string unit, std::string reason);  // counts
+  void show(std::string what, double value, std::string unit, std::string meaning = "");
+  void remark(std::string text) { remarks_.push_back(std::move(text)); }
+
+  CsvFile table(const std::string& name, const std::vector<std::string>& columns) const;
+  void keep(const Scene& scene) const;  // as scene NAME.toml beside the data, ready to be run
+  template <class Picture>
+  void draw(const std::string& name, const std::string& caption, const Picture& picture) {
+    draw_by(name, caption, [&](const std::filesystem::path& path) { cli::draw(path, picture); });
+  }
+  void draw_by(const std::string& name, const std::string& caption,
+               const std::function<void(const std::filesystem::path&)>& write);
+
+  const std::filesystem::path& folder() const { return folder_; }
+  const std::vector<Measure>& measures() const { return measures_; }
+  const std::vector<std::string>& remarks() const { return remarks_; }
+  const std::vector<Figure>& figures() const { return figures_; }
+  bool passes() const;  // something was judged, and all of it holds
+
+ private:
+  bool can_draw();  // says once that gnuplot is missing
+
+  std::filesystem::path folder_;
+  std::vector<Measure> measures_;
+  std::vector<std::string> remarks_;
+  std::vector<Figure> figures_;
+  bool told_missing_ = false;
+};
+
+}  // namespace aspic::cli::lecture

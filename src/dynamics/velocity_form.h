@@ -1,0 +1,44 @@
+// The step's objective over velocities: E(v) = 1/2 (v - v~)' M (v - v~) + V(q_t + h v), v~ = (q~ - q_t) / h.
+// With q = q_t + h v it is E(q) / h^2, where E(q) is that of backward Euler (w = 1, f = h^2): the gradient is that of
+// E(q) over h, the Hessian the same, so Newton's iterates are the same points.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "dynamics/incremental_potential.h"
+
+namespace aspic {
+
+class VelocityForm : public Objective {
+ public:
+  // `E` has begun its step; q_t is where the step starts. Both stay while this is used.
+  VelocityForm(IncrementalPotential& E, std::span<const double> start /* q_t */, double h)
+      : E_(E), start_(start), h_(h), q_(start.size()), dq_(start.size()) {}
+
+  double value(std::span<const double> v) override { return E_.value(position(v)) / (h_ * h_); }  // [J]
+  void gradient(std::span<const double> v, std::span<double> g) override;                         // [N s]
+  const BlockSparse& hessian(std::span<const double> v, const Projection& projection) override {
+    return E_.hessian(position(v), projection);  // M + h^2 d2V/dq2 [kg]
+  }
+  int projected_elements() const override { return E_.projected_elements(); }
+  double max_step(std::span<const double> v, std::span<const double> d) override;
+
+  const BlockSparse* metric() override { return E_.metric(); }
+  double value_scale() const override { return E_.value_scale() / (h_ * h_); }
+  double gradient_scale() const override { return E_.gradient_scale() / h_; }
+  double gradient_unit() const override { return E_.gradient_unit() / h_; }
+  double value_round_off() const override { return E_.value_round_off() / (h_ * h_); }
+  double gradient_round_off() const override { return E_.gradient_round_off() / h_; }
+
+  // q = q_t + h v and back. The span that position() returns is valid until the next call.
+  std::span<const double> position(std::span<const double> v);
+  void velocity(std::span<const double> q, std::span<double> v) const;
+
+ private:
+  IncrementalPotential& E_;
+  std::span<const double> start_;
+  double h_;
+  std::vector<double> q_, dq_;  // scratch: q_t + h v, h d
+};
+
+}  // namespace aspic

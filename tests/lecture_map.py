@@ -1,0 +1,30 @@
+#!/usr/bin/env python3
+"""Fails when docs/lecture_to_code.md names a file, a name or a page that does not exist, or leaves a page out."""
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+errors, pages = [], set()
+for line in (ROOT / "docs" / "lecture_to_code.md").read_text().splitlines():
+    row = re.match(r"\| ([\d, -]+) \|(.*)\|(.*)\|(.*)\|$", line)
+    if not row:
+        continue
+    for first, last in re.findall(r"(\d+)(?:-(\d+))?", row[1]):
+        pages.update(range(int(first), int(last or first) + 1))
+    for names, file in re.findall(r"((?:`\w+`(?:, | and )?)+)[^`]*?\bin `([\w/.]+)`", row[3]):
+        text = (ROOT / file).read_text() if (ROOT / file).is_file() else ""
+        if not text:
+            errors.append(f"page {row[1]}: there is no file {file}")
+        errors += [f"page {row[1]}: {file} has no {name}" for name in re.findall(r"`(\w+)`", names)
+                   if text and not re.search(rf"\b{name}\b", text)]
+    for file in re.findall(r"(?:scenes|src|apps|docs)/[\w/.]+\w", row[3] + row[4]):
+        if not (ROOT / file).exists():
+            errors.append(f"page {row[1]}: there is no {file}")
+    for page in re.findall(r"aspic lecture (\d+)", row[4]):
+        if int(page) not in pages:
+            errors.append(f"page {row[1]}: its command shows page {page}")
+if pages != set(range(1, 63)):
+    errors.append(f"pages left out or made up: {sorted(pages ^ set(range(1, 63)))}")
+print("\n".join(errors) or "the lecture's map is right")
+sys.exit(bool(errors))
