@@ -16,11 +16,11 @@ void check(const SolverOptions& solver) {
   };
   const LineSearchOptions& search = solver.minimize.line_search;
   require(solver.minimize.tolerance >= 0, "--tolerance", solver.minimize.tolerance, "0 or more");
-  require(std::isfinite(search.alpha_max) && search.alpha_max > 0, "--alpha-max", search.alpha_max, "positive");
+  require(search.alpha_max > 0 && search.alpha_max <= 1e6, "--alpha-max", search.alpha_max, "positive, at most 1e6");
   const double c = search.sufficient_decrease, p = search.shrink;
   require(c > 0 && c < 1, "--decrease", c, "between 0 and 1");
-  require(p > 0 && p < 1, "--shrink", p, "between 0 and 1");
-  require(search.tolerance > 0, "--alpha-min", search.tolerance, "positive");
+  require(p > 0 && p <= 0.99, "--shrink", p, "positive, at most 0.99");
+  require(search.tolerance >= 1e-16, "--alpha-min", search.tolerance, "1e-16 or more");
 }
 
 Planar planar(std::span<const double> x) { return {x[0], x[1]}; }

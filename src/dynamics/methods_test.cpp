@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "dynamics/models_test.h"
+#include "optimize/landscape.h"
 
 namespace aspic {
 namespace {
@@ -70,6 +71,24 @@ TEST(Methods, GiveTheSameBitsForAnyNumberOfThreads) {
     }
   }
   set_thread_count(before);
+}
+
+TEST(Methods, GiveTheSameBitsWhileTheyAreLookedAt) {
+  for (const SolverOptions& solver : all_methods()) {
+    SimulationOptions options{.solver = solver};
+    options.solver.minimize.max_iterations = 5;
+    Simulation plain = simulate(damped_beam_with_moving_pins_and_targets(), options);
+    Simulation watched = simulate(damped_beam_with_moving_pins_and_targets(), options);
+    for (int i = 0; i < 2; ++i) {
+      plain.step();
+      watched.step([](const LiveIteration& iteration) {
+        slice_through(iteration, 3);
+        curve_along(iteration, 1e-4, 3);
+        return true;
+      });
+    }
+    EXPECT_EQ(watched.state().q, plain.state().q) << name_of(solver);
+  }
 }
 
 TEST(Methods, KnowingMoreOfTheCurvatureTakesFewerIterations) {
