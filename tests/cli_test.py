@@ -215,7 +215,7 @@ class Minimize(CommandLine):
                                    (["rosenbrock", "--criterion", "scal"], "did you mean 'scale'"),
                                    (["rosenbrock", "--start", "nan,1"], "two finite numbers"),
                                    (["rosenbrock", "--start", "1"], "two finite numbers"),
-                                   (["rosenbrock", "--shrink", "1"], "between 0 and 1"),
+                                   (["rosenbrock", "--shrink", "1"], "at most 0.99"),
                                    (["--expression", "log(x)", "--start", "-1,0"], "not finite at the start"),
                                    (["--expression", "x + z", "--start", "0,0"], "unknown name 'z'"),
                                    (["--expression", "x^2"], "needs --start"),
