@@ -131,6 +131,7 @@ TEST(Explanation, OfALineSearchThatAsksForTooMuchNamesItsParameter) {
 
   SimulationOptions greedy;
   greedy.solver.minimize.line_search.sufficient_decrease = 0.9;
+  greedy.solver.minimize.max_iterations = 50;
   EXPECT_THAT(first_failure(greedy, Status::iteration_limit).place, HasSubstr("c = 0.9"));
 }
 

@@ -40,7 +40,7 @@ std::vector<Criterion> all_criteria();
 inline bool judges_direction(Criterion criterion) { return criterion >= Criterion::decrement; }
 
 struct MinimizeOptions {
-  int max_iterations = 50;
+  int max_iterations = 200;
   double tolerance = 1e-6;
   Criterion criterion = Criterion::scale;
   double h = 1;              // [s], what velocity and acceleration are measured by

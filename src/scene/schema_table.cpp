@@ -134,7 +134,7 @@ void add_solver(Schema& s) {
         .fallback = std::to_string(usual.minimize.max_iterations),
         .range = {.min = 1, .max = 1e9},
         .meaning = "iterations per step; a step that needs more is reported as not converged",
-        .reason = "ten times what Newton's method usually takes"},
+        .reason = "far more than Newton's method takes, but for the hardest steps"},
        {.name = "tolerance",
         .accepts = kNumber,
         .fallback = number_text(usual.minimize.tolerance),
