@@ -52,7 +52,7 @@ Result run_one(const Demonstration& demonstration, const Stage& stage, const fs:
 int run_page(int page, const Arguments& arguments) {
   if (const std::string reason = reason_for_none(page); !reason.empty()) {
     fmt::print("page {}: {}: {}\n", page, is_unavailable(page) ? "not available" : "nothing to check", reason);
-    return exit_done;
+    return is_unavailable(page) ? exit_bad_input : exit_done;
   }
   const Stage stage(arguments.mesh, arguments.out / "meshes");
   fmt::print("{}\n", stage.mesh_note());
@@ -108,8 +108,8 @@ Examples:
   aspic lecture all                   all of them; out/lecture/index.html shows them
   aspic lecture 33 --mesh bunny.mesh  on another mesh of tets or closed surface
 
-Exit codes: 0 everything that was judged holds (a page without anything to judge says so), 2 no such page or bad
-input, 3 something does not hold.)");
+Exit codes: 0 everything that was judged holds (a page without anything to judge says so), 2 no such page, one that
+is not available, or bad input, 3 something does not hold.)");
   command->add_option("PAGE", arguments->page, "1 to 62, or 'all'; without it, the list of pages");
   command->add_option("--mesh", arguments->mesh, "Tets or a closed surface for the demonstrations on a real mesh")
       ->check(CLI::ExistingFile);

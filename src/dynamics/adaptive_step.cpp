@@ -32,7 +32,8 @@ double time_at(const StepTools& whole, int tick) {
 }
 
 StepTools tools_of_part(const StepTools& whole, const State& start, const State* previous, int first, int size) {
-  return {whole, start, previous, whole.h * size / kTicks, time_at(whole, first + size)};
+  return {static_cast<const SolveTools&>(whole), start, previous, whole.h * size / kTicks,
+          time_at(whole, first + size)};
 }
 
 }  // namespace

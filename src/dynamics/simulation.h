@@ -27,7 +27,6 @@ struct SimulationOptions {
 };
 
 std::vector<std::string> integrator_names();
-std::vector<std::string> initial_guess_names();
 std::vector<std::string> adaptive_integrator_names();  // those whose steps can be divided
 
 // What the integrator cannot do or has no use for: "adaptive", "initial_guess", or a member of SolverOptions.

@@ -20,7 +20,7 @@ LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<co
   LineSearchResult result;
   trials.clear();
   double alpha = std::min(options.alpha_max, E.max_step(x, d));
-  for (; alpha >= options.tolerance; alpha *= options.shrink) {
+  while (alpha >= options.tolerance) {
     for (size_t i = 0; i < x.size(); ++i) trial[i] = x[i] + alpha * d[i];
     Trial& now = trials.emplace_back(Trial{alpha, E.value(trial), allowed_value(value.E, alpha, slope, options)});
     if (options.test == DecreaseTest::none) {
@@ -39,6 +39,7 @@ LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<co
       result.gradient_known = now.by_slope;
       return result;
     }
+    alpha *= options.shrink;
   }
   return result;
 }

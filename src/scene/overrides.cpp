@@ -115,7 +115,7 @@ std::string unknown_first_word(const std::string& word) {
   const Schema& schema = scene_schema();
   for (const char* section : {"time", "solver", "output", "material", "damping"})
     if (schema.find(section, word))
-      return std::string("unknown key '") + word + "' (did you mean '" + section + "." + word + "'?)";
+      return std::string("unknown key '").append(word).append("' (did you mean '").append(section) + "." + word + "'?)";
   std::vector<std::string> known = schema.names("scene");
   for (const std::string& name : schema.names("body")) known.push_back(name);
   return std::string("unknown key '") + word + "'" + suggestion(word, known);

@@ -85,7 +85,8 @@ std::string first_difference(const std::string& here, const std::string& in_run)
     const bool has_a = !!std::getline(ours, a), has_b = !!std::getline(theirs, b);
     if (!has_a && !has_b) return ": it was changed after the run began";
     if (a != b || has_a != has_b)
-      return std::string(":").append(std::to_string(line)).append(": '" + a + "' now, '" + b + "' in the run");
+      return std::string(":").append(std::to_string(line)).append(": '").append(a).append("' now, '").append(b) +
+             "' in the run";
   }
 }
 

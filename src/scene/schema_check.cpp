@@ -111,7 +111,7 @@ class Checker {
     if (nearest_name(m.key, known).empty())
       for (const Key& k : schema_.keys)
         if (k.name == m.key && !(k.accepts & kTables)) {
-          hint = " (it belongs to " + k.section + ")" + hint;
+          hint.insert(0, std::string(" (it belongs to ").append(k.section).append(")"));
           break;
         }
     error(m.place, "unknown key " + m.key + " = " + shortened(inline_toml(m.value)) + " in " + section + hint);
@@ -235,8 +235,8 @@ class Checker {
         const Value* value = table.find(name);
         if (!value || chosen == &group) continue;
         if (chosen) {
-          error(value->place, name + " = " + shortened(inline_toml(*value)) + " excludes " + chosen_key +
-                                  "; keep one of: " + join(all, " | "));
+          error(value->place, std::string(name).append(" = ").append(shortened(inline_toml(*value))) + " excludes " +
+                                  chosen_key + "; keep one of: " + join(all, " | "));
         } else {
           chosen = &group;
           chosen_key = name;

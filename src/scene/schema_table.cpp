@@ -1,6 +1,7 @@
 // The table itself. A new key is one entry here; the order is the order of docs/scene.md and of resolved scenes.
 #include <set>
 
+#include "dynamics/initial_guess.h"
 #include "dynamics/simulation.h"
 #include "linalg/linear_solver.h"
 #include "material/registry.h"
