@@ -146,7 +146,9 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
     if (at.slope < 0) {
       if (at.judges_direction()) {
         report.reached = direction_size(E, options, d_, at.slope);
-        at.last_direction = report.reached <= options.tolerance;
+        // Near a saddle a short direction does not mean that a minimum is near.
+        const bool is_convex = !iteration.direction.projected && !iteration.direction.truncated;
+        at.last_direction = is_convex && report.reached <= options.tolerance;
       }
       Stopwatch stopwatch;
       at.step = backtrack(E, at.x, d_, at.value, at.slope, options.line_search, trial_, trial_gradient_, trials_);

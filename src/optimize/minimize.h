@@ -25,8 +25,8 @@ enum class Status {
 std::string_view to_string(Status status);
 inline bool is_success(Status status) { return status == Status::converged || status == Status::round_off; }
 
-// What must be small. The last three look at the direction d, of a method for which x + d estimates the minimiser; the
-// step along it is still taken.
+// What must be small. The last three look at the direction d, of a method for which x + d estimates the minimiser,
+// where the Hessian is positive definite; the step along it is still taken.
 enum class Criterion {
   scale,           // |g| <= tolerance * objective.gradient_scale(): for a time step, the forces that balance
   first_gradient,  // |g| <= tolerance * |g at the first iterate|

@@ -198,6 +198,29 @@ TEST(LineSearch, DescendsWhereDifferencesOfTheValueAreLostInRoundOff) {
   EXPECT_LT(std::abs(x[0]), 1e-11);
 }
 
+// f(x, y) = (x^2 - 1)^2 / 4 + y^2 / 2 has a saddle at (0, 0), where gradients and directions are short.
+class TwoWells : public PlanarFunction {
+ public:
+  double at(const Planar& p) const override { return std::pow(p[0] * p[0] - 1, 2) / 4 + p[1] * p[1] / 2; }
+  Planar gradient_at(const Planar& p) const override { return {p[0] * (p[0] * p[0] - 1), p[1]}; }
+  PlanarHessian hessian_at(const Planar& p) const override { return {3 * p[0] * p[0] - 1, 0, 1}; }
+};
+
+TEST(Minimize, AShortDirectionNearASaddleIsNoConvergence) {
+  for (const bool truncated : {false, true}) {
+    TwoWells f;
+    const auto direction = truncated ? make_newton_cg() : newton(NewtonDefiniteness::on_demand);
+    std::vector<double> x = {1e-12, 0, 0};
+    MinimizeOptions options;
+    options.criterion = Criterion::velocity;
+    options.tolerance = 1e-6;
+    options.max_iterations = 500;
+    const MinimizeReport report = Minimizer().minimize(f, *direction, x, options);
+    EXPECT_TRUE(is_success(report.status)) << to_string(report.status);
+    EXPECT_NEAR(std::abs(x[0]), 1, 1e-6) << truncated;
+  }
+}
+
 TEST(LineSearch, AnAscentDirectionIsStuck) {
   Rosenbrock f;
   const std::vector<double> x = {0, 0, 0}, d = {-1, 0, 0};

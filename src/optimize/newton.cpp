@@ -118,6 +118,7 @@ bool Newton::solve(Objective& E, std::span<const double> x, const Projection& pr
   report.linear_iterations += solved.iterations;
   report.solve_seconds += stopwatch.lap();
   if (solved.indefinite ? !truncated_ : !solved.ok) return false;
+  report.truncated = report.truncated || solved.indefinite;
   for (double& di : d) di = -di;
   return true;
 }

@@ -12,6 +12,7 @@ struct DirectionReport {
   int hessians = 0, gradients = 0, factorizations = 0, linear_iterations = 0;
   int projected_elements = 0;  // whose Hessians were made definite
   bool projected = false;      // a projected Hessian was used where the exact one was wanted
+  bool truncated = false;      // the linear solve ended at a direction of negative curvature
   double hessian_seconds = 0, factorize_seconds = 0, solve_seconds = 0;  // wall time
 };
 
