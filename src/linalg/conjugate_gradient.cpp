@@ -90,6 +90,7 @@ SolveReport ConjugateGradient::solve(std::span<const double> b, std::span<double
   double last_measured = b_norm;
   for (; report.iterations < max_iterations_; ++report.iterations) {
     H_->multiply(p_, q_);
+    ++report.products;
     const double curvature = p_dot_q();
     if (!(curvature > 0)) {
       report.indefinite = curvature <= 0;  // NaN is neither
@@ -101,6 +102,7 @@ SolveReport ConjugateGradient::solve(std::span<const double> b, std::span<double
     if (std::sqrt(sums.rr) <= tolerance * b_norm) {
       // The recurrence drifts from the true residual by round-off: measure, and go on from there if need be.
       H_->multiply(x, q_);
+      ++report.products;
       sums = begin(b);
       const double measured = std::sqrt(sums.rr);
       const bool stagnates = !(measured < 0.5 * last_measured);
@@ -120,6 +122,7 @@ SolveReport ConjugateGradient::solve(std::span<const double> b, std::span<double
     parallel_chunks(H_->pattern->rows(), turn);
   }
   H_->multiply(x, q_);
+  ++report.products;
   report.relative_residual = std::sqrt(begin(b).rr) / b_norm;
   report.ok = !report.indefinite && report.relative_residual <= tolerance;
   return report;

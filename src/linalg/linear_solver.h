@@ -16,6 +16,8 @@ struct SolveReport {
   bool ok = false;               // the residual is below the tolerance asked for
   bool indefinite = false;       // negative curvature was met
   int iterations = 0;            // 0 for a direct solver
+  int products = 0;              // with H
+  int cycles = 0;                // of multigrid
   double relative_residual = 0;  // |b - H x| / |b|; 0 when not measured
 };
 
