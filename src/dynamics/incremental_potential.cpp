@@ -24,7 +24,23 @@ BlockPattern pattern_of(const Model& model) {
   for (const auto& V : model.elasticity) V->add_couplings(couplings);
   for (const auto& V : model.loads) V->add_couplings(couplings);
   for (const auto& D : model.damping) D->add_couplings(couplings);
-  return make_pattern(model.mesh.vertex_count(), std::move(couplings));
+  BlockPattern pattern = make_pattern(model.mesh.vertex_count(), std::move(couplings));
+  pattern.rest_position = model.mesh.rest;
+  return pattern;
+}
+
+// Per vertex v: the sum over its tets of volume |grad N_v|^2, the diagonal of the stiffness matrix of a unit modulus
+// [m].
+std::vector<double> unit_stiffness(const TetMesh& mesh) {
+  std::vector<double> stiffness(mesh.vertex_count(), 0.0);
+  for (const Tet& tet : mesh.tets)
+    for (int k = 0; k < 4; ++k) {
+      const Vec3d &A = mesh.rest[tet[(k + 1) % 4]], &B = mesh.rest[tet[(k + 2) % 4]], &C = mesh.rest[tet[(k + 3) % 4]];
+      const Vec3d normal = cross(B - A, C - A);  // twice the area of the face opposite to v
+      const double six_volumes = std::abs(dot(normal, mesh.rest[tet[k]] - A));
+      if (six_volumes > 0) stiffness[tet[k]] += dot(normal, normal) / (6 * six_volumes);
+    }
+  return stiffness;
 }
 
 }  // namespace
@@ -164,6 +180,9 @@ void IncrementalPotential::measure(const TetMesh& mesh) {
   H_.set_zero();
   for (const Energy* V : potential_) V->add_hessian(rest, 1, {Definiteness::absolute}, H_);
   H_.multiply(growth, term_);
+  pattern_.rest_modulus = unit_stiffness(mesh);
+  for (int v = 0; v < pattern_.rows(); ++v)
+    pattern_.rest_modulus[v] = trace(H_.block[pattern_.diagonal(v)]) / pattern_.rest_modulus[v];
   growth_stiffness_ = dot(growth, term_);
   model_.mass->multiply(growth, term_);
   growth_inertia_ = dot(growth, term_);

@@ -21,6 +21,10 @@ struct BlockPattern {
   std::vector<int64_t> upper_slot;
   uint64_t version = 0;  // differs between any two patterns made in this process
 
+  // What solvers may build coarse spaces from; empty where it is not known.
+  std::vector<Vec3d> rest_position;  // of each row's vertex [m]
+  std::vector<double> rest_modulus;  // of the material around each row's vertex [Pa], but for a common factor
+
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
   int64_t block_count() const { return static_cast<int64_t>(column.size()); }
   int64_t diagonal(int row) const { return row_start[row + 1] - 1; }

@@ -126,7 +126,7 @@ TEST(ConjugateGradient, WithBlocksMadeDefiniteItDescendsWhereADiagonalBlockIsInd
   block = -1.0 * block;
   const std::vector<double> b = random_vector(3 * H.rows(), 6);
   std::vector<double> x(b.size());
-  ConjugateGradient solver(ConjugateGradient::Blocks::made_definite);
+  ConjugateGradient solver(std::make_unique<BlockJacobi>(BlockJacobi::Blocks::made_definite));
   solver.analyze(*H.pattern);
   ASSERT_TRUE(solver.factorize(H.values));
   const SolveReport report = solver.solve(b, x, 1e-6);

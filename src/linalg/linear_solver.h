@@ -27,12 +27,15 @@ class LinearSolver {
   virtual std::string_view name() const = 0;
   virtual std::string description() const { return std::string(name()); }  // what was chosen, and why; for logs
   virtual void analyze(const BlockPattern& pattern) = 0;
+  // A sequence of matrices begins that change little from one to the next. What was kept of earlier ones is dropped, so
+  // that results depend on this sequence alone.
+  virtual void begin() {}
   virtual bool factorize(const BlockSparse& H) = 0;  // false: H is not positive definite. H must outlive the solves.
   // `tolerance` bounds |b - H x| / |b|; a direct solver ignores it. x holds the answer, 3 numbers per row.
   virtual SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) = 0;
 };
 
-// "auto", "cholesky", "block_jacobi" (conjugate gradients). Throws InvalidInput for another name.
+// "auto", "cholesky", "multigrid" and "block_jacobi" (conjugate gradients). Throws InvalidInput for another name.
 // `solves`: how many right-hand sides share a factorisation, roughly; for "auto".
 std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name, int solves = 1);
 std::vector<std::string> linear_solver_names();

@@ -48,7 +48,8 @@ Newton::Newton(std::unique_ptr<LinearSolver> solver, NewtonDefiniteness definite
 
 std::unique_ptr<Newton> make_newton_cg(NewtonDefiniteness definiteness) {
   auto direction = std::make_unique<Newton>(
-      std::make_unique<ConjugateGradient>(ConjugateGradient::Blocks::made_definite), definiteness);
+      std::make_unique<ConjugateGradient>(std::make_unique<BlockJacobi>(BlockJacobi::Blocks::made_definite)),
+      definiteness);
   direction->truncated_ = true;
   return direction;
 }
@@ -61,6 +62,7 @@ std::string Newton::description() const {
 void Newton::begin() {
   cautious_next_ = clamped_ = false;
   forcing_.begin();
+  solver_->begin();
   progressive_.begin();
 }
 

@@ -1,0 +1,55 @@
+// The coarse space of a multigrid method for elasticity: on each aggregate the affine displacements u(X) = A X + t of
+// the rest shape, among which are its rigid motions however far it has turned. An aggregate has four coarse rows, one
+// for each of four functions w_m that span (1, X, Y, Z) and are orthonormal over its rows:
+//   u_row = sum over m of w_m(row) u_(4 a + m)
+// so the coarse matrix has 3x3 blocks too, and the weights stay the same for the whole simulation.
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "linalg/aggregation.h"
+#include "linalg/block_sparse.h"
+
+namespace aspic {
+
+using FourValues = std::array<double, 4>;
+
+struct AffineCoarsening {
+  std::vector<int> aggregate;            // of each fine row; -1: the row takes no part
+  std::vector<int> row_start, row;       // fine rows of each aggregate, ascending
+  std::vector<FourValues> weight;        // w_0 ... w_3 at each fine row
+  std::vector<FourValues> coarse_value;  // (1, X, Y, Z) at each coarse row, for the next level
+  Graph graph;                           // of the aggregates
+  BlockPattern pattern;                  // of the coarse matrix, 4 rows per aggregate
+  int count() const { return static_cast<int>(row_start.size()) - 1; }
+  std::span<const int> rows_of(int a) const {
+    return std::span(row).subspan(row_start[a], row_start[a + 1] - row_start[a]);
+  }
+};
+
+// `value`: (1, X, Y, Z) at each fine row. A vertex of `graph` has `rows_per_vertex` consecutive rows. Functions that
+// depend on the others, on aggregates that are flat or small, are zero.
+AffineCoarsening make_affine_coarsening(const Graph& graph, const Aggregates& aggregates, int rows_per_vertex,
+                                        std::span<const FourValues> value);
+
+// coarse = P' fine P. Rows of functions that are zero become those of the identity.
+class MatrixRestriction {
+ public:
+  void reserve(const AffineCoarsening& coarsening);
+  void run(const AffineCoarsening& coarsening, const BlockSparse& fine, BlockSparse& coarse);
+
+ private:
+  struct RowSums {  // sum over j of H_ij w_jn, over the rows j of one aggregate
+    int aggregate;
+    Mat3d value[4];
+  };
+  struct Scratch {
+    std::vector<int> place;  // of an aggregate in `sums`; -1: not there
+    std::vector<RowSums> sums;
+  };
+  class Task;
+  std::vector<Scratch> scratch_;
+};
+
+}  // namespace aspic

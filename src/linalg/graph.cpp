@@ -1,0 +1,59 @@
+#include "linalg/graph.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+
+namespace aspic {
+
+Graph graph_of(const BlockPattern& p) {
+  Graph graph;
+  graph.start.resize(p.rows() + 1);
+  graph.neighbour.reserve(2 * (p.block_count() - p.rows()));
+  for (int row = 0; row < p.rows(); ++row) {
+    const auto column = p.column.begin();
+    graph.neighbour.insert(graph.neighbour.end(), column + p.row_start[row], column + p.diagonal(row));
+    const auto upper = p.upper_row.begin();
+    graph.neighbour.insert(graph.neighbour.end(), upper + p.upper_start[row], upper + p.upper_start[row + 1]);
+    graph.start[row + 1] = static_cast<int64_t>(graph.neighbour.size());
+  }
+  return graph;
+}
+
+Graph quotient(const Graph& graph, std::span<const int> group, int groups) {
+  ASPIC_CHECK(static_cast<int>(group.size()) == graph.vertex_count());
+  std::vector<std::vector<int>> members(groups);
+  for (int v = 0; v < graph.vertex_count(); ++v)
+    if (group[v] >= 0) members[group[v]].push_back(v);
+  Graph result;
+  result.start.assign(1, 0);
+  std::vector<int> seen(groups, -1);
+  for (int g = 0; g < groups; ++g) {
+    seen[g] = g;
+    for (const int v : members[g])
+      for (const int w : graph.around(v)) {
+        const int other = group[w];
+        if (other < 0 || seen[other] == g) continue;
+        seen[other] = g;
+        result.neighbour.push_back(other);
+      }
+    std::sort(result.neighbour.begin() + result.start.back(), result.neighbour.end());
+    result.start.push_back(static_cast<int64_t>(result.neighbour.size()));
+  }
+  return result;
+}
+
+std::vector<int> greedy_coloring(const Graph& graph) {
+  std::vector<int> color(graph.vertex_count(), -1), taken_by;  // per colour, the last vertex that may not have it
+  for (int v = 0; v < graph.vertex_count(); ++v) {
+    for (const int w : graph.around(v))
+      if (color[w] >= 0) taken_by[color[w]] = v;
+    size_t first = 0;
+    while (first < taken_by.size() && taken_by[first] == v) ++first;
+    if (first == taken_by.size()) taken_by.push_back(-1);
+    color[v] = static_cast<int>(first);
+  }
+  return color;
+}
+
+}  // namespace aspic

@@ -1,0 +1,271 @@
+#include "linalg/multigrid.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/check.h"
+#include "base/parallel.h"
+
+namespace aspic {
+namespace {
+
+constexpr int kMostLevels = 10;
+constexpr int kLeastReduction = 2;  // of rows, from one level to the next; with less, more levels do not help
+constexpr double kRegular = 1e-12;  // added to the coarsest diagonal: a free body without mass is singular
+constexpr double kAccurate = 0.25;  // a coarse residual reduced to this is small enough
+constexpr int kAggregatesPerTask = 8;
+
+void find_isolated_rows(const BlockSparse& H, std::vector<char>& isolated) {
+  const BlockPattern& p = *H.pattern;
+  isolated.assign(p.rows(), 1);
+  for (int row = 0; row < p.rows(); ++row) {
+    for (int64_t s = p.row_start[row]; s < p.diagonal(row) && isolated[row]; ++s)
+      if (squared_norm(H.block[s]) != 0) isolated[row] = isolated[p.column[s]] = 0;
+    for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1] && isolated[row]; ++u)
+      if (squared_norm(H.block[p.upper_slot[u]]) != 0) isolated[row] = isolated[p.upper_row[u]] = 0;
+  }
+}
+
+std::vector<Vec3d> centers(const Aggregates& aggregates, std::span<const Vec3d> position) {
+  std::vector<Vec3d> center(aggregates.count());
+  for (int a = 0; a < aggregates.count(); ++a) {
+    Vec3d sum{};
+    for (const int v : aggregates.members(a)) sum = sum + position[v];
+    center[a] = (1.0 / static_cast<double>(aggregates.members(a).size())) * sum;
+  }
+  return center;
+}
+
+std::vector<double> averages(const Aggregates& aggregates, std::span<const double> value) {
+  std::vector<double> average(value.empty() ? 0 : aggregates.count(), 0.0);
+  for (size_t a = 0; a < average.size(); ++a) {
+    const auto members = aggregates.members(static_cast<int>(a));
+    for (const int v : members) average[a] += value[v] / static_cast<double>(members.size());
+  }
+  return average;
+}
+
+std::vector<int> inverse_permutation(std::span<const int> order) {
+  std::vector<int> place(order.size());
+  for (size_t k = 0; k < order.size(); ++k) place[order[k]] = static_cast<int>(k);
+  return place;
+}
+
+template <class Body>
+void for_each_aggregate(int count, const Body& body) {
+  const auto task = [&](int t) {
+    for (int a = kAggregatesPerTask * t; a < std::min(count, kAggregatesPerTask * (t + 1)); ++a) body(a);
+  };
+  parallel_for((count + kAggregatesPerTask - 1) / kAggregatesPerTask, task);
+}
+
+template <class Body>
+void for_each_entry(std::span<const float> v, const Body& body) {
+  parallel_chunks(static_cast<int>(v.size()), [&](int first, int last) {
+    for (int i = first; i < last; ++i) body(i);
+  });
+}
+
+// The spare lanes do not count.
+double dot(std::span<const float> a, std::span<const float> b) {
+  static_assert(kChunkSize % kFloatsPerRow == 0);
+  return parallel_sum(static_cast<int>(a.size()), [&](int first, int last) {
+    double sum = 0;
+    for (int i = first; i < last; i += kFloatsPerRow)
+      for (int k = i; k < i + 3; ++k) sum += static_cast<double>(a[k]) * b[k];
+    return sum;
+  });
+}
+
+}  // namespace
+
+void Multigrid::analyze(const BlockPattern& pattern) {
+  ASPIC_CHECK(pattern.rest_position.size() == static_cast<size_t>(pattern.rows()));
+  pattern_ = &pattern;
+  is_built_ = false;
+}
+
+void Multigrid::build(const BlockSparse& H) {
+  levels_.clear();
+  levels_.reserve(kMostLevels);  // levels point to the patterns of those above
+  const BlockPattern* pattern = H.pattern;
+  Graph graph = graph_of(*pattern);
+  std::vector<Vec3d> position = pattern->rest_position;
+  std::vector<FourValues> value;
+  for (const Vec3d& X : position) value.push_back({1, X[0], X[1], X[2]});
+  std::vector<double> modulus = pattern->rest_modulus;
+  std::span<const char> excluded = isolated_;
+  int rows_per_vertex = 1, size = options_.aggregate_size;
+  while (pattern->rows() > options_.coarsest_rows && static_cast<int>(levels_.size()) < kMostLevels) {
+    Aggregates aggregates = make_aggregates({graph, position, modulus, excluded, size});
+    // Where jumps of the modulus are everywhere, aggregates cross them, but on the first level.
+    if (rows_per_vertex == 4 && 3 * aggregates.count() > graph.vertex_count())
+      aggregates = make_aggregates({graph, position, {}, excluded, size});
+    if (aggregates.count() == 0 || 4 * kLeastReduction * aggregates.count() > pattern->rows()) break;
+    Level& level = levels_.emplace_back();
+    level.coarsening = make_affine_coarsening(graph, aggregates, rows_per_vertex, value);
+    const AffineCoarsening& c = level.coarsening;
+    level.smoother.analyze(*pattern, rows_per_vertex, c.aggregate, greedy_coloring(c.graph));
+    level.restriction.reserve(c);
+    level.coarse = std::make_unique<BlockSparse>(c.pattern);
+    const size_t floats = kFloatsPerRow * static_cast<size_t>(pattern->rows());
+    for (auto* v : {&level.b, &level.x, &level.r}) v->assign(floats, 0.0F);
+    if (levels_.size() > 1)
+      for (auto* v : {&level.p, &level.q, &level.sum}) v->assign(floats, 0.0F);
+
+    position = centers(aggregates, position);
+    value = c.coarse_value;
+    graph = c.graph;
+    modulus = averages(aggregates, modulus);
+    excluded = {};
+    rows_per_vertex = 4, size = options_.coarse_aggregate_size;
+    pattern = &c.pattern;
+  }
+  connect_levels();
+  const size_t rows = pattern->rows();
+  for (auto* v : {&coarsest_b_, &coarsest_x_}) v->assign(kFloatsPerRow * rows, 0.0F);
+  coarsest_.assign(3 * rows + kReadAhead, 0.0);
+  factor_.assign(9 * rows * rows + kReadAhead, 0.0);
+  dense_.reserve(static_cast<int>(3 * rows));
+  is_built_ = true;
+}
+
+void Multigrid::connect_levels() {
+  for (size_t l = 0; l < levels_.size(); ++l) {
+    Level& level = levels_[l];
+    level.weight.clear();
+    for (const int row : level.smoother.order())
+      for (const double w : level.coarsening.weight[row]) level.weight.push_back(static_cast<float>(w));
+    std::vector<int> place(level.coarsening.pattern.rows());
+    std::iota(place.begin(), place.end(), 0);
+    if (l + 1 < levels_.size()) place = inverse_permutation(levels_[l + 1].smoother.order());
+    level.coarse_place.clear();
+    for (int a = 0; a < level.coarsening.count(); ++a) level.coarse_place.push_back(place[4 * a]);
+  }
+}
+
+bool Multigrid::factorize(const BlockSparse& H) {
+  ASPIC_CHECK(pattern_ == H.pattern);
+  find_isolated_rows(H, isolated_now_);
+  if (!is_built_ || isolated_now_ != isolated_) {
+    isolated_ = isolated_now_;
+    build(H);
+  }
+  const BlockSparse* matrix = &H;
+  for (Level& level : levels_) {
+    if (!level.smoother.load(*matrix)) return false;
+    level.restriction.run(level.coarsening, *matrix, *level.coarse);
+    matrix = level.coarse.get();
+  }
+  return factorize_coarsest(*matrix);
+}
+
+bool Multigrid::factorize_coarsest(const BlockSparse& H) {
+  const BlockPattern& p = *H.pattern;
+  const size_t n = 3 * static_cast<size_t>(p.rows());
+  std::fill(factor_.begin(), factor_.end(), 0.0);
+  for (size_t row = 0; row < n / 3; ++row)
+    for (int64_t s = p.row_start[row]; s < p.row_start[row + 1]; ++s)
+      for (int k = 0; k < 9; ++k) {
+        const size_t i = 3 * row + k % 3, j = 3 * static_cast<size_t>(p.column[s]) + k / 3;
+        if (i >= j) factor_[i + j * n] = (i == j ? 1 + kRegular : 1) * H.block[s].a[k];
+      }
+  const int size = static_cast<int>(n);
+  return dense_.factorize(factor_.data(), size, size, size);
+}
+
+void Multigrid::apply(std::span<const double> r, std::span<double> z) {
+  const bool is_dense = levels_.empty();
+  std::vector<float>& b = is_dense ? coarsest_b_ : levels_[0].b;
+  const std::vector<float>& x = is_dense ? coarsest_x_ : levels_[0].x;
+  const int rows = pattern_->rows();
+  const auto row_at = [&](int k) { return 3 * static_cast<size_t>(is_dense ? k : levels_[0].smoother.order()[k]); };
+  parallel_chunks(rows, [&](int first, int last) {
+    for (int k = first; k < last; ++k)
+      for (int i = 0; i < 3; ++i) b[kFloatsPerRow * static_cast<size_t>(k) + i] = static_cast<float>(r[row_at(k) + i]);
+  });
+  cycle(0);
+  parallel_chunks(rows, [&](int first, int last) {
+    for (int k = first; k < last; ++k)
+      for (int i = 0; i < 3; ++i) z[row_at(k) + i] = x[kFloatsPerRow * static_cast<size_t>(k) + i];
+  });
+}
+
+void Multigrid::cycle(int l) {
+  if (l == static_cast<int>(levels_.size())) return solve_coarsest();
+  Level& level = levels_[l];
+  const bool is_last = l + 1 == static_cast<int>(levels_.size());
+  level.smoother.sweep_forward(level.b.data(), level.x.data());
+  level.smoother.residual_after_forward(level.x.data(), level.r.data());
+  restrict_residual(level, is_last ? coarsest_b_ : levels_[l + 1].b);
+  solve(l + 1);
+  add_prolonged(is_last ? coarsest_x_ : levels_[l + 1].x, level);
+  level.smoother.sweep_backward(level.b.data(), level.x.data());
+}
+
+void Multigrid::solve(int l) {
+  if (l == static_cast<int>(levels_.size())) return solve_coarsest();
+  auto& [smoother, coarsening, restriction, coarse, weight, place, b, x, r, p, q, sum] = levels_[l];
+  const double start = dot(b, b);
+  cycle(l);
+  p = x;
+  smoother.multiply(p.data(), q.data());
+  const double pq = dot(p, q);
+  if (!(pq > 0)) return;
+  const float alpha = static_cast<float>(dot(p, b) / pq);
+  for_each_entry(b, [&](int i) { sum[i] = alpha * p[i], b[i] -= alpha * q[i]; });
+  if (dot(b, b) <= kAccurate * kAccurate * start) {
+    x = sum;
+    return;
+  }
+  cycle(l);
+  const float beta = static_cast<float>(dot(x, q) / pq);
+  for_each_entry(x, [&](int i) { x[i] -= beta * p[i]; });
+  smoother.multiply(x.data(), r.data());
+  const double curvature = dot(x, r);
+  const float gamma = curvature > 0 ? static_cast<float>(dot(x, b) / curvature) : 0.0F;
+  for_each_entry(x, [&](int i) { x[i] = sum[i] + gamma * x[i]; });
+}
+
+void Multigrid::restrict_residual(const Level& level, std::span<float> coarse_b) const {
+  for_each_aggregate(level.coarsening.count(), [&](int a) {
+    QuadF sum[4] = {QuadF::zero(), QuadF::zero(), QuadF::zero(), QuadF::zero()};
+    const auto [first, last] = level.smoother.range_of_group(a);
+    for (size_t k = kFloatsPerRow * static_cast<size_t>(first); k < kFloatsPerRow * static_cast<size_t>(last);
+         k += kFloatsPerRow)
+      for (int m = 0; m < 4; ++m) sum[m] += QuadF::all(level.weight[k + m]) * QuadF::load(&level.r[k]);
+    float* to = &coarse_b[kFloatsPerRow * static_cast<size_t>(level.coarse_place[a])];
+    for (int m = 0; m < 4; ++m) sum[m].store(to + kFloatsPerRow * m);
+  });
+}
+
+void Multigrid::add_prolonged(std::span<const float> coarse_x, Level& level) const {
+  for_each_aggregate(level.coarsening.count(), [&](int a) {
+    const float* from = &coarse_x[kFloatsPerRow * static_cast<size_t>(level.coarse_place[a])];
+    const auto [first, last] = level.smoother.range_of_group(a);
+    for (size_t k = kFloatsPerRow * static_cast<size_t>(first); k < kFloatsPerRow * static_cast<size_t>(last);
+         k += kFloatsPerRow) {
+      QuadF sum = QuadF::load(&level.x[k]);
+      for (int m = 0; m < 4; ++m) sum += QuadF::all(level.weight[k + m]) * QuadF::load(from + kFloatsPerRow * m);
+      sum.store(&level.x[k]);
+    }
+  });
+}
+
+void Multigrid::solve_coarsest() {
+  const int n = 3 * static_cast<int>(coarsest_b_.size() / kFloatsPerRow);
+  const auto lane = [](int i) { return kFloatsPerRow * static_cast<size_t>(i / 3) + i % 3; };
+  for (int i = 0; i < n; ++i) coarsest_[i] = coarsest_b_[lane(i)];
+  solve_forward(factor_.data(), n, n, coarsest_.data());
+  solve_backward(factor_.data(), n, n, coarsest_.data());
+  for (int i = 0; i < n; ++i) coarsest_x_[lane(i)] = static_cast<float>(coarsest_[i]);
+}
+
+std::string Multigrid::description() const {
+  if (!is_built_) return "multigrid";
+  std::string rows;
+  for (const Level& level : levels_) rows += std::to_string(level.smoother.rows()) + ", ";
+  return "multigrid on levels of " + rows + std::to_string(coarsest_b_.size() / kFloatsPerRow) + " vertices";
+}
+
+}  // namespace aspic

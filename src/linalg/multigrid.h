@@ -1,0 +1,70 @@
+// A multigrid cycle for elasticity as a preconditioner: coarse spaces of affine displacements of aggregates of the rest
+// shape, Gauss-Seidel as the smoother, a dense factorisation on the coarsest level. Coarse levels are solved by up to
+// two steps of conjugate gradients preconditioned by the cycle below (K-cycle, [Notay and Vassilevski 2008]), because
+// functions that jump between aggregates are stiffer than the motions they stand for. The cycle runs in single
+// precision; coarse matrices are made in double.
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "linalg/affine_coarsening.h"
+#include "linalg/approximate_inverse.h"
+#include "linalg/dense_cholesky.h"
+#include "linalg/gauss_seidel.h"
+
+namespace aspic {
+
+struct MultigridOptions {
+  int aggregate_size = 48;        // rows of the matrix
+  int coarse_aggregate_size = 8;  // aggregates, from then on
+  int coarsest_rows = 256;        // at most, on the level that is factorised
+};
+
+// Needs the rest positions of the pattern's rows. Rows without any coupling (pinned vertices) take no part.
+class Multigrid : public ApproximateInverse {
+ public:
+  explicit Multigrid(const MultigridOptions& options = {}) : options_(options) {}
+
+  std::string_view name() const override { return "multigrid"; }
+  std::string description() const override;
+  void analyze(const BlockPattern& pattern) override;
+  bool factorize(const BlockSparse& H) override;
+  void apply(std::span<const double> r, std::span<double> z) override;
+  bool is_multigrid() const override { return true; }
+
+  int level_count() const { return static_cast<int>(levels_.size()) + 1; }
+
+ private:
+  struct Level {
+    GaussSeidel smoother;
+    AffineCoarsening coarsening;
+    MatrixRestriction restriction;
+    std::unique_ptr<BlockSparse> coarse;  // P' H P
+    std::vector<float> weight;            // of the coarsening, 4 per row in the order of the smoother
+    std::vector<int> coarse_place;        // of the first row of each aggregate, in the order of the next level
+    std::vector<float> b, x;              // H x = b
+    std::vector<float> r;                 // of the cycle: b - H x; of the K-cycle: H p
+    std::vector<float> p, q, sum;         // of the K-cycle: first direction, H p, solution
+  };
+  void build(const BlockSparse& H);
+  void connect_levels();
+  void cycle(int l);  // one step for H x = b from x = 0
+  void solve(int l);
+  void restrict_residual(const Level& level, std::span<float> coarse_b) const;
+  void add_prolonged(std::span<const float> coarse_x, Level& level) const;
+  bool factorize_coarsest(const BlockSparse& H);
+  void solve_coarsest();
+
+  MultigridOptions options_;
+  const BlockPattern* pattern_ = nullptr;
+  bool is_built_ = false;
+  std::vector<char> isolated_, isolated_now_;  // rows without couplings: pinned
+  std::vector<Level> levels_;
+  std::vector<float> coarsest_b_, coarsest_x_;
+  std::vector<double> factor_, coarsest_;
+  DenseCholesky dense_;
+};
+
+}  // namespace aspic
