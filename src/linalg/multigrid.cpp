@@ -80,7 +80,6 @@ double dot(std::span<const float> a, std::span<const float> b) {
 }  // namespace
 
 void Multigrid::analyze(const BlockPattern& pattern) {
-  ASPIC_CHECK(pattern.rest_position.size() == static_cast<size_t>(pattern.rows()));
   pattern_ = &pattern;
   is_built_ = false;
 }
@@ -91,6 +90,7 @@ void Multigrid::build(const BlockSparse& H) {
   const BlockPattern* pattern = H.pattern;
   Graph graph = graph_of(*pattern);
   std::vector<Vec3d> position = pattern->rest_position;
+  position.resize(pattern->rows());  // where they are not known, aggregates are moved as a whole
   std::vector<FourValues> value;
   for (const Vec3d& X : position) value.push_back({1, X[0], X[1], X[2]});
   std::vector<double> modulus = pattern->rest_modulus;
