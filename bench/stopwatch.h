@@ -4,16 +4,28 @@
 
 namespace aspic::bench {
 
-// Wall time and processor time of all threads since it was made.
+struct Seconds {
+  double wall = 0;
+  double processor = 0;  // of all threads of this process
+};
+
+// Time since the last lap, or since it was made.
 class Stopwatch {
  public:
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-  double cpu_seconds() const { return static_cast<double>(std::clock() - cpu_start_) / CLOCKS_PER_SEC; }
+  Seconds lap() {
+    const auto now = Clock::now();
+    const std::clock_t processor = std::clock();
+    const Seconds seconds{std::chrono::duration<double>(now - wall_).count(),
+                          static_cast<double>(processor - processor_) / CLOCKS_PER_SEC};
+    wall_ = now;
+    processor_ = processor;
+    return seconds;
+  }
 
  private:
   using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-  std::clock_t cpu_start_ = std::clock();
+  Clock::time_point wall_ = Clock::now();
+  std::clock_t processor_ = std::clock();
 };
 
 }  // namespace aspic::bench
