@@ -14,6 +14,7 @@
 #include "bench/beam_run.h"
 #include "bench/machine.h"
 #include "bench/results.h"
+#include "bench/step_counts.h"
 
 namespace aspic::bench {
 namespace {
@@ -111,8 +112,13 @@ void record(Results& results, const Arguments& arguments, const Line& line, cons
   results.add("steps", result.steps.processor, "s of processor");
   results.add("whole run", result.total().processor, "s of processor");
   results.add("whole run", result.total().wall, "s");
-  results.add("newton iterations", result.iterations, "1");
-  results.add("linear iterations", result.linear_iterations, "1");
+}
+
+void record_work(Results& results, const AspicRun& run) {
+  StepCounts counts;
+  for (const StepReport& report : run.reports) add_counts(report, counts);
+  for (const NamedCount& named : kCounts) results.add(std::string(named.name), counts.*named.count, "1");
+  results.add("peak memory", 1e-6 * run.peak_memory, "MB");
 }
 
 template <class Run>
@@ -138,6 +144,7 @@ bool compare(const Arguments& arguments, int n, Results& results) {
       const Line line{"aspic", linear, threads, n};
       right &= print(arguments, line, run, run.peak_memory / 1e6);
       record(results, arguments, line, run);
+      record_work(results, run);
       if (threads == 1) one_thread_wall = run.total().wall;
       if (threads == 1 && one_thread == 0) one_thread = run.total().processor;
       if (threads != 1 && one_thread_wall > 0) {

@@ -13,6 +13,7 @@
 #include "bench/model.h"
 #include "bench/results.h"
 #include "bench/shapes.h"
+#include "bench/step_counts.h"
 #include "bench/stopwatch.h"
 #include "dynamics/simulation.h"
 
@@ -86,7 +87,8 @@ Simulation make_simulation(const Arguments& arguments, const TetMesh& mesh, cons
 
 struct Measured {
   std::vector<double> wall, processor;  // of each step [s]
-  int iterations = 0, linear_iterations = 0, unconverged = 0;
+  StepCounts counts;
+  int unconverged = 0;
   double set_up = 0;  // and the first step [s of processor]
 };
 
@@ -100,25 +102,25 @@ Measured take_steps(Simulation& simulation, int steps, Stopwatch& stopwatch) {
     const Seconds seconds = stopwatch.lap();
     m.wall.push_back(seconds.wall);
     m.processor.push_back(seconds.processor);
-    m.iterations += report.iterations;
-    m.linear_iterations += report.linear_iterations;
+    add_counts(report, m.counts);
     m.unconverged += !is_success(report.status);
   }
   return m;
 }
 
 void print_head() {
-  std::printf("%-10s %7s %8s %8s %6s %4s | %8s %8s %8s %8s | %6s %7s | %6s\n", "shape", "threads", "vertices", "tets",
-              "E [Pa]", "Hz", "ms/step", "min", "max", "cpu", "Newton", "linear", "x real");
+  std::printf("%-10s %7s %8s %8s %6s %4s | %8s %8s %8s %8s | %6s %7s %6s | %6s\n", "shape", "threads", "vertices",
+              "tets", "E [Pa]", "Hz", "ms/step", "min", "max", "cpu", "Newton", "linear", "cycles", "x real");
 }
 
 void print(const Case& c, const TetMesh& mesh, const Measured& m) {
   const double steps = static_cast<double>(m.wall.size()), wall = median(m.wall);
-  std::printf("%-10s %7d %8d %8d %6.0e %4.0f | %8.2f %8.2f %8.2f %8.2f | %6.1f %7.1f | %6.2f", c.shape.c_str(),
+  std::printf("%-10s %7d %8d %8d %6.0e %4.0f | %8.2f %8.2f %8.2f %8.2f | %6.1f %7.1f %6.1f | %6.2f", c.shape.c_str(),
               c.threads, mesh.vertex_count(), mesh.tet_count(), c.young, c.rate, 1e3 * wall,
               1e3 * *std::min_element(m.wall.begin(), m.wall.end()),
-              1e3 * *std::max_element(m.wall.begin(), m.wall.end()), 1e3 * median(m.processor), m.iterations / steps,
-              m.linear_iterations / steps, 1 / (c.rate * wall));
+              1e3 * *std::max_element(m.wall.begin(), m.wall.end()), 1e3 * median(m.processor),
+              m.counts.iterations / steps, m.counts.linear_iterations / steps, m.counts.cycles / steps,
+              1 / (c.rate * wall));
   if (m.unconverged > 0) std::printf("  %d steps did not converge", m.unconverged);
   std::printf("\n");
   std::fflush(stdout);
@@ -135,8 +137,9 @@ void record(Results& results, const Case& c, const TetMesh& mesh, const Measured
   results.add("step, slowest", 1e3 * *std::max_element(m.wall.begin(), m.wall.end()), "ms");
   results.add("step, median", 1e3 * median(m.processor), "ms of processor");
   results.add("set-up and first step", m.set_up, "s of processor");
-  results.add("newton iterations", m.iterations / steps, "per step");
-  results.add("linear iterations", m.linear_iterations / steps, "per step");
+  for (const NamedCount& named : kCounts) {
+    results.add(std::string(named.name), m.counts.*named.count / steps, "per step");
+  }
 }
 
 // Every stiffness, rate and number of threads on one mesh. True when all steps converged.
