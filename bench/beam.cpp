@@ -57,7 +57,7 @@ struct Known {
   double displacement;  // [m]
 };
 constexpr std::array<Known, 5> kKnown = {
-    {{false, 7, -0.0539775432}, {false, 14, -0.0539697485}, {false, 28, -0.0539687299}}};
+    {{false, 7, -0.0539775432}, {false, 14, -0.0539697485}, {false, 28, -0.0539687224}}};
 
 std::optional<double> known_displacement(const Arguments& arguments, int n) {
   for (const Known& known : kKnown)

@@ -40,8 +40,10 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--material", arguments.materials)->delimiter(',')->capture_default_str();
-  app.add_flag("--all-materials", arguments.all_materials);
-  app.add_option("--seconds", arguments.seconds, "of each of the repetitions, at least")->capture_default_str();
+  app.add_flag("--all-materials", arguments.all_materials, "every one, for the first size and number of threads");
+  app.add_option("--seconds", arguments.seconds, "of each of the repetitions, at least")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--repetitions", arguments.repetitions, "the median of so many is reported")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -218,12 +220,20 @@ void Registry::add_iterative(const std::string& name) const {
   });
 }
 
+std::vector<std::string> names_of_materials() {
+  std::vector<std::string> names;
+  for (const MaterialInfo& material : materials()) names.push_back(material.name);
+  return names;
+}
+
 void register_all(const Arguments& arguments) {
+  const std::vector<std::string> all_materials = arguments.all_materials ? names_of_materials() : arguments.materials;
   const std::vector<std::string> known = linear_solver_names();
   for (const int n : arguments.sizes)
     for (const int threads : arguments.threads) {
       const Registry registry(arguments, {n, threads});
-      for (const std::string& material : arguments.materials) registry.add_elements(material);
+      const bool first = n == arguments.sizes.front() && threads == arguments.threads.front();
+      for (const std::string& material : first ? all_materials : arguments.materials) registry.add_elements(material);
       registry.add_vectors();
       registry.add_matrix();
       registry.add_cholesky();
@@ -231,7 +241,7 @@ void register_all(const Arguments& arguments) {
     }
 }
 
-int run(Arguments arguments) {
+int run(const Arguments& arguments) {
   if (!arguments.quiet) print_facts(machine_facts());
   std::printf("\nEach number is a median; by processor time for one thread, by wall time for more.\n");
   std::map<int, Roofline> rooflines;
@@ -245,10 +255,6 @@ int run(Arguments arguments) {
       results.add("triad on " + std::to_string(static_cast<int>(1e-3 * b.footprint)) + " kB", 1e-9 * b.bytes_per_second,
                   "GB/s");
     }
-  }
-  if (arguments.all_materials) {
-    arguments.materials.clear();
-    for (const MaterialInfo& material : materials()) arguments.materials.push_back(material.name);
   }
   for (const std::string& material : arguments.materials) material_info(material);  // throws for an unknown name
   register_all(arguments);

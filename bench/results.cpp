@@ -25,7 +25,7 @@ void Results::write(const std::filesystem::path& path) const {
   if (path.empty()) return;
   CsvFile file = CsvFile::create(path, {"bench", "case", "threads", "quantity", "value", "unit"});
   for (const Fact& fact : machine_facts()) {
-    file.append(CsvRow().add("machine").add(bench_).add(0).add(fact.name).add(fact.value).add(""));
+    file.append(CsvRow().add("machine").add("").add(0).add(fact.name).add(fact.value).add(""));
   }
   for (const Row& row : rows_) {
     file.append(CsvRow()

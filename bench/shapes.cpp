@@ -30,7 +30,11 @@ const std::vector<Shape>& shapes() {
   static const std::vector<Shape> all = {
       {"torus", "generated", "", kY, {{"tiny", 0.15}, {"3k", 0.04}, {"10k", 0.026}, {"30k", 0.018}, {"100k", 0.012}}},
       {"bunny", "npm package bunny", "bunny.obj", kY, {{"3k", 0.53}, {"10k", 0.34}, {"30k", 0.23}, {"100k", 0.15}}},
-      {"armadillo", kCgal, "armadillo.off", kY, {{"3k", 6.3}, {"10k", 3.9}, {"30k", 2.5}, {"100k", 1.6}}},
+      {"armadillo", kCgal, "armadillo.off", kY, {{"3k", 6.3}, {"10k", 3.9}, {"30k", 2.5}, {"100k", 1.7}}},
+      {"elephant", kCgal, "elephant.off", kY, {{"3k", 0.035}, {"10k", 0.022}, {"30k", 0.0145}, {"100k", 0.0095}}},
+      {"hand", kCgal, "hand.off", kZ, {{"3k", 0.058}, {"10k", 0.037}, {"30k", 0.0245}, {"100k", 0.0163}}},
+      {"homer", kCgal, "homer.off", kY, {{"3k", 0.0315}, {"10k", 0.0201}, {"30k", 0.0133}, {"100k", 0.0088}}},
+      {"liver", kCgal, "liver.inr.gz", kZ, {{"3k", 12.2}, {"10k", 8}, {"30k", 5.4}, {"100k", 3.5}}},
   };
   return all;
 }
