@@ -56,8 +56,11 @@ struct Known {
   int n;
   double displacement;  // [m]
 };
-constexpr std::array<Known, 5> kKnown = {
-    {{false, 7, -0.0539775432}, {false, 14, -0.0539697485}, {false, 28, -0.0539687224}}};
+constexpr std::array<Known, 5> kKnown = {{{false, 7, -0.0539775432},
+                                          {false, 14, -0.0539697485},
+                                          {false, 28, -0.0539687224},
+                                          {true, 7, -5.0768673754},
+                                          {true, 14, -5.1014744083}}};
 
 std::optional<double> known_displacement(const Arguments& arguments, int n) {
   for (const Known& known : kKnown)

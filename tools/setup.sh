@@ -160,11 +160,12 @@ shapes_dir=$root/build/shapes
 cgal_shapes="data/meshes/armadillo.off data/meshes/elephant.off data/meshes/hand.off data/meshes/homer.off
   data/images/liver.inr.gz"
 fetch_shapes() {
+  assets=$root/assets
   mkdir -p "$shapes_dir"
   if [ ! -s "$shapes_dir/bunny.obj" ]; then
-    mkdir -p "$root/assets"
-    [ -s "$root/assets/bunny.obj" ] || (fetch_bunny) || say "The benchmark goes on without the bunny."
-    [ ! -s "$root/assets/bunny.obj" ] || cp "$root/assets/bunny.obj" "$shapes_dir/bunny.obj"
+    mkdir -p "$assets"
+    [ -s "$assets/bunny.obj" ] || (fetch_bunny) || say "The benchmark goes on without the bunny."
+    [ ! -s "$assets/bunny.obj" ] || cp "$assets/bunny.obj" "$shapes_dir/"
   fi
   [ -s "$shapes_dir/liver.inr.gz" ] || fetch_cgal_shapes ||
     say "warning: the package libcgal-demo could not be fetched; the benchmark goes on without its shapes"
