@@ -71,11 +71,18 @@ std::string frequency() {
   return "governor " + (governor.empty() ? "unknown" : governor);
 }
 
-std::string load() {
+double load() {  // programs that ran or waited, over the last minute; negative: unknown
   std::istringstream line(line_of("/proc/loadavg"));
-  std::string one_minute;
+  double one_minute = -1;
   line >> one_minute;
-  return one_minute.empty() ? "unknown" : one_minute + " in the last minute";
+  return one_minute;
+}
+
+std::string load_text() {
+  const double one_minute = load();
+  char text[64];
+  std::snprintf(text, sizeof text, "%.2f in the last minute", one_minute);
+  return one_minute < 0 ? "unknown" : text;
 }
 
 }  // namespace
@@ -88,7 +95,7 @@ std::vector<Fact> machine_facts() {
           {"caches", caches()},
           {"memory", memory()},
           {"frequency", frequency()},
-          {"load", load()},
+          {"load", load_text()},
           {"compiler", kCompiler},
           {"build", std::string(kBuildType) + ", " + kFlags},
           {"version", std::string(kVersion) + (*kCommit ? " " : "") + kCommit}};
@@ -96,6 +103,11 @@ std::vector<Fact> machine_facts() {
 
 void print_facts(const std::vector<Fact>& facts) {
   for (const Fact& fact : facts) std::printf("%-10s %s\n", fact.name.c_str(), fact.value.c_str());
+  if (load() > 0.3 * std::thread::hardware_concurrency()) {
+    std::printf(
+        "note: other programs are at work here; wall times, and with them several threads, will look worse than "
+        "they are\n");
+  }
 }
 
 double peak_memory() {
