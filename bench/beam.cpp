@@ -5,11 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "base/error.h"
 #include "base/parallel.h"
 #include "bench/beam_run.h"
 #include "bench/machine.h"
@@ -192,7 +192,7 @@ int main(int argc, char** argv) {
     return aspic::bench::run(arguments);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
-  } catch (const aspic::InvalidInput& error) {
+  } catch (const std::exception& error) {
     std::fprintf(stderr, "error: %s\n", error.what());
     return 2;
   }

@@ -8,8 +8,8 @@ Exit code: 0, or 1 for slower. For example
 """
 import argparse
 import math
-import os
 import pathlib
+import resource
 import statistics
 import subprocess
 import sys
@@ -71,14 +71,14 @@ def summary(pairs, least):
 def seconds_of(command, wall):
     """Processor time of the command and its threads, or wall time."""
     start = time.perf_counter()
-    before = os.times()
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    after = os.times()
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if done.returncode != 0:
         sys.exit(f"error: {' '.join(command)} failed with exit code {done.returncode}:\n{done.stdout}")
     if wall:
         return time.perf_counter() - start
-    return after.children_user - before.children_user + after.children_system - before.children_system
+    return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
 
 
 def program(build, bench):

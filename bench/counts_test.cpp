@@ -7,7 +7,7 @@
 #include <map>
 #include <sstream>
 #include <string>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 #include "allocation_counter.h"
@@ -23,7 +23,12 @@ constexpr char kFile[] = ASPIC_SOURCE_DIR "/bench/expected_counts.csv";
 constexpr char kRenew[] = "ASPIC_UPDATE_COUNTS=1 build/release/bin/test_bench";
 bool is_renewed() { return std::getenv("ASPIC_UPDATE_COUNTS") != nullptr; }
 
-using Counts = std::map<std::string, long>;  // "falling auto iterations": 30
+using Counts = std::map<std::string, long>;  // "falling,auto,iterations": 30
+
+std::string key(std::string_view beam, std::string_view solver, std::string_view count) {
+  std::string key(beam);
+  return key.append(",").append(solver).append(",").append(count);
+}
 
 Counts read_expected() {
   Counts expected;
@@ -36,7 +41,7 @@ Counts read_expected() {
     std::getline(words, beam, ',');
     std::getline(words, solver, ',');
     std::getline(words, name, ',');
-    if (words >> count) expected[beam + "," + solver + "," + name] = count;
+    if (words >> count) expected[key(beam, solver, name)] = count;
   }
   return expected;
 }
@@ -65,7 +70,7 @@ Counts measured_counts() {
       EXPECT_TRUE(run.converged) << beam << ", " << solver;
       for (const StepReport& report : run.reports) add_counts(report, counts);
       for (const NamedCount& named : kCounts) {
-        measured[beam + "," + solver + "," + std::string(named.name)] = counts.*named.count;
+        measured[key(beam, solver, named.name)] = counts.*named.count;
       }
     }
   return measured;

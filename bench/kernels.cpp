@@ -5,12 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "base/error.h"
 #include "base/parallel.h"
 #include "bench/kernel_beam.h"
 #include "bench/kernel_report.h"
@@ -285,7 +285,7 @@ int main(int argc, char** argv) {
     return aspic::bench::run(arguments);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
-  } catch (const aspic::InvalidInput& error) {
+  } catch (const std::exception& error) {
     std::fprintf(stderr, "error: %s\n", error.what());
     return 2;
   }

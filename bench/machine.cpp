@@ -53,7 +53,10 @@ std::string caches() {  // of the first core
     const std::string folder = "/sys/devices/system/cpu/cpu0/cache/index" + std::to_string(i) + "/";
     const std::string size = line_of(folder + "size");
     if (size.empty() || line_of(folder + "type") == "Instruction") continue;
-    text += (text.empty() ? "L" : ", L") + line_of(folder + "level") + " " + size;
+    text += text.empty() ? "L" : ", L";
+    text += line_of(folder + "level");
+    text += " ";
+    text += size;
   }
   return text.empty() ? "unknown" : text;
 }
