@@ -6,16 +6,18 @@
 
 namespace aspic::bench {
 
+inline constexpr double kYoung = 1e6;      // [Pa]
 inline constexpr double kPoisson = 0.4;    // [1]
 inline constexpr double kDensity = 1000;   // [kg/m^3]
 inline constexpr double kGravity = -9.81;  // along y [m/s^2]
+inline constexpr double kTimeStep = 0.01;  // [s]
 
 struct BeamProblem {
   int n = 7;
-  double young = 1e6;       // [Pa]
-  double time_step = 0.01;  // [s]
-  int steps = 10;           //
-  double tolerance = 1e-6;  // of the first gradient of each step
+  double young = kYoung;         // [Pa]
+  double time_step = kTimeStep;  // [s]
+  int steps = 10;                //
+  double tolerance = 1e-6;       // of the first gradient of each step
 };
 inline BeamProblem falling_beam(int n) { return {.n = n}; }                                                 // 5 cm
 inline BeamProblem bent_beam(int n) { return {.n = n, .young = 1e5, .time_step = 1.0 / 30, .steps = 30}; }  // 5 m

@@ -28,7 +28,6 @@ void tell_rest(const TetMesh& mesh, Pattern& pattern) {
 }  // namespace
 
 KernelBeam::KernelBeam(int n, const std::string& material) : mesh(make_beam(n)) {
-  constexpr double kYoung = 1e6, kStep = 0.01;  // [Pa], [s]
   MaterialParameters constants{.lame = lame_from_young_poisson(kYoung, kPoisson)};
   const MaterialInfo& info = material_info(material);
   for (size_t k = 0; k < info.extra.size(); ++k) constants.extra[k] = info.extra[k].fallback;
@@ -48,7 +47,7 @@ KernelBeam::KernelBeam(int n, const std::string& material) : mesh(make_beam(n)) 
   H = std::make_unique<BlockSparse>(pattern);
   H->set_zero();
   mass.add_to(1, *H);
-  elasticity->add_hessian(x, kStep * kStep, {Definiteness::exact}, *H);
+  elasticity->add_hessian(x, kTimeStep * kTimeStep, {Definiteness::exact}, *H);
 }
 
 KernelBeam& kernel_beam(int n, const std::string& material) {

@@ -12,14 +12,12 @@ struct Seconds {
 // Time since the last lap, or since it was made.
 class Stopwatch {
  public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - wall_).count(); }  // wall time
+  double cpu_seconds() const { return static_cast<double>(std::clock() - processor_) / CLOCKS_PER_SEC; }
   Seconds lap() {
-    const auto now = Clock::now();
-    const std::clock_t processor = std::clock();
-    const Seconds seconds{std::chrono::duration<double>(now - wall_).count(),
-                          static_cast<double>(processor - processor_) / CLOCKS_PER_SEC};
-    wall_ = now;
-    processor_ = processor;
-    return seconds;
+    const Seconds passed{seconds(), cpu_seconds()};
+    *this = {};
+    return passed;
   }
 
  private:
