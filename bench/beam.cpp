@@ -1,134 +1,199 @@
-// Aspic and the obvious program on the same beam: one line each, their ratio, and whether the displacement of the tip
-// is the known one. usage: bench_beam [n...]
+// bench_beam: the beam by Aspic and, where it is small, by the obvious program; one line per run, from nothing to the
+// last step, and whether the displacement of the tip is the known one. bench_beam --help tells the options.
+#include <CLI/CLI.hpp>
+
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <exception>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "base/error.h"
 #include "base/parallel.h"
-#include "bench/beam_problem.h"
-#include "bench/stopwatch.h"
-#include "dynamics/simulation.h"
-#include "energy/linear_load.h"
+#include "bench/beam_run.h"
+#include "bench/machine.h"
+#include "bench/results.h"
+#include "bench/step_counts.h"
 
 namespace aspic::bench {
 namespace {
 
 constexpr int kLargestNaive = 7;  // n = 14 takes the obvious program minutes
 
-struct Reference {
+struct Arguments {
+  std::vector<int> sizes = {7};
+  std::vector<int> threads = {1};
+  std::vector<std::string> linear = {"auto"};
+  double tolerance = 1e-6;
+  int runs = 1;
+  int largest_naive = kLargestNaive;
+  bool bent = false, quiet = false;
+  std::string csv;
+};
+
+void declare(CLI::App& app, Arguments& arguments) {
+  const CLI::Range sizes(1, 64);
+  app.add_option("n", arguments.sizes, "cells through the thickness; 4n along the beam")
+      ->check(sizes)
+      ->capture_default_str();
+  app.add_flag("--bent", arguments.bent, "the beam of 1e5 Pa with 30 steps of 1/30 s, whose tip falls 5 m");
+  app.add_option("--threads", arguments.threads, "one or several numbers of threads")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--linear", arguments.linear, "one or several linear solvers")->delimiter(',')->capture_default_str();
+  app.add_option("--tolerance", arguments.tolerance, "of the first gradient of each step")->check(CLI::PositiveNumber);
+  app.add_option("--runs", arguments.runs, "the fastest of so many is reported")->check(CLI::PositiveNumber);
+  app.add_option("--naive", arguments.largest_naive, "the largest n for the obvious program; 0: without it");
+  app.add_option("--csv", arguments.csv, "a file for the results");
+  app.add_flag("--quiet", arguments.quiet, "without the facts about the machine");
+}
+
+// With every step solved to 1e-10 of its first gradient; --tolerance 1e-10 --linear cholesky repeats it.
+struct Known {
+  bool bent;
   int n;
   double displacement;  // [m]
 };
-constexpr std::array<Reference, 2> kReferences = {{{7, -0.0539775432}, {14, -0.0539697485}}};
-constexpr double kAllowed = 1e-8;  // [m]
+constexpr std::array<Known, 5> kKnown = {{{false, 7, -0.0539775432},
+                                          {false, 14, -0.0539697485},
+                                          {false, 28, -0.0539687224},
+                                          {true, 7, -5.0768673754},
+                                          {true, 14, -5.1014744083}}};
 
-Model make_model(int n) {
-  Model model;
-  model.mesh = make_beam(n);
-  const TetMesh& mesh = model.mesh;
-  model.bodies = {{"beam", 0, mesh.vertex_count(), 0, mesh.tet_count()}};
-  model.density.assign(mesh.tet_count(), kDensity);
-  model.mass = std::make_unique<MassMatrix>(mesh, model.density, MassKind::consistent);
-
-  const MaterialParameters parameters{.lame = lame_from_young_poisson(kYoung, kPoisson)};
-  model.elasticity.push_back(
-      make_tet_elasticity("neo_hookean_log", mesh, 0, std::vector<MaterialParameters>(mesh.tet_count(), parameters)));
-
-  std::vector<double> weight(3 * mesh.vertex_count());
-  for (int t = 0; t < mesh.tet_count(); ++t) add_body_force(mesh, t, {0, kDensity * kGravity, 0}, weight);
-  model.loads.push_back(make_linear_load("gravity", std::move(weight)));
-
-  Pin& clamp = model.pins.emplace_back();
-  clamp.name = "clamp";
-  for (int i = 0; i < mesh.vertex_count(); ++i) {
-    if (is_clamped(mesh, i)) clamp.vertices.push_back(i);
-  }
-  return model;
+std::optional<double> known_displacement(const Arguments& arguments, int n) {
+  for (const Known& known : kKnown)
+    if (known.bent == arguments.bent && known.n == n) return known.displacement;
+  return {};
 }
 
-State at_rest(const TetMesh& mesh) {
-  State state;
-  for (const Vec3d& X : mesh.rest) state.q.insert(state.q.end(), {X[0], X[1], X[2]});
-  state.qdot.assign(state.q.size(), 0.0);
-  return state;
+// What is left of the residual moves the tip by no more than the same part of its way.
+double allowed_error(const Arguments& arguments, double displacement) {
+  return std::max(arguments.tolerance * std::abs(displacement), 1e-10);
 }
 
-void print(const char* program, int n, const TetMesh& mesh, const BeamResult& result) {
-  std::printf("%-8s %3d %9d %9d %10.3f %10.3f %11d   %.10f\n", program, n, mesh.vertex_count(), mesh.tet_count(),
-              result.seconds, result.cpu_seconds, result.iterations, result.displacement);
+BeamProblem make_problem(const Arguments& arguments, int n) {
+  BeamProblem problem = arguments.bent ? bent_beam(n) : falling_beam(n);
+  problem.tolerance = arguments.tolerance;
+  return problem;
+}
+
+void print_head() {
+  std::printf("%-8s %-12s %7s %3s %8s %8s %8s %8s %8s %8s %7s %8s %7s  %-14s %s\n", "program", "solver", "threads", "n",
+              "vertices", "tets", "set-up", "steps", "cpu [s]", "wall [s]", "Newton", "linear", "MB", "tip y [m]",
+              "known");
+}
+
+struct Line {
+  std::string program, solver;
+  int threads = 1, n = 0;
+};
+
+bool print(const Arguments& arguments, const Line& line, const BeamResult& result, double megabytes) {
+  const int vertices = (4 * line.n + 1) * (line.n + 1) * (line.n + 1), tets = 24 * line.n * line.n * line.n;
+  const auto known = known_displacement(arguments, line.n);
+  const bool right =
+      result.converged && (!known || std::abs(result.displacement - *known) <= allowed_error(arguments, *known));
+  std::printf("%-8s %-12s %7d %3d %8d %8d %8.3f %8.3f %8.3f %8.3f %7d %8d %7.0f  %-14.10f %s\n", line.program.c_str(),
+              line.solver.c_str(), line.threads, line.n, vertices, tets, result.set_up.processor,
+              result.steps.processor, result.total().processor, result.total().wall, result.iterations,
+              result.linear_iterations, megabytes, result.displacement,
+              !result.converged ? "NOT CONVERGED"
+              : !known          ? "-"
+              : right           ? "yes"
+                                : "NO");
   std::fflush(stdout);
+  return right;
 }
 
-bool is_expected(const char* program, int n, double displacement) {
-  for (const Reference& reference : kReferences) {
-    if (reference.n != n || std::abs(displacement - reference.displacement) <= kAllowed) continue;
-    std::printf("%s is wrong for n = %d: the displacement is %.10f\n", program, n, reference.displacement);
-    return false;
+void record(Results& results, const Arguments& arguments, const Line& line, const BeamResult& result) {
+  results.begin(line.program + (arguments.bent ? " bent" : "") + " n=" + std::to_string(line.n) +
+                    (line.solver == "auto" || line.solver == "-" ? "" : " " + line.solver),
+                line.threads);
+  results.add("set-up", result.set_up.processor, "s of processor");
+  results.add("steps", result.steps.processor, "s of processor");
+  results.add("whole run", result.total().processor, "s of processor");
+  results.add("whole run", result.total().wall, "s");
+}
+
+void record_work(Results& results, const AspicRun& run) {
+  StepCounts counts;
+  for (const StepReport& report : run.reports) add_counts(report, counts);
+  for (const NamedCount& named : kCounts) results.add(std::string(named.name), counts.*named.count, "1");
+  results.add("peak memory", 1e-6 * run.peak_memory, "MB");
+}
+
+template <class Run>
+auto fastest(int runs, const Run& run) {
+  auto best = run();
+  for (int i = 1; i < runs; ++i) {
+    auto next = run();
+    if (next.total().processor < best.total().processor) best = std::move(next);
   }
-  return true;
+  return best;
 }
 
-bool compare(int n) {
-  const TetMesh mesh = make_beam(n);
-  const BeamResult aspic = run_aspic(n);
-  print("aspic", n, mesh, aspic);
-  bool expected = is_expected("aspic", n, aspic.displacement);
-  if (n > kLargestNaive) return expected;
-  const BeamResult naive = run_naive(n);
-  print("naive", n, mesh, naive);
-  std::printf("aspic is %.1f times faster (%.1f times by processor time)\n", naive.seconds / aspic.seconds,
-              naive.cpu_seconds / aspic.cpu_seconds);
-  return is_expected("naive", n, naive.displacement) && expected;
+// One size: every solver with every number of threads, then the obvious program.
+bool compare(const Arguments& arguments, int n, Results& results) {
+  const BeamProblem problem = make_problem(arguments, n);
+  bool right = true;
+  double one_thread = 0;
+  for (const std::string& linear : arguments.linear) {
+    double one_thread_wall = 0;
+    for (const int threads : arguments.threads) {
+      set_thread_count(threads);
+      const AspicRun run = fastest(arguments.runs, [&] { return run_aspic(problem, linear); });
+      const Line line{"aspic", linear, threads, n};
+      right &= print(arguments, line, run, run.peak_memory / 1e6);
+      record(results, arguments, line, run);
+      record_work(results, run);
+      if (threads == 1) one_thread_wall = run.total().wall;
+      if (threads == 1 && one_thread == 0) one_thread = run.total().processor;
+      if (threads != 1 && one_thread_wall > 0) {
+        std::printf("  %d threads are %.2f times faster than one\n", threads, one_thread_wall / run.total().wall);
+      }
+    }
+  }
+  if (n > arguments.largest_naive) return right;
+  const BeamResult naive = run_naive(problem);
+  const Line line{"naive", "-", 1, n};
+  right &= print(arguments, line, naive, 0);
+  record(results, arguments, line, naive);
+  if (one_thread > 0) {
+    std::printf("  aspic is %.1f times faster by processor time\n", naive.total().processor / one_thread);
+  }
+  return right;
+}
+
+int run(const Arguments& arguments) {
+  if (!arguments.quiet) print_facts(machine_facts());
+  const BeamProblem problem = make_problem(arguments, 7);
+  std::printf(
+      "\nbeam: %g Pa, %d steps of %.4g s, each to %g of its first gradient; set-up and steps in s of processor\n",
+      problem.young, problem.steps, problem.time_step, problem.tolerance);
+  print_head();
+  Results results("beam");
+  bool right = true;
+  for (const int n : arguments.sizes) right &= compare(arguments, n, results);
+  results.write(arguments.csv);
+  return right ? 0 : 1;
 }
 
 }  // namespace
-
-BeamResult run_aspic(int n) {
-  Model model = make_model(n);
-  State state = at_rest(model.mesh);
-  SimulationOptions options;
-  options.h = kTimeStep;
-  options.solver.minimize.criterion = Criterion::first_gradient;
-  options.solver.minimize.tolerance = kTolerance;
-
-  BeamResult result;
-  const Stopwatch stopwatch;
-  Simulation simulation(std::move(model), std::move(state), options);
-  for (int i = 0; i < kSteps; ++i) {
-    const StepReport report = simulation.step();
-    if (!is_success(report.status)) {
-      std::printf("aspic: step %d ended with status %s\n", report.step, std::string(to_string(report.status)).c_str());
-    }
-    result.iterations += report.iterations;
-  }
-  result.seconds = stopwatch.seconds();
-  result.cpu_seconds = stopwatch.cpu_seconds();
-  result.displacement = simulation.state().q[3 * tip_vertex(n) + 1];  // y = 0 at rest
-  return result;
-}
-
 }  // namespace aspic::bench
 
 int main(int argc, char** argv) {
-  std::vector<int> sizes;
-  for (int i = 1; i < argc; ++i) {
-    char* end = nullptr;
-    const long n = std::strtol(argv[i], &end, 10);
-    if (*end != '\0' || n < 1 || n > 40) {
-      std::fprintf(stderr, "'%s' is not a size; usage: bench_beam [n...] with n from 1 to 40\n", argv[i]);
-      return 2;
-    }
-    sizes.push_back(static_cast<int>(n));
+  CLI::App app("The benchmark beam, from nothing to the last step.", "bench_beam");
+  aspic::bench::Arguments arguments;
+  aspic::bench::declare(app, arguments);
+  try {
+    app.parse(argc, argv);
+    return aspic::bench::run(arguments);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return 2;
   }
-  if (sizes.empty()) sizes = {7};
-
-  std::printf("%d threads for aspic, one for naive\n", aspic::thread_count());
-  std::printf("%-8s %3s %9s %9s %10s %10s %11s   %s\n", "program", "n", "vertices", "tets", "wall [s]", "cpu [s]",
-              "iterations", "tip y [m]");
-  bool right = true;
-  for (const int n : sizes) right = aspic::bench::compare(n) && right;
-  return right ? 0 : 1;
 }

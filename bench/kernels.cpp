@@ -1,131 +1,292 @@
-// The kernels that a step is made of, on the beam of 56 x 14 x 14 cells: 12 825 vertices, 65 856 tets.
-// usage: bench_kernels [--benchmark_filter=hessian] ...
+// bench_kernels: the kernels that a step is made of, each against what the machine can do. Options: --help, and
+// those of Google Benchmark, for example --benchmark_filter=hessian, which chooses kernels by their names.
 #include <benchmark/benchmark.h>
 
-#include <cmath>
-#include <memory>
-#include <stdexcept>
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
-#include "bench/beam_problem.h"
-#include "energy/mass.h"
-#include "energy/tet_elasticity.h"
-#include "linalg/linear_solver.h"
+#include "base/parallel.h"
+#include "bench/kernel_beam.h"
+#include "bench/kernel_report.h"
+#include "bench/machine.h"
+#include "linalg/cholesky.h"
+#include "linalg/conjugate_gradient.h"
+#include "material/registry.h"
 
+namespace aspic::bench {
 namespace {
 
-using namespace aspic;
-
-constexpr int kCells = 14;
-
-// The beam bent and sheared a little, one material, and the Hessian of a time step.
-struct Beam {
-  TetMesh mesh = bench::make_beam(kCells);
-  std::vector<double> x;
-  std::unique_ptr<TetElasticity> elasticity;
-  BlockPattern pattern;
-  std::unique_ptr<BlockSparse> H;
-
-  explicit Beam(const std::string& material) {
-    const MaterialParameters parameters{.lame = lame_from_young_poisson(bench::kYoung, bench::kPoisson)};
-    elasticity = make_tet_elasticity(material, mesh, 0, std::vector<MaterialParameters>(mesh.tet_count(), parameters));
-    for (const Vec3d& X : mesh.rest) {
-      x.insert(x.end(), {X[0] + 0.02 * std::sin(X[1]), X[1] - 0.01 * X[0] * X[0], X[2] + 0.03 * X[0] * X[1]});
-    }
-    Couplings couplings;
-    elasticity->add_couplings(couplings);
-    MassMatrix mass(mesh, std::vector<double>(mesh.tet_count(), bench::kDensity), MassKind::consistent);
-    mass.add_couplings(couplings);
-    pattern = make_pattern(mesh.vertex_count(), std::move(couplings));
-    mass.bind(pattern);
-    elasticity->bind(pattern);
-    H = std::make_unique<BlockSparse>(pattern);
-    H->set_zero();
-    mass.add_to(1, *H);
-    elasticity->add_hessian(x, bench::kTimeStep * bench::kTimeStep, {Definiteness::exact}, *H);
-  }
+struct Arguments {
+  std::vector<int> sizes = {14}, threads = {1};
+  std::vector<std::string> materials = {"neo_hookean_log"};
+  double seconds = 0.05;
+  int repetitions = 5;
+  bool all_materials = false, quiet = false;
+  std::string csv;
 };
 
-// Processor time of all threads for one tet, block, or call.
-void report(benchmark::State& state, double items) {
-  using benchmark::Counter;
-  state.counters["per_item"] = Counter(items, Counter::kIsIterationInvariantRate | Counter::kInvert);
+void declare(CLI::App& app, Arguments& arguments) {
+  app.add_option("n", arguments.sizes, "of the beam: 14 has 12 825 vertices, 28 has 95 033")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  app.add_option("--threads", arguments.threads, "one or several numbers of threads")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--material", arguments.materials)->delimiter(',')->capture_default_str();
+  app.add_flag("--all-materials", arguments.all_materials, "every one, for the first size and number of threads");
+  app.add_option("--seconds", arguments.seconds, "of each of the repetitions, at least")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--repetitions", arguments.repetitions, "the median of so many is reported")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--csv", arguments.csv, "a file for the results");
+  app.add_flag("--quiet", arguments.quiet, "without the facts about the machine");
 }
 
-void value(benchmark::State& state, const std::string& material) {
-  const Beam beam(material);
-  for (auto _ : state) benchmark::DoNotOptimize(beam.elasticity->value(beam.x));
-  report(state, beam.mesh.tet_count());
-}
+// What all the benchmarks of one size and number of threads share.
+struct Place {
+  int n = 14, threads = 1;
 
-void gradient(benchmark::State& state, const std::string& material) {
-  const Beam beam(material);
-  std::vector<double> g(beam.x.size());
-  for (auto _ : state) beam.elasticity->add_gradient(beam.x, 1, g);
-  report(state, beam.mesh.tet_count());
-}
-
-void hessian(benchmark::State& state, const std::string& material, Definiteness definiteness) {
-  Beam beam(material);
-  for (auto _ : state) beam.elasticity->add_hessian(beam.x, 1e-4, {definiteness}, *beam.H);
-  report(state, beam.mesh.tet_count());
-}
-
-void block_product(benchmark::State& state) {
-  const Beam beam("neo_hookean_log");
-  std::vector<double> y(beam.x.size());
-  for (auto _ : state) beam.H->multiply(beam.x, y);
-  report(state, static_cast<double>(beam.pattern.block_count()));
-}
-
-void analysis(benchmark::State& state) {
-  const Beam beam("neo_hookean_log");
-  for (auto _ : state) make_linear_solver("cholesky")->analyze(beam.pattern);
-  report(state, 1);
-}
-
-void factorisation(benchmark::State& state) {
-  const Beam beam("neo_hookean_log");
-  const auto solver = make_linear_solver("cholesky");
-  solver->analyze(beam.pattern);
-  for (auto _ : state) {
-    if (!solver->factorize(*beam.H)) throw std::runtime_error("the matrix is not positive definite");
+  KernelBeam& beam(const std::string& material) const {
+    set_thread_count(threads);
+    return kernel_beam(n, material);
   }
-  report(state, 1);
+  KernelFacts facts(const KernelWork& work, double items) const { return {n, threads, work, items}; }
+};
+
+constexpr char kMaterialOfMatrices[] = "neo_hookean_log";
+
+class Registry {
+ public:
+  Registry(const Arguments& arguments, Place place) : arguments_(arguments), place_(place) {}
+
+  void add_elements(const std::string& material) const;
+  void add_vectors() const;
+  void add_matrix() const;
+  void add_cholesky() const;
+  void add_iterative(const std::string& solver) const;
+
+ private:
+  // fn(state, beam) loops and returns its work and items.
+  using Kernel = std::function<KernelFacts(benchmark::State&, KernelBeam&)>;
+  void add(const std::string& name, const std::string& material, const Kernel& fn) const {
+    const Place place = place_;
+    const std::string unique = name + "@" + std::to_string(place.n) + "x" + std::to_string(place.threads);
+    benchmark::RegisterBenchmark(unique.c_str(),
+                                 [=](benchmark::State& state) { tell(state, fn(state, place.beam(material))); })
+        ->MeasureProcessCPUTime()
+        ->MinTime(arguments_.seconds)
+        ->Repetitions(arguments_.repetitions);
+  }
+
+  const Arguments& arguments_;
+  Place place_;
+};
+
+void Registry::add_elements(const std::string& material) const {
+  const Place place = place_;
+  add("value/" + material, material, [=](benchmark::State& state, KernelBeam& beam) {
+    for (auto _ : state) benchmark::DoNotOptimize(beam.elasticity->value(beam.x));
+    return place.facts(kernel_work::value(beam, material), beam.tets());
+  });
+  add("gradient/" + material, material, [=](benchmark::State& state, KernelBeam& beam) {
+    std::vector<double> g(beam.x.size());
+    for (auto _ : state) beam.elasticity->add_gradient(beam.x, 1, g);
+    return place.facts(kernel_work::gradient(beam, material), beam.tets());
+  });
+  for (const auto kind : {Definiteness::exact, Definiteness::clamped}) {
+    const bool clamped = kind == Definiteness::clamped;
+    add((clamped ? "clamped_hessian/" : "hessian/") + material, material,
+        [=](benchmark::State& state, KernelBeam& beam) {
+          BlockSparse H(beam.pattern);
+          for (auto _ : state) beam.elasticity->add_hessian(beam.x, 1e-4, {kind}, H);
+          return place.facts(kernel_work::hessian(beam, material, clamped), beam.tets());
+        });
+  }
 }
 
-void triangular_solve(benchmark::State& state) {
-  const Beam beam("neo_hookean_log");
-  const auto solver = make_linear_solver("cholesky");
-  solver->analyze(beam.pattern);
-  if (!solver->factorize(*beam.H)) throw std::runtime_error("the matrix is not positive definite");
-  std::vector<double> y(beam.x.size());
-  for (auto _ : state) solver->solve(beam.x, y, 1e-10);
-  report(state, 1);
+// As the minimiser does them: in chunks, with sums in the order of the chunks.
+void Registry::add_vectors() const {
+  const Place place = place_;
+  add("dot", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
+    const std::vector<double>& x = beam.x;
+    const std::vector<double> y(x.size(), 0.5);
+    for (auto _ : state) {
+      benchmark::DoNotOptimize(parallel_sum(static_cast<int>(x.size()), [&](int first, int last) {
+        double sum = 0;
+        for (int i = first; i < last; ++i) sum += x[i] * y[i];
+        return sum;
+      }));
+    }
+    const double size = static_cast<double>(x.size());
+    return place.facts(kernel_work::dot(size), size);
+  });
+  add("axpy", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
+    const std::vector<double>& x = beam.x;
+    std::vector<double> y(x.size(), 0.5);
+    for (auto _ : state) {
+      parallel_chunks(static_cast<int>(x.size()), [&](int first, int last) {
+        for (int i = first; i < last; ++i) y[i] += 1e-3 * x[i];
+      });
+      benchmark::ClobberMemory();
+    }
+    const double size = static_cast<double>(x.size());
+    return place.facts(kernel_work::axpy(size), size);
+  });
+}
+
+void Registry::add_matrix() const {
+  const Place place = place_;
+  add("block_product", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
+    std::vector<double> y(beam.x.size());
+    for (auto _ : state) beam.H->multiply(beam.x, y);
+    return place.facts(kernel_work::block_product(beam), beam.blocks());
+  });
+  add("conjugate_gradient/iteration", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
+    constexpr int kIterations = 20;
+    ConjugateGradient solver(kIterations);
+    solver.analyze(beam.pattern);
+    if (!solver.factorize(*beam.H)) state.SkipWithError("a diagonal block is not positive definite");
+    std::vector<double> y(beam.x.size());
+    double products = 1;
+    for (auto _ : state) products = solver.solve(beam.x, y, 1e-300).products;
+    KernelFacts facts = place.facts(kernel_work::preconditioned_iteration(beam), beam.vertices());
+    facts.repeats = products;
+    return facts;
+  });
+}
+
+void Registry::add_cholesky() const {
+  const Place place = place_;
+  constexpr double kMostFlops = 2e11;  // more than ten seconds: not in a benchmark of kernels
+  const auto prepared = [=](benchmark::State& state, KernelBeam& beam, Cholesky& solver) {
+    solver.analyze(beam.pattern);
+    if (solver.analysis().flops > kMostFlops) state.SkipWithError("left out: the factorisation takes too long");
+    return solver.analysis().flops <= kMostFlops;
+  };
+  add("cholesky/analysis", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
+    for (auto _ : state) Cholesky().analyze(beam.pattern);
+    return place.facts({}, beam.vertices());
+  });
+  add("cholesky/factorisation", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
+    Cholesky solver;
+    if (!prepared(state, beam, solver)) return place.facts({}, 1);
+    for (auto _ : state)
+      if (!solver.factorize(*beam.H)) state.SkipWithError("the matrix is not positive definite");
+    const double entries = static_cast<double>(solver.analysis().nnz);
+    return place.facts({beam.blocks() * 72 + 2 * 8 * entries, solver.analysis().flops}, beam.vertices());
+  });
+  add("cholesky/solve", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
+    Cholesky solver;
+    if (!prepared(state, beam, solver)) return place.facts({}, 1);
+    if (!solver.factorize(*beam.H)) state.SkipWithError("the matrix is not positive definite");
+    std::vector<double> y(beam.x.size());
+    for (auto _ : state) solver.solve(beam.x, y, 1e-10);
+    const double entries = static_cast<double>(solver.analysis().nnz);  // L is read forwards and backwards
+    return place.facts({2 * 8 * entries, 4 * entries}, beam.vertices());
+  });
+}
+
+// Any solver by its name: analysis, what it does with new values of the matrix, and one solve to 1e-4 per iteration.
+void Registry::add_iterative(const std::string& name) const {
+  const Place place = place_;
+  add(name + "/analysis", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
+    for (auto _ : state) make_linear_solver(name)->analyze(beam.pattern);
+    return place.facts({}, beam.vertices());
+  });
+  add(name + "/factorisation", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
+    const auto solver = make_linear_solver(name);
+    solver->analyze(beam.pattern);
+    for (auto _ : state)
+      if (!solver->factorize(*beam.H)) state.SkipWithError("the matrix is not positive definite");
+    return place.facts({}, beam.vertices());
+  });
+  add(name + "/solve per iteration", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
+    const auto solver = make_linear_solver(name);
+    solver->analyze(beam.pattern);
+    if (!solver->factorize(*beam.H)) state.SkipWithError("the matrix is not positive definite");
+    std::vector<double> y(beam.x.size());
+    KernelFacts facts = place.facts({}, beam.vertices());
+    for (auto _ : state) facts.repeats = std::max(1, solver->solve(beam.x, y, 1e-4).iterations);
+    return facts;
+  });
+}
+
+std::vector<std::string> names_of_materials() {
+  std::vector<std::string> names;
+  for (const MaterialInfo& material : materials()) names.push_back(material.name);
+  return names;
+}
+
+void register_all(const Arguments& arguments) {
+  const std::vector<std::string> all_materials = arguments.all_materials ? names_of_materials() : arguments.materials;
+  const std::vector<std::string> known = linear_solver_names();
+  for (const int n : arguments.sizes)
+    for (const int threads : arguments.threads) {
+      const Registry registry(arguments, {n, threads});
+      const bool first = n == arguments.sizes.front() && threads == arguments.threads.front();
+      for (const std::string& material : first ? all_materials : arguments.materials) registry.add_elements(material);
+      registry.add_vectors();
+      registry.add_matrix();
+      registry.add_cholesky();
+      if (std::find(known.begin(), known.end(), "multigrid") != known.end()) registry.add_iterative("multigrid");
+    }
+}
+
+int run(const Arguments& arguments) {
+  if (!arguments.quiet) print_facts(machine_facts());
+  std::printf("\nEach number is a median; by processor time for one thread, by wall time for more.\n");
+  std::map<int, Roofline> rooflines;
+  Results results("kernels");
+  for (const int threads : arguments.threads) {
+    const Roofline& roofline = rooflines[threads] = measure_roofline(threads);
+    print(roofline);
+    results.begin("machine", threads);
+    results.add("peak", 1e-9 * roofline.flops_per_second, "Gflop/s");
+    for (const Bandwidth& b : roofline.bandwidth) {
+      results.add("triad on " + std::to_string(static_cast<int>(1e-3 * b.footprint)) + " kB", 1e-9 * b.bytes_per_second,
+                  "GB/s");
+    }
+  }
+  for (const std::string& material : arguments.materials) material_info(material);  // throws for an unknown name
+  register_all(arguments);
+  KernelReport report(std::move(rooflines), results);
+  benchmark::RunSpecifiedBenchmarks(&report);
+  results.write(arguments.csv);
+  return 0;
 }
 
 }  // namespace
+}  // namespace aspic::bench
 
 int main(int argc, char** argv) {
-  const auto add = [](const std::string& name, const auto& function, const auto&... arguments) {
-    benchmark::RegisterBenchmark(name.c_str(), function, arguments...)
-        ->Unit(benchmark::kMillisecond)
-        ->MeasureProcessCPUTime();
-  };
-  for (const MaterialInfo& material : materials()) {
-    const std::string& name = material.name;
-    add("value/" + name, value, name);
-    add("gradient/" + name, gradient, name);
-    add("hessian/" + name, hessian, name, Definiteness::exact);
-    add("clamped_hessian/" + name, hessian, name, Definiteness::clamped);
+  CLI::App app("The kernels that a step is made of, against what the machine can do.", "bench_kernels");
+  app.footer(
+      "Options of Google Benchmark are understood too: --benchmark_filter=hessian takes kernels by their names.");
+  aspic::bench::Arguments arguments;
+  aspic::bench::declare(app, arguments);
+  try {
+    app.allow_extras();
+    app.parse(argc, argv);
+    std::vector<std::string> rest = app.remaining();  // for Google Benchmark, which takes what it knows
+    std::vector<char*> words = {argv[0]};
+    for (std::string& word : rest) words.push_back(word.data());
+    int count = static_cast<int>(words.size());
+    benchmark::Initialize(&count, words.data());
+    if (benchmark::ReportUnrecognizedArguments(count, words.data())) return 2;
+    return aspic::bench::run(arguments);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return 2;
   }
-  add("block_product", block_product);
-  add("cholesky/analysis", analysis);
-  add("cholesky/factorisation", factorisation);
-  add("cholesky/solve", triangular_solve);
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  return 0;
 }

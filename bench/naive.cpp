@@ -24,32 +24,37 @@ using Vector12d = Eigen::Matrix<double, 12, 1>;
 using Matrix12d = Eigen::Matrix<double, 12, 12>;
 using Matrix9x12d = Eigen::Matrix<double, 9, 12>;
 
-constexpr double kMu = kYoung / (2 * (1 + kPoisson));
-constexpr double kLambda = kYoung * kPoisson / ((1 + kPoisson) * (1 - 2 * kPoisson));
+struct Solid {
+  double mu, lambda;  // [Pa]
+};
+Solid make_solid(double young) {
+  return {young / (2 * (1 + kPoisson)), young * kPoisson / ((1 + kPoisson) * (1 - 2 * kPoisson))};
+}
 
 // psi = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2
-double psi(const Matrix3d& F) {
+double psi(const Solid& solid, const Matrix3d& F) {
   const double J = F.determinant();
   if (J <= 0) return std::numeric_limits<double>::infinity();
   const double log_J = std::log(J);
-  return kMu / 2 * (F.squaredNorm() - 3) - kMu * log_J + kLambda / 2 * log_J * log_J;
+  return solid.mu / 2 * (F.squaredNorm() - 3) - solid.mu * log_J + solid.lambda / 2 * log_J * log_J;
 }
 
 // P = mu F + (lambda ln J - mu) F^-T
-Matrix3d pk1(const Matrix3d& F) {
+Matrix3d pk1(const Solid& solid, const Matrix3d& F) {
   const double log_J = std::log(F.determinant());
-  return kMu * F + (kLambda * log_J - kMu) * F.inverse().transpose();
+  return solid.mu * F + (solid.lambda * log_J - solid.mu) * F.inverse().transpose();
 }
 
 // dP/dF : dF = mu dF + lambda (F^-T : dF) F^-T - (lambda ln J - mu) F^-T dF^T F^-T, one column per entry of F
-Matrix9d hessian(const Matrix3d& F) {
+Matrix9d hessian(const Solid& solid, const Matrix3d& F) {
   const Matrix3d G = F.inverse().transpose();
   const double log_J = std::log(F.determinant());
   Matrix9d H;
   for (int k = 0; k < 9; ++k) {
     Matrix3d dF = Matrix3d::Zero();
     dF(k % 3, k / 3) = 1;
-    const Matrix3d dP = kMu * dF + kLambda * G(k % 3, k / 3) * G - (kLambda * log_J - kMu) * G * dF.transpose() * G;
+    const Matrix3d dP =
+        solid.mu * dF + solid.lambda * G(k % 3, k / 3) * G - (solid.lambda * log_J - solid.mu) * G * dF.transpose() * G;
     H.col(k) = Map<const Vector9d>(dP.data());
   }
   return H;
@@ -57,7 +62,13 @@ Matrix9d hessian(const Matrix3d& F) {
 
 class NaiveBeam {
  public:
-  explicit NaiveBeam(int n) : mesh_(make_beam(n)), q_(3 * mesh_.vertex_count()), v_(VectorXd::Zero(q_.size())) {
+  explicit NaiveBeam(const BeamProblem& problem)
+      : solid_(make_solid(problem.young)),
+        h_(problem.time_step),
+        tolerance_(problem.tolerance),
+        mesh_(make_beam(problem.n)),
+        q_(3 * mesh_.vertex_count()),
+        v_(VectorXd::Zero(q_.size())) {
     for (int i = 0; i < mesh_.vertex_count(); ++i) q_.segment<3>(3 * i) = Map<const Vector3d>(&mesh_.rest[i][0]);
     make_elements();
     make_mass();
@@ -69,14 +80,14 @@ class NaiveBeam {
 
   // Minimises E(x) = 1/2 (x - x~)' M (x - x~) + h^2 V(x) with Newton's method; returns the number of iterations.
   int step() {
-    const VectorXd predicted = q_ + kTimeStep * v_;
+    const VectorXd predicted = q_ + h_ * v_;
     VectorXd x = q_;
     double first_gradient = 0;
     int iterations = 0;
     for (;; ++iterations) {
       const VectorXd g = select_ * gradient(x, predicted);
       if (iterations == 0) first_gradient = g.norm();
-      if (g.norm() <= kTolerance * first_gradient) break;
+      if (g.norm() <= tolerance_ * first_gradient) break;
       const Eigen::SimplicialLDLT<SparseMatrix> solver(objective_hessian(x));
       const VectorXd d = select_.transpose() * solver.solve(-g);
       const double slope = d.dot(select_.transpose() * g), E = objective(x, predicted);
@@ -86,7 +97,7 @@ class NaiveBeam {
       }
       x += alpha * d;
     }
-    v_ = (x - q_) / kTimeStep;
+    v_ = (x - q_) / h_;
     q_ = x;
     return iterations;
   }
@@ -148,25 +159,25 @@ class NaiveBeam {
 
   double objective(const VectorXd& x, const VectorXd& predicted) const {
     double V = -weight_.dot(x);
-    for (int t = 0; t < mesh_.tet_count(); ++t) V += volume_[t] * psi(deformation_gradient(x, t));
+    for (int t = 0; t < mesh_.tet_count(); ++t) V += volume_[t] * psi(solid_, deformation_gradient(x, t));
     const VectorXd difference = x - predicted;
-    return 0.5 * difference.dot(mass_ * difference) + kTimeStep * kTimeStep * V;
+    return 0.5 * difference.dot(mass_ * difference) + h_ * h_ * V;
   }
 
   VectorXd gradient(const VectorXd& x, const VectorXd& predicted) const {
     VectorXd dV = -weight_;
     for (int t = 0; t < mesh_.tet_count(); ++t) {
-      const Matrix3d P = pk1(deformation_gradient(x, t));
+      const Matrix3d P = pk1(solid_, deformation_gradient(x, t));
       const Vector12d g = volume_[t] * B_[t].transpose() * Map<const Vector9d>(P.data());
       for (int corner = 0; corner < 4; ++corner) dV.segment<3>(3 * mesh_.tets[t][corner]) += g.segment<3>(3 * corner);
     }
-    return mass_ * (x - predicted) + kTimeStep * kTimeStep * dV;
+    return mass_ * (x - predicted) + h_ * h_ * dV;
   }
 
   SparseMatrix objective_hessian(const VectorXd& x) const {
     Triplets triplets;
     for (int t = 0; t < mesh_.tet_count(); ++t) {
-      const Matrix12d H = volume_[t] * B_[t].transpose() * hessian(deformation_gradient(x, t)) * B_[t];
+      const Matrix12d H = volume_[t] * B_[t].transpose() * hessian(solid_, deformation_gradient(x, t)) * B_[t];
       for (int i = 0; i < 12; ++i) {
         for (int j = 0; j < 12; ++j) {
           triplets.emplace_back(3 * mesh_.tets[t][i / 3] + i % 3, 3 * mesh_.tets[t][j / 3] + j % 3, H(i, j));
@@ -175,10 +186,13 @@ class NaiveBeam {
     }
     SparseMatrix K(q_.size(), q_.size());
     K.setFromTriplets(triplets.begin(), triplets.end());
-    const SparseMatrix H = mass_ + kTimeStep * kTimeStep * K;
+    const SparseMatrix H = mass_ + h_ * h_ * K;
     return select_ * H * select_.transpose();
   }
 
+  Solid solid_;
+  double h_;          // [s]
+  double tolerance_;  // of the first gradient
   TetMesh mesh_;
   VectorXd q_, v_, weight_;
   std::vector<Matrix9x12d> B_;
@@ -188,14 +202,14 @@ class NaiveBeam {
 
 }  // namespace
 
-BeamResult run_naive(int n) {
-  const Stopwatch stopwatch;
-  NaiveBeam beam(n);
+BeamResult run_naive(const BeamProblem& problem) {
+  Stopwatch stopwatch;
+  NaiveBeam beam(problem);
   BeamResult result;
-  for (int i = 0; i < kSteps; ++i) result.iterations += beam.step();
-  result.seconds = stopwatch.seconds();
-  result.cpu_seconds = stopwatch.cpu_seconds();
-  result.displacement = beam.displacement(tip_vertex(n));
+  result.set_up = stopwatch.lap();
+  for (int i = 0; i < problem.steps; ++i) result.iterations += beam.step();
+  result.steps = stopwatch.lap();
+  result.displacement = beam.displacement(tip_vertex(problem.n));
   return result;
 }
 

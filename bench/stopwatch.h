@@ -4,16 +4,26 @@
 
 namespace aspic::bench {
 
-// Wall time and processor time of all threads since it was made.
+struct Seconds {
+  double wall = 0;
+  double processor = 0;  // of all threads of this process
+};
+
+// Time since the last lap, or since it was made.
 class Stopwatch {
  public:
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-  double cpu_seconds() const { return static_cast<double>(std::clock() - cpu_start_) / CLOCKS_PER_SEC; }
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - wall_).count(); }  // wall time
+  double cpu_seconds() const { return static_cast<double>(std::clock() - processor_) / CLOCKS_PER_SEC; }
+  Seconds lap() {
+    const Seconds passed{seconds(), cpu_seconds()};
+    *this = {};
+    return passed;
+  }
 
  private:
   using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-  std::clock_t cpu_start_ = std::clock();
+  Clock::time_point wall_ = Clock::now();
+  std::clock_t processor_ = std::clock();
 };
 
 }  // namespace aspic::bench

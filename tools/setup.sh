@@ -153,3 +153,35 @@ fetch_oracles() {
   logged oracles npm install --prefix "$root/build/oracles" --no-save "$tinyusdz_package" ||
     say "warning: it could not be fetched; our USD files will be read by our own parser alone"
 }
+
+# Shapes for `./run bench characters`, in build/shapes and nowhere else: the bunny, and what Debian's package libcgal-demo
+# holds. What cannot be fetched is left out there.
+shapes_dir=$root/build/shapes
+cgal_shapes="data/meshes/armadillo.off data/meshes/elephant.off data/meshes/hand.off data/meshes/homer.off
+  data/images/liver.inr.gz"
+fetch_shapes() {
+  assets=$root/assets
+  mkdir -p "$shapes_dir"
+  if [ ! -s "$shapes_dir/bunny.obj" ]; then
+    mkdir -p "$assets"
+    [ -s "$assets/bunny.obj" ] || (fetch_bunny) || say "The benchmark goes on without the bunny."
+    [ ! -s "$assets/bunny.obj" ] || cp "$assets/bunny.obj" "$shapes_dir/"
+  fi
+  [ -s "$shapes_dir/liver.inr.gz" ] || fetch_cgal_shapes ||
+    say "warning: the package libcgal-demo could not be fetched; the benchmark goes on without its shapes"
+}
+
+fetch_cgal_shapes() {
+  command -v apt-get >/dev/null 2>&1 && command -v dpkg-deb >/dev/null 2>&1 || return 1
+  say "Fetching shapes: Debian package libcgal-demo ..."
+  folder=$(mktemp -d)
+  if (cd "$folder" && logged libcgal-demo apt-get -q download libcgal-demo) &&
+    dpkg-deb --extract "$folder"/libcgal-demo_*.deb "$folder" &&
+    tar -xzf "$folder/usr/share/doc/libcgal-dev/data.tar.gz" -C "$folder" $cgal_shapes; then
+    for shape in $cgal_shapes; do mv "$folder/$shape" "$shapes_dir/"; done
+    rm -rf "$folder"
+  else
+    rm -rf "$folder"
+    return 1
+  fi
+}

@@ -1,0 +1,101 @@
+#include "bench/kernel_beam.h"
+
+#include <cmath>
+#include <utility>
+
+#include "bench/beam_problem.h"
+#include "bench/element_flops.h"
+#include "energy/mass.h"
+#include "material/list.h"
+
+namespace aspic::bench {
+namespace {
+
+constexpr double kDouble = 8, kIndex = 4, kBlock = 9 * kDouble;  // [bytes]
+constexpr double kWritten = 2;                                   // times: read, then written
+
+// Corners, Dm^-1, volume and material of each tet; the positions of each vertex.
+double element_bytes(const KernelBeam& beam) {
+  return beam.tets() * (4 * kIndex + (10 + beam.parameters) * kDouble) + beam.vertices() * 3 * kDouble;
+}
+
+// Solvers may build coarse spaces from the rest shape, where patterns hold it.
+template <class Pattern>
+void tell_rest(const TetMesh& mesh, Pattern& pattern) {
+  if constexpr (requires { pattern.rest_position; }) pattern.rest_position = mesh.rest;
+}
+
+}  // namespace
+
+KernelBeam::KernelBeam(int n, const std::string& material) : mesh(make_beam(n)) {
+  MaterialParameters constants{.lame = lame_from_young_poisson(kYoung, kPoisson)};
+  const MaterialInfo& info = material_info(material);
+  for (size_t k = 0; k < info.extra.size(); ++k) constants.extra[k] = info.extra[k].fallback;
+  with_material(material, [&]<class M>() { parameters = kParameterCount<M>; });
+  elasticity = make_tet_elasticity(material, mesh, 0, std::vector<MaterialParameters>(mesh.tet_count(), constants));
+  for (const Vec3d& X : mesh.rest) {
+    x.insert(x.end(), {X[0] + 0.02 * std::sin(X[1]), X[1] - 0.01 * X[0] * X[0], X[2] + 0.03 * X[0] * X[1]});
+  }
+  Couplings couplings;
+  elasticity->add_couplings(couplings);
+  MassMatrix mass(mesh, std::vector<double>(mesh.tet_count(), kDensity), MassKind::consistent);
+  mass.add_couplings(couplings);
+  pattern = make_pattern(mesh.vertex_count(), std::move(couplings));
+  tell_rest(mesh, pattern);
+  mass.bind(pattern);
+  elasticity->bind(pattern);
+  H = std::make_unique<BlockSparse>(pattern);
+  H->set_zero();
+  mass.add_to(1, *H);
+  elasticity->add_hessian(x, kTimeStep * kTimeStep, {Definiteness::exact}, *H);
+}
+
+KernelBeam& kernel_beam(int n, const std::string& material) {
+  static std::unique_ptr<KernelBeam> beam;
+  static std::pair<int, std::string> made;
+  if (!beam || made != std::pair(n, material)) {
+    beam.reset();  // two large ones need not fit into memory
+    beam = std::make_unique<KernelBeam>(n, material);
+    made = {n, material};
+  }
+  return *beam;
+}
+
+namespace kernel_work {
+
+KernelWork value(const KernelBeam& beam, const std::string& material) {
+  return {element_bytes(beam), beam.tets() * element_flops(material).value};
+}
+
+KernelWork gradient(const KernelBeam& beam, const std::string& material) {
+  return {element_bytes(beam) + kWritten * beam.vertices() * 3 * kDouble,
+          beam.tets() * element_flops(material).gradient};
+}
+
+KernelWork hessian(const KernelBeam& beam, const std::string& material, bool tested) {
+  const ElementFlops flops = element_flops(material);
+  const double slots = beam.tets() * 10 * kIndex;
+  return {element_bytes(beam) + slots + kWritten * beam.blocks() * kBlock,
+          beam.tets() * (flops.hessian + (tested ? flops.definite_test : 0))};
+}
+
+// Each block off the diagonal is read once and used twice.
+KernelWork block_product(const KernelBeam& beam) {
+  const double off_diagonal = beam.blocks() - beam.vertices();
+  return {beam.blocks() * (kBlock + kIndex) + beam.vertices() * (kIndex + (1 + kWritten) * 3 * kDouble),
+          18 * (beam.vertices() + 2 * off_diagonal)};
+}
+
+// The product, p.q, x and r, z = D^-1 r with r.r and r.z, p: reads D^-1, p, q, x, r, z; writes q, x, r, z, p.
+KernelWork preconditioned_iteration(const KernelBeam& beam) {
+  const KernelWork product = block_product(beam);
+  const double vectors = 2 /* p.q */ + (4 + kWritten * 2 - 2) /* x, r */ + (1 + kWritten) /* z */ + (2 + kWritten - 1);
+  return {product.bytes + beam.vertices() * (kBlock + vectors * 3 * kDouble),
+          product.flops + beam.vertices() * (3 * (2 + 4 + 4 + 2) + 15)};
+}
+
+KernelWork dot(double size) { return {2 * size * kDouble, 2 * size}; }
+KernelWork axpy(double size) { return {(1 + kWritten) * size * kDouble, 2 * size}; }
+
+}  // namespace kernel_work
+}  // namespace aspic::bench

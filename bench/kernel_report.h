@@ -1,0 +1,37 @@
+// One line per kernel: its time, and how near it comes to what the machine can do.
+#pragma once
+#include <benchmark/benchmark.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bench/results.h"
+#include "bench/roofline.h"
+
+namespace aspic::bench {
+
+// What a benchmark tells the report about itself, through its counters.
+struct KernelFacts {
+  int n = 0;           // of the beam
+  int threads = 1;     //
+  KernelWork work;     // no flops: bounds are not told
+  double items = 1;    // tets, blocks, ...: the time of one is told, too
+  double repeats = 1;  // how often one run of the benchmark does this work
+};
+void tell(benchmark::State& state, const KernelFacts& facts);
+
+class KernelReport : public benchmark::BenchmarkReporter {
+ public:
+  KernelReport(std::map<int, Roofline> rooflines, Results& results);
+  bool ReportContext(const Context&) override;
+  void ReportRuns(const std::vector<Run>& runs) override;
+
+ private:
+  void print(const std::string& kernel, const KernelFacts& facts, double seconds);
+
+  std::map<int, Roofline> rooflines_;  // by the number of threads
+  Results& results_;
+};
+
+}  // namespace aspic::bench

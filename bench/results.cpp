@@ -1,0 +1,51 @@
+#include "bench/results.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "bench/machine.h"
+#include "io/csv.h"
+
+namespace aspic::bench {
+namespace {
+
+std::string four_digits(double value) {  // noise begins before the fifth
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+}  // namespace
+
+void Results::add(const std::string& quantity, double value, const std::string& unit) {
+  rows_.push_back({what_, threads_, quantity, value, unit});
+}
+
+void Results::write(const std::filesystem::path& path) const {
+  if (path.empty()) return;
+  CsvFile file = CsvFile::create(path, {"bench", "case", "threads", "quantity", "value", "unit"});
+  for (const Fact& fact : machine_facts()) {
+    file.append(CsvRow().add("machine").add("").add(0).add(fact.name).add(fact.value).add(""));
+  }
+  for (const Row& row : rows_) {
+    file.append(CsvRow()
+                    .add(bench_)
+                    .add(row.what)
+                    .add(row.threads)
+                    .add(row.quantity)
+                    .add(four_digits(row.value))
+                    .add(row.unit));
+  }
+  file.close();
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const size_t middle = values.size() / 2;
+  std::nth_element(values.begin(), values.begin() + middle, values.end());
+  const double upper = values[middle];
+  if (values.size() % 2 == 1) return upper;
+  return 0.5 * (upper + *std::max_element(values.begin(), values.begin() + middle));
+}
+
+}  // namespace aspic::bench

@@ -1,0 +1,45 @@
+// The work of steps as counts, which are the same in every run, unlike times.
+#pragma once
+#include <array>
+#include <string_view>
+
+#include "dynamics/step_report.h"
+
+namespace aspic::bench {
+
+struct StepCounts {
+  long iterations = 0, trials = 0, values = 0, gradients = 0, hessians = 0;
+  long factorizations = 0, linear_iterations = 0, products = 0, cycles = 0;
+};
+
+struct NamedCount {
+  std::string_view name;
+  long StepCounts::*count;
+};
+inline constexpr std::array<NamedCount, 9> kCounts = {{
+    {"iterations", &StepCounts::iterations},                // of the minimiser
+    {"trials", &StepCounts::trials},                        // of the line search
+    {"values", &StepCounts::values},                        // evaluations of E, each over all elements
+    {"gradients", &StepCounts::gradients},                  // likewise
+    {"hessians", &StepCounts::hessians},                    // likewise
+    {"factorizations", &StepCounts::factorizations},        //
+    {"linear_iterations", &StepCounts::linear_iterations},  //
+    {"products", &StepCounts::products},                    // with the matrix
+    {"cycles", &StepCounts::cycles},                        // of multigrid
+}};
+
+// Of what the report knows: counts that it does not have stay 0.
+template <class Report>
+void add_counts(const Report& report, StepCounts& counts) {
+  counts.iterations += report.iterations;
+  counts.trials += report.trials;
+  counts.gradients += report.gradients;
+  counts.hessians += report.hessians;
+  counts.factorizations += report.factorizations;
+  counts.linear_iterations += report.linear_iterations;
+  if constexpr (requires { report.values; }) counts.values += report.values;
+  if constexpr (requires { report.products; }) counts.products += report.products;
+  if constexpr (requires { report.cycles; }) counts.cycles += report.cycles;
+}
+
+}  // namespace aspic::bench
