@@ -50,10 +50,6 @@ BlockPattern coarse_pattern(const Graph& graph) {
   return make_pattern(4 * graph.vertex_count(), std::move(couplings));
 }
 
-void add_scaled(double s, const Mat3d& A, Mat3d& B) {
-  for (int k = 0; k < 9; ++k) B.a[k] += s * A.a[k];
-}
-
 }  // namespace
 
 AffineCoarsening make_affine_coarsening(const Graph& graph, const Aggregates& aggregates, int rows_per_vertex,
@@ -78,54 +74,63 @@ AffineCoarsening make_affine_coarsening(const Graph& graph, const Aggregates& ag
   return c;
 }
 
-// The coarse rows of one aggregate: sums over its fine rows i of w_im (sum over j of H_ij w_jn).
+// The coarse rows of one aggregate: the sums over its fine rows i of w_im (sum over j of H_ij w_jn).
 class MatrixRestriction::Task {
  public:
   Task(const AffineCoarsening& c, const BlockSparse& fine, BlockSparse& coarse, Scratch& scratch)
-      : c_(c), fine_(fine), coarse_(coarse), place_(scratch.place), sums_(scratch.sums) {}
+      : c_(c), fine_(fine), coarse_(coarse), place_(scratch.place), neighbours_(scratch.neighbours) {}
 
   void run(int a) {
     const BlockPattern& p = *fine_.pattern;
-    clear(a);
+    begin(a);
     for (const int i : c_.rows_of(a)) {
-      sums_.clear();
-      for (int64_t s = p.row_start[i]; s < p.row_start[i + 1]; ++s) add(a, p.column[s], fine_.block[s]);
+      for (int64_t s = p.row_start[i]; s < p.row_start[i + 1]; ++s) add(p.column[s], fine_.block[s]);
       for (int64_t u = p.upper_start[i]; u < p.upper_start[i + 1]; ++u)
-        add(a, p.upper_row[u], transpose(fine_.block[p.upper_slot[u]]));
-      flush(a, c_.weight[i]);
+        add(p.upper_row[u], transpose(fine_.block[p.upper_slot[u]]));
+      finish_row(c_.weight[i]);
     }
+    for (const Neighbour& b : neighbours_) write(a, b);
     for (int m = 0; m < 4; ++m)
       if (c_.coarse_value[4 * a + m][m] == 0)  // the function is zero
         coarse_.block[c_.pattern.diagonal(4 * a + m)] = identity3<double>();
   }
 
  private:
-  void clear(int a) {
-    const BlockPattern& p = c_.pattern;
-    std::fill(coarse_.block.begin() + p.row_start[4 * a], coarse_.block.begin() + p.row_start[4 * a + 4], Mat3d{});
+  // The coarse matrix is stored by its lower triangle: only aggregates b <= a are listed.
+  void begin(int a) {
+    neighbours_.clear();
+    for (const int b : c_.graph.around(a))
+      if (b < a) neighbours_.push_back({.aggregate = b, .row = {}, .block = {}});
+    neighbours_.push_back({.aggregate = a, .row = {}, .block = {}});
+    for (size_t k = 0; k < neighbours_.size(); ++k) place_[neighbours_[k].aggregate] = static_cast<int>(k);
   }
 
-  void add(int a, int j, const Mat3d& H) {
+  void add(int j, const Mat3d& H) {
     const int b = c_.aggregate[j];
-    if (b < 0 || b > a) return;  // the coarse matrix is stored by its lower triangle
-    if (place_[b] < 0) {
-      place_[b] = static_cast<int>(sums_.size());
-      sums_.push_back({b, {}});
-    }
-    RowSums& sum = sums_[place_[b]];
-    for (int n = 0; n < 4; ++n) add_scaled(c_.weight[j][n], H, sum.value[n]);
+    if (b < 0 || place_[b] < 0) return;
+    Neighbour& sum = neighbours_[place_[b]];
+    sum.is_reached = true;
+    const auto w = Quad<double>::load(c_.weight[j].data());
+    for (int k = 0; k < 9; ++k) sum.row[k] += Quad<double>::all(H.a[k]) * w;
   }
 
-  void flush(int a, const FourValues& w) {
-    const BlockPattern& p = c_.pattern;
-    for (const RowSums& sum : sums_) {
-      place_[sum.aggregate] = -1;
-      for (int m = 0; m < 4; ++m) {
-        const int row = 4 * a + m;
-        const int columns = sum.aggregate == a ? m + 1 : 4;
-        Mat3d* to = &coarse_.block[sum.aggregate == a ? p.diagonal(row) - m : p.slot(row, 4 * sum.aggregate)];
-        for (int n = 0; n < columns; ++n) add_scaled(w[m], sum.value[n], to[n]);
-      }
+  void finish_row(const FourValues& w) {
+    for (Neighbour& sum : neighbours_) {
+      if (!sum.is_reached) continue;
+      for (int m = 0; m < 4; ++m)
+        for (int k = 0; k < 9; ++k) sum.block[m][k] += Quad<double>::all(w[m]) * sum.row[k];
+      std::fill_n(sum.row, 9, Quad<double>::zero());
+      sum.is_reached = false;
+    }
+  }
+
+  void write(int a, const Neighbour& from) {
+    place_[from.aggregate] = -1;
+    for (int m = 0; m < 4; ++m) {
+      const int64_t first = from.aggregate == a ? c_.pattern.diagonal(4 * a + m) - m
+                                                : c_.pattern.slot(4 * a + m, 4 * from.aggregate);
+      for (int n = 0; n < (from.aggregate == a ? m + 1 : 4); ++n)
+        for (int k = 0; k < 9; ++k) coarse_.block[first + n].a[k] = from.block[m][k][n];
     }
   }
 
@@ -133,7 +138,7 @@ class MatrixRestriction::Task {
   const BlockSparse& fine_;
   BlockSparse& coarse_;
   std::vector<int>& place_;
-  std::vector<RowSums>& sums_;
+  std::vector<Neighbour>& neighbours_;
 };
 
 void MatrixRestriction::reserve(const AffineCoarsening& c) {
@@ -142,7 +147,7 @@ void MatrixRestriction::reserve(const AffineCoarsening& c) {
   scratch_.resize(kTasks);
   for (Scratch& scratch : scratch_) {
     scratch.place.assign(c.count(), -1);
-    scratch.sums.reserve(most + 1);
+    scratch.neighbours.reserve(most + 1);
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "linalg/aggregation.h"
 #include "linalg/block_sparse.h"
+#include "math/quad.h"
 
 namespace aspic {
 
@@ -40,13 +41,16 @@ class MatrixRestriction {
   void run(const AffineCoarsening& coarsening, const BlockSparse& fine, BlockSparse& coarse);
 
  private:
-  struct RowSums {  // sum over j of H_ij w_jn, over the rows j of one aggregate
+  // Of the coarse blocks that an aggregate shares with another: entry k of block (m, n) is lane n of block[m][k].
+  struct Neighbour {
     int aggregate;
-    Mat3d value[4];
+    Quad<double> row[9];  // of one fine row i: sum over j of H_ij w_jn
+    bool is_reached = false;
+    Quad<double> block[4][9];
   };
   struct Scratch {
-    std::vector<int> place;  // of an aggregate in `sums`; -1: not there
-    std::vector<RowSums> sums;
+    std::vector<int> place;  // of an aggregate in `neighbours`; -1: not there
+    std::vector<Neighbour> neighbours;
   };
   class Task;
   std::vector<Scratch> scratch_;
