@@ -46,6 +46,16 @@ double norm_bound(const BlockSparse& H, std::span<double> row_sum) {
   return largest;
 }
 
+// Calls visit(slot, i, transposed) for the blocks of H in column j of L; i >= j is the row in the order of elimination.
+template <class Visit>
+void for_each_block(const BlockPattern& p, const Supernodes& s, int j, Visit visit) {
+  const int r = s.order[j];
+  for (int64_t b = p.row_start[r]; b <= p.diagonal(r); ++b)
+    if (const int i = s.position[p.column[b]]; i >= j) visit(b, i, i > j);
+  for (int64_t u = p.upper_start[r]; u < p.upper_start[r + 1]; ++u)
+    if (const int i = s.position[p.upper_row[u]]; i >= j) visit(p.upper_slot[u], i, false);
+}
+
 std::string megabytes(int64_t bytes) { return std::to_string((bytes + 500'000) / 1'000'000) + " MB"; }
 
 }  // namespace
@@ -89,30 +99,20 @@ bool Cholesky::allocate() {
 }
 
 struct Cholesky::Front {
-  int width, below;           // columns of the panel, of the update matrix [blocks]
-  int64_t rows, update_rows;  // leading dimensions
+  int width, below;  // columns of the panel, of the update matrix [blocks]
+  int64_t rows;      // of the panel
   double *panel, *update;
+
+  LowerMatrix update_matrix() const { return {update, 3 * static_cast<int64_t>(below), true}; }
+  double* column(int j, int c) const {  // of block column j: entry (i, 3 j + c) of the front is at [i]
+    return j < width ? panel + (3 * j + c) * rows : update_matrix().column(3 * (j - width) + c) - 3 * width;
+  }
 };
 
 Cholesky::Front Cholesky::front(int s) {
   const int width = supernodes_.width(s), below = supernodes_.below(s);
-  return {width,
-          below,
-          3 * (static_cast<int64_t>(width) + below),
-          3 * static_cast<int64_t>(below),
-          L_.data() + supernodes_.value_start[s],
+  return {width, below, 3 * (static_cast<int64_t>(width) + below), L_.data() + supernodes_.value_start[s],
           workspace_.data() + subtrees_.update_start[s]};
-}
-
-// Calls visit(slot, i) for the blocks of H in column j of L, i >= j being the row in the order of elimination. They are
-// stored transposed where i is the smaller row of H.
-template <class Visit>
-static void for_each_block(const BlockPattern& p, const Supernodes& s, int j, Visit visit) {
-  const int r = s.order[j];
-  for (int64_t b = p.row_start[r]; b <= p.diagonal(r); ++b)
-    if (const int i = s.position[p.column[b]]; i >= j) visit(b, i);
-  for (int64_t u = p.upper_start[r]; u < p.upper_start[r + 1]; ++u)
-    if (const int i = s.position[p.upper_row[u]]; i >= j) visit(p.upper_slot[u], i);
 }
 
 void Cholesky::find_targets() {
@@ -124,7 +124,7 @@ void Cholesky::find_targets() {
     for (int i = 0; i < width; ++i) local[begin + i] = i;
     for (int i = 0; i < below; ++i) local[row[i]] = width + i;
     for (int i = 0; i < width; ++i)
-      for_each_block(*pattern_, supernodes_, begin + i, [&](int64_t slot, int k) {
+      for_each_block(*pattern_, supernodes_, begin + i, [&](int64_t slot, int k, bool) {
         target_[slot] = supernodes_.value_start[s] + 9 * static_cast<int64_t>(width + below) * i + 3 * local[k];
       });
   }
@@ -159,8 +159,7 @@ bool Cholesky::factorize_supernode(const BlockSparse& H, int s, DenseCholesky& k
                [&](int task) { gather(H, s, task * kGatherColumns, std::min(blocks, (task + 1) * kGatherColumns)); });
   if (!kernels.factorize(f.panel, static_cast<int>(f.rows), columns, f.rows)) return false;
   if (!pivots_are_sound(H, s, f.panel)) return false;
-  if (below > 0)
-    kernels.subtract_outer_product(f.panel + columns, f.rows, columns, f.update, f.update_rows, below, below);
+  if (below > 0) kernels.subtract_outer_product(f.panel + columns, f.rows, columns, f.update_matrix(), below, below);
   return true;
 }
 
@@ -168,28 +167,19 @@ bool Cholesky::factorize_supernode(const BlockSparse& H, int s, DenseCholesky& k
 void Cholesky::gather(const BlockSparse& H, int s, int first, int last) {
   const Front f = front(s);
   for (int j = first; j < last; ++j)
-    for (int c = 0; c < 3; ++c) {  // the lower triangle and whole diagonal blocks
-      double* column = j < f.width ? f.panel + (3 * j + c) * f.rows + 3 * j
-                                   : f.update + (3 * (j - f.width) + c) * f.update_rows + 3 * (j - f.width);
-      std::fill_n(column, 3 * (f.width + f.below - j), 0.0);
-    }
+    for (int c = 0; c < 3; ++c)  // the lower triangle and whole diagonal blocks
+      std::fill_n(f.column(j, c) + 3 * j, 3 * (f.width + f.below - j), 0.0);
   assemble(H, s, first, std::min(last, f.width));
   for (int c = last_child_[s]; c >= 0; c = sibling_[c]) add_child(c, f, first, last);
 }
 
 void Cholesky::assemble(const BlockSparse& H, int s, int first, int last) {
-  const BlockPattern& p = *pattern_;
-  const int64_t rows = 3 * (static_cast<int64_t>(supernodes_.width(s)) + supernodes_.below(s));
+  const int64_t rows = front(s).rows;
   for (int j = supernodes_.first[s] + first; j < supernodes_.first[s] + last; ++j) {
-    const int r = supernodes_.order[j];
-    const auto put = [&](int64_t slot, const Mat3d& A) {
+    for_each_block(*pattern_, supernodes_, j, [&](int64_t slot, int, bool transposed) {
+      const Mat3d A = transposed ? transpose(H.block[slot]) : H.block[slot];
       for (int c = 0; c < 3; ++c) std::copy_n(A.a + 3 * c, 3, L_.data() + target_[slot] + c * rows);
-    };
-    for (int64_t b = p.row_start[r]; b < p.diagonal(r); ++b)
-      if (supernodes_.position[p.column[b]] > j) put(b, transpose(H.block[b]));
-    put(p.diagonal(r), H.block[p.diagonal(r)]);
-    for (int64_t u = p.upper_start[r]; u < p.upper_start[r + 1]; ++u)
-      if (supernodes_.position[p.upper_row[u]] > j) put(p.upper_slot[u], H.block[p.upper_slot[u]]);
+    });
   }
 }
 
@@ -201,10 +191,8 @@ void Cholesky::add_child(int child, const Front& f, int first, int last) {
   const int begin = static_cast<int>(std::lower_bound(row, row + from.below, first) - row);
   for (int b = begin; b < from.below && row[b] < last; ++b)
     for (int c = 0; c < 3; ++c) {
-      const int j = row[b];
-      const double* in = from.update + (3 * b + c) * from.update_rows;
-      double* out = j < f.width ? f.panel + (3 * j + c) * f.rows
-                                : f.update + (3 * (j - f.width) + c) * f.update_rows - 3 * f.width;
+      const double* in = from.column(from.width + b, c) + 3 * from.width;
+      double* out = f.column(row[b], c);
       for (int a = b; a < from.below; a = run_end[a]) {
         double* run = out + 3 * row[a];
         for (int k = 0, count = 3 * (run_end[a] - a); k < count; ++k) run[k] += in[3 * a + k];
@@ -272,7 +260,7 @@ void Cholesky::substitute(std::span<const double> b, std::span<double> x) {
 void Cholesky::substitute_forward(int s) {
   const Front f = front(s);
   double *own = permuted_.data() + 3 * static_cast<size_t>(supernodes_.first[s]), *rest = f.update;
-  std::fill_n(rest, f.update_rows, 0.0);
+  std::fill_n(rest, 3 * f.below, 0.0);
   for (int c = last_child_[s]; c >= 0; c = sibling_[c]) {
     const Front child = front(c);
     const int* row = supernodes_.in_parent.data() + supernodes_.row_start[c];

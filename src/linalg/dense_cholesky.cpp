@@ -25,6 +25,7 @@ constexpr double kParallelFrom = 3e5;  // multiplications and additions: about 1
 constexpr int kPackedColumns = 96;     // per task; a multiple of kTileColumns
 constexpr int kNarrowRows = 256;       // of a narrow panel per task; a multiple of every pack width
 constexpr int kBaseColumns = 12;       // narrower panels are factorised directly
+static_assert(LowerMatrix::kStrip % kTileColumns == 0 && LowerMatrix::kStrip % kTileRows == 0);
 static_assert(kRowBlock % kTileRows == 0 && kReadAhead >= kTileRows);
 
 Pack load(const double* p) {
@@ -75,15 +76,18 @@ struct Operand {  // strip s of the rows starts at data + s * strip_step; its co
   ptrdiff_t strip_step, stride;
 };
 
-// C -= A B' on the tiles of one cache block; `shift` is the row minus the column of C's first entry.
-void subtract_block(Operand A, Operand B, int depth, double* C, ptrdiff_t stride, int rows, int columns, int shift) {
+// C -= A B' on the tiles of one cache block, which begins at (row, column) of C.
+void subtract_block(Operand A, Operand B, int depth, LowerMatrix C, int row, int column, int rows, int columns) {
+  const int shift = row - column;
   for (int j = 0; j < columns; j += kTileColumns) {
     const double* b = B.data + j / kTileColumns * B.strip_step;
+    double* const C_column = C.column(column + j) + row;
+    const ptrdiff_t stride = C.stride(column + j);
     const int first = std::max(0, (j - shift) / kTileRows * kTileRows);
     for (int i = first; i < rows; i += kTileRows) {
       if (i + kTileRows - 1 + shift < j) continue;
       const Tile t = product(A.data + i / kTileRows * A.strip_step, A.stride, b, B.stride, depth);
-      double* c = C + i + j * stride;
+      double* c = C_column + i;
       const int tile_rows = std::min(kTileRows, rows - i), tile_columns = std::min(kTileColumns, columns - j);
       const bool whole = tile_rows == kTileRows && tile_columns == kTileColumns && i + shift >= j + kTileColumns - 1;
       if (whole) {
@@ -201,15 +205,15 @@ bool DenseCholesky::factorize(double* A, int rows, int columns, ptrdiff_t stride
   const int left = (columns / 2 + kBaseColumns - 1) / kBaseColumns * kBaseColumns, right = columns - left;
   double* C = A + left + left * stride;
   if (!factorize(A, rows, left, stride)) return false;
-  subtract_outer_product(A + left, stride, left, C, stride, rows - left, right);
+  subtract_outer_product(A + left, stride, left, {C, stride}, rows - left, right);
   return factorize(C, rows - left, right, stride);
 }
 
-void DenseCholesky::subtract_outer_product(const double* A, ptrdiff_t A_stride, int depth, double* C,
-                                           ptrdiff_t C_stride, int rows, int columns) {
+void DenseCholesky::subtract_outer_product(const double* A, ptrdiff_t A_stride, int depth, LowerMatrix C, int rows,
+                                           int columns) {
   if (rows < kPackedFromRows) {
     const Operand left{A, kTileRows, A_stride}, right{A, kTileColumns, A_stride};
-    return subtract_block(left, right, depth, C, C_stride, rows, columns, 0);
+    return subtract_block(left, right, depth, C, 0, 0, rows, columns);
   }
   for (int j = 0; j < columns; j += kColumnBlock)
     for (int p = 0; p < depth; p += kDepthBlock) {
@@ -227,7 +231,7 @@ void DenseCholesky::subtract_outer_product(const double* A, ptrdiff_t A_stride, 
         double* packed = packed_left_.data() + static_cast<ptrdiff_t>(block) * kRowBlock * d;
         pack_strips(A + i + p * A_stride, A_stride, height, d, kTileRows, packed);
         const Operand left{packed, static_cast<ptrdiff_t>(kTileRows) * d, kTileRows};
-        subtract_block(left, right, d, C + i + j * C_stride, C_stride, height, width, i - j);
+        subtract_block(left, right, d, C, i, j, height, width);
       };
       const bool share = static_cast<double>(rows - j) * width * d > kParallelFrom;
       for_each(share, (width + kPackedColumns - 1) / kPackedColumns, pack_columns);

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "linalg/lower_matrix.h"
+
 namespace aspic {
 
 inline constexpr int kReadAhead = 32;
@@ -21,8 +23,8 @@ class DenseCholesky {
   bool factorize(double* A, int rows, int columns, std::ptrdiff_t stride);
 
   // C(i, j) -= sum_p A(i, p) A(j, p) for i in [j, rows), j in [0, columns), p in [0, depth).
-  void subtract_outer_product(const double* A, std::ptrdiff_t A_stride, int depth, double* C, std::ptrdiff_t C_stride,
-                              int rows, int columns);
+  void subtract_outer_product(const double* A, std::ptrdiff_t A_stride, int depth, LowerMatrix C, int rows,
+                              int columns);
 
  private:
   std::vector<double> packed_left_, packed_right_;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+
+#include "linalg/lower_matrix.h"
 
 namespace aspic {
 namespace {
@@ -19,37 +22,56 @@ std::vector<double> subtree_flops(const Supernodes& s) {
 }
 
 // Update matrices wait for their parents on two stacks, by the parity of their depth in the tree: a supernode's matrix
-// grows on one while those of its children are on top of the other. So none is ever moved.
+// grows on one while those of its children are on top of the other. So none is ever moved. Each task has two stacks of
+// its own; what it leaves for the top is kept apart, and the top's stacks take the place of those of the tasks.
 class Layout {
  public:
-  explicit Layout(const Supernodes& s) : s_(s), depth_(s.count(), 0), children_(s.count(), 0) {
+  Layout(const Supernodes& s, const std::vector<bool>& in_top)
+      : s_(s), in_top_(in_top), depth_(s.count(), 0), children_(s.count(), 0), start_(s.count(), 0) {
     for (int k = s.count() - 1; k >= 0; --k)
       if (s.parent[k] >= 0) depth_[k] = depth_[s.parent[k]] + 1;
+    for (int k = 0; k < s.count(); ++k)
+      if (is_kept(k)) start_[k] = kept_, kept_ += size(k);
+    end_ = kept_;
   }
 
-  // Gives the matrices of these supernodes, which ascend, places in a region of their own.
-  void add_region(const std::vector<int>& supernodes, Subtrees& result) {
+  void add_task(const Subtrees::Task& task) {
+    std::vector<int> members(task.last - task.first);
+    std::iota(members.begin(), members.end(), task.first);
+    end_ += stack_up(members, end_);
+  }
+  void add_top(const std::vector<int>& top) { end_ = std::max(end_, kept_ + stack_up(top, kept_)); }
+
+  int64_t workspace() const { return end_; }
+  std::vector<int64_t>& start() { return start_; }
+
+ private:
+  bool is_kept(int k) const { return !in_top_[k] && s_.parent[k] >= 0 && in_top_[s_.parent[k]]; }
+  int64_t size(int k) const { return LowerMatrix::size_in_strips(3 * static_cast<int64_t>(s_.below(k))); }
+
+  // Places for the matrices of these supernodes, which ascend, from `begin` on; returns how much that takes.
+  int64_t stack_up(const std::vector<int>& supernodes, int64_t begin) {
     std::array<int64_t, 2> end{}, peak{};
     for (const int k : supernodes) {
       const int stack = depth_[k] % 2;
-      result.update_start[k] = end[stack];
+      end[1 - stack] -= children_[k];
+      if (is_kept(k)) continue;
+      start_[k] = end[stack];
       end[stack] += size(k);
       peak[stack] = std::max(peak[stack], end[stack]);
-      end[1 - stack] -= children_[k];
-      // A matrix that waits for a parent in another region stays.
-      if (const int p = s_.parent[k]; p >= 0 && std::binary_search(supernodes.begin(), supernodes.end(), p))
-        children_[p] += size(k);
+      if (s_.parent[k] >= 0) children_[s_.parent[k]] += size(k);
     }
-    for (const int k : supernodes) result.update_start[k] += result.workspace + (depth_[k] % 2 ? peak[0] : 0);
-    result.workspace += peak[0] + peak[1];
+    for (const int k : supernodes)
+      if (!is_kept(k)) start_[k] += begin + (depth_[k] % 2 ? peak[0] : 0);
+    return peak[0] + peak[1];
   }
 
- private:
-  int64_t size(int k) const { return 9 * static_cast<int64_t>(s_.below(k)) * s_.below(k); }
-
   const Supernodes& s_;
+  const std::vector<bool>& in_top_;
   std::vector<int> depth_;
-  std::vector<int64_t> children_;  // doubles of the children's matrices in the same region
+  std::vector<int64_t> children_;  // doubles of the children's matrices on a stack
+  std::vector<int64_t> start_;
+  int64_t kept_ = 0, end_ = 0;
 };
 
 // Neighbouring subtrees share a task while they are small.
@@ -83,25 +105,25 @@ Subtrees make_subtrees(const Supernodes& s) {
   const double limit = std::max(s.cost.flops / kShares, kSmallestShare);
   Subtrees result;
   result.tasks = cut_tasks(s, flops, limit);
-  result.update_start.assign(s.count(), 0);
-  Layout layout(s);
-  std::vector<int> members;
-  for (Subtrees::Task& task : result.tasks) {
-    members.clear();
-    for (int k = task.first; k < task.last; ++k) {
-      members.push_back(k);
-      task.rows = std::max(task.rows, 3 * (s.width(k) + s.below(k)));
-      task.columns = std::max(task.columns, 3 * s.width(k));
-    }
-    layout.add_region(members, result);
-  }
+  std::vector<bool> in_top(s.count());
   for (int k = 0; k < s.count(); ++k) {
-    if (flops[k] <= limit) continue;
+    in_top[k] = flops[k] > limit;
+    if (!in_top[k]) continue;
     result.top.push_back(k);
     result.top_rows = std::max(result.top_rows, 3 * (s.width(k) + s.below(k)));
     result.top_columns = std::max(result.top_columns, 3 * s.width(k));
   }
-  layout.add_region(result.top, result);
+  Layout layout(s, in_top);
+  for (Subtrees::Task& task : result.tasks) {
+    for (int k = task.first; k < task.last; ++k) {
+      task.rows = std::max(task.rows, 3 * (s.width(k) + s.below(k)));
+      task.columns = std::max(task.columns, 3 * s.width(k));
+    }
+    layout.add_task(task);
+  }
+  layout.add_top(result.top);
+  result.workspace = layout.workspace();
+  result.update_start = std::move(layout.start());
   std::stable_sort(result.tasks.begin(), result.tasks.end(),
                    [](const auto& a, const auto& b) { return a.flops > b.flops; });
   return result;
