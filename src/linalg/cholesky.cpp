@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-constexpr int kGatherColumns = 24;  // columns of blocks per task
+constexpr int kStripBlocks = 24;  // columns of blocks per task
 
 double norm(std::span<const double> v) {
   return std::sqrt(parallel_sum(static_cast<int>(v.size()), [&](int first, int last) {
@@ -72,7 +72,7 @@ void Cholesky::analyze(const BlockPattern& pattern) {
     if (const int p = supernodes_.parent[k]; p >= 0) sibling_[k] = last_child_[p], last_child_[p] = k;
   subtrees_ = make_subtrees(supernodes_);
   const int64_t rows = pattern.rows();
-  int64_t doubles = supernodes_.cost.nnz + subtrees_.workspace + 2 * kReadAhead + 6 * rows + pattern.block_count();
+  int64_t doubles = subtrees_.panels + subtrees_.workspace + kReadAhead + 6 * rows + pattern.block_count();
   for (const Subtrees::Task& task : subtrees_.tasks)
     doubles += static_cast<int64_t>(DenseCholesky::scratch(task.rows, task.columns));
   doubles += static_cast<int64_t>(DenseCholesky::scratch(subtrees_.top_rows, subtrees_.top_columns));
@@ -85,7 +85,7 @@ bool Cholesky::allocate() {
   try {
     list_rows(*pattern_, supernodes_);
     find_targets();
-    L_.assign(supernodes_.cost.nnz + kReadAhead, 0.0);
+    L_.assign(subtrees_.panels, 0.0);
     workspace_.assign(subtrees_.workspace + kReadAhead, 0.0);
     for (std::vector<double>* v : {&permuted_, &residual_}) v->assign(3 * static_cast<size_t>(pattern_->rows()), 0.0);
     kernels_.resize(subtrees_.tasks.size() + 1);
@@ -111,7 +111,7 @@ struct Cholesky::Front {
 
 Cholesky::Front Cholesky::front(int s) {
   const int width = supernodes_.width(s), below = supernodes_.below(s);
-  return {width, below, 3 * (static_cast<int64_t>(width) + below), L_.data() + supernodes_.value_start[s],
+  return {width, below, 3 * (static_cast<int64_t>(width) + below), L_.data() + subtrees_.panel_start[s],
           workspace_.data() + subtrees_.update_start[s]};
 }
 
@@ -125,7 +125,7 @@ void Cholesky::find_targets() {
     for (int i = 0; i < below; ++i) local[row[i]] = width + i;
     for (int i = 0; i < width; ++i)
       for_each_block(*pattern_, supernodes_, begin + i, [&](int64_t slot, int k, bool) {
-        target_[slot] = supernodes_.value_start[s] + 9 * static_cast<int64_t>(width + below) * i + 3 * local[k];
+        target_[slot] = subtrees_.panel_start[s] + 9 * static_cast<int64_t>(width + below) * i + 3 * local[k];
       });
   }
 }
@@ -154,23 +154,31 @@ bool Cholesky::factorize(const BlockSparse& H) {
 
 bool Cholesky::factorize_supernode(const BlockSparse& H, int s, DenseCholesky& kernels) {
   const Front f = front(s);
-  const int blocks = f.width + f.below, columns = 3 * f.width, below = 3 * f.below;
-  parallel_for((blocks + kGatherColumns - 1) / kGatherColumns,
-               [&](int task) { gather(H, s, task * kGatherColumns, std::min(blocks, (task + 1) * kGatherColumns)); });
+  const int columns = 3 * f.width, below = 3 * f.below;
+  const auto for_each_strip = [](int begin, int end, FunctionRef<void(int, int)> body) {
+    parallel_for((end - begin + kStripBlocks - 1) / kStripBlocks, [&](int strip) {
+      const int first = begin + strip * kStripBlocks;
+      body(first, std::min(end, first + kStripBlocks));
+    });
+  };
+  for_each_strip(0, f.width, [&](int first, int last) {
+    clear_panel(f, first, last);
+    assemble(H, s, first, last);
+    add_children(s, f, first, last);
+  });
   if (!kernels.factorize(f.panel, static_cast<int>(f.rows), columns, f.rows)) return false;
   if (!pivots_are_sound(H, s, f.panel)) return false;
-  if (below > 0) kernels.subtract_outer_product(f.panel + columns, f.rows, columns, f.update_matrix(), below, below);
+  if (below == 0) return true;
+  kernels.put_outer_product(DenseCholesky::Product::set, f.panel + columns, f.rows, columns, f.update_matrix(), below,
+                            below);
+  for_each_strip(f.width, f.width + f.below, [&](int first, int last) { add_children(s, f, first, last); });
   return true;
 }
 
-// The columns of blocks [first, last) of the front of s: what H has in them and what the children leave.
-void Cholesky::gather(const BlockSparse& H, int s, int first, int last) {
-  const Front f = front(s);
+// The lower triangle and whole diagonal blocks.
+void Cholesky::clear_panel(const Front& f, int first, int last) {
   for (int j = first; j < last; ++j)
-    for (int c = 0; c < 3; ++c)  // the lower triangle and whole diagonal blocks
-      std::fill_n(f.column(j, c) + 3 * j, 3 * (f.width + f.below - j), 0.0);
-  assemble(H, s, first, std::min(last, f.width));
-  for (int c = last_child_[s]; c >= 0; c = sibling_[c]) add_child(c, f, first, last);
+    for (int c = 0; c < 3; ++c) std::fill_n(f.column(j, c) + 3 * j, f.rows - 3 * j, 0.0);
 }
 
 void Cholesky::assemble(const BlockSparse& H, int s, int first, int last) {
@@ -183,21 +191,23 @@ void Cholesky::assemble(const BlockSparse& H, int s, int first, int last) {
   }
 }
 
-// Adds the child's update matrix to the columns of blocks [first, last) of its parent's front (extend-add).
-void Cholesky::add_child(int child, const Front& f, int first, int last) {
-  const Front from = front(child);
-  const int* row = supernodes_.in_parent.data() + supernodes_.row_start[child];
-  const int* run_end = supernodes_.run_end.data() + supernodes_.row_start[child];
-  const int begin = static_cast<int>(std::lower_bound(row, row + from.below, first) - row);
-  for (int b = begin; b < from.below && row[b] < last; ++b)
-    for (int c = 0; c < 3; ++c) {
-      const double* in = from.column(from.width + b, c) + 3 * from.width;
-      double* out = f.column(row[b], c);
-      for (int a = b; a < from.below; a = run_end[a]) {
-        double* run = out + 3 * row[a];
-        for (int k = 0, count = 3 * (run_end[a] - a); k < count; ++k) run[k] += in[3 * a + k];
+// Adds the children's update matrices to the columns of blocks [first, last) of their parent's front (extend-add).
+void Cholesky::add_children(int s, const Front& f, int first, int last) {
+  for (int child = last_child_[s]; child >= 0; child = sibling_[child]) {
+    const Front from = front(child);
+    const int* row = supernodes_.in_parent.data() + supernodes_.row_start[child];
+    const int* run_end = supernodes_.run_end.data() + supernodes_.row_start[child];
+    const int begin = static_cast<int>(std::lower_bound(row, row + from.below, first) - row);
+    for (int b = begin; b < from.below && row[b] < last; ++b)
+      for (int c = 0; c < 3; ++c) {
+        const double* in = from.column(from.width + b, c) + 3 * from.width;
+        double* out = f.column(row[b], c);
+        for (int a = b, k = c; a < from.below; a = run_end[a], k = 0) {  // k: nothing above the diagonal
+          double* run = out + 3 * row[a];
+          for (const int count = 3 * (run_end[a] - a); k < count; ++k) run[k] += in[3 * a + k];
+        }
       }
-    }
+  }
 }
 
 // A pivot that is round-off of the diagonal it came from says nothing about H being positive definite.

@@ -30,9 +30,9 @@ class Cholesky : public LinearSolver {
   void find_targets();
   Front front(int s);
   bool factorize_supernode(const BlockSparse& H, int s, DenseCholesky& kernels);
-  void gather(const BlockSparse& H, int s, int first, int last);
+  static void clear_panel(const Front& front, int first, int last);  // columns of blocks
   void assemble(const BlockSparse& H, int s, int first, int last);
-  void add_child(int child, const Front& front, int first, int last);
+  void add_children(int s, const Front& front, int first, int last);
   bool pivots_are_sound(const BlockSparse& H, int s, const double* panel) const;
   double residual(std::span<const double> b, std::span<const double> x);  // its norm
   void substitute(std::span<const double> b, std::span<double> x);        // x += (L L')^-1 b

@@ -11,6 +11,7 @@
 namespace aspic {
 namespace {
 
+using Product = DenseCholesky::Product;
 using std::ptrdiff_t;
 
 // Register tile of the product: 2 packs by 6 columns, 12 accumulators. Cache blocks follow [Goto and van de Geijn
@@ -54,20 +55,22 @@ inline Tile product(const double* A, ptrdiff_t A_stride, const double* B, ptrdif
   return t;
 }
 
-void subtract_whole(const Tile& t, double* C, ptrdiff_t stride) {
+template <Product kind>
+void put_whole(const Tile& t, double* C, ptrdiff_t stride) {
   for (int c = 0; c < kTileColumns; ++c, C += stride) {
-    store(C, load(C) - t.sum[c][0]);
-    store(C + kPackWidth, load(C + kPackWidth) - t.sum[c][1]);
+    store(C, kind == Product::set ? -t.sum[c][0] : load(C) - t.sum[c][0]);
+    store(C + kPackWidth, kind == Product::set ? -t.sum[c][1] : load(C + kPackWidth) - t.sum[c][1]);
   }
 }
 
 // Only the entries in the first `rows` rows and `columns` columns with row + shift >= column.
-void subtract_part(const Tile& t, double* C, ptrdiff_t stride, int rows, int columns, int shift) {
+template <Product kind>
+void put_part(const Tile& t, double* C, ptrdiff_t stride, int rows, int columns, int shift) {
   double sum[kTileRows];
   for (int c = 0; c < columns; ++c, C += stride) {
     store(sum, t.sum[c][0]);
     store(sum + kPackWidth, t.sum[c][1]);
-    for (int r = std::max(0, c - shift); r < rows; ++r) C[r] -= sum[r];
+    for (int r = std::max(0, c - shift); r < rows; ++r) C[r] = kind == Product::set ? -sum[r] : C[r] - sum[r];
   }
 }
 
@@ -76,8 +79,9 @@ struct Operand {  // strip s of the rows starts at data + s * strip_step; its co
   ptrdiff_t strip_step, stride;
 };
 
-// C -= A B' on the tiles of one cache block, which begins at (row, column) of C.
-void subtract_block(Operand A, Operand B, int depth, LowerMatrix C, int row, int column, int rows, int columns) {
+// C -= A B' or C = -A B' on the tiles of one cache block, which begins at (row, column) of C.
+template <Product kind>
+void put_block(Operand A, Operand B, int depth, LowerMatrix C, int row, int column, int rows, int columns) {
   const int shift = row - column;
   for (int j = 0; j < columns; j += kTileColumns) {
     const double* b = B.data + j / kTileColumns * B.strip_step;
@@ -91,23 +95,30 @@ void subtract_block(Operand A, Operand B, int depth, LowerMatrix C, int row, int
       const int tile_rows = std::min(kTileRows, rows - i), tile_columns = std::min(kTileColumns, columns - j);
       const bool whole = tile_rows == kTileRows && tile_columns == kTileColumns && i + shift >= j + kTileColumns - 1;
       if (whole) {
-        subtract_whole(t, c, stride);
+        put_whole<kind>(t, c, stride);
       } else {
-        subtract_part(t, c, stride, tile_rows, tile_columns, i + shift - j);
+        put_part<kind>(t, c, stride, tile_rows, tile_columns, i + shift - j);
       }
     }
   }
 }
 
+void put_block(Product kind, Operand A, Operand B, int depth, LowerMatrix C, int row, int column, int rows,
+               int columns) {
+  if (kind == Product::set) return put_block<Product::set>(A, B, depth, C, row, column, rows, columns);
+  put_block<Product::subtract>(A, B, depth, C, row, column, rows, columns);
+}
+
 // Copies strips of `strip` rows so that each is contiguous; missing rows of the last strip become zero.
-void pack_strips(const double* A, ptrdiff_t stride, int rows, int depth, int strip, double* packed) {
-  for (int i = 0; i < rows; i += strip, packed += static_cast<ptrdiff_t>(strip) * depth) {
-    const int count = std::min(strip, rows - i);
-    for (int p = 0; p < depth; ++p) {
-      double* out = packed + static_cast<ptrdiff_t>(p) * strip;
-      std::copy_n(A + i + p * stride, count, out);
-      std::fill(out + count, out + strip, 0.0);
-    }
+template <int strip>
+void pack_strips(const double* A, ptrdiff_t stride, int rows, int depth, double* packed) {
+  int i = 0;
+  for (; i + strip <= rows; i += strip)
+    for (int p = 0; p < depth; ++p, packed += strip) std::memcpy(packed, A + i + p * stride, strip * sizeof(double));
+  if (i == rows) return;
+  for (int p = 0; p < depth; ++p, packed += strip) {
+    std::copy_n(A + i + p * stride, rows - i, packed);
+    std::fill(packed + rows - i, packed + strip, 0.0);
   }
 }
 
@@ -205,15 +216,15 @@ bool DenseCholesky::factorize(double* A, int rows, int columns, ptrdiff_t stride
   const int left = (columns / 2 + kBaseColumns - 1) / kBaseColumns * kBaseColumns, right = columns - left;
   double* C = A + left + left * stride;
   if (!factorize(A, rows, left, stride)) return false;
-  subtract_outer_product(A + left, stride, left, {C, stride}, rows - left, right);
+  put_outer_product(Product::subtract, A + left, stride, left, {C, stride}, rows - left, right);
   return factorize(C, rows - left, right, stride);
 }
 
-void DenseCholesky::subtract_outer_product(const double* A, ptrdiff_t A_stride, int depth, LowerMatrix C, int rows,
-                                           int columns) {
+void DenseCholesky::put_outer_product(Product kind, const double* A, ptrdiff_t A_stride, int depth, LowerMatrix C,
+                                      int rows, int columns) {
   if (rows < kPackedFromRows) {
     const Operand left{A, kTileRows, A_stride}, right{A, kTileColumns, A_stride};
-    return subtract_block(left, right, depth, C, 0, 0, rows, columns);
+    return put_block(kind, left, right, depth, C, 0, 0, rows, columns);
   }
   for (int j = 0; j < columns; j += kColumnBlock)
     for (int p = 0; p < depth; p += kDepthBlock) {
@@ -221,21 +232,21 @@ void DenseCholesky::subtract_outer_product(const double* A, ptrdiff_t A_stride, 
       const int blocks = block_count(rows - j);
       const auto pack_columns = [&](int task) {
         const int c = task * kPackedColumns;
-        pack_strips(A + j + c + p * A_stride, A_stride, std::min(kPackedColumns, width - c), d, kTileColumns,
-                    packed_right_.data() + static_cast<ptrdiff_t>(c) * d);
+        pack_strips<kTileColumns>(A + j + c + p * A_stride, A_stride, std::min(kPackedColumns, width - c), d,
+                                  packed_right_.data() + static_cast<ptrdiff_t>(c) * d);
       };
       const Operand right{packed_right_.data(), static_cast<ptrdiff_t>(kTileColumns) * d, kTileColumns};
-      const auto subtract_rows = [&](int task) {
+      const auto put_rows = [&](int task) {
         const int block = blocks - 1 - task;  // the longest first
         const int i = j + block * kRowBlock, height = std::min(kRowBlock, rows - i);
         double* packed = packed_left_.data() + static_cast<ptrdiff_t>(block) * kRowBlock * d;
-        pack_strips(A + i + p * A_stride, A_stride, height, d, kTileRows, packed);
+        pack_strips<kTileRows>(A + i + p * A_stride, A_stride, height, d, packed);
         const Operand left{packed, static_cast<ptrdiff_t>(kTileRows) * d, kTileRows};
-        subtract_block(left, right, d, C, i, j, height, width);
+        put_block(p == 0 ? kind : Product::subtract, left, right, d, C, i, j, height, width);
       };
       const bool share = static_cast<double>(rows - j) * width * d > kParallelFrom;
       for_each(share, (width + kPackedColumns - 1) / kPackedColumns, pack_columns);
-      for_each(share, blocks, subtract_rows);
+      for_each(share, blocks, put_rows);
     }
 }
 

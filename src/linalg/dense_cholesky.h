@@ -22,9 +22,10 @@ class DenseCholesky {
   // Entries above the diagonal are neither read for the result nor written. False: a pivot is not positive.
   bool factorize(double* A, int rows, int columns, std::ptrdiff_t stride);
 
-  // C(i, j) -= sum_p A(i, p) A(j, p) for i in [j, rows), j in [0, columns), p in [0, depth).
-  void subtract_outer_product(const double* A, std::ptrdiff_t A_stride, int depth, LowerMatrix C, int rows,
-                              int columns);
+  enum class Product { set, subtract };
+  // C(i, j) = -S or C(i, j) -= S, S = sum_p A(i, p) A(j, p), for i in [j, rows), j in [0, columns), p in [0, depth).
+  void put_outer_product(Product kind, const double* A, std::ptrdiff_t A_stride, int depth, LowerMatrix C, int rows,
+                         int columns);
 
  private:
   std::vector<double> packed_left_, packed_right_;

@@ -4,7 +4,7 @@
 #include <array>
 #include <numeric>
 
-#include "linalg/lower_matrix.h"
+#include "linalg/dense_cholesky.h"
 
 namespace aspic {
 namespace {
@@ -98,6 +98,20 @@ std::vector<Subtrees::Task> cut_tasks(const Supernodes& s, const std::vector<dou
   return tasks;
 }
 
+// The kernels read a little past a panel; another task may be writing there if there is no gap.
+void place_panels(const Supernodes& s, Subtrees& result) {
+  result.panel_start.assign(s.value_start.begin(), s.value_start.end() - 1);
+  int64_t gaps = 0;
+  auto task = result.tasks.begin();
+  for (int k = 0; k < s.count(); ++k) {
+    result.panel_start[k] += gaps;
+    if (task == result.tasks.end() || k + 1 != task->last) continue;
+    gaps += kReadAhead;
+    ++task;
+  }
+  result.panels = s.value_start.back() + gaps + kReadAhead;
+}
+
 }  // namespace
 
 Subtrees make_subtrees(const Supernodes& s) {
@@ -122,6 +136,7 @@ Subtrees make_subtrees(const Supernodes& s) {
     layout.add_task(task);
   }
   layout.add_top(result.top);
+  place_panels(s, result);
   result.workspace = layout.workspace();
   result.update_start = std::move(layout.start());
   std::stable_sort(result.tasks.begin(), result.tasks.end(),

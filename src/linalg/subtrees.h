@@ -17,6 +17,8 @@ struct Subtrees {
   std::vector<Task> tasks;            // the longest first
   std::vector<int> top;               // all other supernodes, children before parents
   int top_rows = 0, top_columns = 0;  // of the largest front, of the widest panel
+  std::vector<int64_t> panel_start;   // where each supernode's panel lies among all panels: tasks are kReadAhead apart
+  int64_t panels = 0;                 // [doubles]
   std::vector<int64_t> update_start;  // where each supernode's update matrix lies in the workspace
   int64_t workspace = 0;              // [doubles]
 };
