@@ -52,7 +52,6 @@ class Cholesky : public LinearSolver {
   std::vector<double> workspace_;          // update matrices; in a solve, what is below the columns
   std::vector<int64_t> target_;            // where in L_ each block of H begins
   std::vector<double> permuted_, residual_;
-  double H_norm_ = 0;  // the largest absolute row sum of blocks' norms bounds |H|
 };
 
 }  // namespace aspic
