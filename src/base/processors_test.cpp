@@ -13,8 +13,9 @@ namespace {
 
 TEST(Processors, AreAtLeastOneAndNoMoreThanTheMachineHas) {
   EXPECT_GE(processor_count(), 1);
-  if (const unsigned all = std::thread::hardware_concurrency(); all > 0)
+  if (const unsigned all = std::thread::hardware_concurrency(); all > 0) {
     EXPECT_LE(processor_count(), static_cast<int>(all));
+  }
 }
 
 #if defined(__linux__)
