@@ -116,8 +116,8 @@ class Pool {
   const FunctionRef<void(int)>* body_ = nullptr;
   int count_ = 0;
   // ...indices that nobody has taken, and indices that are not finished.
-  alignas(64) std::atomic<int> remaining_ = 0;
-  alignas(64) std::atomic<int> pending_ = 0;
+  std::atomic<int> remaining_ = 0;
+  std::atomic<int> pending_ = 0;
   // Read after remaining_ or pending_ was written, and written before they are read: one side sees the other.
   std::atomic<int> sleeping_ = 0;
   std::atomic<bool> caller_sleeps_ = false, quit_ = false;
