@@ -2,17 +2,51 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
 #include <vector>
 
 #include "base/check.h"
+#include "base/processors.h"
 
 namespace aspic {
 namespace {
 
-// Runs one loop at a time. The calling thread works too; threads take the next index from a shared counter.
+// Threads without work look for it this long before they sleep: being woken takes as long as a short loop, and a solver
+// begins its next loop within microseconds. After the first moment they offer the processor to whoever wants it.
+constexpr std::chrono::microseconds kSpin{20}, kSpinAlone{2};
+
+void relax_processor() {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();
+#else
+  std::this_thread::yield();
+#endif
+}
+
+// Waits a short while for done(); not at all where the thread that it waits for may need this processor.
+template <class Done>
+bool spin_until(Done done, bool may_spin) {
+  if (done()) return true;
+  if (!may_spin) return false;
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  for (;;) {
+    for (int i = 0; i < 16; ++i) {
+      if (done()) return true;
+      relax_processor();
+    }
+    const auto waited = Clock::now() - start;
+    if (waited > kSpin) return false;
+    if (waited > kSpinAlone) std::this_thread::yield();
+  }
+}
+
+// Runs one loop at a time; the calling thread works too. Whoever lowers remaining_ owns an index of the current loop,
+// which cannot end before that index is reported in pending_; so a thread that comes late does no harm, and nobody
+// waits for it.
 class Pool {
  public:
   ~Pool() { resize(0); }
@@ -28,53 +62,67 @@ class Pool {
     for (std::thread& thread : threads_) thread.join();
     threads_.clear();
     quit_ = false;
-    for (int i = 0; i < workers; ++i) threads_.emplace_back([this, seen = generation_] { serve(seen); });
+    may_spin_ = workers < processor_count();
+    for (int i = 0; i < workers; ++i) threads_.emplace_back([this] { serve(); });
   }
 
   void run(int count, FunctionRef<void(int)> body) {
-    {
-      std::lock_guard lock(mutex_);
-      body_ = &body;
-      count_ = count;
-      next_ = 0;
-      busy_ = workers();
-      ++generation_;
+    body_ = &body;
+    count_ = count;
+    pending_ = count;
+    remaining_ = count;  // from here on the threads see the loop
+    if (sleeping_ > 0) {
+      { std::lock_guard lock(mutex_); }  // who saw no work is asleep by now
+      wake_.notify_all();
     }
-    wake_.notify_all();
-    work(count, body);
+    work();
+    const auto done = [this] { return pending_ == 0; };
+    if (spin_until(done, may_spin_)) return;
     std::unique_lock lock(mutex_);
-    done_.wait(lock, [this] { return busy_ == 0; });
+    caller_sleeps_ = true;
+    done_.wait(lock, done);
+    caller_sleeps_ = false;
   }
 
  private:
-  void work(int count, FunctionRef<void(int)> body) {
-    const auto next = [this] { return next_.fetch_add(1, std::memory_order_relaxed); };
-    for (int i = next(); i < count; i = next()) body(i);
+  void work() {
+    int finished = 0;
+    for (int left = remaining_; left > 0;) {
+      if (!remaining_.compare_exchange_weak(left, left - 1)) continue;
+      (*body_)(count_ - left);
+      ++finished;
+      left = remaining_;
+    }
+    if (finished == 0 || (pending_ -= finished) > 0 || !caller_sleeps_) return;
+    { std::lock_guard lock(mutex_); }
+    done_.notify_one();
   }
 
-  void serve(unsigned seen) {
-    std::unique_lock lock(mutex_);
-    for (;;) {
-      wake_.wait(lock, [&] { return quit_ || generation_ != seen; });
-      if (quit_) return;
-      seen = generation_;
-      const auto* body = body_;
-      const int count = count_;
-      lock.unlock();
-      work(count, *body);
-      lock.lock();
-      if (--busy_ == 0) done_.notify_one();
+  void serve() {
+    const auto called = [this] { return remaining_ > 0 || quit_; };
+    while (!quit_) {
+      work();
+      if (spin_until(called, may_spin_)) continue;
+      std::unique_lock lock(mutex_);
+      ++sleeping_;
+      if (!called()) wake_.wait(lock);  // woken too late or for nothing, it looks for the next loop
+      --sleeping_;
     }
   }
 
   std::vector<std::thread> threads_;
+  bool may_spin_ = false;
+  // Each loop: what its owner writes before remaining_ is set...
+  const FunctionRef<void(int)>* body_ = nullptr;
+  int count_ = 0;
+  // ...indices that nobody has taken, and indices that are not finished.
+  std::atomic<int> remaining_ = 0;
+  std::atomic<int> pending_ = 0;
+  // Read after remaining_ or pending_ was written, and written before they are read: one side sees the other.
+  std::atomic<int> sleeping_ = 0;
+  std::atomic<bool> caller_sleeps_ = false, quit_ = false;
   std::mutex mutex_;
   std::condition_variable wake_, done_;
-  std::atomic<int> next_ = 0;
-  const FunctionRef<void(int)>* body_ = nullptr;
-  int count_ = 0, busy_ = 0;
-  unsigned generation_ = 0;
-  bool quit_ = false;
 };
 
 Pool& pool() {
@@ -83,7 +131,7 @@ Pool& pool() {
 }
 
 std::atomic<int>& requested_threads() {
-  static std::atomic<int> count = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  static std::atomic<int> count = processor_count();
   return count;
 }
 
@@ -122,7 +170,7 @@ void parallel_for(int count, FunctionRef<void(int)> body) {
 
 namespace {
 
-// Waking a thread costs about as much as working through a chunk: a few chunks are faster done alone.
+// A thread that is awake takes its first chunk after some 0.1 us, but waking one costs the caller a few microseconds.
 constexpr int kChunksWorthSharing = 4;
 
 void for_each_chunk(int count, FunctionRef<void(int)> body) {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <set>
 #include <thread>
@@ -110,6 +112,16 @@ TEST_P(Parallel, LoopsAllocateNothing) {
   const double sum = loops();
   EXPECT_EQ(counter.count(), 0);
   EXPECT_EQ(sum, 3 * (a * a + b * a + c + d));
+}
+
+TEST_P(Parallel, ShortLoopsFollowEachOtherWhetherThreadsAreAwakeOrAsleep) {
+  for (int loop = 0; loop < 3000; ++loop) {
+    const int count = 2 + loop % 7;
+    std::array<int, 8> value{};
+    parallel_for(count, [&](int i) { value[i] = loop + i; });
+    for (int i = 0; i < count; ++i) ASSERT_EQ(value[i], loop + i);
+    if (loop % 100 == 0) std::this_thread::sleep_for(std::chrono::microseconds(loop / 10));
+  }
 }
 
 TEST(ParallelThreads, TheirNumberMayChangeBetweenLoops) {

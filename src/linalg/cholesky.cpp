@@ -1,50 +1,37 @@
 #include "linalg/cholesky.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <new>
 
 #include "base/check.h"
+#include "base/parallel.h"
 #include "linalg/free_memory.h"
 #include "linalg/ordering.h"
+#include "linalg/triangular_solve.h"
+#include "math/pack.h"
 
 namespace aspic {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-int64_t update_size(const Supernodes& s, int k) { return 9 * static_cast<int64_t>(s.below(k)) * s.below(k); }
-
-// Largest number of doubles on the stack: the new update matrix lies above its children's until they are added.
-int64_t stack_peak(const Supernodes& s, const std::vector<int>& last_child, const std::vector<int>& sibling) {
-  int64_t top = 0, peak = 0;
-  for (int k = 0; k < s.count(); ++k) {
-    peak = std::max(peak, top + update_size(s, k));
-    for (int c = last_child[k]; c >= 0; c = sibling[c]) top -= update_size(s, c);
-    top += update_size(s, k);
-  }
-  return peak;
-}
-
-int largest_front(const Supernodes& s) {
-  int rows = 0;
-  for (int k = 0; k < s.count(); ++k) rows = std::max(rows, 3 * (s.width(k) + s.below(k)));
-  return rows;
-}
-
-// Clears the lower triangle (whole diagonal blocks) of the first `columns` columns.
-void clear_lower(double* A, int64_t rows, int64_t columns) {
-  for (int64_t c = 0; c < columns; ++c) {
-    const int64_t from = c / 3 * 3;
-    std::memset(A + c * rows + from, 0, (rows - from) * sizeof(double));
-  }
-}
+constexpr int kStripBlocks = 24;  // columns of blocks per task
 
 double norm(std::span<const double> v) {
-  double sum = 0;
-  for (const double value : v) sum += value * value;
-  return std::sqrt(sum);
+  return std::sqrt(parallel_sum(static_cast<int>(v.size()), [&](int first, int last) {
+    Pack sums = 0.0;
+    int i = first;
+    for (Pack x; i + kPackWidth <= last; i += kPackWidth) {
+      std::memcpy(&x, &v[i], sizeof x);
+      sums += x * x;
+    }
+    double total = sum(sums);
+    for (; i < last; ++i) total += v[i] * v[i];
+    return total;
+  }));
 }
 
 // An upper bound of |H|_2: the largest sum of the Frobenius norms of a row of blocks.
@@ -62,6 +49,16 @@ double norm_bound(const BlockSparse& H, std::span<double> row_sum) {
   return largest;
 }
 
+// Calls visit(slot, i, transposed) for the blocks of H in column j of L; i >= j is the row in the order of elimination.
+template <class Visit>
+void for_each_block(const BlockPattern& p, const Supernodes& s, int j, Visit visit) {
+  const int r = s.order[j];
+  for (int64_t b = p.row_start[r]; b <= p.diagonal(r); ++b)
+    if (const int i = s.position[p.column[b]]; i >= j) visit(b, i, i > j);
+  for (int64_t u = p.upper_start[r]; u < p.upper_start[r + 1]; ++u)
+    if (const int i = s.position[p.upper_row[u]]; i >= j) visit(p.upper_slot[u], i, false);
+}
+
 std::string megabytes(int64_t bytes) { return std::to_string((bytes + 500'000) / 1'000'000) + " MB"; }
 
 }  // namespace
@@ -76,10 +73,13 @@ void Cholesky::analyze(const BlockPattern& pattern) {
   sibling_.assign(count, -1);
   for (int k = 0; k < count; ++k)
     if (const int p = supernodes_.parent[k]; p >= 0) sibling_[k] = last_child_[p], last_child_[p] = k;
-  const int64_t doubles = supernodes_.cost.nnz + stack_peak(supernodes_, last_child_, sibling_) + 2 * kReadAhead +
-                          9 * static_cast<int64_t>(pattern.rows()) + largest_front(supernodes_) +
-                          static_cast<int64_t>(DenseCholesky::scratch(largest_front(supernodes_)));
-  supernodes_.cost.bytes = 8 * doubles + 4 * (supernodes_.row_start.back() + pattern.rows());
+  subtrees_ = make_subtrees(supernodes_);
+  const int64_t rows = pattern.rows();
+  int64_t doubles = subtrees_.panels + subtrees_.workspace + kReadAhead + 6 * rows + pattern.block_count();
+  for (const Subtrees::Task& task : subtrees_.tasks)
+    doubles += static_cast<int64_t>(DenseCholesky::scratch(task.rows, task.columns));
+  doubles += static_cast<int64_t>(DenseCholesky::scratch(subtrees_.top_rows, subtrees_.top_columns));
+  supernodes_.cost.bytes = 8 * doubles + 3 * 4 * supernodes_.row_start.back();
 }
 
 bool Cholesky::allocate() {
@@ -87,16 +87,50 @@ bool Cholesky::allocate() {
   if (supernodes_.cost.bytes > free_bytes_) return false;
   try {
     list_rows(*pattern_, supernodes_);
-    L_.assign(supernodes_.cost.nnz + kReadAhead, 0.0);
-    stack_.assign(stack_peak(supernodes_, last_child_, sibling_) + kReadAhead, 0.0);
-    local_.assign(pattern_->rows(), -1);
+    find_targets();
+    L_.assign(subtrees_.panels, 0.0);
+    workspace_.assign(subtrees_.workspace + kReadAhead, 0.0);
     for (std::vector<double>* v : {&permuted_, &residual_}) v->assign(3 * static_cast<size_t>(pattern_->rows()), 0.0);
-    kernels_.reserve(largest_front(supernodes_));
-    front_.assign(largest_front(supernodes_), 0.0);
+    kernels_.resize(subtrees_.tasks.size() + 1);
+    for (size_t t = 0; t < subtrees_.tasks.size(); ++t)
+      kernels_[t].reserve(subtrees_.tasks[t].rows, subtrees_.tasks[t].columns);
+    kernels_.back().reserve(subtrees_.top_rows, subtrees_.top_columns);
   } catch (const std::bad_alloc&) {
     return false;
   }
   return true;
+}
+
+struct Cholesky::Front {
+  int width, below;  // columns of the panel, of the update matrix [blocks]
+  int64_t rows;      // of the panel
+  double *panel, *update;
+
+  LowerMatrix update_matrix() const { return {update, 3 * static_cast<int64_t>(below), true}; }
+  double* column(int j, int c) const {  // of block column j: entry (i, 3 j + c) of the front is at [i]
+    return j < width ? panel + (3 * j + c) * rows : update_matrix().column(3 * (j - width) + c) - 3 * width;
+  }
+};
+
+Cholesky::Front Cholesky::front(int s) {
+  const int width = supernodes_.width(s), below = supernodes_.below(s);
+  return {width, below, 3 * (static_cast<int64_t>(width) + below), L_.data() + subtrees_.panel_start[s],
+          workspace_.data() + subtrees_.update_start[s]};
+}
+
+void Cholesky::find_targets() {
+  target_.resize(pattern_->block_count());
+  std::vector<int> local(pattern_->rows());  // row of the current front
+  for (int s = 0; s < supernodes_.count(); ++s) {
+    const int width = supernodes_.width(s), below = supernodes_.below(s), begin = supernodes_.first[s];
+    const int* row = supernodes_.row.data() + supernodes_.row_start[s];
+    for (int i = 0; i < width; ++i) local[begin + i] = i;
+    for (int i = 0; i < below; ++i) local[row[i]] = width + i;
+    for (int i = 0; i < width; ++i)
+      for_each_block(*pattern_, supernodes_, begin + i, [&](int64_t slot, int k, bool) {
+        target_[slot] = subtrees_.panel_start[s] + 9 * static_cast<int64_t>(width + below) * i + 3 * local[k];
+      });
+  }
 }
 
 bool Cholesky::factorize(const BlockSparse& H) {
@@ -108,73 +142,73 @@ bool Cholesky::factorize(const BlockSparse& H) {
     refused_ = !allocated_;
     if (refused_) return false;
   }
-  H_norm_ = norm_bound(H, {residual_.data(), static_cast<size_t>(pattern_->rows())});
-  stack_top_ = 0;
-  for (int s = 0; s < supernodes_.count(); ++s)
-    if (!factorize_supernode(H, s)) return false;
-  H_ = &H;
-  return true;
+  std::atomic<bool> definite = true;
+  parallel_for(static_cast<int>(subtrees_.tasks.size()), [&](int t) {
+    const Subtrees::Task& task = subtrees_.tasks[t];
+    for (int s = task.first; s < task.last && definite; ++s)
+      if (!factorize_supernode(H, s, kernels_[t])) definite = false;
+  });
+  for (size_t i = 0; i < subtrees_.top.size() && definite; ++i)
+    definite = factorize_supernode(H, subtrees_.top[i], kernels_.back());
+  if (definite) H_ = &H;
+  return definite;
 }
 
-bool Cholesky::factorize_supernode(const BlockSparse& H, int s) {
-  const int width = supernodes_.width(s), below = supernodes_.below(s);
-  const int64_t columns = 3 * width, rows = columns + 3 * below, update_rows = 3 * below;
-  double* panel = L_.data() + supernodes_.value_start[s];
-  double* update = stack_.data() + stack_top_;
-  for (int i = 0; i < width; ++i) local_[supernodes_.first[s] + i] = i;
-  for (int i = 0; i < below; ++i) local_[supernodes_.row[supernodes_.row_start[s] + i]] = width + i;
-  clear_lower(panel, rows, columns);
-  clear_lower(update, update_rows, update_rows);
-  assemble(H, s, panel);
-  int64_t children_begin = stack_top_;
-  for (int c = last_child_[s]; c >= 0; c = sibling_[c]) {  // they lie on the stack in this order, from the top
-    children_begin -= update_size(supernodes_, c);
-    add_update(c, s, panel, update);
-    stack_top_ = children_begin;
-  }
-  if (!kernels_.factorize(panel, static_cast<int>(rows), static_cast<int>(columns), rows)) return false;
-  if (!pivots_are_sound(H, s, panel)) return false;
+bool Cholesky::factorize_supernode(const BlockSparse& H, int s, DenseCholesky& kernels) {
+  const Front f = front(s);
+  const int columns = 3 * f.width, below = 3 * f.below;
+  const auto for_each_strip = [](int begin, int end, FunctionRef<void(int, int)> body) {
+    parallel_for((end - begin + kStripBlocks - 1) / kStripBlocks, [&](int strip) {
+      const int first = begin + strip * kStripBlocks;
+      body(first, std::min(end, first + kStripBlocks));
+    });
+  };
+  for_each_strip(0, f.width, [&](int first, int last) {
+    clear_panel(f, first, last);
+    assemble(H, s, first, last);
+    add_children(s, f, first, last);
+  });
+  if (!kernels.factorize(f.panel, static_cast<int>(f.rows), columns, f.rows)) return false;
+  if (!pivots_are_sound(H, s, f.panel)) return false;
   if (below == 0) return true;
-  kernels_.subtract_outer_product(panel + columns, rows, static_cast<int>(columns), update, update_rows,
-                                  static_cast<int>(update_rows), static_cast<int>(update_rows));
-  std::memmove(stack_.data() + stack_top_, update, update_rows * update_rows * sizeof(double));
-  stack_top_ += update_rows * update_rows;
+  kernels.put_outer_product(DenseCholesky::Product::set, f.panel + columns, f.rows, columns, f.update_matrix(), below,
+                            below);
+  for_each_strip(f.width, f.width + f.below, [&](int first, int last) { add_children(s, f, first, last); });
   return true;
 }
 
-void Cholesky::assemble(const BlockSparse& H, int s, double* panel) {
-  const BlockPattern& p = *pattern_;
-  const int64_t rows = 3 * (supernodes_.width(s) + supernodes_.below(s));
-  for (int j = supernodes_.first[s]; j < supernodes_.first[s + 1]; ++j) {
-    const int r = supernodes_.order[j];
-    double* const column = panel + 3 * rows * (j - supernodes_.first[s]);
-    const auto put = [&](int row, const Mat3d& A) {  // rows before the diagonal belong to other columns
-      if (const int i = supernodes_.position[row]; i >= j)
-        for (int c = 0; c < 3; ++c) std::copy_n(A.a + 3 * c, 3, column + c * rows + 3 * local_[i]);
-    };
-    for (int64_t b = p.row_start[r]; b < p.diagonal(r); ++b) put(p.column[b], transpose(H.block[b]));
-    put(r, H.block[p.diagonal(r)]);
-    for (int64_t u = p.upper_start[r]; u < p.upper_start[r + 1]; ++u) put(p.upper_row[u], H.block[p.upper_slot[u]]);
+// The lower triangle and whole diagonal blocks.
+void Cholesky::clear_panel(const Front& f, int first, int last) {
+  for (int j = first; j < last; ++j)
+    for (int c = 0; c < 3; ++c) std::fill_n(f.column(j, c) + 3 * j, f.rows - 3 * j, 0.0);
+}
+
+void Cholesky::assemble(const BlockSparse& H, int s, int first, int last) {
+  const int64_t rows = front(s).rows;
+  for (int j = supernodes_.first[s] + first; j < supernodes_.first[s] + last; ++j) {
+    for_each_block(*pattern_, supernodes_, j, [&](int64_t slot, int, bool transposed) {
+      const Mat3d A = transposed ? transpose(H.block[slot]) : H.block[slot];
+      for (int c = 0; c < 3; ++c) std::copy_n(A.a + 3 * c, 3, L_.data() + target_[slot] + c * rows);
+    });
   }
 }
 
-// Adds the child's update matrix, which ends where the stack ends, to the front of s (extend-add).
-void Cholesky::add_update(int child, int s, double* panel, double* update) {
-  const int width = supernodes_.width(s), blocks = supernodes_.below(child);
-  const int64_t rows = 3 * (width + supernodes_.below(s)), update_rows = 3 * supernodes_.below(s);
-  const int64_t child_rows = 3 * static_cast<int64_t>(blocks);
-  const double* from = stack_.data() + stack_top_ - child_rows * child_rows;
-  const int* row = supernodes_.row.data() + supernodes_.row_start[child];
-  for (int b = 0; b < blocks; ++b) {
-    const int j = local_[row[b]];
-    for (int c = 0; c < 3; ++c) {
-      const double* in = from + (3 * b + c) * child_rows;
-      double* out = j < width ? panel + (3 * j + c) * rows : update + (3 * (j - width) + c) * update_rows - 3 * width;
-      for (int a = b; a < blocks; ++a) {
-        double* block = out + 3 * local_[row[a]];
-        for (int k = 0; k < 3; ++k) block[k] += in[3 * a + k];
+// Adds the children's update matrices to the columns of blocks [first, last) of their parent's front (extend-add).
+void Cholesky::add_children(int s, const Front& f, int first, int last) {
+  for (int child = last_child_[s]; child >= 0; child = sibling_[child]) {
+    const Front from = front(child);
+    const int* row = supernodes_.in_parent.data() + supernodes_.row_start[child];
+    const int* run_end = supernodes_.run_end.data() + supernodes_.row_start[child];
+    const int begin = static_cast<int>(std::lower_bound(row, row + from.below, first) - row);
+    for (int b = begin; b < from.below && row[b] < last; ++b)
+      for (int c = 0; c < 3; ++c) {
+        const double* in = from.column(from.width + b, c) + 3 * from.width;
+        double* out = f.column(row[b], c);
+        for (int a = b, k = c; a < from.below; a = run_end[a], k = 0) {  // k: nothing above the diagonal
+          double* run = out + 3 * row[a];
+          for (const int count = 3 * (run_end[a] - a); k < count; ++k) run[k] += in[3 * a + k];
+        }
       }
-    }
   }
 }
 
@@ -199,47 +233,65 @@ SolveReport Cholesky::solve(std::span<const double> b, std::span<double> x, doub
   const double b_norm = norm(b);
   double r_norm = 0;
   for (int refinements = 0;; ++refinements) {
-    H_->multiply(x, residual_);
-    for (size_t i = 0; i < residual_.size(); ++i) residual_[i] = b[i] - residual_[i];
-    r_norm = norm(residual_);
+    r_norm = residual(b, x);
+    ++report.products;
     if (!(r_norm > tolerance * b_norm) || refinements == 1) break;
     substitute(residual_, x);
   }
   report.relative_residual = b_norm > 0 ? r_norm / b_norm : 0;
+  report.ok = r_norm <= tolerance * b_norm;
+  if (report.ok) return report;
   // Where the tolerance is below round-off, a residual as small as the rounding of H x is all that can be had.
-  const double round_off = 64 * kEpsilon * (H_norm_ * norm(x) + b_norm);
-  report.ok = r_norm <= tolerance * b_norm || r_norm <= round_off;
+  const double H_norm = norm_bound(*H_, {permuted_.data(), static_cast<size_t>(pattern_->rows())});
+  report.ok = r_norm <= 64 * kEpsilon * (H_norm * norm(x) + b_norm);
   return report;
+}
+
+double Cholesky::residual(std::span<const double> b, std::span<const double> x) {
+  H_->multiply(x, residual_);
+  for (size_t i = 0; i < residual_.size(); ++i) residual_[i] = b[i] - residual_[i];
+  return norm(residual_);
 }
 
 void Cholesky::substitute(std::span<const double> b, std::span<double> x) {
   const Supernodes& s = supernodes_;
-  const size_t n = s.order.size();
-  for (size_t k = 0; k < n; ++k) std::copy_n(&b[3 * static_cast<size_t>(s.order[k])], 3, &permuted_[3 * k]);
-  for (int k = 0; k < s.count(); ++k) {
-    const int columns = 3 * s.width(k), below = s.below(k);
-    double* own = permuted_.data() + 3 * static_cast<size_t>(s.first[k]);
-    double* rest = front_.data() + columns;
-    const int* row = s.row.data() + s.row_start[k];
-    std::copy_n(own, columns, front_.data());
-    std::fill_n(rest, 3 * below, 0.0);
-    solve_forward(L_.data() + s.value_start[k], columns + 3 * below, columns, front_.data());
-    std::copy_n(front_.data(), columns, own);
-    for (int i = 0; i < below; ++i)
-      for (int d = 0; d < 3; ++d) permuted_[3 * static_cast<size_t>(row[i]) + d] += rest[3 * i + d];
+  const int n = static_cast<int>(s.order.size()), tasks = static_cast<int>(subtrees_.tasks.size());
+  for (int k = 0; k < n; ++k)
+    std::copy_n(&b[3 * static_cast<size_t>(s.order[k])], 3, &permuted_[3 * static_cast<size_t>(k)]);
+  parallel_for(tasks, [&](int t) {
+    for (int k = subtrees_.tasks[t].first; k < subtrees_.tasks[t].last; ++k) substitute_forward(k);
+  });
+  for (const int k : subtrees_.top) substitute_forward(k);
+  for (size_t i = subtrees_.top.size(); i-- > 0;) substitute_backward(subtrees_.top[i]);
+  parallel_for(tasks, [&](int t) {
+    for (int k = subtrees_.tasks[t].last - 1; k >= subtrees_.tasks[t].first; --k) substitute_backward(k);
+  });
+  for (int k = 0; k < n; ++k)
+    for (int d = 0; d < 3; ++d) x[3 * static_cast<size_t>(s.order[k]) + d] += permuted_[3 * static_cast<size_t>(k) + d];
+}
+
+// What the columns of s leave for the rows below waits where the update matrix was, as the children's did.
+void Cholesky::substitute_forward(int s) {
+  const Front f = front(s);
+  double *own = permuted_.data() + 3 * static_cast<size_t>(supernodes_.first[s]), *rest = f.update;
+  std::fill_n(rest, 3 * f.below, 0.0);
+  for (int c = last_child_[s]; c >= 0; c = sibling_[c]) {
+    const Front child = front(c);
+    const int* row = supernodes_.in_parent.data() + supernodes_.row_start[c];
+    for (int i = 0; i < child.below; ++i) {
+      double* out = row[i] < f.width ? own + 3 * row[i] : rest + 3 * (row[i] - f.width);
+      for (int d = 0; d < 3; ++d) out[d] += child.update[3 * i + d];
+    }
   }
-  for (int k = s.count() - 1; k >= 0; --k) {
-    const int columns = 3 * s.width(k), below = s.below(k);
-    double* own = permuted_.data() + 3 * static_cast<size_t>(s.first[k]);
-    double* rest = front_.data() + columns;
-    const int* row = s.row.data() + s.row_start[k];
-    std::copy_n(own, columns, front_.data());
-    for (int i = 0; i < below; ++i) std::copy_n(&permuted_[3 * static_cast<size_t>(row[i])], 3, rest + 3 * i);
-    solve_backward(L_.data() + s.value_start[k], columns + 3 * below, columns, front_.data());
-    std::copy_n(front_.data(), columns, own);
-  }
-  for (size_t k = 0; k < n; ++k)
-    for (int d = 0; d < 3; ++d) x[3 * static_cast<size_t>(s.order[k]) + d] += permuted_[3 * k + d];
+  solve_forward(f.panel, static_cast<int>(f.rows), 3 * f.width, own, rest);
+}
+
+void Cholesky::substitute_backward(int s) {
+  const Front f = front(s);
+  const int* row = supernodes_.row.data() + supernodes_.row_start[s];
+  for (int i = 0; i < f.below; ++i) std::copy_n(&permuted_[3 * static_cast<size_t>(row[i])], 3, f.update + 3 * i);
+  solve_backward(f.panel, static_cast<int>(f.rows), 3 * f.width,
+                 permuted_.data() + 3 * static_cast<size_t>(supernodes_.first[s]), f.update);
 }
 
 std::string Cholesky::description() const {

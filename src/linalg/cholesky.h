@@ -5,6 +5,7 @@
 #include "linalg/dense_cholesky.h"
 #include "linalg/elimination.h"
 #include "linalg/linear_solver.h"
+#include "linalg/subtrees.h"
 
 namespace aspic {
 
@@ -24,12 +25,19 @@ class Cholesky : public LinearSolver {
   bool refused() const { return refused_; }                              // the last factorize() for want of memory
 
  private:
+  struct Front;  // where a supernode's panel and update matrix are
   bool allocate();
-  bool factorize_supernode(const BlockSparse& H, int s);
-  void assemble(const BlockSparse& H, int s, double* panel);
-  void add_update(int child, int s, double* panel, double* update);
+  void find_targets();
+  Front front(int s);
+  bool factorize_supernode(const BlockSparse& H, int s, DenseCholesky& kernels);
+  static void clear_panel(const Front& front, int first, int last);  // columns of blocks
+  void assemble(const BlockSparse& H, int s, int first, int last);
+  void add_children(int s, const Front& front, int first, int last);
   bool pivots_are_sound(const BlockSparse& H, int s, const double* panel) const;
-  void substitute(std::span<const double> b, std::span<double> x);  // x += (L L')^-1 b
+  double residual(std::span<const double> b, std::span<const double> x);  // its norm
+  void substitute(std::span<const double> b, std::span<double> x);        // x += (L L')^-1 b
+  void substitute_forward(int s);
+  void substitute_backward(int s);
 
   int64_t memory_limit_;
   const BlockPattern* pattern_ = nullptr;
@@ -37,14 +45,13 @@ class Cholesky : public LinearSolver {
   bool allocated_ = false, refused_ = false;
   int64_t free_bytes_ = 0;  // what was free when the factor was refused
   Supernodes supernodes_;
+  Subtrees subtrees_;
   std::vector<int> last_child_, sibling_;  // of the supernodal tree; children in reverse
-  DenseCholesky kernels_;
-  std::vector<double> L_;      // the panels, column-major
-  std::vector<double> stack_;  // update matrices that wait for their parents
-  int64_t stack_top_ = 0;
-  std::vector<int> local_;  // row of the current front for each block row
-  std::vector<double> permuted_, front_, residual_;
-  double H_norm_ = 0;  // the largest absolute row sum of blocks' norms bounds |H|
+  std::vector<DenseCholesky> kernels_;     // of each task, then of the top
+  std::vector<double> L_;                  // the panels, column-major
+  std::vector<double> workspace_;          // update matrices; in a solve, what is below the columns
+  std::vector<int64_t> target_;            // where in L_ each block of H begins
+  std::vector<double> permuted_, residual_;
 };
 
 }  // namespace aspic

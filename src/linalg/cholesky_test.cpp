@@ -171,6 +171,36 @@ TEST(Cholesky, HasTheSameBitsForAnyThreadCount) {
   set_thread_count(threads);
 }
 
+TEST(Cholesky, FindsANegativePivotWhereverItIsOnAnyNumberOfThreads) {
+  Matrix H = spring_lattice({.nx = 16, .ny = 8, .nz = 8, .stiffness = 10});
+  const int threads = thread_count();
+  for (const int count : {1, 2, 3, 8}) {
+    set_thread_count(count);
+    Cholesky solver;
+    solver.analyze(*H.pattern);
+    for (int row = 0; row < H.rows(); row += 97) {
+      Mat3d& D = H.values.block[H.pattern->diagonal(row)];
+      const Mat3d before = D;
+      D = -1.0 * D;
+      EXPECT_FALSE(solver.factorize(H.values)) << "row " << row;
+      D = before;
+    }
+    EXPECT_TRUE(solver.factorize(H.values));
+  }
+  set_thread_count(threads);
+}
+
+TEST(Cholesky, CountsTheProducts) {
+  const Matrix H = spring_lattice({.nx = 4, .ny = 4, .nz = 4});
+  const std::vector<double> b = random_vector(3 * H.rows(), 14);
+  std::vector<double> x(b.size());
+  Cholesky solver;
+  solver.analyze(*H.pattern);
+  ASSERT_TRUE(solver.factorize(H.values));
+  EXPECT_EQ(solver.solve(b, x, 1e-8).products, 1);
+  EXPECT_EQ(solver.solve(b, x, 0).products, 2);  // one refinement
+}
+
 TEST(Ordering, IsAPermutationWithLittleFill) {
   const Matrix H = spring_lattice({.nx = 12, .ny = 12, .nz = 12});
   std::vector<int> natural(H.rows());

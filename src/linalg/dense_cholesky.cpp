@@ -11,6 +11,7 @@
 namespace aspic {
 namespace {
 
+using Product = DenseCholesky::Product;
 using std::ptrdiff_t;
 
 // Register tile of the product: 2 packs by 6 columns, 12 accumulators. Cache blocks follow [Goto and van de Geijn
@@ -18,11 +19,14 @@ using std::ptrdiff_t;
 constexpr int kTileRows = 2 * kPackWidth;
 constexpr int kTileColumns = 6;
 constexpr int kDepthBlock = 192;
-constexpr int kRowBlock = 9 * 16;      // a multiple of kTileRows for every pack width
+constexpr int kRowBlock = 6 * 16;      // a multiple of kTileRows for every pack width
 constexpr int kColumnBlock = 6 * 128;  // a multiple of kTileColumns and of kTileRows
 constexpr int kPackedFromRows = 192;   // smaller products read A where it lies
-constexpr double kParallelFrom = 4e6;  // multiplications and additions: about 0.1 ms on one core
+constexpr double kParallelFrom = 3e5;  // multiplications and additions: about 10 us on one core
+constexpr int kPackedColumns = 96;     // per task; a multiple of kTileColumns
+constexpr int kNarrowRows = 256;       // of a narrow panel per task; a multiple of every pack width
 constexpr int kBaseColumns = 12;       // narrower panels are factorised directly
+static_assert(LowerMatrix::kStrip % kTileColumns == 0 && LowerMatrix::kStrip % kTileRows == 0);
 static_assert(kRowBlock % kTileRows == 0 && kReadAhead >= kTileRows);
 
 Pack load(const double* p) {
@@ -51,20 +55,22 @@ inline Tile product(const double* A, ptrdiff_t A_stride, const double* B, ptrdif
   return t;
 }
 
-void subtract_whole(const Tile& t, double* C, ptrdiff_t stride) {
+template <Product kind>
+void put_whole(const Tile& t, double* C, ptrdiff_t stride) {
   for (int c = 0; c < kTileColumns; ++c, C += stride) {
-    store(C, load(C) - t.sum[c][0]);
-    store(C + kPackWidth, load(C + kPackWidth) - t.sum[c][1]);
+    store(C, kind == Product::set ? -t.sum[c][0] : load(C) - t.sum[c][0]);
+    store(C + kPackWidth, kind == Product::set ? -t.sum[c][1] : load(C + kPackWidth) - t.sum[c][1]);
   }
 }
 
 // Only the entries in the first `rows` rows and `columns` columns with row + shift >= column.
-void subtract_part(const Tile& t, double* C, ptrdiff_t stride, int rows, int columns, int shift) {
+template <Product kind>
+void put_part(const Tile& t, double* C, ptrdiff_t stride, int rows, int columns, int shift) {
   double sum[kTileRows];
   for (int c = 0; c < columns; ++c, C += stride) {
     store(sum, t.sum[c][0]);
     store(sum + kPackWidth, t.sum[c][1]);
-    for (int r = std::max(0, c - shift); r < rows; ++r) C[r] -= sum[r];
+    for (int r = std::max(0, c - shift); r < rows; ++r) C[r] = kind == Product::set ? -sum[r] : C[r] - sum[r];
   }
 }
 
@@ -73,35 +79,46 @@ struct Operand {  // strip s of the rows starts at data + s * strip_step; its co
   ptrdiff_t strip_step, stride;
 };
 
-// C -= A B' on the tiles of one cache block; `shift` is the row minus the column of C's first entry.
-void subtract_block(Operand A, Operand B, int depth, double* C, ptrdiff_t stride, int rows, int columns, int shift) {
+// C -= A B' or C = -A B' on the tiles of one cache block, which begins at (row, column) of C.
+template <Product kind>
+void put_block(Operand A, Operand B, int depth, LowerMatrix C, int row, int column, int rows, int columns) {
+  const int shift = row - column;
   for (int j = 0; j < columns; j += kTileColumns) {
     const double* b = B.data + j / kTileColumns * B.strip_step;
+    double* const C_column = C.column(column + j) + row;
+    const ptrdiff_t stride = C.stride(column + j);
     const int first = std::max(0, (j - shift) / kTileRows * kTileRows);
     for (int i = first; i < rows; i += kTileRows) {
       if (i + kTileRows - 1 + shift < j) continue;
       const Tile t = product(A.data + i / kTileRows * A.strip_step, A.stride, b, B.stride, depth);
-      double* c = C + i + j * stride;
+      double* c = C_column + i;
       const int tile_rows = std::min(kTileRows, rows - i), tile_columns = std::min(kTileColumns, columns - j);
       const bool whole = tile_rows == kTileRows && tile_columns == kTileColumns && i + shift >= j + kTileColumns - 1;
       if (whole) {
-        subtract_whole(t, c, stride);
+        put_whole<kind>(t, c, stride);
       } else {
-        subtract_part(t, c, stride, tile_rows, tile_columns, i + shift - j);
+        put_part<kind>(t, c, stride, tile_rows, tile_columns, i + shift - j);
       }
     }
   }
 }
 
+void put_block(Product kind, Operand A, Operand B, int depth, LowerMatrix C, int row, int column, int rows,
+               int columns) {
+  if (kind == Product::set) return put_block<Product::set>(A, B, depth, C, row, column, rows, columns);
+  put_block<Product::subtract>(A, B, depth, C, row, column, rows, columns);
+}
+
 // Copies strips of `strip` rows so that each is contiguous; missing rows of the last strip become zero.
-void pack_strips(const double* A, ptrdiff_t stride, int rows, int depth, int strip, double* packed) {
-  for (int i = 0; i < rows; i += strip, packed += static_cast<ptrdiff_t>(strip) * depth) {
-    const int count = std::min(strip, rows - i);
-    for (int p = 0; p < depth; ++p) {
-      double* out = packed + static_cast<ptrdiff_t>(p) * strip;
-      std::copy_n(A + i + p * stride, count, out);
-      std::fill(out + count, out + strip, 0.0);
-    }
+template <int strip>
+void pack_strips(const double* A, ptrdiff_t stride, int rows, int depth, double* packed) {
+  int i = 0;
+  for (; i + strip <= rows; i += strip)
+    for (int p = 0; p < depth; ++p, packed += strip) std::memcpy(packed, A + i + p * stride, strip * sizeof(double));
+  if (i == rows) return;
+  for (int p = 0; p < depth; ++p, packed += strip) {
+    std::copy_n(A + i + p * stride, rows - i, packed);
+    std::fill(packed + rows - i, packed + strip, 0.0);
   }
 }
 
@@ -138,30 +155,48 @@ template <int n>
 bool factorize_narrow(double* A, int rows, ptrdiff_t stride) {
   double reciprocal[n];
   if (!factorize_square(A, n, stride, reciprocal)) return false;
-  int i = n;
-  for (; i + kPackWidth <= rows; i += kPackWidth)
-    solve_row<Pack, n>(
-        A, stride, reciprocal, [&](int j) { return load(A + i + j * stride); },
-        [&](int j, Pack x) { store(A + i + j * stride, x); });
-  for (; i < rows; ++i)
-    solve_row<double, n>(
-        A, stride, reciprocal, [&](int j) { return A[i + j * stride]; },
-        [&](int j, double x) { A[i + j * stride] = x; });
+  const auto solve_rows = [&](int first, int last) {
+    int i = first;
+    for (; i + kPackWidth <= last; i += kPackWidth)
+      solve_row<Pack, n>(
+          A, stride, reciprocal, [&](int j) { return load(A + i + j * stride); },
+          [&](int j, Pack x) { store(A + i + j * stride, x); });
+    for (; i < last; ++i)
+      solve_row<double, n>(
+          A, stride, reciprocal, [&](int j) { return A[i + j * stride]; },
+          [&](int j, double x) { A[i + j * stride] = x; });
+  };
+  parallel_for((rows - n + kNarrowRows - 1) / kNarrowRows, [&](int task) {
+    const int first = n + task * kNarrowRows;
+    solve_rows(first, std::min(rows, first + kNarrowRows));
+  });
   return true;
 }
 
+void for_each(bool share, int count, FunctionRef<void(int)> body) {
+  if (share) return parallel_for(count, body);
+  for (int i = 0; i < count; ++i) body(i);
+}
+
 int block_count(int rows) { return (rows + kRowBlock - 1) / kRowBlock; }
-size_t left_size(int rows) { return static_cast<size_t>(block_count(rows)) * kRowBlock * kDepthBlock; }
-constexpr size_t kRightSize = static_cast<size_t>(kColumnBlock) * kDepthBlock;
+size_t left_size(int rows, int depth) { return static_cast<size_t>(block_count(rows)) * kRowBlock * depth; }
+size_t right_size(int rows, int depth) {
+  const int columns = std::min(kColumnBlock, (rows + kTileColumns - 1) / kTileColumns * kTileColumns);
+  return static_cast<size_t>(columns) * depth;
+}
 
 }  // namespace
 
-size_t DenseCholesky::scratch(int rows) { return rows < kPackedFromRows ? 0 : left_size(rows) + kRightSize; }
+size_t DenseCholesky::scratch(int rows, int columns) {
+  const int depth = std::min(kDepthBlock, columns);
+  return rows < kPackedFromRows ? 0 : left_size(rows, depth) + right_size(rows, depth);
+}
 
-void DenseCholesky::reserve(int rows) {
+void DenseCholesky::reserve(int rows, int columns) {
   if (rows < kPackedFromRows) return;
-  packed_left_.resize(left_size(rows));
-  packed_right_.resize(kRightSize);
+  const int depth = std::min(kDepthBlock, columns);
+  packed_left_.resize(left_size(rows, depth));
+  packed_right_.resize(right_size(rows, depth));
 }
 
 bool DenseCholesky::factorize(double* A, int rows, int columns, ptrdiff_t stride) {
@@ -181,67 +216,38 @@ bool DenseCholesky::factorize(double* A, int rows, int columns, ptrdiff_t stride
   const int left = (columns / 2 + kBaseColumns - 1) / kBaseColumns * kBaseColumns, right = columns - left;
   double* C = A + left + left * stride;
   if (!factorize(A, rows, left, stride)) return false;
-  subtract_outer_product(A + left, stride, left, C, stride, rows - left, right);
+  put_outer_product(Product::subtract, A + left, stride, left, {C, stride}, rows - left, right);
   return factorize(C, rows - left, right, stride);
 }
 
-void DenseCholesky::subtract_outer_product(const double* A, ptrdiff_t A_stride, int depth, double* C,
-                                           ptrdiff_t C_stride, int rows, int columns) {
+void DenseCholesky::put_outer_product(Product kind, const double* A, ptrdiff_t A_stride, int depth, LowerMatrix C,
+                                      int rows, int columns) {
   if (rows < kPackedFromRows) {
     const Operand left{A, kTileRows, A_stride}, right{A, kTileColumns, A_stride};
-    return subtract_block(left, right, depth, C, C_stride, rows, columns, 0);
+    return put_block(kind, left, right, depth, C, 0, 0, rows, columns);
   }
   for (int j = 0; j < columns; j += kColumnBlock)
     for (int p = 0; p < depth; p += kDepthBlock) {
       const int width = std::min(kColumnBlock, columns - j), d = std::min(kDepthBlock, depth - p);
       const int blocks = block_count(rows - j);
-      pack_strips(A + j + p * A_stride, A_stride, width, d, kTileColumns, packed_right_.data());
+      const auto pack_columns = [&](int task) {
+        const int c = task * kPackedColumns;
+        pack_strips<kTileColumns>(A + j + c + p * A_stride, A_stride, std::min(kPackedColumns, width - c), d,
+                                  packed_right_.data() + static_cast<ptrdiff_t>(c) * d);
+      };
       const Operand right{packed_right_.data(), static_cast<ptrdiff_t>(kTileColumns) * d, kTileColumns};
-      auto subtract_rows = [&](int task) {
+      const auto put_rows = [&](int task) {
         const int block = blocks - 1 - task;  // the longest first
         const int i = j + block * kRowBlock, height = std::min(kRowBlock, rows - i);
-        double* packed = packed_left_.data() + static_cast<ptrdiff_t>(block) * kRowBlock * kDepthBlock;
-        pack_strips(A + i + p * A_stride, A_stride, height, d, kTileRows, packed);
+        double* packed = packed_left_.data() + static_cast<ptrdiff_t>(block) * kRowBlock * d;
+        pack_strips<kTileRows>(A + i + p * A_stride, A_stride, height, d, packed);
         const Operand left{packed, static_cast<ptrdiff_t>(kTileRows) * d, kTileRows};
-        subtract_block(left, right, d, C + i + j * C_stride, C_stride, height, width, i - j);
+        put_block(p == 0 ? kind : Product::subtract, left, right, d, C, i, j, height, width);
       };
-      if (static_cast<double>(rows - j) * width * d > kParallelFrom) {
-        parallel_for(blocks, subtract_rows);
-      } else {
-        for (int task = 0; task < blocks; ++task) subtract_rows(task);
-      }
+      const bool share = static_cast<double>(rows - j) * width * d > kParallelFrom;
+      for_each(share, (width + kPackedColumns - 1) / kPackedColumns, pack_columns);
+      for_each(share, blocks, put_rows);
     }
-}
-
-void solve_forward(const double* L, int rows, int columns, double* v) {
-  for (int j = 0; j < columns; j += 3) {  // three columns at once: v is read and written once for them
-    const double *a = L + static_cast<ptrdiff_t>(j) * rows, *b = a + rows, *c = b + rows;
-    const double x = v[j] / a[j];
-    const double y = (v[j + 1] - a[j + 1] * x) / b[j + 1];
-    const double z = (v[j + 2] - a[j + 2] * x - b[j + 2] * y) / c[j + 2];
-    v[j] = x, v[j + 1] = y, v[j + 2] = z;
-    for (int i = j + 3; i < rows; ++i) v[i] -= a[i] * x + b[i] * y + c[i] * z;
-  }
-}
-
-void solve_backward(const double* L, int rows, int columns, double* v) {
-  for (int j = columns - 3; j >= 0; j -= 3) {
-    const double *a = L + static_cast<ptrdiff_t>(j) * rows, *b = a + rows, *c = b + rows;
-    Pack sums[3] = {Pack(0.0), Pack(0.0), Pack(0.0)};
-    int i = j + 3;
-    for (; i + kPackWidth <= rows; i += kPackWidth) {
-      const Pack y = load(v + i);
-      sums[0] += load(a + i) * y;
-      sums[1] += load(b + i) * y;
-      sums[2] += load(c + i) * y;
-    }
-    double s[3] = {sum(sums[0]), sum(sums[1]), sum(sums[2])};
-    for (; i < rows; ++i) s[0] += a[i] * v[i], s[1] += b[i] * v[i], s[2] += c[i] * v[i];
-    const double z = (v[j + 2] - s[2]) / c[j + 2];
-    const double y = (v[j + 1] - s[1] - b[j + 2] * z) / b[j + 1];
-    v[j] = (v[j] - s[0] - a[j + 1] * y - a[j + 2] * z) / a[j];
-    v[j + 1] = y, v[j + 2] = z;
-  }
 }
 
 }  // namespace aspic

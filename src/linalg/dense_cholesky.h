@@ -4,31 +4,31 @@
 #include <cstddef>
 #include <vector>
 
+#include "linalg/lower_matrix.h"
+
 namespace aspic {
 
 inline constexpr int kReadAhead = 32;
 
+// Large products run on all threads; every entry is summed in the same order on any number of them. An object serves
+// one panel at a time.
 class DenseCholesky {
  public:
-  void reserve(int rows);                // scratch for panels of up to this many rows; called before the others
-  static std::size_t scratch(int rows);  // [doubles] that reserve() allocates
+  // Scratch for panels of up to this many rows and columns; called before the others.
+  void reserve(int rows, int columns);
+  static std::size_t scratch(int rows, int columns);  // [doubles] that reserve() allocates
 
   // In place: the first `columns` rows become L11 with L11 L11' = A11, the rows below become L21 = A21 L11^-T.
   // Entries above the diagonal are neither read for the result nor written. False: a pivot is not positive.
   bool factorize(double* A, int rows, int columns, std::ptrdiff_t stride);
 
-  // Large products run on all threads; every entry is summed in the same order on any number of them.
-  // C(i, j) -= sum_p A(i, p) A(j, p) for i in [j, rows), j in [0, columns), p in [0, depth).
-  void subtract_outer_product(const double* A, std::ptrdiff_t A_stride, int depth, double* C, std::ptrdiff_t C_stride,
-                              int rows, int columns);
+  enum class Product { set, subtract };
+  // C(i, j) = -S or C(i, j) -= S, S = sum_p A(i, p) A(j, p), for i in [j, rows), j in [0, columns), p in [0, depth).
+  void put_outer_product(Product kind, const double* A, std::ptrdiff_t A_stride, int depth, LowerMatrix C, int rows,
+                         int columns);
 
  private:
   std::vector<double> packed_left_, packed_right_;
 };
-
-// For v = [x; y] on the panel's rows: x becomes L11^-1 x, then y becomes y - L21 x.
-void solve_forward(const double* L, int rows, int columns, double* v);
-// The transposed solve: x becomes L11^-T (x - L21' y); y stays.
-void solve_backward(const double* L, int rows, int columns, double* v);
 
 }  // namespace aspic

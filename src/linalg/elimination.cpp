@@ -145,15 +145,41 @@ void set_sizes(Supernodes& s, const std::vector<int>& parent, const std::vector<
     s.row_start[k + 1] = s.row_start[k] + count[last] - 1;
     const int64_t width = 3 * s.width(k), below = 3 * (count[last] - 1);
     s.value_start[k + 1] = s.value_start[k] + width * (width + below);
-    for (int64_t c = 0; c < width; ++c) {
-      const double length = static_cast<double>(width + below - c);
-      s.cost.flops += length * length;
-    }
+    s.cost.flops += factor_flops(width, below);
   }
   s.cost.nnz = s.value_start.back();
 }
 
+// Both lists ascend, and the parent's columns and rows contain the child's rows.
+void relate_to_parent(Supernodes& s, int k) {
+  const int parent = s.parent[k];
+  if (parent < 0) return;
+  const int width = s.width(parent), *rows = s.row.data() + s.row_start[parent];
+  int64_t below = 0;
+  for (int64_t i = s.row_start[k]; i < s.row_start[k + 1]; ++i) {
+    if (s.row[i] < s.first[parent + 1]) {
+      s.in_parent[i] = s.row[i] - s.first[parent];
+    } else {
+      while (rows[below] != s.row[i]) ++below;
+      s.in_parent[i] = width + static_cast<int>(below);
+    }
+  }
+  for (int64_t i = s.row_start[k + 1] - 1, end = s.row_start[k + 1]; i >= s.row_start[k]; --i) {
+    if (i + 1 < end && s.in_parent[i + 1] != s.in_parent[i] + 1) end = i + 1;
+    s.run_end[i] = static_cast<int>(end - s.row_start[k]);
+  }
+}
+
 }  // namespace
+
+double factor_flops(int64_t columns, int64_t below) {
+  double flops = 0;
+  for (int64_t c = 0; c < columns; ++c) {
+    const double length = static_cast<double>(columns + below - c);
+    flops += length * length;
+  }
+  return flops;
+}
 
 Supernodes find_supernodes(const BlockPattern& pattern, std::vector<int> order) {
   ASPIC_CHECK(static_cast<int>(order.size()) == pattern.rows());
@@ -194,6 +220,9 @@ void list_rows(const BlockPattern& pattern, Supernodes& s) {
     std::sort(begin, out);
     if (s.parent[k] >= 0) sibling[k] = child[s.parent[k]], child[s.parent[k]] = k;
   }
+  s.in_parent.resize(s.row.size());
+  s.run_end.resize(s.row.size());
+  for (int k = 0; k < s.count(); ++k) relate_to_parent(s, k);
 }
 
 }  // namespace aspic

@@ -21,6 +21,8 @@ struct Supernodes {
   std::vector<int> parent;           // -1 for a root; children come before their parents
   std::vector<int64_t> row_start;    // row lists below the columns: count() + 1 entries
   std::vector<int> row;              // ascending within a supernode; empty until list_rows()
+  std::vector<int> in_parent;        // where the parent's front has this row
+  std::vector<int> run_end;          // entries from here to there are neighbours in the parent's front, too
   std::vector<int64_t> value_start;  // where the dense panel of a supernode begins: count() + 1 entries
   CholeskyAnalysis cost;
 
@@ -28,6 +30,8 @@ struct Supernodes {
   int width(int s) const { return first[s + 1] - first[s]; }                            // columns [blocks]
   int below(int s) const { return static_cast<int>(row_start[s + 1] - row_start[s]); }  // rows below them [blocks]
 };
+
+double factor_flops(int64_t columns, int64_t below);  // of a dense panel and its update matrix
 
 // Elimination tree, column counts, relaxed supernodes and their cost for this order of elimination (made postorder).
 Supernodes find_supernodes(const BlockPattern& pattern, std::vector<int> order);

@@ -1,0 +1,111 @@
+// The sparse Cholesky factorisation on one and two threads, beside CHOLMOD's where it is installed, in alternation.
+// usage: bench_cholesky [mesh file]...   by default beams and cubes
+// The time of one thread is processor time [ms], that of two is wall time as a share of the wall time of one; least of
+// several runs. Which BLAS CHOLMOD uses is up to the system (LD_LIBRARY_PATH).
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "base/parallel.h"
+#include "bench/beam_problem.h"
+#include "bench/cholmod_times.h"
+#include "bench/stopwatch.h"
+#include "energy/mass.h"
+#include "energy/tet_elasticity.h"
+#include "io/mesh_file.h"
+#include "linalg/cholesky.h"
+
+namespace {
+
+using namespace aspic;
+using bench::CholeskyTimes;
+
+constexpr int kRuns = 7;
+
+struct Problem {
+  BlockPattern pattern;
+  std::unique_ptr<BlockSparse> H;  // of a time step at rest
+  std::vector<double> b;
+};
+
+Problem make_problem(const TetMesh& mesh) {
+  const MaterialParameters parameters{.lame = lame_from_young_poisson(bench::kYoung, bench::kPoisson)};
+  const auto elasticity =
+      make_tet_elasticity("neo_hookean_log", mesh, 0, std::vector<MaterialParameters>(mesh.tet_count(), parameters));
+  MassMatrix mass(mesh, std::vector<double>(mesh.tet_count(), bench::kDensity), MassKind::lumped);
+  std::vector<double> x;
+  for (const Vec3d& X : mesh.rest) x.insert(x.end(), {X[0], X[1], X[2]});
+  Couplings couplings;
+  elasticity->add_couplings(couplings);
+  mass.add_couplings(couplings);
+  Problem problem;
+  problem.pattern = make_pattern(mesh.vertex_count(), std::move(couplings));
+  mass.bind(problem.pattern);
+  elasticity->bind(problem.pattern);
+  problem.H = std::make_unique<BlockSparse>(problem.pattern);
+  problem.H->set_zero();
+  mass.add_to(1, *problem.H);
+  elasticity->add_hessian(x, bench::kTimeStep * bench::kTimeStep, {Definiteness::exact}, *problem.H);
+  for (size_t i = 0; i < x.size(); ++i) problem.b.push_back(std::sin(static_cast<double>(i)));
+  return problem;
+}
+
+template <class Time>
+CholeskyTimes run_once(const Problem& problem, Cholesky& solver, Time time) {
+  CholeskyTimes times;
+  std::vector<double> x(problem.b.size());
+  const bench::Stopwatch analysis;
+  solver.analyze(problem.pattern);
+  times.analysis = time(analysis);
+  solver.factorize(*problem.H);  // touches the memory
+  const bench::Stopwatch factorisation;
+  if (!solver.factorize(*problem.H)) std::puts("the matrix is not positive definite");
+  times.factorisation = time(factorisation);
+  solver.solve(problem.b, x, 1e-10);
+  const bench::Stopwatch solve;
+  solver.solve(problem.b, x, 1e-10);
+  times.solve = time(solve);
+  return times;
+}
+
+void compare(const std::string& name, const TetMesh& mesh) {
+  const Problem problem = make_problem(mesh);
+  const auto cpu = [](const bench::Stopwatch& watch) { return watch.cpu_seconds(); };
+  const auto wall = [](const bench::Stopwatch& watch) { return watch.seconds(); };
+  CholeskyTimes own, cholmod, one, two;
+  Cholesky solver;
+  bench::Cholmod oracle(*problem.H);
+  for (int run = 0; run < kRuns; ++run) {
+    cholmod.lower_to(oracle.run_once(problem.b));
+    set_thread_count(1);
+    own.lower_to(run_once(problem, solver, cpu));
+    one.lower_to(run_once(problem, solver, wall));
+    set_thread_count(2);
+    two.lower_to(run_once(problem, solver, wall));
+  }
+  const CholeskyAnalysis& cost = solver.analysis();
+  const double ms = 1e3;
+  std::printf("%-12s %6zu %6.2f %6.1f | %6.1f %7.1f %6.2f | %5.2f %5.2f %5.2f | %5.2f %5.2f %5.2f | %4.1f\n",
+              name.c_str(), problem.b.size(), static_cast<double>(cost.nnz) * 1e-6, cost.flops * 1e-9,
+              own.analysis * ms, own.factorisation * ms, own.solve * ms, own.analysis / cholmod.analysis,
+              own.factorisation / cholmod.factorisation, own.solve / cholmod.solve, two.analysis / one.analysis,
+              two.factorisation / one.factorisation, two.solve / one.solve, cost.flops * 1e-9 / own.factorisation);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::puts(
+      "                    nnz(L)        |  one thread [ms]       |  own / CHOLMOD    |  two threads/one  |\n"
+      "mesh            dof [1e6] Gflop   | anal.  factor. solve   | anal. fact. solve | anal. fact. solve | Gflop/s");
+  if (argc > 1) {
+    for (int i = 1; i < argc; ++i) compare(std::filesystem::path(argv[i]).filename(), read_tet_mesh(argv[i]));
+    return 0;
+  }
+  for (const int n : {7, 14}) compare("beam " + std::to_string(n), bench::make_beam(n));
+  for (const int n : {13, 20}) compare("cube " + std::to_string(n), make_box({0, 0, 0}, {1, 1, 1}, {n, n, n}));
+}

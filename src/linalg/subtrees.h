@@ -1,0 +1,28 @@
+// Which part of a multifrontal factorisation runs where: subtrees of the elimination tree, each on one thread, then the
+// tree above them, whose dense work is shared. It depends on the tree alone, so the bits of the factor do too.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "linalg/elimination.h"
+
+namespace aspic {
+
+struct Subtrees {
+  struct Task {  // the supernodes [first, last): whole subtrees
+    int first, last;
+    double flops;
+    int rows, columns;  // of the largest front, of the widest panel
+  };
+  std::vector<Task> tasks;            // the longest first
+  std::vector<int> top;               // all other supernodes, children before parents
+  int top_rows = 0, top_columns = 0;  // of the largest front, of the widest panel
+  std::vector<int64_t> panel_start;   // where each supernode's panel lies among all panels: tasks are kReadAhead apart
+  int64_t panels = 0;                 // [doubles]
+  std::vector<int64_t> update_start;  // where each supernode's update matrix lies in the workspace
+  int64_t workspace = 0;              // [doubles]
+};
+
+Subtrees make_subtrees(const Supernodes& supernodes);
+
+}  // namespace aspic
