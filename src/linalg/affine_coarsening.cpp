@@ -127,8 +127,8 @@ class MatrixRestriction::Task {
   void write(int a, const Neighbour& from) {
     place_[from.aggregate] = -1;
     for (int m = 0; m < 4; ++m) {
-      const int64_t first = from.aggregate == a ? c_.pattern.diagonal(4 * a + m) - m
-                                                : c_.pattern.slot(4 * a + m, 4 * from.aggregate);
+      const int64_t first =
+          from.aggregate == a ? c_.pattern.diagonal(4 * a + m) - m : c_.pattern.slot(4 * a + m, 4 * from.aggregate);
       for (int n = 0; n < (from.aggregate == a ? m + 1 : 4); ++n)
         for (int k = 0; k < 9; ++k) coarse_.block[first + n].a[k] = from.block[m][k][n];
     }

@@ -6,18 +6,22 @@
 
 #include "base/check.h"
 #include "linalg/free_memory.h"
+#include "linalg/multigrid.h"
 
 namespace aspic {
 namespace {
 
-// Flops of a factorisation that take as long as one iteration of CG per row: 30 ns at 50 Gflop/s, both measured on one
-// AVX-512 core; their ratio differs little between machines.
+// Flops of a factorisation that take as long as one iteration with block-Jacobi per row: 25 ns at 60 Gflop/s, both
+// measured on one AVX-512 core; their ratio differs little between machines.
 constexpr double kFlopsPerIteration = 1500;
-constexpr double kDirectUpTo = 60;  // iterations; bodies of some 600 vertices are not worth a look at the matrix
-constexpr double kIterations = 4;   // fit to beams of 425 to 12 825 vertices, E = 1e4 to 1e8
-constexpr double kLoose = 3;        // a loose solve is followed by more Newton iterations than an exact one
-constexpr int kLeastCap = 300;      // iterations before giving up
-constexpr int kPatience = 10'000;   // iterations where there is nothing to fall back to
+// Two digits with multigrid cost as much as so many iterations with block-Jacobi: about eight cycles of three, and a
+// share of the set-up, which serves all matrices of a sequence. bench_preconditioners measures both.
+constexpr double kMultigridCost = 30;
+constexpr double kLoose = 1.5;        // loose solves are followed by more Newton iterations than exact ones
+constexpr double kIterations = 4;     // fit to beams of 425 to 12 825 vertices, E = 1e4 to 1e8
+constexpr int kBlockJacobiCap = 300;  // iterations before giving up
+constexpr int kMultigridCap = 500;
+constexpr int kPatience = 10'000;  // iterations where there is nothing to fall back to
 
 template <class Visit>
 void for_each_neighbour(const BlockPattern& p, int row, Visit visit) {
@@ -63,7 +67,7 @@ CostPrediction predict_cholesky(const BlockPattern& pattern) {
     const int levels = search(pattern, queue, begin, mark, 2);
     const double n = static_cast<double>(queue.size() - begin), s = n / levels;
     cost.flops += std::min(150 * n * n, 390 * n * std::pow(s, 1.5));
-    cost.bytes += 12 * 100 * n * std::sqrt(s);  // 8 per entry, and as much again by half for the update matrices
+    cost.bytes += 18 * 100 * n * std::sqrt(s);  // 8 per entry, and more for the update matrices of all subtrees
   }
   return cost;
 }
@@ -90,75 +94,92 @@ double predict_iterations(const BlockSparse& H) {
 }
 
 AutoSolver::AutoSolver(int64_t memory_limit, int solves)
-    : memory_limit_(memory_limit), solves_(solves), cholesky_(memory_limit) {}
+    : memory_limit_(memory_limit),
+      solves_(solves),
+      cholesky_(memory_limit),
+      block_jacobi_(kBlockJacobiCap),
+      multigrid_(std::make_unique<Multigrid>(), kMultigridCap),
+      solver_{&block_jacobi_, &multigrid_, &cholesky_} {}
 
 void AutoSolver::analyze(const BlockPattern& pattern) {
+  pattern_ = &pattern;
   H_ = nullptr;
-  rows_ = pattern.rows();
+  is_analyzed_ = {};
+  is_chosen_ = false;
   prediction_ = predict_cholesky(pattern);
   fits_ = prediction_.bytes < static_cast<double>(std::min(memory_limit_, free_memory()));
-  affordable_ = prediction_.flops / (kFlopsPerIteration * solves_ * std::max(1, rows_));
-  cap_ = fits_ ? static_cast<int>(std::clamp<double>(affordable_, kLeastCap, kPatience)) : kPatience;
-  cg_.set_max_iterations(cap_);
-  cg_.analyze(pattern);
-  direct_ = false;
+  affordable_ = prediction_.flops / (kFlopsPerIteration * solves_ * std::max(1, pattern.rows()));
+  multigrid_.set_max_iterations(fits_ ? kMultigridCap : kPatience);
 }
 
-AutoSolver::Factor AutoSolver::factorize_directly() {
-  if (analyzed_version_ != H_->pattern->version) {
-    cholesky_.analyze(*H_->pattern);
-    analyzed_version_ = H_->pattern->version;
-  }
-  if (cholesky_.factorize(*H_)) return Factor::ready;
-  return cholesky_.refused() ? Factor::refused : Factor::indefinite;
+void AutoSolver::begin() {
+  is_chosen_ = false;
+  for (LinearSolver* solver : solver_) solver->begin();
+}
+
+AutoSolver::Choice AutoSolver::cheapest(const BlockSparse& H) {
+  expected_ = 0;
+  if (fits_ && affordable_ <= kLoose) return kCholesky;
+  expected_ = predict_iterations(H);
+  const double iterative = kLoose * std::min(expected_, kMultigridCost);
+  if (fits_ && affordable_ <= iterative) return kCholesky;
+  return expected_ <= kMultigridCost ? kBlockJacobi : kMultigrid;
+}
+
+bool AutoSolver::factorize_with_choice() {
+  LinearSolver& solver = *solver_[choice_];
+  if (!is_analyzed_[choice_]) solver.analyze(*pattern_);
+  is_analyzed_[choice_] = true;
+  if (solver.factorize(*H_)) return true;
+  if (choice_ != kCholesky || !cholesky_.refused()) return false;
+  fits_ = false;  // the prediction was too low
+  multigrid_.set_max_iterations(kPatience);
+  choice_ = kMultigrid;
+  return factorize_with_choice();
 }
 
 bool AutoSolver::factorize(const BlockSparse& H) {
   H_ = &H;
-  factor_ = Factor::none;
-  expected_ = fits_ && affordable_ > kDirectUpTo && affordable_ < kPatience ? predict_iterations(H) : 0;
-  direct_ = fits_ && (affordable_ <= kDirectUpTo || kLoose * expected_ > affordable_);
-  if (direct_) {
-    factor_ = factorize_directly();
-    if (factor_ != Factor::refused) return factor_ == Factor::ready;
-    direct_ = fits_ = false;  // the prediction was too low
-    cg_.set_max_iterations(cap_ = kPatience);
-  }
-  return cg_.factorize(H);
+  if (!is_chosen_) choice_ = cheapest(H);
+  is_chosen_ = true;
+  return factorize_with_choice();
+}
+
+// To the next choice in the order. False: there is none.
+bool AutoSolver::fall_back() {
+  if (choice_ == kCholesky || (choice_ == kMultigrid && !fits_)) return false;
+  choice_ = choice_ == kBlockJacobi ? kMultigrid : kCholesky;
+  ++fallbacks_;
+  return true;
 }
 
 SolveReport AutoSolver::solve(std::span<const double> b, std::span<double> x, double tolerance) {
   ASPIC_CHECK(H_);
-  if (factor_ == Factor::ready) return cholesky_.solve(b, x, tolerance);
-  SolveReport report = cg_.solve(b, x, tolerance);
-  if (report.ok || report.indefinite || !fits_ || !std::isfinite(report.relative_residual)) return report;
-  if (factor_ == Factor::none) {
-    ++fallbacks_;
-    factor_ = factorize_directly();
+  SolveReport total;
+  for (;;) {
+    const SolveReport report = solver_[choice_]->solve(b, x, tolerance);
+    total.ok = report.ok;
+    total.indefinite = report.indefinite;
+    total.relative_residual = report.relative_residual;
+    total.iterations += report.iterations;  // what was tried first was paid for
+    total.products += report.products;
+    total.cycles += report.cycles;
+    if (report.ok || report.indefinite || !std::isfinite(report.relative_residual) || !fall_back()) return total;
+    if (factorize_with_choice()) continue;
+    total.indefinite = true;
+    return total;
   }
-  report.indefinite = factor_ == Factor::indefinite;
-  if (factor_ != Factor::ready) return report;
-  const int iterations = report.iterations;
-  report = cholesky_.solve(b, x, tolerance);
-  report.iterations = iterations;  // what was tried first was paid for
-  return report;
-}
-
-std::string AutoSolver::expected() const {
-  if (expected_ == 0) return "";
-  return std::isfinite(expected_) ? " (conjugate gradients: about " + approximate(expected_) + " iterations)"
-                                  : " (conjugate gradients would hardly converge)";
 }
 
 std::string AutoSolver::description() const {
-  if (rows_ == 0) return "auto";
-  const std::string flops = approximate(prediction_.flops) + " flops";
-  if (direct_) return "auto: cholesky, since a factorisation takes only about " + flops + expected();
-  std::string text =
-      "auto: block_jacobi for up to " + std::to_string(cap_) + " iterations, since a factorisation takes ";
-  if (!fits_) return text + "about " + approximate(prediction_.bytes / 1e6) + " MB, more than is free";
-  text += "about " + flops + expected() + "; then cholesky";
-  return fallbacks_ ? text + " (so far " + std::to_string(fallbacks_) + " times)" : text;
+  if (!is_chosen_) return "auto";
+  const std::string flops = "a factorisation takes about " + approximate(prediction_.flops) + " flops";
+  std::string text = "auto: " + chosen().description() + ", since ";
+  text += fits_ ? flops : "a factor needs about " + approximate(prediction_.bytes / 1e6) + " MB, more than is free";
+  if (expected_ > 0)
+    text += std::isfinite(expected_) ? " and block_jacobi about " + approximate(expected_) + " iterations"
+                                     : " and block_jacobi would hardly converge";
+  return fallbacks_ ? text + "; " + std::to_string(fallbacks_) + " times another choice gave up" : text;
 }
 
 }  // namespace aspic

@@ -1,5 +1,7 @@
-// Chooses between a factorisation and conjugate gradients by predicted cost.
+// Chooses between a factorisation and conjugate gradients, and their preconditioner, by predicted cost.
 #pragma once
+#include <array>
+
 #include "linalg/cholesky.h"
 #include "linalg/conjugate_gradient.h"
 
@@ -17,41 +19,46 @@ CostPrediction predict_cholesky(const BlockPattern& pattern);
 // statics are hard.
 double predict_iterations(const BlockSparse& H);
 
-// Cholesky where a factorisation is cheaper than the predicted iterations. Otherwise conjugate gradients for as long as
-// a factorisation would take, then, if they have not reached the tolerance and the factor fits into memory, Cholesky.
-// The matrix at hand decides, never clocks or earlier matrices, so a resumed run takes the same path; only where the
-// factor comes close to the memory that is free may two runs differ.
+// Chooses for each sequence of matrices, by its first one, what is predicted to be cheapest: a factorisation, conjugate
+// gradients with multigrid, or with block-Jacobi. A choice that turns out wrong gives way to the next in the order
+// block_jacobi, multigrid, cholesky, the last if its factor fits into memory. The matrices at hand decide, never clocks
+// or earlier sequences, so a resumed run takes the same path; only where the factor comes close to the memory that is
+// free may two runs differ.
 class AutoSolver : public LinearSolver {
  public:
   // `solves`: how many right-hand sides share a factorisation, roughly.
   explicit AutoSolver(int64_t memory_limit = std::numeric_limits<int64_t>::max(), int solves = 1);
 
   std::string_view name() const override { return "auto"; }
-  std::string description() const override;
+  std::string description() const override;  // the choice and its reason
   void analyze(const BlockPattern& pattern) override;
+  void begin() override;
   bool factorize(const BlockSparse& H) override;
   SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) override;
 
-  bool is_direct() const { return direct_; }  // Cholesky at once
-  int64_t fallbacks() const { return fallbacks_; }
+  const LinearSolver& chosen() const { return *solver_[choice_]; }
+  int64_t fallbacks() const { return fallbacks_; }  // choices that turned out wrong
 
  private:
-  enum class Factor { none, ready, indefinite, refused };
-  Factor factorize_directly();
-  std::string expected() const;
+  enum Choice { kBlockJacobi, kMultigrid, kCholesky };
+  Choice cheapest(const BlockSparse& H);
+  bool factorize_with_choice();
+  bool fall_back();
 
   int64_t memory_limit_;
   int solves_;
   Cholesky cholesky_;
-  ConjugateGradient cg_;
-  CostPrediction prediction_;
-  int rows_ = 0, cap_ = 0;
-  double affordable_ = 0;  // iterations per solve that cost as much as a factorisation
-  double expected_ = 0;    // iterations for the matrix at hand
-  bool direct_ = false, fits_ = false;
+  ConjugateGradient block_jacobi_, multigrid_;
+  std::array<LinearSolver*, 3> solver_;
+  std::array<bool, 3> is_analyzed_ = {};
+  const BlockPattern* pattern_ = nullptr;
   const BlockSparse* H_ = nullptr;
-  uint64_t analyzed_version_ = 0;  // of the pattern that cholesky_ has analyzed
-  Factor factor_ = Factor::none;   // of *H_
+  CostPrediction prediction_;
+  bool fits_ = false;       // the factor, into memory
+  double affordable_ = 0;   // iterations with block-Jacobi that cost as much as a factorisation, per solve
+  double expected_ = 0;     // iterations with block-Jacobi for two digits; 0: not looked at
+  bool is_chosen_ = false;  // for this sequence
+  Choice choice_ = kBlockJacobi;
   int64_t fallbacks_ = 0;
 };
 

@@ -89,6 +89,9 @@ inline Matrix spring_lattice(const Lattice& lattice) {
   Couplings couplings;
   for (const Spring& s : springs) couplings.emplace_back(s.a, s.b);
   Matrix H(make_pattern((nx + 1) * (ny + 1) * (nz + 1), couplings));
+  for (int i = 0; i <= nx; ++i)
+    for (int j = 0; j <= ny; ++j)
+      for (int k = 0; k <= nz; ++k) H.pattern->rest_position.push_back({{1.0 * i, 1.0 * j, 1.0 * k}});
   for (int r = 0; r < H.rows(); ++r) add_block(H.values, r, r, mass * identity3<double>());
   for (const Spring& s : springs) {
     Mat3d K;

@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "linalg/triangular_solve.h"
 
 namespace aspic {
 namespace {
@@ -126,7 +127,7 @@ void Multigrid::build(const BlockSparse& H) {
   for (auto* v : {&coarsest_b_, &coarsest_x_}) v->assign(kFloatsPerRow * rows, 0.0F);
   coarsest_.assign(3 * rows + kReadAhead, 0.0);
   factor_.assign(9 * rows * rows + kReadAhead, 0.0);
-  dense_.reserve(static_cast<int>(3 * rows));
+  dense_.reserve(static_cast<int>(3 * rows), static_cast<int>(3 * rows));
   is_built_ = true;
 }
 
@@ -256,8 +257,8 @@ void Multigrid::solve_coarsest() {
   const int n = 3 * static_cast<int>(coarsest_b_.size() / kFloatsPerRow);
   const auto lane = [](int i) { return kFloatsPerRow * static_cast<size_t>(i / 3) + i % 3; };
   for (int i = 0; i < n; ++i) coarsest_[i] = coarsest_b_[lane(i)];
-  solve_forward(factor_.data(), n, n, coarsest_.data());
-  solve_backward(factor_.data(), n, n, coarsest_.data());
+  solve_forward(factor_.data(), n, n, coarsest_.data(), nullptr);
+  solve_backward(factor_.data(), n, n, coarsest_.data(), nullptr);
   for (int i = 0; i < n; ++i) coarsest_x_[lane(i)] = static_cast<float>(coarsest_[i]);
 }
 

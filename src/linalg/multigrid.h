@@ -22,7 +22,8 @@ struct MultigridOptions {
   int coarsest_rows = 256;        // at most, on the level that is factorised
 };
 
-// The better for knowing the rest positions of the pattern's rows. Rows without any coupling (pinned vertices) take no part.
+// The better for knowing the rest positions of the pattern's rows. Rows without any coupling (pinned vertices) take no
+// part.
 class Multigrid : public ApproximateInverse {
  public:
   explicit Multigrid(const MultigridOptions& options = {}) : options_(options) {}

@@ -97,6 +97,7 @@ bool Preconditioner::factorize(const BlockSparse& B, DirectionReport& report) {
   }
   std::copy(B.block.begin(), B.block.end(), B_->block.begin());
   ++report.factorizations;
+  solver_->begin();
   const bool definite = solver_->factorize(*B_);
   report.factorize_seconds += stopwatch.lap();
   return definite;
