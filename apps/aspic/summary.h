@@ -10,6 +10,7 @@ namespace aspic::cli {
 struct RunTotals {
   int steps = 0, unconverged = 0;
   long iterations = 0;
+  long values = 0, gradients = 0, hessians = 0, factorizations = 0, products = 0, cycles = 0;
   int most_iterations = 0;
   long substeps = 0, rejected = 0;  // of adaptive steps
   double seconds = 0;               // in steps

@@ -100,15 +100,16 @@ class QuasiStatic : public Integrator {
     tell_damping(tools.E, context);
     tools.E.begin_step(start.q, 0, 1);
     MinimizeReport lead;
-    solve.guess = guesser_.guess(tools, tools.guess, {start.q, start.qdot, 0, tools.end_time}, end.q, lead);
+    const Guess guess = guesser_.guess(tools, tools.guess, {start.q, start.qdot, 0, tools.end_time}, end.q, lead);
+    solve.guess = guess.used;
     const MinimizeReport report =
-        tools.minimizer.minimize(tools.E, tools.direction, end.q, tools.options, tools.observe);
+        tools.minimizer.minimize(tools.E, tools.direction, end.q, guess.value, tools.options, tools.observe);
     solve.add(report);
     add_work(lead, solve.work);
     if (!judges_direction(tools.options.criterion)) solve.threshold = report.threshold;
     solve.round_off = report.gradient_round_off;
     std::fill(end.qdot.begin(), end.qdot.end(), 0.0);
-    forces.add(tools.E, 1, end.q, {});
+    forces.add(tools.E, 1, end.q, {}, solve.work);
     end.time = tools.end_time;
     return solve;
   }

@@ -63,30 +63,30 @@ bool Guesser::propose(const StepTools& tools, InitialGuess candidate, const Gues
   return true;
 }
 
-InitialGuess Guesser::guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
-                            MinimizeReport& work) {
+Guess Guesser::guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
+                     MinimizeReport& work) {
   const bool is_other =
       wanted == InitialGuess::zero || wanted == InitialGuess::extrapolated || wanted == InitialGuess::last_increment;
-  if (is_other && propose(tools, wanted, known) && std::isfinite(tools.E.value(trial_))) {
-    std::copy(trial_.begin(), trial_.end(), q.begin());
-    return wanted;
+  if (is_other && propose(tools, wanted, known)) {
+    const KnownValue value = evaluate(tools.E, trial_, work);
+    if (std::isfinite(value.E)) {
+      std::copy(trial_.begin(), trial_.end(), q.begin());
+      return {wanted, value};
+    }
   }
 
   std::copy(known.q.begin(), known.q.end(), q.begin());
-  lead_pins(tools, known.time, known.q, q, work);
-  InitialGuess used = InitialGuess::current;
-  if (wanted == InitialGuess::current) return used;
-  double lowest = tools.E.value(q);
+  Guess best = {InitialGuess::current, lead_pins(tools, known.time, known.q, q, work)};
+  if (wanted == InitialGuess::current) return best;
   for (const InitialGuess candidate : {InitialGuess::extrapolated, InitialGuess::last_increment}) {
     if (!propose(tools, candidate, known)) continue;
-    const double energy = tools.E.value(trial_);
+    const KnownValue value = evaluate(tools.E, trial_, work);
     // A body at rest flies nowhere; the comparison fails for NaN.
-    if (!(candidate == InitialGuess::extrapolated ? energy <= lowest : energy < lowest)) continue;
+    if (!(candidate == InitialGuess::extrapolated ? value.E <= best.value.E : value.E < best.value.E)) continue;
     std::copy(trial_.begin(), trial_.end(), q.begin());
-    lowest = energy;
-    used = candidate;
+    best = {candidate, value};
   }
-  return used;
+  return best;
 }
 
 }  // namespace aspic

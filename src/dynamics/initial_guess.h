@@ -32,13 +32,18 @@ struct GuessContext {
   double time = 0;                  // of the minimisation [s]
 };
 
+struct Guess {
+  InitialGuess used = InitialGuess::current;
+  KnownValue value;  // of E there
+};
+
 class Guesser {  // holds the scratch vectors
  public:
-  // Writes the start into `q` and returns which it was. Pinned vertices stand where they are at the time. A guess of
-  // infinite energy gives way to the best; when all are infinite, the pins are led (see lead_pins), which adds to
-  // `work`.
-  InitialGuess guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
-                     MinimizeReport& work);
+  // Writes the start into `q` and says which it was. Pinned vertices stand where they are at the time. A guess of
+  // infinite energy gives way to the best; when all are infinite, the pins are led (see lead_pins). Adds what was spent
+  // to `work`.
+  Guess guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
+              MinimizeReport& work);
 
  private:
   // Writes the candidate into trial_; false when there is none.

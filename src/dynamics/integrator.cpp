@@ -48,7 +48,9 @@ void StepForces::reset(size_t size) {
   for (auto* v : {&gradient, &damping, &acceleration}) v->assign(size, 0.0);
 }
 
-void StepForces::add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc) {
+void StepForces::add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc,
+                     Work& work) {
+  ++work.gradients;
   for (const Energy* V : E.potential()) V->add_gradient(x, weight, gradient);
   for (const Energy* D : E.damping()) D->add_gradient(x, weight, damping);
   for (size_t i = 0; i < acc.size(); ++i) acceleration[i] += weight * acc[i];

@@ -41,7 +41,7 @@ struct StepForces {
 
   void reset(size_t size);
   // Of the terms as they are told, at x.
-  void add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc);
+  void add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc, Work& work);
 };
 
 // How a step went: counts are sums over its stages, the status is the worst of them.

@@ -109,13 +109,12 @@ class RungeKutta : public Integrator {
     if (i > 0) tools.pins.place(time, q_[i]);
     path_.place_velocity(time, v_[i]);
     path_.place_acceleration(time, acc_[i]);
-    const SolveReport solved =
-        force_.solve(tools, time, q_[i], v_[i], DampingDifference::central, t_.b[i], acc_[i], forces);
-    const bool finite = std::all_of(acc_[i].begin(), acc_[i].end(), [](double x) { return std::isfinite(x); });
     MinimizeReport report;
     report.iterations = is_implicit_ ? 0 : 1;
-    report.linear_iterations = solved.iterations;
-    report.status = finite && solved.ok ? Status::converged : Status::undefined;
+    const bool solved =
+        force_.solve(tools, time, q_[i], v_[i], DampingDifference::central, t_.b[i], acc_[i], forces, report);
+    const bool finite = std::all_of(acc_[i].begin(), acc_[i].end(), [](double x) { return std::isfinite(x); });
+    report.status = finite && solved ? Status::converged : Status::undefined;
     return solve.add(report);
   }
 

@@ -41,6 +41,7 @@ struct Simulation::Impl {
     require_finite_energy(model, state.q);
     integrator->set_pin_velocity(*pins, options.h, state);
     if (options.adaptive.tolerance > 0) adaptive.emplace(model, options.adaptive.tolerance, remembers());
+    ledger.begin(model, state.q);
   }
 
   // Whether the start of the step before is needed.
@@ -116,11 +117,9 @@ struct Simulation::Impl {
     report.criterion = options.solver.minimize.criterion;
     report.iterations = solved.work.iterations;
     report.trials = solved.work.trials;
-    report.linear_iterations = solved.work.linear_iterations;
-    report.hessians = solved.work.hessians;
     report.projected_hessians = solved.work.projected_hessians;
-    report.gradients = solved.work.gradients;
-    report.factorizations = solved.work.factorizations;
+    report.add(solved.work);  // the parts of an adaptive step are in the ledger already
+    report.elements = model.mesh.tet_count();
     report.objective = solved.work.value;
     report.objective_gradient = solved.work.gradient_norm;
     report.residual_threshold = solved.threshold;
@@ -253,6 +252,7 @@ void Simulation::restore(const Snapshot& snapshot) {
   impl_->steps_taken = snapshot.steps_taken;
   *impl_->pins = Pins(impl_->model.pins, impl_->start.q);
   impl_->set_history(snapshot.history);
+  impl_->ledger.begin(impl_->model, impl_->state.q);
   impl_->stand_at(impl_->state.time);  // moving targets stand where they stood
 }
 

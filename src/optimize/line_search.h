@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "optimize/objective.h"
+#include "optimize/work.h"
 
 namespace aspic {
 
@@ -26,6 +27,8 @@ struct KnownValue {
   double E = 0;
   double round_off = 0;  // the part of it that is noise
 };
+
+KnownValue evaluate(Objective& E, std::span<const double> x, Work& work);
 
 struct Trial {
   double alpha = 0;

@@ -115,12 +115,10 @@ bool is_round_off(double gradient_norm, double scale, double round_off, double m
 
 void add(const Iteration& iteration, MinimizeReport& report) {
   const DirectionReport& direction = iteration.direction;
+  report.add(direction);
   report.values += iteration.trials;
   report.trials += iteration.trials;
   report.gradients += iteration.gradients;
-  report.hessians += direction.hessians;
-  report.factorizations += direction.factorizations;
-  report.linear_iterations += direction.linear_iterations;
   report.projected_hessians += direction.projected;
   report.projected_elements += direction.projected_elements;
   report.retreats += iteration.retreats;
@@ -183,6 +181,16 @@ void Minimizer::take_step(Progress& at, Iteration& iteration) {
 
 MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std::span<double> x,
                                    const MinimizeOptions& options, const IterationObserver& observe) {
+  Work work;
+  const KnownValue value = evaluate(E, x, work);
+  MinimizeReport report = minimize(E, direction, x, value, options, observe);
+  report.add(work);
+  return report;
+}
+
+MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std::span<double> x,
+                                   const KnownValue& value, const MinimizeOptions& options,
+                                   const IterationObserver& observe) {
   if (judges_direction(options.criterion) && !direction.estimates_minimiser())
     throw InvalidInput("criterion = '" + std::string(to_string(options.criterion)) +
                        "' needs the method newton or newton_cg: directions of " + std::string(direction.name()) +
@@ -191,13 +199,12 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
   trials_.reserve(64);
   direction.begin();
 
-  Progress at{E, direction, x, options, {}, {}};
+  Progress at{E, direction, x, options, {}, value};
   MinimizeReport& report = at.report;
-  at.value = {E.value(x), E.value_round_off()};
   E.gradient(x, g_);
   at.gradient_scale = E.gradient_scale();
   at.gradient_round_off = E.gradient_round_off();
-  report.values = report.gradients = 1;
+  report.gradients = 1;
   for (int i = 0;; ++i) {
     report.iterations = i;
     report.value = at.value.E;
@@ -216,8 +223,8 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
     LiveIteration iteration{{.index = i, .value = report.value, .gradient_norm = report.gradient_norm}, E};
     const bool found = find_step(at, iteration);
     if (found) take_step(at, iteration);
-    iteration.gradients += iteration.direction.gradients;
     add(iteration, report);
+    iteration.gradients += iteration.direction.gradients;
     iteration.x = found ? trial_ : x;
     iteration.g = found ? trial_gradient_ : g_;
     iteration.d = d_, iteration.x_next = x, iteration.tried = trials_;

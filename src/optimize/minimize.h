@@ -70,15 +70,13 @@ struct LiveIteration : Iteration {
   std::span<const Trial> tried;     // by the line search
 };
 
-struct MinimizeReport {
+struct MinimizeReport : Work {
   Status status = Status::iteration_limit;
   int iterations = 0;
   double value = 0, gradient_norm = 0, first_gradient_norm = 0;
   double reached = 0, threshold = 0;  // what the criterion looks at (|g|, or a size of d), and what was asked for
   double gradient_round_off = 0;      // the part of |g| that is noise
-  int values = 0, gradients = 0;      // evaluations
-  int trials = 0, hessians = 0, factorizations = 0, linear_iterations = 0;
-  int projected_hessians = 0, projected_elements = 0, retreats = 0;
+  int trials = 0, retreats = 0, projected_hessians = 0, projected_elements = 0;
 };
 
 using IterationObserver = std::function<bool(const LiveIteration&)>;  // false: stop here
@@ -88,6 +86,9 @@ class Minimizer {  // holds the scratch vectors, so that repeated calls allocate
   // Throws InvalidInput when the criterion judges directions and those of the method say nothing about the distance.
   MinimizeReport minimize(Objective& E, SearchDirection& direction, std::span<double> x, const MinimizeOptions& options,
                           const IterationObserver& observe = {});
+  // The same where E(x) is known already.
+  MinimizeReport minimize(Objective& E, SearchDirection& direction, std::span<double> x, const KnownValue& value,
+                          const MinimizeOptions& options, const IterationObserver& observe = {});
 
  private:
   struct Progress;

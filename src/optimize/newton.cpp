@@ -115,7 +115,7 @@ bool Newton::solve(Objective& E, std::span<const double> x, const Projection& pr
   report.factorize_seconds += stopwatch.lap();
   if (!definite) return false;
   const SolveReport solved = solver_->solve(g, d, forcing);
-  report.linear_iterations += solved.iterations;
+  report.add(solved);
   report.solve_seconds += stopwatch.lap();
   if (solved.indefinite ? !truncated_ : !solved.ok) return false;
   report.truncated = report.truncated || solved.indefinite;

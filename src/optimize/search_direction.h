@@ -5,11 +5,11 @@
 #include <string_view>
 
 #include "optimize/objective.h"
+#include "optimize/work.h"
 
 namespace aspic {
 
-struct DirectionReport {
-  int hessians = 0, gradients = 0, factorizations = 0, linear_iterations = 0;
+struct DirectionReport : Work {
   int projected_elements = 0;  // whose Hessians were made definite
   bool projected = false;      // a projected Hessian was used where the exact one was wanted
   bool truncated = false;      // the linear solve ended at a direction of negative curvature

@@ -39,6 +39,7 @@ bool VertexDescent::compute(Objective& E, std::span<const double> x, std::span<c
     y_.assign(x.begin(), x.end());
     for (int i = 0; i < kSweeps; ++i)
       for (const auto& vertices : colors_) move(E, vertices, report);
+    if (!whole_) report.vertex_sweeps += kSweeps;
     for (size_t i = 0; i < d.size(); ++i) d[i] = y_[i] - x[i];
     const double slope = E.dot(g, d);
     cautious_ = !(slope < 0) || !std::isfinite(slope);
@@ -103,6 +104,7 @@ void VertexDescent::block_jacobi(Objective& E, std::span<const double> x, std::s
       for (int r = 0; r < 3; ++r) d[first + r] = -step[r];
     }
   }
+  if (!whole_) ++report.vertex_sweeps;
   const double length = length_.along(E, x, g, d, report);
   for (double& di : d) di *= length;
 }
