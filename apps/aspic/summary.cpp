@@ -57,7 +57,11 @@ void print_results(std::FILE* stream, const std::filesystem::path& directory) {
 
 void RunTotals::add(const StepReport& report) {
   ++steps;
-  if (!is_success(report.status)) ++unconverged;
+  if (report.status == Status::budget) {
+    ++out_of_time;
+  } else if (!is_success(report.status)) {
+    ++unconverged;
+  }
   iterations += report.iterations;
   values += report.values;
   gradients += report.gradients;
@@ -82,8 +86,11 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
   }
   if (totals.steps > 0) {
     fmt::print(stream, "converged  {} of {}; iterations per step: mean {:.1f}, most {}\n",
-               totals.steps - totals.unconverged, totals.steps, static_cast<double>(totals.iterations) / totals.steps,
-               totals.most_iterations);
+               totals.steps - totals.unconverged - totals.out_of_time, totals.steps,
+               static_cast<double>(totals.iterations) / totals.steps, totals.most_iterations);
+    if (totals.out_of_time > 0)
+      fmt::print(stream, "budget     {} steps ended by solver.time_budget: these results depend on the clock\n",
+                 totals.out_of_time);
     const auto per_step = [&](long count) { return static_cast<double>(count) / totals.steps; };
     fmt::print(stream,
                "work       per step: {:.1f} values, {:.1f} gradients, {:.1f} Hessians, {:.1f} factorizations, {:.1f} "

@@ -14,17 +14,12 @@ constexpr int kLedger = 1;
 TEST(Counts, AStepOfNewtonsMethodEvaluatesNothingTwice) {
   Simulation simulation = simulate(beam(3, {.young = 1e5}));
   for (int i = 0; i < 5; ++i) {
-    int by_slope = 0;
-    const StepReport report = simulation.step([&](const LiveIteration& iteration) {
-      for (const Trial& trial : iteration.tried) by_slope += trial.by_slope;
-      return true;
-    });
+    const StepReport report = simulation.step();
     ASSERT_EQ(report.status, Status::converged);
     ASSERT_EQ(report.projected_hessians, 0);
-    EXPECT_GE(report.iterations, 2);
+    EXPECT_GE(report.iterations, 1);
     EXPECT_EQ(report.trials, report.iterations);
-    EXPECT_EQ(by_slope, 0);
-    const int candidates = 2;  // current, extrapolated
+    const int candidates = i == 0 ? 2 : 3;  // current, extrapolated, and once there is a step before accelerated
     EXPECT_EQ(report.values, candidates + report.trials + kLedger);
     EXPECT_EQ(report.gradients, 1 + report.iterations + 1);
     EXPECT_EQ(report.hessians, report.iterations);

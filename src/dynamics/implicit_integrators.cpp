@@ -14,7 +14,6 @@ class BackwardEuler : public Integrator {
   std::string_view name() const override { return "backward_euler"; }
   int order() const override { return 1; }
   bool is_implicit() const override { return true; }
-  bool tries_last_increment() const override { return false; }  // it is the extrapolated one
 
   StepSolve advance(const StepTools& tools, State& end, StepForces& forces) override {
     StepSolve solve;
@@ -23,8 +22,11 @@ class BackwardEuler : public Integrator {
     stage_.a = end.q;
     stage_.b = end.qdot;
     acceleration_.resize(end.q.size());
-    const StageOptions options{
-        .beta = tools.h, .time = tools.end_time, .ahead = tools.h, .once = takes_one_iteration()};
+    const StageOptions options{.beta = tools.h,
+                               .time = tools.end_time,
+                               .ahead = tools.h,
+                               .tries_last_increment = false,  // it is the extrapolated one
+                               .once = takes_one_iteration()};
     stage_.solve(tools, nullptr, options, end.q, end.qdot, acceleration_, solve, forces);
     end.time = tools.end_time;
     return solve;

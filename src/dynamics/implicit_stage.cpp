@@ -48,6 +48,7 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
   q_.assign(q.begin(), q.end());
   MinimizeOptions minimize = options.once ? one_iteration(tools.options) : tools.options;
   minimize.h = options.beta;
+  minimize.deadline = tools.options.deadline.at_part(options.part);
   if (options.once) {
     tools.pins.place(options.time, q_);
     solve.guess = InitialGuess::current;
@@ -58,7 +59,14 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
     return report;
   }
   MinimizeReport lead;
-  const Guess guess = guesser_.guess(tools, tools.guess, {q, v, options.ahead, options.time}, q_, lead);
+  const GuessContext known{.q = q,
+                           .qdot = v,
+                           .ahead = options.ahead,
+                           .time = options.time,
+                           .predicted = predicted_,
+                           .beta = options.beta,
+                           .tries_last_increment = options.tries_last_increment};
+  const Guess guess = guesser_.guess(tools, tools.guess, known, q_, lead);
   solve.guess = guess.used;
   MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, guess.value, minimize, tools.observe);
   if (!judges_direction(minimize.criterion))

@@ -32,8 +32,8 @@ const std::vector<Entry>& entries() {
 
 // From the best to the worst.
 int badness(Status status) {
-  constexpr std::array kOrder = {Status::converged,  Status::round_off, Status::iteration_limit, Status::stuck,
-                                 Status::no_descent, Status::undefined, Status::interrupted};
+  constexpr std::array kOrder = {Status::converged, Status::round_off,  Status::budget,    Status::iteration_limit,
+                                 Status::stuck,     Status::no_descent, Status::undefined, Status::interrupted};
   int rank = 0;
   for (const Status s : kOrder) {
     if (s == status) break;

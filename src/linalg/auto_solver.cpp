@@ -131,7 +131,8 @@ SolveReport AutoSolver::solve(std::span<const double> b, std::span<double> x, do
   ASPIC_CHECK(H_);
   if (factor_ == Factor::ready) return cholesky_.solve(b, x, tolerance);
   SolveReport report = cg_.solve(b, x, tolerance);
-  if (report.ok || report.indefinite || !fits_ || !std::isfinite(report.relative_residual)) return report;
+  if (report.ok || report.indefinite || report.stopped || !fits_ || !std::isfinite(report.relative_residual))
+    return report;
   if (factor_ == Factor::none) {
     ++fallbacks_;
     factor_ = factorize_directly();

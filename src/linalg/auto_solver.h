@@ -28,6 +28,7 @@ class AutoSolver : public LinearSolver {
 
   std::string_view name() const override { return "auto"; }
   std::string description() const override;
+  void set_deadline(const Deadline& deadline) override { cg_.set_deadline(deadline); }
   void analyze(const BlockPattern& pattern) override;
   bool factorize(const BlockSparse& H) override;
   SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) override;

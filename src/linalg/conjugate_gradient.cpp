@@ -89,6 +89,8 @@ SolveReport ConjugateGradient::solve(std::span<const double> b, std::span<double
   }
   double last_measured = b_norm;
   for (; report.iterations < max_iterations_; ++report.iterations) {
+    report.stopped = report.iterations > 0 && deadline_.has_passed();
+    if (report.stopped) return report;
     H_->multiply(p_, q_);
     ++report.products;
     const double curvature = p_dot_q();

@@ -14,6 +14,7 @@ class ConjugateGradient : public LinearSolver {
   void set_max_iterations(int count) { max_iterations_ = count; }
 
   std::string_view name() const override { return "block_jacobi"; }
+  void set_deadline(const Deadline& deadline) override { deadline_ = deadline; }
   void analyze(const BlockPattern& pattern) override;
   bool factorize(const BlockSparse& H) override;  // false: a diagonal block is not positive definite, nor made so
   // Where negative curvature is met, x is the iterate so far (at the first iteration: the preconditioned b), which
@@ -32,6 +33,7 @@ class ConjugateGradient : public LinearSolver {
 
   Blocks blocks_ = Blocks::as_they_are;
   int max_iterations_ = 10'000;
+  Deadline deadline_;
   const BlockSparse* H_ = nullptr;
   std::vector<Mat3d> inverse_diagonal_;
   std::vector<double> r_, z_, p_, q_;

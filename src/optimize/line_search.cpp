@@ -45,6 +45,7 @@ LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<co
       result.gradient_known = now.by_slope;
       return result;
     }
+    if (options.deadline.has_passed()) return result;
     alpha *= options.shrink;
   }
   return result;

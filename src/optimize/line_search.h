@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "base/deadline.h"
 #include "optimize/objective.h"
 #include "optimize/work.h"
 
@@ -20,6 +21,7 @@ struct LineSearchOptions {
   double shrink = 0.5;                // p, in (0, 1)
   double tolerance = 1e-10;           // tol: smaller steps are given up as stuck
   DecreaseTest test = DecreaseTest::textbook;
+  Deadline deadline = {};  // no further trial afterwards; the first is made
 };
 
 // What E is at x.

@@ -36,10 +36,12 @@ class Newton : public SearchDirection {
                            std::span<double> d, DirectionReport& report);
   bool solve(Objective& E, std::span<const double> x, const Projection& projection, std::span<const double> g,
              double forcing, std::span<double> d, DirectionReport& report);
+  bool is_late(DirectionReport& report) const { return report.stopped = report.stopped || deadline_.has_passed(); }
   std::unique_ptr<LinearSolver> solver_;
   NewtonDefiniteness definiteness_;
   bool truncated_ = false;  // a solve that met negative curvature is used as far as it came
   Forcing forcing_;
+  Deadline deadline_;
   ProgressiveProjection progressive_;
   uint64_t analyzed_version_ = 0;
   bool cautious_next_ = false;  // after a retreat: project, or more than before
