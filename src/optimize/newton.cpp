@@ -60,6 +60,7 @@ std::string Newton::description() const {
 
 void Newton::begin() {
   cautious_next_ = clamped_ = false;
+  is_new_ = true;
   forcing_.begin();
   progressive_.begin();
 }
@@ -69,6 +70,7 @@ bool Newton::compute(Objective& E, std::span<const double> x, std::span<const do
                      std::span<double> d, DirectionReport& report) {
   const double forcing = forcing_.at(std::sqrt(E.dot(g, g)), accuracy);
   const bool cautious = std::exchange(cautious_next_, false);
+  is_first_ = std::exchange(is_new_, false);
   deadline_ = accuracy.deadline;
   solver_->set_deadline(deadline_);
   if (definiteness_ == NewtonDefiniteness::progressive) {
