@@ -95,6 +95,7 @@ class Comparer {
 
   MethodResult run(const std::string& method, SolverOptions solver, const StepReport& reference) {
     solver.minimize.max_iterations = kMostIterations;
+    solver.time_budget = 0;
     MethodResult best;
     for (int i = 0; i < kRepetitions; ++i) {
       simulation_.restore(start_);

@@ -126,6 +126,7 @@ std::string in_words(const Minimization& done) {
       return fmt::format("converged after {} iterations", report.iterations);
     case Status::round_off:
       return fmt::format("as good as double precision allows, after {} iterations", report.iterations);
+    case Status::budget:  // of time steps only
     case Status::iteration_limit:
       return fmt::format(
           "not converged: the limit of {} iterations was reached; raise --max-iterations, or the "

@@ -84,7 +84,7 @@ int unconverged_before(const fs::path& directory, int steps) {
   int count = 0;
   for (int i = 0; i < steps && std::getline(file, line); ++i) {
     const auto has = [&](Status status) { return line.find(fmt::format(",{},", to_string(status))) != line.npos; };
-    if (!has(Status::converged) && !has(Status::round_off)) ++count;
+    if (!has(Status::converged) && !has(Status::round_off) && !has(Status::budget)) ++count;
   }
   return count;
 }
@@ -140,7 +140,7 @@ class Runner {
     directory_.on_step(report, scene_.simulation);
     totals_.add(report);
     const Explanation why = explain(scene_.simulation, report);
-    if (!is_success(report.status)) warn(report, why);
+    if (!is_success(report.status) && report.status != Status::budget) warn(report, why);
     if (arguments_.json) {
       fmt::print("{}\n", step_json(report, why, scene_.simulation.potential_names()));
       if (std::fflush(stdout) != 0) throw InvalidInput("--json: standard output cannot be written; is the disk full?");
@@ -260,8 +260,8 @@ Examples:
   aspic run beam.toml --json | jq .iterations     one line of JSON per step
   aspic run beam.toml --landscape 12:0            why is step 12 slow? its first iteration, looked at closely
 
-Exit codes: 0 done, 2 bad input, 3 some step did not converge (unless --allow-unconverged) or an explicit
-scheme blew up, which ends the run;
+Exit codes: 0 done, 2 bad input, 3 some step did not converge (unless --allow-unconverged, or because its
+solver.time_budget was spent) or an explicit scheme blew up, which ends the run;
 130 interrupted by ctrl-C, 143 by kill: everything up to the last whole step is written.)");
   command->add_option("INPUT", arguments->input, "Scene (.toml), mesh, or with --resume a run directory")->required();
   command->add_option("--set", arguments->overrides, "Override a value: material.young=2e5; can be repeated")

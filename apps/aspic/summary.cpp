@@ -57,8 +57,18 @@ void print_results(std::FILE* stream, const std::filesystem::path& directory) {
 
 void RunTotals::add(const StepReport& report) {
   ++steps;
-  if (!is_success(report.status)) ++unconverged;
+  if (report.status == Status::budget) {
+    ++out_of_time;
+  } else if (!is_success(report.status)) {
+    ++unconverged;
+  }
   iterations += report.iterations;
+  values += report.values;
+  gradients += report.gradients;
+  hessians += report.hessians;
+  factorizations += report.factorizations;
+  products += report.products;
+  cycles += report.cycles;
   most_iterations = std::max(most_iterations, report.iterations);
   substeps += report.substeps;
   rejected += report.rejected;
@@ -76,8 +86,19 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
   }
   if (totals.steps > 0) {
     fmt::print(stream, "converged  {} of {}; iterations per step: mean {:.1f}, most {}\n",
-               totals.steps - totals.unconverged, totals.steps, static_cast<double>(totals.iterations) / totals.steps,
-               totals.most_iterations);
+               totals.steps - totals.unconverged - totals.out_of_time, totals.steps,
+               static_cast<double>(totals.iterations) / totals.steps, totals.most_iterations);
+    if (totals.out_of_time > 0)
+      fmt::print(stream, "budget     {} steps ended by solver.time_budget: these results depend on the clock\n",
+                 totals.out_of_time);
+    const auto per_step = [&](long count) { return static_cast<double>(count) / totals.steps; };
+    fmt::print(stream,
+               "work       per step: {:.1f} values, {:.1f} gradients, {:.1f} Hessians, {:.1f} factorizations, {:.1f} "
+               "matrix products",
+               per_step(totals.values), per_step(totals.gradients), per_step(totals.hessians),
+               per_step(totals.factorizations), per_step(totals.products));
+    if (totals.cycles > 0) fmt::print(stream, ", {:.1f} multigrid cycles", per_step(totals.cycles));
+    fmt::print(stream, "\n");
     if (totals.substeps + totals.rejected != totals.steps)
       fmt::print(stream, "parts      {} taken, {} rejected as too long; {:.1f} per step\n", totals.substeps,
                  totals.rejected, static_cast<double>(totals.substeps) / totals.steps);

@@ -9,7 +9,9 @@ namespace aspic::cli {
 
 struct RunTotals {
   int steps = 0, unconverged = 0;
+  int out_of_time = 0;  // ended by solver.time_budget, which was asked for: not among the unconverged
   long iterations = 0;
+  long values = 0, gradients = 0, hessians = 0, factorizations = 0, products = 0, cycles = 0;
   int most_iterations = 0;
   long substeps = 0, rejected = 0;  // of adaptive steps
   double seconds = 0;               // in steps

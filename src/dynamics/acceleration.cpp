@@ -15,15 +15,16 @@ void Acceleration::add_damping(const StepTools& tools, std::span<const double> q
   for (const Energy* D : tools.E.damping()) D->add_gradient(drift_, scale, damping_);
 }
 
-SolveReport Acceleration::solve(const StepTools& tools, double time, std::span<const double> q,
-                                std::span<const double> v, DampingDifference difference, double weight,
-                                std::span<double> acc, StepForces& forces) {
+bool Acceleration::solve(const StepTools& tools, double time, std::span<const double> q, std::span<const double> v,
+                         DampingDifference difference, double weight, std::span<double> acc, StepForces& forces,
+                         Work& work) {
   const size_t n = q.size();
   for (auto* w : {&gradient_, &damping_, &drift_, &force_, &scratch_}) w->assign(n, 0.0);
   const StepContext context{q, tools.h, time};
   tell_potential(tools.E, context);
   tell_damping(tools.E, context);
   for (const Energy* V : tools.E.potential()) V->add_gradient(q, 1, gradient_);
+  ++work.gradients;
   if (difference == DampingDifference::forward) {
     add_damping(tools, q, v, tools.h, 1);
   } else {
@@ -37,6 +38,7 @@ SolveReport Acceleration::solve(const StepTools& tools, double time, std::span<c
   for (size_t i = 0; i < n; ++i) force_[i] = -gradient_[i] - damping_[i] - scratch_[i];
   tools.pins.set_zero(force_);
   const SolveReport solved = solve_mass(tools, force_, scratch_);
+  work.add(solved);
   tools.pins.set_zero(scratch_);
   for (size_t i = 0; i < n; ++i) {
     acc[i] += scratch_[i];
@@ -44,7 +46,7 @@ SolveReport Acceleration::solve(const StepTools& tools, double time, std::span<c
     forces.damping[i] += weight * damping_[i];
     forces.acceleration[i] += weight * acc[i];
   }
-  return solved;
+  return solved.ok;
 }
 
 SolveReport Acceleration::solve_mass(const StepTools& tools, std::span<const double> force, std::span<double> acc) {

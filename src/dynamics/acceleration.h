@@ -18,9 +18,9 @@ enum class DampingDifference {
 class Acceleration {
  public:
   // `acc` holds the accelerations of the pinned vertices before, all afterwards [m/s^2]. `time` is that of q and v.
-  // Adds what acted, times `weight`, to `forces`.
-  SolveReport solve(const StepTools& tools, double time, std::span<const double> q, std::span<const double> v,
-                    DampingDifference difference, double weight, std::span<double> acc, StepForces& forces);
+  // Adds what acted, times `weight`, to `forces`. False: the mass matrix could not be solved with.
+  bool solve(const StepTools& tools, double time, std::span<const double> q, std::span<const double> v,
+             DampingDifference difference, double weight, std::span<double> acc, StepForces& forces, Work& work);
 
  private:
   void add_damping(const StepTools& tools, std::span<const double> q, std::span<const double> v, double h,

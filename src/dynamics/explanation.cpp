@@ -105,6 +105,10 @@ class Explainer {
         return no_descent();
       case Status::inaccurate:
         return inaccurate();
+      case Status::budget:
+        return {"the time budget was spent after " + std::to_string(report_.iterations) +
+                    " iterations; the step ends where they came",
+                "solver.time_budget = " + text(solver_.time_budget), "raise solver.time_budget, or solver.tolerance"};
       case Status::converged:
       case Status::round_off:
       case Status::interrupted:

@@ -22,15 +22,14 @@ class ExplicitEuler : public Integrator {
     set_pin_acceleration(tools, end);
     MinimizeReport report;
     report.iterations = 1;
-    const SolveReport solved =
-        force_.solve(tools, start.time, end.q, end.qdot, DampingDifference::forward, 1, acceleration_, forces);
-    report.linear_iterations = solved.iterations;
+    const bool solved =
+        force_.solve(tools, start.time, end.q, end.qdot, DampingDifference::forward, 1, acceleration_, forces, report);
     update(h, acceleration_, end);
     end.time = tools.end_time;
     tools.pins.place(end.time, end.q);
 
     const bool finite = std::all_of(end.q.begin(), end.q.end(), [](double x) { return std::isfinite(x); });
-    report.status = finite && solved.ok ? Status::converged : Status::undefined;
+    report.status = finite && solved ? Status::converged : Status::undefined;
     StepSolve solve;
     solve.add(report);
     return solve;

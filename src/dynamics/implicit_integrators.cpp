@@ -14,7 +14,6 @@ class BackwardEuler : public Integrator {
   std::string_view name() const override { return "backward_euler"; }
   int order() const override { return 1; }
   bool is_implicit() const override { return true; }
-  bool tries_last_increment() const override { return false; }  // it is the extrapolated one
 
   StepSolve advance(const StepTools& tools, State& end, StepForces& forces) override {
     StepSolve solve;
@@ -23,8 +22,11 @@ class BackwardEuler : public Integrator {
     stage_.a = end.q;
     stage_.b = end.qdot;
     acceleration_.resize(end.q.size());
-    const StageOptions options{
-        .beta = tools.h, .time = tools.end_time, .ahead = tools.h, .once = takes_one_iteration()};
+    const StageOptions options{.beta = tools.h,
+                               .time = tools.end_time,
+                               .ahead = tools.h,
+                               .tries_last_increment = false,  // it is the extrapolated one
+                               .once = takes_one_iteration()};
     stage_.solve(tools, nullptr, options, end.q, end.qdot, acceleration_, solve, forces);
     end.time = tools.end_time;
     return solve;
@@ -100,15 +102,16 @@ class QuasiStatic : public Integrator {
     tell_damping(tools.E, context);
     tools.E.begin_step(start.q, 0, 1);
     MinimizeReport lead;
-    solve.guess = guesser_.guess(tools, tools.guess, {start.q, start.qdot, 0, tools.end_time}, end.q, lead);
+    const Guess guess = guesser_.guess(tools, tools.guess, {start.q, start.qdot, 0, tools.end_time}, end.q, lead);
+    solve.guess = guess.used;
     const MinimizeReport report =
-        tools.minimizer.minimize(tools.E, tools.direction, end.q, tools.options, tools.observe);
+        tools.minimizer.minimize(tools.E, tools.direction, end.q, guess.value, tools.options, tools.observe);
     solve.add(report);
     add_work(lead, solve.work);
     if (!judges_direction(tools.options.criterion)) solve.threshold = report.threshold;
     solve.round_off = report.gradient_round_off;
     std::fill(end.qdot.begin(), end.qdot.end(), 0.0);
-    forces.add(tools.E, 1, end.q, {});
+    forces.add(tools.E, 1, end.q, {}, solve.work);
     end.time = tools.end_time;
     return solve;
   }

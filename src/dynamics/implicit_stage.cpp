@@ -48,6 +48,7 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
   q_.assign(q.begin(), q.end());
   MinimizeOptions minimize = options.once ? one_iteration(tools.options) : tools.options;
   minimize.h = options.beta;
+  minimize.deadline = tools.options.deadline.at_part(options.part);
   if (options.once) {
     tools.pins.place(options.time, q_);
     solve.guess = InitialGuess::current;
@@ -58,8 +59,16 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
     return report;
   }
   MinimizeReport lead;
-  solve.guess = guesser_.guess(tools, tools.guess, {q, v, options.ahead, options.time}, q_, lead);
-  MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, minimize, tools.observe);
+  const GuessContext known{.q = q,
+                           .qdot = v,
+                           .ahead = options.ahead,
+                           .time = options.time,
+                           .predicted = predicted_,
+                           .beta = options.beta,
+                           .tries_last_increment = options.tries_last_increment};
+  const Guess guess = guesser_.guess(tools, tools.guess, known, q_, lead);
+  solve.guess = guess.used;
+  MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, guess.value, minimize, tools.observe);
   if (!judges_direction(minimize.criterion))
     solve.threshold += options.weight * (report.threshold / tools.E.gradient_unit());
   solve.round_off += options.weight * (report.gradient_round_off / tools.E.gradient_unit());
@@ -84,7 +93,7 @@ bool ImplicitStage::solve(const StepTools& tools, const PinPath* path, const Sta
     path->place_velocity(options.time, v);
     path->place_acceleration(options.time, acc);
   }
-  forces.add(tools.E, options.weight, q, acc);
+  forces.add(tools.E, options.weight, q, acc, solve.work);
   return true;
 }
 

@@ -12,11 +12,13 @@
 namespace aspic {
 
 struct StageOptions {
-  double beta = 0;    // [s]
-  double time = 0;    // of q* [s]
-  double weight = 1;  // of its forces in those of the step
-  double ahead = 0;   // from the known positions to q* [s]
-  bool once = false;  // one Newton iteration from the known positions, without line search
+  double beta = 0;                   // [s]
+  double time = 0;                   // of q* [s]
+  double weight = 1;                 // of its forces in those of the step
+  double ahead = 0;                  // from the known positions to q* [s]
+  bool tries_last_increment = true;  // see GuessContext
+  double part = 1;                   // of the step's time budget, by whose end this one ends
+  bool once = false;                 // one Newton iteration from the known positions, without line search
 };
 
 class ImplicitStage {

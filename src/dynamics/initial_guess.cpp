@@ -23,14 +23,19 @@ std::string_view to_string(InitialGuess guess) {
       return "extrapolated";
     case InitialGuess::last_increment:
       return "last_increment";
+    case InitialGuess::accelerated:
+      return "accelerated";
   }
   return "unknown";
 }
 
 namespace {
 
-constexpr InitialGuess kChoices[] = {InitialGuess::best, InitialGuess::zero, InitialGuess::current,
-                                     InitialGuess::extrapolated, InitialGuess::last_increment};
+constexpr InitialGuess kChoices[] = {InitialGuess::best,           InitialGuess::zero,
+                                     InitialGuess::current,        InitialGuess::extrapolated,
+                                     InitialGuess::last_increment, InitialGuess::accelerated};
+// In the order in which `best` tries them after `current`.
+constexpr InitialGuess kAhead[] = {InitialGuess::extrapolated, InitialGuess::last_increment, InitialGuess::accelerated};
 
 }  // namespace
 
@@ -58,35 +63,40 @@ bool Guesser::propose(const StepTools& tools, InitialGuess candidate, const Gues
     const State &last = *tools.previous, &start = tools.start;
     const double part = known.ahead > 0 ? known.ahead / (start.time - last.time) : 1;
     for (size_t i = 0; i < trial_.size(); ++i) trial_[i] += part * (start.q[i] - last.q[i]);
+  } else if (candidate == InitialGuess::accelerated) {
+    if (!tools.previous || known.beta == 0) return false;
+    const State &last = *tools.previous, &start = tools.start;
+    const double part = known.beta * known.beta / (start.time - last.time);
+    for (size_t i = 0; i < trial_.size(); ++i) trial_[i] = known.predicted[i] + part * (start.qdot[i] - last.qdot[i]);
   }
   tools.pins.place(known.time, trial_);
   return true;
 }
 
-InitialGuess Guesser::guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
-                            MinimizeReport& work) {
-  const bool is_other =
-      wanted == InitialGuess::zero || wanted == InitialGuess::extrapolated || wanted == InitialGuess::last_increment;
-  if (is_other && propose(tools, wanted, known) && std::isfinite(tools.E.value(trial_))) {
-    std::copy(trial_.begin(), trial_.end(), q.begin());
-    return wanted;
+Guess Guesser::guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
+                     MinimizeReport& work) {
+  const bool is_other = wanted != InitialGuess::best && wanted != InitialGuess::current;
+  if (is_other && propose(tools, wanted, known)) {
+    const KnownValue value = evaluate(tools.E, trial_, work);
+    if (std::isfinite(value.E)) {
+      std::copy(trial_.begin(), trial_.end(), q.begin());
+      return {wanted, value};
+    }
   }
 
   std::copy(known.q.begin(), known.q.end(), q.begin());
-  lead_pins(tools, known.time, known.q, q, work);
-  InitialGuess used = InitialGuess::current;
-  if (wanted == InitialGuess::current) return used;
-  double lowest = tools.E.value(q);
-  for (const InitialGuess candidate : {InitialGuess::extrapolated, InitialGuess::last_increment}) {
+  Guess best = {InitialGuess::current, lead_pins(tools, known.time, known.q, q, work)};
+  if (wanted == InitialGuess::current) return best;
+  for (const InitialGuess candidate : kAhead) {
+    if (candidate == InitialGuess::last_increment && !known.tries_last_increment) continue;
     if (!propose(tools, candidate, known)) continue;
-    const double energy = tools.E.value(trial_);
+    const KnownValue value = evaluate(tools.E, trial_, work);
     // A body at rest flies nowhere; the comparison fails for NaN.
-    if (!(candidate == InitialGuess::extrapolated ? energy <= lowest : energy < lowest)) continue;
+    if (!(candidate == InitialGuess::extrapolated ? value.E <= best.value.E : value.E < best.value.E)) continue;
     std::copy(trial_.begin(), trial_.end(), q.begin());
-    lowest = energy;
-    used = candidate;
+    best = {candidate, value};
   }
-  return used;
+  return best;
 }
 
 }  // namespace aspic

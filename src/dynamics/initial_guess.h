@@ -14,11 +14,12 @@ struct StepTools;
 
 enum class InitialGuess {
   none,            // nothing is minimised: explicit schemes
-  best,            // the lowest energy of current, extrapolated and last_increment
+  best,            // the lowest energy of those below, but for zero
   zero,            // no displacement: the shape at rest
   current,         // q
   extrapolated,    // q + h qdot, the flight without forces
   last_increment,  // q + what the previous step added
+  accelerated,     // q~ + beta^2 (mean acceleration in the previous step): the stage with its forces
 };
 std::string_view to_string(InitialGuess guess);
 
@@ -27,18 +28,26 @@ InitialGuess initial_guess_named(const std::string& name);  // throws InvalidInp
 
 // What is known when a minimisation for a later time starts.
 struct GuessContext {
-  std::span<const double> q, qdot;  // the latest positions and velocities
-  double ahead = 0;                 // from them to the minimisation's time [s]; 0 in statics
-  double time = 0;                  // of the minimisation [s]
+  std::span<const double> q, qdot;         // the latest positions and velocities
+  double ahead = 0;                        // from them to the minimisation's time [s]; 0 in statics
+  double time = 0;                         // of the minimisation [s]
+  std::span<const double> predicted = {};  // q~ of the stage
+  double beta = 0;                         // of the stage, whose end is q~ + beta^2 acc [s]; 0 in statics
+  bool tries_last_increment = true;        // `best` does; not where it is the extrapolated guess
+};
+
+struct Guess {
+  InitialGuess used = InitialGuess::current;
+  KnownValue value;  // of E there
 };
 
 class Guesser {  // holds the scratch vectors
  public:
-  // Writes the start into `q` and returns which it was. Pinned vertices stand where they are at the time. A guess of
-  // infinite energy gives way to the best; when all are infinite, the pins are led (see lead_pins), which adds to
-  // `work`.
-  InitialGuess guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
-                     MinimizeReport& work);
+  // Writes the start into `q` and says which it was. Pinned vertices stand where they are at the time. A guess of
+  // infinite energy gives way to the best; when all are infinite, the pins are led (see lead_pins). Adds what was spent
+  // to `work`.
+  Guess guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
+              MinimizeReport& work);
 
  private:
   // Writes the candidate into trial_; false when there is none.

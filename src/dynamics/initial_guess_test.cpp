@@ -25,7 +25,8 @@ TEST(InitialGuess, EveryOneLeadsToTheSameMotion) {
       for (int i = 0; i < 5; ++i) {
         const StepReport report = simulation.step();
         EXPECT_TRUE(is_success(report.status)) << integrator << " " << guess;
-        if (guess != "best" && !(guess == "last_increment" && i == 0)) {
+        const bool needs_past = guess == "last_increment" || guess == "accelerated";
+        if (guess != "best" && !(needs_past && i == 0)) {
           EXPECT_EQ(to_string(report.initial_guess), guess) << integrator;
         }
       }
@@ -51,6 +52,20 @@ TEST(InitialGuess, OfAFlightWithoutForcesIsItsEndWhenExtrapolated) {
   Simulation simulation = flying_box("last_increment");
   simulation.step();  // no step before it
   EXPECT_EQ(simulation.step().iterations, 0);
+}
+
+TEST(InitialGuess, OfAFreeFallIsItsEndWhenAccelerated) {
+  for (const char* integrator : {"backward_euler", "midpoint"})
+    for (const char* guess : {"accelerated", "best"}) {
+      Simulation simulation =
+          simulate(make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}), {}), with_guess(guess, integrator));
+      simulation.step();
+      for (int i = 0; i < 3; ++i) {
+        const StepReport report = simulation.step();
+        EXPECT_EQ(report.iterations, 0) << integrator << " " << guess;
+        EXPECT_EQ(report.initial_guess, InitialGuess::accelerated) << integrator << " " << guess;
+      }
+    }
 }
 
 TEST(InitialGuess, OfABodyThatReturnsToRestIsItsShapeAtRest) {

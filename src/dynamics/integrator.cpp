@@ -32,8 +32,8 @@ const std::vector<Entry>& entries() {
 
 // From the best to the worst.
 int badness(Status status) {
-  constexpr std::array kOrder = {Status::converged,  Status::round_off, Status::iteration_limit, Status::stuck,
-                                 Status::no_descent, Status::undefined, Status::interrupted};
+  constexpr std::array kOrder = {Status::converged, Status::round_off,  Status::budget,    Status::iteration_limit,
+                                 Status::stuck,     Status::no_descent, Status::undefined, Status::interrupted};
   int rank = 0;
   for (const Status s : kOrder) {
     if (s == status) break;
@@ -48,7 +48,9 @@ void StepForces::reset(size_t size) {
   for (auto* v : {&gradient, &damping, &acceleration}) v->assign(size, 0.0);
 }
 
-void StepForces::add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc) {
+void StepForces::add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc,
+                     Work& work) {
+  ++work.gradients;
   for (const Energy* V : E.potential()) V->add_gradient(x, weight, gradient);
   for (const Energy* D : E.damping()) D->add_gradient(x, weight, damping);
   for (size_t i = 0; i < acc.size(); ++i) acceleration[i] += weight * acc[i];

@@ -41,7 +41,7 @@ struct StepForces {
 
   void reset(size_t size);
   // Of the terms as they are told, at x.
-  void add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc);
+  void add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc, Work& work);
 };
 
 // How a step went: counts are sums over its stages, the status is the worst of them.
@@ -64,9 +64,7 @@ class Integrator {
   virtual bool is_static() const { return false; }
   virtual bool is_multistep() const { return false; }  // uses StepTools::previous, a step of the same length ago
   virtual bool chooses_guess() const { return is_implicit(); }  // whether StepTools::guess is heeded
-  // What `best` tries besides the current positions and the extrapolated ones.
-  virtual bool tries_last_increment() const { return chooses_guess(); }
-  virtual bool takes_one_iteration() const { return false; }  // of Newton's method, in place of a minimisation
+  virtual bool takes_one_iteration() const { return false; }    // of Newton's method, in place of a minimisation
   // Gives the pinned vertices of the first state the velocities that the scheme expects there.
   virtual void set_pin_velocity(const Pins&, double /* h */, State&) const {}
   // Writes the state at the end of the step, and what acted in it.

@@ -15,28 +15,26 @@ MinimizeOptions rough(const MinimizeOptions& options) {
   few.max_iterations = std::min(options.max_iterations, 8);
   few.criterion = Criterion::scale;
   few.tolerance = 1e-2;
+  few.deadline = {};  // without a start there is nothing to be had
   return few;
 }
 
 }  // namespace
 
 void add_work(const MinimizeReport& spent, MinimizeReport& work) {
+  work.add(spent);
   work.iterations += spent.iterations;
-  work.values += spent.values;
-  work.gradients += spent.gradients;
   work.trials += spent.trials;
-  work.hessians += spent.hessians;
-  work.factorizations += spent.factorizations;
-  work.linear_iterations += spent.linear_iterations;
   work.projected_hessians += spent.projected_hessians;
   work.projected_elements += spent.projected_elements;
   work.retreats += spent.retreats;
 }
 
-void lead_pins(const StepTools& tools, double time, std::span<const double> from, std::span<double> q,
-               MinimizeReport& work) {
+KnownValue lead_pins(const StepTools& tools, double time, std::span<const double> from, std::span<double> q,
+                     MinimizeReport& work) {
   tools.pins.place(time, q);
-  if (std::isfinite(tools.E.value(q))) return;
+  const KnownValue at_once = evaluate(tools.E, q, work);
+  if (std::isfinite(at_once.E)) return at_once;
   const std::vector<double> to(q.begin(), q.end());
 
   std::vector<double> reached(from.begin(), from.end()), trial = reached;
@@ -46,20 +44,24 @@ void lead_pins(const StepTools& tools, double time, std::span<const double> from
     trial = reached;
     for (size_t k = 0; k < trial.size(); ++k)
       if (tools.pins.holds(static_cast<int>(k / 3))) trial[k] = next < 1 ? from[k] + next * (to[k] - from[k]) : to[k];
-    if (!std::isfinite(tools.E.value(trial))) {
+    const KnownValue there = evaluate(tools.E, trial, work);
+    if (!std::isfinite(there.E)) {
       part /= 2;
       continue;
     }
     done = next;
     reached = trial;
-    if (done == 1) break;
+    if (done == 1) {
+      std::copy(reached.begin(), reached.end(), q.begin());
+      return there;
+    }
     const MinimizeReport spent =
-        tools.minimizer.minimize(tools.E, tools.direction, reached, rough(tools.options), tools.observe);
+        tools.minimizer.minimize(tools.E, tools.direction, reached, there, rough(tools.options), tools.observe);
     add_work(spent, work);
     if (spent.status == Status::interrupted) break;
     part *= 2;
   }
-  if (done == 1) std::copy(reached.begin(), reached.end(), q.begin());
+  return at_once;
 }
 
 }  // namespace aspic

@@ -1,13 +1,14 @@
 #include "dynamics/ledger.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace aspic {
 namespace {
 
-double total(const std::vector<Energy*>& terms, std::span<const double> x) {
+double load_energy(const Model& model, std::span<const double> x) {
   double V = 0;
-  for (const Energy* term : terms) V += term->value(x);
+  for (const auto& load : model.loads) V += load->value(x);
   return V;
 }
 
@@ -20,18 +21,33 @@ double kinetic_energy(const MassMatrix& mass, std::span<const double> qdot, std:
   return T;
 }
 
-// What V gains because targets move from where they are at the start to where they are at the end: with the body where
-// it starts, and for schemes of higher order the mean of that and of the body where it ends.
-double Ledger::target_work(const StepTools& tools, int order, const State& end, double& potential_before) {
-  const std::vector<Energy*>& V = tools.E.potential();
+// What the loads gain because targets move from where they are at the start to where they are at the end: with the body
+// where it starts, and for schemes of higher order the mean of that and of the body where it ends.
+double Ledger::target_work(const StepTools& tools, int order, const State& end, double& loads_before) const {
+  const Model& model = tools.model;
   const State& start = tools.start;
   const StepContext before{start.q, tools.h, start.time}, after{start.q, tools.h, tools.end_time};
   tell_potential(tools.E, before);
-  potential_before = total(V, start.q);
-  const double at_end = order > 1 ? total(V, end.q) : 0;
+  loads_before = load_energy(model, start.q);
+  const double at_end = order > 1 ? load_energy(model, end.q) : 0;
   tell_potential(tools.E, after);
-  const double early = total(V, start.q) - potential_before;
-  return order > 1 ? (early + (total(V, end.q) - at_end)) / 2 : early;
+  const double early = load_energy(model, start.q) - loads_before;
+  return order > 1 ? (early + (load_energy(model, end.q) - at_end)) / 2 : early;
+}
+
+void Ledger::begin(const Model& model, std::span<const double> q) {
+  Work uncounted;
+  last_q_.clear();
+  elastic_energies(model, q, uncounted);
+}
+
+std::span<const double> Ledger::elastic_energies(const Model& model, std::span<const double> q, Work& work) {
+  if (std::equal(q.begin(), q.end(), last_q_.begin(), last_q_.end())) return elastic_;
+  elastic_.clear();
+  for (const auto& V : model.elasticity) elastic_.push_back(V->value(q));
+  ++work.values;
+  last_q_.assign(q.begin(), q.end());
+  return elastic_;
 }
 
 void Ledger::note_worst_vertex(const Pins& pins, StepReport& report) const {
@@ -50,6 +66,7 @@ void Ledger::add(const StepTools& tools, int order, const State& end, const Step
   for (auto* v : {&Ma_, &momentum_, &residual_}) v->assign(n, 0.0);
   double potential_before = 0;
   const double target = target_work(tools, order, end, potential_before);
+  for (const double V : elastic_energies(tools.model, start.q, report)) potential_before += V;
   const double kinetic_before = kinetic_energy(*tools.model.mass, start.qdot, momentum_);
   tools.model.mass->multiply(forces.acceleration, Ma_);
 
@@ -69,7 +86,8 @@ void Ledger::add(const StepTools& tools, int order, const State& end, const Step
   report.potential.clear();
   report.potential.reserve(tools.E.potential().size());
   report.potential_total = 0;
-  for (const Energy* V : tools.E.potential()) report.potential.push_back(V->value(end.q));
+  for (const double V : elastic_energies(tools.model, end.q, report)) report.potential.push_back(V);
+  for (const auto& V : tools.model.loads) report.potential.push_back(V->value(end.q));
   for (const double V : report.potential) report.potential_total += V;
   report.kinetic = kinetic_energy(*tools.model.mass, end.qdot, momentum_);
 

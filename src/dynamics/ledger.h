@@ -16,15 +16,20 @@ namespace aspic {
 
 class Ledger {
  public:
+  // Evaluates the elastic energies of the state from which the next step starts: afterwards each step ends where the
+  // next one starts, and evaluates only those of its end.
+  void begin(const Model& model, std::span<const double> q);
   // Adds the works of a step that started in tools.start, was acted on by `forces` and ended in `end` to the report,
   // whose energies become those of `end`. Moving targets then stand where they are at the end of the step.
   void add(const StepTools& tools, int order, const State& end, const StepForces& forces, StepReport& report);
 
  private:
-  double target_work(const StepTools& tools, int order, const State& end, double& potential_before);
+  double target_work(const StepTools& tools, int order, const State& end, double& loads_before) const;
+  std::span<const double> elastic_energies(const Model& model, std::span<const double> q, Work& work);
   void note_worst_vertex(const Pins& pins, StepReport& report) const;
 
   std::vector<double> Ma_, momentum_, residual_;
+  std::vector<double> last_q_, elastic_;  // where the elastic energies were evaluated last, and one for each body
 };
 
 // 1/2 qdot' M qdot [J]; `momentum` receives M qdot.

@@ -78,6 +78,14 @@ class RungeKutta : public Integrator {
     return c_[i] == 1 ? tools.end_time : tools.start.time + c_[i] * tools.h;
   }
 
+  // By when the i-th stage must be done: every implicit one has the same share.
+  double part_of_budget(int i) const {
+    int done = 0, all = 0;
+    for (int j = 0; j < t_.stages; ++j)
+      if (t_.A[j][j] > 0) ++all, done += j <= i;
+    return static_cast<double>(done) / all;
+  }
+
   // What the stages before give: all but A_ii.
   void combine(const StepTools& tools, int i, std::span<double> q, std::span<double> v) const {
     std::copy(tools.start.q.begin(), tools.start.q.end(), q.begin());
@@ -99,7 +107,8 @@ class RungeKutta : public Integrator {
     const StageOptions options{.beta = tools.h * t_.A[i][i],
                                .time = time_of(tools, i),
                                .weight = t_.b[i],
-                               .ahead = tools.h * (c_[i] - (i > 0 ? c_[i - 1] : 0))};
+                               .ahead = tools.h * (c_[i] - (i > 0 ? c_[i - 1] : 0)),
+                               .part = part_of_budget(i)};
     return stage_.solve(tools, &path_, options, q_[i], v_[i], acc_[i], solve, forces);
   }
 
@@ -109,13 +118,12 @@ class RungeKutta : public Integrator {
     if (i > 0) tools.pins.place(time, q_[i]);
     path_.place_velocity(time, v_[i]);
     path_.place_acceleration(time, acc_[i]);
-    const SolveReport solved =
-        force_.solve(tools, time, q_[i], v_[i], DampingDifference::central, t_.b[i], acc_[i], forces);
-    const bool finite = std::all_of(acc_[i].begin(), acc_[i].end(), [](double x) { return std::isfinite(x); });
     MinimizeReport report;
     report.iterations = is_implicit_ ? 0 : 1;
-    report.linear_iterations = solved.iterations;
-    report.status = finite && solved.ok ? Status::converged : Status::undefined;
+    const bool solved =
+        force_.solve(tools, time, q_[i], v_[i], DampingDifference::central, t_.b[i], acc_[i], forces, report);
+    const bool finite = std::all_of(acc_[i].begin(), acc_[i].end(), [](double x) { return std::isfinite(x); });
+    report.status = finite && solved ? Status::converged : Status::undefined;
     return solve.add(report);
   }
 

@@ -41,12 +41,14 @@ struct Simulation::Impl {
     require_finite_energy(model, state.q);
     integrator->set_pin_velocity(*pins, options.h, state);
     if (options.adaptive.tolerance > 0) adaptive.emplace(model, options.adaptive.tolerance, remembers());
+    ledger.begin(model, state.q);
   }
 
   // Whether the start of the step before is needed.
   bool remembers() const {
-    const bool by_best = guess == InitialGuess::best && integrator->tries_last_increment();
-    return integrator->is_multistep() || by_best || guess == InitialGuess::last_increment;
+    const bool by_guess =
+        guess == InitialGuess::best || guess == InitialGuess::last_increment || guess == InitialGuess::accelerated;
+    return integrator->is_multistep() || (by_guess && integrator->chooses_guess());
   }
 
   // A product, not a sum of steps, so that the end of a run is met exactly.
@@ -54,17 +56,21 @@ struct Simulation::Impl {
 
   // Of a step from `before`.
   StepTools tools(const IterationObserver& observe, const Consent& go_on, double end_time) {
-    const SolveTools solve{model, *pins, *E, minimizer, *direction, options.solver.minimize, observe, go_on, guess};
+    const SolveTools solve{model, *pins, *E, minimizer, *direction, minimize, observe, go_on, guess};
     return {solve, before, has_previous ? &previous : nullptr, options.h, end_time};
   }
 
   StepReport step(const IterationObserver& observe, const Consent& go_on) {
     Stopwatch stopwatch;
+    minimize = options.solver.minimize;
+    if (options.solver.time_budget > 0)
+      minimize.deadline = Deadline(options.clock, options.solver.time_budget).earlier_by(report_seconds);
     before = state;
     const StepTools with = tools(observe, go_on, end_of_next_step());
     StepReport report;
     const StepSolve solved = adaptive ? adaptive->advance(*integrator, with, ledger, state, report)
                                       : integrator->advance(with, state, forces);
+    const double advanced = minimize.deadline.now();
     describe(solved, report);
     const bool is_interrupted = solved.work.status == Status::interrupted;
     if (!can_go_on(report.status)) {
@@ -83,6 +89,7 @@ struct Simulation::Impl {
     if (!is_interrupted) report.step = ++steps_taken;
     report.min_det_F = INFINITY;
     for (const auto& V : model.elasticity) report.min_det_F = std::min(report.min_det_F, V->min_det_F(state.q));
+    report_seconds = minimize.deadline.now() - advanced;
     report.seconds = stopwatch.lap();
     return report;
   }
@@ -116,11 +123,9 @@ struct Simulation::Impl {
     report.criterion = options.solver.minimize.criterion;
     report.iterations = solved.work.iterations;
     report.trials = solved.work.trials;
-    report.linear_iterations = solved.work.linear_iterations;
-    report.hessians = solved.work.hessians;
     report.projected_hessians = solved.work.projected_hessians;
-    report.gradients = solved.work.gradients;
-    report.factorizations = solved.work.factorizations;
+    report.add(solved.work);  // the parts of an adaptive step are in the ledger already
+    report.elements = model.mesh.tet_count();
     report.objective = solved.work.value;
     report.objective_gradient = solved.work.gradient_norm;
     report.residual_threshold = solved.threshold;
@@ -168,6 +173,8 @@ struct Simulation::Impl {
   StepForces forces;  // of the last step
   Ledger ledger;
   int steps_taken = 0;
+  MinimizeOptions minimize;   // of the step under way
+  double report_seconds = 0;  // what the report of the last step took, if it had a time budget
 };
 
 Simulation::Simulation(Model model, State initial, SimulationOptions options) {
@@ -253,6 +260,7 @@ void Simulation::restore(const Snapshot& snapshot) {
   impl_->steps_taken = snapshot.steps_taken;
   *impl_->pins = Pins(impl_->model.pins, impl_->start.q);
   impl_->set_history(snapshot.history);
+  impl_->ledger.begin(impl_->model, impl_->state.q);
   impl_->stand_at(impl_->state.time);  // moving targets stand where they stood
 }
 

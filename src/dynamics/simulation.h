@@ -24,6 +24,7 @@ struct SimulationOptions {
   AdaptiveOptions adaptive = {};
   std::string initial_guess = "best";  // see initial_guess_names()
   SolverOptions solver;
+  WallClock clock = steady_seconds;  // for solver.time_budget
 };
 
 std::vector<std::string> integrator_names();

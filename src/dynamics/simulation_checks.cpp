@@ -20,6 +20,22 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
+std::optional<SolverConflict> budget_conflict(const SimulationOptions& options, const Integrator& integrator) {
+  const double budget = options.solver.time_budget;
+  if (budget == 0) return std::nullopt;
+  std::string reason;
+  if (!(budget > 0) || !std::isfinite(budget))
+    reason = "must be positive, or 0 for none";
+  else if (!integrator.is_implicit() || integrator.takes_one_iteration())
+    reason = "says nothing to integrator = '" + options.integrator + "', which takes as long as it takes";
+  else if (options.adaptive.tolerance > 0)
+    reason = "and time.adaptive exclude each other: a step is divided until it is accurate, however long that takes";
+  else if (options.solver.minimize.line_search.test == DecreaseTest::none)
+    reason = "needs a line search, which test = 'none' turns off: else E may rise before time is up";
+  if (reason.empty()) return std::nullopt;
+  return SolverConflict{"time_budget", "solver.time_budget = " + std::to_string(budget) + " " + reason};
+}
+
 }  // namespace
 
 void require_mass(const Model& model, const Pins& pins) {
@@ -70,9 +86,10 @@ std::optional<SolverConflict> find_conflict(const SimulationOptions& options) {
     return SolverConflict{"initial_guess", chosen_guess + " says nothing to " + name + ": " +
                                                (integrator->is_implicit() ? "it starts from the current positions"
                                                                           : "it minimises nothing")};
-  if (guess == InitialGuess::extrapolated && integrator->is_static())
+  if ((guess == InitialGuess::extrapolated || guess == InitialGuess::accelerated) && integrator->is_static())
     return SolverConflict{"initial_guess",
                           chosen_guess + " needs velocities, of which " + name + " knows none; try 'last_increment'"};
+  if (auto conflict = budget_conflict(options, *integrator)) return conflict;
   if (!integrator->takes_one_iteration()) return std::nullopt;
   const auto unfit = [&](const char* option, const std::string& method) {
     return SolverConflict{option, std::string("solver.") + option + " = '" + method + "' does not do for " + name +

@@ -11,17 +11,17 @@ namespace aspic {
 
 using Consent = std::function<bool()>;  // asked between the parts of an adaptive step; empty: always given
 
-struct StepReport {
-  int step = 0;     // 1 for the first
-  double time = 0;  // at the end of the step [s]
+struct StepReport : Work {  // of all its solves, and of what is reported here
+  int step = 0;             // 1 for the first
+  double time = 0;          // at the end of the step [s]
 
   Status status = Status::converged;
   Criterion criterion = Criterion::scale;
-  int iterations = 0, trials = 0, linear_iterations = 0, hessians = 0, projected_hessians = 0;  // of all its solves
-  int gradients = 0, factorizations = 0;
-  double objective = 0, objective_gradient = 0;     // E and |g| at the end of the last minimisation
-  InitialGuess initial_guess = InitialGuess::none;  // where that started
-  int substeps = 1, rejected = 0;                   // parts it was taken in; parts tried that were too long
+  int iterations = 0, trials = 0, projected_hessians = 0;  // of all its solves
+  int elements = 0;                                        // tets: what an evaluation goes over
+  double objective = 0, objective_gradient = 0;            // E and |g| at the end of the last minimisation
+  InitialGuess initial_guess = InitialGuess::none;         // where that started
+  int substeps = 1, rejected = 0;                          // parts it was taken in; parts tried that were too long
   double residual = 0;            // |M a + dV/dx + dD/dx| over the free vertices; of parts the largest [N]
   double residual_threshold = 0;  // the residual that was asked for [N]; 0 for a scheme without a solve
   double residual_round_off = 0;  // the part of a residual that double precision cannot tell from zero [N]

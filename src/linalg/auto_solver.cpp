@@ -164,7 +164,8 @@ SolveReport AutoSolver::solve(std::span<const double> b, std::span<double> x, do
     total.iterations += report.iterations;  // what was tried first was paid for
     total.products += report.products;
     total.cycles += report.cycles;
-    if (report.ok || report.indefinite || !std::isfinite(report.relative_residual) || !fall_back()) return total;
+    total.stopped = report.stopped;
+    if (report.ok || report.indefinite || report.stopped || !std::isfinite(report.relative_residual) || !fall_back()) return total;
     if (factorize_with_choice()) continue;
     total.indefinite = true;
     return total;

@@ -31,6 +31,9 @@ class AutoSolver : public LinearSolver {
 
   std::string_view name() const override { return "auto"; }
   std::string description() const override;  // the choice and its reason
+  void set_deadline(const Deadline& deadline) override {
+    for (LinearSolver* solver : solver_) solver->set_deadline(deadline);
+  }
   void analyze(const BlockPattern& pattern) override;
   void begin() override;
   bool factorize(const BlockSparse& H) override;

@@ -65,6 +65,8 @@ SolveReport ConjugateGradient::solve(std::span<const double> b, std::span<double
   double rz = dot(r_, z_);
   bool is_measured = true;
   while (report.iterations < max_iterations_) {
+    report.stopped = report.iterations > 0 && deadline_.has_passed();
+    if (report.stopped) break;
     H_->multiply(p_, q_);
     ++report.products;
     const double curvature = dot(p_, q_);
@@ -97,7 +99,7 @@ SolveReport ConjugateGradient::solve(std::span<const double> b, std::span<double
     rz = new_rz;
     turn(beta);
   }
-  if (!is_measured && tolerance < kTrusted) residual = measure(b, x, report);
+  if (!is_measured && !report.stopped && tolerance < kTrusted) residual = measure(b, x, report);
   report.relative_residual = residual / b_norm;
   rate_ = report.iterations / std::max(1e-3, -std::log10(report.relative_residual));
   if (first_rate_ == 0) first_rate_ = rate_;

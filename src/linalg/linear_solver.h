@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/deadline.h"
 #include "linalg/block_sparse.h"
 
 namespace aspic {
@@ -15,6 +16,7 @@ namespace aspic {
 struct SolveReport {
   bool ok = false;               // the residual is below the tolerance asked for
   bool indefinite = false;       // negative curvature was met
+  bool stopped = false;          // the deadline passed first; x is as far as it came, a descent direction for -b
   int iterations = 0;            // 0 for a direct solver
   int products = 0;              // with H
   int cycles = 0;                // of multigrid
@@ -33,6 +35,8 @@ class LinearSolver {
   virtual bool factorize(const BlockSparse& H) = 0;  // false: H is not positive definite. H must outlive the solves.
   // `tolerance` bounds |b - H x| / |b|; a direct solver ignores it. x holds the answer, 3 numbers per row.
   virtual SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) = 0;
+  // Of the solves from now on; a direct solver takes its time.
+  virtual void set_deadline(const Deadline&) {}
 };
 
 // "auto", "cholesky", "multigrid" and "block_jacobi" (conjugate gradients). Throws InvalidInput for another name.

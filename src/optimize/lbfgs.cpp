@@ -51,8 +51,9 @@ void LBFGS::remember(Objective& E, std::span<const double> x, std::span<const do
   has_last_ = true;
 }
 
-bool LBFGS::compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy&,
+bool LBFGS::compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
                     std::span<double> d, DirectionReport& report) {
+  B_.set_deadline(accuracy.deadline);
   resize(x.size());
   remember(E, x, g);
   corrected_ = count_ > 0;

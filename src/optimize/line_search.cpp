@@ -14,6 +14,12 @@ double allowed_value(double value, double alpha, double slope, const LineSearchO
 
 }  // namespace
 
+KnownValue evaluate(Objective& E, std::span<const double> x, Work& work) {
+  ++work.values;
+  const double value = E.value(x);
+  return {value, E.value_round_off()};
+}
+
 LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<const double> d, const KnownValue& value,
                            double slope, const LineSearchOptions& options, std::span<double> trial,
                            std::span<double> trial_gradient, std::vector<Trial>& trials) {
@@ -39,6 +45,7 @@ LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<co
       result.gradient_known = now.by_slope;
       return result;
     }
+    if (options.deadline.has_passed()) return result;
     alpha *= options.shrink;
   }
   return result;

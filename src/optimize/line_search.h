@@ -3,7 +3,9 @@
 #include <span>
 #include <vector>
 
+#include "base/deadline.h"
 #include "optimize/objective.h"
+#include "optimize/work.h"
 
 namespace aspic {
 
@@ -19,6 +21,7 @@ struct LineSearchOptions {
   double shrink = 0.5;                // p, in (0, 1)
   double tolerance = 1e-10;           // tol: smaller steps are given up as stuck
   DecreaseTest test = DecreaseTest::textbook;
+  Deadline deadline = {};  // no further trial afterwards; the first is made
 };
 
 // What E is at x.
@@ -26,6 +29,8 @@ struct KnownValue {
   double E = 0;
   double round_off = 0;  // the part of it that is noise
 };
+
+KnownValue evaluate(Objective& E, std::span<const double> x, Work& work);
 
 struct Trial {
   double alpha = 0;

@@ -14,6 +14,8 @@ std::string_view to_string(Status status) {
       return "converged";
     case Status::round_off:
       return "round_off";
+    case Status::budget:
+      return "budget";
     case Status::iteration_limit:
       return "iteration_limit";
     case Status::stuck:
@@ -115,12 +117,10 @@ bool is_round_off(double gradient_norm, double scale, double round_off, double m
 
 void add(const Iteration& iteration, MinimizeReport& report) {
   const DirectionReport& direction = iteration.direction;
+  report.add(direction);
   report.values += iteration.trials;
   report.trials += iteration.trials;
   report.gradients += iteration.gradients;
-  report.hessians += direction.hessians;
-  report.factorizations += direction.factorizations;
-  report.linear_iterations += direction.linear_iterations;
   report.projected_hessians += direction.projected;
   report.projected_elements += direction.projected_elements;
   report.retreats += iteration.retreats;
@@ -136,9 +136,16 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
   MinimizeReport& report = at.report;
   const bool judges_gradient = !at.judges_direction();
   const InnerAccuracy accuracy = {options.max_forcing,
-                                  judges_gradient ? 0.5 * report.threshold / report.gradient_norm : 0};
+                                  judges_gradient ? 0.5 * report.threshold / report.gradient_norm : 0,
+                                  options.deadline.earlier_by(cost_.to_finish())};
+  LineSearchOptions line_search = options.line_search;
+  line_search.deadline = options.deadline.earlier_by(cost_.gradient);
+  const double begin = options.deadline.now();
   for (;; ++iteration.retreats) {
     const bool found = direction.compute(E, at.x, g_, accuracy, d_, iteration.direction);
+    const double computed = options.deadline.now();
+    cost_.direction = computed - begin;
+    cost_.stoppable = iteration.direction.stoppable_seconds;
     at.slope = found ? E.dot(g_, d_) : 0;
     iteration.decrement = -0.5 * at.slope;
     report.status = Status::no_descent;
@@ -147,20 +154,23 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
       if (at.judges_direction()) {
         report.reached = direction_size(E, options, d_, at.slope);
         // Near a saddle a short direction does not mean that a minimum is near.
-        const bool is_convex = !iteration.direction.projected && !iteration.direction.truncated;
-        at.last_direction = is_convex && report.reached <= options.tolerance;
+        const DirectionReport& made = iteration.direction;
+        const bool is_convex = !made.projected && !made.truncated;
+        at.last_direction = is_convex && !made.stopped && report.reached <= options.tolerance;
       }
       Stopwatch stopwatch;
-      at.step = backtrack(E, at.x, d_, at.value, at.slope, options.line_search, trial_, trial_gradient_, trials_);
+      at.step = backtrack(E, at.x, d_, at.value, at.slope, line_search, trial_, trial_gradient_, trials_);
       iteration.trials += static_cast<int>(trials_.size());
       iteration.gradients += at.step.gradients;
       iteration.line_search_seconds += stopwatch.lap();
+      cost_.line_search = options.deadline.now() - computed;
       if (at.step.alpha > 0) return true;
       report.status = Status::stuck;
       if (at.last_direction) return report.status = Status::converged, false;
       if (is_round_off(report.gradient_norm, at.gradient_scale, E.gradient_round_off(), kRoundOffMargin))
         return report.status = Status::round_off, false;
     }
+    if (iteration.direction.stopped || line_search.deadline.has_passed()) return report.status = Status::budget, false;
     if (!direction.retreat()) return false;
   }
 }
@@ -168,6 +178,7 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
 // Afterwards `trial_` and `trial_gradient_` hold where the step began.
 void Minimizer::take_step(Progress& at, Iteration& iteration) {
   Stopwatch stopwatch;
+  const double begin = at.options.deadline.now();
   at.gradient_round_off = at.report.gradient_round_off = at.E.gradient_round_off();  // of the last Hessian
   std::swap_ranges(trial_.begin(), trial_.end(), at.x.begin());
   at.value = at.step.value;
@@ -179,10 +190,21 @@ void Minimizer::take_step(Progress& at, Iteration& iteration) {
   at.gradient_scale = at.E.gradient_scale();
   iteration.alpha = at.step.alpha;
   iteration.gradient_seconds = stopwatch.lap();
+  if (!at.step.gradient_known) cost_.gradient = at.options.deadline.now() - begin;
 }
 
 MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std::span<double> x,
                                    const MinimizeOptions& options, const IterationObserver& observe) {
+  Work work;
+  const KnownValue value = evaluate(E, x, work);
+  MinimizeReport report = minimize(E, direction, x, value, options, observe);
+  report.add(work);
+  return report;
+}
+
+MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std::span<double> x,
+                                   const KnownValue& value, const MinimizeOptions& options,
+                                   const IterationObserver& observe) {
   if (judges_direction(options.criterion) && !direction.estimates_minimiser())
     throw InvalidInput("criterion = '" + std::string(to_string(options.criterion)) +
                        "' needs the method newton or newton_cg: directions of " + std::string(direction.name()) +
@@ -191,13 +213,12 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
   trials_.reserve(64);
   direction.begin();
 
-  Progress at{E, direction, x, options, {}, {}};
+  Progress at{E, direction, x, options, {}, value};
   MinimizeReport& report = at.report;
-  at.value = {E.value(x), E.value_round_off()};
   E.gradient(x, g_);
   at.gradient_scale = E.gradient_scale();
   at.gradient_round_off = E.gradient_round_off();
-  report.values = report.gradients = 1;
+  report.gradients = 1;
   for (int i = 0;; ++i) {
     report.iterations = i;
     report.value = at.value.E;
@@ -212,12 +233,14 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
     if (is_round_off(report.gradient_norm, at.gradient_scale, at.gradient_round_off, 1))
       return ended(Status::round_off);
     if (i == options.max_iterations) return ended(Status::iteration_limit);
+    // The first iteration is tried even if it may not fit: without any, no force would act.
+    if (options.deadline.left() <= (i > 0 ? cost_.at_least() : 0)) return ended(Status::budget);
 
     LiveIteration iteration{{.index = i, .value = report.value, .gradient_norm = report.gradient_norm}, E};
     const bool found = find_step(at, iteration);
     if (found) take_step(at, iteration);
-    iteration.gradients += iteration.direction.gradients;
     add(iteration, report);
+    iteration.gradients += iteration.direction.gradients;
     iteration.x = found ? trial_ : x;
     iteration.g = found ? trial_gradient_ : g_;
     iteration.d = d_, iteration.x_next = x, iteration.tried = trials_;

@@ -15,6 +15,7 @@ namespace aspic {
 enum class Status {
   converged,        // the criterion is within the tolerance
   round_off,        // no more progress is possible in double precision: as good as converged
+  budget,           // the deadline came first: as far as time allowed
   iteration_limit,  // max_iterations reached first
   stuck,            // the line search found no decrease
   no_descent,       // no descent direction could be computed
@@ -46,6 +47,7 @@ struct MinimizeOptions {
   double h = 1;              // [s], what velocity and acceleration are measured by
   double max_forcing = 0.1;  // the loosest inner linear solve, as a relative residual
   LineSearchOptions line_search;
+  Deadline deadline = {};  // the best iterate by then is the result
 };
 
 struct Iteration {
@@ -70,15 +72,13 @@ struct LiveIteration : Iteration {
   std::span<const Trial> tried;     // by the line search
 };
 
-struct MinimizeReport {
+struct MinimizeReport : Work {
   Status status = Status::iteration_limit;
   int iterations = 0;
   double value = 0, gradient_norm = 0, first_gradient_norm = 0;
   double reached = 0, threshold = 0;  // what the criterion looks at (|g|, or a size of d), and what was asked for
   double gradient_round_off = 0;      // the part of |g| that is noise
-  int values = 0, gradients = 0;      // evaluations
-  int trials = 0, hessians = 0, factorizations = 0, linear_iterations = 0;
-  int projected_hessians = 0, projected_elements = 0, retreats = 0;
+  int trials = 0, retreats = 0, projected_hessians = 0, projected_elements = 0;
 };
 
 using IterationObserver = std::function<bool(const LiveIteration&)>;  // false: stop here
@@ -88,14 +88,26 @@ class Minimizer {  // holds the scratch vectors, so that repeated calls allocate
   // Throws InvalidInput when the criterion judges directions and those of the method say nothing about the distance.
   MinimizeReport minimize(Objective& E, SearchDirection& direction, std::span<double> x, const MinimizeOptions& options,
                           const IterationObserver& observe = {});
+  // The same where E(x) is known already.
+  MinimizeReport minimize(Objective& E, SearchDirection& direction, std::span<double> x, const KnownValue& value,
+                          const MinimizeOptions& options, const IterationObserver& observe = {});
 
  private:
   struct Progress;
+  // What the last iteration took, by the clock of the deadline: is there time for another one? [s]
+  struct Cost {
+    double direction = 0, line_search = 0, gradient = 0;
+    double stoppable = 0;  // of the direction
+
+    double to_finish() const { return line_search + gradient; }  // once there is a direction
+    double at_least() const { return direction - stoppable + to_finish(); }
+  };
   bool find_step(Progress& at, Iteration& iteration);
   void take_step(Progress& at, Iteration& iteration);
 
   std::vector<double> g_, d_, trial_, trial_gradient_;
   std::vector<Trial> trials_;
+  Cost cost_;  // from one minimisation to the next
 };
 
 }  // namespace aspic

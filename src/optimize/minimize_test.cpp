@@ -151,12 +151,12 @@ TEST(Minimize, TheToleranceIsRelativeToWhatTheCriterionNames) {
 
 TEST(Minimize, EveryStatusAndCriterionHasItsOwnName) {
   std::set<std::string_view> names;
-  for (const Status status : {Status::converged, Status::round_off, Status::iteration_limit, Status::stuck,
-                              Status::no_descent, Status::interrupted, Status::undefined})
+  for (const Status status : {Status::converged, Status::round_off, Status::budget, Status::iteration_limit,
+                              Status::stuck, Status::no_descent, Status::interrupted, Status::undefined})
     names.insert(to_string(status));
   for (const Criterion criterion : {Criterion::scale, Criterion::first_gradient, Criterion::absolute})
     names.insert(to_string(criterion));
-  EXPECT_EQ(names.size(), 10u);
+  EXPECT_EQ(names.size(), 11u);
   EXPECT_FALSE(names.contains("unknown"));
 }
 
@@ -219,6 +219,48 @@ TEST(Minimize, AShortDirectionNearASaddleIsNoConvergence) {
     EXPECT_TRUE(is_success(report.status)) << to_string(report.status);
     EXPECT_NEAR(std::abs(x[0]), 1, 1e-6) << truncated;
   }
+}
+
+// Time that passes with every evaluation.
+class Timed : public Rosenbrock {
+ public:
+  double value(std::span<const double> x) override { return ++time, Rosenbrock::value(x); }
+  void gradient(std::span<const double> x, std::span<double> g) override { ++time, Rosenbrock::gradient(x, g); }
+  const BlockSparse& hessian(std::span<const double> x, const Projection& projection) override {
+    return ++time, Rosenbrock::hessian(x, projection);
+  }
+  double time = 0;
+};
+
+TEST(Minimize, ADeadlineEndsItWhereverItIs) {
+  bool ended_in_line_search = false;
+  for (double seconds = 1; seconds < 100; ++seconds) {
+    Timed f;
+    const WallClock clock = [&f] { return f.time; };
+    std::vector<double> x = {-1.5, 0.6, 0};
+    const double start = f.at({x[0], x[1]});
+    MinimizeOptions options = tight();
+    options.deadline = Deadline(clock, seconds);
+    double last_alpha = 1;
+    int last_trials = 0;
+    const MinimizeReport report = Minimizer().minimize(f, *newton(), x, options, [&](const Iteration& iteration) {
+      last_alpha = iteration.alpha;
+      last_trials = iteration.trials;
+      return true;
+    });
+    EXPECT_LE(f.at({x[0], x[1]}), start);
+    EXPECT_EQ(report.value, f.at({x[0], x[1]}));
+    ended_in_line_search = ended_in_line_search || (last_alpha == 0 && last_trials > 0);
+    if (report.status == Status::converged) {
+      EXPECT_GT(seconds, 10);
+      EXPECT_TRUE(ended_in_line_search);
+      return;
+    }
+    EXPECT_EQ(report.status, Status::budget);
+    EXPECT_FALSE(is_success(report.status));
+    EXPECT_LE(f.time, seconds + 2);
+  }
+  ADD_FAILURE() << "never converged";
 }
 
 TEST(LineSearch, AnAscentDirectionIsStuck) {

@@ -61,6 +61,7 @@ std::string Newton::description() const {
 
 void Newton::begin() {
   cautious_next_ = clamped_ = false;
+  is_new_ = true;
   forcing_.begin();
   solver_->begin();
   progressive_.begin();
@@ -71,13 +72,16 @@ bool Newton::compute(Objective& E, std::span<const double> x, std::span<const do
                      std::span<double> d, DirectionReport& report) {
   const double forcing = forcing_.at(std::sqrt(E.dot(g, g)), accuracy);
   const bool cautious = std::exchange(cautious_next_, false);
+  is_first_ = std::exchange(is_new_, false);
+  deadline_ = accuracy.deadline;
+  solver_->set_deadline(deadline_);
   if (definiteness_ == NewtonDefiniteness::progressive) {
     if (cautious) progressive_.tighten(g);
     return solve_progressively(E, x, g, forcing, d, report);
   }
   clamped_ = cautious;
   if (!clamped_ && solve(E, x, {first_choice(definiteness_)}, g, forcing, d, report)) return true;
-  if (definiteness_ != NewtonDefiniteness::on_demand) return false;
+  if (definiteness_ != NewtonDefiniteness::on_demand || is_late(report)) return false;
   clamped_ = report.projected = true;
   return solve(E, x, {Definiteness::clamped}, g, forcing, d, report);
 }
@@ -95,7 +99,7 @@ bool Newton::solve_progressively(Objective& E, std::span<const double> x, std::s
     const Projection projection = progressive_.at(g);
     report.projected = report.projected || projection.kind != Definiteness::exact;
     if (solve(E, x, projection, g, forcing, d, report)) break;
-    if (progressive_.is_complete()) return false;
+    if (progressive_.is_complete() || is_late(report)) return false;
   }
   progressive_.relax();
   return true;
@@ -108,6 +112,7 @@ bool Newton::solve(Objective& E, std::span<const double> x, const Projection& pr
   ++report.hessians;
   report.projected_elements += E.projected_elements();
   report.hessian_seconds += stopwatch.lap();
+  if (is_late(report)) return false;
   if (analyzed_version_ != H.pattern->version) {
     solver_->analyze(*H.pattern);
     analyzed_version_ = H.pattern->version;
@@ -116,10 +121,13 @@ bool Newton::solve(Objective& E, std::span<const double> x, const Projection& pr
   const bool definite = solver_->factorize(H);
   report.factorize_seconds += stopwatch.lap();
   if (!definite) return false;
+  const double begin = deadline_.now();
   const SolveReport solved = solver_->solve(g, d, forcing);
-  report.linear_iterations += solved.iterations;
+  if (solved.iterations > 0) report.stoppable_seconds += deadline_.now() - begin;
+  report.stopped = report.stopped || solved.stopped;
+  report.add(solved);
   report.solve_seconds += stopwatch.lap();
-  if (solved.indefinite ? !truncated_ : !solved.ok) return false;
+  if (solved.indefinite ? !truncated_ : !solved.ok && !solved.stopped) return false;
   report.truncated = report.truncated || solved.indefinite;
   for (double& di : d) di = -di;
   return true;

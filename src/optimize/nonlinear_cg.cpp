@@ -17,8 +17,9 @@ bool NonlinearCG::retreat() {
   return conjugate_;
 }
 
-bool NonlinearCG::compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy&,
-                          std::span<double> d, DirectionReport& report) {
+bool NonlinearCG::compute(Objective& E, std::span<const double> x, std::span<const double> g,
+                          const InnerAccuracy& accuracy, std::span<double> d, DirectionReport& report) {
+  B_.set_deadline(accuracy.deadline);
   for (auto* v : {&p_, &z_, &last_g_, &last_z_}) v->resize(x.size());
   if (!B_.apply(E, x, g, z_, report)) return false;
   const double b = remembers_ ? beta(E, g) : 0;

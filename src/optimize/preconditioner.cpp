@@ -59,7 +59,7 @@ bool Preconditioner::apply(Objective& E, std::span<const double> x, std::span<co
   } else {
     Stopwatch stopwatch;
     const SolveReport solved = solver_->solve(r, z, kTolerance);
-    report.linear_iterations += solved.iterations;
+    report.add(solved);
     report.solve_seconds += stopwatch.lap();
     return solved.ok;
   }

@@ -31,6 +31,9 @@ class Preconditioner {
   std::string description() const;  // "hessian (cholesky: ...)"
 
   void begin() { is_made_ = false; }
+  void set_deadline(const Deadline& deadline) {
+    if (solver_) solver_->set_deadline(deadline);
+  }
   // z = B^-1 r, 3 numbers per vertex. The first call after begin() makes B at x. False: B is not positive definite, or
   // the system could not be solved.
   bool apply(Objective& E, std::span<const double> x, std::span<const double> r, std::span<double> z,

@@ -4,15 +4,18 @@
 #include <string>
 #include <string_view>
 
+#include "base/deadline.h"
 #include "optimize/objective.h"
+#include "optimize/work.h"
 
 namespace aspic {
 
-struct DirectionReport {
-  int hessians = 0, gradients = 0, factorizations = 0, linear_iterations = 0;
-  int projected_elements = 0;  // whose Hessians were made definite
-  bool projected = false;      // a projected Hessian was used where the exact one was wanted
-  bool truncated = false;      // the linear solve ended at a direction of negative curvature
+struct DirectionReport : Work {
+  int projected_elements = 0;    // whose Hessians were made definite
+  bool projected = false;        // a projected Hessian was used where the exact one was wanted
+  bool truncated = false;        // the linear solve ended at a direction of negative curvature
+  bool stopped = false;          // the deadline passed
+  double stoppable_seconds = 0;  // by the deadline's clock, of what could have been stopped
   double hessian_seconds = 0, factorize_seconds = 0, solve_seconds = 0;  // wall time
 };
 
@@ -21,6 +24,7 @@ struct DirectionReport {
 struct InnerAccuracy {
   double loosest = 0.1;
   double enough = 0;
+  Deadline deadline = {};  // of the computation: a solve that can be stopped by then is, and d is what it has
 };
 
 class SearchDirection {

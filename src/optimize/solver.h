@@ -16,6 +16,7 @@ struct SolverOptions {
   std::string linear = "auto";          // see linear_solver_names()
   std::string definiteness = "auto";    // see definiteness_names(); "auto": on_demand
   MinimizeOptions minimize;
+  double time_budget = 0;  // [s] of wall time for a time step; 0: none. Results then depend on the clock
 };
 
 std::vector<std::string> minimizer_names();

@@ -29,16 +29,19 @@ void VertexDescent::begin() {
 
 bool VertexDescent::retreat() { return cautious_next_ = !cautious_; }
 
-bool VertexDescent::compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy&,
-                            std::span<double> d, DirectionReport& report) {
+bool VertexDescent::compute(Objective& E, std::span<const double> x, std::span<const double> g,
+                            const InnerAccuracy& accuracy, std::span<double> d, DirectionReport& report) {
   color(E, x, report);
   cautious_ = cautious_next_;
   cautious_next_ = false;
   Stopwatch stopwatch;
   if (!cautious_) {
     y_.assign(x.begin(), x.end());
-    for (int i = 0; i < kSweeps; ++i)
+    for (int i = 0; i < kSweeps && !report.stopped; ++i) {
       for (const auto& vertices : colors_) move(E, vertices, report);
+      if (!whole_) ++report.vertex_sweeps;
+      report.stopped = accuracy.deadline.has_passed();
+    }
     for (size_t i = 0; i < d.size(); ++i) d[i] = y_[i] - x[i];
     const double slope = E.dot(g, d);
     cautious_ = !(slope < 0) || !std::isfinite(slope);
@@ -103,6 +106,7 @@ void VertexDescent::block_jacobi(Objective& E, std::span<const double> x, std::s
       for (int r = 0; r < 3; ++r) d[first + r] = -step[r];
     }
   }
+  if (!whole_) ++report.vertex_sweeps;
   const double length = length_.along(E, x, g, d, report);
   for (double& di : d) di *= length;
 }

@@ -12,9 +12,18 @@ std::vector<std::string> step_columns(const std::vector<std::string>& potential_
                                       "criterion",
                                       "iterations",
                                       "trials",
-                                      "linear_iterations",
+                                      "values",
+                                      "gradients",
                                       "hessians",
                                       "projected_hessians",
+                                      "element_values",
+                                      "element_gradients",
+                                      "element_hessians",
+                                      "vertex_sweeps",
+                                      "factorizations",
+                                      "linear_iterations",
+                                      "products",
+                                      "cycles",
                                       "initial_guess",
                                       "substeps",
                                       "rejected",
@@ -31,8 +40,8 @@ std::vector<std::string> step_columns(const std::vector<std::string>& potential_
 }
 
 const std::vector<std::string> kIterationColumns = {
-    "step",   "iteration", "value",          "gradient_norm",     "decrement", "alpha",
-    "trials", "hessians",  "factorizations", "linear_iterations", "projected"};
+    "step",      "iteration", "value",     "gradient_norm",  "decrement",         "alpha",    "trials",
+    "gradients", "hessians",  "projected", "factorizations", "linear_iterations", "products", "cycles"};
 const std::vector<std::string> kTimingColumns = {"step", "seconds"};
 
 }  // namespace
@@ -56,8 +65,12 @@ RunTables RunTables::resume(const RunLayout& layout, const std::vector<std::stri
 void RunTables::add(const StepReport& report) {
   CsvRow row;
   row.add(report.step).add(report.time).add(to_string(report.status)).add(to_string(report.criterion));
-  row.add(report.iterations).add(report.trials).add(report.linear_iterations);
-  row.add(report.hessians).add(report.projected_hessians);
+  row.add(report.iterations).add(report.trials);
+  row.add(report.values).add(report.gradients).add(report.hessians).add(report.projected_hessians);
+  for (const int evaluations : {report.values, report.gradients, report.hessians})
+    row.add(static_cast<double>(evaluations) * report.elements);
+  row.add(report.vertex_sweeps);
+  row.add(report.factorizations).add(report.linear_iterations).add(report.products).add(report.cycles);
   row.add(to_string(report.initial_guess)).add(report.substeps).add(report.rejected);
   row.add(report.residual).add(report.residual_threshold).add(report.min_det_F).add(report.kinetic);
   for (const double energy : report.potential) row.add(energy);
@@ -71,8 +84,9 @@ void RunTables::add(int step, const Iteration& iteration) {
   const DirectionReport& direction = iteration.direction;
   CsvRow row;
   row.add(step).add(iteration.index).add(iteration.value).add(iteration.gradient_norm).add(iteration.decrement);
-  row.add(iteration.alpha).add(iteration.trials).add(direction.hessians).add(direction.factorizations);
-  row.add(direction.linear_iterations).add(direction.projected ? 1 : 0);
+  row.add(iteration.alpha).add(iteration.trials).add(iteration.gradients).add(direction.hessians);
+  row.add(direction.projected ? 1 : 0).add(direction.factorizations).add(direction.linear_iterations);
+  row.add(direction.products).add(direction.cycles);
   iterations_.append(row);
 }
 

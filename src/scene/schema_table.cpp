@@ -126,8 +126,9 @@ void add_solver(Schema& s) {
         .fallback = toml_string(SimulationOptions().initial_guess),
         .choices = initial_guess_names(),
         .meaning = "where a minimisation starts: `zero` the shape at rest, `current` where the body is, `extrapolated` "
-                   "its flight without forces q + h qdot, `last_increment` what the step before added, `best` the one "
-                   "of the last three with the lowest energy. A guess of infinite energy, or not known yet, gives way "
+                   "its flight without forces q + h qdot, `last_increment` what the step before added, `accelerated` "
+                   "the flight with the accelerations of the step before, `best` the one of the last four with the "
+                   "lowest energy. A guess of infinite energy, or not known yet, gives way "
                    "to the best",
         .reason = "never worse than where the body is"},
        {.name = "max_iterations",
@@ -136,6 +137,15 @@ void add_solver(Schema& s) {
         .range = {.min = 1, .max = 1e9},
         .meaning = "iterations per step; a step that needs more is reported as not converged",
         .reason = "far more than Newton's method takes, but for the hardest steps"},
+       {.name = "time_budget",
+        .accepts = kNumber,
+        .unit = "s",
+        .fallback = number_text(usual.time_budget),
+        .range = kNotNegative,
+        .meaning = "wall time per step; a step that needs more ends where it came, with an energy not above that of "
+                   "its start and the status `budget`; 0: no limit. At least one iteration is tried, however long it "
+                   "takes. What a step with a budget computes depends on the clock",
+        .reason = "results are reproducible to the bit"},
        {.name = "tolerance",
         .accepts = kNumber,
         .fallback = number_text(usual.minimize.tolerance),

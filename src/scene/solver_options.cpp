@@ -9,6 +9,7 @@ SolverOptions solver_options(const Value& solver) {
   options.preconditioner = solver["preconditioner"].text();
   options.linear = solver["linear"].text();
   options.definiteness = solver["definiteness"].text();
+  options.time_budget = solver["time_budget"].number();
   MinimizeOptions& minimize = options.minimize;
   minimize.max_iterations = solver["max_iterations"].integer();
   minimize.tolerance = solver["tolerance"].number();

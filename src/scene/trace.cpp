@@ -10,9 +10,23 @@
 namespace aspic {
 namespace {
 
-const std::vector<std::string> kIterationColumns = {
-    "step",   "solve",    "iteration", "value",     "gradient_norm",  "decrement",         "alpha",
-    "trials", "retreats", "hessians",  "projected", "factorizations", "linear_iterations", "projected_elements"};
+const std::vector<std::string> kIterationColumns = {"step",
+                                                    "solve",
+                                                    "iteration",
+                                                    "value",
+                                                    "gradient_norm",
+                                                    "decrement",
+                                                    "alpha",
+                                                    "trials",
+                                                    "retreats",
+                                                    "gradients",
+                                                    "hessians",
+                                                    "projected",
+                                                    "projected_elements",
+                                                    "factorizations",
+                                                    "linear_iterations",
+                                                    "products",
+                                                    "cycles"};
 const std::vector<std::string> kTrialColumns = {"step",  "solve", "iteration", "trial",   "alpha",
                                                 "value", "bound", "by_slope",  "accepted"};
 const std::vector<std::string> kTimingColumns = {"step",      "solve",        "iteration",   "hessian",
@@ -44,11 +58,14 @@ nlohmann::ordered_json json_of(int step, int solve, const LiveIteration& iterati
           {"decrement", iteration.decrement},
           {"alpha", iteration.alpha},
           {"retreats", iteration.retreats},
+          {"gradients", iteration.gradients},
           {"hessians", direction.hessians},
           {"projected", direction.projected},
           {"projected_elements", direction.projected_elements},
           {"factorizations", direction.factorizations},
           {"linear_iterations", direction.linear_iterations},
+          {"products", direction.products},
+          {"cycles", direction.cycles},
           {"trials", trials},
           {"seconds",
            {{"hessian", direction.hessian_seconds},
@@ -125,8 +142,9 @@ void Trace::add_rows(int step, const LiveIteration& iteration) {
   const DirectionReport& direction = iteration.direction;
   CsvRow row = row_of(step, solve_, iteration.index);
   row.add(iteration.value).add(iteration.gradient_norm).add(iteration.decrement).add(iteration.alpha);
-  row.add(iteration.trials).add(iteration.retreats).add(direction.hessians).add(direction.projected ? 1 : 0);
-  row.add(direction.factorizations).add(direction.linear_iterations).add(direction.projected_elements);
+  row.add(iteration.trials).add(iteration.retreats).add(iteration.gradients).add(direction.hessians);
+  row.add(direction.projected ? 1 : 0).add(direction.projected_elements).add(direction.factorizations);
+  row.add(direction.linear_iterations).add(direction.products).add(direction.cycles);
   iterations_.append(row);
 
   for (size_t i = 0; i < iteration.tried.size(); ++i) {

@@ -1,0 +1,30 @@
+// How much was computed. Counts, unlike times, are the same in every run.
+#pragma once
+#include "linalg/linear_solver.h"
+
+namespace aspic {
+
+struct Work {
+  int values = 0, gradients = 0, hessians = 0;  // evaluations, each over all elements
+  int vertex_sweeps = 0;                        // systems of single vertices, each vertex once: 4 corners per tet
+  int factorizations = 0, linear_iterations = 0;
+  int products = 0, cycles = 0;  // of linear solves: with the matrix, of multigrid
+
+  void add(const Work& other) {
+    values += other.values;
+    gradients += other.gradients;
+    hessians += other.hessians;
+    vertex_sweeps += other.vertex_sweeps;
+    factorizations += other.factorizations;
+    linear_iterations += other.linear_iterations;
+    products += other.products;
+    cycles += other.cycles;
+  }
+  void add(const SolveReport& solved) {
+    linear_iterations += solved.iterations;
+    products += solved.products;
+    cycles += solved.cycles;
+  }
+};
+
+}  // namespace aspic
