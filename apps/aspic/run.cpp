@@ -142,7 +142,7 @@ class Runner {
     const Explanation why = explain(scene_.simulation, report);
     if (!is_success(report.status)) warn(report, why);
     if (arguments_.json) {
-      fmt::print("{}\n", step_json(report, why, scene_.simulation.potential_names()));
+      fmt::print("{}\n", step_json(report, why, scene_.simulation));
       if (std::fflush(stdout) != 0) throw InvalidInput("--json: standard output cannot be written; is the disk full?");
     }
     if (progress_) progress_->show(report);

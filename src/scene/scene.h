@@ -27,9 +27,9 @@ struct Scene {
   std::string name;                // file name without extension
   std::string resolved;            // TOML with every default filled in: rerunning it gives the same bits
   std::vector<std::string> notes;  // each default that was chosen, with its reason; warnings of the doctor
-  Simulation simulation;
-  std::vector<Skin> skins;  // one per body
-  int steps = 0;            // of the whole run
+  Simulation simulation;           // its model is renumbered; model().numbering leads back to the user's numbers
+  std::vector<Skin> skins;         // one per body
+  int steps = 0;                   // of the whole run
   OutputOptions output;
   // What `resolved` refers to, by the names it uses there ("inputs/bunny.msh"): files to copy, and meshes that were
   // made from a surface.
