@@ -38,6 +38,7 @@ struct Box {
 class BoxTree {
  public:
   explicit BoxTree(std::span<const Box> boxes);
+  std::span<const int> items() const { return items_; }  // in Morton order
 
   // Calls visit(item) for the items whose box overlaps `box` until it returns false.
   template <class Visit>
