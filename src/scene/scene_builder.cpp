@@ -118,12 +118,14 @@ int steps_of(const Value& time) {
 
 class SceneBuilder {
  public:
-  SceneBuilder(SceneSource source, SceneFiles files, const std::filesystem::path& mesher)
-      : source_(std::move(source)), files_(std::move(files)), mesher_(mesher) {}
+  SceneBuilder(SceneSource source, SceneFiles files, const SceneOptions& options)
+      : source_(std::move(source)), files_(std::move(files)), options_(options) {}
 
   Scene build() {
     note_version();
     add_bodies();
+    mesh_loader().tell_if_many(model_.mesh.tet_count(), "setting up " + std::to_string(model_.mesh.vertex_count()) +
+                                                            " vertices: materials, mass and the pattern of the matrix");
     add_model();
     State state = start();
     const SimulationOptions options = options_of(source_.document, source_.notes);
@@ -157,8 +159,10 @@ class SceneBuilder {
     source_.document.members.insert(source_.document.members.begin(), Member{"version", {}, {current, {}}});
   }
 
+  MeshLoader mesh_loader() { return {files_, options_.mesher, source_.notes, options_.announce}; }
+
   void add_bodies() {
-    MeshLoader loader{files_, mesher_, source_.notes};
+    MeshLoader loader = mesh_loader();
     for (Value& scene : source_.document.find("body")->array()) {
       std::optional<LoadedMesh> loaded;
       if (const auto known = source_.meshes.find(scene["name"].text()); known != source_.meshes.end())
@@ -267,7 +271,7 @@ class SceneBuilder {
 
   SceneSource source_;
   SceneFiles files_;
-  const std::filesystem::path& mesher_;
+  const SceneOptions& options_;
   std::vector<PlacedBody> bodies_;
   Model model_;
   std::vector<Skin> skins_;
@@ -275,8 +279,8 @@ class SceneBuilder {
 
 }  // namespace
 
-Scene build_scene(SceneSource source, SceneFiles files, const std::filesystem::path& mesher) {
-  return SceneBuilder(std::move(source), std::move(files), mesher).build();
+Scene build_scene(SceneSource source, SceneFiles files, const SceneOptions& options) {
+  return SceneBuilder(std::move(source), std::move(files), options).build();
 }
 
 }  // namespace aspic

@@ -112,6 +112,20 @@ TEST(Scene, ABrokenMeshStopsWithTheDoctorsWords) {
   EXPECT_THAT(refusal_of(path), AllOf(HasSubstr("cube"), HasSubstr("inverted")));
 }
 
+TEST(Scene, WhatTakesLongIsAnnounced) {
+  const auto announced = [](const std::string& cells) {
+    const TestFolder folder;
+    std::vector<std::string> told;
+    const std::string text =
+        "[[body]]\nname = \"box\"\nshape = { box = { upper = [1, 1, 1], cells = " + cells + " } }\n";
+    load_scene(folder.write("s.toml", text), {.announce = [&](const std::string& what) { told.push_back(what); }});
+    return told;
+  };
+  EXPECT_THAT(announced("[2, 2, 2]"), testing::IsEmpty());
+  EXPECT_THAT(announced("[50, 50, 20]"),
+              testing::ElementsAre("checking 300000 tets of body 'box'", HasSubstr("setting up")));
+}
+
 TEST(Scene, MissingOrUnreadableFilesAreNamed) {
   const TestFolder folder;
   EXPECT_THAT(refusal_of(folder / "none.toml"), HasSubstr("none.toml"));
