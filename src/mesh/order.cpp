@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "base/parallel.h"
+
 namespace aspic {
 namespace {
 
@@ -81,7 +83,9 @@ template <class Code>
 std::vector<int> order_by(const Code& code, std::span<const Vec3d> points) {
   const Cube cube = bounding_cube(points);
   std::vector<std::pair<uint64_t, int>> codes(points.size());
-  for (size_t i = 0; i < points.size(); ++i) codes[i] = {code(cell_of(points[i], cube)), static_cast<int>(i)};
+  parallel_chunks(static_cast<int>(points.size()), [&](int first, int last) {
+    for (int i = first; i < last; ++i) codes[i] = {code(cell_of(points[i], cube)), i};
+  });
   std::sort(codes.begin(), codes.end());
   std::vector<int> order(points.size());
   for (size_t i = 0; i < points.size(); ++i) order[i] = codes[i].second;
