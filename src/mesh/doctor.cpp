@@ -144,16 +144,23 @@ std::vector<int> overlapping_tets(const TetMesh& mesh) {
     return is_inside && std::abs(signed_volume(X)) > flat_volume(X);
   };
   std::vector<char> is_held(mesh.tets.size(), 0);
-  parallel_chunks(mesh.tet_count(), [&](int first, int last) {
-    for (int i = first; i < last; ++i) {
-      const int t = tree.items()[i];  // neighbours one after another
-      Box here;
-      here.add(centres[t]);
-      tree.for_each_overlap(here, [&](int other) {
-        is_held[t] = other != t && holds(other, centres[t]);
-        return !is_held[t];
+  const auto examine = [&](std::span<const int> tets, std::vector<int>& near) {
+    Box here;
+    for (const int t : tets) here.add(centres[t]);
+    near.clear();
+    tree.for_each_overlap(here, [&](int other) {
+      near.push_back(other);
+      return true;
+    });
+    for (const int t : tets)
+      is_held[t] = std::any_of(near.begin(), near.end(), [&](int other) {
+        return other != t && boxes[other].contains(centres[t]) && holds(other, centres[t]);
       });
-    }
+  };
+  parallel_chunks(mesh.tet_count(), [&](int first, int last) {
+    constexpr int kTogether = 16;  // neighbours share the way through the tree
+    std::vector<int> near;
+    for (int i = first; i < last; i += kTogether) examine(tree.items().subspan(i, std::min(kTogether, last - i)), near);
   });
   std::vector<int> overlapping;
   for (int t = 0; t < mesh.tet_count(); ++t)
