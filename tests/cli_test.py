@@ -62,6 +62,17 @@ def box_mesh(cells=2, flip=None):
     return "\n".join(lines)
 
 
+def reversed_mesh(text):
+    """The same mesh, its vertices and its tets from the last to the first."""
+    lines = text.split("\n")
+    vertices, tets = lines.index("Vertices") + 2, lines.index("Tetrahedra") + 2
+    count = int(lines[vertices - 1])
+    lines[vertices:vertices + count] = reversed(lines[vertices:vertices + count])
+    renamed = [" ".join([str(count + 1 - int(v)) for v in line.split()[:4]] + ["0"]) for line in lines[tets:-2]]
+    lines[tets:-2] = reversed(renamed)
+    return "\n".join(lines)
+
+
 class CommandLine(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="aspic_cli_"))
@@ -266,6 +277,16 @@ class Derivatives(CommandLine):
         self.assertRegex(text, r"(?m)^elasticity +deformed .* WRONG$")
         self.assertRegex(text, r"the gradient of elasticity \(deformed\) differs most at vertex \d+, [xyz] \(tet \d+\)")
 
+    def test_vertices_and_tets_have_the_numbers_of_the_file(self):
+        self.write("box.mesh", box_mesh())
+        tets = [set(map(int, line.split()[:4])) for line in box_mesh().split("Tetrahedra\n48\n")[1].splitlines()[:48]]
+        lines = self.aspic("check", "box.mesh", "--derivatives", "--tolerance", "1e-30", "--json", code=3).stdout
+        named = re.findall(r'"vertex (\d+), [xyz](?:; vertex (\d+), [xyz])? \(tet (\d+)\)"', lines)
+        self.assertGreater(len(named), 5)
+        for vertex, other, tet in named:
+            self.assertIn(int(vertex) + 1, tets[int(tet)])
+            self.assertIn(int(other or vertex) + 1, tets[int(tet)])
+
     def test_options_that_do_not_go_together(self):
         self.assertIn("--derivatives", self.aspic("check", self.beam(), "--json", code=2).stderr)
 
@@ -293,6 +314,16 @@ class Check(CommandLine):
 
     def test_a_scene(self):
         self.assertIn("beam", self.aspic("check", self.beam()).stdout)
+
+    def test_a_scene_is_judged_by_the_numbers_of_its_file(self):
+        flat = box_mesh().split("\n")
+        flat[4 + 13] = "0.5 0.5 0.9999 0"  # the centre: the tets above it become slivers
+        self.write("flat.mesh", "\n".join(flat))
+        self.write("flat.toml", '[[body]]\nmesh = "flat.mesh"\n')
+        of_mesh, of_scene = (self.aspic("check", name).stdout for name in ("flat.mesh", "flat.toml"))
+        found = re.findall(r"(?m)^  indices: .*$", of_mesh)
+        self.assertTrue(found)
+        self.assertEqual(re.findall(r"(?m)^  indices: .*$", of_scene), found)
 
     def test_a_file_that_is_missing_or_broken(self):
         self.assertIn("none.mesh", self.aspic("check", "none.mesh", code=2).stderr)
@@ -379,6 +410,17 @@ class Run(CommandLine):
         self.assertTrue(all(line["converged"] and line["iterations"] >= 1 for line in lines))
         self.assertIn("elasticity", lines[0]["potential"])
         self.assertIn("done", done.stderr)
+
+    def test_json_names_the_worst_vertex_by_the_number_in_the_file(self):
+        worst = []
+        for text in (box_mesh(), reversed_mesh(box_mesh())):
+            self.write("box.mesh", text)
+            self.write("box.toml", '[[body]]\nmesh = "box.mesh"\nscale = [1, 1.1, 1.3]\n'
+                                   'velocity = ["sin(3*Y + Z)", "X*Y", "cos(5*X)"]\n')
+            out = self.aspic("run", "box.toml", "--json", "--force", "--steps", "2",
+                             "--set", "solver.tolerance=0.1").stdout
+            worst.append([json.loads(line)["worst_vertex"] for line in out.splitlines()])
+        self.assertEqual(worst[1], [26 - vertex for vertex in worst[0]])
 
     def test_quiet_prints_nothing(self):
         done = self.aspic("run", self.beam(), "--quiet")

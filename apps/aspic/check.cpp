@@ -101,9 +101,8 @@ int check_mesh(const Arguments& arguments, Mesh mesh) {
   return has_errors(findings) ? exit_bad_input : exit_done;
 }
 
-// One body of a model as a mesh of its own.
-TetMesh body_mesh(const Model& model, const BodyRange& body) {
-  const TetMesh& all = model.mesh;
+// One body as a mesh of its own. `all` is the whole mesh by the user's numbers.
+TetMesh body_mesh(const TetMesh& all, const BodyRange& body) {
   TetMesh mesh;
   mesh.rest.assign(all.rest.begin() + body.first_vertex, all.rest.begin() + body.first_vertex + body.vertex_count);
   mesh.tets.assign(all.tets.begin() + body.first_tet, all.tets.begin() + body.first_tet + body.tet_count);
@@ -124,8 +123,9 @@ int check_scene(const Arguments& arguments) {
              counts(model.mesh));
   for (const std::string& note : scene.notes) fmt::print("note: {}\n", note);
   bool wrong = false;
+  const TetMesh all = to_user(model.numbering, model.mesh);
   for (const BodyRange& body : model.bodies) {
-    const TetMesh mesh = body_mesh(model, body);
+    const TetMesh mesh = body_mesh(all, body);
     fmt::print("\n{}: {}\n", body.name, counts(mesh));
     wrong = has_errors(examine(mesh)) || wrong;
   }

@@ -19,45 +19,47 @@ std::string order_text(const DerivativeCheck& check) {
   return std::isfinite(check.order) ? fmt::format("{:.2f}", check.order) : "-";
 }
 
-// "vertex 12, y", or of a Hessian "vertex 12, y; vertex 3, x (tet 57)".
-std::string place(const DerivativeCheck& check, const TetMesh& mesh) {
+// "vertex 12, y", or of a Hessian "vertex 12, y; vertex 3, x (tet 57)", by the user's numbers.
+std::string place(const DerivativeCheck& check, const Model& model) {
   if (check.row < 0) return "";
-  std::string text = entry_name(check.row);
-  if (check.column >= 0 && check.column != check.row) text += "; " + entry_name(check.column);
-  const int tet = tet_with(mesh, check.row / 3, (check.column >= 0 ? check.column : check.row) / 3);
-  return tet >= 0 ? fmt::format("{} (tet {})", text, tet) : text;
+  const auto& [vertex, tet] = model.numbering;
+  const auto name = [&](int entry) { return entry_name(3 * vertex.to_user(entry / 3) + entry % 3); };
+  std::string text = name(check.row);
+  if (check.column >= 0 && check.column != check.row) text += "; " + name(check.column);
+  const int with = tet_with(model.mesh, check.row / 3, (check.column >= 0 ? check.column : check.row) / 3);
+  return with >= 0 ? fmt::format("{} (tet {})", text, tet.to_user(with)) : text;
 }
 
-void print_failure(const char* what, const DerivativeCheck& check, const TermDerivatives& of, const TetMesh& mesh) {
+void print_failure(const char* what, const DerivativeCheck& check, const TermDerivatives& of, const Model& model) {
   if (check.passed) return;
   if (check.row < 0)
     fmt::print("{} of {} ({}): not finite at any step\n", what, of.term, of.state);
   else
     fmt::print("{} of {} ({}) differs most at {}: it says {:.12g}, differences say {:.12g}\n", what, of.term, of.state,
-               place(check, mesh), check.found, check.expected);
+               place(check, model), check.found, check.expected);
 }
 
-nlohmann::ordered_json to_json(const DerivativeCheck& check, const TetMesh& mesh) {
+nlohmann::ordered_json to_json(const DerivativeCheck& check, const Model& model) {
   return {{"passed", check.passed},
           {"smallest_error", check.smallest_error},
           {"order", check.order},  // null: no error but round-off
           {"step", check.step},
           {"error", check.error},
-          {"worst", {{"place", place(check, mesh)}, {"found", check.found}, {"expected", check.expected}}}};
+          {"worst", {{"place", place(check, model)}, {"found", check.found}, {"expected", check.expected}}}};
 }
 
-void print_json(const std::vector<TermDerivatives>& results, const TetMesh& mesh) {
+void print_json(const std::vector<TermDerivatives>& results, const Model& model) {
   for (const TermDerivatives& of : results) {
     const nlohmann::ordered_json line = {{"term", of.term},
                                          {"state", of.state},
                                          {"passed", of.report.passed()},
-                                         {"gradient", to_json(of.report.gradient, mesh)},
-                                         {"hessian", to_json(of.report.hessian, mesh)}};
+                                         {"gradient", to_json(of.report.gradient, model)},
+                                         {"hessian", to_json(of.report.hessian, model)}};
     fmt::print("{}\n", line.dump());
   }
 }
 
-void print_table(const std::vector<TermDerivatives>& results, const TetMesh& mesh, double tolerance) {
+void print_table(const std::vector<TermDerivatives>& results, const Model& model, double tolerance) {
   size_t width = 4;
   for (const TermDerivatives& of : results) width = std::max(width, of.term.size());
   fmt::print("{:<{}}  {:<8}  {:^18}  {:^18}\n", "", width, "", "gradient", "Hessian");
@@ -72,8 +74,8 @@ void print_table(const std::vector<TermDerivatives>& results, const TetMesh& mes
       "error: the smallest over steps of 1e-1 to 1e-9 edges, relative to the derivative; {:g} is asked for\n",
       tolerance);
   for (const TermDerivatives& of : results) {
-    print_failure("the gradient", of.report.gradient, of, mesh);
-    print_failure("the Hessian", of.report.hessian, of, mesh);
+    print_failure("the gradient", of.report.gradient, of, model);
+    print_failure("the Hessian", of.report.hessian, of, model);
   }
 }
 
@@ -110,12 +112,12 @@ Chart chart_of(const std::vector<TermDerivatives>& results, const std::string& s
 int check_derivatives(const Scene& scene, const CheckDerivativesOptions& options) {
   if (!options.plot.empty()) require_drawable(options.plot);
   const std::vector<TermDerivatives> results = check_step_derivatives(scene.simulation, options.tolerance);
-  const TetMesh& mesh = scene.simulation.model().mesh;
+  const Model& model = scene.simulation.model();
   if (options.json) {
-    print_json(results, mesh);
+    print_json(results, model);
   } else {
-    fmt::print("{}: {} vertices, {} tets\n\n", scene.name, mesh.vertex_count(), mesh.tet_count());
-    print_table(results, mesh, options.tolerance);
+    fmt::print("{}: {} vertices, {} tets\n\n", scene.name, model.mesh.vertex_count(), model.mesh.tet_count());
+    print_table(results, model, options.tolerance);
   }
   if (!options.plot.empty()) draw(options.plot, chart_of(results, scene.name));
   const bool passed = std::all_of(results.begin(), results.end(), [](const auto& of) { return of.report.passed(); });

@@ -11,6 +11,7 @@ namespace aspic::cli {
 namespace {
 
 constexpr double kRedrawInterval = 0.1;  // on a terminal [s]
+constexpr double kLongStep = 1;          // before its iterations are shown on a terminal [s]
 constexpr double kLineInterval = 10;     // in a pipe [s], and
 constexpr double kLineFraction = 0.05;   // of the whole run
 constexpr int kBarWidth = 20;
@@ -56,10 +57,22 @@ void Progress::show(const StepReport& report) {
   if (!is_due(report)) return;
   shown_at_ = seconds();
   shown_step_ = report.step;
-  const double done = static_cast<double>(report.step) / last_;
   const double per_step = shown_at_ / (report.step - first_);
-  std::string line = fmt::format("{:3.0f}%  {}  {} left", 100 * done, step_text(report, last_),
-                                 duration_text(per_step * (last_ - report.step)));
+  print(fmt::format("{}  {} left", step_text(report, last_), duration_text(per_step * (last_ - report.step))),
+        static_cast<double>(report.step) / last_);
+}
+
+void Progress::show(int step, const Iteration& iteration) {
+  const double now = seconds();
+  if (now - std::max(shown_at_, 0.0) < (terminal_ ? kLongStep : kLineInterval)) return;
+  shown_at_ = now;
+  print(fmt::format("step {}/{}  iteration {}  E {:.6g}  |g| {:.3g}", step, last_, iteration.index, iteration.value,
+                    iteration.gradient_norm),
+        static_cast<double>(step - 1) / last_);
+}
+
+void Progress::print(std::string line, double done) {
+  line = fmt::format("{:3.0f}%  {}", 100 * done, line);
   if (terminal_) {
     const int filled = static_cast<int>(done * kBarWidth);
     line = fmt::format("[{:#<{}}{:.<{}}] {}", "", filled, "", kBarWidth - filled, line);

@@ -12,12 +12,14 @@ class Progress {
  public:
   Progress(std::FILE* stream, int first_step, int last_step);
   void show(const StepReport& report);
-  void message(const std::string& line);  // a line of its own, above the bar
-  void finish();                          // leaves the bar as it is
+  void show(int step, const Iteration& iteration);  // of a step that takes long
+  void message(const std::string& line);            // a line of its own, above the bar
+  void finish();                                    // leaves the bar as it is
 
  private:
   double seconds() const;
   bool is_due(const StepReport& report) const;
+  void print(std::string line, double done);  // `done` of the whole run
   void erase();
 
   using Clock = std::chrono::steady_clock;

@@ -52,7 +52,19 @@ fs::path directory_to_resume(const Arguments& arguments) {
   return fs::path("out") / arguments.input.stem();
 }
 
+std::FILE* human_stream(const Arguments& arguments) { return arguments.json ? stderr : stdout; }
+
+// Long preparations are seen: what is said comes before what it is about.
+void announce(const Arguments& arguments, const std::string& what) {
+  if (arguments.quiet) return;
+  fmt::print(human_stream(arguments), "{} ...\n", what);
+  std::fflush(human_stream(arguments));
+}
+
+constexpr int kManyTets = 300'000;  // whose frame takes a second to write
+
 Scene load(const Arguments& arguments) {
+  const Announce tell = [&](const std::string& what) { announce(arguments, what); };
   if (arguments.resume) {
     if (!arguments.overrides.empty()) {
       throw InvalidInput("--set and --resume exclude each other: a run is continued as it was begun");
@@ -61,18 +73,19 @@ Scene load(const Arguments& arguments) {
     if (!fs::is_directory(directory)) {
       throw InvalidInput(fmt::format("{}: no such run to resume; start it without --resume", directory.string()));
     }
-    return load_scene(scene_of_run(directory));
+    return load_scene(scene_of_run(directory), {.announce = tell});
   }
   if (fs::is_directory(arguments.input)) {
     throw InvalidInput(
         fmt::format("{0}: is a directory; to continue a run: aspic run {0} --resume", arguments.input.string()));
   }
-  return load_scene(arguments.input, {.overrides = arguments.overrides, .mesher = {}});
+  return load_scene(arguments.input, {.overrides = arguments.overrides, .announce = tell});
 }
 
 RunDirectory open_directory(const Arguments& arguments, Scene& scene) {
   if (arguments.resume) return RunDirectory::resume(directory_to_resume(arguments), scene);
   const fs::path path = arguments.out.empty() ? fs::path("out") / scene.name : arguments.out;
+  if (scene.simulation.model().mesh.tet_count() >= kManyTets) announce(arguments, "writing the first frame");
   return RunDirectory::create(path, scene, arguments.force ? ExistingRun::overwrite : ExistingRun::refuse);
 }
 
@@ -96,7 +109,7 @@ class Runner {
       : arguments_(arguments),
         scene_(scene),
         directory_(directory),
-        human_(arguments.json ? stderr : stdout),
+        human_(human_stream(arguments)),
         last_step_(arguments.steps > 0 ? arguments.steps : scene.steps),
         first_step_(scene.simulation.steps_taken()) {
     if (!arguments.quiet) progress_.emplace(human_, first_step_, last_step_);
@@ -111,6 +124,7 @@ class Runner {
       const auto observe = [&](const LiveIteration& iteration) {
         iterations_.push_back(iteration);
         if (trace_) trace_->on_iteration(simulation.steps_taken() + 1, iteration);
+        if (progress_) progress_->show(simulation.steps_taken() + 1, iteration);
         return !interrupt_signal();
       };
       const StepReport report = simulation.step(observe, [] { return !interrupt_signal(); });
@@ -142,7 +156,7 @@ class Runner {
     const Explanation why = explain(scene_.simulation, report);
     if (!is_success(report.status) && report.status != Status::budget) warn(report, why);
     if (arguments_.json) {
-      fmt::print("{}\n", step_json(report, why, scene_.simulation.potential_names()));
+      fmt::print("{}\n", step_json(report, why, scene_.simulation));
       if (std::fflush(stdout) != 0) throw InvalidInput("--json: standard output cannot be written; is the disk full?");
     }
     if (progress_) progress_->show(report);

@@ -4,10 +4,11 @@
 
 namespace aspic::cli {
 
-std::string step_json(const StepReport& report, const Explanation& why,
-                      const std::vector<std::string>& potential_names) {
+std::string step_json(const StepReport& report, const Explanation& why, const Simulation& simulation) {
+  const std::vector<std::string> potential_names = simulation.potential_names();
   nlohmann::ordered_json potential = nlohmann::json::object();
   for (size_t i = 0; i < report.potential.size(); ++i) potential[potential_names.at(i)] = report.potential[i];
+  const int worst = report.worst_vertex < 0 ? -1 : simulation.model().numbering.vertex.to_user(report.worst_vertex);
   nlohmann::ordered_json line = {
       {"step", report.step},
       {"time", report.time},
@@ -32,7 +33,7 @@ std::string step_json(const StepReport& report, const Explanation& why,
       {"residual", report.residual},
       {"residual_threshold", report.residual_threshold},
       {"residual_round_off", report.residual_round_off},
-      {"worst_vertex", report.worst_vertex},
+      {"worst_vertex", worst},
       {"worst_residual", report.worst_residual},
       {"min_det_F", report.min_det_F},
       {"kinetic", report.kinetic},

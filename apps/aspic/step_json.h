@@ -7,7 +7,6 @@
 namespace aspic::cli {
 
 // One line of JSON; numbers that are not finite are null.
-std::string step_json(const StepReport& report, const Explanation& why,
-                      const std::vector<std::string>& potential_names);
+std::string step_json(const StepReport& report, const Explanation& why, const Simulation& simulation);
 
 }  // namespace aspic::cli

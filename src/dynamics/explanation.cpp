@@ -21,7 +21,7 @@ std::string point_text(std::span<const double> x, int vertex) {
   return "(" + text(x[i]) + ", " + text(x[i + 1]) + ", " + text(x[i + 2]) + ") m";
 }
 
-// "vertex 12", "vertex 12 of body 'arm'": by the numbers of the body's own mesh.
+// "vertex 12", "vertex 12 of body 'arm'": by the numbers of the body's own mesh. `index` is the user's.
 std::string named(const Model& model, const char* kind, int index, int BodyRange::*first, int BodyRange::*count) {
   for (const BodyRange& body : model.bodies) {
     const int own = index - body.*first;
@@ -32,10 +32,11 @@ std::string named(const Model& model, const char* kind, int index, int BodyRange
   return std::string(kind) + " " + std::to_string(index);
 }
 std::string vertex_name(const Model& model, int vertex) {
-  return named(model, "vertex", vertex, &BodyRange::first_vertex, &BodyRange::vertex_count);
+  return named(model, "vertex", model.numbering.vertex.to_user(vertex), &BodyRange::first_vertex,
+               &BodyRange::vertex_count);
 }
 std::string tet_name(const Model& model, int tet) {
-  return named(model, "tet", tet, &BodyRange::first_tet, &BodyRange::tet_count);
+  return named(model, "tet", model.numbering.tet.to_user(tet), &BodyRange::first_tet, &BodyRange::tet_count);
 }
 
 double signed_volume(const TetMesh& mesh, int tet, std::span<const double> x) {

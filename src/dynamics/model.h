@@ -9,6 +9,7 @@
 #include "energy/energy.h"
 #include "energy/mass.h"
 #include "energy/tet_elasticity.h"
+#include "mesh/numbering.h"
 #include "mesh/tet_mesh.h"
 
 namespace aspic {
@@ -29,6 +30,9 @@ struct Pin {
 
 struct Model {
   TetMesh mesh;  // all bodies one after another
+  // What the user calls the vertices and tets. Everything in the model and the state is in the order of the mesh;
+  // messages and files are in the user's.
+  Numbering numbering;
   std::vector<BodyRange> bodies;
   std::vector<double> density;  // one per tet [kg/m^3]
   // Constants to export with the results, one per tet: "young" [Pa], "poisson" [1] and the like.

@@ -133,30 +133,6 @@ struct Simulation::Impl {
     report.initial_guess = solved.guess;
   }
 
-  // Nothing, or the level of the adaptive step and then, when it is remembered, where the last step or part began.
-  std::vector<double> history() const {
-    std::vector<double> history;
-    if (!adaptive && !has_previous) return history;
-    history.push_back(adaptive ? adaptive->level() : 0);
-    if (!has_previous) return history;
-    history.push_back(previous.time);
-    history.insert(history.end(), previous.q.begin(), previous.q.end());
-    history.insert(history.end(), previous.qdot.begin(), previous.qdot.end());
-    return history;
-  }
-
-  void set_history(const std::vector<double>& history) {
-    const size_t n = state.q.size();
-    if (history.size() > 1 && history.size() != 2 + 2 * n)
-      throw InvalidInput("the checkpoint's history has " + std::to_string(history.size()) +
-                         " entries; this scene needs " + std::to_string(2 + 2 * n));
-    if (adaptive && !history.empty()) adaptive->set_level(history[0]);
-    has_previous = remembers() && history.size() > 1;
-    if (!has_previous) return;
-    const auto q = history.begin() + 2;
-    previous = {{q, q + static_cast<long>(n)}, {q + static_cast<long>(n), history.end()}, history[1]};
-  }
-
   Model model;
   SimulationOptions options;
   State state, start;
@@ -246,20 +222,24 @@ StableStep Simulation::stable_step() const {
 std::string Simulation::solver_description() const { return impl_->direction->description(); }
 
 Simulation::Snapshot Simulation::snapshot() const {
-  return {impl_->state, impl_->start, impl_->steps_taken, impl_->history()};
+  return {impl_->state, impl_->start, impl_->steps_taken, impl_->adaptive ? double(impl_->adaptive->level()) : 0,
+          impl_->has_previous ? std::optional(impl_->previous) : std::nullopt};
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
   const size_t n = impl_->state.q.size();
-  for (const auto* v : {&snapshot.state.q, &snapshot.state.qdot, &snapshot.start.q, &snapshot.start.qdot})
-    if (v->size() != n)
-      throw InvalidInput("the checkpoint has " + std::to_string(v->size()) + " entries; this scene needs " +
-                         std::to_string(n));
+  for (const State* s : {&snapshot.state, &snapshot.start, snapshot.previous ? &*snapshot.previous : &snapshot.state})
+    for (const auto* v : {&s->q, &s->qdot})
+      if (v->size() != n)
+        throw InvalidInput("the checkpoint has " + std::to_string(v->size()) + " entries; this scene needs " +
+                           std::to_string(n));
+  if (impl_->adaptive) impl_->adaptive->set_level(snapshot.level);
   impl_->state = snapshot.state;
   impl_->start = snapshot.start;
   impl_->steps_taken = snapshot.steps_taken;
   *impl_->pins = Pins(impl_->model.pins, impl_->start.q);
-  impl_->set_history(snapshot.history);
+  impl_->has_previous = impl_->remembers() && snapshot.previous;
+  if (impl_->has_previous) impl_->previous = *snapshot.previous;
   impl_->ledger.begin(impl_->model, impl_->state.q);
   impl_->stand_at(impl_->state.time);  // moving targets stand where they stood
 }

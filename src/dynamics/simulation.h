@@ -64,7 +64,8 @@ class Simulation {
     State state;
     State start;  // the state at time 0, to which pins and ledger refer
     int steps_taken = 0;
-    std::vector<double> history;  // what the integrator remembers: the length of its parts, where the last one began
+    double level = 0;               // of an adaptive step: its next part has the length h / 2^level
+    std::optional<State> previous;  // where the last step or part began, when that is remembered
   };
   Snapshot snapshot() const;
   void restore(const Snapshot& snapshot);  // throws InvalidInput when the sizes do not fit the model

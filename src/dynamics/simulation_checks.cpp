@@ -43,7 +43,8 @@ void require_mass(const Model& model, const Pins& pins) {
   for (int v = 0; v < model.mesh.vertex_count(); ++v)
     if (!pins.holds(v) && !(model.mass->vertex_mass()[v] > 0)) massless.push_back(v);
   if (!massless.empty())
-    throw InvalidInput(std::to_string(massless.size()) + " vertices have no mass (" + listed(massless) +
+    throw InvalidInput(std::to_string(massless.size()) + " vertices have no mass (" +
+                       listed(model.numbering.vertex.to_user(massless)) +
                        "): they belong to no tet, or the density there is zero; remove them (--repair) or pin them");
 }
 
@@ -66,7 +67,7 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
           "the initial shape has infinite energy: its strain is more than the material can take; choose a "
           "smaller initial deformation or another material");
     throw InvalidInput("the initial shape has infinite energy: " + std::to_string(inverted.size()) +
-                       " tets are inverted or flat (" + listed(inverted) +
+                       " tets are inverted or flat (" + listed(model.numbering.tet.to_user(inverted)) +
                        "); choose a smaller initial deformation, or a material that tolerates inversion, such as "
                        "neo_hookean or stable_neo_hookean");
   }

@@ -87,11 +87,11 @@ TEST(Simulation, ACheckpointOfAnotherSizeIsRefused) {
   Simulation simulation = simulate(beam(1), {.integrator = "bdf2", .solver = {}});
   simulation.step();
   Simulation::Snapshot snapshot = simulation.snapshot();
-  snapshot.history.pop_back();
+  snapshot.previous->q.pop_back();
   EXPECT_THROW(simulation.restore(snapshot), InvalidInput);
   Simulation adaptive = simulate(beam(1), {.adaptive = {.tolerance = 1e-3}, .solver = {}});
   for (const double level : {99.0, -1.0, 1e300, static_cast<double>(NAN)}) {
-    snapshot.history = {level};
+    snapshot.level = level;
     EXPECT_THROW(adaptive.restore(snapshot), InvalidInput) << level;
   }
 }

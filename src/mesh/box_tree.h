@@ -25,6 +25,7 @@ struct Box {
       if (lower[axis] > other.upper[axis] || upper[axis] < other.lower[axis]) return false;
     return true;
   }
+  bool contains(const Vec3d& x) const { return overlaps({x, x}); }
   double squared_distance(const Vec3d& x) const {
     double sum = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -38,6 +39,7 @@ struct Box {
 class BoxTree {
  public:
   explicit BoxTree(std::span<const Box> boxes);
+  std::span<const int> items() const { return items_; }  // in Morton order
 
   // Calls visit(item) for the items whose box overlaps `box` until it returns false.
   template <class Visit>

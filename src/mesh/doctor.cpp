@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/parallel.h"
 #include "mesh/box_tree.h"
 #include "mesh/components.h"
 #include "mesh/findings.h"
+#include "mesh/grouped_elements.h"
 #include "mesh/order.h"
 #include "mesh/surface.h"
 #include "mesh/tet_shape.h"
@@ -22,29 +24,40 @@ struct TetShapes {
   double most_negative = 0, smallest_angle = 180;
 };
 
-TetShapes tet_shapes(const TetMesh& mesh) {
-  TetShapes shapes;
-  for (int t = 0; t < mesh.tet_count(); ++t) {
-    if (lists_vertex_twice(mesh.tets[t])) {
-      shapes.repeated_vertex.push_back(t);
-      continue;
-    }
-    const TetCorners X = corners(mesh, t);
-    const double volume = signed_volume(X);
-    if (std::abs(volume) <= flat_volume(X)) {
-      shapes.flat.push_back(t);
-      continue;
-    }
-    if (volume < 0) {
-      shapes.inverted.push_back(t);
-      if (volume < shapes.most_negative) shapes.worst_inverted = t, shapes.most_negative = volume;
-    }
-    const auto [least, most] = dihedral_range(X);
-    const double angle = std::min(least, 180 - most);
-    if (angle >= kSliverAngle) continue;
-    shapes.slivers.push_back(t);
-    if (angle < shapes.smallest_angle) shapes.worst_sliver = t, shapes.smallest_angle = angle;
+double distance_to_flat(const TetCorners& X) {  // [degrees]
+  const auto [least, most] = dihedral_range(X);
+  return std::min(least, 180 - most);
+}
+
+bool is_sound(const TetMesh& mesh, int tet) {
+  if (lists_vertex_twice(mesh.tets[tet])) return false;
+  const TetCorners X = corners(mesh, tet);
+  return signed_volume(X) > flat_volume(X) && distance_to_flat(X) >= kSliverAngle;
+}
+
+void add_unsound(const TetMesh& mesh, int t, TetShapes& shapes) {
+  if (lists_vertex_twice(mesh.tets[t])) return shapes.repeated_vertex.push_back(t);
+  const TetCorners X = corners(mesh, t);
+  const double volume = signed_volume(X);
+  if (std::abs(volume) <= flat_volume(X)) return shapes.flat.push_back(t);
+  if (volume < 0) {
+    shapes.inverted.push_back(t);
+    if (volume < shapes.most_negative) shapes.worst_inverted = t, shapes.most_negative = volume;
   }
+  const double angle = distance_to_flat(X);
+  if (angle >= kSliverAngle) return;
+  shapes.slivers.push_back(t);
+  if (angle < shapes.smallest_angle) shapes.worst_sliver = t, shapes.smallest_angle = angle;
+}
+
+TetShapes tet_shapes(const TetMesh& mesh) {
+  std::vector<char> sound(mesh.tets.size());
+  parallel_chunks(mesh.tet_count(), [&](int first, int last) {
+    for (int t = first; t < last; ++t) sound[t] = is_sound(mesh, t);
+  });
+  TetShapes shapes;
+  for (int t = 0; t < mesh.tet_count(); ++t)
+    if (!sound[t]) add_unsound(mesh, t, shapes);
   return shapes;
 }
 
@@ -80,32 +93,29 @@ void examine_shapes(const TetMesh& mesh, Findings& findings) {
 // Faces shared by more than two tets, and by two that lie on the same side of it.
 void examine_faces(const TetMesh& mesh, Findings& findings) {
   constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-  struct Use {
-    Triangle face;
-    int tet;
-    bool even;  // the outward face is an even permutation of the sorted one
+  const auto face = [&](int place) {
+    const auto& [i, j, k] = kFaces[place % 4];
+    const Tet& tet = mesh.tets[place / 4];
+    return Triangle{tet[i], tet[j], tet[k]};
   };
-  std::vector<Use> uses;
-  for (int t = 0; t < mesh.tet_count(); ++t) {
-    if (lists_vertex_twice(mesh.tets[t])) continue;
-    for (const auto& [i, j, k] : kFaces) {
-      Triangle face = {mesh.tets[t][i], mesh.tets[t][j], mesh.tets[t][k]};
-      const bool even = (face[0] < face[1]) + (face[1] < face[2]) + (face[2] < face[0]) == 2;
-      std::sort(face.begin(), face.end());
-      uses.push_back({face, t, even == (volume(mesh, t) > 0)});
-    }
-  }
-  std::sort(uses.begin(), uses.end(),
-            [](const Use& a, const Use& b) { return a.face != b.face ? a.face < b.face : a.tet < b.tet; });
+  // The outward face is an even permutation of the sorted one.
+  const auto is_even = [&](int place) {
+    const auto [a, b, c] = face(place);
+    return ((a < b) + (b < c) + (c < a) == 2) == (volume(mesh, place / 4) > 0);
+  };
+  const auto faces = grouped_elements<3>(mesh.vertex_count(), [&](const auto& visit) {
+    for (int t = 0; t < mesh.tet_count(); ++t)
+      for (int place = 4 * t; place < 4 * (t + 1) && !lists_vertex_twice(mesh.tets[t]); ++place)
+        visit(face(place), place);
+  });
   std::vector<int> crowded, folded;
-  for (size_t begin = 0, end; begin < uses.size(); begin = end) {
-    for (end = begin + 1; end < uses.size() && uses[end].face == uses[begin].face;) ++end;
-    const bool is_folded = end - begin == 2 && uses[begin].even == uses[begin + 1].even;
-    for (size_t i = begin; i < end; ++i) {
-      if (end - begin > 2) crowded.push_back(uses[i].tet);
-      if (is_folded) folded.push_back(uses[i].tet);
+  for_each_group(faces, [&](const GroupedElement<3>* begin, const GroupedElement<3>* end) {
+    const bool is_folded = end - begin == 2 && is_even(begin[0].place) == is_even(begin[1].place);
+    for (const GroupedElement<3>* use = begin; use < end; ++use) {
+      if (end - begin > 2) crowded.push_back(use->place / 4);
+      if (is_folded) folded.push_back(use->place / 4);
     }
-  }
+  });
   for (std::vector<int>* list : {&crowded, &folded}) {
     std::sort(list->begin(), list->end());
     list->erase(std::unique(list->begin(), list->end()), list->end());
@@ -123,24 +133,38 @@ void examine_faces(const TetMesh& mesh, Findings& findings) {
 std::vector<int> overlapping_tets(const TetMesh& mesh) {
   constexpr double kInside = 1e-6;  // smallest barycentric weight that counts
   std::vector<Box> boxes(mesh.tets.size());
-  std::vector<Vec3d> centres = centroids(mesh);
+  const std::vector<Vec3d> centres = centroids(mesh);
   for (size_t t = 0; t < boxes.size(); ++t)
     for (int v : mesh.tets[t]) boxes[t].add(mesh.rest[v]);
   const BoxTree tree(boxes);
-  std::vector<int> overlapping;
-  for (int t = 0; t < mesh.tet_count(); ++t) {
-    bool is_free = true;
+  const auto holds = [&](int tet, const Vec3d& x) {
+    const TetCorners X = corners(mesh, tet);
+    const std::array<double, 4> w = barycentric(X, x);  // of a flat tet: anything
+    const bool is_inside = std::all_of(w.begin(), w.end(), [](double wi) { return wi >= kInside; });
+    return is_inside && std::abs(signed_volume(X)) > flat_volume(X);
+  };
+  std::vector<char> is_held(mesh.tets.size(), 0);
+  const auto examine = [&](std::span<const int> tets, std::vector<int>& near) {
     Box here;
-    here.add(centres[t]);
+    for (const int t : tets) here.add(centres[t]);
+    near.clear();
     tree.for_each_overlap(here, [&](int other) {
-      const TetCorners X = corners(mesh, other);
-      if (other == t || std::abs(signed_volume(X)) <= flat_volume(X)) return true;
-      const std::array<double, 4> w = barycentric(X, centres[t]);
-      is_free = *std::min_element(w.begin(), w.end()) < kInside;
-      return is_free;
+      near.push_back(other);
+      return true;
     });
-    if (!is_free) overlapping.push_back(t);
-  }
+    for (const int t : tets)
+      is_held[t] = std::any_of(near.begin(), near.end(), [&](int other) {
+        return other != t && boxes[other].contains(centres[t]) && holds(other, centres[t]);
+      });
+  };
+  parallel_chunks(mesh.tet_count(), [&](int first, int last) {
+    constexpr int kTogether = 16;  // neighbours share the way through the tree
+    std::vector<int> near;
+    for (int i = first; i < last; i += kTogether) examine(tree.items().subspan(i, std::min(kTogether, last - i)), near);
+  });
+  std::vector<int> overlapping;
+  for (int t = 0; t < mesh.tet_count(); ++t)
+    if (is_held[t]) overlapping.push_back(t);
   return overlapping;
 }
 

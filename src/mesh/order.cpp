@@ -1,9 +1,12 @@
 #include "mesh/order.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+
+#include "base/parallel.h"
 
 namespace aspic {
 namespace {
@@ -39,28 +42,60 @@ Cube bounding_cube(std::span<const Vec3d> points) {
   return {lower, std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]})};
 }
 
-uint64_t morton_code(const Vec3d& x, const Cube& cube) {
-  if (!is_finite(x) || !(cube.size > 0) || !std::isfinite(cube.size)) return 0;
+using Cell = std::array<uint64_t, 3>;
+
+// Of the grid over the cube; the corner where that is not defined.
+Cell cell_of(const Vec3d& x, const Cube& cube) {
+  if (!is_finite(x) || !(cube.size > 0) || !std::isfinite(cube.size)) return {};
   constexpr double kCells = 1 << kBits;
-  uint64_t code = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double cell = (x[axis] - cube.lower[axis]) / cube.size * kCells;
-    code |= spread(static_cast<uint64_t>(std::min(cell, kCells - 1))) << axis;
-  }
-  return code;
+  Cell cell;
+  for (int axis = 0; axis < 3; ++axis)
+    cell[axis] = static_cast<uint64_t>(std::min((x[axis] - cube.lower[axis]) / cube.size * kCells, kCells - 1));
+  return cell;
 }
 
-}  // namespace
+uint64_t morton_code(const Cell& cell) { return spread(cell[0]) | spread(cell[1]) << 1 | spread(cell[2]) << 2; }
 
-std::vector<int> morton_order(std::span<const Vec3d> points) {
+// The distance along the curve, found by undoing the turns of its parts from the largest to the smallest
+// [Skilling2004].
+uint64_t hilbert_code(Cell cell) {
+  constexpr uint64_t kTop = uint64_t{1} << (kBits - 1);
+  for (uint64_t bit = kTop; bit > 1; bit >>= 1)
+    for (uint64_t& c : cell) {
+      const uint64_t below = bit - 1;
+      if (c & bit) {
+        cell[0] ^= below;
+      } else {
+        const uint64_t swapped = (cell[0] ^ c) & below;
+        cell[0] ^= swapped;
+        c ^= swapped;
+      }
+    }
+  cell[1] ^= cell[0];
+  cell[2] ^= cell[1];
+  uint64_t turn = 0;
+  for (uint64_t bit = kTop; bit > 1; bit >>= 1)
+    if (cell[2] & bit) turn ^= bit - 1;
+  return spread(cell[0] ^ turn) << 2 | spread(cell[1] ^ turn) << 1 | spread(cell[2] ^ turn);
+}
+
+template <class Code>
+std::vector<int> order_by(const Code& code, std::span<const Vec3d> points) {
   const Cube cube = bounding_cube(points);
   std::vector<std::pair<uint64_t, int>> codes(points.size());
-  for (size_t i = 0; i < points.size(); ++i) codes[i] = {morton_code(points[i], cube), static_cast<int>(i)};
+  parallel_chunks(static_cast<int>(points.size()), [&](int first, int last) {
+    for (int i = first; i < last; ++i) codes[i] = {code(cell_of(points[i], cube)), i};
+  });
   std::sort(codes.begin(), codes.end());
   std::vector<int> order(points.size());
   for (size_t i = 0; i < points.size(); ++i) order[i] = codes[i].second;
   return order;
 }
+
+}  // namespace
+
+std::vector<int> morton_order(std::span<const Vec3d> points) { return order_by(morton_code, points); }
+std::vector<int> hilbert_order(std::span<const Vec3d> points) { return order_by(hilbert_code, points); }
 
 std::vector<Vec3d> centroids(const TetMesh& mesh) {
   std::vector<Vec3d> centres;

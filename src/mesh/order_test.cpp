@@ -47,5 +47,25 @@ TEST(MortonOrder, LeavesPointsFartherApartThanADoubleCanSayInTheirOrder) {
             (std::vector<int>{0, 1, 2}));
 }
 
+TEST(HilbertOrder, StepsFromCellToNeighbouringCell) {
+  std::vector<Vec3d> grid;
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < 8; ++j)
+      for (int k = 0; k < 8; ++k) grid.push_back({{double(i), double(j), double(k)}});
+  grid.push_back({{8, 8, 8}});  // so that the cells of the curve are those of the grid
+  const std::vector<int> order = hilbert_order(grid);
+  for (size_t i = 1; i < order.size(); ++i) {
+    if (order[i] == 512 || order[i - 1] == 512) continue;
+    EXPECT_EQ(length(grid[order[i]] - grid[order[i - 1]]), 1) << i;
+  }
+}
+
+TEST(HilbertOrder, IsAPermutationAndKeepsTheOrderOfEqualPoints) {
+  std::vector<int> order = hilbert_order(centroids(make_box({{0, 0, 0}}, {{1, 1, 1}}, {5, 5, 5})));
+  std::sort(order.begin(), order.end());
+  for (size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], static_cast<int>(i));
+  EXPECT_EQ(hilbert_order(std::vector<Vec3d>(3, {{1, 2, 3}})), (std::vector<int>{0, 1, 2}));
+}
+
 }  // namespace
 }  // namespace aspic

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "mesh/grouped_elements.h"
 
 namespace aspic {
 namespace {
@@ -10,41 +11,22 @@ namespace {
 // Corners of the face opposite each corner, counter-clockwise seen from outside a positively oriented tet.
 constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
-struct Face {
-  Triangle sorted;  // its vertices in ascending order: the same for both tets that share it
-  int place;        // 4 tet + face
-};
-
 Triangle corners(const Tet& tet, int face) {
   return {tet[kFaces[face][0]], tet[kFaces[face][1]], tet[kFaces[face][2]]};
-}
-
-std::vector<Face> sorted_faces(const TetMesh& mesh, int first, int count) {
-  std::vector<Face> faces;
-  faces.reserve(4 * static_cast<size_t>(count));
-  for (int t = first; t < first + count; ++t) {
-    for (int f = 0; f < 4; ++f) {
-      Triangle key = corners(mesh.tets[t], f);
-      std::sort(key.begin(), key.end());
-      faces.push_back({key, 4 * t + f});
-    }
-  }
-  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
-    return a.sorted != b.sorted ? a.sorted < b.sorted : a.place < b.place;
-  });
-  return faces;
 }
 
 }  // namespace
 
 std::vector<Triangle> boundary_triangles(const TetMesh& mesh, int first, int count) {
   ASPIC_CHECK(first >= 0 && count >= 0 && first + count <= mesh.tet_count());
-  const std::vector<Face> faces = sorted_faces(mesh, first, count);
+  const auto faces = grouped_elements<3>(mesh.vertex_count(), [&](const auto& visit) {
+    for (int t = first; t < first + count; ++t)
+      for (int f = 0; f < 4; ++f) visit(corners(mesh.tets[t], f), 4 * t + f);
+  });
   std::vector<int> places;
-  for (size_t begin = 0, end; begin < faces.size(); begin = end) {
-    for (end = begin + 1; end < faces.size() && faces[end].sorted == faces[begin].sorted;) ++end;
-    if (end == begin + 1) places.push_back(faces[begin].place);
-  }
+  for_each_group(faces, [&](const GroupedElement<3>* begin, const GroupedElement<3>* end) {
+    if (end == begin + 1) places.push_back(begin->place);
+  });
   std::sort(places.begin(), places.end());  // in the order of the tets
   std::vector<Triangle> triangles;
   triangles.reserve(places.size());

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "mesh/disjoint_sets.h"
+#include "mesh/grouped_elements.h"
 
 namespace aspic {
 namespace {
@@ -116,17 +118,18 @@ SurfaceTopology topology(const std::vector<Triangle>& triangles, int vertex_coun
 
 template <class Element>
 std::vector<int> repeated_elements(const std::vector<Element>& elements) {
-  std::vector<std::pair<Element, int>> keys;
-  keys.reserve(elements.size());
-  for (size_t e = 0; e < elements.size(); ++e) {
-    if (lists_vertex_twice(elements[e])) continue;
-    keys.emplace_back(elements[e], static_cast<int>(e));
-    std::sort(keys.back().first.begin(), keys.back().first.end());
-  }
-  std::sort(keys.begin(), keys.end());
+  int vertex_count = 0;
+  for (const Element& element : elements)
+    vertex_count = std::max(vertex_count, 1 + *std::max_element(element.begin(), element.end()));
+  constexpr size_t kSize = std::tuple_size_v<Element>;
+  const auto groups = grouped_elements<kSize>(vertex_count, [&](const auto& visit) {
+    for (size_t e = 0; e < elements.size(); ++e)
+      if (!lists_vertex_twice(elements[e])) visit(elements[e], static_cast<int>(e));
+  });
   std::vector<int> repeated;
-  for (size_t i = 1; i < keys.size(); ++i)
-    if (keys[i].first == keys[i - 1].first) repeated.push_back(keys[i].second);
+  for_each_group(groups, [&](const GroupedElement<kSize>* begin, const GroupedElement<kSize>* end) {
+    for (const GroupedElement<kSize>* e = begin + 1; e < end; ++e) repeated.push_back(e->place);
+  });
   std::sort(repeated.begin(), repeated.end());
   return repeated;
 }

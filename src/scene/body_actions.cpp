@@ -78,7 +78,7 @@ void add_pins(Builder& builder, const PlacedBody& body) {
                                                  (*holder[v])["name"].text() + "' and in pin '" + scene["name"].text() +
                                                  "'; let one of them leave it out");
       holder[v] = &scene;
-      pin.vertices.push_back(body.first_vertex + v);
+      pin.vertices.push_back(body.model_vertex(v));
     }
     builder.model.pins.push_back(std::move(pin));
   }
@@ -92,7 +92,7 @@ void add_point_springs(Builder& builder, const PlacedBody& body, const Value& sc
   for (size_t i = 0; i < vertices.size(); ++i) {
     const Vec3d start = targets[i];
     if (motion) motion(start, 0);  // a formula that fails, fails here
-    builder.point_springs.push_back({body.first_vertex + vertices[i], scene["stiffness"].number(),
+    builder.point_springs.push_back({body.model_vertex(vertices[i]), scene["stiffness"].number(),
                                      [start, motion](double time) { return motion ? motion(start, time) : start; }});
   }
 }
@@ -116,7 +116,7 @@ void add_springs_between(Builder& builder, const PlacedBody& body, const Value& 
       throw error_at(pair.place, "between: a spring from vertex " + std::to_string(a) + " to itself");
     const Vec3d d = body.mesh.rest[a] - other->mesh.rest[b];
     const Value* length = scene.find("rest_length");
-    builder.springs.push_back({body.first_vertex + a, other->first_vertex + b,
+    builder.springs.push_back({body.model_vertex(a), other->model_vertex(b),
                                length ? length->number() : std::sqrt(dot(d, d)), scene["stiffness"].number()});
   }
 }
@@ -178,15 +178,15 @@ void add_gravity(Model& model, const Vec3d& gravity) {
 
 void add_loads(Builder& builder, const Vec3d& gravity) {
   add_gravity(builder.model, gravity);
-  std::vector<double> per_volume(3 * builder.model.mesh.rest.size(), 0.0), per_area = per_volume;
+  std::vector<double> per_volume(3 * builder.model.mesh.rest.size(), 0.0), per_area = per_volume;  // by user's numbers
   for (const PlacedBody& body : builder.bodies) {
     add_body_forces(builder, body, per_volume);
     add_tractions(builder, body, per_area);
     add_springs(builder, body);
   }
   Model& model = builder.model;
-  add_linear_load(model, "body_force", std::move(per_volume));
-  add_linear_load(model, "traction", std::move(per_area));
+  add_linear_load(model, "body_force", model.numbering.vertex.from_user(per_volume, 3));
+  add_linear_load(model, "traction", model.numbering.vertex.from_user(per_area, 3));
   if (!builder.point_springs.empty())
     model.loads.push_back(make_point_springs("point_springs", std::move(builder.point_springs)));
   if (!builder.springs.empty()) model.loads.push_back(make_springs("springs", std::move(builder.springs)));
@@ -205,7 +205,8 @@ void add_damping(PlacedBody& body, size_t index, MassKind kind, SceneFiles& file
   const std::vector<double> viscosity =
       tet_values(damping.table(), scene_schema().key("damping", "viscosity"), body.mesh, files, body.name());
   if (std::any_of(viscosity.begin(), viscosity.end(), [](double eta) { return eta > 0; }))
-    model.damping.push_back(make_strain_rate_damping(model.mesh, body.first_tet, viscosity));
+    model.damping.push_back(
+        make_strain_rate_damping(model.mesh, body.first_tet, body.numbering.tet.from_user(viscosity)));
 }
 
 }  // namespace

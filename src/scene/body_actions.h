@@ -9,14 +9,16 @@
 
 namespace aspic {
 
-// A body of the scene inside the model.
+// A body of the scene: by the user's numbers, and where it is inside the model.
 struct PlacedBody {
   Value& scene;  // its table
   TetMesh mesh;  // the placed rest shape with its own indices
   std::vector<Vec3d> start;
-  int first_vertex = 0, first_tet = 0;
+  int first_vertex = 0, first_tet = 0;  // in the model
+  Numbering numbering = {};             // of the body alone
 
   std::string name() const { return scene["name"].text(); }
+  int model_vertex(int own) const { return first_vertex + numbering.vertex.from_user(own); }
 };
 
 // Adds pins, loads and damping to a model that has its mesh, mass and elasticity. `gravity` in [m/s^2].

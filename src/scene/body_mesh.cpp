@@ -19,7 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMaxTets = 2e7;  // of a generated shape: about what fits into a large machine
+constexpr int kManyTets = 300'000;                 // about a second of work
+constexpr std::uintmax_t kManyBytes = 30'000'000;  // of a file
+constexpr double kMaxTets = 2e7;                   // of a generated shape: about what fits into a large machine
 
 // The remedy names an option of another command than the one that fails here.
 std::string sentence(const Finding& finding) {
@@ -155,10 +157,22 @@ void note_outside(const BodyMesh& body, const std::string& name, std::vector<std
 
 }  // namespace
 
+void MeshLoader::tell(const std::string& what) const {
+  if (announce) announce(what);
+}
+
+void MeshLoader::tell_if_many(int tet_count, const std::string& what) const {
+  if (tet_count >= kManyTets) tell(what);
+}
+
 LoadedMesh load_mesh(const fs::path& path, double size, MeshLoader& loader) {
+  std::error_code error;
+  if (const std::uintmax_t bytes = fs::file_size(path, error); !error && bytes >= kManyBytes)
+    loader.tell("reading " + path.filename().string() + " (" + std::to_string(bytes / 1'000'000) + " MB)");
   std::variant<TetMesh, TriMesh> mesh = read_mesh(path);
   if (TetMesh* tets = std::get_if<TetMesh>(&mesh)) return {std::move(*tets), {}};
   heed(diagnose(std::get<TriMesh>(mesh)), path.string(), loader.notes);
+  loader.tell("filling " + path.filename().string() + " with tets");
   TetMesh tets = tetrahedralise(path, {.size = size, .program = loader.mesher});
   const std::string length = size > 0 ? number_text(size) : "the diagonal of the bounding box / 25";
   loader.notes.push_back(path.filename().string() + ": a surface; filled with " + std::to_string(tets.tet_count()) +
@@ -172,6 +186,8 @@ BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMes
   check_fingerprint(body.table(), "mesh_hash", fingerprint_of(mesh.tets), "the mesh of body '" + name + "'");
   const AffineMap place = placement_of(body);
   for (Vec3d& X : mesh.tets.rest) X = place(X);
+  loader.tell_if_many(mesh.tets.tet_count(),
+                      "checking " + std::to_string(mesh.tets.tet_count()) + " tets of body '" + name + "'");
   heed(diagnose(mesh.tets), "body '" + name + "'", loader.notes);
 
   const Value* skin = body.find("skin");

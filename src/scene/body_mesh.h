@@ -7,6 +7,7 @@
 
 #include "mesh/embed.h"
 #include "mesh/tet_mesh.h"
+#include "scene/scene.h"
 #include "scene/scene_files.h"
 #include "scene/value.h"
 
@@ -22,6 +23,10 @@ struct MeshLoader {
   SceneFiles& files;
   std::filesystem::path mesher;
   std::vector<std::string>& notes;
+  Announce announce;
+
+  void tell(const std::string& what) const;
+  void tell_if_many(int tets, const std::string& what) const;  // so many that it takes more than a moment
 };
 
 // Reads a mesh; fills a surface with tets of edge length `size` (0: the mesher's choice). Errors that the doctor finds

@@ -37,7 +37,7 @@ TEST(MeshAlone, OverridesReplaceDefaultsAndTheirNotes) {
   const TestFolder folder;
   write_mesh(folder / "tower.msh", make_box({{0, 0, 0}}, {{40, 100, 40}}, {1, 2, 1}));
   const Scene scene = load_scene(folder / "tower.msh", {.overrides = {"scale=0.001", "material.young=5e4"}});
-  EXPECT_NEAR(scene.simulation.model().mesh.rest.back()[1], 0.1, 1e-15);
+  EXPECT_NEAR(rest(scene, scene.simulation.model().mesh.vertex_count() - 1)[1], 0.1, 1e-15);
   EXPECT_THAT(scene.notes, Not(Contains(HasSubstr("becomes 1 m"))));
   EXPECT_THAT(scene.notes, Not(Contains(HasSubstr("material.young"))));
   EXPECT_THAT(scene.resolved, HasSubstr("young = 50000.0"));

@@ -49,16 +49,54 @@ void make_room(const RunLayout& layout, const Scene& scene, ExistingRun existing
   layout.remove_run(needed);
 }
 
+State to_user(const Renumbering& vertex, const State& stored) {
+  return {vertex.to_user(stored.q, 3), vertex.to_user(stored.qdot, 3), stored.time};
+}
+
+State from_user(const Renumbering& vertex, const State& user) {
+  return {vertex.from_user(user.q, 3), vertex.from_user(user.qdot, 3), user.time};
+}
+
+// Nothing, or the level of an adaptive step and then, when it is remembered, where the last step or part began.
+std::vector<double> to_history(const Simulation::Snapshot& snapshot, const Renumbering& vertex) {
+  if (snapshot.level == 0 && !snapshot.previous) return {};
+  std::vector<double> history = {snapshot.level};
+  if (!snapshot.previous) return history;
+  const State previous = to_user(vertex, *snapshot.previous);
+  history.push_back(previous.time);
+  history.insert(history.end(), previous.q.begin(), previous.q.end());
+  history.insert(history.end(), previous.qdot.begin(), previous.qdot.end());
+  return history;
+}
+
+void read_history(const std::vector<double>& history, const Renumbering& vertex, Simulation::Snapshot& snapshot) {
+  const size_t n = snapshot.state.q.size();
+  if (history.size() > 1 && history.size() != 2 + 2 * n)
+    throw InvalidInput("the checkpoint's history has " + std::to_string(history.size()) +
+                       " entries; this scene needs " + std::to_string(2 + 2 * n));
+  if (!history.empty()) snapshot.level = history[0];
+  if (history.size() <= 1) return;
+  const auto q = history.begin() + 2, qdot = q + static_cast<std::ptrdiff_t>(n);
+  snapshot.previous = from_user(vertex, {{q, qdot}, {qdot, history.end()}, history[1]});
+}
+
+// By the user's numbers, so that it does not depend on the order in which the model is stored.
 Checkpoint to_checkpoint(const Simulation& simulation, const std::string& scene,
                          const std::vector<double>& frame_times) {
   const Simulation::Snapshot snapshot = simulation.snapshot();
+  const Renumbering& vertex = simulation.model().numbering.vertex;
+  State state = to_user(vertex, snapshot.state), start = to_user(vertex, snapshot.start);
   Checkpoint checkpoint;
   checkpoint.fingerprint = scene;
   checkpoint.integers = {{"steps_taken", snapshot.steps_taken}};
-  checkpoint.arrays = {
-      {"q", snapshot.state.q},       {"qdot", snapshot.state.qdot},       {"time", {snapshot.state.time}},
-      {"start_q", snapshot.start.q}, {"start_qdot", snapshot.start.qdot}, {"start_time", {snapshot.start.time}},
-      {"history", snapshot.history}, {"frame_times", frame_times}};
+  checkpoint.arrays = {{"q", std::move(state.q)},
+                       {"qdot", std::move(state.qdot)},
+                       {"time", {state.time}},
+                       {"start_q", std::move(start.q)},
+                       {"start_qdot", std::move(start.qdot)},
+                       {"start_time", {start.time}},
+                       {"history", to_history(snapshot, vertex)},
+                       {"frame_times", frame_times}};
   return checkpoint;
 }
 
@@ -68,12 +106,23 @@ double only_number(const Checkpoint& checkpoint, const char* name) {
   return values[0];
 }
 
-Simulation::Snapshot to_snapshot(const Checkpoint& checkpoint) {
+State state_of(const Checkpoint& checkpoint, const std::string& prefix, const Model& model) {
+  const State state{checkpoint.array(prefix + "q"), checkpoint.array(prefix + "qdot"),
+                    only_number(checkpoint, (prefix + "time").c_str())};
+  const size_t n = 3 * model.mesh.rest.size();
+  for (const auto* v : {&state.q, &state.qdot})
+    if (v->size() != n)
+      throw InvalidInput("the checkpoint has " + std::to_string(v->size()) + " entries; this scene needs " +
+                         std::to_string(n));
+  return from_user(model.numbering.vertex, state);
+}
+
+Simulation::Snapshot to_snapshot(const Checkpoint& checkpoint, const Model& model) {
   Simulation::Snapshot snapshot;
   snapshot.steps_taken = static_cast<int>(checkpoint.integer("steps_taken"));
-  snapshot.state = {checkpoint.array("q"), checkpoint.array("qdot"), only_number(checkpoint, "time")};
-  snapshot.start = {checkpoint.array("start_q"), checkpoint.array("start_qdot"), only_number(checkpoint, "start_time")};
-  snapshot.history = checkpoint.array("history");
+  snapshot.state = state_of(checkpoint, "", model);
+  snapshot.start = state_of(checkpoint, "start_", model);
+  read_history(checkpoint.array("history"), model.numbering.vertex, snapshot);
   return snapshot;
 }
 
@@ -174,7 +223,7 @@ RunDirectory RunDirectory::resume(const fs::path& path, Scene& scene) {
   if (!layout.holds_run()) throw InvalidInput(path.string() + ": holds no run to continue");
   const NewestCheckpoint newest = read_newest_checkpoint(layout.checkpoint());
   check_same_scene(layout, scene, newest.checkpoint);
-  scene.simulation.restore(to_snapshot(newest.checkpoint));
+  scene.simulation.restore(to_snapshot(newest.checkpoint, scene.simulation.model()));
   if (!newest.note.empty()) {
     scene.notes.push_back(newest.note);
     std::error_code ignored;  // so that the damaged one never takes the place of the good one

@@ -28,6 +28,7 @@ std::vector<double> region_of_tets(const TetMesh& mesh) {
   return {mesh.region.begin(), mesh.region.end()};
 }
 
+// In the order of the model.
 std::vector<Field> cell_fields(const Simulation& simulation) {
   const Model& model = simulation.model();
   TetFields tet = simulation.tet_fields();
@@ -49,9 +50,13 @@ std::vector<Field> cell_fields(const Simulation& simulation) {
 void write_frame(const std::filesystem::path& path, const Simulation& simulation) {
   const Model& model = simulation.model();
   const State& state = simulation.state();
-  const std::vector<Field> point_fields = {{"displacement", 3, displacement(model.mesh, state.q), FieldType::float32},
-                                           {"velocity", 3, state.qdot, FieldType::float32}};
-  write_vtu(path, state.q, model.mesh.tets, point_fields, cell_fields(simulation));
+  const auto& [vertex, tet] = model.numbering;
+  const std::vector<Field> point_fields = {
+      {"displacement", 3, vertex.to_user(displacement(model.mesh, state.q), 3), FieldType::float32},
+      {"velocity", 3, vertex.to_user(state.qdot, 3), FieldType::float32}};
+  std::vector<Field> fields = cell_fields(simulation);
+  for (Field& field : fields) field.values = tet.to_user(field.values, field.components);
+  write_vtu(path, vertex.to_user(state.q, 3), to_user(model.numbering, model.mesh).tets, point_fields, fields);
 }
 
 }  // namespace aspic

@@ -41,14 +41,14 @@ Scene load_scene(const fs::path& path, const SceneOptions& options) {
                        path.string(),
                        {},
                        {}};
-    return build_scene(std::move(source), SceneFiles(path.parent_path(), options.allow_outside), options.mesher);
+    return build_scene(std::move(source), SceneFiles(path.parent_path(), options.allow_outside), options);
   }
   SceneFiles files("", true);  // the user named the mesh
   std::vector<std::string> notes;
-  MeshLoader loader{files, options.mesher, notes};
+  MeshLoader loader{files, options.mesher, notes, options.announce};
   SceneSource source = scene_of_mesh(path, options.overrides, loader);
   source.notes.insert(source.notes.begin(), notes.begin(), notes.end());
-  return build_scene(std::move(source), std::move(files), options.mesher);
+  return build_scene(std::move(source), std::move(files), options);
 }
 
 void write_inputs(const Scene& scene, const fs::path& folder) {

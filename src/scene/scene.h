@@ -1,6 +1,7 @@
 // From a TOML file, or from a mesh alone, to a simulation that is ready to run.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -27,9 +28,9 @@ struct Scene {
   std::string name;                // file name without extension
   std::string resolved;            // TOML with every default filled in: rerunning it gives the same bits
   std::vector<std::string> notes;  // each default that was chosen, with its reason; warnings of the doctor
-  Simulation simulation;
-  std::vector<Skin> skins;  // one per body
-  int steps = 0;            // of the whole run
+  Simulation simulation;           // its model is renumbered; model().numbering leads back to the user's numbers
+  std::vector<Skin> skins;         // one per body
+  int steps = 0;                   // of the whole run
   OutputOptions output;
   // What `resolved` refers to, by the names it uses there ("inputs/bunny.msh"): files to copy, and meshes that were
   // made from a surface.
@@ -40,10 +41,14 @@ struct Scene {
 // Puts them below `folder`, beside which `resolved` can be run again. Throws InvalidInput.
 void write_inputs(const Scene& scene, const std::filesystem::path& folder);
 
+// Told what is about to be done when that takes more than a moment: "checking 5821794 tets of body 'liver'".
+using Announce = std::function<void(const std::string& what)>;
+
 struct SceneOptions {
   std::vector<std::string> overrides = {};  // "material.young=2e5", "time.step=0.005", "body.bunny.scale=2"
   std::filesystem::path mesher = {};        // aspic-mesh; empty: found by itself
   bool allow_outside = false;               // read files from outside the scene's folder and the folder above it
+  Announce announce = {};                   // empty: nobody listens
 };
 
 // A .toml file is a scene; any mesh file becomes one with sensible defaults. Throws InvalidInput with file, line,

@@ -18,7 +18,7 @@ namespace {
 constexpr double kLockingPoisson = 0.45;  // linear tets are too stiff above
 constexpr double kFarFromOrigin = 1e8;    // in sizes of the body; half of the 16 digits of a position are lost there
 
-// The parameters of each tet of a body; density apart.
+// The parameters of each tet of a body, in the user's order; density apart.
 std::vector<MaterialParameters> parameters_of(PlacedBody& body, SceneFiles& files, std::vector<std::string>& notes) {
   Table& material = body.scene.table().find("material")->table();
   const auto values = [&](const char* name) {
@@ -54,6 +54,13 @@ std::vector<MaterialParameters> parameters_of(PlacedBody& body, SceneFiles& file
     notes.push_back("body '" + body.name() + "': Poisson's ratio reaches " + number_text(highest) +
                     "; linear tets lock above 0.45 and deform too little (0.45 is safe)");
   return parameters;
+}
+
+std::vector<MaterialParameters> from_user(const Renumbering& tet, const std::vector<MaterialParameters>& user) {
+  std::vector<MaterialParameters> stored;
+  stored.reserve(user.size());
+  for (size_t t = 0; t < user.size(); ++t) stored.push_back(user[tet.to_user(static_cast<int>(t))]);
+  return stored;
 }
 
 // Without elasticity a body still has its term, of zero stiffness, so that det F is watched.
@@ -111,12 +118,14 @@ int steps_of(const Value& time) {
 
 class SceneBuilder {
  public:
-  SceneBuilder(SceneSource source, SceneFiles files, const std::filesystem::path& mesher)
-      : source_(std::move(source)), files_(std::move(files)), mesher_(mesher) {}
+  SceneBuilder(SceneSource source, SceneFiles files, const SceneOptions& options)
+      : source_(std::move(source)), files_(std::move(files)), options_(options) {}
 
   Scene build() {
     note_version();
     add_bodies();
+    mesh_loader().tell_if_many(model_.mesh.tet_count(), "setting up " + std::to_string(model_.mesh.vertex_count()) +
+                                                            " vertices: materials, mass and the pattern of the matrix");
     add_model();
     State state = start();
     const SimulationOptions options = options_of(source_.document, source_.notes);
@@ -150,8 +159,10 @@ class SceneBuilder {
     source_.document.members.insert(source_.document.members.begin(), Member{"version", {}, {current, {}}});
   }
 
+  MeshLoader mesh_loader() { return {files_, options_.mesher, source_.notes, options_.announce}; }
+
   void add_bodies() {
-    MeshLoader loader{files_, mesher_, source_.notes};
+    MeshLoader loader = mesh_loader();
     for (Value& scene : source_.document.find("body")->array()) {
       std::optional<LoadedMesh> loaded;
       if (const auto known = source_.meshes.find(scene["name"].text()); known != source_.meshes.end())
@@ -165,14 +176,22 @@ class SceneBuilder {
       }
       note_inverted_start(body);
       note_lost_digits(body);
-      append(body.mesh, model_.mesh);
+      add_to_model(body);
       for (Tet& corners : mesh.embedding.vertices)
-        for (int& v : corners) v += body.first_vertex;
+        for (int& v : corners) v = body.model_vertex(v);
       skins_.push_back({std::move(mesh.skin), std::move(mesh.embedding), body.name()});
-      model_.bodies.push_back(
-          {body.name(), body.first_vertex, body.mesh.vertex_count(), body.first_tet, body.mesh.tet_count()});
       bodies_.push_back(std::move(body));
     }
+  }
+
+  // From here on its vertices and tets have two numbers.
+  void add_to_model(PlacedBody& body) {
+    const int vertices = body.mesh.vertex_count(), tets = body.mesh.tet_count();
+    body.numbering = locality_numbering(body.mesh);
+    append(from_user(body.numbering, body.mesh), model_.mesh);
+    model_.numbering.vertex.append(body.first_vertex, body.numbering.vertex, vertices);
+    model_.numbering.tet.append(body.first_tet, body.numbering.tet, tets);
+    model_.bodies.push_back({body.name(), body.first_vertex, vertices, body.first_tet, tets});
   }
 
   void note_inverted_start(const PlacedBody& body) {
@@ -206,10 +225,11 @@ class SceneBuilder {
     const MassKind kind = solver["mass"].text() == "lumped" ? MassKind::lumped : MassKind::consistent;
     for (PlacedBody& body : bodies_) {
       Table& material = body.scene.table().find("material")->table();
-      const std::vector<double> density =
-          tet_values(material, scene_schema().key("material", "density"), body.mesh, files_, body.name());
+      const Renumbering& tet = body.numbering.tet;
+      const std::vector<double> density = tet.from_user(
+          tet_values(material, scene_schema().key("material", "density"), body.mesh, files_, body.name()));
       model_.density.insert(model_.density.end(), density.begin(), density.end());
-      const std::vector<MaterialParameters> parameters = parameters_of(body, files_, source_.notes);
+      const std::vector<MaterialParameters> parameters = from_user(tet, parameters_of(body, files_, source_.notes));
       model_.elasticity.push_back(make_tet_elasticity(model_of(body), model_.mesh, body.first_tet, parameters));
       export_moduli(parameters);
     }
@@ -229,7 +249,8 @@ class SceneBuilder {
 
   State start() {
     State state;
-    const std::span<const double> mass = model_.mass->vertex_mass();
+    const std::vector<double> masses = model_.numbering.vertex.to_user(model_.mass->vertex_mass());
+    const std::span<const double> mass(masses);
     for (const PlacedBody& body : bodies_) {
       std::vector<Vec3d> v;
       try {
@@ -243,12 +264,14 @@ class SceneBuilder {
           state.qdot.push_back(v[i][r]);
         }
     }
+    state.q = model_.numbering.vertex.from_user(state.q, 3);
+    state.qdot = model_.numbering.vertex.from_user(state.qdot, 3);
     return state;
   }
 
   SceneSource source_;
   SceneFiles files_;
-  const std::filesystem::path& mesher_;
+  const SceneOptions& options_;
   std::vector<PlacedBody> bodies_;
   Model model_;
   std::vector<Skin> skins_;
@@ -256,8 +279,8 @@ class SceneBuilder {
 
 }  // namespace
 
-Scene build_scene(SceneSource source, SceneFiles files, const std::filesystem::path& mesher) {
-  return SceneBuilder(std::move(source), std::move(files), mesher).build();
+Scene build_scene(SceneSource source, SceneFiles files, const SceneOptions& options) {
+  return SceneBuilder(std::move(source), std::move(files), options).build();
 }
 
 }  // namespace aspic

@@ -20,6 +20,6 @@ struct SceneSource {
 };
 
 // Throws InvalidInput.
-Scene build_scene(SceneSource source, SceneFiles files, const std::filesystem::path& mesher);
+Scene build_scene(SceneSource source, SceneFiles files, const SceneOptions& options);
 
 }  // namespace aspic

@@ -36,6 +36,18 @@ inline Vec3d vertex(const std::vector<double>& values, int i) {
   return {{values[3 * i], values[3 * i + 1], values[3 * i + 2]}};
 }
 
+// Positions and velocities, 3 per vertex, by the numbers of the scene's meshes.
+inline std::vector<double> positions(const Scene& scene) {
+  return scene.simulation.model().numbering.vertex.to_user(scene.simulation.state().q, 3);
+}
+inline std::vector<double> velocities(const Scene& scene) {
+  return scene.simulation.model().numbering.vertex.to_user(scene.simulation.state().qdot, 3);
+}
+inline Vec3d rest(const Scene& scene, int vertex) {
+  const Model& model = scene.simulation.model();
+  return model.mesh.rest[model.numbering.vertex.from_user(vertex)];
+}
+
 inline double distance(const Vec3d& a, const Vec3d& b) { return std::sqrt(dot(a - b, a - b)); }
 
 }  // namespace aspic

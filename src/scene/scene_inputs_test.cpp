@@ -23,7 +23,7 @@ TEST(Scene, DisplacementFileGivesEachVertexItsOwn) {
   folder.write("u.csv", csv);
   const std::string text = kCube + "scale = 100\ndeform = { file = \"u.csv\" }\n";
   const Scene scene = load_scene(folder.write("beam.toml", text));
-  EXPECT_EQ(vertex(scene.simulation.state().q, 26).a[0], 126);
+  EXPECT_EQ(vertex(positions(scene), 26).a[0], 126);
   EXPECT_THAT(scene.resolved, HasSubstr("inputs/cube.displacement.csv"));
   folder.write("u.csv", "1,2,3\n");
   EXPECT_THAT(refusal_of(folder / "beam.toml"), HasSubstr("1 lines of numbers; one for a vertex is needed, 27 in all"));
@@ -38,7 +38,8 @@ TEST(Scene, ParametersVaryFromTetToTet) {
   folder.write("rho.csv", csv);
   const Scene scene = load_scene(folder.write(
       "beam.toml", kCube + "material = { density = { file = \"rho.csv\" }, young = \"1e5 * (1 + X)\" }\n"));
-  EXPECT_EQ(scene.simulation.model().density[47], 1047);
+  const Model& model = scene.simulation.model();
+  EXPECT_EQ(model.density[model.numbering.tet.from_user(47)], 1047);
   EXPECT_THAT(scene.resolved, AllOf(HasSubstr("inputs/cube.density.csv"), HasSubstr("fnv1a:")));
   folder.write("rho.csv", "1\n" + csv);
   EXPECT_THAT(refusal_of(folder / "beam.toml"), HasSubstr("49 lines of numbers"));
@@ -59,7 +60,8 @@ TEST(Scene, RegionsMapLabelsToValues) {
                         "[[body]]\nmesh = \"cube.msh\"\nmaterial = { density = { regions = " + regions + " } }\n");
   };
   const Scene scene = load_scene(with("{ 1 = 100, 7 = 300 }"));
-  EXPECT_EQ(scene.simulation.model().density, (std::vector<double>{100, 100, 100, 300, 300, 300}));
+  const Model& model = scene.simulation.model();
+  EXPECT_EQ(model.numbering.tet.to_user(model.density), (std::vector<double>{100, 100, 100, 300, 300, 300}));
   EXPECT_THAT(refusal_of(with("{ 1 = 100 }")), AllOf(HasSubstr("region 7 is missing"), HasSubstr("1, 7")));
   EXPECT_THAT(refusal_of(with("{ 1 = 100, 7 = 1, 8 = 2 }")), HasSubstr("no region 8"));
 }
@@ -108,6 +110,20 @@ TEST(Scene, ABrokenMeshStopsWithTheDoctorsWords) {
   write_mesh(folder / "cube.msh", mesh);
   const fs::path path = folder.write("s.toml", "[[body]]\nmesh = \"cube.msh\"\n");
   EXPECT_THAT(refusal_of(path), AllOf(HasSubstr("cube"), HasSubstr("inverted")));
+}
+
+TEST(Scene, WhatTakesLongIsAnnounced) {
+  const auto announced = [](const std::string& cells) {
+    const TestFolder folder;
+    std::vector<std::string> told;
+    const std::string text =
+        "[[body]]\nname = \"box\"\nshape = { box = { upper = [1, 1, 1], cells = " + cells + " } }\n";
+    load_scene(folder.write("s.toml", text), {.announce = [&](const std::string& what) { told.push_back(what); }});
+    return told;
+  };
+  EXPECT_THAT(announced("[2, 2, 2]"), testing::IsEmpty());
+  EXPECT_THAT(announced("[50, 50, 20]"),
+              testing::ElementsAre("checking 300000 tets of body 'box'", HasSubstr("setting up")));
 }
 
 TEST(Scene, MissingOrUnreadableFilesAreNamed) {

@@ -38,8 +38,8 @@ void write_stacked(const Sheet& sheet, const Model& model, const Vector& q) {
                     [&](int a, int b) { return model.mesh.rest[a][1] > model.mesh.rest[b][1]; });
   CsvFile table = sheet.table("entries_of_q.csv", {"vertex", "first_entry", "x_m", "y_m", "z_m"});
   for (size_t k = 0; k < few; ++k) {
-    const int v = order[k];
-    table.append(CsvRow().add(v).add(3 * v).add(q[3 * v]).add(q[3 * v + 1]).add(q[3 * v + 2]));
+    const int v = order[k], name = model.numbering.vertex.to_user(v);
+    table.append(CsvRow().add(name).add(3 * name).add(q[3 * v]).add(q[3 * v + 1]).add(q[3 * v + 2]));
   }
 }
 

@@ -1,0 +1,43 @@
+// Two numberings of the same mesh: the one that the user's files and selections speak, and the one in which the mesh is
+// stored and worked through, where neighbours in space are near each other in memory.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+// A permutation of the vertices or the tets. A new one changes nothing.
+class Renumbering {
+ public:
+  Renumbering() = default;
+  explicit Renumbering(std::vector<int> user_of_stored);  // the user's number of each element, in the order of storage
+
+  int to_user(int stored) const { return user_.empty() ? stored : user_[stored]; }
+  int from_user(int user) const { return stored_.empty() ? user : stored_[user]; }
+  std::vector<int> to_user(std::vector<int> stored) const;  // ascending
+
+  // Values of every element, `components` each, one element after another.
+  std::vector<double> to_user(std::span<const double> stored, int components = 1) const;
+  std::vector<double> from_user(std::span<const double> user, int components = 1) const;
+
+  bool is_identity() const { return user_.empty(); }
+  // The elements of another part behind those of this one; `count` and `more` of them.
+  void append(int count, const Renumbering& part, int more);
+
+ private:
+  std::vector<int> user_, stored_;  // both empty: the same numbers
+};
+
+struct Numbering {
+  Renumbering vertex, tet;
+};
+
+Numbering locality_numbering(const TetMesh& mesh);  // along a Hilbert curve; the mesh is in the user's order
+
+// Corners of tets keep their order.
+TetMesh from_user(const Numbering& numbering, const TetMesh& user);
+TetMesh to_user(const Numbering& numbering, const TetMesh& stored);
+
+}  // namespace aspic
