@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "energy/coloring.h"
+#include "energy/law_hessian.h"
 #include "energy/make_tet_term.h"
 #include "energy/tet_batch.h"
 #include "energy/tet_elasticity.h"
@@ -29,15 +30,10 @@ class TetTerm : public TetElasticity {
 
   // Tets [first, first + parameters.size()) of the mesh.
   TetTerm(std::string name, const TetMesh& mesh, int first, std::span<const Params<double>> parameters)
-      : name_(std::move(name)) {
+      : name_(std::move(name)), tets_per_group_(group_size(parameters.size())) {
     const std::vector<int> order = locality_order(mesh, first, parameters.size());
-    for (size_t i = 0; i < order.size(); i += kPackWidth) {
-      const std::span<const int> tets(&order[i], std::min<size_t>(kPackWidth, order.size() - i));
-      const TetBatch& batch = batches_.emplace_back(mesh, tets);
-      std::vector<Params<double>> lanes;
-      for (const int tet : batch.tet) lanes.push_back(parameters[tet - first]);
-      params_.push_back(pack_params<M>(lanes));
-    }
+    for (size_t i = 0; i < order.size(); i += tets_per_group_)
+      add_batches(mesh, first, parameters, std::span(order).subspan(i, std::min(tets_per_group_, order.size() - i)));
     color(mesh.vertex_count());
   }
 
@@ -62,15 +58,14 @@ class TetTerm : public TetElasticity {
   }
 
   void bind(const BlockPattern& pattern) override {
-    parallel_for(static_cast<int>(batches_.size()), [&](int i) { batches_[i].bind(pattern); });
+    parallel_for(batch_count(), [&](int i) { batches_[i].bind(pattern); });
   }
 
   int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override {
     projected_.assign(batches_.size(), 0);
     for_each_batch([&](int i) {
-      Mat9<Pack> A = M::hessian(F(i, x), params_[i]);
-      if (projection.kind != Definiteness::exact) projected_[i] = project(A, batches_[i], projection);
-      batches_[i].scatter_hessian(A, Pack(scale) * batches_[i].volume, H);
+      if (i + 1 < batch_count()) batches_[i + 1].prefetch_blocks(H);
+      projected_[i] = add_batch_hessian(i, x, scale, projection, H);
     });
     return std::accumulate(projected_.begin(), projected_.end(), 0);
   }
@@ -99,7 +94,7 @@ class TetTerm : public TetElasticity {
   }
 
   void evaluate(Positions x, TetFields& fields) const override {
-    parallel_for(static_cast<int>(batches_.size()), [&](int i) {
+    parallel_for(batch_count(), [&](int i) {
       const Mat3<Pack> Fi = F(i, x);
       const Pack psi = M::psi(Fi, params_[i]), J = determinant(Fi);
       const Mat3<Pack> cauchy = (Pack(1.0) / J) * (M::pk1(Fi, params_[i]) * transpose(Fi));
@@ -122,6 +117,44 @@ class TetTerm : public TetElasticity {
     return order;
   }
 
+  // Coarse enough for threads and to meet again what is in a cache, fine enough to colour small meshes.
+  static size_t group_size(size_t tets) { return std::clamp<size_t>(std::bit_floor(tets / 128), 128, 512); }
+
+  // A batch takes each k-th tet of the group: lanes that are neighbours would add to the same blocks, and each would
+  // have to wait for the sum of the one before.
+  void add_batches(const TetMesh& mesh, int first, std::span<const Params<double>> parameters,
+                   std::span<const int> group) {
+    const size_t stride = (group.size() + kPackWidth - 1) / kPackWidth;
+    for (size_t i = 0; i < stride; ++i) {
+      std::vector<int> tets;
+      std::vector<Params<double>> lanes;
+      for (size_t j = i; j < group.size(); j += stride) {
+        tets.push_back(group[j]);
+        lanes.push_back(parameters[group[j] - first]);
+      }
+      batches_.emplace_back(mesh, tets);
+      params_.push_back(pack_params<M>(lanes));
+    }
+  }
+
+  // Returns how many lanes were projected.
+  char add_batch_hessian(int i, Positions x, double scale, const Projection& projection, BlockSparse& H) const {
+    const TetBatch& tets = batches_[i];
+    const Pack weight = Pack(scale) * tets.volume;
+    if constexpr (requires { typename M::Law; }) {
+      if (projection.kind == Definiteness::exact) {
+        const Mat3<Pack> Ds = tets.edges(x);
+        const LawBlocks blocks(tets, Ds, M::law_derivatives(Ds * tets.rest_inverse, params_[i]), weight);
+        tets.scatter_blocks([&](int u, int v) { return blocks.block(u, v); }, H);
+        return 0;
+      }
+    }
+    Mat9<Pack> A = M::hessian(F(i, x), params_[i]);
+    const char projected = projection.kind == Definiteness::exact ? 0 : project(A, tets, projection);
+    tets.scatter_hessian(A, weight, H);
+    return projected;
+  }
+
   static char project(Mat9<Pack>& A, const TetBatch& batch, const Projection& projection) {
     const bool clamp = projection.kind == Definiteness::clamped;
     const unsigned lanes = batch.lanes_covered(projection);
@@ -141,12 +174,21 @@ class TetTerm : public TetElasticity {
                                       3 * (xy * xy + yz * yz + zx * zx));
   }
 
-  int group_count() const { return (static_cast<int>(batches_.size()) + kBatchesPerGroup - 1) / kBatchesPerGroup; }
+  int batch_count() const { return static_cast<int>(batches_.size()); }
+  int batches_per_group() const { return static_cast<int>(tets_per_group_) / kPackWidth; }
+  int group_count() const { return (batch_count() + batches_per_group() - 1) / batches_per_group(); }
 
   template <class Body>
   void for_group(int group, const Body& body) const {
-    const int last = std::min(static_cast<int>(batches_.size()), (group + 1) * kBatchesPerGroup);
-    for (int i = group * kBatchesPerGroup; i < last; ++i) body(i);
+    constexpr int kAhead = 2;
+    const int last = std::min(batch_count(), (group + 1) * batches_per_group());
+    for (int i = group * batches_per_group(); i < last; ++i) {
+      if (i + kAhead < batch_count()) {
+        batches_[i + kAhead].prefetch();
+        prefetch(&params_[i + kAhead], sizeof params_[0]);
+      }
+      body(i);
+    }
   }
 
   // Batches that scatter: colour after colour, the groups of a colour in parallel.
@@ -181,6 +223,7 @@ class TetTerm : public TetElasticity {
   }
 
   std::string name_;
+  size_t tets_per_group_;
   ColorClasses colors_;
   Incidence corners_;                    // for single vertices
   mutable std::vector<double> partial_;  // scratch of reduce
