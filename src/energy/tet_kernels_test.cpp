@@ -144,5 +144,14 @@ TEST(TetKernels, AgreeWithTheFormulasWhereTetsAreInsideOut) {
   });
 }
 
+TEST(TetKernels, AgreeWithTheFilteredFormulas) {
+  const TetMesh mesh = make_mesh(4);
+  for_each_material([&]<class M>() {
+    const std::vector<double> x = moved(mesh, M::info().barrier ? 0.1 : 1.5, 1);
+    for (const Definiteness definiteness : {Definiteness::clamped, Definiteness::absolute})
+      expect_kernels_to_match<M>(mesh, x, definiteness, 1e-11);
+  });
+}
+
 }  // namespace
 }  // namespace aspic

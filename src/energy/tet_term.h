@@ -16,6 +16,7 @@
 #include "energy/tet_batch.h"
 #include "energy/tet_elasticity.h"
 #include "energy/vertex_tets.h"
+#include "material/law_eigen.h"
 #include "material/material.h"
 #include "math/definite.h"
 #include "mesh/order.h"
@@ -149,18 +150,24 @@ class TetTerm : public TetElasticity {
         return 0;
       }
     }
-    Mat9<Pack> A = M::hessian(F(i, x), params_[i]);
-    const char projected = projection.kind == Definiteness::exact ? 0 : project(A, tets, projection);
+    const Mat3<Pack> F_i = F(i, x);
+    Mat9<Pack> A = M::hessian(F_i, params_[i]);
+    const unsigned projected = project(A, F_i, params_[i], tets.lanes_covered(projection), projection.kind);
     tets.scatter_hessian(A, weight, H);
-    return projected;
+    return static_cast<char>(std::popcount(projected));
   }
 
-  static char project(Mat9<Pack>& A, const TetBatch& batch, const Projection& projection) {
-    const bool clamp = projection.kind == Definiteness::clamped;
-    const unsigned lanes = batch.lanes_covered(projection);
-    if (lanes == 0) return 0;
-    return static_cast<char>(
-        std::popcount(make_definite(A, clamp ? EigenvalueFilter::clamp : EigenvalueFilter::absolute, lanes)));
+  // Returns the lanes whose Hessian was changed.
+  static unsigned project(Mat9<Pack>& A, const Mat3<Pack>& F_i, const Params<Pack>& p, unsigned lanes,
+                          Definiteness kind) {
+    if (kind == Definiteness::exact || lanes == 0) return 0;
+    const EigenvalueFilter filter =
+        kind == Definiteness::clamped ? EigenvalueFilter::clamp : EigenvalueFilter::absolute;
+    if constexpr (requires { typename M::Law; }) {
+      return filter_eigenvalues(A, filter, lanes, [&] { return law_eigen(F_i, M::law_derivatives(F_i, p)); });
+    } else {
+      return make_definite(A, filter, lanes);
+    }
   }
 
   static void write(int tet, int lane, Pack psi, Pack J, const Mat3<Pack>& s, TetFields& fields) {
