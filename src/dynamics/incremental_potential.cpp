@@ -76,9 +76,12 @@ void IncrementalPotential::gradient(std::span<const double> q, std::span<double>
 }
 
 const BlockSparse& IncrementalPotential::hessian(std::span<const double> q, const Projection& projection) {
-  H_.set_zero();
   projected_elements_ = 0;
-  if (inertia_ != 0) model_.mass->add_to(inertia_, H_);
+  if (inertia_ != 0) {
+    model_.mass->assign_to(inertia_, H_);
+  } else {
+    H_.set_zero();
+  }
   for (const Energy* V : potential_) projected_elements_ += V->add_hessian(q, factor_, projection, H_);
   for (const Energy* D : damping_) projected_elements_ += D->add_hessian(q, factor_, projection, H_);
   pins_.set_identity(H_);

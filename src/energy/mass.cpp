@@ -119,14 +119,27 @@ void MassMatrix::bind(const BlockPattern& target) {
   });
 }
 
+void MassMatrix::add_row(int row, double scale, BlockSparse& H) const {
+  for (int64_t k = 0; k < lower_count(row); ++k) {
+    Mat3d& block = H.block[target_slot_[lower_start_[row] + k]];
+    for (int r = 0; r < 3; ++r) block(r, r) += scale * entry_[row_start_[row] + k];
+  }
+}
+
 void MassMatrix::add_to(double scale, BlockSparse& H) const {
   ASPIC_CHECK(static_cast<int64_t>(target_slot_.size()) == lower_start_.back());
   parallel_chunks(rows(), [&](int first, int last) {
-    for (int i = first; i < last; ++i)
-      for (int64_t k = 0; k < lower_count(i); ++k) {
-        Mat3d& block = H.block[target_slot_[lower_start_[i] + k]];
-        for (int r = 0; r < 3; ++r) block(r, r) += scale * entry_[row_start_[i] + k];
-      }
+    for (int i = first; i < last; ++i) add_row(i, scale, H);
+  });
+}
+
+void MassMatrix::assign_to(double scale, BlockSparse& H) const {
+  ASPIC_CHECK(static_cast<int64_t>(target_slot_.size()) == lower_start_.back());
+  parallel_chunks(rows(), [&](int first, int last) {
+    for (int i = first; i < last; ++i) {
+      std::fill(H.block.begin() + H.pattern->row_start[i], H.block.begin() + H.pattern->row_start[i + 1], Mat3d{});
+      add_row(i, scale, H);
+    }
   });
 }
 

@@ -24,12 +24,14 @@ class MassMatrix {
   void add_vertex_systems(double scale, std::span<const double> x, std::span<const double> origin,
                           std::span<const int> vertices, std::span<Vec3d> g, std::span<Mat3d> H) const;
   void add_couplings(Couplings& couplings) const;
-  void bind(const BlockPattern& target);            // remembers where add_to writes
-  void add_to(double scale, BlockSparse& H) const;  // H += scale M
+  void bind(const BlockPattern& target);               // remembers where add_to writes
+  void add_to(double scale, BlockSparse& H) const;     // H += scale M
+  void assign_to(double scale, BlockSparse& H) const;  // H = scale M
 
  private:
   int rows() const { return static_cast<int>(lumped_.size()); }
   int64_t lower_count(int row) const { return lower_start_[row + 1] - lower_start_[row]; }
+  void add_row(int row, double scale, BlockSparse& H) const;
   void store_rows(const BlockPattern& pattern, std::span<const double> lower);
 
   MassKind kind_;

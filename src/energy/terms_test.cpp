@@ -318,6 +318,9 @@ TEST(MassMatrix, AddedIntoAMatrixItIsTheSameOperator) {
   mass.multiply(x, Mx);
   H.multiply(x, Hx);
   for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(Hx[i], 2 * Mx[i], 1e-15);
+  mass.assign_to(3, H);
+  H.multiply(x, Hx);
+  for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(Hx[i], 3 * Mx[i], 1e-15);
 }
 
 }  // namespace

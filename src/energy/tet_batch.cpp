@@ -25,7 +25,7 @@ void TetBatch::bind(const BlockPattern& pattern) {
   for (int l = 0; l < W; ++l)
     for (int u = 0, k = 0; u < 4; ++u)
       for (int v = 0; v <= u; ++v, ++k) {
-        const int64_t s = pattern.slot(vertex[u][l], vertex[v][l]);
+        const int64_t s = u == v ? pattern.diagonal(vertex[u][l]) : pattern.slot(vertex[u][l], vertex[v][l]);
         ASPIC_CHECK(s <= INT32_MAX);
         slot[k][l] = static_cast<int>(s);
       }

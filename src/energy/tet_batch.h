@@ -20,7 +20,8 @@ struct TetBatch {
   Mat3<Pack> rest_inverse;                   // Dm^-1 [1/m]
   Pack volume;                               // [m^3]
 
-  TetBatch(const TetMesh& mesh, std::span<const int> tets);
+  TetBatch() = default;
+  TetBatch(const TetMesh& mesh, std::span<const int> tets);  // 1 to kPackWidth of them
 
   // Ds: the edges from the first vertex to the others.
   Mat3<Pack> edges(Positions x) const {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
@@ -31,10 +32,16 @@ class TetTerm : public TetElasticity {
 
   // Tets [first, first + parameters.size()) of the mesh.
   TetTerm(std::string name, const TetMesh& mesh, int first, std::span<const Params<double>> parameters)
-      : name_(std::move(name)), tets_per_group_(group_size(parameters.size())) {
+      : batches_((parameters.size() + kPackWidth - 1) / kPackWidth),
+        params_(batches_.size()),
+        name_(std::move(name)),
+        tets_per_group_(group_size(parameters.size())) {
     const std::vector<int> order = locality_order(mesh, first, parameters.size());
-    for (size_t i = 0; i < order.size(); i += tets_per_group_)
-      add_batches(mesh, first, parameters, std::span(order).subspan(i, std::min(tets_per_group_, order.size() - i)));
+    parallel_for(group_count(), [&](int group) {
+      const size_t begin = group * tets_per_group_;
+      const auto tets = std::span(order).subspan(begin, std::min(tets_per_group_, order.size() - begin));
+      fill_group(group, mesh, tets, [&](int tet) { return parameters[tet - first]; });
+    });
     color(mesh.vertex_count());
   }
 
@@ -123,18 +130,22 @@ class TetTerm : public TetElasticity {
 
   // A batch takes each k-th tet of the group: lanes that are neighbours would add to the same blocks, and each would
   // have to wait for the sum of the one before.
-  void add_batches(const TetMesh& mesh, int first, std::span<const Params<double>> parameters,
-                   std::span<const int> group) {
-    const size_t stride = (group.size() + kPackWidth - 1) / kPackWidth;
+  template <class ParametersOf>
+  void fill_group(int group, const TetMesh& mesh, std::span<const int> tets, const ParametersOf& parameters_of) {
+    const size_t stride = (tets.size() + kPackWidth - 1) / kPackWidth;
     for (size_t i = 0; i < stride; ++i) {
-      std::vector<int> tets;
-      std::vector<Params<double>> lanes;
-      for (size_t j = i; j < group.size(); j += stride) {
-        tets.push_back(group[j]);
-        lanes.push_back(parameters[group[j] - first]);
+      std::array<int, kPackWidth> own;
+      std::array<Params<double>, kPackWidth> lanes;
+      size_t count = 0;
+      for (size_t l = 0; l < kPackWidth; ++l) {
+        const size_t j = i + l * stride;
+        if (j < tets.size()) ++count;
+        own[l] = tets[j < tets.size() ? j : i];
+        lanes[l] = parameters_of(own[l]);
       }
-      batches_.emplace_back(mesh, tets);
-      params_.push_back(pack_params<M>(lanes));
+      const size_t batch = group * batches_per_group() + i;
+      batches_[batch] = TetBatch(mesh, std::span(own).first(count));
+      params_[batch] = pack_params<M>(lanes);
     }
   }
 
@@ -220,11 +231,13 @@ class TetTerm : public TetElasticity {
   }
 
   void color(int vertex_count) {
-    std::vector<std::vector<int>> vertices(group_count());
+    std::vector<std::vector<int>> vertices(group_count());  // each once
+    std::vector<int> last_group(vertex_count, -1);
     for (int group = 0; group < group_count(); ++group)
       for_group(group, [&](int i) {
         for (const auto& corner : batches_[i].vertex)
-          vertices[group].insert(vertices[group].end(), corner.begin(), corner.end());
+          for (const int v : corner)
+            if (std::exchange(last_group[v], group) != group) vertices[group].push_back(v);
       });
     colors_ = color_groups(vertices, vertex_count);
   }
@@ -241,6 +254,7 @@ template <class M>
 std::unique_ptr<TetElasticity> make_tet_term(const TetMesh& mesh, int first,
                                              std::span<const MaterialParameters> parameters) {
   std::vector<typename M::template Params<double>> own;
+  own.reserve(parameters.size());
   for (const MaterialParameters& p : parameters) own.push_back(M::params(p));
   return std::make_unique<TetTerm<M>>("elasticity", mesh, first, own);
 }
