@@ -6,8 +6,8 @@
 namespace aspic {
 namespace {
 
-// Enough for many threads to share a colour; few enough that the places in which the fronts work fit into a cache.
-constexpr int64_t kFronts = 16;
+// Enough for threads to share a colour; few enough that the places in which the fronts work fit into a cache.
+constexpr int64_t kFronts = 8;
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/parallel.h"
 #include "energy/tet_elasticity.h"
 #include "material/list.h"
 #include "math/definite.h"
@@ -151,6 +152,40 @@ TEST(TetKernels, AgreeWithTheFilteredFormulas) {
     for (const Definiteness definiteness : {Definiteness::clamped, Definiteness::absolute})
       expect_kernels_to_match<M>(mesh, x, definiteness, 1e-11);
   });
+}
+
+struct Sums {
+  double value = 0;
+  std::vector<double> gradient, hessian;
+};
+
+Sums sums_with_threads(int threads, const TetMesh& mesh, const std::vector<double>& x) {
+  const int before = thread_count();
+  set_thread_count(threads);
+  const auto V = make_tet_elasticity("neo_hookean", mesh, 0, heterogeneous(mesh, material_info("neo_hookean")));
+  Couplings couplings;
+  V->add_couplings(couplings);
+  const BlockPattern pattern = make_pattern(mesh.vertex_count(), couplings);
+  V->bind(pattern);
+  BlockSparse H(pattern);
+  V->add_hessian(x, 1, {Definiteness::clamped}, H);
+  Sums sums{V->value(x), std::vector<double>(x.size(), 0.0), {}};
+  V->add_gradient(x, 1, sums.gradient);
+  for (const Mat3d& block : H.block) sums.hessian.insert(sums.hessian.end(), block.a, block.a + 9);
+  set_thread_count(before);
+  return sums;
+}
+
+TEST(TetKernels, GiveTheSameBitsForAnyNumberOfThreads) {
+  const TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {12, 9, 7});  // 36 groups
+  const std::vector<double> x = moved(mesh, 0.1, 3);
+  const Sums alone = sums_with_threads(1, mesh, x);
+  for (const int threads : {2, 3, 8}) {
+    const Sums shared = sums_with_threads(threads, mesh, x);
+    EXPECT_EQ(shared.value, alone.value);
+    EXPECT_EQ(shared.gradient, alone.gradient);
+    EXPECT_EQ(shared.hessian, alone.hessian);
+  }
 }
 
 }  // namespace
