@@ -126,7 +126,7 @@ class TetTerm : public TetElasticity {
   }
 
   // Coarse enough for threads and to meet again what is in a cache, fine enough to colour small meshes.
-  static size_t group_size(size_t tets) { return std::clamp<size_t>(std::bit_floor(tets / 128), 128, 512); }
+  static size_t group_size(size_t tets) { return std::clamp<size_t>(std::bit_floor(tets / 128), 128, 1024); }
 
   // A batch takes each k-th tet of the group: lanes that are neighbours would add to the same blocks, and each would
   // have to wait for the sum of the one before.
