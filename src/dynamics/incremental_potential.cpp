@@ -54,6 +54,7 @@ IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
   for (Energy* V : potential_) V->bind(pattern_);
   for (Energy* D : damping_) D->bind(pattern_);
   for (auto* v : {&predicted_, &offset_, &term_}) v->resize(3 * pattern_.rows());
+  largest_.resize(pattern_.rows() / kChunkSize + 1);
   measure(model.mesh);
 }
 
@@ -67,11 +68,7 @@ void IncrementalPotential::begin_step(std::span<const double> predicted, double 
 double IncrementalPotential::value(std::span<const double> q) {
   double E = 0, magnitude = factor_ * growth_stiffness_;
   const auto add = [&](double term) { E += term, magnitude += std::abs(term); };
-  if (inertia_ != 0) {
-    for (size_t i = 0; i < q.size(); ++i) offset_[i] = q[i] - predicted_[i];
-    model_.mass->multiply(offset_, term_);
-    add(0.5 * inertia_ * dot(offset_, term_));
-  }
+  if (inertia_ != 0) add(0.5 * inertia_ * model_.mass->squared_distance(q, predicted_));
   for (const Energy* V : potential_) add(factor_ * V->value(q));
   for (const Energy* D : damping_) add(factor_ * D->value(q));
   value_round_off_ = kEpsilon * magnitude;
@@ -79,12 +76,15 @@ double IncrementalPotential::value(std::span<const double> q) {
 }
 
 void IncrementalPotential::gradient(std::span<const double> q, std::span<double> g) {
-  std::fill(g.begin(), g.end(), 0.0);
   gradient_scale_ = radius_ > 0 ? kLeastStrain * factor_ * growth_stiffness_ / radius_ : 0;
   if (inertia_ != 0) {
-    for (size_t i = 0; i < q.size(); ++i) offset_[i] = inertia_ * (q[i] - predicted_[i]);
+    parallel_chunks(static_cast<int>(q.size()), [&](int first, int last) {
+      for (int i = first; i < last; ++i) offset_[i] = inertia_ * (q[i] - predicted_[i]);
+    });
     model_.mass->multiply(offset_, g);
     gradient_scale_ += free_norm(g);
+  } else {
+    std::fill(g.begin(), g.end(), 0.0);
   }
   for (const Energy* V : potential_) add_term_gradient(*V, q, g);
   for (const Energy* D : damping_) add_term_gradient(*D, q, g);
@@ -92,20 +92,32 @@ void IncrementalPotential::gradient(std::span<const double> q, std::span<double>
 }
 
 const BlockSparse& IncrementalPotential::hessian(std::span<const double> q, const Projection& projection) {
-  H_.set_zero();
   projected_elements_ = 0;
-  if (inertia_ != 0) model_.mass->add_to(inertia_, H_);
+  if (inertia_ != 0) {
+    model_.mass->assign_to(inertia_, H_);
+  } else {
+    H_.set_zero();
+  }
   for (const Energy* V : potential_) projected_elements_ += V->add_hessian(q, factor_, projection, H_);
   for (const Energy* D : damping_) projected_elements_ += D->add_hessian(q, factor_, projection, H_);
   pins_.set_identity(H_);
 
-  // Positions are known to eps |q|, so forces are to eps |q| times the stiffness that a vertex feels.
-  double size = 0, stiffness = 0;
-  for (const double qi : q) size = std::max(size, std::abs(qi));
-  for (int i = 0; i < pattern_.rows(); ++i)
-    if (!pins_.holds(i)) stiffness += squared_norm(H_.block[pattern_.diagonal(i)]);
-  gradient_round_off_ = kEpsilon * size * std::sqrt(stiffness);
+  gradient_round_off_ = gradient_round_off_at(q);
   return H_;
+}
+
+// Positions are known to eps |q|, so forces are to eps |q| times the stiffness that a vertex feels.
+double IncrementalPotential::gradient_round_off_at(std::span<const double> q) {
+  const double stiffness = parallel_sum(pattern_.rows(), [&](int first, int last) {
+    double sum = 0, size = 0;
+    for (int i = first; i < last; ++i) {
+      for (int r = 0; r < 3; ++r) size = std::max(size, std::abs(q[3 * i + r]));
+      if (!pins_.holds(i)) sum += squared_norm(H_.block[pattern_.diagonal(i)]);
+    }
+    largest_[first / kChunkSize] = size;
+    return sum;
+  });
+  return kEpsilon * *std::max_element(largest_.begin(), largest_.end()) * std::sqrt(stiffness);
 }
 
 const BlockSparse* IncrementalPotential::metric() {
@@ -152,17 +164,31 @@ double IncrementalPotential::max_step(std::span<const double> q, std::span<const
 }
 
 double IncrementalPotential::free_norm(std::span<const double> v) const {
-  double sum = 0;
-  for (size_t i = 0; i < v.size(); ++i)
-    if (!pins_.holds(static_cast<int>(i / 3))) sum += v[i] * v[i];
-  return std::sqrt(sum);
+  return std::sqrt(parallel_sum(pattern_.rows(), [&](int first, int last) {
+    double sum = 0;
+    for (int i = first; i < last; ++i)
+      if (!pins_.holds(i))
+        for (int r = 0; r < 3; ++r) sum += v[3 * i + r] * v[3 * i + r];
+    return sum;
+  }));
 }
 
 void IncrementalPotential::add_term_gradient(const Energy& term, std::span<const double> q, std::span<double> g) {
-  std::fill(term_.begin(), term_.end(), 0.0);
   term.add_gradient(q, factor_, term_);
-  gradient_scale_ += free_norm(term_);
-  for (size_t i = 0; i < g.size(); ++i) g[i] += term_[i];
+  const double squared = parallel_sum(pattern_.rows(), [&](int first, int last) {
+    double sum = 0;
+    for (int i = first; i < last; ++i) {
+      const bool is_free = !pins_.holds(i);
+      for (int k = 3 * i; k < 3 * i + 3; ++k) {
+        const double t = term_[k];
+        if (is_free) sum += t * t;
+        g[k] += t;
+        term_[k] = 0;
+      }
+    }
+    return sum;
+  });
+  gradient_scale_ += std::sqrt(squared);
 }
 
 void IncrementalPotential::measure(const TetMesh& mesh) {
@@ -186,6 +212,7 @@ void IncrementalPotential::measure(const TetMesh& mesh) {
   growth_stiffness_ = dot(growth, term_);
   model_.mass->multiply(growth, term_);
   growth_inertia_ = dot(growth, term_);
+  std::fill(term_.begin(), term_.end(), 0.0);
 }
 
 }  // namespace aspic

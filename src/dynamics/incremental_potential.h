@@ -44,9 +44,10 @@ class IncrementalPotential : public Objective {
   // moment of inertia about the centre [kg m^2] and the largest distance from there [m]: the sizes by which errors are
   // judged.
   void measure(const TetMesh& mesh);
-  double free_norm(std::span<const double> v) const;
   bool prepare_vertex_systems();
   void add_term_gradient(const Energy& term, std::span<const double> q, std::span<double> g);
+  double free_norm(std::span<const double> v) const;
+  double gradient_round_off_at(std::span<const double> q);
 
   const Model& model_;
   const Pins& pins_;
@@ -61,7 +62,8 @@ class IncrementalPotential : public Objective {
   double growth_stiffness_ = 0, growth_inertia_ = 0, radius_ = 0;
   int projected_elements_ = 0;
   double gradient_scale_ = 0, gradient_round_off_ = 0, value_round_off_ = 0;
-  std::vector<double> offset_, term_;  // scratch: q - q~, one term's gradient
+  // Scratch. offset: w (q - q~). term: one term's gradient; zero between terms. largest: |q| by chunks.
+  std::vector<double> offset_, term_, largest_;
 };
 
 }  // namespace aspic

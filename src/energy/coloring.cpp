@@ -1,24 +1,38 @@
 #include "energy/coloring.h"
 
-namespace aspic {
+#include <algorithm>
+#include <cstdint>
 
-// Greedy: each group takes the first colour that none of its vertices has seen.
+namespace aspic {
+namespace {
+
+// Enough for threads to share a colour; few enough that the places in which the fronts work fit into a cache.
+constexpr int64_t kFronts = 8;
+
+}  // namespace
+
+// Fronts advance through equal parts of the list. A colour takes the next group of each front, or lets the front wait
+// where the group would touch one that is already in. Neighbours in the list so come soon after each other, while what
+// they share is still in a cache; with as few colours as possible, each would pass over the whole mesh.
 ColorClasses color_groups(std::span<const std::vector<int>> vertices_of_group, int vertex_count) {
+  const int64_t groups = static_cast<int64_t>(vertices_of_group.size());
+  std::vector<int> next, end;
+  for (int64_t front = 0; front < kFronts; ++front) {
+    next.push_back(static_cast<int>(front * groups / kFronts));
+    end.push_back(static_cast<int>((front + 1) * groups / kFronts));
+  }
   ColorClasses colors;
-  std::vector<std::vector<int>> colors_of_vertex(vertex_count);
-  std::vector<int> taken_by;  // per colour, the last group that may not use it
-  for (int group = 0; group < static_cast<int>(vertices_of_group.size()); ++group) {
-    for (const int v : vertices_of_group[group])
-      for (const int color : colors_of_vertex[v]) taken_by[color] = group;
-    int color = 0;
-    while (color < static_cast<int>(colors.size()) && taken_by[color] == group) ++color;
-    if (color == static_cast<int>(colors.size())) {
-      colors.emplace_back();
-      taken_by.push_back(-1);
+  std::vector<int> last_color(vertex_count, -1);  // that touches a vertex
+  for (int64_t left = groups; left > 0; left -= static_cast<int64_t>(colors.back().size())) {
+    const int color = static_cast<int>(colors.size());
+    std::vector<int>& members = colors.emplace_back();
+    for (int64_t front = 0; front < kFronts; ++front) {
+      if (next[front] == end[front]) continue;
+      const std::vector<int>& vertices = vertices_of_group[next[front]];
+      if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return last_color[v] == color; })) continue;
+      for (const int v : vertices) last_color[v] = color;
+      members.push_back(next[front]++);
     }
-    colors[color].push_back(group);
-    for (const int v : vertices_of_group[group])
-      if (colors_of_vertex[v].empty() || colors_of_vertex[v].back() != color) colors_of_vertex[v].push_back(color);
   }
   return colors;
 }

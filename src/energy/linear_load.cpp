@@ -22,7 +22,9 @@ class LinearLoad : public Energy {
   }
 
   void add_gradient(Positions x, double scale, std::span<double> g) const override {
-    for (size_t i = 0; i < x.size(); ++i) g[i] -= scale * force_[i];
+    parallel_chunks(static_cast<int>(x.size()), [&](int first, int last) {
+      for (int i = first; i < last; ++i) g[i] -= scale * force_[i];
+    });
   }
 
   int add_hessian(Positions, double, const Projection&, BlockSparse&) const override { return 0; }

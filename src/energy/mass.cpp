@@ -12,24 +12,44 @@ MassMatrix::MassMatrix(const TetMesh& mesh, std::span<const double> density, Mas
   ASPIC_CHECK(static_cast<int>(density.size()) == mesh.tet_count());
   for (int t = 0; t < mesh.tet_count(); ++t)
     for (const int v : mesh.tets[t]) lumped_[v] += density[t] * volume(mesh, t) / 4;
-  if (kind == MassKind::lumped) return;
-
+  if (kind == MassKind::lumped) {
+    store_rows(make_pattern(rows(), {}), lumped_);
+    return;
+  }
   Couplings couplings;
   couplings.reserve(6 * mesh.tets.size());
   for (const Tet& tet : mesh.tets)
     for (int u = 0; u < 4; ++u)
       for (int v = 0; v < u; ++v) couplings.emplace_back(tet[u], tet[v]);
-  pattern_ = make_pattern(mesh.vertex_count(), std::move(couplings));
+  const BlockPattern pattern = make_pattern(rows(), std::move(couplings));
   // integral of N_u N_v over a tet = volume / 20 (1 + [u = v])
-  entry_.assign(pattern_.block_count(), 0.0);
+  std::vector<double> lower(pattern.block_count(), 0.0);
   for (int t = 0; t < mesh.tet_count(); ++t) {
     const Tet& tet = mesh.tets[t];
     const double m = density[t] * volume(mesh, t) / 20;
     for (int u = 0; u < 4; ++u) {
-      entry_[pattern_.diagonal(tet[u])] += 2 * m;
-      for (int v = 0; v < u; ++v) entry_[pattern_.slot(std::max(tet[u], tet[v]), std::min(tet[u], tet[v]))] += m;
+      lower[pattern.diagonal(tet[u])] += 2 * m;
+      for (int v = 0; v < u; ++v) lower[pattern.slot(std::max(tet[u], tet[v]), std::min(tet[u], tet[v]))] += m;
     }
   }
+  store_rows(pattern, lower);
+}
+
+void MassMatrix::store_rows(const BlockPattern& pattern, std::span<const double> lower) {
+  lower_start_ = pattern.row_start;
+  row_start_.resize(rows() + 1);
+  for (int i = 0; i <= rows(); ++i) row_start_[i] = pattern.row_start[i] + pattern.upper_start[i];
+  column_.resize(row_start_.back());
+  entry_.resize(row_start_.back());
+  parallel_chunks(rows(), [&](int first, int last) {
+    int64_t place = row_start_[first];
+    const auto put = [&](int column, double entry) { column_[place] = column, entry_[place++] = entry; };
+    for (int i = first; i < last; ++i) {
+      for (int64_t k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k) put(pattern.column[k], lower[k]);
+      for (int64_t k = pattern.upper_start[i]; k < pattern.upper_start[i + 1]; ++k)
+        put(pattern.upper_row[k], lower[pattern.upper_slot[k]]);
+    }
+  });
 }
 
 double MassMatrix::total() const {
@@ -38,59 +58,88 @@ double MassMatrix::total() const {
   return sum;
 }
 
-template <class Visit>
-void MassMatrix::for_each_in_row(int row, const Visit& visit) const {
-  if (kind_ == MassKind::lumped) return visit(lumped_[row], row);
-  for (int64_t k = pattern_.row_start[row]; k < pattern_.row_start[row + 1]; ++k) visit(entry_[k], pattern_.column[k]);
-  for (int64_t k = pattern_.upper_start[row]; k < pattern_.upper_start[row + 1]; ++k)
-    visit(entry_[pattern_.upper_slot[k]], pattern_.upper_row[k]);
-}
-
 void MassMatrix::multiply(std::span<const double> x, std::span<double> y) const {
-  parallel_chunks(static_cast<int>(lumped_.size()), [&](int first, int last) {
+  parallel_chunks(rows(), [&](int first, int last) {
     for (int i = first; i < last; ++i) {
       double s[3] = {0, 0, 0};
-      for_each_in_row(i, [&](double m, int j) {
-        for (int r = 0; r < 3; ++r) s[r] += m * x[3 * j + r];
-      });
+      for (int64_t k = row_start_[i]; k < row_start_[i + 1]; ++k)
+        for (int r = 0; r < 3; ++r) s[r] += entry_[k] * x[3 * column_[k] + r];
       for (int r = 0; r < 3; ++r) y[3 * i + r] = s[r];
     }
   });
 }
 
+double MassMatrix::squared_distance(std::span<const double> x, std::span<const double> y) const {
+  return parallel_sum(rows(), [&](int first, int last) {
+    double sum = 0;
+    for (int i = first; i < last; ++i) {
+      const int64_t diagonal = row_start_[i] + lower_count(i) - 1;
+      double s[3] = {0, 0, 0};
+      for (int64_t k = row_start_[i]; k < diagonal; ++k) {
+        const int j = 3 * column_[k];
+        for (int r = 0; r < 3; ++r) s[r] += 2 * entry_[k] * (x[j + r] - y[j + r]);
+      }
+      for (int r = 0; r < 3; ++r) {
+        const double d = x[3 * i + r] - y[3 * i + r];
+        sum += d * (s[r] + entry_[diagonal] * d);
+      }
+    }
+    return sum;
+  });
+}
+
 void MassMatrix::add_vertex_systems(double scale, std::span<const double> x, std::span<const double> origin,
                                     std::span<const int> vertices, std::span<Vec3d> g, std::span<Mat3d> H) const {
-  for (size_t k = 0; k < vertices.size(); ++k)
-    for_each_in_row(vertices[k], [&](double m, int j) {
-      for (int r = 0; r < 3; ++r) g[k][r] += scale * m * (x[3 * j + r] - origin[3 * j + r]);
-      if (j == vertices[k])
-        for (int r = 0; r < 3; ++r) H[k](r, r) += scale * m;
-    });
+  for (size_t i = 0; i < vertices.size(); ++i)
+    for (int64_t k = row_start_[vertices[i]]; k < row_start_[vertices[i] + 1]; ++k) {
+      const int j = column_[k];
+      const double m = scale * entry_[k];
+      for (int r = 0; r < 3; ++r) g[i][r] += m * (x[3 * j + r] - origin[3 * j + r]);
+      if (j == vertices[i])
+        for (int r = 0; r < 3; ++r) H[i](r, r) += m;
+    }
 }
 
 void MassMatrix::add_couplings(Couplings& couplings) const {
-  if (kind_ == MassKind::lumped) return;
-  for (int i = 0; i < pattern_.rows(); ++i)
-    for (int64_t k = pattern_.row_start[i]; k < pattern_.row_start[i + 1]; ++k)
-      couplings.emplace_back(i, pattern_.column[k]);
+  for (int i = 0; i < rows(); ++i)
+    for (int64_t k = row_start_[i]; column_[k] < i; ++k) couplings.emplace_back(i, column_[k]);
 }
 
 void MassMatrix::bind(const BlockPattern& target) {
-  target_slot_.clear();
-  if (kind_ == MassKind::lumped)
-    for (int i = 0; i < target.rows(); ++i) target_slot_.push_back(target.diagonal(i));
-  else
-    for (int i = 0; i < pattern_.rows(); ++i)
-      for (int64_t k = pattern_.row_start[i]; k < pattern_.row_start[i + 1]; ++k)
-        target_slot_.push_back(target.slot(i, pattern_.column[k]));
+  target_slot_.resize(lower_start_.back());
+  parallel_chunks(rows(), [&](int first, int last) {
+    for (int i = first; i < last; ++i) {
+      int64_t slot = target.row_start[i];  // columns ascend in both
+      for (int64_t k = 0; k < lower_count(i); ++k) {
+        while (target.column[slot] != column_[row_start_[i] + k]) ++slot;
+        ASPIC_CHECK(slot < target.row_start[i + 1]);
+        target_slot_[lower_start_[i] + k] = slot;
+      }
+    }
+  });
+}
+
+void MassMatrix::add_row(int row, double scale, BlockSparse& H) const {
+  for (int64_t k = 0; k < lower_count(row); ++k) {
+    Mat3d& block = H.block[target_slot_[lower_start_[row] + k]];
+    for (int r = 0; r < 3; ++r) block(r, r) += scale * entry_[row_start_[row] + k];
+  }
 }
 
 void MassMatrix::add_to(double scale, BlockSparse& H) const {
-  const std::vector<double>& entry = kind_ == MassKind::lumped ? lumped_ : entry_;
-  ASPIC_CHECK(target_slot_.size() == entry.size());
-  parallel_chunks(static_cast<int>(entry.size()), [&](int first, int last) {
-    for (int k = first; k < last; ++k)
-      for (int r = 0; r < 3; ++r) H.block[target_slot_[k]](r, r) += scale * entry[k];
+  ASPIC_CHECK(static_cast<int64_t>(target_slot_.size()) == lower_start_.back());
+  parallel_chunks(rows(), [&](int first, int last) {
+    for (int i = first; i < last; ++i) add_row(i, scale, H);
+  });
+}
+
+void MassMatrix::assign_to(double scale, BlockSparse& H) const {
+  ASPIC_CHECK(static_cast<int64_t>(target_slot_.size()) == lower_start_.back());
+  parallel_chunks(rows(), [&](int first, int last) {
+    for (int i = first; i < last; ++i) {
+      std::fill(H.block.begin() + H.pattern->row_start[i], H.block.begin() + H.pattern->row_start[i + 1], Mat3d{});
+      add_row(i, scale, H);
+    }
   });
 }
 

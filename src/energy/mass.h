@@ -18,23 +18,29 @@ class MassMatrix {
   std::span<const double> vertex_mass() const { return lumped_; }  // row sums [kg]
   double total() const;                                            // [kg]
 
-  void multiply(std::span<const double> x, std::span<double> y) const;  // y = M x; 3 numbers per vertex
+  void multiply(std::span<const double> x, std::span<double> y) const;                  // y = M x; 3 numbers per vertex
+  double squared_distance(std::span<const double> x, std::span<const double> y) const;  // (x - y)' M (x - y)
   // g[k] += scale (M (x - origin))_v, H[k] += scale M_vv I for v = vertices[k].
   void add_vertex_systems(double scale, std::span<const double> x, std::span<const double> origin,
                           std::span<const int> vertices, std::span<Vec3d> g, std::span<Mat3d> H) const;
   void add_couplings(Couplings& couplings) const;
-  void bind(const BlockPattern& target);            // remembers where add_to writes
-  void add_to(double scale, BlockSparse& H) const;  // H += scale M
+  void bind(const BlockPattern& target);               // remembers where add_to writes
+  void add_to(double scale, BlockSparse& H) const;     // H += scale M
+  void assign_to(double scale, BlockSparse& H) const;  // H = scale M
 
  private:
-  template <class Visit>
-  void for_each_in_row(int row, const Visit& visit) const;  // visit(entry, column)
+  int rows() const { return static_cast<int>(lumped_.size()); }
+  int64_t lower_count(int row) const { return lower_start_[row + 1] - lower_start_[row]; }
+  void add_row(int row, double scale, BlockSparse& H) const;
+  void store_rows(const BlockPattern& pattern, std::span<const double> lower);
 
   MassKind kind_;
   std::vector<double> lumped_;
-  BlockPattern pattern_;
-  std::vector<double> entry_;  // one per entry of pattern_.column [kg]; empty when lumped
-  std::vector<int64_t> target_slot_;
+  // Row by row, columns ascending; half of what is stored could be had from the other half, but not in one stream.
+  std::vector<int64_t> row_start_, lower_start_;  // lower_start_ counts only the columns up to the diagonal
+  std::vector<int> column_;
+  std::vector<double> entry_;         // [kg]
+  std::vector<int64_t> target_slot_;  // of the columns up to the diagonal
 };
 
 }  // namespace aspic

@@ -2,6 +2,8 @@
 
 #include <optional>
 
+#include "base/parallel.h"
+
 namespace aspic {
 namespace {
 
@@ -25,8 +27,7 @@ class RayleighDamping : public Energy {
   void begin_step(const StepContext& step) override {
     h_ = step.h;
     start_.assign(step.start.begin(), step.start.end());
-    C_->set_zero();
-    mass_.add_to(mass_factor_, *C_);
+    mass_.assign_to(mass_factor_, *C_);
     const Positions x = step.shape.empty() ? step.start : step.shape;
     if (stiffness_factor_ > 0) elasticity_->add_hessian(x, stiffness_factor_, {Definiteness::clamped}, *C_);
   }
@@ -34,23 +35,31 @@ class RayleighDamping : public Energy {
   double value(Positions x) const override {
     if (h_ == 0) return 0;
     multiply(x);
-    double D = 0;
-    for (size_t i = 0; i < u_.size(); ++i) D += u_[i] * Cu_[i];
+    const double D = parallel_sum(static_cast<int>(u_.size()), [&](int first, int last) {
+      double sum = 0;
+      for (int i = first; i < last; ++i) sum += u_[i] * Cu_[i];
+      return sum;
+    });
     return D / (2 * h_);
   }
 
   void add_gradient(Positions x, double scale, std::span<double> g) const override {
     if (h_ == 0) return;
     multiply(x);
-    for (size_t i = 0; i < Cu_.size(); ++i) g[i] += scale / h_ * Cu_[i];
+    parallel_chunks(static_cast<int>(g.size()), [&](int first, int last) {
+      for (int i = first; i < last; ++i) g[i] += scale / h_ * Cu_[i];
+    });
   }
 
   void add_couplings(Couplings& couplings) const override { mass_.add_couplings(couplings); }
 
   int add_hessian(Positions, double scale, const Projection&, BlockSparse& H) const override {
     if (h_ == 0) return 0;
-    for (size_t k = 0; k < H.block.size(); ++k)
-      for (int i = 0; i < 9; ++i) H.block[k].a[i] += scale / h_ * C_->block[k].a[i];
+    const BlockPattern& p = *H.pattern;
+    parallel_chunks(p.rows(), [&](int first, int last) {
+      for (int64_t k = p.row_start[first]; k < p.row_start[last]; ++k)
+        for (int i = 0; i < 9; ++i) H.block[k].a[i] += scale / h_ * C_->block[k].a[i];
+    });
     return 0;
   }
 
@@ -75,7 +84,9 @@ class RayleighDamping : public Energy {
 
  private:
   void multiply(Positions x) const {
-    for (size_t i = 0; i < x.size(); ++i) u_[i] = x[i] - start_[i];
+    parallel_chunks(static_cast<int>(x.size()), [&](int first, int last) {
+      for (int i = first; i < last; ++i) u_[i] = x[i] - start_[i];
+    });
     C_->multiply(u_, Cu_);
   }
 

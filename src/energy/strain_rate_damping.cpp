@@ -57,13 +57,13 @@ class StrainRateDamping : public TetTerm<GreenStrainRate> {
   using TetTerm::TetTerm;
 
   void begin_step(const StepContext& step) override {
-    for (size_t i = 0; i < batches_.size(); ++i) {
-      const Mat3<Pack> E = GreenStrainRate::green_strain(F(static_cast<int>(i), step.start));
+    parallel_for(static_cast<int>(batches_.size()), [&](int i) {
+      const Mat3<Pack> E = GreenStrainRate::green_strain(F(i, step.start));
       auto& p = params_[i];
       p.per_step = Pack(step.h > 0 ? 1 / step.h : 0.0);
       p.xx = E(0, 0), p.yy = E(1, 1), p.zz = E(2, 2);
       p.xy = E(0, 1), p.yz = E(1, 2), p.zx = E(2, 0);
-    }
+    });
   }
 };
 

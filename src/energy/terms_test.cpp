@@ -269,6 +269,19 @@ TEST(MassMatrix, TheConsistentOneIntegratesSquaresOfLinearFieldsExactly) {
   EXPECT_NEAR(integral, 0.8 * 0.6 / 3, 1e-14);  // of X^2 over [0, 1] x [0, .8] x [0, .6]
 }
 
+TEST(MassMatrix, MeasuresDistancesAsItMultiplies) {
+  for (const MassKind kind : {MassKind::consistent, MassKind::lumped}) {
+    const MassMatrix mass(mesh(), std::vector<double>(mesh().tet_count(), 2.0), kind);
+    const std::vector<double> x = deformed(0.1), y = deformed(0.1, 5);
+    std::vector<double> d(x.size()), Md(x.size());
+    for (size_t i = 0; i < x.size(); ++i) d[i] = x[i] - y[i];
+    mass.multiply(d, Md);
+    const double expected = std::inner_product(d.begin(), d.end(), Md.begin(), 0.0);
+    EXPECT_NEAR(mass.squared_distance(x, y), expected, 1e-13 * expected);
+    EXPECT_EQ(mass.squared_distance(x, x), 0);
+  }
+}
+
 TEST(MassMatrix, SystemsOfSingleVerticesArePartsOfTheWhole) {
   for (const MassKind kind : {MassKind::consistent, MassKind::lumped}) {
     const MassMatrix mass(mesh(), std::vector<double>(mesh().tet_count(), 1.0), kind);
@@ -305,6 +318,9 @@ TEST(MassMatrix, AddedIntoAMatrixItIsTheSameOperator) {
   mass.multiply(x, Mx);
   H.multiply(x, Hx);
   for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(Hx[i], 2 * Mx[i], 1e-15);
+  mass.assign_to(3, H);
+  H.multiply(x, Hx);
+  for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(Hx[i], 3 * Mx[i], 1e-15);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ void TetBatch::bind(const BlockPattern& pattern) {
   for (int l = 0; l < W; ++l)
     for (int u = 0, k = 0; u < 4; ++u)
       for (int v = 0; v <= u; ++v, ++k) {
-        const int64_t s = pattern.slot(vertex[u][l], vertex[v][l]);
+        const int64_t s = u == v ? pattern.diagonal(vertex[u][l]) : pattern.slot(vertex[u][l], vertex[v][l]);
         ASPIC_CHECK(s <= INT32_MAX);
         slot[k][l] = static_cast<int>(s);
       }
@@ -40,13 +40,12 @@ unsigned TetBatch::lanes_covered(const Projection& projection) const {
 }
 
 void TetBatch::scatter_gradient(const Mat3<Pack>& P, Pack weight, std::span<double> g) const {
-  const auto b = shape_gradients();
-  for (int v = 0; v < 4; ++v) {
-    Vec3<Pack> f;
-    for (int r = 0; r < 3; ++r) f[r] = weight * (P(r, 0) * b[v][0] + P(r, 1) * b[v][1] + P(r, 2) * b[v][2]);
-    for (int l = 0; l < W; ++l)
-      for (int r = 0; r < 3; ++r) g[3 * vertex[v][l] + r] += f[r][l];
-  }
+  const Mat3<Pack> f = weight * (P * transpose(rest_inverse));  // the sum of all four forces vanishes
+  std::array<Pack, 3> first;
+  for (int r = 0; r < 3; ++r) first[r] = -(f(r, 0) + f(r, 1) + f(r, 2));
+  scatter3(first, [&](int l) { return &g[3 * vertex[0][l]]; });
+  for (int v = 1; v < 4; ++v)
+    scatter3({f(0, v - 1), f(1, v - 1), f(2, v - 1)}, [&](int l) { return &g[3 * vertex[v][l]]; });
 }
 
 void TetBatch::scatter_hessian(const Mat9<Pack>& A, Pack weight, BlockSparse& H) const {
@@ -59,17 +58,14 @@ void TetBatch::scatter_hessian(const Mat9<Pack>& A, Pack weight, BlockSparse& H)
         Ab[v][i + 9 * c] = weight * (A(i, c) * b[v][0] + A(i, c + 3) * b[v][1] + A(i, c + 6) * b[v][2]);
   for (int k = 0; k < 27; ++k) Ab[0][k] = -(Ab[1][k] + Ab[2][k] + Ab[3][k]);
 
-  for (int u = 0, k = 0; u < 4; ++u)
-    for (int v = 0; v <= u; ++v, ++k) {
-      std::array<Pack, 9> K;
-      for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < 3; ++r)
-          K[r + 3 * c] = b[u][0] * Ab[v][r + 9 * c] + b[u][1] * Ab[v][r + 3 + 9 * c] + b[u][2] * Ab[v][r + 6 + 9 * c];
-      for (int l = 0; l < W; ++l) {
-        double* block = H.block[slot[k][l]].a;
-        for (int i = 0; i < 9; ++i) block[i] += K[i][l];
-      }
-    }
+  const auto block = [&](int u, int v) {
+    std::array<Pack, 9> K;
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r)
+        K[r + 3 * c] = b[u][0] * Ab[v][r + 9 * c] + b[u][1] * Ab[v][r + 3 + 9 * c] + b[u][2] * Ab[v][r + 6 + 9 * c];
+    return K;
+  };
+  scatter_blocks(block, H);
 }
 
 }  // namespace aspic

@@ -20,20 +20,19 @@ struct TetBatch {
   Mat3<Pack> rest_inverse;                   // Dm^-1 [1/m]
   Pack volume;                               // [m^3]
 
-  TetBatch(const TetMesh& mesh, std::span<const int> tets);
+  TetBatch() = default;
+  TetBatch(const TetMesh& mesh, std::span<const int> tets);  // 1 to kPackWidth of them
 
-  // F = Ds Dm^-1
-  Mat3<Pack> deformation_gradient(Positions x) const {
+  // Ds: the edges from the first vertex to the others.
+  Mat3<Pack> edges(Positions x) const {
+    std::array<std::array<Pack, 3>, 4> corner;
+    for (int v = 0; v < 4; ++v) corner[v] = gather3([&](int l) { return &x[3 * vertex[v][l]]; });
     Mat3<Pack> Ds;
-    for (int l = 0; l < W; ++l) {
-      const double* x0 = &x[3 * vertex[0][l]];
-      for (int c = 0; c < 3; ++c) {
-        const double* xc = &x[3 * vertex[c + 1][l]];
-        for (int r = 0; r < 3; ++r) Ds(r, c).set(l, xc[r] - x0[r]);
-      }
-    }
-    return Ds * rest_inverse;
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r) Ds(r, c) = corner[c + 1][r] - corner[0][r];
+    return Ds;
   }
+  Mat3<Pack> deformation_gradient(Positions x) const { return edges(x) * rest_inverse; }  // F = Ds Dm^-1
 
   // Gradients of the four linear shape functions in the rest frame: the rows of Dm^-1, and minus their sum.
   std::array<Vec3<Pack>, 4> shape_gradients() const {
@@ -49,9 +48,22 @@ struct TetBatch {
 
   void scatter_gradient(const Mat3<Pack>& P, Pack weight, std::span<double> g) const;  // g_v += weight P b_v
   void scatter_hessian(const Mat9<Pack>& A, Pack weight, BlockSparse& H) const;        // H_uv += weight b_u' A b_v
+  // H_uv += block(u, v), v <= u
+  template <class Block>
+  void scatter_blocks(const Block& block, BlockSparse& H) const {
+#pragma GCC unroll 4
+    for (int u = 0; u < 4; ++u)
+#pragma GCC unroll 4
+      for (int v = 0; v <= u; ++v)
+        scatter9(block(u, v), [&](int l) { return H.block[slot[u * (u + 1) / 2 + v][l]].a; });
+  }
+  // Asks for the memory that will soon be needed: the batch itself, and the blocks that it adds to.
+  void prefetch() const { aspic::prefetch(this, sizeof *this); }
+  void prefetch_blocks(const BlockSparse& H) const {
+    for (const auto& slots : slot)
+      for (const int s : slots) aspic::prefetch(H.block[s].a + 4, sizeof(double));
+  }
   void bind(const BlockPattern& pattern);
 };
-
-inline constexpr int kBatchesPerGroup = 128 / kPackWidth;  // 128 tets: coarse enough for threads, fine enough to colour
 
 }  // namespace aspic

@@ -7,14 +7,17 @@
 #include <numeric>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
 #include "energy/coloring.h"
+#include "energy/law_hessian.h"
 #include "energy/make_tet_term.h"
 #include "energy/tet_batch.h"
 #include "energy/tet_elasticity.h"
 #include "energy/vertex_tets.h"
+#include "material/law_eigen.h"
 #include "material/material.h"
 #include "math/definite.h"
 #include "mesh/order.h"
@@ -29,15 +32,16 @@ class TetTerm : public TetElasticity {
 
   // Tets [first, first + parameters.size()) of the mesh.
   TetTerm(std::string name, const TetMesh& mesh, int first, std::span<const Params<double>> parameters)
-      : name_(std::move(name)) {
+      : batches_((parameters.size() + kPackWidth - 1) / kPackWidth),
+        params_(batches_.size()),
+        name_(std::move(name)),
+        tets_per_group_(group_size(parameters.size())) {
     const std::vector<int> order = locality_order(mesh, first, parameters.size());
-    for (size_t i = 0; i < order.size(); i += kPackWidth) {
-      const std::span<const int> tets(&order[i], std::min<size_t>(kPackWidth, order.size() - i));
-      const TetBatch& batch = batches_.emplace_back(mesh, tets);
-      std::vector<Params<double>> lanes;
-      for (const int tet : batch.tet) lanes.push_back(parameters[tet - first]);
-      params_.push_back(pack_params<M>(lanes));
-    }
+    parallel_for(group_count(), [&](int group) {
+      const size_t begin = group * tets_per_group_;
+      const auto tets = std::span(order).subspan(begin, std::min(tets_per_group_, order.size() - begin));
+      fill_group(group, mesh, tets, [&](int tet) { return parameters[tet - first]; });
+    });
     color(mesh.vertex_count());
   }
 
@@ -62,15 +66,14 @@ class TetTerm : public TetElasticity {
   }
 
   void bind(const BlockPattern& pattern) override {
-    parallel_for(static_cast<int>(batches_.size()), [&](int i) { batches_[i].bind(pattern); });
+    parallel_for(batch_count(), [&](int i) { batches_[i].bind(pattern); });
   }
 
   int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override {
     projected_.assign(batches_.size(), 0);
     for_each_batch([&](int i) {
-      Mat9<Pack> A = M::hessian(F(i, x), params_[i]);
-      if (projection.kind != Definiteness::exact) projected_[i] = project(A, batches_[i], projection);
-      batches_[i].scatter_hessian(A, Pack(scale) * batches_[i].volume, H);
+      if (i + 1 < batch_count()) batches_[i + 1].prefetch_blocks(H);
+      projected_[i] = add_batch_hessian(i, x, scale, projection, H);
     });
     return std::accumulate(projected_.begin(), projected_.end(), 0);
   }
@@ -99,7 +102,7 @@ class TetTerm : public TetElasticity {
   }
 
   void evaluate(Positions x, TetFields& fields) const override {
-    parallel_for(static_cast<int>(batches_.size()), [&](int i) {
+    parallel_for(batch_count(), [&](int i) {
       const Mat3<Pack> Fi = F(i, x);
       const Pack psi = M::psi(Fi, params_[i]), J = determinant(Fi);
       const Mat3<Pack> cauchy = (Pack(1.0) / J) * (M::pk1(Fi, params_[i]) * transpose(Fi));
@@ -122,12 +125,60 @@ class TetTerm : public TetElasticity {
     return order;
   }
 
-  static char project(Mat9<Pack>& A, const TetBatch& batch, const Projection& projection) {
-    const bool clamp = projection.kind == Definiteness::clamped;
-    const unsigned lanes = batch.lanes_covered(projection);
-    if (lanes == 0) return 0;
-    return static_cast<char>(
-        std::popcount(make_definite(A, clamp ? EigenvalueFilter::clamp : EigenvalueFilter::absolute, lanes)));
+  // Coarse enough for threads and to meet again what is in a cache, fine enough to colour small meshes.
+  static size_t group_size(size_t tets) { return std::clamp<size_t>(std::bit_floor(tets / 128), 128, 1024); }
+
+  // A batch takes each k-th tet of the group: lanes that are neighbours would add to the same blocks, and each would
+  // have to wait for the sum of the one before.
+  template <class ParametersOf>
+  void fill_group(int group, const TetMesh& mesh, std::span<const int> tets, const ParametersOf& parameters_of) {
+    const size_t stride = (tets.size() + kPackWidth - 1) / kPackWidth;
+    for (size_t i = 0; i < stride; ++i) {
+      std::array<int, kPackWidth> own;
+      std::array<Params<double>, kPackWidth> lanes;
+      size_t count = 0;
+      for (size_t l = 0; l < kPackWidth; ++l) {
+        const size_t j = i + l * stride;
+        if (j < tets.size()) ++count;
+        own[l] = tets[j < tets.size() ? j : i];
+        lanes[l] = parameters_of(own[l]);
+      }
+      const size_t batch = group * batches_per_group() + i;
+      batches_[batch] = TetBatch(mesh, std::span(own).first(count));
+      params_[batch] = pack_params<M>(lanes);
+    }
+  }
+
+  // Returns how many lanes were projected.
+  char add_batch_hessian(int i, Positions x, double scale, const Projection& projection, BlockSparse& H) const {
+    const TetBatch& tets = batches_[i];
+    const Pack weight = Pack(scale) * tets.volume;
+    if constexpr (requires { typename M::Law; }) {
+      if (projection.kind == Definiteness::exact) {
+        const Mat3<Pack> Ds = tets.edges(x);
+        const LawBlocks blocks(tets, Ds, M::law_derivatives(Ds * tets.rest_inverse, params_[i]), weight);
+        tets.scatter_blocks([&](int u, int v) { return blocks.block(u, v); }, H);
+        return 0;
+      }
+    }
+    const Mat3<Pack> F_i = F(i, x);
+    Mat9<Pack> A = M::hessian(F_i, params_[i]);
+    const unsigned projected = project(A, F_i, params_[i], tets.lanes_covered(projection), projection.kind);
+    tets.scatter_hessian(A, weight, H);
+    return static_cast<char>(std::popcount(projected));
+  }
+
+  // Returns the lanes whose Hessian was changed.
+  static unsigned project(Mat9<Pack>& A, const Mat3<Pack>& F_i, const Params<Pack>& p, unsigned lanes,
+                          Definiteness kind) {
+    if (kind == Definiteness::exact || lanes == 0) return 0;
+    const EigenvalueFilter filter =
+        kind == Definiteness::clamped ? EigenvalueFilter::clamp : EigenvalueFilter::absolute;
+    if constexpr (requires { typename M::Law; }) {
+      return filter_eigenvalues(A, filter, lanes, [&] { return law_eigen(F_i, M::law_derivatives(F_i, p)); });
+    } else {
+      return make_definite(A, filter, lanes);
+    }
   }
 
   static void write(int tet, int lane, Pack psi, Pack J, const Mat3<Pack>& s, TetFields& fields) {
@@ -141,12 +192,21 @@ class TetTerm : public TetElasticity {
                                       3 * (xy * xy + yz * yz + zx * zx));
   }
 
-  int group_count() const { return (static_cast<int>(batches_.size()) + kBatchesPerGroup - 1) / kBatchesPerGroup; }
+  int batch_count() const { return static_cast<int>(batches_.size()); }
+  int batches_per_group() const { return static_cast<int>(tets_per_group_) / kPackWidth; }
+  int group_count() const { return (batch_count() + batches_per_group() - 1) / batches_per_group(); }
 
   template <class Body>
   void for_group(int group, const Body& body) const {
-    const int last = std::min(static_cast<int>(batches_.size()), (group + 1) * kBatchesPerGroup);
-    for (int i = group * kBatchesPerGroup; i < last; ++i) body(i);
+    constexpr int kAhead = 2;
+    const int last = std::min(batch_count(), (group + 1) * batches_per_group());
+    for (int i = group * batches_per_group(); i < last; ++i) {
+      if (i + kAhead < batch_count()) {
+        batches_[i + kAhead].prefetch();
+        prefetch(&params_[i + kAhead], sizeof params_[0]);
+      }
+      body(i);
+    }
   }
 
   // Batches that scatter: colour after colour, the groups of a colour in parallel.
@@ -171,16 +231,19 @@ class TetTerm : public TetElasticity {
   }
 
   void color(int vertex_count) {
-    std::vector<std::vector<int>> vertices(group_count());
+    std::vector<std::vector<int>> vertices(group_count());  // each once
+    std::vector<int> last_group(vertex_count, -1);
     for (int group = 0; group < group_count(); ++group)
       for_group(group, [&](int i) {
         for (const auto& corner : batches_[i].vertex)
-          vertices[group].insert(vertices[group].end(), corner.begin(), corner.end());
+          for (const int v : corner)
+            if (std::exchange(last_group[v], group) != group) vertices[group].push_back(v);
       });
     colors_ = color_groups(vertices, vertex_count);
   }
 
   std::string name_;
+  size_t tets_per_group_;
   ColorClasses colors_;
   Incidence corners_;                    // for single vertices
   mutable std::vector<double> partial_;  // scratch of reduce
@@ -191,6 +254,7 @@ template <class M>
 std::unique_ptr<TetElasticity> make_tet_term(const TetMesh& mesh, int first,
                                              std::span<const MaterialParameters> parameters) {
   std::vector<typename M::template Params<double>> own;
+  own.reserve(parameters.size());
   for (const MaterialParameters& p : parameters) own.push_back(M::params(p));
   return std::make_unique<TetTerm<M>>("elasticity", mesh, first, own);
 }

@@ -69,10 +69,16 @@ Mat9<T> law_hessian(const Mat3<T>& F, const LawDerivatives<T>& d) {
   return H;
 }
 
-template <class Law>
-struct FromInvariants : Law {
+template <class L>
+struct FromInvariants : L {
+  using Law = L;
   template <class T>
   using Params = typename Law::template Params<T>;
+
+  template <class T>
+  static auto law_derivatives(const Mat3<T>& F, const Params<T>& p) {
+    return Law::derivatives(squared_norm(F), determinant(F), p);
+  }
 
   template <class T>
   static T psi(const Mat3<T>& F, const Params<T>& p) {
@@ -80,12 +86,12 @@ struct FromInvariants : Law {
   }
   template <class T>
   static Mat3<T> pk1(const Mat3<T>& F, const Params<T>& p) {
-    const auto d = Law::derivatives(squared_norm(F), determinant(F), p);
+    const auto d = law_derivatives(F, p);
     return (d.dI + d.dI) * F + d.dJ * cofactor(F);
   }
   template <class T>
   static Mat9<T> hessian(const Mat3<T>& F, const Params<T>& p) {
-    return law_hessian(F, Law::derivatives(squared_norm(F), determinant(F), p));
+    return law_hessian(F, law_derivatives(F, p));
   }
 };
 

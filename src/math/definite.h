@@ -38,15 +38,15 @@ unsigned indefinite_lanes(const Mat9<T>& H, double tolerance = 1e-12) {
 // What becomes of an eigenvalue l: max(l, floor) or max(|l|, floor).
 enum class EigenvalueFilter { clamp, absolute };
 
-// Filters the eigenvalues of those of the `lanes` that fail indefinite_lanes, with floor = relative_floor * (largest
-// |eigenvalue|), and leaves the others alone to the last bit. Returns the lanes that were filtered.
-template <class T>
-unsigned make_definite(Mat9<T>& H, EigenvalueFilter filter, unsigned lanes = ~0U, double relative_floor = 1e-9) {
+// Filters eigenvalues in those of the `lanes` that fail indefinite_lanes, with floor = relative_floor * (largest
+// |eigenvalue|), and leaves the other lanes alone to the last bit. `eigen()` gives the eigenvalues and eigenvectors of
+// H. Returns the lanes that were filtered.
+template <class T, class Eigen>
+unsigned filter_eigenvalues(Mat9<T>& H, EigenvalueFilter filter, unsigned lanes, const Eigen& eigen,
+                            double relative_floor = 1e-9) {
   const unsigned failed = indefinite_lanes(H) & lanes;
   if (failed == 0) return failed;
-  std::array<T, 81> entries;
-  std::copy(H.a, H.a + 81, entries.begin());
-  const SymmetricEigen<9, T> e = symmetric_eigen<9>(entries);
+  const SymmetricEigen<9, T> e = eigen();
   T largest = T(0.0);
   for (const T& l : e.values) largest = max(largest, abs(l));
   const T floor = max(T(relative_floor) * largest, T(std::numeric_limits<double>::min()));
@@ -62,6 +62,15 @@ unsigned make_definite(Mat9<T>& H, EigenvalueFilter filter, unsigned lanes = ~0U
     }
   }
   return failed;
+}
+template <class T>
+unsigned make_definite(Mat9<T>& H, EigenvalueFilter filter, unsigned lanes = ~0U, double relative_floor = 1e-9) {
+  const auto eigen = [&H] {
+    std::array<T, 81> entries;
+    std::copy(H.a, H.a + 81, entries.begin());
+    return symmetric_eigen<9>(entries);
+  };
+  return filter_eigenvalues(H, filter, lanes, eigen, relative_floor);
 }
 
 }  // namespace aspic

@@ -1,8 +1,12 @@
 // A Pack is kPackWidth doubles that move together. The only file that knows that SIMD lanes exist.
 #pragma once
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <limits>
+#include <utility>
 
 namespace aspic {
 
@@ -145,6 +149,104 @@ inline double min(Pack a) {
   double m = a[0];
   for (int i = 1; i < kPackWidth; ++i) m = a[i] < m ? a[i] : m;
   return m;
+}
+
+// Asks for the lines of a cache that hold these bytes.
+inline void prefetch(const void* from, std::size_t bytes) {
+  for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(from) + i);
+}
+
+// Rows of numbers in memory, one row per lane, against packs, one per column: what gathers and scatters consist of.
+// Rows move in pieces as wide as registers, and shuffles between registers turn them into columns. No number beside
+// the row is read or written. `row(lane)` is the address of the first number.
+
+// N doubles as one vector; a vector is loaded and stored wherever it lies.
+template <int N>
+struct Vector {
+  using Type __attribute__((vector_size(N * sizeof(double)))) = double;
+};
+template <int N>
+typename Vector<N>::Type load(const double* from) {
+  typename Vector<N>::Type a;
+  std::memcpy(&a, from, sizeof a);
+  return a;
+}
+template <int N>
+void add(typename Vector<N>::Type a, double* to) {
+  a += load<N>(to);
+  std::memcpy(to, &a, sizeof a);
+}
+
+// a0 b0 a1 b1 ..., from the lower or the upper halves of a and b.
+template <bool kUpper, int... I>
+Pack zip(Pack a, Pack b, std::integer_sequence<int, I...>) {
+  constexpr int kFirst = kUpper ? kPackWidth / 2 : 0;
+  return Pack::Lanes(__builtin_shufflevector(a.v, b.v, (kFirst + I / 2 + I % 2 * kPackWidth)...));
+}
+using LaneNumbers = std::make_integer_sequence<int, kPackWidth>;
+
+// Zipping the halves of the list moves the highest bit of the place to the lowest of the lane; as often as there are
+// bits, this exchanges places and lanes.
+inline void transpose(Pack* a) {
+  constexpr int kHalf = kPackWidth / 2;
+  for (int stage = 1; stage < kPackWidth; stage *= 2) {
+    Pack b[kPackWidth];
+    for (int i = 0; i < kHalf; ++i) {
+      b[2 * i] = zip<false>(a[i], a[i + kHalf], LaneNumbers());
+      b[2 * i + 1] = zip<true>(a[i], a[i + kHalf], LaneNumbers());
+    }
+    for (int i = 0; i < kPackWidth; ++i) a[i] = b[i];
+  }
+}
+
+// kOdd = 0: a0 b0 a2 b2 ...; kOdd = 1: a1 b1 a3 b3 ...
+template <int kOdd, int... I>
+Pack alternate(Pack a, Pack b, std::integer_sequence<int, I...>) {
+  return Pack::Lanes(__builtin_shufflevector(a.v, b.v, (kOdd + I / 2 * 2 + I % 2 * kPackWidth)...));
+}
+
+// Two numbers from the row of each second lane, N of them.
+template <int N, class Row>
+typename Vector<N>::Type load_pairs(const Row& row, int lane, int column) {
+  if constexpr (N == 2) {
+    return load<2>(row(lane) + column);
+  } else {
+    const auto concatenate = [](auto a, auto b) {
+      if constexpr (N == 4) return __builtin_shufflevector(a, b, 0, 1, 2, 3);
+      if constexpr (N == 8) return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+    };
+    return concatenate(load_pairs<N / 2>(row, lane, column), load_pairs<N / 2>(row, lane + N / 2, column));
+  }
+}
+
+template <class Row>
+std::array<Pack, 3> gather3(const Row& row) {
+  const auto pairs = [&row](int lane, int column) { return Pack(load_pairs<kPackWidth>(row, lane, column)); };
+  const Pack xy_even = pairs(0, 0), xy_odd = pairs(1, 0);
+  return {alternate<0>(xy_even, xy_odd, LaneNumbers()), alternate<1>(xy_even, xy_odd, LaneNumbers()),
+          alternate<1>(pairs(0, 1), pairs(1, 1), LaneNumbers())};
+}
+
+// row[c] += a[c], lane after lane: lanes may share a row.
+template <class Row>
+void scatter3(const std::array<Pack, 3>& a, const Row& row) {
+  const Pack even = alternate<0>(a[0], a[1], LaneNumbers()), odd = alternate<1>(a[0], a[1], LaneNumbers());
+  const auto add_pair = [&]<int kLane>() {
+    constexpr int k = kLane / 2 * 2;
+    const Pack& pairs = kLane % 2 == 0 ? even : odd;
+    add<2>(__builtin_shufflevector(pairs.v, pairs.v, k, k + 1), row(kLane));
+    row(kLane)[2] += a[2][kLane];
+  };
+  [&]<int... I>(std::integer_sequence<int, I...>) { (add_pair.template operator()<I>(), ...); }
+  (LaneNumbers());
+}
+template <class Row>
+void scatter9(std::array<Pack, 9> a, const Row& row) {
+  for (int c = 0; c < 8; c += kPackWidth) {
+    transpose(&a[c]);
+    for (int lane = 0; lane < kPackWidth; ++lane) add<kPackWidth>(a[c + lane].v, row(lane) + c);
+  }
+  for (int lane = 0; lane < kPackWidth; ++lane) row(lane)[8] += a[8][lane];
 }
 
 }  // namespace aspic

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
+#include <vector>
 
 namespace aspic {
 namespace {
@@ -78,6 +80,47 @@ TEST(Pack, SelectsLaneByLane) {
   EXPECT_FALSE(any_positive(Pack(0.0)));
   EXPECT_EQ(lanes_from_bits<Pack>(2)[0], 0);
   EXPECT_EQ(lanes_from_bits<Pack>(2)[1], 1);
+}
+
+// Rows of a table, some of them in several lanes, of which the last row ends where memory does.
+struct Rows {
+  static constexpr int kCount = 5, kLength = 9;
+  std::vector<double> number;
+  Rows() {
+    for (int i = 0; i < kCount * kLength; ++i) number.push_back(1 + 0.25 * i);
+  }
+  static int row(int lane) { return lane % 3 == 2 ? kCount - 1 : lane % kCount; }
+  double* operator()(int lane, int length) { return number.data() + row(lane) * kLength + (kLength - length); }
+};
+
+TEST(Pack, GathersOneRowPerLane) {
+  Rows rows;
+  const std::array<Pack, 3> x = gather3([&](int lane) { return rows(lane, 3); });
+  for (int lane = 0; lane < kPackWidth; ++lane)
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(x[c][lane], rows(lane, 3)[c]) << lane << ", " << c;
+}
+
+template <std::size_t N>
+std::array<Pack, N> numbered_columns() {
+  std::array<Pack, N> a;
+  for (std::size_t c = 0; c < N; ++c)
+    for (int lane = 0; lane < kPackWidth; ++lane) a[c].set(lane, 100.0 * (lane + 1) + static_cast<double>(c));
+  return a;
+}
+
+template <std::size_t N, class Scatter>
+void expect_rows_to_be_added(Scatter scatter) {
+  const std::array<Pack, N> a = numbered_columns<N>();
+  Rows rows, expected;
+  scatter(a, [&](int lane) { return rows(lane, N); });
+  for (int lane = 0; lane < kPackWidth; ++lane)
+    for (std::size_t c = 0; c < N; ++c) expected(lane, N)[c] += a[c][lane];
+  EXPECT_EQ(rows.number, expected.number);
+}
+
+TEST(Pack, AddsOneRowPerLaneAlsoWhereLanesShareARowAndTouchesNothingElse) {
+  expect_rows_to_be_added<3>([](const auto& a, const auto& row) { scatter3(a, row); });
+  expect_rows_to_be_added<9>([](const auto& a, const auto& row) { scatter9(a, row); });
 }
 
 }  // namespace
