@@ -10,7 +10,7 @@
 
 #include "linalg/aggregation.h"
 #include "linalg/block_sparse.h"
-#include "math/quad.h"
+#include "math/lanes.h"
 
 namespace aspic {
 

@@ -165,7 +165,8 @@ SolveReport AutoSolver::solve(std::span<const double> b, std::span<double> x, do
     total.products += report.products;
     total.cycles += report.cycles;
     total.stopped = report.stopped;
-    if (report.ok || report.indefinite || report.stopped || !std::isfinite(report.relative_residual) || !fall_back()) return total;
+    if (report.ok || report.indefinite || report.stopped || !std::isfinite(report.relative_residual) || !fall_back())
+      return total;
     if (factorize_with_choice()) continue;
     total.indefinite = true;
     return total;

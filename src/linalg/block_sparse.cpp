@@ -6,14 +6,16 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "math/quad.h"
+#include "math/lanes.h"
 
 namespace aspic {
 namespace {
 
-constexpr int kRowsPerTask = 1024;  // of a product; each row is summed by one thread in a fixed order
+constexpr int kPrefetchAhead = 4096;  // bytes
 
-int task_count(int rows) { return (rows + kRowsPerTask - 1) / kRowsPerTask; }
+// Rows that one task of a product works through, in a fixed order. Large ones, because blocks between tasks are read
+// twice; small enough for several threads and their caches.
+int rows_per_task(int rows) { return std::clamp(rows / 16, 512, 8192); }
 
 // Turns counts, stored one place to the right, into starts.
 void accumulate(std::vector<int64_t>& start) { std::partial_sum(start.begin(), start.end(), start.begin()); }
@@ -84,7 +86,7 @@ using QuadD = Quad<double>;
 // A x without reading past the block.
 QuadD careful_product(const Mat3d& A, const double* x) {
   const Vec3d y = A * Vec3d{{x[0], x[1], x[2]}};
-  return QuadD::load3(y.a);
+  return load3(y.a);
 }
 
 }  // namespace
@@ -126,12 +128,15 @@ void BlockSparse::multiply(std::span<const double> x, std::span<double> y) const
   const BlockPattern& p = *pattern;
   const int rows = p.rows();
   ASPIC_CHECK(x.size() == 3 * static_cast<size_t>(rows) && y.size() == x.size() && (rows == 0 || x.data() != y.data()));
+  const int size = rows_per_task(rows);
   // A block whose row and column belong to one task is read once and used twice; one between tasks is read by both.
   auto rows_of_task = [&](int task) {
-    const int first = task * kRowsPerTask, last = std::min(rows, first + kRowsPerTask);
+    const int first = task * size, last = std::min(rows, first + size);
     const auto at = [](auto& v, int row) { return &v[3 * static_cast<size_t>(row)]; };
     for (int row = first; row < last; ++row) {
-      const QuadD x_row = QuadD::load3(at(x, row));
+      for (int64_t k = p.row_start[row]; k < p.row_start[row + 1]; ++k)
+        __builtin_prefetch(reinterpret_cast<const char*>(&block[k]) + kPrefetchAhead);
+      const QuadD x_row = load3(at(x, row));
       const int64_t diagonal = p.diagonal(row);
       QuadD sum = careful_product(block[diagonal], at(x, row));
       int64_t s = p.row_start[row];
@@ -139,14 +144,14 @@ void BlockSparse::multiply(std::span<const double> x, std::span<double> y) const
       for (; s < diagonal; ++s) {
         sum += product(block[s].a, at(x, p.column[s]));
         double* y_column = at(y, p.column[s]);
-        (QuadD::load3(y_column) + transposed_product(block[s].a, x_row)).store3(y_column);
+        store3(load3(y_column) + transposed_product(block[s].a, x_row), y_column);
       }
       for (int64_t u = p.upper_start[row + 1] - 1; u >= p.upper_start[row] && p.upper_row[u] >= last; --u)
-        sum += transposed_product(block[p.upper_slot[u]].a, QuadD::load3(at(x, p.upper_row[u])));
-      sum.store3(at(y, row));
+        sum += transposed_product(block[p.upper_slot[u]].a, load3(at(x, p.upper_row[u])));
+      store3(sum, at(y, row));
     }
   };
-  parallel_for(task_count(rows), rows_of_task);
+  parallel_for((rows + size - 1) / size, rows_of_task);
 }
 
 }  // namespace aspic

@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "linalg/triangular_solve.h"
+#include "math/lanes.h"
 
 namespace aspic {
 namespace {
@@ -50,6 +51,14 @@ std::vector<int> inverse_permutation(std::span<const int> order) {
   std::vector<int> place(order.size());
   for (size_t k = 0; k < order.size(); ++k) place[order[k]] = static_cast<int>(k);
   return place;
+}
+
+using QuadF = Quad<float>;
+
+std::pair<size_t, size_t> floats_of_group(const GaussSeidel& smoother, int group) {
+  const auto [first, last] = smoother.vertices_of_group(group);
+  const size_t floats = static_cast<size_t>(kFloatsPerRow) * smoother.rows_per_vertex();
+  return {first * floats, last * floats};
 }
 
 template <class Body>
@@ -106,7 +115,7 @@ void Multigrid::build(const BlockSparse& H) {
     Level& level = levels_.emplace_back();
     level.coarsening = make_affine_coarsening(graph, aggregates, rows_per_vertex, value);
     const AffineCoarsening& c = level.coarsening;
-    level.smoother.analyze(*pattern, rows_per_vertex, c.aggregate, greedy_coloring(c.graph));
+    level.smoother.analyze(*pattern, rows_per_vertex, aggregates.of_vertex, greedy_coloring(c.graph));
     level.restriction.reserve(c);
     level.coarse = std::make_unique<BlockSparse>(c.pattern);
     const size_t floats = kFloatsPerRow * static_cast<size_t>(pattern->rows());
@@ -135,13 +144,14 @@ void Multigrid::connect_levels() {
   for (size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
     level.weight.clear();
-    for (const int row : level.smoother.order())
-      for (const double w : level.coarsening.weight[row]) level.weight.push_back(static_cast<float>(w));
-    std::vector<int> place(level.coarsening.pattern.rows());
-    std::iota(place.begin(), place.end(), 0);
-    if (l + 1 < levels_.size()) place = inverse_permutation(levels_[l + 1].smoother.order());
-    level.coarse_place.clear();
-    for (int a = 0; a < level.coarsening.count(); ++a) level.coarse_place.push_back(place[4 * a]);
+    const int rows_per_vertex = level.smoother.rows_per_vertex();
+    for (const int v : level.smoother.order())
+      for (int m = 0; m < rows_per_vertex; ++m)
+        for (const double w : level.coarsening.weight[v * rows_per_vertex + m])
+          level.weight.push_back(static_cast<float>(w));
+    level.coarse_place.resize(level.coarsening.count());
+    std::iota(level.coarse_place.begin(), level.coarse_place.end(), 0);
+    if (l + 1 < levels_.size()) level.coarse_place = inverse_permutation(levels_[l + 1].smoother.order());
   }
 }
 
@@ -231,21 +241,19 @@ void Multigrid::solve(int l) {
 void Multigrid::restrict_residual(const Level& level, std::span<float> coarse_b) const {
   for_each_aggregate(level.coarsening.count(), [&](int a) {
     QuadF sum[4] = {QuadF::zero(), QuadF::zero(), QuadF::zero(), QuadF::zero()};
-    const auto [first, last] = level.smoother.range_of_group(a);
-    for (size_t k = kFloatsPerRow * static_cast<size_t>(first); k < kFloatsPerRow * static_cast<size_t>(last);
-         k += kFloatsPerRow)
+    const auto [first, last] = floats_of_group(level.smoother, a);
+    for (size_t k = first; k < last; k += kFloatsPerRow)
       for (int m = 0; m < 4; ++m) sum[m] += QuadF::all(level.weight[k + m]) * QuadF::load(&level.r[k]);
-    float* to = &coarse_b[kFloatsPerRow * static_cast<size_t>(level.coarse_place[a])];
+    float* to = &coarse_b[4 * kFloatsPerRow * static_cast<size_t>(level.coarse_place[a])];
     for (int m = 0; m < 4; ++m) sum[m].store(to + kFloatsPerRow * m);
   });
 }
 
 void Multigrid::add_prolonged(std::span<const float> coarse_x, Level& level) const {
   for_each_aggregate(level.coarsening.count(), [&](int a) {
-    const float* from = &coarse_x[kFloatsPerRow * static_cast<size_t>(level.coarse_place[a])];
-    const auto [first, last] = level.smoother.range_of_group(a);
-    for (size_t k = kFloatsPerRow * static_cast<size_t>(first); k < kFloatsPerRow * static_cast<size_t>(last);
-         k += kFloatsPerRow) {
+    const float* from = &coarse_x[4 * kFloatsPerRow * static_cast<size_t>(level.coarse_place[a])];
+    const auto [first, last] = floats_of_group(level.smoother, a);
+    for (size_t k = first; k < last; k += kFloatsPerRow) {
       QuadF sum = QuadF::load(&level.x[k]);
       for (int m = 0; m < 4; ++m) sum += QuadF::all(level.weight[k + m]) * QuadF::load(from + kFloatsPerRow * m);
       sum.store(&level.x[k]);

@@ -44,7 +44,7 @@ class Multigrid : public ApproximateInverse {
     MatrixRestriction restriction;
     std::unique_ptr<BlockSparse> coarse;  // P' H P
     std::vector<float> weight;            // of the coarsening, 4 per row in the order of the smoother
-    std::vector<int> coarse_place;        // of the first row of each aggregate, in the order of the next level
+    std::vector<int> coarse_place;        // of each aggregate in the order of the next level
     std::vector<float> b, x;              // H x = b
     std::vector<float> r;                 // of the cycle: b - H x; of the K-cycle: H p
     std::vector<float> p, q, sum;         // of the K-cycle: first direction, H p, solution

@@ -1,0 +1,68 @@
+// N numbers that move together: a column of a 3x3 block or three components of a vector and a spare lane (N = 4), or
+// four of those (N = 16). Loads of three numbers read a fourth one behind them, so arrays of them need kSpareLanes more
+// entries at the end. Unlike those of a Pack, the lanes are one after another in memory.
+#pragma once
+#include <cstring>
+#include <type_traits>
+
+namespace aspic {
+
+inline constexpr int kSpareLanes = 4;
+
+template <class T, int N>
+struct Lanes {
+  typedef T Values __attribute__((vector_size(N * sizeof(T))));
+  Values v;
+
+  static Lanes zero() { return {Values{}}; }
+  static Lanes all(T s) { return {s - Values{}}; }
+  static Lanes load(const T* p) {
+    Lanes a;
+    std::memcpy(&a.v, p, sizeof(Values));
+    return a;
+  }
+  void store(T* p) const { std::memcpy(p, &v, sizeof(Values)); }
+  T operator[](int lane) const { return v[lane]; }
+
+  friend Lanes operator+(Lanes a, Lanes b) { return {a.v + b.v}; }
+  friend Lanes operator-(Lanes a, Lanes b) { return {a.v - b.v}; }
+  friend Lanes operator*(Lanes a, Lanes b) { return {a.v * b.v}; }
+  Lanes& operator+=(Lanes b) { return v += b.v, *this; }
+  Lanes& operator-=(Lanes b) { return v -= b.v, *this; }
+};
+
+template <class T>
+using Quad = Lanes<T, 4>;
+
+// Three numbers; the spare lane is 0.
+template <class T>
+Quad<T> load3(const T* p) {
+  return {typename Quad<T>::Values{p[0], p[1], p[2], 0}};
+}
+template <class T>
+void store3(Quad<T> q, T* p) {
+  for (int i = 0; i < 3; ++i) p[i] = q[i];
+}
+
+// A x for a column-major 3x3 block.
+template <class T>
+Quad<T> product(const T* A, const T* x) {
+  return Quad<T>::load(A) * Quad<T>::all(x[0]) + Quad<T>::load(A + 3) * Quad<T>::all(x[1]) +
+         Quad<T>::load(A + 6) * Quad<T>::all(x[2]);
+}
+
+// A' x for a column-major 3x3 block and x = {x0, x1, x2, 0}; the spare lane of the result is 0.
+template <class T>
+Quad<T> transposed_product(const T* A, Quad<T> x) {
+  using Q = Quad<T>;
+  typedef long long Long4 __attribute__((vector_size(32)));
+  typedef int Int4 __attribute__((vector_size(16)));
+  using Mask = std::conditional_t<sizeof(T) == 8, Long4, Int4>;
+  const Q a = Q::load(A) * x, b = Q::load(A + 3) * x, c = Q::load(A + 6) * x, o = Q::zero();
+  const auto shuffle = [](Q p, Q q, Mask mask) { return Q{__builtin_shuffle(p.v, q.v, mask)}; };
+  const Q ab = shuffle(a, b, Mask{0, 4, 2, 6}) + shuffle(a, b, Mask{1, 5, 3, 7});  // a0 + a1, b0 + b1, a2 + a3, b2 + b3
+  const Q co = shuffle(c, o, Mask{0, 4, 2, 6}) + shuffle(c, o, Mask{1, 5, 3, 7});
+  return shuffle(ab, co, Mask{0, 1, 4, 5}) + shuffle(ab, co, Mask{2, 3, 6, 7});
+}
+
+}  // namespace aspic
