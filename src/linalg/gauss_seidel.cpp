@@ -13,7 +13,7 @@ namespace aspic {
 namespace {
 
 constexpr int kRowsPerTask = 192;
-constexpr int kPrefetchAhead = 4096;  // bytes; takes 6 % off the benchmark beam of 95 000 vertices
+constexpr int kPrefetchAhead = 4096;     // bytes; takes 6 % off the benchmark beam of 95 000 vertices
 constexpr int kRowsWorthSharing = 1024;  // of a colour; below, sharing costs more than it saves
 
 struct Entry {
