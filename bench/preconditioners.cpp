@@ -145,6 +145,7 @@ void run(const std::string& name, const TetMesh& mesh, const Case& c, const std:
   }
   std::printf("  analysis %7.1f ms  set-up %6.2f ms  iteration %6.3f ms\n", 1e3 * analysis, 1e3 * factorisation,
               1e3 * per_iteration);
+  std::printf("   %s\n", solver->description().c_str());
   std::fflush(stdout);
 }
 

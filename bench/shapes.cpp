@@ -6,6 +6,7 @@
 #include "io/mesh_file.h"
 #include "io/tetrahedralise.h"
 #include "mesh/generators.h"
+#include "mesh/numbering.h"
 
 namespace aspic::bench {
 namespace {
@@ -64,7 +65,7 @@ TetMesh standing_mesh(const Shape& shape, const Detail& detail, const fs::path& 
     for (int i = 0; i < 3; ++i) turned[(i + kY - shape.up + 3) % 3] = (X[i] - lower[i]) / height;
     X = turned;
   }
-  return mesh;
+  return from_user(locality_numbering(mesh), mesh);  // as scenes are stored
 }
 
 }  // namespace aspic::bench

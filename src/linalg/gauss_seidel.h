@@ -50,6 +50,7 @@ class GaussSeidel {
   void for_each_task(bool ascending, const Body& body) const;
 
   int rows_per_vertex_ = 1;
+  double work_per_vertex_ = 0;  // multiplications of a visit, on average
   std::vector<int> order_;
   std::vector<Range> range_;
   std::vector<std::vector<Range>> tasks_;  // per colour
