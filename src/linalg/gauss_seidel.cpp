@@ -84,23 +84,19 @@ struct GaussSeidel::Kernel {
       for (int i = 0; i < kSize; ++i) to[kColumn * j + (B == 1 ? i : lane(i))] = static_cast<float>(A(i, j));
   }
 
-  // The blocks of vertices v and w, v > w, whose first one is in `slot`; of v itself, whose first one is its diagonal,
-  // the lower triangle.
-  static Dense dense(const BlockSparse& H, int v, int64_t slot, bool is_own) {
+  static Dense own_block(const BlockSparse& H, int v) {
     const BlockPattern& p = *H.pattern;
-    Dense A = Dense::Zero();
-    for (int m = 0; m < B; ++m) {
-      const Mat3d* block = &H.block[slot + p.row_start[B * v + m] - p.row_start[B * v]];
-      for (int n = 0; n < (is_own ? m + 1 : B); ++n)
-        for (int k = 0; k < 9; ++k) A(3 * m + k % 3, 3 * n + k / 3) = block[n].a[k];
-    }
+    Dense A;
+    for (int m = 0; m < B; ++m)
+      for (int n = 0; n <= m; ++n) {
+        const double* block = H.block[p.diagonal(B * v + m) - m + n].a;
+        for (int k = 0; k < 9; ++k) A(3 * m + k % 3, 3 * n + k / 3) = A(3 * n + k / 3, 3 * m + k % 3) = block[k];
+      }
     return A;
   }
 
   static bool load_own(GaussSeidel& gs, const BlockSparse& H, int k) {
-    const int v = gs.order_[k];
-    Dense A = dense(H, v, H.pattern->diagonal(B * v), true);
-    A = A.template selfadjointView<Eigen::Lower>();
+    const Dense A = own_block(H, gs.order_[k]);
     const Eigen::LLT<Dense> factor(A);
     if (factor.info() != Eigen::Success) return false;
     write(A, &gs.own_[kBlock * k]);
@@ -109,13 +105,28 @@ struct GaussSeidel::Kernel {
   }
 
   static void load(GaussSeidel& gs, const BlockSparse& H, Triangle& t, int k) {
+    const auto& start = H.pattern->row_start;
     for (int64_t s = t.start[k]; s < t.start[k + 1]; ++s) {
-      const int source = t.source[s];
-      if (source >= 0)
-        write(dense(H, gs.order_[k], source, false), &t.value[kBlock * s]);
-      else
-        write(dense(H, gs.order_[t.column[s]], ~source, false).transpose(), &t.value[kBlock * s]);
+      const bool is_transposed = t.source[s] < 0;
+      const int64_t slot = is_transposed ? ~t.source[s] : t.source[s];
+      const int row = B * gs.order_[is_transposed ? t.column[s] : k];
+      float* to = &t.value[kBlock * s];
+      for (int m = 0; m < B; ++m)
+        for (int n = 0; n < B; ++n) {
+          const double* from = H.block[slot + start[row + m] - start[row] + n].a;
+          if (is_transposed)
+            copy_block<true>(from, to + 3 * kColumn * m + kFloatsPerRow * n);
+          else
+            copy_block<false>(from, to + 3 * kColumn * n + kFloatsPerRow * m);
+        }
     }
+  }
+
+  template <bool kTransposed>
+  static void copy_block(const double* from, float* to) {
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r)
+        to[kColumn * c + r] = static_cast<float>(kTransposed ? from[c + 3 * r] : from[r + 3 * c]);
   }
 };
 
