@@ -19,12 +19,6 @@ double element_bytes(const KernelBeam& beam) {
   return beam.tets() * (4 * kIndex + (10 + beam.parameters) * kDouble) + beam.vertices() * 3 * kDouble;
 }
 
-// Solvers may build coarse spaces from the rest shape, where patterns hold it.
-template <class Pattern>
-void tell_rest(const TetMesh& mesh, Pattern& pattern) {
-  if constexpr (requires { pattern.rest_position; }) pattern.rest_position = mesh.rest;
-}
-
 }  // namespace
 
 KernelBeam::KernelBeam(int n, const std::string& material) : mesh(make_beam(n)) {
@@ -41,7 +35,7 @@ KernelBeam::KernelBeam(int n, const std::string& material) : mesh(make_beam(n)) 
   MassMatrix mass(mesh, std::vector<double>(mesh.tet_count(), kDensity), MassKind::consistent);
   mass.add_couplings(couplings);
   pattern = make_pattern(mesh.vertex_count(), std::move(couplings));
-  tell_rest(mesh, pattern);
+  pattern.rest_position = mesh.rest;
   mass.bind(pattern);
   elasticity->bind(pattern);
   H = std::make_unique<BlockSparse>(pattern);
@@ -92,6 +86,15 @@ KernelWork preconditioned_iteration(const KernelBeam& beam) {
   const double vectors = 2 /* p.q */ + (4 + kWritten * 2 - 2) /* x, r */ + (1 + kWritten) /* z */ + (2 + kWritten - 1);
   return {product.bytes + beam.vertices() * (kBlock + vectors * 3 * kDouble),
           product.flops + beam.vertices() * (3 * (2 + 4 + 4 + 2) + 15)};
+}
+
+// Blocks in single precision, off the diagonal read twice (both triangles before the coarse levels, both after), the
+// inverses of the diagonal twice; on the finest level alone.
+KernelWork finest_cycle(const KernelBeam& beam) {
+  const double off_diagonal = beam.blocks() - beam.vertices();
+  const double vectors = 3 + 2 * kWritten + 2 + kWritten;  // x and r before, x after; b twice
+  return {2 * 36 * (2 * off_diagonal + beam.vertices()) + vectors * 16 * beam.vertices(),
+          2 * 18 * (2 * off_diagonal + beam.vertices())};
 }
 
 KernelWork dot(double size) { return {2 * size * kDouble, 2 * size}; }

@@ -39,6 +39,7 @@ KernelWork gradient(const KernelBeam& beam, const std::string& material);
 KernelWork hessian(const KernelBeam& beam, const std::string& material, bool tested);
 KernelWork block_product(const KernelBeam& beam);
 KernelWork preconditioned_iteration(const KernelBeam& beam);  // of conjugate gradients with 3x3 diagonal blocks
+KernelWork finest_cycle(const KernelBeam& beam);              // of multigrid
 KernelWork dot(double size);
 KernelWork axpy(double size);
 

@@ -17,6 +17,7 @@
 #include "bench/machine.h"
 #include "linalg/cholesky.h"
 #include "linalg/conjugate_gradient.h"
+#include "linalg/multigrid.h"
 #include "material/registry.h"
 
 namespace aspic::bench {
@@ -72,7 +73,7 @@ class Registry {
   void add_vectors() const;
   void add_matrix() const;
   void add_cholesky() const;
-  void add_iterative(const std::string& solver) const;
+  void add_multigrid() const;
 
  private:
   // fn(state, beam) loops and returns its work and items.
@@ -195,28 +196,31 @@ void Registry::add_cholesky() const {
   });
 }
 
-// Any solver by its name: analysis, what it does with new values of the matrix, and one solve to 1e-4 per iteration.
-void Registry::add_iterative(const std::string& name) const {
+void Registry::add_multigrid() const {
   const Place place = place_;
-  add(name + "/analysis", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
-    for (auto _ : state) make_linear_solver(name)->analyze(beam.pattern);
+  const auto made = [](benchmark::State& state, KernelBeam& beam, Multigrid& multigrid) {
+    multigrid.analyze(beam.pattern);
+    if (!multigrid.factorize(*beam.H)) state.SkipWithError("the matrix is not positive definite");
+  };
+  add("multigrid/hierarchy and set-up", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
+    for (auto _ : state) {
+      Multigrid multigrid;
+      made(state, beam, multigrid);
+    }
     return place.facts({}, beam.vertices());
   });
-  add(name + "/factorisation", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
-    const auto solver = make_linear_solver(name);
-    solver->analyze(beam.pattern);
-    for (auto _ : state)
-      if (!solver->factorize(*beam.H)) state.SkipWithError("the matrix is not positive definite");
+  add("multigrid/set-up", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
+    Multigrid multigrid;
+    made(state, beam, multigrid);
+    for (auto _ : state) multigrid.factorize(*beam.H);
     return place.facts({}, beam.vertices());
   });
-  add(name + "/solve per iteration", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
-    const auto solver = make_linear_solver(name);
-    solver->analyze(beam.pattern);
-    if (!solver->factorize(*beam.H)) state.SkipWithError("the matrix is not positive definite");
+  add("multigrid/cycle", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
+    Multigrid multigrid;
+    made(state, beam, multigrid);
     std::vector<double> y(beam.x.size());
-    KernelFacts facts = place.facts({}, beam.vertices());
-    for (auto _ : state) facts.repeats = std::max(1, solver->solve(beam.x, y, 1e-4).iterations);
-    return facts;
+    for (auto _ : state) multigrid.apply(beam.x, y);
+    return place.facts(kernel_work::finest_cycle(beam), beam.vertices());
   });
 }
 
@@ -228,7 +232,6 @@ std::vector<std::string> names_of_materials() {
 
 void register_all(const Arguments& arguments) {
   const std::vector<std::string> all_materials = arguments.all_materials ? names_of_materials() : arguments.materials;
-  const std::vector<std::string> known = linear_solver_names();
   for (const int n : arguments.sizes)
     for (const int threads : arguments.threads) {
       const Registry registry(arguments, {n, threads});
@@ -237,7 +240,7 @@ void register_all(const Arguments& arguments) {
       registry.add_vectors();
       registry.add_matrix();
       registry.add_cholesky();
-      if (std::find(known.begin(), known.end(), "multigrid") != known.end()) registry.add_iterative("multigrid");
+      registry.add_multigrid();
     }
 }
 
