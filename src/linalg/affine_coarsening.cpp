@@ -100,8 +100,8 @@ class MatrixRestriction::Task {
   void begin(int a) {
     neighbours_.clear();
     for (const int b : c_.graph.around(a))
-      if (b < a) neighbours_.push_back({.aggregate = b, .row = {}, .block = {}});
-    neighbours_.push_back({.aggregate = a, .row = {}, .block = {}});
+      if (b < a) neighbours_.push_back({.block = {}, .row = {}, .aggregate = b});
+    neighbours_.push_back({.block = {}, .row = {}, .aggregate = a});
     for (size_t k = 0; k < neighbours_.size(); ++k) place_[neighbours_[k].aggregate] = static_cast<int>(k);
   }
 

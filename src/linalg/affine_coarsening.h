@@ -43,10 +43,10 @@ class MatrixRestriction {
  private:
   // Of the coarse blocks that an aggregate shares with another: entry k of block (m, n) is lane n of block[m][k].
   struct Neighbour {
-    int aggregate;
-    Quad<double> row[9];  // of one fine row i: sum over j of H_ij w_jn
-    bool is_reached = false;
     Quad<double> block[4][9];
+    Quad<double> row[9];  // of one fine row i: sum over j of H_ij w_jn
+    int aggregate = 0;
+    bool is_reached = false;
   };
   struct Scratch {
     std::vector<int> place;  // of an aggregate in `neighbours`; -1: not there

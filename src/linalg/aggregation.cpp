@@ -158,9 +158,9 @@ class Aggregation {
 }  // namespace
 
 Aggregates make_aggregates(const AggregationInput& input) {
-  const size_t n = input.graph.vertex_count();
-  ASPIC_CHECK(input.size >= 1 && input.position.size() == n && (input.modulus.empty() || input.modulus.size() == n) &&
-              (input.excluded.empty() || input.excluded.size() == n));
+  ASPIC_CHECK(input.size >= 1 && input.position.size() + 1 == input.graph.start.size());
+  ASPIC_CHECK(input.modulus.empty() || input.modulus.size() == input.position.size());
+  ASPIC_CHECK(input.excluded.empty() || input.excluded.size() == input.position.size());
   return Aggregation(input).run();
 }
 

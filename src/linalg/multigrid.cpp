@@ -216,11 +216,12 @@ void Multigrid::cycle(int l) {
 
 void Multigrid::solve(int l) {
   if (l == static_cast<int>(levels_.size())) return solve_coarsest();
-  auto& [smoother, coarsening, restriction, coarse, weight, place, b, x, r, p, q, sum] = levels_[l];
+  Level& level = levels_[l];
+  std::vector<float>&x = level.x, &b = level.b, &p = level.p, &q = level.q, &sum = level.sum;
   const double start = dot(b, b);
   cycle(l);
   p = x;
-  smoother.multiply(p.data(), q.data());
+  level.smoother.multiply(p.data(), q.data());
   const double pq = dot(p, q);
   if (!(pq > 0)) return;
   const float alpha = static_cast<float>(dot(p, b) / pq);
@@ -232,8 +233,8 @@ void Multigrid::solve(int l) {
   cycle(l);
   const float beta = static_cast<float>(dot(x, q) / pq);
   for_each_entry(x, [&](int i) { x[i] -= beta * p[i]; });
-  smoother.multiply(x.data(), r.data());
-  const double curvature = dot(x, r);
+  level.smoother.multiply(x.data(), level.r.data());
+  const double curvature = dot(x, level.r);
   const float gamma = curvature > 0 ? static_cast<float>(dot(x, b) / curvature) : 0.0F;
   for_each_entry(x, [&](int i) { x[i] = sum[i] + gamma * x[i]; });
 }

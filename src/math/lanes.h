@@ -3,7 +3,6 @@
 // entries at the end. Unlike those of a Pack, the lanes are one after another in memory.
 #pragma once
 #include <cstring>
-#include <type_traits>
 
 namespace aspic {
 
@@ -11,7 +10,7 @@ inline constexpr int kSpareLanes = 4;
 
 template <class T, int N>
 struct Lanes {
-  typedef T Values __attribute__((vector_size(N * sizeof(T))));
+  using Values __attribute__((vector_size(N * sizeof(T)))) = T;
   Values v;
 
   static Lanes zero() { return {Values{}}; }
@@ -55,14 +54,11 @@ Quad<T> product(const T* A, const T* x) {
 template <class T>
 Quad<T> transposed_product(const T* A, Quad<T> x) {
   using Q = Quad<T>;
-  typedef long long Long4 __attribute__((vector_size(32)));
-  typedef int Int4 __attribute__((vector_size(16)));
-  using Mask = std::conditional_t<sizeof(T) == 8, Long4, Int4>;
   const Q a = Q::load(A) * x, b = Q::load(A + 3) * x, c = Q::load(A + 6) * x, o = Q::zero();
-  const auto shuffle = [](Q p, Q q, Mask mask) { return Q{__builtin_shuffle(p.v, q.v, mask)}; };
-  const Q ab = shuffle(a, b, Mask{0, 4, 2, 6}) + shuffle(a, b, Mask{1, 5, 3, 7});  // a0 + a1, b0 + b1, a2 + a3, b2 + b3
-  const Q co = shuffle(c, o, Mask{0, 4, 2, 6}) + shuffle(c, o, Mask{1, 5, 3, 7});
-  return shuffle(ab, co, Mask{0, 1, 4, 5}) + shuffle(ab, co, Mask{2, 3, 6, 7});
+  // a0 + a1, b0 + b1, a2 + a3, b2 + b3, and so for c and o
+  const Q ab = {__builtin_shufflevector(a.v, b.v, 0, 4, 2, 6) + __builtin_shufflevector(a.v, b.v, 1, 5, 3, 7)};
+  const Q co = {__builtin_shufflevector(c.v, o.v, 0, 4, 2, 6) + __builtin_shufflevector(c.v, o.v, 1, 5, 3, 7)};
+  return {__builtin_shufflevector(ab.v, co.v, 0, 1, 4, 5) + __builtin_shufflevector(ab.v, co.v, 2, 3, 6, 7)};
 }
 
 }  // namespace aspic
