@@ -141,11 +141,13 @@ TEST(AffineCoarsening, DropsWhatDependsOnOtherFunctions) {
     std::vector<Vec3d> position;
     int functions;
   };
-  const Vec3d o = {{3, 1, 2}}, x = {{4, 1, 2}}, y = {{3, 2, 2}}, z = {{3, 1, 3}}, xy = {{4, 2, 2}},
-              tilted = {{5, 3, 4}};
+  const auto at = [](double i, double j, double k) {  // on a grid that is sheared, shifted and rounded
+    return Vec3d{{3.1 + 0.7 * i - 0.3 * j, 1.3 + 0.3 * i + 0.7 * j + 0.1 * k, 2.7 + 0.2 * i - 0.1 * j + 0.9 * k}};
+  };
+  const Vec3d o = at(0, 0, 0), x = at(1, 0, 0), y = at(0, 1, 0), z = at(0, 0, 1), xy = at(1, 1, 0), far = at(2, 2, 2);
   for (const auto& [position, count] :
-       {Case{{o}, 1}, Case{{o, x}, 2}, Case{{o, tilted}, 2}, Case{{o, o, o}, 1}, Case{{o, x, y, xy}, 3},
-        Case{{o, x, tilted}, 3}, Case{{o, x, y, z}, 4}, Case{{o, x, y, z, xy, tilted}, 4}}) {
+       {Case{{o}, 1}, Case{{o, x}, 2}, Case{{o, far}, 2}, Case{{o, o, o}, 1}, Case{{o, x, y, xy}, 3},
+        Case{{o, x, far}, 3}, Case{{o, x, y, z}, 4}, Case{{o, x, y, z, xy, far}, 4}}) {
     const int rows = static_cast<int>(position.size());
     Couplings path;
     for (int v = 1; v < rows; ++v) path.emplace_back(v, v - 1);

@@ -176,6 +176,23 @@ TEST(Multigrid, LeavesPinnedRowsAsTheyAre) {
     for (int k = 0; k < 3; ++k) EXPECT_EQ(z[3 * row + k], static_cast<float>(b[3 * row + k])) << row;
 }
 
+TEST(Multigrid, DoesNotMindThatPinnedRowsHaveAnotherScale) {
+  std::vector<int> count;
+  for (const double scale : {1.0, 1e-8, 1e8}) {
+    Matrix H = spring_lattice({16, 8, 8, 100 * scale, scale});
+    for (int row = 0; row < H.rows(); row += 7) pin(H.values, row);
+    std::vector<double> b = random_vector(3 * H.rows(), 14), x(b.size());
+    for (int row = 0; row < H.rows(); row += 7) std::fill_n(&b[3 * row], 3, 0.0);
+    ConjugateGradient solver(std::make_unique<Multigrid>(kManyLevels));
+    solver.analyze(*H.pattern);
+    ASSERT_TRUE(solver.factorize(H.values));
+    const SolveReport report = solver.solve(b, x, 1e-8);
+    EXPECT_TRUE(report.ok);
+    count.push_back(report.iterations);
+  }
+  EXPECT_EQ(count, std::vector<int>(3, count[0]));
+}
+
 TEST(Multigrid, FollowsASetOfPinnedRowsThatChanges) {
   const Matrix free = spring_lattice({.nx = 16, .ny = 6, .nz = 6, .stiffness = 100});
   const std::vector<double> b = random_vector(3 * free.rows(), 5);
