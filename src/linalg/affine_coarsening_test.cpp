@@ -145,8 +145,10 @@ TEST(AffineCoarsening, DropsWhatDependsOnOtherFunctions) {
     return Vec3d{{3.1 + 0.7 * i - 0.3 * j, 1.3 + 0.3 * i + 0.7 * j + 0.1 * k, 2.7 + 0.2 * i - 0.1 * j + 0.9 * k}};
   };
   const Vec3d o = at(0, 0, 0), x = at(1, 0, 0), y = at(0, 1, 0), z = at(0, 0, 1), xy = at(1, 1, 0), far = at(2, 2, 2);
+  std::vector<Vec3d> sheet;
+  for (const double u : random_vector(20, 3)) sheet.push_back(at(u, u * u, 0));
   for (const auto& [position, count] :
-       {Case{{o}, 1}, Case{{o, x}, 2}, Case{{o, far}, 2}, Case{{o, o, o}, 1}, Case{{o, x, y, xy}, 3},
+       {Case{{o}, 1}, Case{{o, x}, 2}, Case{{o, far}, 2}, Case{{o, o, o}, 1}, Case{{o, x, y, xy}, 3}, Case{sheet, 3},
         Case{{o, x, far}, 3}, Case{{o, x, y, z}, 4}, Case{{o, x, y, z, xy, far}, 4}}) {
     const int rows = static_cast<int>(position.size());
     Couplings path;
