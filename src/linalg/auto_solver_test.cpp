@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "base/error.h"
 #include "linalg/matrices_test.h"
+#include "linalg/multigrid.h"
 #include "linalg/ordering.h"
 
 namespace aspic {
@@ -107,6 +110,86 @@ TEST(AutoSolver, FallsBackWhereIterationsDoNotConverge) {
   const int64_t fallbacks = solver.fallbacks();
   solver.solve(b, x, 1e-8);  // the same matrix: the choice is kept
   EXPECT_EQ(solver.fallbacks(), fallbacks);
+}
+
+template <class Solver>
+SolveReport solved(Solver&& solver, const BlockSparse& H, const std::vector<double>& b, double tolerance) {
+  std::vector<double> x(b.size());
+  solver.analyze(*H.pattern);
+  EXPECT_TRUE(solver.factorize(H));
+  return solver.solve(b, x, tolerance);
+}
+
+TEST(AutoSolver, CountsWhatWasTriedFirst) {
+  const Matrix H = hard_lattice();
+  const std::vector<double> b = random_vector(3 * H.rows(), 2);
+  for (const double tolerance : {1e-5, 1e-13}) {
+    const SolveReport first = solved(ConjugateGradient(300), H.values, b, tolerance);
+    const SolveReport second = solved(ConjugateGradient(std::make_unique<Multigrid>(), 500), H.values, b, tolerance);
+    const SolveReport third = second.ok ? SolveReport() : solved(Cholesky(), H.values, b, tolerance);
+    AutoSolver solver;
+    const SolveReport total = solved(solver, H.values, b, tolerance);
+    EXPECT_FALSE(first.ok);
+    EXPECT_EQ(first.iterations, 300);
+    EXPECT_EQ(total.iterations, first.iterations + second.iterations);
+    EXPECT_EQ(total.products, first.products + second.products + third.products);
+    EXPECT_EQ(total.cycles, second.cycles);
+    EXPECT_EQ(solver.fallbacks(), second.ok ? 1 : 2);
+    EXPECT_GT(total.cycles, 0);
+  }
+}
+
+TEST(AutoSolver, OfANewSequenceDoesNotDependOnThoseBefore) {
+  const Matrix hard = hard_lattice();
+  for (const double stiffness : {1.0, 1e4}) {  // for block_jacobi and multigrid
+    const Matrix other = spring_lattice({.nx = 16, .ny = 16, .nz = 16, .stiffness = stiffness});
+    BlockSparse H(*hard.pattern), softer(*hard.pattern);
+    H.block = other.values.block;
+    softer.block = spring_lattice({.nx = 16, .ny = 16, .nz = 16, .stiffness = 0.8 * stiffness}).values.block;
+    const std::vector<double> b = random_vector(3 * hard.rows(), 6);
+    std::vector<double> x(b.size()), expected(b.size());
+    AutoSolver old, fresh;
+    old.analyze(*hard.pattern);
+    fresh.analyze(*hard.pattern);
+    for (const BlockSparse* before : {&hard.values, &std::as_const(softer), &std::as_const(softer)}) {
+      old.begin();
+      ASSERT_TRUE(old.factorize(*before));
+      EXPECT_TRUE(old.solve(b, x, 1e-6).ok);
+    }
+    EXPECT_GE(old.fallbacks(), 1);
+    old.begin();
+    fresh.begin();
+    for (const BlockSparse* now : {&std::as_const(H), &std::as_const(softer)}) {
+      ASSERT_TRUE(old.factorize(*now));
+      ASSERT_TRUE(fresh.factorize(*now));
+      EXPECT_EQ(old.chosen().name(), fresh.chosen().name());
+      const SolveReport report = old.solve(b, x, 1e-6), expected_report = fresh.solve(b, expected, 1e-6);
+      EXPECT_EQ(x, expected);
+      EXPECT_EQ(report.iterations, expected_report.iterations);
+    }
+    EXPECT_EQ(fresh.chosen().name(), stiffness == 1 ? "block_jacobi" : "multigrid");
+  }
+}
+
+TEST(AutoSolver, AtADeadlineDoesNotTryAnotherChoiceAndDescends) {
+  double now = 0;
+  const WallClock clock = [&] { return now++; };
+  const Matrix hard = hard_lattice(), stiff = spring_lattice({28, 7, 7, 1e4, 1});
+  for (const Matrix* H : {&hard, &stiff}) {
+    const std::vector<double> b = random_vector(3 * H->rows(), 7);
+    std::vector<double> x(b.size());
+    AutoSolver solver;
+    solver.set_deadline(Deadline(clock, 2.5));
+    solver.analyze(*H->pattern);
+    ASSERT_TRUE(solver.factorize(H->values));
+    const SolveReport report = solver.solve(b, x, 1e-10);
+    EXPECT_TRUE(report.stopped);
+    EXPECT_FALSE(report.ok);
+    EXPECT_EQ(report.iterations, 3);
+    EXPECT_EQ(report.cycles, H == &stiff ? 4 : 0);
+    EXPECT_EQ(solver.fallbacks(), 0);
+    EXPECT_GT(dot(b, x), 0);
+  }
 }
 
 TEST(AutoSolver, IteratesWhereAFactorDoesNotFit) {

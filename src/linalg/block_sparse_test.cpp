@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <limits>
 #include <set>
 
 #include "base/parallel.h"
@@ -82,6 +83,59 @@ TEST(BlockSparse, ProductIsThatOfTheDenseSymmetricMatrix) {
     // Each entry sums at most 3 rows products: its error is below 3 rows eps |A| |x|.
     const double bound = 3 * rows * 2.3e-16 * (A.cwiseAbs() * X.cwiseAbs()).maxCoeff();
     EXPECT_LE((Y - expected).cwiseAbs().maxCoeff(), bound);
+  }
+}
+
+// Each block by itself, and the sum of the absolute values of its terms.
+struct PlainProduct {
+  std::vector<double> y, magnitude;
+  PlainProduct(const BlockSparse& H, const std::vector<double>& x) : y(x.size()), magnitude(x.size()) {
+    const BlockPattern& p = *H.pattern;
+    for (int row = 0; row < p.rows(); ++row)
+      for (int64_t s = p.row_start[row]; s < p.row_start[row + 1]; ++s)
+        for (int k = 0; k < 9; ++k) {
+          const size_t i = 3 * static_cast<size_t>(row) + k % 3, j = 3 * static_cast<size_t>(p.column[s]) + k / 3;
+          add(i, H.block[s].a[k] * x[j]);
+          if (p.column[s] != row) add(j, H.block[s].a[k] * x[i]);
+        }
+  }
+
+ private:
+  void add(size_t i, double term) { y[i] += term, magnitude[i] += std::abs(term); }
+};
+
+// A task works through 512 rows, or a sixteenth of them, or 8192: couplings within, between and far from tasks.
+TEST(BlockSparse, ProductIsThatOfItsBlocksForAnyThreadCountAndNumberOfTasks) {
+  const int threads = thread_count();
+  for (const int rows : {1, 511, 512, 513, 1023, 1024, 1025, 2 * 8192 + 1, 16 * 8192, 16 * 8192 + 1}) {
+    Couplings couplings = random_couplings(rows, rows, 11);
+    for (int row = 1; row < rows; ++row) couplings.emplace_back(row, row - 1);
+    const Matrix H = random_dominant(rows, couplings, 12);
+    const std::vector<double> x = random_vector(3 * static_cast<size_t>(rows), 13);
+    const PlainProduct plain(H.values, x);
+    std::vector<double> first;
+    for (const int count : {1, 2, 3, 8}) {
+      set_thread_count(count);
+      std::vector<double> y(x.size(), std::numeric_limits<double>::quiet_NaN());  // overwritten
+      H.values.multiply(x, y);
+      if (first.empty()) first = y;
+      ASSERT_TRUE(y == first) << rows << " rows, " << count << " threads";
+    }
+    for (size_t i = 0; i < x.size(); ++i)  // rows of fewer than 20 blocks: 60 terms, twice
+      ASSERT_NEAR(first[i], plain.y[i], 120 * 1.1e-16 * plain.magnitude[i]) << rows << " rows, entry " << i;
+  }
+  set_thread_count(threads);
+}
+
+TEST(BlockSparse, ProductDoesNotReadBehindTheLastBlock) {
+  for (const int rows : {1, 2, 513}) {
+    Matrix H = random_dominant(rows, random_couplings(rows, 4 * rows, 14), 15);
+    const std::vector<double> x = random_vector(3 * rows, 16);
+    std::vector<double> expected(x.size()), y(x.size());
+    H.values.multiply(x, expected);
+    H.values.block.push_back(std::numeric_limits<double>::quiet_NaN() * identity3<double>());
+    H.values.multiply(x, y);
+    EXPECT_EQ(y, expected);
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "linalg/matrices_test.h"
+#include "linalg/multigrid.h"
 
 namespace aspic {
 namespace {
@@ -155,6 +156,130 @@ TEST(ConjugateGradient, DoesNotCallNaNASolution) {
   const SolveReport report = solver.solve(b, x, 1e-10);
   EXPECT_FALSE(report.ok);
   EXPECT_FALSE(report.indefinite);
+}
+
+// Multigrid that counts how often it is made.
+class CountedMultigrid : public Multigrid {
+ public:
+  explicit CountedMultigrid(int& count) : count_(count) {}
+  bool factorize(const BlockSparse& H) override { return ++count_, Multigrid::factorize(H); }
+
+ private:
+  int& count_;
+};
+
+struct Sequence {
+  int made = 0;
+  ConjugateGradient solver{std::make_unique<CountedMultigrid>(made)};
+  std::vector<double> b, x;
+  SolveReport report;
+
+  explicit Sequence(const BlockPattern& pattern) : b(random_vector(3 * pattern.rows(), 11)), x(b.size()) {
+    solver.analyze(pattern);
+  }
+  void solve(const BlockSparse& H) {
+    ASSERT_TRUE(solver.factorize(H));
+    report = solver.solve(b, x, 1e-8);
+    EXPECT_TRUE(report.ok);
+    EXPECT_LE(relative_residual(H, b, x), 1e-8 * (1 + 1e-3));
+  }
+};
+
+Lattice soft(double stiffness) { return {.nx = 16, .ny = 8, .nz = 8, .stiffness = stiffness}; }
+
+// The same but for springs along one plane that are a thousand times as stiff.
+Matrix stiffened_lattice() {
+  Matrix H = spring_lattice(soft(100));
+  for (int row = 1; row < H.rows(); ++row)
+    for (int64_t s = H.pattern->row_start[row]; s < H.pattern->diagonal(row); ++s) {
+      const int column = H.pattern->column[s];
+      if (H.pattern->rest_position[row][0] != 8 || H.pattern->rest_position[column][0] != 8) continue;
+      const Mat3d K = -999.0 * H.values.block[s];
+      add_block(H.values, row, row, K);
+      add_block(H.values, column, column, K);
+      add_block(H.values, row, column, -1.0 * K);
+    }
+  return H;
+}
+
+TEST(ConjugateGradient, KeepsMultigridFromOneMatrixToTheNextAndIsStillRight) {
+  const Matrix first = spring_lattice(soft(100)), second = spring_lattice(soft(110));
+  Sequence sequence(*first.pattern);
+  sequence.solve(first.values);
+  const std::vector<double> before = sequence.x;
+  BlockSparse H(*first.pattern);
+  H.block = second.values.block;
+  sequence.solve(H);
+  EXPECT_EQ(sequence.made, 1);
+  EXPECT_NE(sequence.x, before);
+}
+
+TEST(ConjugateGradient, MakesMultigridAnewWhenIterationsHaveGrown) {
+  const Matrix first = spring_lattice(soft(100));
+  BlockSparse stiffened(*first.pattern);
+  stiffened.block = stiffened_lattice().values.block;
+  Sequence sequence(*first.pattern);
+  sequence.solve(first.values);
+  const int few = sequence.report.iterations;
+  sequence.solve(stiffened);
+  const int many = sequence.report.iterations;
+  EXPECT_EQ(sequence.made, 1);
+  EXPECT_GT(many, 1.3 * few);
+  sequence.solve(stiffened);
+  EXPECT_EQ(sequence.made, 2);
+  EXPECT_LT(sequence.report.iterations, many / 1.3);
+  sequence.solve(stiffened);
+  EXPECT_EQ(sequence.made, 2);
+}
+
+TEST(ConjugateGradient, OfANewSequenceDoesNotDependOnThoseBefore) {
+  const Matrix first = spring_lattice(soft(100));
+  BlockSparse second(*first.pattern), stiffened(*first.pattern);
+  second.block = spring_lattice(soft(110)).values.block;
+  stiffened.block = stiffened_lattice().values.block;
+  Sequence old(*first.pattern), fresh(*first.pattern);
+  old.solve(first.values);
+  old.solve(second);  // with what was made for the first
+  const std::vector<double> dependent = old.x;
+  old.solver.begin();
+  fresh.solver.begin();
+  for (const BlockSparse* H : {&second, &stiffened, &second}) {
+    old.solve(*H);
+    fresh.solve(*H);
+    EXPECT_EQ(old.x, fresh.x);
+    EXPECT_EQ(old.report.iterations, fresh.report.iterations);
+    EXPECT_EQ(old.made, fresh.made + 1);
+    if (H == &second) {
+      EXPECT_NE(dependent, old.x);
+    }
+  }
+}
+
+TEST(ConjugateGradient, AtItsDeadlineHasCountedItsWorkAndDescends) {
+  const Matrix H = spring_lattice(soft(1e4));
+  const std::vector<double> b = random_vector(3 * H.rows(), 12);
+  double now = 0;
+  const WallClock clock = [&] { return now++; };
+  for (const bool with_multigrid : {false, true})
+    for (const double seconds : {-1.0, 0.5, 3.5}) {
+      ConjugateGradient solver;
+      if (with_multigrid) solver = ConjugateGradient(std::make_unique<Multigrid>());
+      solver.analyze(*H.pattern);
+      ASSERT_TRUE(solver.factorize(H.values));
+      solver.set_deadline(Deadline(clock, seconds));
+      std::vector<double> x(b.size(), 99.0);
+      const SolveReport report = solver.solve(b, x, 1e-10);
+      EXPECT_TRUE(report.stopped);
+      EXPECT_FALSE(report.ok);
+      EXPECT_EQ(report.iterations, seconds < 1 ? 1 : 4);  // the clock is read once before each but the first
+      EXPECT_EQ(report.products, report.iterations);
+      EXPECT_EQ(report.cycles, with_multigrid ? report.iterations + 1 : 0);
+      EXPECT_NEAR(report.relative_residual, relative_residual(H.values, b, x), 1e-12);
+      EXPECT_GT(dot(b, x), 0);
+
+      solver.set_deadline({});
+      EXPECT_TRUE(solver.solve(b, x, 1e-10).ok);
+    }
 }
 
 TEST(ConjugateGradient, HasTheSameBitsForAnyThreadCount) {

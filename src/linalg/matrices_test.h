@@ -61,6 +61,14 @@ inline Couplings random_couplings(int rows, int count, unsigned seed) {
   return couplings;
 }
 
+// Makes a row that of the identity, as pinned vertices have.
+inline void pin(BlockSparse& H, int row) {
+  const BlockPattern& p = *H.pattern;
+  for (int64_t s = p.row_start[row]; s < p.row_start[row + 1]; ++s) H.block[s] = {};
+  for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u) H.block[p.upper_slot[u]] = {};
+  H.block[p.diagonal(row)] = identity3<double>();
+}
+
 struct Lattice {
   int nx = 4, ny = 4, nz = 4;  // cells
   double stiffness = 1, mass = 1;

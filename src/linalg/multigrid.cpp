@@ -96,7 +96,7 @@ void Multigrid::analyze(const BlockPattern& pattern) {
 
 void Multigrid::build(const BlockSparse& H) {
   levels_.clear();
-  levels_.reserve(kMostLevels);  // levels point to the patterns of those above
+  levels_.reserve(kMostLevels + 1);  // levels point to the patterns of those above
   const BlockPattern* pattern = H.pattern;
   Graph graph = graph_of(*pattern);
   std::vector<Vec3d> position = pattern->rest_position;
@@ -108,9 +108,9 @@ void Multigrid::build(const BlockSparse& H) {
   int rows_per_vertex = 1, size = options_.aggregate_size;
   while (pattern->rows() > options_.coarsest_rows && static_cast<int>(levels_.size()) < kMostLevels) {
     Aggregates aggregates = make_aggregates({graph, position, modulus, excluded, size});
-    // Where jumps of the modulus are everywhere, aggregates cross them, but on the first level.
-    if (rows_per_vertex == 4 && 3 * aggregates.count() > graph.vertex_count())
-      aggregates = make_aggregates({graph, position, {}, excluded, size});
+    // Where jumps of the modulus are everywhere, aggregates cross them; on the first level only where they must.
+    const int too_many = rows_per_vertex == 4 ? graph.vertex_count() / 3 : pattern->rows() / (4 * kLeastReduction);
+    if (aggregates.count() > too_many) aggregates = make_aggregates({graph, position, {}, excluded, size});
     if (aggregates.count() == 0 || 4 * kLeastReduction * aggregates.count() > pattern->rows()) break;
     Level& level = levels_.emplace_back();
     level.coarsening = make_affine_coarsening(graph, aggregates, rows_per_vertex, value);
@@ -118,10 +118,7 @@ void Multigrid::build(const BlockSparse& H) {
     level.smoother.analyze(*pattern, rows_per_vertex, aggregates.of_vertex, greedy_coloring(c.graph));
     level.restriction.reserve(c);
     level.coarse = std::make_unique<BlockSparse>(c.pattern);
-    const size_t floats = kFloatsPerRow * static_cast<size_t>(pattern->rows());
-    for (auto* v : {&level.b, &level.x, &level.r}) v->assign(floats, 0.0F);
-    if (levels_.size() > 1)
-      for (auto* v : {&level.p, &level.q, &level.sum}) v->assign(floats, 0.0F);
+    reserve_vectors(level, pattern->rows());
 
     position = centers(aggregates, position);
     value = c.coarse_value;
@@ -131,8 +128,16 @@ void Multigrid::build(const BlockSparse& H) {
     rows_per_vertex = 4, size = options_.coarse_aggregate_size;
     pattern = &c.pattern;
   }
+  const bool is_dense = pattern->rows() <= options_.coarsest_rows;
+  if (!is_dense) {
+    Level& level = levels_.emplace_back();
+    std::vector<int> vertex(graph.vertex_count());
+    std::iota(vertex.begin(), vertex.end(), 0);
+    level.smoother.analyze(*pattern, rows_per_vertex, vertex, greedy_coloring(graph));
+    reserve_vectors(level, pattern->rows());
+  }
   connect_levels();
-  const size_t rows = pattern->rows();
+  const size_t rows = is_dense ? pattern->rows() : 0;
   for (auto* v : {&coarsest_b_, &coarsest_x_}) v->assign(kFloatsPerRow * rows, 0.0F);
   coarsest_.assign(3 * rows + kReadAhead, 0.0);
   factor_.assign(9 * rows * rows + kReadAhead, 0.0);
@@ -140,9 +145,17 @@ void Multigrid::build(const BlockSparse& H) {
   is_built_ = true;
 }
 
+void Multigrid::reserve_vectors(Level& level, int rows) {
+  const size_t floats = kFloatsPerRow * static_cast<size_t>(rows);
+  for (auto* v : {&level.b, &level.x, &level.r}) v->assign(floats, 0.0F);
+  if (levels_.size() > 1)
+    for (auto* v : {&level.p, &level.q, &level.sum}) v->assign(floats, 0.0F);
+}
+
 void Multigrid::connect_levels() {
   for (size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
+    if (!level.coarse) continue;
     level.weight.clear();
     const int rows_per_vertex = level.smoother.rows_per_vertex();
     for (const int v : level.smoother.order())
@@ -165,6 +178,7 @@ bool Multigrid::factorize(const BlockSparse& H) {
   const BlockSparse* matrix = &H;
   for (Level& level : levels_) {
     if (!level.smoother.load(*matrix)) return false;
+    if (!level.coarse) return true;
     level.restriction.run(level.coarsening, *matrix, *level.coarse);
     matrix = level.coarse.get();
   }
@@ -207,6 +221,7 @@ void Multigrid::cycle(int l) {
   Level& level = levels_[l];
   const bool is_last = l + 1 == static_cast<int>(levels_.size());
   level.smoother.sweep_forward(level.b.data(), level.x.data());
+  if (!level.coarse) return level.smoother.sweep_backward(level.b.data(), level.x.data());
   level.smoother.residual_after_forward(level.x.data(), level.r.data());
   restrict_residual(level, is_last ? coarsest_b_ : levels_[l + 1].b);
   solve(l + 1);
@@ -274,8 +289,9 @@ void Multigrid::solve_coarsest() {
 std::string Multigrid::description() const {
   if (!is_built_) return "multigrid";
   std::string rows;
-  for (const Level& level : levels_) rows += std::to_string(level.smoother.rows()) + ", ";
-  return "multigrid on levels of " + rows + std::to_string(coarsest_b_.size() / kFloatsPerRow) + " vertices";
+  for (const Level& level : levels_) rows += (rows.empty() ? "" : ", ") + std::to_string(level.smoother.rows());
+  if (ends_densely()) rows += (rows.empty() ? "" : ", ") + std::to_string(coarsest_b_.size() / kFloatsPerRow);
+  return "multigrid on levels of " + rows + " vertices";
 }
 
 }  // namespace aspic

@@ -19,7 +19,8 @@ namespace aspic {
 struct MultigridOptions {
   int aggregate_size = 48;        // rows of the matrix
   int coarse_aggregate_size = 8;  // aggregates, from then on
-  int coarsest_rows = 256;        // at most, on the level that is factorised
+  int coarsest_rows = 256;        // at most, on the level that is factorised; where rows that do not hang together are
+                                  // more, they are smoothed only
 };
 
 // The better for knowing the rest positions of the pattern's rows. Rows without any coupling (pinned vertices) take no
@@ -35,21 +36,23 @@ class Multigrid : public ApproximateInverse {
   void apply(std::span<const double> r, std::span<double> z) override;
   bool is_multigrid() const override { return true; }
 
-  int level_count() const { return static_cast<int>(levels_.size()) + 1; }
+  int level_count() const { return static_cast<int>(levels_.size()) + ends_densely(); }
 
  private:
   struct Level {
     GaussSeidel smoother;
     AffineCoarsening coarsening;
     MatrixRestriction restriction;
-    std::unique_ptr<BlockSparse> coarse;  // P' H P
+    std::unique_ptr<BlockSparse> coarse;  // P' H P; none on a last level that is smoothed only
     std::vector<float> weight;            // of the coarsening, 4 per row in the order of the smoother
     std::vector<int> coarse_place;        // of each aggregate in the order of the next level
     std::vector<float> b, x;              // H x = b
     std::vector<float> r;                 // of the cycle: b - H x; of the K-cycle: H p
     std::vector<float> p, q, sum;         // of the K-cycle: first direction, H p, solution
   };
+  bool ends_densely() const { return levels_.empty() || levels_.back().coarse; }
   void build(const BlockSparse& H);
+  void reserve_vectors(Level& level, int rows);
   void connect_levels();
   void cycle(int l);  // one step for H x = b from x = 0
   void solve(int l);
