@@ -22,8 +22,9 @@ TEST(Counts, AStepOfNewtonsMethodEvaluatesNothingTwice) {
     const int candidates = i == 0 ? 2 : 3;  // current, extrapolated, and once there is a step before accelerated
     EXPECT_EQ(report.values, candidates + report.trials + kLedger);
     EXPECT_EQ(report.gradients, 1 + report.iterations + 1);
-    EXPECT_EQ(report.hessians, report.iterations);
-    EXPECT_EQ(report.factorizations, report.iterations);
+    EXPECT_GE(report.hessians, 1);
+    EXPECT_LT(report.hessians, report.iterations);  // one serves for the last digits
+    EXPECT_EQ(report.factorizations, report.hessians);
     EXPECT_EQ(report.elements, simulation.model().mesh.tet_count());
   }
 }

@@ -91,7 +91,7 @@ void IncrementalPotential::gradient(std::span<const double> q, std::span<double>
   pins_.set_zero(g);
 }
 
-const BlockSparse& IncrementalPotential::hessian(std::span<const double> q, const Projection& projection) {
+const BlockSparse& IncrementalPotential::evaluate_hessian(std::span<const double> q, const Projection& projection) {
   projected_elements_ = 0;
   if (inertia_ != 0) {
     model_.mass->assign_to(inertia_, H_);

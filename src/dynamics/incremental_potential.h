@@ -21,7 +21,7 @@ class IncrementalPotential : public Objective {
 
   double value(std::span<const double> q) override;
   void gradient(std::span<const double> q, std::span<double> g) override;
-  const BlockSparse& hessian(std::span<const double> q, const Projection& projection) override;
+  const BlockSparse& evaluate_hessian(std::span<const double> q, const Projection& projection) override;
   int projected_elements() const override { return projected_elements_; }
   const BlockSparse* metric() override;  // M, with the rows of the identity for pinned vertices
   const BlockPattern* coupling() override { return &pattern_; }
