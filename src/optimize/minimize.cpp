@@ -188,6 +188,7 @@ void Minimizer::take_step(Progress& at, Iteration& iteration) {
     at.E.gradient(at.x, trial_gradient_);
     ++iteration.gradients;
   }
+  at.E.note_iterate(at.x);
   g_.swap(trial_gradient_);
   at.gradient_scale = at.E.gradient_scale();
   iteration.alpha = at.step.alpha;

@@ -19,7 +19,9 @@ class Objective {
     return evaluate_hessian(x, projection);
   }
   uint64_t hessians_made() const { return hessians_made_; }  // by whomever: whether the last one still is one's own
-  virtual int projected_elements() const { return 0; }       // of the last Hessian
+  // A minimiser has moved to x, where it evaluated the last value and the last gradient.
+  virtual void note_iterate(std::span<const double> /*x*/) {}
+  virtual int projected_elements() const { return 0; }  // of the last Hessian
   virtual double max_step(std::span<const double>, std::span<const double>) {
     return 1e300;
   }  // largest feasible alpha along d
