@@ -8,9 +8,6 @@ namespace {
 
 using namespace testing_models;
 
-// The value where a step ends is evaluated once more for the ledger, term by term.
-constexpr int kLedger = 1;
-
 TEST(Counts, AStepOfNewtonsMethodEvaluatesNothingTwice) {
   Simulation simulation = simulate(beam(3, {.young = 1e5}));
   for (int i = 0; i < 5; ++i) {
@@ -20,10 +17,11 @@ TEST(Counts, AStepOfNewtonsMethodEvaluatesNothingTwice) {
     EXPECT_GE(report.iterations, 1);
     EXPECT_EQ(report.trials, report.iterations);
     const int candidates = i == 0 ? 2 : 3;  // current, extrapolated, and once there is a step before accelerated
-    EXPECT_EQ(report.values, candidates + report.trials + kLedger);
-    EXPECT_EQ(report.gradients, 1 + report.iterations + 1);
-    EXPECT_EQ(report.hessians, report.iterations);
-    EXPECT_EQ(report.factorizations, report.iterations);
+    EXPECT_EQ(report.values, candidates + report.trials);
+    EXPECT_EQ(report.gradients, 1 + report.iterations);
+    EXPECT_GE(report.hessians, 1);
+    EXPECT_LT(report.hessians, report.iterations);  // one serves for the last digits
+    EXPECT_EQ(report.factorizations, report.hessians);
     EXPECT_EQ(report.elements, simulation.model().mesh.tet_count());
   }
 }
@@ -65,7 +63,7 @@ TEST(Counts, AnExplicitStepEvaluatesForcesOncePerStage) {
     simulation.step();
     const StepReport report = simulation.step();
     EXPECT_EQ(report.gradients, stages) << integrator;
-    EXPECT_EQ(report.values, kLedger) << integrator;
+    EXPECT_EQ(report.values, 1) << integrator;  // the ledger's
     EXPECT_EQ(report.hessians, 0) << integrator;
   }
 }

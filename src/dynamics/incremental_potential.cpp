@@ -54,6 +54,12 @@ IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
   for (Energy* V : potential_) V->bind(pattern_);
   for (Energy* D : damping_) D->bind(pattern_);
   for (auto* v : {&predicted_, &offset_, &term_}) v->resize(3 * pattern_.rows());
+  for (Parts* parts : {&last_, &of_iterate_}) {
+    parts->values.resize(potential_.size());
+    parts->gradient.resize(term_.size());
+    if (!damping_.empty()) parts->damping.resize(term_.size());
+  }
+  iterate_.reserve(term_.size());
   largest_.resize(pattern_.rows() / kChunkSize + 1);
   measure(model.mesh);
 }
@@ -62,6 +68,7 @@ void IncrementalPotential::begin_step(std::span<const double> predicted, double 
   predicted_.assign(predicted.begin(), predicted.end());
   inertia_ = inertia;
   factor_ = factor;
+  iterate_.clear();
   gradient_round_off_ = 0;  // known after the first Hessian
 }
 
@@ -69,7 +76,7 @@ double IncrementalPotential::value(std::span<const double> q) {
   double E = 0, magnitude = factor_ * growth_stiffness_;
   const auto add = [&](double term) { E += term, magnitude += std::abs(term); };
   if (inertia_ != 0) add(0.5 * inertia_ * model_.mass->squared_distance(q, predicted_));
-  for (const Energy* V : potential_) add(factor_ * V->value(q));
+  for (size_t k = 0; k < potential_.size(); ++k) add(factor_ * (last_.values[k] = potential_[k]->value(q)));
   for (const Energy* D : damping_) add(factor_ * D->value(q));
   value_round_off_ = kEpsilon * magnitude;
   return E;
@@ -86,12 +93,33 @@ void IncrementalPotential::gradient(std::span<const double> q, std::span<double>
   } else {
     std::fill(g.begin(), g.end(), 0.0);
   }
-  for (const Energy* V : potential_) add_term_gradient(*V, q, g);
-  for (const Energy* D : damping_) add_term_gradient(*D, q, g);
+  std::fill(last_.gradient.begin(), last_.gradient.end(), 0.0);
+  std::fill(last_.damping.begin(), last_.damping.end(), 0.0);
+  for (const Energy* V : potential_) add_term_gradient(*V, q, g, last_.gradient);
+  for (const Energy* D : damping_) add_term_gradient(*D, q, g, last_.damping);
   pins_.set_zero(g);
 }
 
-const BlockSparse& IncrementalPotential::hessian(std::span<const double> q, const Projection& projection) {
+void IncrementalPotential::note_iterate(std::span<const double> q) {
+  iterate_.assign(q.begin(), q.end());
+  std::swap(last_, of_iterate_);
+}
+
+std::span<const double> IncrementalPotential::known_values(std::span<const double> q) const {
+  if (!std::equal(q.begin(), q.end(), iterate_.begin(), iterate_.end())) return {};
+  return of_iterate_.values;
+}
+
+bool IncrementalPotential::add_known_forces(std::span<const double> q, double weight, std::span<double> gradient,
+                                            std::span<double> damping) const {
+  if (!std::equal(q.begin(), q.end(), iterate_.begin(), iterate_.end())) return false;
+  const double scale = weight / factor_;
+  for (size_t i = 0; i < gradient.size(); ++i) gradient[i] += scale * of_iterate_.gradient[i];
+  for (size_t i = 0; i < of_iterate_.damping.size(); ++i) damping[i] += scale * of_iterate_.damping[i];
+  return true;
+}
+
+const BlockSparse& IncrementalPotential::evaluate_hessian(std::span<const double> q, const Projection& projection) {
   projected_elements_ = 0;
   if (inertia_ != 0) {
     model_.mass->assign_to(inertia_, H_);
@@ -173,20 +201,22 @@ double IncrementalPotential::free_norm(std::span<const double> v) const {
   }));
 }
 
-void IncrementalPotential::add_term_gradient(const Energy& term, std::span<const double> q, std::span<double> g) {
+void IncrementalPotential::add_term_gradient(const Energy& term, std::span<const double> q, std::span<double> g,
+                                             std::span<double> sum) {
   term.add_gradient(q, factor_, term_);
   const double squared = parallel_sum(pattern_.rows(), [&](int first, int last) {
-    double sum = 0;
+    double square = 0;
     for (int i = first; i < last; ++i) {
       const bool is_free = !pins_.holds(i);
       for (int k = 3 * i; k < 3 * i + 3; ++k) {
         const double t = term_[k];
-        if (is_free) sum += t * t;
+        if (is_free) square += t * t;
         g[k] += t;
+        sum[k] += t;
         term_[k] = 0;
       }
     }
-    return sum;
+    return square;
   });
   gradient_scale_ += std::sqrt(squared);
 }

@@ -21,7 +21,8 @@ class IncrementalPotential : public Objective {
 
   double value(std::span<const double> q) override;
   void gradient(std::span<const double> q, std::span<double> g) override;
-  const BlockSparse& hessian(std::span<const double> q, const Projection& projection) override;
+  const BlockSparse& evaluate_hessian(std::span<const double> q, const Projection& projection) override;
+  void note_iterate(std::span<const double> q) override;
   int projected_elements() const override { return projected_elements_; }
   const BlockSparse* metric() override;  // M, with the rows of the identity for pinned vertices
   const BlockPattern* coupling() override { return &pattern_; }
@@ -35,17 +36,27 @@ class IncrementalPotential : public Objective {
   double gradient_round_off() const override { return gradient_round_off_; }
   double value_round_off() const override { return value_round_off_; }
 
+  // What is known of the iterate at which a minimisation ended: nothing there need be evaluated again. Empty elsewhere.
+  std::span<const double> known_values(std::span<const double> q) const;  // of the terms of V [J]
+  // gradient += weight dV/dx, damping += weight dD/dx [N]; false where they are not known.
+  bool add_known_forces(std::span<const double> q, double weight, std::span<double> gradient,
+                        std::span<double> damping) const;
+
   const std::vector<Energy*>& potential() const { return potential_; }  // the terms of V
   const std::vector<Energy*>& damping() const { return damping_; }
   const BlockPattern& pattern() const { return pattern_; }
 
  private:
+  struct Parts {                            // of E, by terms
+    std::vector<double> values;             // of V [J]
+    std::vector<double> gradient, damping;  // f dV/dx and f dD/dx
+  };
   // Sets the second derivative of V along a uniform growth of the body at rest, a modulus times the volume [J], its
   // moment of inertia about the centre [kg m^2] and the largest distance from there [m]: the sizes by which errors are
   // judged.
   void measure(const TetMesh& mesh);
   bool prepare_vertex_systems();
-  void add_term_gradient(const Energy& term, std::span<const double> q, std::span<double> g);
+  void add_term_gradient(const Energy& term, std::span<const double> q, std::span<double> g, std::span<double> sum);
   double free_norm(std::span<const double> v) const;
   double gradient_round_off_at(std::span<const double> q);
 
@@ -58,6 +69,8 @@ class IncrementalPotential : public Objective {
   std::optional<bool> offers_vertex_systems_;  // likewise
 
   std::vector<double> predicted_;
+  std::vector<double> iterate_;  // empty: there is none yet
+  Parts last_, of_iterate_;      // of what was evaluated last, wherever that was
   double inertia_ = 1, factor_ = 1;
   double growth_stiffness_ = 0, growth_inertia_ = 0, radius_ = 0;
   int projected_elements_ = 0;

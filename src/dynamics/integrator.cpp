@@ -50,9 +50,11 @@ void StepForces::reset(size_t size) {
 
 void StepForces::add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc,
                      Work& work) {
-  ++work.gradients;
-  for (const Energy* V : E.potential()) V->add_gradient(x, weight, gradient);
-  for (const Energy* D : E.damping()) D->add_gradient(x, weight, damping);
+  if (!E.add_known_forces(x, weight, gradient, damping)) {
+    ++work.gradients;
+    for (const Energy* V : E.potential()) V->add_gradient(x, weight, gradient);
+    for (const Energy* D : E.damping()) D->add_gradient(x, weight, damping);
+  }
   for (size_t i = 0; i < acc.size(); ++i) acceleration[i] += weight * acc[i];
 }
 

@@ -38,14 +38,19 @@ double Ledger::target_work(const StepTools& tools, int order, const State& end, 
 void Ledger::begin(const Model& model, std::span<const double> q) {
   Work uncounted;
   last_q_.clear();
-  elastic_energies(model, q, uncounted);
+  elastic_energies(model, q, {}, uncounted);
 }
 
-std::span<const double> Ledger::elastic_energies(const Model& model, std::span<const double> q, Work& work) {
+std::span<const double> Ledger::elastic_energies(const Model& model, std::span<const double> q,
+                                                 std::span<const double> known, Work& work) {
   if (std::equal(q.begin(), q.end(), last_q_.begin(), last_q_.end())) return elastic_;
   elastic_.clear();
-  for (const auto& V : model.elasticity) elastic_.push_back(V->value(q));
-  ++work.values;
+  if (known.empty()) {
+    for (const auto& V : model.elasticity) elastic_.push_back(V->value(q));
+    ++work.values;
+  } else {
+    elastic_.assign(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(model.elasticity.size()));
+  }
   last_q_.assign(q.begin(), q.end());
   return elastic_;
 }
@@ -66,7 +71,7 @@ void Ledger::add(const StepTools& tools, int order, const State& end, const Step
   for (auto* v : {&Ma_, &momentum_, &residual_}) v->assign(n, 0.0);
   double potential_before = 0;
   const double target = target_work(tools, order, end, potential_before);
-  for (const double V : elastic_energies(tools.model, start.q, report)) potential_before += V;
+  for (const double V : elastic_energies(tools.model, start.q, {}, report)) potential_before += V;
   const double kinetic_before = kinetic_energy(*tools.model.mass, start.qdot, momentum_);
   tools.model.mass->multiply(forces.acceleration, Ma_);
 
@@ -86,7 +91,8 @@ void Ledger::add(const StepTools& tools, int order, const State& end, const Step
   report.potential.clear();
   report.potential.reserve(tools.E.potential().size());
   report.potential_total = 0;
-  for (const double V : elastic_energies(tools.model, end.q, report)) report.potential.push_back(V);
+  for (const double V : elastic_energies(tools.model, end.q, tools.E.known_values(end.q), report))
+    report.potential.push_back(V);
   for (const auto& V : tools.model.loads) report.potential.push_back(V->value(end.q));
   for (const double V : report.potential) report.potential_total += V;
   report.kinetic = kinetic_energy(*tools.model.mass, end.qdot, momentum_);

@@ -25,7 +25,9 @@ class Ledger {
 
  private:
   double target_work(const StepTools& tools, int order, const State& end, double& loads_before) const;
-  std::span<const double> elastic_energies(const Model& model, std::span<const double> q, Work& work);
+  // `known`: those at q of all terms, the elastic ones first, or none.
+  std::span<const double> elastic_energies(const Model& model, std::span<const double> q, std::span<const double> known,
+                                           Work& work);
   void note_worst_vertex(const Pins& pins, StepReport& report) const;
 
   std::vector<double> Ma_, momentum_, residual_;

@@ -100,7 +100,7 @@ TEST(Methods, KnowingMoreOfTheCurvatureTakesFewerIterations) {
     for (int i = 0; i < 3; ++i) iterations[method] += simulation.step().iterations;
   }
   EXPECT_LE(iterations["newton"], iterations["newton_cg"]);
-  EXPECT_LT(iterations["newton"], iterations["lbfgs"]);
+  EXPECT_LE(iterations["newton"], iterations["lbfgs"]);
   for (const std::string method : {"lbfgs", "nonlinear_cg", "vertex_descent"})
     EXPECT_LT(5 * iterations[method], iterations["gradient_descent"]) << method;
 }

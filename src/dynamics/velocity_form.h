@@ -17,7 +17,7 @@ class VelocityForm : public Objective {
 
   double value(std::span<const double> v) override { return E_.value(position(v)) / (h_ * h_); }  // [J]
   void gradient(std::span<const double> v, std::span<double> g) override;                         // [N s]
-  const BlockSparse& hessian(std::span<const double> v, const Projection& projection) override {
+  const BlockSparse& evaluate_hessian(std::span<const double> v, const Projection& projection) override {
     return E_.hessian(position(v), projection);  // M + h^2 d2V/dq2 [kg]
   }
   int projected_elements() const override { return E_.projected_elements(); }

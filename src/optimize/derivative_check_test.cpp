@@ -46,7 +46,7 @@ class Quartic : public Objective {
     }
     if (wrong_gradient >= 0) g[wrong_gradient] *= factor;
   }
-  const BlockSparse& hessian(std::span<const double> x, const Projection&) override {
+  const BlockSparse& evaluate_hessian(std::span<const double> x, const Projection&) override {
     H_.set_zero();
     const auto entry = [&](size_t r, size_t c) -> double& {  // c <= r
       return H_.block[pattern_.slot(static_cast<int>(r / 3), static_cast<int>(c / 3))](static_cast<int>(r % 3),

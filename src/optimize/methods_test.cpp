@@ -71,7 +71,7 @@ class Quadratic : public Objective {
   void gradient(std::span<const double> x, std::span<double> g) override {
     g[0] = x[0], g[1] = 10 * x[1], g[2] = 100 * x[2];
   }
-  const BlockSparse& hessian(std::span<const double>, const Projection&) override {
+  const BlockSparse& evaluate_hessian(std::span<const double>, const Projection&) override {
     ++hessians;
     return H_;
   }

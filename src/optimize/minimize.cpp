@@ -144,8 +144,10 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
   for (;; ++iteration.retreats) {
     const bool found = direction.compute(E, at.x, g_, accuracy, d_, iteration.direction);
     const double computed = options.deadline.now();
-    cost_.direction = computed - begin;
-    cost_.stoppable = iteration.direction.stoppable_seconds;
+    if (!iteration.direction.kept) {  // the next one may have to make its Hessian
+      cost_.direction = computed - begin;
+      cost_.stoppable = iteration.direction.stoppable_seconds;
+    }
     at.slope = found ? E.dot(g_, d_) : 0;
     iteration.decrement = -0.5 * at.slope;
     report.status = Status::no_descent;
@@ -186,6 +188,7 @@ void Minimizer::take_step(Progress& at, Iteration& iteration) {
     at.E.gradient(at.x, trial_gradient_);
     ++iteration.gradients;
   }
+  at.E.note_iterate(at.x);
   g_.swap(trial_gradient_);
   at.gradient_scale = at.E.gradient_scale();
   iteration.alpha = at.step.alpha;

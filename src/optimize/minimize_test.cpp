@@ -181,7 +181,7 @@ class DrownedParabola : public Objective {
  public:
   double value(std::span<const double> x) override { return 8 * x[0] * x[0] + 1e9; }
   void gradient(std::span<const double> x, std::span<double> g) override { g[0] = 16 * x[0]; }
-  const BlockSparse& hessian(std::span<const double>, const Projection&) override {
+  const BlockSparse& evaluate_hessian(std::span<const double>, const Projection&) override {
     throw std::logic_error("not needed");
   }
   double value_round_off() const override { return 1e-7; }
@@ -226,8 +226,8 @@ class Timed : public Rosenbrock {
  public:
   double value(std::span<const double> x) override { return ++time, Rosenbrock::value(x); }
   void gradient(std::span<const double> x, std::span<double> g) override { ++time, Rosenbrock::gradient(x, g); }
-  const BlockSparse& hessian(std::span<const double> x, const Projection& projection) override {
-    return ++time, Rosenbrock::hessian(x, projection);
+  const BlockSparse& evaluate_hessian(std::span<const double> x, const Projection& projection) override {
+    return ++time, Rosenbrock::evaluate_hessian(x, projection);
   }
   double time = 0;
 };

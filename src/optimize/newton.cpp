@@ -62,6 +62,7 @@ std::string Newton::description() const {
 void Newton::begin() {
   cautious_next_ = clamped_ = false;
   is_new_ = true;
+  kept_.drop();
   forcing_.begin();
   solver_->begin();
   progressive_.begin();
@@ -70,11 +71,15 @@ void Newton::begin() {
 // H d = -g
 bool Newton::compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
                      std::span<double> d, DirectionReport& report) {
-  const double forcing = forcing_.at(std::sqrt(E.dot(g, g)), accuracy);
+  gradient_norm_ = std::sqrt(E.dot(g, g));
+  const double forcing = forcing_.at(gradient_norm_, accuracy);
   const bool cautious = std::exchange(cautious_next_, false);
   is_first_ = std::exchange(is_new_, false);
   deadline_ = accuracy.deadline;
   solver_->set_deadline(deadline_);
+  used_kept_ = kept_.serves(gradient_norm_, accuracy) && solve_with_kept(E, g, forcing, d, report);
+  if (used_kept_) return true;
+  kept_.drop();
   if (definiteness_ == NewtonDefiniteness::progressive) {
     if (cautious) progressive_.tighten(g);
     return solve_progressively(E, x, g, forcing, d, report);
@@ -87,6 +92,8 @@ bool Newton::compute(Objective& E, std::span<const double> x, std::span<const do
 }
 
 bool Newton::retreat() {
+  kept_.drop();
+  if (used_kept_) return true;
   cautious_next_ = definiteness_ == NewtonDefiniteness::progressive
                        ? !progressive_.is_complete()
                        : definiteness_ == NewtonDefiniteness::on_demand && !clamped_;
@@ -110,6 +117,7 @@ bool Newton::solve(Objective& E, std::span<const double> x, const Projection& pr
   Stopwatch stopwatch;
   const BlockSparse& H = E.hessian(x, projection);
   ++report.hessians;
+  report.kept = false;
   report.projected_elements += E.projected_elements();
   report.hessian_seconds += stopwatch.lap();
   if (is_late(report)) return false;
@@ -121,6 +129,20 @@ bool Newton::solve(Objective& E, std::span<const double> x, const Projection& pr
   const bool definite = solver_->factorize(H);
   report.factorize_seconds += stopwatch.lap();
   if (!definite) return false;
+  if (!solve_factorized(g, forcing, d, report)) return false;
+  if (projection.kind == Definiteness::exact && !report.truncated && !report.stopped) kept_.keep(E, H, x);
+  return true;
+}
+
+// The factorisation, or the preconditioner, is kept as well.
+bool Newton::solve_with_kept(Objective& E, std::span<const double> g, double forcing, std::span<double> d,
+                             DirectionReport& report) {
+  kept_.restore(E);
+  return report.kept = solve_factorized(g, forcing, d, report);
+}
+
+bool Newton::solve_factorized(std::span<const double> g, double forcing, std::span<double> d, DirectionReport& report) {
+  Stopwatch stopwatch;
   const double begin = deadline_.now();
   const SolveReport solved = solver_->solve(g, d, forcing);
   if (solved.iterations > 0) report.stoppable_seconds += deadline_.now() - begin;
@@ -129,6 +151,7 @@ bool Newton::solve(Objective& E, std::span<const double> x, const Projection& pr
   report.solve_seconds += stopwatch.lap();
   if (solved.indefinite ? !truncated_ : !solved.ok && !solved.stopped) return false;
   report.truncated = report.truncated || solved.indefinite;
+  kept_.note_solve(gradient_norm_, solved.relative_residual);
   for (double& di : d) di = -di;
   return true;
 }

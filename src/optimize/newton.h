@@ -5,6 +5,7 @@
 
 #include "linalg/linear_solver.h"
 #include "optimize/forcing.h"
+#include "optimize/kept_hessian.h"
 #include "optimize/progressive_projection.h"
 #include "optimize/search_direction.h"
 
@@ -36,6 +37,9 @@ class Newton : public SearchDirection {
                            std::span<double> d, DirectionReport& report);
   bool solve(Objective& E, std::span<const double> x, const Projection& projection, std::span<const double> g,
              double forcing, std::span<double> d, DirectionReport& report);
+  bool solve_with_kept(Objective& E, std::span<const double> g, double forcing, std::span<double> d,
+                       DirectionReport& report);
+  bool solve_factorized(std::span<const double> g, double forcing, std::span<double> d, DirectionReport& report);
   // Whether to give up between the phases of a solve. The first iteration never does: without any, no force would act.
   bool is_late(DirectionReport& report) const {
     return report.stopped = report.stopped || (!is_first_ && deadline_.has_passed());
@@ -44,10 +48,13 @@ class Newton : public SearchDirection {
   NewtonDefiniteness definiteness_;
   bool truncated_ = false;  // a solve that met negative curvature is used as far as it came
   Forcing forcing_;
+  KeptHessian kept_;
   Deadline deadline_;
   bool is_new_ = true, is_first_ = true;  // begun, and nothing computed yet; the compute() under way is the first
   ProgressiveProjection progressive_;
   uint64_t analyzed_version_ = 0;
+  double gradient_norm_ = 0;
+  bool used_kept_ = false;      // for the last direction
   bool cautious_next_ = false;  // after a retreat: project, or more than before
   bool clamped_ = false;        // on_demand: the last direction
 };

@@ -1,5 +1,6 @@
 // What a minimiser sees: a function with derivatives. No physics here.
 #pragma once
+#include <cstdint>
 #include <span>
 
 #include "linalg/block_sparse.h"
@@ -12,7 +13,14 @@ class Objective {
   virtual ~Objective() = default;
   virtual double value(std::span<const double> x) = 0;  // +inf where it is not defined
   virtual void gradient(std::span<const double> x, std::span<double> g) = 0;
-  virtual const BlockSparse& hessian(std::span<const double> x, const Projection& projection) = 0;
+  // Valid until the next one is asked for.
+  const BlockSparse& hessian(std::span<const double> x, const Projection& projection) {
+    ++hessians_made_;
+    return evaluate_hessian(x, projection);
+  }
+  uint64_t hessians_made() const { return hessians_made_; }  // by whomever: whether the last one still is one's own
+  // A minimiser has moved to x, where it evaluated the last value and the last gradient.
+  virtual void note_iterate(std::span<const double> /*x*/) {}
   virtual int projected_elements() const { return 0; }  // of the last Hessian
   virtual double max_step(std::span<const double>, std::span<const double>) {
     return 1e300;
@@ -40,6 +48,12 @@ class Objective {
 
   virtual double dot(std::span<const double> a,
                      std::span<const double> b);  // a distributed objective reduces over ranks
+
+ protected:
+  virtual const BlockSparse& evaluate_hessian(std::span<const double> x, const Projection& projection) = 0;
+
+ private:
+  uint64_t hessians_made_ = 0;
 };
 
 }  // namespace aspic

@@ -52,7 +52,7 @@ void PlanarFunction::gradient(std::span<const double> x, std::span<double> g) {
   g[2] = x[2];
 }
 
-const BlockSparse& PlanarFunction::hessian(std::span<const double> x, const Projection& projection) {
+const BlockSparse& PlanarFunction::evaluate_hessian(std::span<const double> x, const Projection& projection) {
   PlanarHessian H = hessian_at({x[0], x[1]});
   gradient_round_off_ = kEpsilon * std::hypot(x[0], x[1]) * std::hypot(H.xx, std::sqrt(2) * H.xy, H.yy);
   projected_ = projection.covers(0) && make_definite(H, projection.kind);

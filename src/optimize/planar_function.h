@@ -35,7 +35,7 @@ class PlanarFunction : public Objective {
 
   double value(std::span<const double> x) override;
   void gradient(std::span<const double> x, std::span<double> g) override;
-  const BlockSparse& hessian(std::span<const double> x, const Projection& projection) override;
+  const BlockSparse& evaluate_hessian(std::span<const double> x, const Projection& projection) override;
   int projected_elements() const override { return projected_; }
   double value_round_off() const override { return value_round_off_; }
   double gradient_round_off() const override { return gradient_round_off_; }

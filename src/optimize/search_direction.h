@@ -13,6 +13,7 @@ namespace aspic {
 struct DirectionReport : Work {
   int projected_elements = 0;    // whose Hessians were made definite
   bool projected = false;        // a projected Hessian was used where the exact one was wanted
+  bool kept = false;             // the Hessian of an iteration before served once more
   bool truncated = false;        // the linear solve ended at a direction of negative curvature
   bool stopped = false;          // the deadline passed
   double stoppable_seconds = 0;  // by the deadline's clock, of what could have been stopped

@@ -26,7 +26,7 @@ class Rescaled : public Objective {
     E_.gradient(x, g);
     for (double& gi : g) gi /= unit_;
   }
-  const BlockSparse& hessian(std::span<const double> x, const Projection& projection) override {
+  const BlockSparse& evaluate_hessian(std::span<const double> x, const Projection& projection) override {
     H_ = E_.hessian(x, projection);
     for (Mat3d& block : H_->block) block = (1 / unit_) * block;
     return *H_;

@@ -1,0 +1,81 @@
+#include "optimize/newton.h"
+
+#include <gtest/gtest.h>
+
+#include "optimize/minimize.h"
+#include "optimize/test_functions.h"
+
+namespace aspic {
+namespace {
+
+std::unique_ptr<Newton> newton() { return std::make_unique<Newton>(make_linear_solver("block_jacobi")); }
+
+MinimizeReport minimize_from_afar(SearchDirection& direction, Criterion criterion, std::vector<double>& x,
+                                  const IterationObserver& observe = {}) {
+  Rosenbrock f;
+  x = {-0.8, 0.6, 0};
+  MinimizeOptions options;
+  options.criterion = criterion;
+  options.tolerance = 1e-5;
+  return Minimizer().minimize(f, direction, x, options, observe);
+}
+
+TEST(Newton, KeepsAHessianThatSufficesForTheLastDigits) {
+  for (const std::string linear : {"cholesky", "block_jacobi", "multigrid", "auto"}) {
+    std::vector<double> x;
+    Newton direction(make_linear_solver(linear));
+    const MinimizeReport report = minimize_from_afar(direction, Criterion::absolute, x);
+    EXPECT_EQ(report.status, Status::converged);
+    EXPECT_LT(report.hessians, report.iterations) << linear;
+    EXPECT_EQ(report.factorizations, report.hessians) << linear;
+    EXPECT_NEAR(x[0], 1, 2.5e-5) << linear;  // the smallest eigenvalue of the Hessian at (1, 1) is 0.399
+  }
+}
+
+TEST(Newton, MakesAHessianForEachDirectionThatIsJudged) {
+  std::vector<double> x;
+  for (const Criterion criterion : {Criterion::decrement, Criterion::velocity, Criterion::acceleration}) {
+    const MinimizeReport report = minimize_from_afar(*newton(), criterion, x);
+    EXPECT_GE(report.hessians, report.iterations) << to_string(criterion);
+  }
+}
+
+TEST(Newton, KeepsItsHessianWhileAnObserverAsksForOthers) {
+  std::vector<double> plain, watched;
+  const MinimizeReport expected = minimize_from_afar(*newton(), Criterion::absolute, plain);
+  const MinimizeReport report =
+      minimize_from_afar(*newton(), Criterion::absolute, watched, [](const LiveIteration& iteration) {
+        const std::vector<double> elsewhere = {3, -2, 0};
+        iteration.E.hessian(elsewhere, {Definiteness::clamped});
+        return true;
+      });
+  EXPECT_EQ(watched, plain);
+  EXPECT_EQ(report.hessians, expected.hessians);
+  EXPECT_EQ(report.gradient_round_off, expected.gradient_round_off);
+}
+
+TEST(Newton, ForgetsItsHessianWhereItIsOfNoUseAndBetweenMinimisations) {
+  Rosenbrock f;
+  const auto direction = newton();
+  const std::vector<double> x = {1.01, 1.02, 0};
+  std::vector<double> g(3), d(3);
+  f.gradient(x, g);
+  const InnerAccuracy lavish = {.loosest = 0.1, .enough = 10};  // whatever its quadratic approximation was worth
+  const auto hessians = [&] {
+    DirectionReport report;
+    EXPECT_TRUE(direction->compute(f, x, g, lavish, d, report));
+    EXPECT_EQ(report.kept, report.hessians == 0);
+    return report.hessians;
+  };
+  direction->begin();
+  EXPECT_EQ(hessians(), 1);
+  EXPECT_EQ(hessians(), 0);
+  EXPECT_TRUE(direction->retreat());
+  EXPECT_EQ(hessians(), 1);
+  EXPECT_EQ(hessians(), 0);
+  direction->begin();
+  EXPECT_EQ(hessians(), 1);
+}
+
+}  // namespace
+}  // namespace aspic
