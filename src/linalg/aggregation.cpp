@@ -10,7 +10,6 @@ namespace aspic {
 namespace {
 
 constexpr size_t kCrumb = 5;           // vertices; an affine displacement has as much freedom as four
-constexpr double kStiffnessJump = 10;  // neighbours that differ by this factor hang together weakly
 constexpr double kCellsPerSide = 0.9;  // how long an aggregate may be, in units of edge length * cbrt(size):
                                        // in a thin limb, long ones would be bent, which no affine displacement is
 
@@ -29,11 +28,7 @@ class Aggregation {
   }
 
  private:
-  bool is_strong(int v, int w) const {
-    if (in_.modulus.empty()) return true;
-    const double a = in_.modulus[v], b = in_.modulus[w];
-    return a < kStiffnessJump * b && b < kStiffnessJump * a;
-  }
+  bool is_strong(int v, int w) const { return in_.modulus.empty() || !is_jump(in_.modulus[v], in_.modulus[w]); }
 
   struct Side {
     int axis = 0;

@@ -16,6 +16,9 @@ struct Aggregates {
   std::span<const int> members(int a) const { return std::span(member).subspan(start[a], start[a + 1] - start[a]); }
 };
 
+// Whether neighbours of these stiffnesses hang together only weakly.
+inline bool is_jump(double modulus, double other) { return modulus >= 10 * other || other >= 10 * modulus; }
+
 struct AggregationInput {
   const Graph& graph;
   std::span<const Vec3d> position;

@@ -16,6 +16,9 @@ constexpr int kLeastReduction = 2;  // of rows, from one level to the next; with
 constexpr double kRegular = 1e-12;  // added to the coarsest diagonal: a free body without mass is singular
 constexpr double kAccurate = 0.25;  // a coarse residual reduced to this is small enough
 constexpr int kAggregatesPerTask = 8;
+// Steps of conjugate gradients on the first coarse level, and on those below or where the stiffness jumps: there more
+// of them do not help.
+constexpr int kFirstSteps = 3, kSteps = 2;
 
 void find_isolated_rows(const BlockSparse& H, std::vector<char>& isolated) {
   const BlockPattern& p = *H.pattern;
@@ -45,6 +48,14 @@ std::vector<double> averages(const Aggregates& aggregates, std::span<const doubl
     for (const int v : members) average[a] += value[v] / static_cast<double>(members.size());
   }
   return average;
+}
+
+bool any_jump(const Graph& graph, std::span<const double> modulus) {
+  if (modulus.empty()) return false;
+  for (int v = 0; v < graph.vertex_count(); ++v)
+    for (const int w : graph.around(v))
+      if (is_jump(modulus[v], modulus[w])) return true;
+  return false;
 }
 
 std::vector<int> inverse_permutation(std::span<const int> order) {
@@ -104,6 +115,7 @@ void Multigrid::build(const BlockSparse& H) {
   std::vector<FourValues> value;
   for (const Vec3d& X : position) value.push_back({1, X[0], X[1], X[2]});
   std::vector<double> modulus = pattern->rest_modulus;
+  const int first_steps = any_jump(graph, modulus) ? kSteps : kFirstSteps;
   std::span<const char> excluded = isolated_;
   int rows_per_vertex = 1, size = options_.aggregate_size;
   while (pattern->rows() > options_.coarsest_rows && static_cast<int>(levels_.size()) < kMostLevels) {
@@ -118,7 +130,7 @@ void Multigrid::build(const BlockSparse& H) {
     level.smoother.analyze(*pattern, rows_per_vertex, aggregates.of_vertex, greedy_coloring(c.graph));
     level.restriction.reserve(c);
     level.coarse = std::make_unique<BlockSparse>(c.pattern);
-    reserve_vectors(level, pattern->rows());
+    reserve_vectors(level, pattern->rows(), first_steps);
 
     position = centers(aggregates, position);
     value = c.coarse_value;
@@ -134,7 +146,7 @@ void Multigrid::build(const BlockSparse& H) {
     std::vector<int> vertex(graph.vertex_count());
     std::iota(vertex.begin(), vertex.end(), 0);
     level.smoother.analyze(*pattern, rows_per_vertex, vertex, greedy_coloring(graph));
-    reserve_vectors(level, pattern->rows());
+    reserve_vectors(level, pattern->rows(), first_steps);
   }
   connect_levels();
   const size_t rows = is_dense ? pattern->rows() : 0;
@@ -145,11 +157,12 @@ void Multigrid::build(const BlockSparse& H) {
   is_built_ = true;
 }
 
-void Multigrid::reserve_vectors(Level& level, int rows) {
-  const size_t floats = kFloatsPerRow * static_cast<size_t>(rows);
-  for (auto* v : {&level.b, &level.x, &level.r}) v->assign(floats, 0.0F);
-  if (levels_.size() > 1)
-    for (auto* v : {&level.p, &level.q, &level.sum}) v->assign(floats, 0.0F);
+void Multigrid::reserve_vectors(Level& level, int rows, int first_steps) {
+  const std::vector<float> zero(kFloatsPerRow * static_cast<size_t>(rows), 0.0F);
+  level.b = level.x = level.r = zero;
+  if (levels_.size() == 1) return;
+  level.sum = zero;
+  level.directions.assign(levels_.size() == 2 ? first_steps : kSteps, {zero, zero});
 }
 
 void Multigrid::connect_levels() {
@@ -232,26 +245,27 @@ void Multigrid::cycle(int l) {
 void Multigrid::solve(int l) {
   if (l == static_cast<int>(levels_.size())) return solve_coarsest();
   Level& level = levels_[l];
-  std::vector<float>&x = level.x, &b = level.b, &p = level.p, &q = level.q, &sum = level.sum;
+  std::vector<float>&x = level.x, &b = level.b;
   const double start = dot(b, b);
-  cycle(l);
-  p = x;
-  level.smoother.multiply(p.data(), q.data());
-  const double pq = dot(p, q);
-  if (!(pq > 0)) return;
-  const float alpha = static_cast<float>(dot(p, b) / pq);
-  for_each_entry(b, [&](int i) { sum[i] = alpha * p[i], b[i] -= alpha * q[i]; });
-  if (dot(b, b) <= kAccurate * kAccurate * start) {
-    x = sum;
-    return;
+  std::fill(level.sum.begin(), level.sum.end(), 0.0F);
+  for (size_t k = 0; k < level.directions.size(); ++k) {
+    cycle(l);
+    for (size_t m = 0; m < k; ++m) {
+      const Direction& before = level.directions[m];
+      const float beta = static_cast<float>(dot(x, before.q) / before.pq);
+      for_each_entry(x, [&](int i) { x[i] -= beta * before.p[i]; });
+    }
+    Direction& d = level.directions[k];
+    level.smoother.multiply(x.data(), d.q.data());
+    d.pq = dot(x, d.q);
+    if (!(d.pq > 0) && k == 0) return;
+    if (!(d.pq > 0)) break;
+    d.p = x;
+    const float alpha = static_cast<float>(dot(x, b) / d.pq);
+    for_each_entry(b, [&](int i) { level.sum[i] += alpha * d.p[i], b[i] -= alpha * d.q[i]; });
+    if (dot(b, b) <= kAccurate * kAccurate * start) break;
   }
-  cycle(l);
-  const float beta = static_cast<float>(dot(x, q) / pq);
-  for_each_entry(x, [&](int i) { x[i] -= beta * p[i]; });
-  level.smoother.multiply(x.data(), level.r.data());
-  const double curvature = dot(x, level.r);
-  const float gamma = curvature > 0 ? static_cast<float>(dot(x, b) / curvature) : 0.0F;
-  for_each_entry(x, [&](int i) { x[i] = sum[i] + gamma * x[i]; });
+  x = level.sum;
 }
 
 void Multigrid::restrict_residual(const Level& level, std::span<float> coarse_b) const {

@@ -1,7 +1,7 @@
 // A multigrid cycle for elasticity as a preconditioner: coarse spaces of affine displacements of aggregates of the rest
-// shape, Gauss-Seidel as the smoother, a dense factorisation on the coarsest level. Coarse levels are solved by up to
-// two steps of conjugate gradients preconditioned by the cycle below (K-cycle, [Notay and Vassilevski 2008]), because
-// functions that jump between aggregates are stiffer than the motions they stand for. The cycle runs in single
+// shape, Gauss-Seidel as the smoother, a dense factorisation on the coarsest level. Coarse levels are solved by two
+// or three steps of conjugate gradients preconditioned by the cycle below (K-cycle, [Notay and Vassilevski 2008]),
+// because functions that jump between aggregates are stiffer than the motions they stand for. The cycle runs in single
 // precision; coarse matrices are made in double.
 #pragma once
 #include <memory>
@@ -39,6 +39,10 @@ class Multigrid : public ApproximateInverse {
   int level_count() const { return static_cast<int>(levels_.size()) + ends_densely(); }
 
  private:
+  struct Direction {
+    std::vector<float> p, q;  // q = H p
+    double pq = 0;
+  };
   struct Level {
     GaussSeidel smoother;
     AffineCoarsening coarsening;
@@ -47,12 +51,13 @@ class Multigrid : public ApproximateInverse {
     std::vector<float> weight;            // of the coarsening, 4 per row in the order of the smoother
     std::vector<int> coarse_place;        // of each aggregate in the order of the next level
     std::vector<float> b, x;              // H x = b
-    std::vector<float> r;                 // of the cycle: b - H x; of the K-cycle: H p
-    std::vector<float> p, q, sum;         // of the K-cycle: first direction, H p, solution
+    std::vector<float> r;                 // b - H x
+    std::vector<Direction> directions;    // of the K-cycle
+    std::vector<float> sum;               // of the K-cycle: the solution so far
   };
   bool ends_densely() const { return levels_.empty() || levels_.back().coarse; }
   void build(const BlockSparse& H);
-  void reserve_vectors(Level& level, int rows);
+  void reserve_vectors(Level& level, int rows, int first_steps);
   void connect_levels();
   void cycle(int l);  // one step for H x = b from x = 0
   void solve(int l);
