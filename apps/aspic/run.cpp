@@ -254,6 +254,7 @@ int run(const Arguments& arguments) {
                    .steps_taken = scene.simulation.steps_taken(),
                    .interrupted = interrupt_signal() != 0,
                    .blown_up = runner.has_blown_up(),
+                   .solver = scene.simulation.is_implicit() ? scene.simulation.solver_description() : "",
                    .directory = directory.path()});
   }
   if (runner.has_blown_up()) return exit_unconverged;  // an unfinished run is not a matter of allowing

@@ -99,6 +99,7 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
                per_step(totals.factorizations), per_step(totals.products));
     if (totals.cycles > 0) fmt::print(stream, ", {:.1f} multigrid cycles", per_step(totals.cycles));
     fmt::print(stream, "\n");
+    if (!end.solver.empty()) fmt::print(stream, "solver     {}\n", end.solver);
     if (totals.substeps + totals.rejected != totals.steps)
       fmt::print(stream, "parts      {} taken, {} rejected as too long; {:.1f} per step\n", totals.substeps,
                  totals.rejected, static_cast<double>(totals.substeps) / totals.steps);

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdio>
 #include <filesystem>
+#include <string>
 
 #include "dynamics/step_report.h"
 
@@ -23,6 +24,7 @@ struct RunTotals {
 struct RunEnd {
   int last_step = 0, steps_taken = 0;
   bool interrupted = false, blown_up = false;
+  std::string solver;  // the methods and what they chose, and why; empty: none was needed
   std::filesystem::path directory;
 };
 

@@ -105,7 +105,7 @@ void AutoSolver::analyze(const BlockPattern& pattern) {
   pattern_ = &pattern;
   H_ = nullptr;
   is_analyzed_ = {};
-  is_chosen_ = false;
+  is_chosen_ = has_chosen_ = false;
   prediction_ = predict_cholesky(pattern);
   fits_ = prediction_.bytes < static_cast<double>(std::min(memory_limit_, free_memory()));
   affordable_ = prediction_.flops / (kFlopsPerIteration * solves_ * std::max(1, pattern.rows()));
@@ -141,7 +141,7 @@ bool AutoSolver::factorize_with_choice() {
 bool AutoSolver::factorize(const BlockSparse& H) {
   H_ = &H;
   if (!is_chosen_) choice_ = cheapest(H);
-  is_chosen_ = true;
+  is_chosen_ = has_chosen_ = true;
   return factorize_with_choice();
 }
 
@@ -174,7 +174,7 @@ SolveReport AutoSolver::solve(std::span<const double> b, std::span<double> x, do
 }
 
 std::string AutoSolver::description() const {
-  if (!is_chosen_) return "auto";
+  if (!has_chosen_) return "auto";
   const std::string flops = "a factorisation takes about " + approximate(prediction_.flops) + " flops";
   std::string text = "auto: " + chosen().description() + ", since ";
   text += fits_ ? flops : "a factor needs about " + approximate(prediction_.bytes / 1e6) + " MB, more than is free";

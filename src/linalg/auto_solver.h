@@ -57,10 +57,11 @@ class AutoSolver : public LinearSolver {
   const BlockPattern* pattern_ = nullptr;
   const BlockSparse* H_ = nullptr;
   CostPrediction prediction_;
-  bool fits_ = false;       // the factor, into memory
-  double affordable_ = 0;   // iterations with block-Jacobi that cost as much as a factorisation, per solve
-  double expected_ = 0;     // iterations with block-Jacobi for two digits; 0: not looked at
-  bool is_chosen_ = false;  // for this sequence
+  bool fits_ = false;        // the factor, into memory
+  double affordable_ = 0;    // iterations with block-Jacobi that cost as much as a factorisation, per solve
+  double expected_ = 0;      // iterations with block-Jacobi for two digits; 0: not looked at
+  bool has_chosen_ = false;  // for a sequence of this pattern
+  bool is_chosen_ = false;   // for this sequence
   Choice choice_ = kBlockJacobi;
   int64_t fallbacks_ = 0;
 };

@@ -305,7 +305,7 @@ std::string Multigrid::description() const {
   std::string rows;
   for (const Level& level : levels_) rows += (rows.empty() ? "" : ", ") + std::to_string(level.smoother.rows());
   if (ends_densely()) rows += (rows.empty() ? "" : ", ") + std::to_string(coarsest_b_.size() / kFloatsPerRow);
-  return "multigrid on levels of " + rows + " vertices";
+  return "multigrid on levels of " + rows + " rows";
 }
 
 }  // namespace aspic
