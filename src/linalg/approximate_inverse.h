@@ -16,7 +16,8 @@ class ApproximateInverse {
   virtual void analyze(const BlockPattern& pattern) = 0;
   virtual bool factorize(const BlockSparse& H) = 0;  // false: H is found not to be positive definite
   virtual void apply(std::span<const double> r, std::span<double> z) = 0;  // z = M^-1 r, 3 numbers per row
-  // Not quite linear, for which the iteration has to allow, and costly to make, so that it is kept for related matrices.
+  // Not quite linear, for which the iteration has to allow, and costly to make, so that it is kept for related
+  // matrices.
   virtual bool is_multigrid() const { return false; }
 };
 
