@@ -22,7 +22,7 @@ std::string order_text(const DerivativeCheck& check) {
 // "vertex 12, y", or of a Hessian "vertex 12, y; vertex 3, x (tet 57)", by the user's numbers.
 std::string place(const DerivativeCheck& check, const Model& model) {
   if (check.row < 0) return "";
-  const auto& [vertex, tet] = model.numbering;
+  const Renumbering &vertex = model.numbering.vertex, &tet = model.numbering.tet;
   const auto name = [&](int entry) { return entry_name(3 * vertex.to_user(entry / 3) + entry % 3); };
   std::string text = name(check.row);
   if (check.column >= 0 && check.column != check.row) text += "; " + name(check.column);

@@ -43,7 +43,7 @@ TEST(ConjugateGradient, ReachesTheToleranceAndSaysSo) {
     EXPECT_TRUE(report.ok);
     EXPECT_FALSE(report.indefinite);
     EXPECT_LE(relative_residual(H.values, b, x), tolerance * (1 + 1e-3));  // the measured residual rounds too
-    EXPECT_NEAR(report.relative_residual, relative_residual(H.values, b, x), 1e-15);
+    EXPECT_NEAR(report.relative_residual, relative_residual(H.values, b, x), 1e-12);  // the recurrence drifts
     EXPECT_GT(report.iterations, iterations);
     iterations = report.iterations;
   }
@@ -274,7 +274,7 @@ TEST(ConjugateGradient, AtItsDeadlineHasCountedItsWorkAndDescends) {
       EXPECT_EQ(report.iterations, seconds < 1 ? 1 : 4);  // the clock is read once before each but the first
       EXPECT_EQ(report.products, report.iterations);
       EXPECT_EQ(report.cycles, with_multigrid ? report.iterations + 1 : 0);
-      EXPECT_NEAR(report.relative_residual, relative_residual(H.values, b, x), 1e-12);
+      EXPECT_NEAR(report.relative_residual, relative_residual(H.values, b, x), 1e-12);  // the recurrence drifts
       EXPECT_GT(dot(b, x), 0);
 
       solver.set_deadline({});
