@@ -1,6 +1,5 @@
 // bench_beam: the beam by Aspic and, where it is small, by the obvious program; one line per run, from nothing to the
 // last step, and whether the displacement of the tip is the known one. bench_beam --help tells the options.
-#include <CLI/CLI.hpp>
 
 #include <array>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "base/parallel.h"
 #include "bench/beam_run.h"
 #include "bench/machine.h"
+#include "bench/program.h"
 #include "bench/results.h"
 #include "bench/step_counts.h"
 
@@ -187,13 +187,5 @@ int main(int argc, char** argv) {
   CLI::App app("The benchmark beam, from nothing to the last step.", "bench_beam");
   aspic::bench::Arguments arguments;
   aspic::bench::declare(app, arguments);
-  try {
-    app.parse(argc, argv);
-    return aspic::bench::run(arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return 2;
-  }
+  return aspic::bench::run_program(app, argc, argv, [&] { return aspic::bench::run(arguments); });
 }

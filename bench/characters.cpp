@@ -1,6 +1,5 @@
 // bench_characters: converged steps of bodies with real shapes. They are 1 m high, held at their feet (the lowest 8 %),
 // and everything begins to move sideways, by 2 m/s at the top, under gravity. bench_characters --help: the options.
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -12,6 +11,7 @@
 #include "base/parallel.h"
 #include "bench/machine.h"
 #include "bench/model.h"
+#include "bench/program.h"
 #include "bench/results.h"
 #include "bench/shapes.h"
 #include "bench/step_counts.h"
@@ -208,13 +208,5 @@ int main(int argc, char** argv) {
   CLI::App app("Converged steps of bodies with real shapes.", "bench_characters");
   aspic::bench::Arguments arguments;
   aspic::bench::declare(app, arguments);
-  try {
-    app.parse(argc, argv);
-    return aspic::bench::run(arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return 2;
-  }
+  return aspic::bench::run_program(app, argc, argv, [&] { return aspic::bench::run(arguments); });
 }

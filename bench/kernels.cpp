@@ -2,7 +2,6 @@
 // those of Google Benchmark, for example --benchmark_filter=hessian, which chooses kernels by their names.
 #include <benchmark/benchmark.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -15,6 +14,7 @@
 #include "bench/kernel_beam.h"
 #include "bench/kernel_report.h"
 #include "bench/machine.h"
+#include "bench/program.h"
 #include "linalg/cholesky.h"
 #include "linalg/conjugate_gradient.h"
 #include "linalg/multigrid.h"
@@ -276,9 +276,8 @@ int main(int argc, char** argv) {
       "Options of Google Benchmark are understood too: --benchmark_filter=hessian takes kernels by their names.");
   aspic::bench::Arguments arguments;
   aspic::bench::declare(app, arguments);
-  try {
-    app.allow_extras();
-    app.parse(argc, argv);
+  app.allow_extras();
+  return aspic::bench::run_program(app, argc, argv, [&] {
     std::vector<std::string> rest = app.remaining();  // for Google Benchmark, which takes what it knows
     std::vector<char*> words = {argv[0]};
     for (std::string& word : rest) words.push_back(word.data());
@@ -286,10 +285,5 @@ int main(int argc, char** argv) {
     benchmark::Initialize(&count, words.data());
     if (benchmark::ReportUnrecognizedArguments(count, words.data())) return 2;
     return aspic::bench::run(arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return 2;
-  }
+  });
 }

@@ -1,6 +1,5 @@
 // Iterations of preconditioned conjugate gradients on the systems of time steps, on what is hard for a preconditioner:
 // limbs, slivers, contrasts, stiff and nearly incompressible bodies, states far from rest.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "bench/machine.h"
+#include "bench/program.h"
 #include "bench/shapes.h"
 #include "bench/stopwatch.h"
 #include "dynamics/incremental_potential.h"
@@ -211,8 +211,8 @@ int main(int argc, char** argv) {
   app.add_option("--linear", linear, "one or several linear solvers")->capture_default_str();
   app.add_option("--shapes", folder, "where surfaces are and meshes are kept")->capture_default_str();
   app.add_flag("--quiet", quiet, "without the facts about the machine");
-  CLI11_PARSE(app, argc, argv);
-  try {
+  return run_program(app, argc, argv, [&] {
+    for (const std::string& solver : linear) make_linear_solver(solver);  // a misspelt name is told at once
     if (!quiet) print_facts(machine_facts());
     set_thread_count(1);
     std::printf(
@@ -226,9 +226,6 @@ int main(int argc, char** argv) {
       for (const Case& c : kCases)
         for (const std::string& solver : linear) measure(name, mesh, c, solver);
     }
-  } catch (const InvalidInput& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return 2;
-  }
-  return 0;
+    return 0;
+  });
 }
