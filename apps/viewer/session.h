@@ -1,0 +1,75 @@
+// What a page of the viewer talks to: one simulation, or two side by side, under one mouse. Knows no network, no thread
+// and no clock; docs/viewer_protocol.md describes the messages.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aspic::viewer {
+
+struct Message {
+  bool is_binary = false;
+  std::string bytes;  // JSON text, or a picture or geometry
+};
+using Messages = std::vector<Message>;
+
+struct Answer {
+  Messages to_sender, to_all;  // to_all: the sender, too
+};
+
+// A page of a lecture, opened in the viewer: which scene, compared with what, moved by which mouse, seen in which panel.
+struct Lesson {
+  std::string id, pages, title, claim, look;
+  std::string panel = "energy";      // "energy", "microscope", "landscape" or "functions"
+  std::string function;              // JSON of the question for the functions panel; empty: none
+  std::string missing;               // why it cannot be shown; empty: it can
+  std::filesystem::path scene;       // empty: no other scene
+  std::vector<std::string> overrides;
+  struct Comparison {
+    std::vector<std::string> overrides;
+    std::string label;
+  };
+  std::vector<Comparison> comparison;  // none or one
+  std::string recording;               // JSON of the mouse's recorded events; empty: none
+};
+
+struct SessionOptions {
+  std::vector<Lesson> lessons = {};
+  size_t timeline_bytes = size_t{256} << 20;                      // what rewinding may hold, per side
+  std::function<void(const std::string& what)> announce = {};     // before something that takes a while; "" after it
+};
+
+enum class Role { steers, watches };
+
+class Session {
+ public:
+  // Throws InvalidInput: a scene that cannot be loaded.
+  Session(const std::filesystem::path& scene, const std::vector<std::string>& overrides, SessionOptions options = {});
+  ~Session();
+
+  Messages greeting(Role role) const;  // for a page that has just come: everything but the newest picture
+
+  // A text from a page. Never throws: what is malformed, forbidden or impossible is refused in words.
+  Answer handle(std::string_view text, Role role);
+
+  bool is_playing() const;
+  double speed() const;          // simulated seconds per second that play aims at
+  double time() const;           // simulated so far, of the side that is behind [s]
+  void note_rate(double rate);   // measured by who knows the time, for the pages
+  Messages advance();            // the next step of the side that is behind; what is new, for all pages
+
+  Messages pictures() const;      // the newest of every side
+  long picture_version() const;   // another number when they are others
+
+  // From any thread: a step under way ends at its next iteration and is dropped.
+  void interrupt();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace aspic::viewer

@@ -1,0 +1,29 @@
+// node build.mjs OUT: the whole page, scripts and styles included, as one HTML file. Needs no server and no network.
+import { build } from "esbuild";
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const root = dirname(fileURLToPath(import.meta.url));
+const out = process.argv[2] ?? join(root, "page.html");
+
+const result = await build({
+  entryPoints: [join(root, "src/main.ts")],
+  bundle: true,
+  minify: true,
+  format: "iife",
+  target: "es2022",
+  loader: { ".css": "css" },
+  outdir: "memory",
+  write: false,
+  legalComments: "inline",
+  logLevel: "warning",
+});
+const text = (extension) => result.outputFiles.find((file) => file.path.endsWith(extension)).text;
+// A script element ends at the first "</script", wherever it stands.
+const script = text(".js").replaceAll("</script", "<\\/script");
+const page = readFileSync(join(root, "src/index.html"), "utf8")
+  .replace("<!-- style -->", () => `<style>${text(".css")}</style>`)
+  .replace("<!-- script -->", () => `<script>${script}</script>`);
+mkdirSync(dirname(out), { recursive: true });
+writeFileSync(out, page);

@@ -1,0 +1,117 @@
+// What the page knows: the last message of each kind. Panels read it and listen to it.
+import { Emitter } from "./emitter";
+import type { Geometry, Hello, Picture, Scene, SideName, State, StepRow } from "./protocol";
+import type { Incoming, Source } from "./source";
+
+export interface Side {
+  scene: Scene;
+  geometry: Geometry | null;
+  picture: Picture | null;
+  steps: StepRow[]; // of steps 1, 2, ...
+  pins: number[];
+}
+
+interface Events {
+  hello: Hello;
+  role: boolean; // may steer
+  scene: SideName; // a side is new, or has new settings
+  gone: SideName;
+  geometry: SideName;
+  picture: SideName;
+  steps: { side: SideName; from: number };
+  pins: SideName;
+  state: State;
+  busy: string;
+  refused: string;
+  connected: boolean;
+}
+
+export class Store extends Emitter<Events> {
+  hello: Hello | null = null;
+  steers = false;
+  connected = false;
+  state: State | null = null;
+  busy = "";
+  readonly sides: { a: Side | null; b: Side | null } = { a: null, b: null };
+
+  constructor(readonly source: Source) {
+    super();
+  }
+
+  start(): void {
+    this.source.start((incoming) => this.receive(incoming));
+  }
+
+  side(name: SideName): Side | null {
+    return this.sides[name];
+  }
+
+  private receive(incoming: Incoming): void {
+    if ("geometry" in incoming) return this.receiveGeometry(incoming.geometry);
+    if ("picture" in incoming) return this.receivePicture(incoming.picture);
+    if ("connected" in incoming) {
+      this.connected = incoming.connected;
+      return this.emit("connected", incoming.connected);
+    }
+    const message = incoming.message;
+    switch (message.kind) {
+      case "hello":
+        this.hello = message;
+        this.emit("hello", message);
+        this.steers = message.steers;
+        return this.emit("role", message.steers);
+      case "role":
+        this.steers = message.steers;
+        return this.emit("role", message.steers);
+      case "scene":
+        return this.receiveScene(message);
+      case "end_compare":
+        this.sides.b = null;
+        return this.emit("gone", "b");
+      case "steps": {
+        const side = this.sides[message.side];
+        if (!side) return;
+        side.steps.length = Math.min(side.steps.length, message.from);
+        side.steps.push(...message.steps);
+        return this.emit("steps", { side: message.side, from: message.from });
+      }
+      case "pins": {
+        const side = this.sides[message.side];
+        if (!side) return;
+        side.pins = message.vertices;
+        return this.emit("pins", message.side);
+      }
+      case "state":
+        this.state = message;
+        return this.emit("state", message);
+      case "busy":
+        this.busy = message.what;
+        return this.emit("busy", message.what);
+      case "refused":
+        return this.emit("refused", message.why);
+      case "reply":
+        return; // the source hands replies to who asked
+    }
+  }
+
+  private receiveScene(scene: Scene): void {
+    const known = this.sides[scene.side];
+    if (known && known.scene.generation === scene.generation) known.scene = scene;
+    else this.sides[scene.side] = { scene, geometry: null, picture: null, steps: known?.steps ?? [], pins: [] };
+    this.emit("scene", scene.side);
+  }
+
+  private receiveGeometry(geometry: Geometry): void {
+    const side = this.sides[geometry.side];
+    if (!side || side.scene.generation !== geometry.generation) return;
+    side.geometry = geometry;
+    this.emit("geometry", geometry.side);
+  }
+
+  private receivePicture(picture: Picture): void {
+    const side = this.sides[picture.side];
+    if (!side || side.scene.generation !== picture.generation) return this.source.ready();
+    side.picture = picture;
+    this.emit("picture", picture.side);
+  }
+}
