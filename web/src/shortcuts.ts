@@ -1,0 +1,73 @@
+// Keys anywhere in the page, and the list of them on the screen.
+import { button, element, openDialog } from "./dom";
+import type { ButtonOptions } from "./dom";
+import type { Page, Shortcut } from "./page";
+
+const kNames: Record<string, string> = { " ": "Space", ArrowLeft: "Left", ArrowRight: "Right" };
+
+export function keyName(key: string): string {
+  return kNames[key] ?? (/^[a-z]$/.test(key) ? key.toUpperCase() : key);
+}
+
+// What a key press is called in the registry. Shift is part of the name of a letter only: other characters change with it.
+export function pressedKey(event: Pick<KeyboardEvent, "key" | "shiftKey">): string {
+  if (/^[a-z]$/i.test(event.key)) return event.shiftKey ? `Shift+${event.key.toUpperCase()}` : event.key.toLowerCase();
+  return event.key;
+}
+
+function takesText(target: Element): boolean {
+  if (target instanceof HTMLElement && target.isContentEditable) return true;
+  return target.matches("textarea, select, input:not([type=range], [type=checkbox], [type=radio], [type=button])");
+}
+
+// Keys that move or press the focused control.
+function belongsToControl(key: string, target: Element): boolean {
+  if (key === " " || key === "Enter") return target.matches("button, a, summary, input, [role=tab]");
+  return (/^(Arrow|Page)|^(Home|End)$/.test(key) && target.matches("input, [role=tab], [role=separator], [role=listbox]"));
+}
+
+export function listenToKeys(page: Page): void {
+  addEventListener("keydown", (event) => {
+    const altGraph = event.getModifierState("AltGraph");
+    if (event.defaultPrevented || event.metaKey || ((event.ctrlKey || event.altKey) && !altGraph)) return;
+    if (document.querySelector("dialog[open]")) return;
+    const target = event.target instanceof Element ? event.target : document.body;
+    const key = pressedKey(event);
+    if (takesText(target) || belongsToControl(event.key, target)) return;
+    const shortcut = page.shortcuts.get(key);
+    if (!shortcut) return;
+    event.preventDefault();
+    shortcut.run();
+  });
+}
+
+// A shortcut with its button, whose tooltip tells the key.
+export function shortcutButton(page: Page, shortcut: Shortcut, look: ButtonOptions): HTMLButtonElement {
+  page.shortcut(shortcut);
+  const title = `${shortcut.does} (${keyName(shortcut.key)})`;
+  // A disabled button keeps its shortcut from doing what it would not.
+  const made = button({ ...look, title }, shortcut.run);
+  page.shortcuts.set(shortcut.key, { ...shortcut, run: () => made.disabled || shortcut.run() });
+  made.setAttribute("aria-keyshortcuts", keyName(shortcut.key));
+  if (!look.text && !look.label) made.setAttribute("aria-label", shortcut.does);
+  return made;
+}
+
+export const kGroups: Shortcut["group"][] = ["Simulation", "Camera", "Display", "Panels", "File"];
+
+export function openShortcutList(page: Page): void {
+  const groups = kGroups.map((group) => {
+    const rows = [...page.shortcuts.values()]
+      .filter((shortcut) => shortcut.group === group)
+      .map((shortcut) =>
+        element(
+          "tr",
+          {},
+          element("td", {}, element("kbd", {}, keyName(shortcut.key))),
+          element("td", {}, shortcut.does),
+        ),
+      );
+    return rows.length === 0 ? null : element("section", {}, element("h3", {}, group), element("table", {}, ...rows));
+  });
+  openDialog("Keyboard shortcuts", [element("div", { class: "columns" }, ...groups)], "shortcuts");
+}
