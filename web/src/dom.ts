@@ -23,8 +23,7 @@ const kIcons = {
   iterate: "M12 4a8 8 0 1 0 8 8h-3a5 5 0 1 1-5-5v3l6-4.5L12 1z",
   reset: "M5 4h3v16H5zM20 4v16L9 12z",
   close: "M6 4l6 6 6-6 2 2-6 6 6 6-2 2-6-6-6 6-2-2 6-6-6-6z",
-  theme: "M12 3a9 9 0 1 0 0 18zm0 2v14a7 7 0 0 0 0-14z",
-  camera: "M9 4h6l2 3h4v13H3V7h4zm3 5a4 4 0 1 0 0 8 4 4 0 0 0 0-8z",
+  theme: "M12 3a9 9 0 1 0 0 18 9 9 0 0 0 0-18zm0 2v14a7 7 0 0 1 0-14z",
 } as const;
 export type IconName = keyof typeof kIcons;
 

@@ -22,23 +22,25 @@ function takesText(target: Element): boolean {
 
 // Keys that move or press the focused control.
 function belongsToControl(key: string, target: Element): boolean {
-  if (key === " " || key === "Enter") return target.matches("button, a, summary, input, [role=tab]");
-  return (/^(Arrow|Page)|^(Home|End)$/.test(key) && target.matches("input, [role=tab], [role=separator], [role=listbox]"));
+  if (key === " " || key === "Enter") return target.matches("button, a, summary, [role=tab], input:not([type=range])");
+  return /^Arrow|^Page|^Home$|^End$/.test(key);
 }
 
+function press(page: Page, event: KeyboardEvent): void {
+  const altGraph = event.getModifierState("AltGraph");
+  if (event.metaKey || ((event.ctrlKey || event.altKey) && !altGraph)) return;
+  if (document.querySelector("dialog[open]")) return;
+  const target = event.target instanceof Element ? event.target : document.body;
+  if (takesText(target) || belongsToControl(event.key, target)) return;
+  const shortcut = page.shortcuts.get(pressedKey(event));
+  if (!shortcut) return;
+  event.preventDefault();
+  shortcut.run();
+}
+
+// On the way down: lil-gui's rows keep keys to themselves, and a slider that has the focus needs none of these.
 export function listenToKeys(page: Page): void {
-  addEventListener("keydown", (event) => {
-    const altGraph = event.getModifierState("AltGraph");
-    if (event.defaultPrevented || event.metaKey || ((event.ctrlKey || event.altKey) && !altGraph)) return;
-    if (document.querySelector("dialog[open]")) return;
-    const target = event.target instanceof Element ? event.target : document.body;
-    const key = pressedKey(event);
-    if (takesText(target) || belongsToControl(event.key, target)) return;
-    const shortcut = page.shortcuts.get(key);
-    if (!shortcut) return;
-    event.preventDefault();
-    shortcut.run();
-  });
+  addEventListener("keydown", (event) => press(page, event), { capture: true });
 }
 
 // A shortcut with its button, whose tooltip tells the key.

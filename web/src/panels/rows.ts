@@ -34,18 +34,21 @@ function markRow(row: Controller, text: string): void {
 }
 
 abstract class ValueRow extends Controller implements Row {
+  protected held = false; // by the mouse
+  private later: SettingValue | null = null; // from the program, while the reader changes the value
+
   constructor(
     gui: GUI,
     protected readonly model: Model,
     className: string,
   ) {
     super(gui, model, "value", className);
+    this.$widget.addEventListener("focusout", () => this.catchUp());
   }
 
   display(value: SettingValue): void {
-    if (this.$widget.contains(document.activeElement) && !this.isSlider(document.activeElement)) return;
-    this.model.value = value;
-    this.updateDisplay();
+    this.later = value;
+    if (!this.held && !this.isTyping()) this.catchUp();
   }
 
   override enable(enabled = true): this {
@@ -58,15 +61,22 @@ abstract class ValueRow extends Controller implements Row {
     markRow(this, text);
   }
 
-  protected isSlider(target: Element | null): boolean {
-    return target instanceof HTMLInputElement && target.type === "range";
+  protected catchUp(): void {
+    if (this.later === null) return;
+    this.model.value = this.later;
+    this.later = null;
+    this.updateDisplay();
+  }
+
+  private isTyping(): boolean {
+    const focused = document.activeElement;
+    return this.$widget.contains(focused) && focused instanceof HTMLInputElement && focused.type === "text";
   }
 }
 
 export class NumberRow extends ValueRow {
   private readonly slider: HTMLInputElement;
   private readonly field: HTMLInputElement;
-  private held = false;
 
   constructor(
     gui: GUI,
@@ -80,17 +90,13 @@ export class NumberRow extends ValueRow {
     this.field = makeField(label, () => this.text(), (text) => this.commit(text));
     this.slider.addEventListener("pointerdown", () => (this.held = true));
     for (const end of ["pointerup", "pointercancel", "blur"]) {
-      this.slider.addEventListener(end, () => (this.held = false));
+      this.slider.addEventListener(end, () => this.release());
     }
     this.slider.addEventListener("input", () => {
       this.setValue(toValue(Number(this.slider.value) / kSliderSteps, range));
     });
     this.$widget.append(this.slider, this.field);
     this.updateDisplay();
-  }
-
-  override display(value: SettingValue): void {
-    if (!this.held) super.display(value);
   }
 
   override updateDisplay(): this {
@@ -100,6 +106,11 @@ export class NumberRow extends ValueRow {
     }
     this.slider.setAttribute("aria-valuetext", this.text());
     return this;
+  }
+
+  private release(): void {
+    this.held = false;
+    this.catchUp();
   }
 
   private text(): string {
