@@ -1,4 +1,5 @@
 // The page: one source of messages, one store, and panels that listen to it.
+import { GUI } from "lil-gui";
 import "./style.css";
 import "./shell.css";
 import { makeCompareButton } from "./compare";
@@ -10,6 +11,7 @@ import { LiveSource, sessionAddress } from "./live";
 import { showNotices, showOwnErrors } from "./notices";
 import { Page } from "./page";
 import type { Panel } from "./page";
+import { addDisplayControls } from "./panels/display";
 import { Settings } from "./panels/settings";
 import { makeRole } from "./role";
 import { listenToKeys, shortcutButton } from "./shortcuts";
@@ -17,6 +19,8 @@ import { Store } from "./store";
 import { Theme } from "./theme";
 import { makeToolbar } from "./toolbar";
 import { makeScreenshotButton, Video } from "./video";
+import { Display } from "./view/display";
+import { Views } from "./views";
 
 function area(id: string): HTMLElement {
   const found = document.getElementById(id);
@@ -64,16 +68,19 @@ function makeRight(page: Page): HTMLButtonElement {
 function buildPage(store: Store, page: Page): void {
   showNotices(area("messages"), store, page);
   const theme = new Theme(page);
+  const display = new Display();
+  const views = new Views(area("views"), store, page, display);
   const panels: Panel[] = [];
-  const draw = (): HTMLCanvasElement[] => [...area("views").querySelectorAll("canvas")];
   const settings = makeRight(page);
   new Settings(area("right"), store, page);
+  addDisplayControls(new GUI({ container: area("right"), title: "View" }), display, page, views.all);
   new Dock(area("dock"), page, panels);
   const lecture = new Lecture(area("left"), store, page, () => {});
-  const video = new Video(store, page, draw);
-  const files = new Files(store, page).makeMenu([makeScreenshotButton(store, page, draw), video.opener]);
+  const video = new Video(store, page, views.draw);
+  area("views").append(video.indicator);
+  const files = new Files(store, page).makeMenu([makeScreenshotButton(store, page, views.draw), video.opener]);
   const live = store.source.live ? [makeCompareButton(store, page), lecture.opener] : [];
-  makeToolbar(area("toolbar"), store, page, theme, [video.indicator, makeRole(store), ...live, files, settings]);
+  makeToolbar(area("toolbar"), store, page, theme, [makeRole(store), ...live, files, settings]);
   listenToKeys(page);
 }
 

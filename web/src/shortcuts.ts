@@ -3,16 +3,17 @@ import { button, element, openDialog } from "./dom";
 import type { ButtonOptions } from "./dom";
 import type { Page, Shortcut } from "./page";
 
-const kNames: Record<string, string> = { " ": "Space", ArrowLeft: "Left", ArrowRight: "Right" };
-
 export function keyName(key: string): string {
-  return kNames[key] ?? (/^[a-z]$/.test(key) ? key.toUpperCase() : key);
+  if (key === " ") return "Space";
+  return /^[a-z]$/.test(key) ? key.toUpperCase() : key.replace("Arrow", "");
 }
 
-// What a key press is called in the registry. Shift is part of the name of a letter only: other characters change with it.
+// What a key press is called in the registry. Shift is part of the name of letters and of keys without a character:
+// other characters change with it.
 export function pressedKey(event: Pick<KeyboardEvent, "key" | "shiftKey">): string {
-  if (/^[a-z]$/i.test(event.key)) return event.shiftKey ? `Shift+${event.key.toUpperCase()}` : event.key.toLowerCase();
-  return event.key;
+  const { key } = event;
+  if (/^[a-z]$/i.test(key)) return event.shiftKey ? `Shift+${key.toUpperCase()}` : key.toLowerCase();
+  return event.shiftKey && key.length > 1 ? `Shift+${key}` : key;
 }
 
 function takesText(target: Element): boolean {
@@ -23,7 +24,7 @@ function takesText(target: Element): boolean {
 // Keys that move or press the focused control.
 function belongsToControl(key: string, target: Element): boolean {
   if (key === " " || key === "Enter") return target.matches("button, a, summary, [role=tab], input:not([type=range])");
-  return /^Arrow|^Page|^Home$|^End$/.test(key);
+  return /^(Arrow|Page)|^(Home|End)$/.test(key) && target !== document.body && !target.closest("#views");
 }
 
 function press(page: Page, event: KeyboardEvent): void {

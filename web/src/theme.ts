@@ -21,8 +21,8 @@ export class Theme {
       restore: (saved) => this.restore(saved),
     });
     page.shortcut({ key: "t", does: "Light or dark", group: "Display", run: () => this.toggle() });
-    page.shortcut({ key: "+", does: "Larger letters", group: "Display", run: () => this.scale(1) });
-    page.shortcut({ key: "-", does: "Smaller letters", group: "Display", run: () => this.scale(-1) });
+    page.shortcut({ key: ">", does: "Larger letters", group: "Display", run: () => this.scale(1) });
+    page.shortcut({ key: "<", does: "Smaller letters", group: "Display", run: () => this.scale(-1) });
   }
 
   get name(): ThemeName {

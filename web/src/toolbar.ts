@@ -113,8 +113,8 @@ function makeReader(page: Page, theme: Theme): HTMLElement[] {
     { text: "?", label: "Keyboard shortcuts" },
   );
   return [
-    button({ text: "A-", label: "Smaller letters", title: "Smaller letters (-)" }, () => theme.scale(-1)),
-    button({ text: "A+", label: "Larger letters", title: "Larger letters (+)" }, () => theme.scale(1)),
+    button({ text: "A-", label: "Smaller letters", title: "Smaller letters (<)" }, () => theme.scale(-1)),
+    button({ text: "A+", label: "Larger letters", title: "Larger letters (>)" }, () => theme.scale(1)),
     button({ icon: "theme", label: "Light or dark", title: "Light or dark (T)" }, () => theme.toggle()),
     help,
   ];

@@ -4,8 +4,11 @@ import type { Page } from "./page";
 import { shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
 
-// Draws now and hands over the canvas, whose pixels are good until the current task ends.
-export type DrawViews = () => HTMLCanvasElement[];
+export interface Layers {
+  canvases: HTMLCanvasElement[]; // of one view, the lowest first
+  label: string; // "" for none
+}
+export type DrawViews = () => Layers[];
 
 const kFramesPerSecond = 30;
 const kBitsPerSecond = 8_000_000;
@@ -17,27 +20,39 @@ export function fileName(name: string, extension: string): string {
 }
 
 // The views beside each other, over the background of the page.
-function compose(target: HTMLCanvasElement, views: HTMLCanvasElement[]): void {
+function compose(target: HTMLCanvasElement, views: Layers[]): void {
+  const widths = views.map(({ canvases }) => Math.max(0, ...canvases.map((canvas) => canvas.width)));
+  const heights = views.map(({ canvases }) => Math.max(0, ...canvases.map((canvas) => canvas.height)));
   // Encoders want even sizes.
-  const width = views.reduce((sum, view) => sum + view.width, 0) & ~1;
-  const height = Math.max(...views.map((view) => view.height)) & ~1;
+  const width = widths.reduce((sum, each) => sum + each, 0) & ~1;
+  const height = Math.max(0, ...heights) & ~1;
+  const context = target.getContext("2d");
+  if (!context || width === 0 || height === 0) throw new Error("there is nothing to be seen");
   if (target.width !== width) target.width = width;
   if (target.height !== height) target.height = height;
-  const context = target.getContext("2d");
-  if (!context) throw new Error("this browser cannot draw pictures");
-  context.fillStyle = getComputedStyle(document.body).backgroundColor;
+  const style = getComputedStyle(document.body);
+  context.fillStyle = style.backgroundColor;
   context.fillRect(0, 0, width, height);
   let left = 0;
-  for (const view of views) {
-    context.drawImage(view, left, 0);
-    left += view.width;
-  }
+  views.forEach(({ canvases, label }, i) => {
+    for (const canvas of canvases) context.drawImage(canvas, left, 0);
+    const em = parseFloat(style.fontSize) * devicePixelRatio;
+    context.font = `${em}px ${style.fontFamily}`;
+    context.textAlign = "center";
+    context.fillStyle = style.color;
+    context.fillText(label, left + widths[i] / 2, 1.5 * em);
+    left += widths[i];
+  });
 }
 
 export function makeScreenshotButton(store: Store, page: Page, draw: DrawViews): HTMLButtonElement {
   const run = (): void => {
     const canvas = element("canvas");
-    compose(canvas, draw());
+    try {
+      compose(canvas, draw());
+    } catch (reason) {
+      return page.notice(`No picture: ${messageOf(reason)}`, "error");
+    }
     const name = `${store.side("a")?.scene.name ?? "aspic"}_${store.state?.a.step ?? 0}`;
     canvas.toBlob((blob) => {
       if (blob) saveFile(fileName(name, "png"), blob);
@@ -61,10 +76,10 @@ export class Video {
     const run = (): void => (this.recorder ? this.stop() : this.start());
     this.opener = shortcutButton(
       page,
-      { key: "v", does: "Record a video of the view, or end it", group: "File", run },
+      { key: "Shift+V", does: "Record a video of the view, or end it", group: "File", run },
       { text: "Record a video" },
     );
-    this.indicator = button({ title: "End the video (V)", label: "End the video" }, () => this.stop());
+    this.indicator = button({ title: "End the video (Shift+V)", label: "End the video" }, () => this.stop());
     this.indicator.className = "recording";
     this.indicator.hidden = true;
   }
@@ -103,7 +118,11 @@ export class Video {
 
   private follow(canvas: HTMLCanvasElement): void {
     if (!this.recorder) return;
-    compose(canvas, this.draw());
+    try {
+      compose(canvas, this.draw());
+    } catch {
+      return this.stop(); // the views are gone
+    }
     const seconds = Math.floor((performance.now() - this.started) / 1000);
     this.indicator.hidden = false;
     this.indicator.textContent = `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;

@@ -3,11 +3,12 @@ import { test } from "node:test";
 import { Page } from "../src/page";
 import { keyName, pressedKey } from "../src/shortcuts";
 
-test("Shift is part of a letter's name only", () => {
+test("Shift is part of the name of what it does not change into another character", () => {
   assert.equal(pressedKey({ key: "s", shiftKey: false }), "s");
   assert.equal(pressedKey({ key: "S", shiftKey: true }), "Shift+S");
   assert.equal(pressedKey({ key: "S", shiftKey: false }), "s", "caps lock");
   assert.equal(pressedKey({ key: "?", shiftKey: true }), "?");
+  assert.equal(pressedKey({ key: "ArrowLeft", shiftKey: true }), "Shift+ArrowLeft");
 });
 
 test("two shortcuts on one key are an error", () => {
@@ -21,4 +22,5 @@ test("keys are named as on a keyboard", () => {
   assert.equal(keyName(" "), "Space");
   assert.equal(keyName("s"), "S");
   assert.equal(keyName("Shift+S"), "Shift+S");
+  assert.equal(keyName("Shift+ArrowLeft"), "Shift+Left");
 });

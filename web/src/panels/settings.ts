@@ -43,7 +43,7 @@ export class Settings {
     this.surface = this.makeSurface();
     root.append(element("label", { class: "row surface" }, element("span", {}, "Surface"), this.surface));
     this.gui = new GUI({ container: root, title: "Simulation" });
-    this.mouse = this.makeMouse(this.gui.addFolder("Mouse"));
+    this.mouse = this.makeMouse(this.gui.addFolder("Spring of the mouse"));
     store.on("scene", () => this.update());
     store.on("gone", () => this.update());
     store.on("role", () => this.enable());
