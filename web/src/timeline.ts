@@ -19,7 +19,7 @@ export function makeTimeline(store: Store, page: Page): HTMLElement {
     "data-steers": store.source.live,
     step: "1",
   });
-  const place = element("output", { class: "place" });
+  const place = element("span", { class: "place" });
   const ends = element("span", { class: "faint ends" });
   const rewind = new Newest<number>(
     (step) => store.source.request({ do: "rewind", step }),

@@ -18,7 +18,8 @@ export function makeToolbar(root: HTMLElement, store: Store, page: Page, theme: 
   );
   store.on("state", (state) => {
     const name = store.side("a")?.scene.name ?? "";
-    document.title = `${name} · ${state.playing ? "playing" : "paused"} · ${placeText(state)} · Aspic`;
+    const title = `${name} · ${state.playing ? "playing" : `paused, ${placeText(state)}`} · Aspic`;
+    if (document.title !== title) document.title = title;
   });
 }
 

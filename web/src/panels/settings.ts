@@ -41,7 +41,7 @@ export class Settings {
     this.top = element("div", { class: "sides" });
     root.append(this.top);
     this.surface = this.makeSurface();
-    root.append(element("label", { class: "row surface" }, element("span", {}, "Surface"), this.surface));
+    root.append(element("label", { class: "surface-choice" }, element("span", {}, "Surface"), this.surface));
     this.gui = new GUI({ container: root, title: "Simulation" });
     this.mouse = this.makeMouse(this.gui.addFolder("Spring of the mouse"));
     store.on("scene", () => this.update());
