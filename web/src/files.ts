@@ -17,20 +17,22 @@ export class Files {
     private readonly page: Page,
   ) {}
 
-  // Opened with others, such as the picture's.
-  makeMenu(others: HTMLButtonElement[]): HTMLElement {
-    const { live } = this.store.source;
-    const own = [
+  // With the commands that make pictures. A recorded run has fewer of its own.
+  makeMenu(pictures: HTMLButtonElement[]): HTMLElement {
+    const saveScene = (): void => this.try(this.saveText({ ask: "scene", side: "a" }));
+    const scene = this.item("Shift+T", "Save the scene with all its values (TOML)", false, saveScene);
+    if (!this.store.source.live) return makeMenu("File", "Save", [scene, ...pictures]);
+    this.acceptDrops();
+    return makeMenu("File", "Load and save", [
       this.item("Shift+O", "Load a scene or a mesh", true, () => this.openScene()),
       this.item("Shift+S", "Save the workspace", false, () => this.try(saveWorkspace(this.store, this.page))),
       this.item("Shift+L", "Load a workspace or a recording", true, () => this.try(this.choose())),
       this.item("Shift+R", "Save the recording of the mouse", false, () => this.try(this.saveRecording())),
       this.item("Shift+P", "Repeat the session from its start", true, () => this.try(this.replayNow())),
       this.item("Shift+M", "Save the deformed mesh", false, () => this.openMesh()),
-      this.item("Shift+T", "Save the scene with all its values (TOML)", false, () => this.try(this.saveScene())),
-    ];
-    if (live) this.acceptDrops();
-    return makeMenu("File", "Load and save", live ? [...own, ...others] : others);
+      scene,
+      ...pictures,
+    ]);
   }
 
   private item(key: string, does: string, steers: boolean, run: () => void): HTMLButtonElement {
@@ -90,10 +92,6 @@ export class Files {
   private async saveText(query: Query): Promise<void> {
     const { name, text } = await this.store.source.ask<TextReply>(query);
     saveFile(name, new Blob([text], { type: "text/plain" }));
-  }
-
-  private saveScene(): Promise<void> {
-    return this.saveText({ ask: "scene", side: "a" });
   }
 
   private async saveRecording(): Promise<void> {

@@ -61,10 +61,11 @@ export class LiveSource implements Source {
       this.receive({ connected: true });
     };
     socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.take(event.data);
-    socket.onclose = () => this.lost();
+    socket.onclose = (event) => this.lost(event.reason);
   }
 
-  private lost(): void {
+  private lost(why: string): void {
+    if (why) this.refuse(`The program closed the connection: ${why}`);
     for (const { reject } of this.pending.values()) reject(new Error("the connection to the program was lost"));
     this.pending.clear();
     this.failures += 1;

@@ -22,9 +22,9 @@ class FakeSocket {
   says(message: unknown): void {
     this.call(this.onmessage, { data: JSON.stringify(message) });
   }
-  closed(): void {
+  closed(reason = ""): void {
     this.readyState = 3;
-    this.call(this.onclose, {});
+    this.call(this.onclose, { reason });
   }
   private call(listener: unknown, event: unknown): void {
     (listener as (event: unknown) => void)(event);
@@ -82,6 +82,13 @@ test("a lost connection rejects what is open and is made anew", async (context) 
   sockets[2].opened();
   assert.equal(source.failures, 0);
   assert.deepEqual(received.at(-1), { connected: true });
+});
+
+test("why the program closed the connection is told", (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  const { sockets, received } = connect();
+  sockets[0].closed("too slow");
+  assert.match(JSON.stringify(received), /closed the connection: too slow/);
 });
 
 test("a command without a connection is refused in words", () => {
