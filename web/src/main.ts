@@ -15,7 +15,9 @@ import { makeEnergyPanel } from "./panels/energy";
 import { makeFunctionsPanel } from "./panels/functions";
 import { makeLandscapePanel } from "./panels/landscape";
 import { makeMicroscopePanel } from "./panels/microscope";
+import { makeReportPanel } from "./panels/report";
 import { Settings } from "./panels/settings";
+import { findRecording, RecordedSource } from "./recorded";
 import { makeRole } from "./role";
 import { listenToKeys } from "./shortcuts";
 import { Sidebar } from "./sidebar";
@@ -40,6 +42,8 @@ function buildPage(store: Store, page: Page): void {
   const functions = makeFunctionsPanel(store, page);
   const panels: Panel[] = [makeEnergyPanel(store, page), makeMicroscopePanel(store, page)];
   if (store.source.live) panels.push(makeLandscapePanel(store, page), functions);
+  const certificate = makeReportPanel(store, page);
+  panels.push({ name: "certificate", title: "Certificate", element: certificate, show: () => {} });
   const sidebar = new Sidebar(area("right"), page);
   new Settings(sidebar.body, store, page);
   addDisplayControls(new GUI({ container: sidebar.body, title: "View" }), display, page, views.all);
@@ -55,6 +59,7 @@ function buildPage(store: Store, page: Page): void {
 
 const page = new Page();
 showOwnErrors(page);
-const store = new Store(new LiveSource(sessionAddress()));
+const recording = findRecording();
+const store = new Store(recording === null ? new LiveSource(sessionAddress()) : new RecordedSource(recording));
 buildPage(store, page);
 store.start();
