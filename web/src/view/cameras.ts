@@ -129,6 +129,14 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
     };
   }
 
+  // Stands where another does.
+  join(other: CameraRig): void {
+    [this.mode, this.orthographic, this.distance] = [other.mode, other.orthographic, other.distance];
+    this.target.copy(other.target);
+    this.orientation.copy(other.orientation);
+    this.emit("changed", undefined);
+  }
+
   save(): unknown {
     const { mode, orthographic, distance, shown } = this;
     return { mode, orthographic, distance, shown, target: this.target.toArray(), orientation: this.orientation.toArray() };

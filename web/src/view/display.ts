@@ -55,7 +55,7 @@ const kLimits: { [K in keyof DisplaySettings]?: readonly [number, number] } = {
   brush: [4, 200],
 };
 
-export class Display extends Emitter<{ changed: void; camera: void }> implements Keeper {
+export class Display extends Emitter<{ changed: void; camera: void; range: void }> implements Keeper {
   readonly settings: DisplaySettings = { ...kDefaults };
   readonly cameras: { a: CameraRig; b: CameraRig } = { a: new CameraRig(), b: new CameraRig() };
   fields: Field[] = []; // of side a
@@ -74,7 +74,7 @@ export class Display extends Emitter<{ changed: void; camera: void }> implements
   }
 
   change(changes: Partial<DisplaySettings>): void {
-    if (changes.linked === false && this.settings.linked) this.cameras.b.restore(this.cameras.a.save());
+    if (changes.linked === false && this.settings.linked) this.cameras.b.join(this.cameras.a);
     Object.assign(this.settings, changes);
     for (const [key, limits] of Object.entries(kLimits)) this.limit(key as keyof DisplaySettings, limits);
     this.emit("changed", undefined);
@@ -108,14 +108,14 @@ export class Display extends Emitter<{ changed: void; camera: void }> implements
     },
   };
 
-  // Smallest and largest value of a picture; false: the range is as before.
-  feed(side: SideName, field: Field, min: number, max: number): boolean {
+  // Smallest and largest value of a picture.
+  feed(side: SideName, field: Field, min: number, max: number): void {
     if (field.name !== this.measured) this.running.reset();
     this.measured = field.name;
     const before = this.running.get();
     this.running.feed(side, min, max);
     const after = this.running.get();
-    return before?.low !== after?.low || before?.high !== after?.high;
+    if (before?.low !== after?.low || before?.high !== after?.high) this.emit("range", undefined);
   }
 
   forget(side: SideName): void {

@@ -13,7 +13,6 @@ import { kGroundRadius, makeGroundMaterial } from "./shading";
 export interface StageColours {
   background: string;
   grid: string;
-  pin: string;
 }
 
 const kGap = 0.12; // between the box and the ground below it
@@ -29,8 +28,8 @@ export class Stage {
   private readonly scene = new THREE.Scene();
   private readonly perspective = new THREE.PerspectiveCamera();
   private readonly orthographic = new THREE.OrthographicCamera();
-  private readonly sky = new THREE.HemisphereLight("#ffffff", "#b9b2a8", 1.5);
-  private readonly sun = new THREE.DirectionalLight("#fffaf0", 2.1);
+  private readonly sky = new THREE.HemisphereLight("#ffffff", "#c4bfb8", 1.9);
+  private readonly sun = new THREE.DirectionalLight("#fffaf0", 1.9);
   private readonly lamp = new THREE.DirectionalLight("#ffffff", 0.55); // at the camera
   private readonly ground: THREE.Mesh<THREE.CircleGeometry, THREE.ShadowMaterial>;
   private readonly grid = {
@@ -49,8 +48,8 @@ export class Stage {
     this.ground.receiveShadow = true;
     this.ground.renderOrder = -1;
     this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(2048, 2048);
-    this.sun.shadow.radius = 5;
+    this.sun.shadow.mapSize.set(1024, 1024);
+    this.sun.shadow.radius = 6;
     this.sun.shadow.bias = -0.0008;
     this.scene.add(this.sky, this.sun, this.sun.target, this.lamp, this.lamp.target, this.ground);
   }

@@ -81,7 +81,7 @@ export class Touch {
     const hit = pans ? null : this.pick(at);
     const { tool } = this.view.display.settings;
     const reads = !pans && (event.shiftKey || tool === "read");
-    if (hit && !reads && this.mayTouch() && tool !== "read") this.gesture = this.touch(hit, event.altKey);
+    if (hit && !reads && this.mayTouch()) this.gesture = this.touch(hit, event.altKey);
     else this.gesture = { kind: pans ? "pan" : "turn", moved: 0, hit, reads };
     this.schedule();
   }
