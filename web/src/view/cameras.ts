@@ -91,7 +91,7 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
     } else {
       const upward = sceneAxes(this.up).up;
       this.orientation.premultiply(new Quaternion().setFromAxisAngle(upward, -kTurn * dx));
-      const tilt = Math.asin(Math.min(1, Math.max(-1, this.axis(2).dot(upward)))); // above the horizon
+      const tilt = Math.atan2(this.axis(2).dot(upward), this.axis(1).dot(upward)); // above the horizon
       const turned = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, tilt + kTurn * dy));
       this.orientation.multiply(new Quaternion().setFromAxisAngle(sideways, tilt - turned));
     }

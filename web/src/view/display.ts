@@ -1,9 +1,10 @@
 // How bodies are drawn: the settings that the views of both sides share.
 import { Emitter } from "../emitter";
 import type { Keeper } from "../page";
-import type { Field, SideName } from "../protocol";
+import type { Field, Scene, SideName, Vec3 } from "../protocol";
 import { CameraRig } from "./cameras";
 import { kMapNames, type MapName } from "./colourMaps";
+import type { Clip } from "./picking";
 import { about, logRange, RunningRange, type ColourRange } from "./ranges";
 
 export const kTools = { drag: "Drag with a spring", pin: "Pin with a brush", read: "Read values" } as const;
@@ -130,6 +131,16 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
     const positive = log ? logRange(chosen.low, chosen.high) : null;
     if (positive) return { ...positive, log: true };
     return { ...(field.diverging && !fixedRange ? about(field.center, chosen.low, chosen.high) : chosen), log: false };
+  }
+
+  // What the plane leaves of a scene.
+  clip(scene: Scene): Clip | null {
+    const { clip, clipAt, clipOther } = this.settings;
+    if (clip === "off") return null;
+    const axis = "xyz".indexOf(clip);
+    const at = scene.lower[axis] + clipAt * (scene.upper[axis] - scene.lower[axis]);
+    const sign = clipOther ? 1 : -1;
+    return { normal: [0, 1, 2].map((c) => (c === axis ? sign : 0)) as Vec3, offset: sign * at };
   }
 
   map(field: Field): MapName {

@@ -53,6 +53,11 @@ export function nearestVertex(hit: Hit, triangles: Uint32Array): number {
   return triangles[3 * hit.triangle + hit.weights.indexOf(Math.max(...hit.weights))];
 }
 
+// A value between those of the corners.
+export function interpolated(hit: Hit, triangles: Uint32Array, values: Float32Array): number {
+  return hit.weights.reduce((sum, weight, k) => sum + weight * values[triangles[3 * hit.triangle + k]], 0);
+}
+
 // The depth of what is seen in a rectangle of the screen, coarsely: tells which vertices are hidden behind others.
 export class DepthGrid {
   private readonly depth: Float32Array;

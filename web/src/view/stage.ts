@@ -10,11 +10,6 @@ import type { Clip } from "./picking";
 import { roundStep } from "./ranges";
 import { kGroundRadius, makeGroundMaterial } from "./shading";
 
-export interface StageColours {
-  background: string;
-  grid: string;
-}
-
 const kGap = 0.12; // between the box and the ground below it
 
 export class Stage {
@@ -98,11 +93,11 @@ export class Stage {
     this.renderer.shadowMap.needsUpdate = true;
   }
 
-  apply(settings: DisplaySettings, colours: StageColours): void {
+  apply(settings: DisplaySettings, colours: { background: string; grid: string }): void {
     this.renderer.setClearColor(colours.background);
     this.ground.visible = settings.ground;
     this.grid.gridColour.value.set(colours.grid);
-    if (this.sun.castShadow !== settings.shadows) this.sun.castShadow = settings.shadows;
+    this.sun.castShadow = settings.shadows;
     this.renderer.shadowMap.needsUpdate = true;
   }
 

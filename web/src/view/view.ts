@@ -1,21 +1,21 @@
 // One side in 3-D: draws its newest picture, and only when something has changed.
 import "./view.css";
 import type { Highlight, Page } from "../page";
-import type { Field, SideName, Vec3 } from "../protocol";
+import type { Field, SideName } from "../protocol";
 import type { Side, Store } from "../store";
 import { Body } from "./body";
 import type { CameraRig } from "./cameras";
 import { Card } from "./card";
 import type { Display } from "./display";
-import { chooseLabels } from "./labels";
+import { chooseLabels, type Label } from "./labels";
 import type { Lens } from "./lens";
-import { Overlay, type Marks, type Style } from "./overlay";
-import { nearestVertex, type Clip, type Hit, type Surface } from "./picking";
+import { Overlay, png, readStyle, type Marks, type Style } from "./overlay";
+import { Pace } from "./pace";
+import { interpolated, nearestVertex, type Clip, type Hit, type Surface } from "./picking";
 import { withUnit } from "./ranges";
 import { Stage } from "./stage";
 import { Touch, type Touched } from "./touch";
 
-const kHiddenPause = 500; // between pictures that nobody sees [ms]
 const kLargest = 8192; // side of a screenshot [px]
 
 export class View implements Touched {
@@ -29,7 +29,7 @@ export class View implements Touched {
   private body: Body | null = null;
   private valuesOf = ""; // field of the values that the body has
   private highlights: Highlight[] = [];
-  private undrawn = 0; // pictures that the source waits for
+  private readonly pace: Pace;
   private frame = 0; // requested
   private fixedSize: [number, number] | null = null;
   private sharpness = 1; // of a screenshot
@@ -46,6 +46,7 @@ export class View implements Touched {
     readonly display: Display,
   ) {
     this.card = new Card(store, side, () => this.redraw());
+    this.pace = new Pace(store.source, () => this.redraw());
     this.message.className = "view-message";
     this.message.hidden = true;
     this.host.classList.add("view");
@@ -85,12 +86,10 @@ export class View implements Touched {
     this.sharpness = Math.min(scale, kLargest / (Math.max(width, height, 1) * this.pixelRatio()));
     const canvas = document.createElement("canvas");
     this.drawNow();
-    this.paint(canvas);
+    this.overlay.paint(canvas, this.glCanvas);
     this.sharpness = 1;
     this.drawNow();
-    return new Promise((resolve, reject) =>
-      canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the picture is empty"))), "image/png"),
-    );
+    return png(canvas);
   }
 
   // From now on the view has this many pixels, whatever the page's layout: for pictures without a screen.
@@ -129,9 +128,9 @@ export class View implements Touched {
       const lens = this.lens();
       this.stage.render(lens, this.rig.orientation, this.style.accent);
       this.overlay.draw(lens, this.style, this.marks(lens));
-      if (this.composed) this.paint(this.composed);
+      if (this.composed) this.overlay.paint(this.composed, this.glCanvas);
     }
-    this.settle();
+    this.pace.drawn();
   }
 
   dispose(): void {
@@ -144,7 +143,7 @@ export class View implements Touched {
     this.stage?.dispose();
     this.display.forget(this.side);
     this.host.replaceChildren();
-    this.settle();
+    this.pace.drawn();
   }
 
   private get source(): Side | null {
@@ -192,7 +191,7 @@ export class View implements Touched {
     const sizes = new ResizeObserver(() => this.redraw());
     sizes.observe(this.host);
     stop.push(() => sizes.disconnect());
-    document.addEventListener("visibilitychange", () => this.pace(), { signal: this.listeners.signal });
+    document.addEventListener("visibilitychange", () => this.pace.go(), { signal: this.listeners.signal });
   }
 
   private highlight(highlights: Highlight[]): void {
@@ -229,10 +228,9 @@ export class View implements Touched {
   }
 
   private takePicture(): void {
-    this.undrawn += 1;
     this.showPicture();
     this.card.refresh();
-    this.pace();
+    this.pace.came();
   }
 
   private showPicture(): void {
@@ -245,19 +243,6 @@ export class View implements Touched {
     if (field) this.display.feed(this.side, field, picture.min, picture.max);
     this.colourBody();
     this.stage?.moved();
-  }
-
-  // Draws in the next frame. A hidden page has no frames: there the source goes on slowly.
-  private pace(): void {
-    if (!document.hidden) this.redraw();
-    else if (this.undrawn > 0) setTimeout(() => this.settle(), kHiddenPause);
-  }
-
-  // The source may send the next picture.
-  private settle(): void {
-    const count = this.undrawn;
-    this.undrawn = 0;
-    for (let i = 0; i < count; ++i) this.store.source.ready();
   }
 
   // Whose values the body shows.
@@ -273,21 +258,13 @@ export class View implements Touched {
     this.restyle();
     const settings = this.display.settings;
     this.body?.apply(settings);
-    this.stage?.apply(settings, { background: this.style.background, grid: this.colour("--faint") });
+    this.stage?.apply(settings, this.style);
     this.stage?.clip(this.clip());
     this.colourBody();
   }
 
   private restyle(): void {
-    const { ownBackground, background } = this.display.settings;
-    const style = getComputedStyle(this.host);
-    this.style = {
-      text: this.colour("--text"),
-      background: ownBackground ? background : this.colour("--background"),
-      accent: this.colour("--series-2"),
-      font: style.fontFamily,
-      em: this.fixedSize ? Math.max(10, this.fixedSize[1] / 45) : parseFloat(style.fontSize),
-    };
+    this.style = readStyle(this.host, this.display.settings, this.fixedSize);
   }
 
   private colourBody(): void {
@@ -298,13 +275,7 @@ export class View implements Touched {
   }
 
   private clip(): Clip | null {
-    const { clip, clipAt, clipOther } = this.display.settings;
-    const scene = this.source?.scene;
-    if (clip === "off" || !scene) return null;
-    const axis = "xyz".indexOf(clip);
-    const at = scene.lower[axis] + clipAt * (scene.upper[axis] - scene.lower[axis]);
-    const sign = clipOther ? 1 : -1;
-    return { normal: [0, 1, 2].map((c) => (c === axis ? sign : 0)) as Vec3, offset: sign * at };
+    return this.source && this.display.clip(this.source.scene);
   }
 
   private size(): [number, number] {
@@ -325,14 +296,6 @@ export class View implements Touched {
     [canvas.width, canvas.height] = [columns, rows];
   }
 
-  private paint(canvas: HTMLCanvasElement): void {
-    const { width, height } = this.overlay.canvas;
-    if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
-    const context = canvas.getContext("2d");
-    context?.drawImage(this.glCanvas, 0, 0);
-    context?.drawImage(this.overlay.canvas, 0, 0);
-  }
-
   private marks(lens: Lens): Marks {
     const settings = this.display.settings;
     const field = this.field();
@@ -347,12 +310,12 @@ export class View implements Touched {
       labels: this.labels(lens),
       highlights: [...this.highlights, ...this.card.marks],
       spring: grab ? { ...grab, target: target ?? grab.target } : null,
-      brush: brushes ? { at: cursor, radius: settings.brush, words: settings.unpin ? "unpin" : "pin" } : null,
+      brush: brushes ? { at: cursor, radius: settings.brush, words: this.touch.pins ? "pin" : "unpin" } : null,
       tip: this.tip(),
     };
   }
 
-  private labels(lens: Lens): Marks["labels"] {
+  private labels(lens: Lens): Label[] {
     const { vertexLabels, faceLabels } = this.display.settings;
     const surface = this.surface();
     if (!surface || !this.body || !(vertexLabels || faceLabels)) return [];
@@ -363,13 +326,8 @@ export class View implements Touched {
   // The value under the cursor, while it reads.
   private tip(): Marks["tip"] {
     const { hover, cursor } = this.touch;
-    const [field, values, triangles] = [this.field(), this.source?.picture?.values, this.body?.geometry.triangles];
-    if (!hover || !cursor || !field || !values || !triangles || this.display.settings.tool !== "read") return null;
-    const value = [0, 1, 2].reduce((sum, k) => sum + hover.weights[k] * values[triangles[3 * hover.triangle + k]], 0);
-    return { at: cursor, words: withUnit(value, field.unit) };
-  }
-
-  private colour(variable: string): string {
-    return getComputedStyle(this.host).getPropertyValue(variable).trim() || "#808080";
+    const [field, values] = [this.field(), this.source?.picture?.values];
+    if (!hover || !cursor || !field || !values || !this.body || this.display.settings.tool !== "read") return null;
+    return { at: cursor, words: withUnit(interpolated(hover, this.body.geometry.triangles, values), field.unit) };
   }
 }
