@@ -49,14 +49,15 @@ class PlanarPanel implements FunctionsPanel {
     private readonly store: Store,
     page: Page,
   ) {
-    const presets = element("div", { class: "plot-bar", role: "group", "aria-label": "Examples" });
+    const presets = element("div", { class: "pair", role: "group", "aria-label": "Examples" });
     for (const preset of kPresets) presets.append(button(preset.title, preset.shows, () => this.openPreset(preset)));
+    this.form.element.prepend(presets);
     const walk = element("div", { class: "plot-bar" }, this.playButton, this.slider, this.where, this.model.element, this.log.element);
-    walk.append(button("PNG", "Save the picture", () => this.savePng()), this.words);
-    this.form.element.append(this.legend);
-    const right = element("div", { style: "flex: 0 0 32%; min-width: 0" }, this.search.element);
-    const columns = element("div", { class: "plot-columns plot-fill" }, this.form.element, element("div", { class: "plot-fill" }, this.view.element), right);
-    this.element.append(presets, walk, columns);
+    walk.append(button("PNG", "Save the picture", () => this.savePng()));
+    const middle = element("div", { class: "functions-view" }, walk, element("div", { class: "plot-fill" }, this.view.element));
+    const chart = element("div", { class: "functions-chart" }, this.search.element);
+    const right = element("div", { class: "functions-side" }, this.words, chart, this.legend);
+    this.element.append(element("div", { class: "plot-columns plot-fill" }, this.form.element, middle, right));
     this.slider.addEventListener("input", () => {
       this.stop();
       this.goTo(this.slider.valueAsNumber);

@@ -23,6 +23,15 @@ export function searchRange(values: readonly MaybeNumber[], model: readonly Mayb
   return [low - margin, top + margin];
 }
 
+// Of alpha: all trials, or where the accepted one is much shorter and the curve is known there, its surroundings.
+export function alphaRange(alpha: readonly number[], trials: readonly TrialRow[]): [number, number] {
+  const [first, last] = [alpha[0] ?? 0, alpha[alpha.length - 1] ?? 1];
+  const accepted = trials.find((trial) => trial.accepted)?.alpha ?? 0;
+  const [low, high] = [-0.5 * accepted, 3 * accepted];
+  const known = alpha.filter((a) => a >= low && a <= high).length;
+  return accepted > 0 && last > 2 * high && known >= 12 ? [Math.max(low, first), high] : [first, last];
+}
+
 export class SearchChart {
   readonly chart = new Chart();
   private search: Search | null = null;
@@ -45,6 +54,7 @@ export class SearchChart {
       curves: curvesOf(search),
       legend: "top",
       read: (key, alpha) => this.read(key, alpha),
+      xRange: () => alphaRange(search.curve.alpha, search.trials),
       yRange: () => this.range(),
       paint: (u, colours) => this.paintTrials(u, colours),
     });
@@ -71,8 +81,11 @@ export class SearchChart {
   private range(): [number, number] {
     const { curve, trials } = this.search!;
     const origin = this.origin();
-    const shifted = (values: MaybeNumber[]): MaybeNumber[] => values.map((v) => (v === null ? null : v - origin));
-    return searchRange(shifted(curve.value), shifted(curve.model), shifted(trials.map((t) => t.value)));
+    const [low, high] = alphaRange(curve.alpha, trials);
+    const shown = (alpha: number): boolean => alpha >= low && alpha <= high;
+    const shifted = (values: MaybeNumber[]): MaybeNumber[] => values.map((v, i) => (v === null || !shown(curve.alpha[i]!) ? null : v - origin));
+    const tried = trials.filter((t) => shown(t.alpha)).map((t) => (t.value === null ? null : t.value - origin));
+    return searchRange(shifted(curve.value), shifted(curve.model), tried);
   }
 
   private read(key: string, alpha: number | null): string[] {

@@ -26,7 +26,7 @@ export function pace(norms: readonly MaybeNumber[]): { pace: Pace; factor: numbe
 
 function paceText(rows: readonly IterationRow[]): string {
   const found = pace(rows.map((row) => row.gradient_norm));
-  const factor = short(found.factor, found.factor < 2 ? 3 : 2);
+  const factor = short(Number(found.factor.toPrecision(found.factor < 2 ? 3 : 2)));
   switch (found.pace) {
     case "squaring":
       return ` The gradient fell ever faster, the last time by a factor of ${factor}: close to the minimum each iteration about squares the error.`;
