@@ -72,7 +72,10 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
   setMode(mode: CameraMode): void {
     this.mode = mode;
     if (mode === "turntable") this.level();
-    if (mode === "flat") this.faceAxis();
+    if (mode === "flat") {
+      this.faceAxis();
+      this.orthographic = true;
+    }
     this.emit("changed", undefined);
   }
 

@@ -94,7 +94,7 @@ export class Stage {
   }
 
   apply(settings: DisplaySettings, colours: { background: string; grid: string }): void {
-    this.renderer.setClearColor(colours.background);
+    this.scene.background = new THREE.Color(colours.background);
     this.ground.visible = settings.ground;
     this.grid.gridColour.value.set(colours.grid);
     this.sun.castShadow = settings.shadows;

@@ -33,7 +33,6 @@ export class View implements Touched {
   private frame = 0; // requested
   private fixedSize: [number, number] | null = null;
   private sharpness = 1; // of a screenshot
-  private composed: HTMLCanvasElement | null = null;
   private rigStop = (): void => {};
   private readonly stop: (() => void)[] = [];
   private readonly listeners = new AbortController();
@@ -69,15 +68,6 @@ export class View implements Touched {
   surface(): Surface | null {
     if (!this.body?.root.visible) return null;
     return { positions: this.body.current, triangles: this.body.geometry.triangles, clip: this.clip() };
-  }
-
-  // A canvas with all that the view shows, kept up to date from now on: for a video.
-  get canvas(): HTMLCanvasElement {
-    if (!this.composed) {
-      this.composed = document.createElement("canvas");
-      this.drawNow();
-    }
-    return this.composed;
   }
 
   // A PNG of the view; `scale` times as many pixels as the view has on the screen.
@@ -128,7 +118,6 @@ export class View implements Touched {
       const lens = this.lens();
       this.stage.render(lens, this.rig.orientation, this.style.accent);
       this.overlay.draw(lens, this.style, this.marks(lens));
-      if (this.composed) this.overlay.paint(this.composed, this.glCanvas);
     }
     this.pace.drawn();
   }
@@ -170,9 +159,13 @@ export class View implements Touched {
     this.message.hidden = words === "";
   }
 
+  // After three.js, which listens, too, has its state again.
   private restored(): void {
-    this.say("");
-    this.applyDisplay();
+    setTimeout(() => {
+      if (this.listeners.signal.aborted) return;
+      this.say("");
+      this.applyDisplay();
+    });
   }
 
   private listen(): void {
