@@ -6,10 +6,10 @@ import { LineGeometry } from "three/addons/lines/LineGeometry.js";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import type { MaybeNumber } from "../protocol";
 import { element, oncePerFrame } from "./dom";
-import { clipped, heightRange, isInside, roundTicks, sample, valueAtHeight, type Grid, type Point } from "./grid";
-import { short, ticks } from "./numbers";
+import { clipped, heightRange, isInside, sample, valueAtHeight, type Grid, type Point } from "./grid";
 import { palette, type Colour, type Palette } from "./palette";
 import { Frame, gridLines, levelLines, markTexture, surfaceGeometry, type MarkShape } from "./surfaceParts";
+import { axisLabels, placed, type Label, type Placed } from "./surfaceLabels";
 import "./plots.css";
 
 export interface Mark extends Point {
@@ -31,13 +31,6 @@ export interface SurfaceContent {
   marks: Mark[];
   keep: MaybeNumber[]; // values that are not cut off
   log: boolean;
-}
-
-interface Label {
-  text: string;
-  place: THREE.Vector3;
-  colour: Colour;
-  important: boolean; // shown even if it covers another
 }
 
 const kHome = { azimuth: -0.55, polar: 1.02 };
@@ -118,7 +111,7 @@ export class SurfaceView {
     pen.drawImage(source, 0, line * 1.5);
     pen.textBaseline = "middle";
     pen.font = `${this.colours.fontSize * 0.82 * scale}px sans-serif`;
-    for (const { label, x, y } of this.placed()) {
+    for (const { label, x, y } of this.placedLabels()) {
       pen.fillStyle = this.colours[label.colour];
       pen.fillText(label.text, x * scale, y * scale + line * 1.5);
     }
@@ -324,7 +317,7 @@ export class SurfaceView {
   private draw(): void {
     if (!this.visible || !this.renderer) return;
     this.renderer.render(this.scene, this.camera);
-    const made = this.placed().map(({ label, x, y }) => {
+    const made = this.placedLabels().map(({ label, x, y }) => {
       const span = element("span", { class: "surface-label" }, label.text);
       span.style.transform = `translate(${x.toFixed(1)}px, calc(${y.toFixed(1)}px - 50%))`;
       span.style.color = `var(--${label.colour.replace(/(\d)/, "-$1")})`;
@@ -333,57 +326,11 @@ export class SurfaceView {
     this.overlay.replaceChildren(...made);
   }
 
-  // Labels and the numbers at the axes, where they are on the screen; those that would cover another are left out.
-  private placed(): { label: Label; x: number; y: number }[] {
+  private placedLabels(): Placed[] {
     if (!this.frame || !this.shown || !this.colours) return [];
-    const [width, height] = [this.element.clientWidth, this.element.clientHeight];
-    const em = this.colours.fontSize * 0.82;
-    const taken: { x: number; y: number; w: number }[] = [];
-    const out: { label: Label; x: number; y: number }[] = [];
-    const important = this.labels.filter((l) => l.important);
-    const others = this.labels.filter((l) => !l.important);
-    for (const label of [...important, ...this.axisLabels(this.frame, this.shown), ...others]) {
-      const at = label.place.clone().project(this.camera);
-      const w = label.text.length * em * 0.58;
-      let [x, y] = [(at.x * 0.5 + 0.5) * width, (-at.y * 0.5 + 0.5) * height];
-      if (this.labels.includes(label)) [x, y] = [x + 9, y - (label.important ? 9 : -9)];
-      else x -= w / 2;
-      x = Math.min(width - w - 2, Math.max(2, x));
-      if (y < 0 || y > height) continue;
-      if (taken.some((t) => Math.abs(t.y - y) < em * 1.1 && x < t.x + t.w + 3 && t.x < x + w + 3)) continue;
-      taken.push({ x, y, w });
-      out.push({ label, x, y });
-    }
-    return out;
-  }
-
-  // Along the edges of the base that are nearest to the reader, and up the post that is furthest to the left.
-  private axisLabels(frame: Frame, content: SurfaceContent): Label[] {
-    const { x, y } = content.grid;
-    const [w, d] = [frame.width / 2, frame.depth / 2];
-    const front = this.camera.position.z >= 0 ? d : -d;
-    const side = this.camera.position.x >= 0 ? w : -w;
-    const out: Label[] = [];
-    const add = (text: string, place: THREE.Vector3, colour: Colour = "faint"): void => void out.push({ text, place, colour, important: false });
-    const alongX = roundTicks(x[0]!, x[x.length - 1]!, 4);
-    const alongY = roundTicks(y[0]!, y[y.length - 1]!, 4);
-    add(content.axes.x, new THREE.Vector3(0, -0.02, front * 1.34), "text");
-    add(content.axes.y, new THREE.Vector3(side * 1.42, -0.02, 0), "text");
-    ticks(alongX).forEach((text, i) => add(text, new THREE.Vector3(frame.across(alongX[i]!), -0.02, front * 1.12)));
-    ticks(alongY).forEach((text, i) => add(text, new THREE.Vector3(side * 1.12, -0.02, frame.away(alongY[i]!))));
-    const post = this.leftPost(w, d);
-    const toValue = valueAtHeight(frame.range, frame.scale);
-    const heights = frame.scale === "linear" ? roundTicks(frame.range.low, frame.range.high, 4) : [0, 0.25, 0.5, 0.75, 1].map(toValue);
-    const texts = frame.scale === "linear" ? ticks(heights) : heights.map((v) => short(v - frame.range.low, 2));
-    add(frame.scale === "linear" ? content.axes.value : `${content.axes.value} − lowest`, new THREE.Vector3(post.x, frame.tall * 1.12, post.z), "text");
-    texts.forEach((text, i) => add(text, new THREE.Vector3(post.x * 1.1, frame.height(heights[i]!) * frame.tall, post.z * 1.1)));
-    return out;
-  }
-
-  private leftPost(w: number, d: number): THREE.Vector3 {
-    const posts = [[-w, -d], [w, -d], [w, d], [-w, d]].map(([x, z]) => new THREE.Vector3(x, 0, z));
-    const onScreen = (p: THREE.Vector3): number => p.clone().project(this.camera).x;
-    return posts.reduce((left, p) => (onScreen(p) < onScreen(left) ? p : left));
+    const axes = axisLabels(this.frame, this.shown.axes, this.camera);
+    const size = { width: this.element.clientWidth, height: this.element.clientHeight };
+    return placed(this.labels, axes, this.camera, size, this.colours.fontSize * 0.82);
   }
 
   private key(event: KeyboardEvent): void {
