@@ -44,6 +44,9 @@ test("units take prefixes", () => {
   assert.equal(withUnit(0.0042, "m"), "4.2 mm");
   assert.equal(withUnit(2, ""), "2");
   assert.equal(withUnit(0.00123, "kg"), "0.00123 kg");
+  assert.equal(withUnit(1000, "kg/m^3"), "1000 kg/m³");
+  assert.equal(withUnit(15090, "J/m^3"), "15.1 kJ/m³");
+  assert.equal(withUnit(3e-7, "m^3"), "3e−7 m³");
   assert.equal(withUnit(Infinity, "N"), "not finite");
 });
 

@@ -79,16 +79,20 @@ export class Card {
 
   private fill(scene: Scene, vertex: PromiseSettledResult<VertexReply>, tet: PromiseSettledResult<TetReply>): void {
     this.marks = [];
-    const parts: HTMLElement[] = [];
+    const parts: HTMLDetailsElement[] = [];
     if (vertex.status === "fulfilled") {
       const { value } = vertex;
-      parts.push(...section(value.vertex < 0 ? "Point of the skin" : `Vertex ${value.vertex}`, vertexRows(value, scene)));
+      parts.push(section(value.vertex < 0 ? "Point of the skin" : `Vertex ${value.vertex}`, vertexRows(value)));
+      parts.push(section("Fields there", fieldRows(value, scene)));
       this.marks.push({ positions: [value.position], text: "" });
-    } else parts.push(...section("Vertex", [["not told", reason(vertex.reason)]]));
+    } else parts.push(section("Vertex", [["not told", reason(vertex.reason)]]), section("Fields there", []));
     if (tet.status === "fulfilled") {
-      parts.push(...section(`Tet ${tet.value.tet}`, tetRows(tet.value)));
+      parts.push(section(`Tet ${tet.value.tet}`, tetRows(tet.value)));
       this.marks.push({ positions: tet.value.positions, text: "" });
-    } else parts.push(...section("Tet", [["not told", reason(tet.reason)]]));
+    } else parts.push(section("Tet", [["not told", reason(tet.reason)]]));
+    // What the reader folded stays folded; at first the fields are.
+    const folded = [...this.body.querySelectorAll("details")].map((part) => !part.open);
+    parts.forEach((part, i) => (part.open = !(folded[i] ?? i === 1)));
     this.body.replaceChildren(...parts);
     this.element.hidden = false;
     this.changed();
@@ -105,7 +109,7 @@ function number(value: MaybeNumber, unit = ""): string {
 
 function vector(values: Vec3, unit: string): string {
   const largest = Math.max(...values.map(Math.abs));
-  return `${values.map((x) => readable(x, largest * 1e-4)).join("  ")} ${unit}`;
+  return `${values.map((x) => readable(x, largest * 1e-3)).join("  ")} ${unit}`;
 }
 
 function matrix(rows: [Vec3, Vec3, Vec3], unit: string): string {
@@ -115,18 +119,21 @@ function matrix(rows: [Vec3, Vec3, Vec3], unit: string): string {
   return texts.map((row) => row.map((text) => text.padStart(width, "\u2007")).join("  ")).join("\n") + (unit && ` ${unit}`);
 }
 
-function vertexRows(reply: VertexReply, scene: Scene): Row[] {
+function vertexRows(reply: VertexReply): Row[] {
   const first = reply.first_entry;
-  const fields = scene.fields.filter((field) => field.name in reply.values);
   return [
     ...(reply.vertex < 0 ? [] : [["entries", `q[${first}], q[${first + 1}], q[${first + 2}]`] as Row]),
     ["position", vector(reply.position, "m")],
     ["rest", vector(reply.rest, "m")],
     ["velocity", vector(reply.velocity, "m/s")],
-    ["mass", `${readable(reply.mass)} kg`],
+    ["mass", number(reply.mass, "kg")],
     ["pinned", reply.pinned ? "yes" : "no"],
-    ...fields.map((field): Row => [field.label, number(reply.values[field.name], field.unit)]),
   ];
+}
+
+function fieldRows(reply: VertexReply, scene: Scene): Row[] {
+  const fields = scene.fields.filter((field) => field.name in reply.values);
+  return fields.map((field) => [field.label, number(reply.values[field.name], field.unit)]);
 }
 
 function tetRows(reply: TetReply): Row[] {
@@ -137,18 +144,18 @@ function tetRows(reply: TetReply): Row[] {
     ["stretches", vector(reply.stretches, "")],
     ["Cauchy stress", matrix(reply.cauchy, "Pa")],
     ["von Mises", number(reply.von_mises, "Pa")],
-    ["energy density", number(reply.energy_density, "J/m³")],
+    ["energy density", number(reply.energy_density, "J/m^3")],
     ["energy", number(reply.energy, "J")],
-    ["rest volume", `${readable(reply.volume)} m³`],
+    ["rest volume", number(reply.volume, "m^3")],
     ["quality", number(reply.quality)],
     ["E", number(reply.young, "Pa")],
     ["ν", number(reply.poisson)],
-    ["density", `${readable(reply.density)} kg/m³`],
+    ["density", number(reply.density, "kg/m^3")],
   ];
 }
 
-function section(title: string, rows: Row[]): HTMLElement[] {
-  const heading = document.createElement("h3");
+function section(title: string, rows: Row[]): HTMLDetailsElement {
+  const heading = document.createElement("summary");
   heading.textContent = title;
   const table = document.createElement("table");
   for (const [label, value] of rows) {
@@ -159,5 +166,7 @@ function section(title: string, rows: Row[]): HTMLElement[] {
     row.append(head);
     row.insertCell().textContent = value;
   }
-  return [heading, table];
+  const part = document.createElement("details");
+  part.append(heading, table);
+  return part;
 }

@@ -2,7 +2,7 @@
 import type { Field, Vec3 } from "../protocol";
 import { colourAt, type MapName } from "./colourMaps";
 import { isBehind, project, type Lens } from "./lens";
-import { fraction, logTicks, readable, ticks, withUnit, type ColourRange } from "./ranges";
+import { fraction, logTicks, readable, ticks, unitText, withUnit, type ColourRange } from "./ranges";
 
 export interface Ink {
   context: CanvasRenderingContext2D;
@@ -131,7 +131,7 @@ export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange
   context.lineWidth = 1;
   context.strokeStyle = ink.text;
   context.strokeRect(left - 0.5, top - 0.5, width + 1, height + 1.5);
-  const unit = field.unit === "" ? "" : ` [${field.unit}]`;
+  const unit = field.unit === "" ? "" : ` [${unitText(field.unit)}]`;
   text(ink, `${field.label}${unit}${range.log ? ", logarithmic" : ""}`, right, top - 1.4 * em, "right");
   const marks = range.log ? logTicks(range.low, range.high) : ticks(range.low, range.high, height / (2.6 * em));
   const step = range.log ? undefined : (marks[1] ?? NaN) - marks[0];

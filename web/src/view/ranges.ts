@@ -100,12 +100,16 @@ export function readable(value: number, step = Math.abs(value) * 1e-3): string {
 
 const kPrefixes: [number, string][] = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"]];
 
-// With a prefix: 12.3 kPa, 4 mm.
+export function unitText(unit: string): string {
+  return unit.replaceAll("^2", "²").replaceAll("^3", "³");
+}
+
+// With a prefix where the unit takes one: 12.3 kPa, 4 mm.
 export function withUnit(value: number, unit: string, digits = 3): string {
   if (!Number.isFinite(value)) return "not finite";
   const size = Math.abs(value);
-  const takesPrefix = unit !== "" && !/[/^²³ ]/.test(unit.slice(0, 2)) && unit !== "kg" && size > 0;
+  const takesPrefix = /^(Pa|N|J|W|m|s|Hz)(\/|$)/.test(unit);
   const [factor, prefix] = (takesPrefix && kPrefixes.find(([least]) => size >= least * (1 - 1e-9))) || [1, ""];
   const number = readable(Number((value / factor).toPrecision(digits)), Math.abs(value / factor) * 10 ** (1 - digits));
-  return unit === "" ? number : `${number} ${prefix}${unit}`;
+  return unit === "" ? number : `${number} ${prefix}${unitText(unit)}`;
 }
