@@ -9,7 +9,10 @@ core_programs="g++ cmake ninja-build:ninja ccache gnuplot-nox:gnuplot"
 core_packages="libeigen3-dev libmetis-dev libmuparser-dev libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
   libfmt-dev zlib1g-dev"
 mesher_packages="libcgal-dev"
-test_programs="python3 nodejs:node npm"
+viewer_programs="nodejs:node npm"
+viewer_packages="libboost-dev"
+case "${ASPIC_VIEWER-}" in 0 | OFF) viewer_programs= viewer_packages= ;; esac
+test_programs="python3 chromium"
 test_packages="libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libsuitesparse-dev python3-meshio"
 bench_packages="libbenchmark-dev"
 
@@ -95,6 +98,10 @@ configure() {
     "" | 0 | OFF) set -- ASPIC_PORTABLE=OFF "$@" ;;
     *) set -- ASPIC_PORTABLE=ON "$@" ;;
   esac
+  case "${ASPIC_VIEWER-}" in
+    0 | OFF) set -- ASPIC_VIEWER=OFF "$@" ;;
+    *) set -- ASPIC_VIEWER=ON "$@" ;;
+  esac
   ! configured "$@" || return 0
   for setting in "$@"; do
     set -- "$@" "-D$setting"
@@ -131,7 +138,7 @@ make_bunny() {
 }
 
 fetch_bunny() {
-  need "" "nodejs:node npm"
+  need "" "$viewer_programs"
   say "Fetching the surface of the bunny: npm package $bunny_package ..."
   folder=$(mktemp -d)
   if ! (cd "$folder" && logged npm npm pack "$bunny_package"); then

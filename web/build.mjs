@@ -1,8 +1,10 @@
-// node build.mjs OUT: the whole page, scripts and styles included, as one HTML file. Needs no server and no network.
+// node build.mjs OUT: the whole page, scripts and styles included, as one HTML file, and packed as OUT.gz. Needs no
+// server and no network.
 import { build } from "esbuild";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
 
 const root = dirname(fileURLToPath(import.meta.url));
 const out = process.argv[2] ?? join(root, "page.html");
@@ -27,3 +29,4 @@ const page = readFileSync(join(root, "src/index.html"), "utf8")
   .replace("<!-- script -->", () => `<script>${script}</script>`);
 mkdirSync(dirname(out), { recursive: true });
 writeFileSync(out, page);
+writeFileSync(`${out}.gz`, gzipSync(page, { level: 9 }));

@@ -20,6 +20,7 @@ constexpr char kFooter[] = R"(
 Examples:
   aspic run bunny.obj                       any closed surface or tet mesh, with sensible defaults
   aspic run scenes/bunny.toml --steps 50    a described scene, its first 50 steps
+  aspic view scenes/bunny.toml              the same in the browser, to be touched
   aspic check bunny.mesh                    what is wrong with a mesh
   aspic materials                           the materials and their formulas
 'aspic COMMAND --help' tells more about a command.
@@ -93,6 +94,7 @@ int run_program(int argc, char** argv) {
   add_materials(app, action);
   add_minimize(app, action);
   add_lecture(app, action);
+  add_viewer_commands(app, action);
   if (argc == 1) {
     fmt::print("{}", app.help());
     return exit_bad_input;

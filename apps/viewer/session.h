@@ -20,13 +20,14 @@ struct Answer {
   Messages to_sender, to_all;  // to_all: the sender, too
 };
 
-// A page of a lecture, opened in the viewer: which scene, compared with what, moved by which mouse, seen in which panel.
+// A page of a lecture, opened in the viewer: which scene, compared with what, moved by which mouse, seen in which
+// panel.
 struct Lesson {
   std::string id, pages, title, claim, look;
-  std::string panel = "energy";      // "energy", "microscope", "landscape" or "functions"
-  std::string function;              // JSON of the question for the functions panel; empty: none
-  std::string missing;               // why it cannot be shown; empty: it can
-  std::filesystem::path scene;       // empty: no other scene
+  std::string panel = "energy";  // "energy", "microscope", "landscape" or "functions"
+  std::string function;          // JSON of the question for the functions panel; empty: none
+  std::string missing;           // why it cannot be shown; empty: it can
+  std::filesystem::path scene;   // empty: no other scene
   std::vector<std::string> overrides;
   struct Comparison {
     std::vector<std::string> overrides;
@@ -38,8 +39,8 @@ struct Lesson {
 
 struct SessionOptions {
   std::vector<Lesson> lessons = {};
-  size_t timeline_bytes = size_t{256} << 20;                      // what rewinding may hold, per side
-  std::function<void(const std::string& what)> announce = {};     // before something that takes a while; "" after it
+  size_t timeline_bytes = size_t{256} << 20;                   // what rewinding may hold, per side
+  std::function<void(const std::string& what)> announce = {};  // before something that takes a while; "" after it
 };
 
 enum class Role { steers, watches };
@@ -56,13 +57,13 @@ class Session {
   Answer handle(std::string_view text, Role role);
 
   bool is_playing() const;
-  double speed() const;          // simulated seconds per second that play aims at
-  double time() const;           // simulated so far, of the side that is behind [s]
-  void note_rate(double rate);   // measured by who knows the time, for the pages
-  Messages advance();            // the next step of the side that is behind; what is new, for all pages
+  double speed() const;         // simulated seconds per second that play aims at
+  double time() const;          // simulated so far, of the side that is behind [s]
+  void note_rate(double rate);  // measured by who knows the time, for the pages
+  Messages advance();           // the next step of the side that is behind; what is new, for all pages
 
-  Messages pictures() const;      // the newest of every side
-  long picture_version() const;   // another number when they are others
+  Messages pictures() const;     // the newest of every side
+  long picture_version() const;  // another number when they are others
 
   // From any thread: a step under way ends at its next iteration and is dropped.
   void interrupt();

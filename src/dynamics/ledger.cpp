@@ -6,10 +6,15 @@
 namespace aspic {
 namespace {
 
-double load_energy(const Model& model, std::span<const double> x) {
-  double V = 0;
-  for (const auto& load : model.loads) V += load->value(x);
-  return V;
+// V += sign * (energy of each load), and their sum.
+double add_load_energies(const Model& model, std::span<const double> x, double sign, std::vector<double>& V) {
+  double sum = 0;
+  for (size_t k = 0; k < model.loads.size(); ++k) {
+    const double value = model.loads[k]->value(x);
+    V[k] += sign * value;
+    sum += value;
+  }
+  return sum;
 }
 
 }  // namespace
@@ -23,16 +28,22 @@ double kinetic_energy(const MassMatrix& mass, std::span<const double> qdot, std:
 
 // What the loads gain because targets move from where they are at the start to where they are at the end: with the body
 // where it starts, and for schemes of higher order the mean of that and of the body where it ends.
-double Ledger::target_work(const StepTools& tools, int order, const State& end, double& loads_before) const {
+double Ledger::target_work(const StepTools& tools, int order, const State& end, double& loads_before,
+                           StepReport& report) {
   const Model& model = tools.model;
   const State& start = tools.start;
   const StepContext before{start.q, tools.h, start.time}, after{start.q, tools.h, tools.end_time};
+  const size_t loads = model.loads.size();
+  for (auto* v : {&early_, &late_}) v->assign(loads, 0.0);
   tell_potential(tools.E, before);
-  loads_before = load_energy(model, start.q);
-  const double at_end = order > 1 ? load_energy(model, end.q) : 0;
+  loads_before = add_load_energies(model, start.q, -1, early_);
+  const double at_end = order > 1 ? add_load_energies(model, end.q, -1, late_) : 0;
   tell_potential(tools.E, after);
-  const double early = load_energy(model, start.q) - loads_before;
-  return order > 1 ? (early + (load_energy(model, end.q) - at_end)) / 2 : early;
+  const double early = add_load_energies(model, start.q, 1, early_) - loads_before;
+  const double late = order > 1 ? add_load_energies(model, end.q, 1, late_) - at_end : 0;
+  report.target_work.resize(loads);
+  for (size_t k = 0; k < loads; ++k) report.target_work[k] += order > 1 ? (early_[k] + late_[k]) / 2 : early_[k];
+  return order > 1 ? (early + late) / 2 : early;
 }
 
 void Ledger::begin(const Model& model, std::span<const double> q) {
@@ -70,7 +81,7 @@ void Ledger::add(const StepTools& tools, int order, const State& end, const Step
   const size_t n = end.q.size();
   for (auto* v : {&Ma_, &momentum_, &residual_}) v->assign(n, 0.0);
   double potential_before = 0;
-  const double target = target_work(tools, order, end, potential_before);
+  const double target = target_work(tools, order, end, potential_before, report);
   for (const double V : elastic_energies(tools.model, start.q, {}, report)) potential_before += V;
   const double kinetic_before = kinetic_energy(*tools.model.mass, start.qdot, momentum_);
   tools.model.mass->multiply(forces.acceleration, Ma_);

@@ -24,13 +24,14 @@ class Ledger {
   void add(const StepTools& tools, int order, const State& end, const StepForces& forces, StepReport& report);
 
  private:
-  double target_work(const StepTools& tools, int order, const State& end, double& loads_before) const;
+  double target_work(const StepTools& tools, int order, const State& end, double& loads_before, StepReport& report);
   // `known`: those at q of all terms, the elastic ones first, or none.
   std::span<const double> elastic_energies(const Model& model, std::span<const double> q, std::span<const double> known,
                                            Work& work);
   void note_worst_vertex(const Pins& pins, StepReport& report) const;
 
   std::vector<double> Ma_, momentum_, residual_;
+  std::vector<double> early_, late_;      // of each load: what its target's motion adds to its energy
   std::vector<double> last_q_, elastic_;  // where the elastic energies were evaluated last, and one for each body
 };
 

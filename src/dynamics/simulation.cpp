@@ -108,6 +108,7 @@ struct Simulation::Impl {
   void take_back(const StepTools& with, double time, StepReport& report) {
     report.residual = report.pin_work = report.damping_loss = 0;
     report.numerical_loss = report.residual_work = report.ledger_error = 0;
+    report.target_work.clear();
     state = before;
     state.time = time;
     has_previous = has_previous && time == before.time;
@@ -162,6 +163,7 @@ Simulation::Simulation(Model model, State initial, SimulationOptions options) {
 }
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 StepReport Simulation::step(const IterationObserver& observe, const Consent& go_on) {
   return impl_->step(observe, go_on);
@@ -208,6 +210,16 @@ void Simulation::set_solver(const SolverOptions& solver) {
   require_possible(options);
   impl_->direction = std::move(direction);
   impl_->options = std::move(options);
+}
+
+void Simulation::set_pins(std::vector<Pin> pins) {
+  const Pins wanted(pins, impl_->start.q);
+  if (!impl_->integrator->is_static()) require_mass(impl_->model, wanted);
+  impl_->model.pins = std::move(pins);
+  *impl_->pins = Pins(impl_->model.pins, impl_->start.q);
+  impl_->E = std::make_unique<IncrementalPotential>(impl_->model, *impl_->pins);
+  impl_->direction = make_search_direction(impl_->options.solver);
+  impl_->stand_at(impl_->state.time);
 }
 
 bool Simulation::is_implicit() const { return impl_->integrator->is_implicit(); }

@@ -41,10 +41,13 @@ class Simulation {
   Simulation(Model model, State initial, SimulationOptions options);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
 
   // A step that the observer stops, or that may not go on, is dropped with the status `interrupted`.
   StepReport step(const IterationObserver& observe = {}, const Consent& go_on = {});
-  void set_solver(const SolverOptions& solver);  // from the next step on; throws InvalidInput as the constructor does
+  // From the next step on; both throw InvalidInput as the constructor does, and change nothing then.
+  void set_solver(const SolverOptions& solver);
+  void set_pins(std::vector<Pin> pins);
 
   const Model& model() const;
   const State& state() const;

@@ -33,12 +33,13 @@ struct StepReport : Work {  // of all its solves, and of what is reported here
   double kinetic = 0;
   std::vector<double> potential;  // one per term of V, named by Simulation::potential_names()
   double potential_total = 0;
-  double pin_work = 0;        // by moving pins and moving targets of springs, in this step
-  double damping_loss = 0;    // by damping terms, in this step
-  double numerical_loss = 0;  // by the integrator, in this step
-  double residual_work = 0;   // by the forces that the solve left over
-  double ledger_error = 0;    // what does not add up
-  double seconds = 0;         // wall time of the step
+  double pin_work = 0;              // by moving pins and moving targets of springs, in this step
+  std::vector<double> target_work;  // of that, by the moving targets of each of Model::loads
+  double damping_loss = 0;          // by damping terms, in this step
+  double numerical_loss = 0;        // by the integrator, in this step
+  double residual_work = 0;         // by the forces that the solve left over
+  double ledger_error = 0;          // what does not add up
+  double seconds = 0;               // wall time of the step
 };
 
 }  // namespace aspic

@@ -63,10 +63,11 @@ std::vector<CurvePoint> curve_along(const LiveIteration& at, double c, int sampl
 Slice slice_through(const LiveIteration& at, int samples) {
   ASPIC_CHECK(samples >= 2);
   Objective& E = at.E;
-  const Vector v = across_direction(at), Hd = hessian_times(at, at.d), Hv = hessian_times(at, v);
+  Vector v = across_direction(at);
+  const Vector Hd = hessian_times(at, at.d), Hv = hessian_times(at, v);
   const double gd = E.dot(at.g, at.d), gv = E.dot(at.g, v);
   const double dHd = E.dot(at.d, Hd), dHv = E.dot(v, Hd), vHv = E.dot(v, Hv);
-  Slice slice{samples, samples, {}};
+  Slice slice{samples, samples, {}, {}};
   Vector x(at.x.size());
   for (int row = 0; row < samples; ++row)
     for (int column = 0; column < samples; ++column) {
@@ -75,6 +76,7 @@ Slice slice_through(const LiveIteration& at, int samples) {
       slice.point.push_back(
           {s, t, E.value(x), at.value + s * gd + t * gv + s * s / 2 * dHd + s * t * dHv + t * t / 2 * vHv});
     }
+  slice.across = std::move(v);
   return slice;
 }
 

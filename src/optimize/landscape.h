@@ -29,6 +29,7 @@ struct SlicePoint {
 struct Slice {
   int columns = 0, rows = 0;      // samples along s and along t
   std::vector<SlicePoint> point;  // columns x rows, s fastest
+  std::vector<double> across;     // v
 };
 
 // s in [-0.5, 1.5], t in [-1, 1].

@@ -49,6 +49,7 @@ struct SceneOptions {
   std::filesystem::path mesher = {};        // aspic-mesh; empty: found by itself
   bool allow_outside = false;               // read files from outside the scene's folder and the folder above it
   Announce announce = {};                   // empty: nobody listens
+  std::function<void(Model&)> amend = {};   // adds to the model what no scene can name; called before it is simulated
 };
 
 // A .toml file is a scene; any mesh file becomes one with sensible defaults. Throws InvalidInput with file, line,

@@ -127,6 +127,7 @@ class SceneBuilder {
     mesh_loader().tell_if_many(model_.mesh.tet_count(), "setting up " + std::to_string(model_.mesh.vertex_count()) +
                                                             " vertices: materials, mass and the pattern of the matrix");
     add_model();
+    if (options_.amend) options_.amend(model_);
     State state = start();
     const SimulationOptions options = options_of(source_.document, source_.notes);
     const int steps = steps_of(*source_.document.find("time"));

@@ -1,0 +1,117 @@
+// `aspic view`: a session in the browser.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "aspic/browser.h"
+#include "aspic/commands.h"
+#include "aspic/interrupt.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "viewer/page.h"
+#include "viewer/server.h"
+#include "viewer/session.h"
+
+namespace aspic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using viewer::Role;
+using viewer::Server;
+using viewer::Session;
+
+struct Arguments {
+  fs::path input;
+  std::vector<std::string> overrides;
+  int port = 0, threads = 0;  // 0: any; all
+  bool no_browser = false, play = false;
+};
+
+constexpr std::chrono::milliseconds kSignalPeriod(20);
+constexpr std::chrono::seconds kPatience(2);  // with a step under way, at the end
+
+void print_scene(const Session& session) {
+  for (const viewer::Message& message : session.greeting(Role::watches)) {
+    if (message.is_binary) continue;
+    const auto scene = nlohmann::json::parse(message.bytes);
+    if (scene.value("kind", "") != "scene") continue;
+    for (const auto& note : scene.at("notes")) fmt::print("note: {}\n", note.get<std::string>());
+    fmt::print("{}: {} vertices, {} tets; {} threads\n", scene.at("name").get<std::string>(),
+               scene.at("vertices").get<int>(), scene.at("tets").get<int>(), thread_count());
+  }
+}
+
+void print_address(const Server& server, bool no_browser) {
+  fmt::print("{}\n", server.address());
+  const bool is_opened = !no_browser && open_browser(server.address());
+  fmt::print("{}; ctrl-C ends it\n", is_opened ? "opened in your browser" : "open this address in a browser");
+  std::fflush(stdout);
+}
+
+void log_line(const std::string& line) { fmt::print(stderr, "{}\n", line); }
+
+// Nothing needs to be kept, so a step that does not end is left behind.
+int serve_until_interrupted(Server& server) {
+  while (!interrupt_signal()) {
+    server.check();
+    std::this_thread::sleep_for(kSignalPeriod);
+  }
+  if (!server.stop(kPatience)) {
+    std::fflush(nullptr);
+    std::_Exit(exit_done);
+  }
+  return exit_done;
+}
+
+int view(const Arguments& arguments) {
+  if (arguments.threads > 0) set_thread_count(arguments.threads);
+  if (fs::is_directory(arguments.input))
+    throw InvalidInput(fmt::format("{}: is a directory; give a scene or a mesh", arguments.input.string()));
+
+  std::atomic<Server*> listener = nullptr;
+  const auto announce = [&](const std::string& what) {
+    if (Server* server = listener) return server->announce(what);
+    if (!what.empty()) fmt::print("{} ...\n", what);
+    std::fflush(stdout);
+  };
+  Session session(arguments.input, arguments.overrides, {.announce = announce});
+  print_scene(session);
+  if (arguments.play) session.handle(R"({"do":"play"})", Role::steers);
+
+  Server server({.port = arguments.port, .page = viewer::page(), .session = &session, .log = log_line});
+  listener = &server;
+  catch_interrupts();
+  print_address(server, arguments.no_browser);
+  return serve_until_interrupted(server);
+}
+
+}  // namespace
+
+void add_view(CLI::App& app, Action& action) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("view", "Shows a scene in the browser, live: to be seen, touched and changed");
+  command->footer(R"(
+Examples:
+  aspic view scenes/bunny.toml                    prints an address, and opens it where there is a display
+  aspic view bunny.obj --play                     a closed surface, filled with tets; starts at once
+  aspic view beam.toml --set material.young=2e5   with other values; the page changes them live, too
+  aspic view beam.toml --port 8080 --no-browser   on another machine; on yours: ssh -L 8080:127.0.0.1:8080 THERE
+
+The address works on this machine only, with the token in it. Several pages may watch, one steers. Ctrl-C ends it.)");
+  command->add_option("INPUT", arguments->input, "Scene (.toml) or mesh")->required();
+  command->add_option("--set", arguments->overrides, "Override a value: material.young=2e5; can be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--port", arguments->port, "Port to listen at; any free one by default")
+      ->check(CLI::Range(1, 65535));
+  command->add_flag("--no-browser", arguments->no_browser, "Only print the address");
+  command->add_flag("--play", arguments->play, "Start the simulation at once");
+  command->add_option("--threads", arguments->threads, "Threads; all cores by default; the result is the same")
+      ->check(CLI::Range(1, 1024));
+  command->callback([arguments, &action] { action = [arguments] { return view(*arguments); }; });
+}
+
+}  // namespace aspic::cli

@@ -1,0 +1,8 @@
+// The commands that need the viewer.
+#include "aspic/commands.h"
+
+namespace aspic::cli {
+
+void add_viewer_commands(CLI::App& app, Action& action) { add_view(app, action); }
+
+}  // namespace aspic::cli

@@ -1,0 +1,25 @@
+// A program that was built without the viewer says so when its commands are asked for.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "aspic/commands.h"
+#include "base/error.h"
+
+namespace aspic::cli {
+
+void add_viewer_commands(CLI::App& app, Action& action) {
+  for (const char* name : {"view", "report", "render"}) {
+    CLI::App* command = app.add_subcommand(name, "")->group("")->allow_extras();  // not in the list of commands
+    command->callback([name, &action] {
+      action = [name]() -> int {
+        throw InvalidInput(fmt::format(
+            "aspic {}: this aspic was built without its viewer; build it with nodejs, npm and libboost-dev installed "
+            "and cmake -DASPIC_VIEWER=ON",
+            name));
+      };
+    });
+  }
+}
+
+}  // namespace aspic::cli

@@ -1,0 +1,134 @@
+#include "viewer/arguments.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/error.h"
+
+namespace aspic::viewer {
+namespace {
+
+constexpr int kDeepest = 12;        // of a message
+constexpr size_t kMostTexts = 200;  // of a list
+constexpr size_t kLongest = 4096;   // [bytes]
+
+std::string shown(const Json& value) {
+  std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  if (text.size() > 60) text = text.substr(0, 57) + "...";
+  return text;
+}
+
+bool is_finite_number(const Json& value) { return value.is_number() && std::isfinite(value.get<double>()); }
+
+}  // namespace
+
+Json parse_json(std::string_view text, size_t most) {
+  if (text.size() > most)
+    throw InvalidInput(fmt::format("a message of {} bytes; at most {} are read", text.size(), most));
+  bool is_deep = false;
+  const auto note_depth = [&](int depth, Json::parse_event_t, Json&) {
+    is_deep = is_deep || depth > kDeepest;
+    return !is_deep;
+  };
+  try {
+    Json value = Json::parse(text, note_depth);
+    if (is_deep) throw InvalidInput(fmt::format("a message nested deeper than {} levels", kDeepest));
+    return value;
+  } catch (const Json::exception& e) {
+    throw InvalidInput(fmt::format("not a message in JSON: {}", e.what()));
+  }
+}
+
+void refuse(const std::string& key, const Json& value, const std::string& what_would_do) {
+  throw InvalidInput(fmt::format("{} = {}: {}", key, shown(value), what_would_do));
+}
+
+Arguments::Arguments(const Json& object, std::string name) : object_(object), name_(std::move(name)) {
+  if (!object.is_object()) refuse(name_, object, "an object is expected, such as {\"do\": \"play\"}");
+}
+
+void Arguments::fail(const char* key, const std::string& what_would_do) const {
+  refuse(name_ + "." + key, object_.at(key), what_would_do);
+}
+
+const Json& Arguments::value(const char* key) {
+  known_.insert(key);
+  if (!has(key)) throw InvalidInput(fmt::format("{}: '{}' is missing", name_, key));
+  return object_.at(key);
+}
+
+double Arguments::number(const char* key) {
+  const Json& v = value(key);
+  if (!is_finite_number(v)) fail(key, "a finite number is expected");
+  return v.get<double>();
+}
+
+int Arguments::integer(const char* key, int lowest, int highest) {
+  const Json& v = value(key);
+  const bool fits = is_finite_number(v) && v.get<double>() >= lowest && v.get<double>() <= highest &&
+                    v.get<double>() == std::floor(v.get<double>());
+  if (!fits) fail(key, fmt::format("a whole number from {} to {} is expected", lowest, highest));
+  return static_cast<int>(v.get<double>());
+}
+
+bool Arguments::boolean(const char* key) {
+  const Json& v = value(key);
+  if (!v.is_boolean()) fail(key, "true or false is expected");
+  return v.get<bool>();
+}
+
+std::string Arguments::text(const char* key, size_t most) {
+  const Json& v = value(key);
+  if (!v.is_string()) fail(key, "a text is expected");
+  auto text = v.get<std::string>();
+  if (text.size() > most) fail(key, fmt::format("a text of at most {} bytes is expected", most));
+  if (text.find('\0') != std::string::npos) fail(key, "a text without zero bytes is expected");
+  return text;
+}
+
+Vec3d Arguments::vector(const char* key) {
+  const Json& v = value(key);
+  Vec3d x{};
+  bool fits = v.is_array() && v.size() == 3;
+  for (int i = 0; fits && i < 3; ++i) {
+    fits = is_finite_number(v[i]);
+    if (fits) x[i] = v[i].get<double>();
+  }
+  if (!fits) fail(key, "three finite numbers are expected");
+  return x;
+}
+
+std::vector<std::string> Arguments::texts(const char* key) {
+  const Json& v = value(key);
+  bool fits = v.is_array() && v.size() <= kMostTexts;
+  std::vector<std::string> list;
+  for (size_t i = 0; fits && i < v.size(); ++i) {
+    fits = v[i].is_string() && v[i].get_ref<const std::string&>().size() <= kLongest &&
+           v[i].get_ref<const std::string&>().find('\0') == std::string::npos;
+    if (fits) list.push_back(v[i].get<std::string>());
+  }
+  if (!fits) fail(key, fmt::format("at most {} texts of at most {} bytes are expected", kMostTexts, kLongest));
+  return list;
+}
+
+std::vector<int> Arguments::indices(const char* key, int count) {
+  const Json& v = value(key);
+  bool fits = v.is_array() && v.size() <= static_cast<size_t>(count);
+  std::vector<int> list;
+  for (size_t i = 0; fits && i < v.size(); ++i) {
+    fits = v[i].is_number_integer() && v[i].get<double>() >= 0 && v[i].get<double>() < count;
+    if (fits) list.push_back(v[i].get<int>());
+  }
+  if (!fits) fail(key, fmt::format("a list of numbers from 0 to {} is expected, each at most once", count - 1));
+  return list;
+}
+
+void Arguments::finish() const {
+  for (const auto& [key, unused] : object_.items())
+    if (!known_.count(key))
+      throw InvalidInput(fmt::format("{}: unknown member '{}'{}", name_, key.substr(0, 40),
+                                     suggestion(key.substr(0, 40), {known_.begin(), known_.end()})));
+}
+
+}  // namespace aspic::viewer

@@ -1,0 +1,109 @@
+#include "viewer/fields.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/eigen3.h"
+#include "mesh/tet_shape.h"
+
+namespace aspic::viewer {
+namespace {
+
+Vec3d at(std::span<const double> x, int vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
+
+void evaluate_elasticity(const View& view, TetFields& fields) {
+  const size_t tets = view.simulation.model().mesh.tets.size();
+  fields.energy_density.assign(tets, 0.0);
+  fields.det_F.assign(tets, 1.0);
+  fields.cauchy.assign(6 * tets, 0.0);
+  fields.von_mises.assign(tets, 0.0);
+  for (const auto& V : view.simulation.model().elasticity) V->evaluate(view.x, fields);
+}
+
+// Values that vertices have by themselves: 3 components each, of which the length is shown.
+double vertex_value(const std::string& field, const View& view, const Surface& surface, int vertex) {
+  if (field == "speed") return length(surface.position(vertex, view.simulation.state().qdot));
+  return length(surface.position(vertex, view.x) - surface.rest[vertex]);
+}
+
+}  // namespace
+
+std::vector<Field> fields_of(const Model& model) {
+  std::vector<Field> fields = {
+      {"displacement", "displacement", "m"},        {"speed", "speed", "m/s"},
+      {"von_mises", "von Mises stress", "Pa"},      {"energy_density", "energy density", "J/m^3"},
+      {"det_F", "volume ratio det F", "", true, 1}, {"stretch", "largest stretch", "", true, 1},
+      {"density", "density at rest", "kg/m^3"},     {"quality", "shape of tets at rest (1: regular)", ""}};
+  for (const auto& [name, unused] : model.tet_fields) {
+    if (name == "young") {
+      fields.push_back({name, "Young's modulus", "Pa"});
+    } else if (name == "poisson") {
+      fields.push_back({name, "Poisson's ratio", ""});
+    } else {
+      fields.push_back({name, name, ""});
+    }
+  }
+  return fields;
+}
+
+TetFields tet_fields_at(const View& view) {
+  TetFields fields;
+  evaluate_elasticity(view, fields);
+  return fields;
+}
+
+Mat3d deformation_gradient(const TetMesh& mesh, int tet, std::span<const double> x) {
+  const auto [a, b, c, d] = mesh.tets[tet];
+  const Mat3d Ds = from_columns(at(x, b) - at(x, a), at(x, c) - at(x, a), at(x, d) - at(x, a));
+  return Ds * inverse(edge_matrix(mesh, tet));
+}
+
+Vec3d stretches(const Mat3d& F) {
+  const Mat3d C = transpose(F) * F;
+  for (const double entry : C.a)
+    if (!std::isfinite(entry)) return {{entry, entry, entry}};
+  const Vec3d squared = symmetric_eigen(C).values;
+  const auto root = [](double s) { return std::sqrt(std::max(s, 0.0)); };
+  return {{root(squared[2]), root(squared[1]), root(squared[0])}};
+}
+
+std::span<const double> FieldValues::tet_values(const std::string& field, const View& view) {
+  const Model& model = view.simulation.model();
+  if (field == "density") return model.density;
+  for (const auto& [name, values] : model.tet_fields)
+    if (name == field) return values;
+  const int tets = model.mesh.tet_count();
+  if (field == "quality" || field == "stretch") {
+    tet_.resize(tets);
+    for (int t = 0; t < tets; ++t)
+      tet_[t] = field == "quality" ? mean_ratio(corners(model.mesh, t))
+                                   : stretches(deformation_gradient(model.mesh, t, view.x))[0];
+    return tet_;
+  }
+  evaluate_elasticity(view, fields_);
+  if (field == "von_mises") return fields_.von_mises;
+  if (field == "energy_density") return fields_.energy_density;
+  return fields_.det_F;
+}
+
+void FieldValues::evaluate(const std::string& field, const View& view, const Surface& surface,
+                           std::span<float> values) {
+  if (field == "displacement" || field == "speed") {
+    for (int v = 0; v < surface.vertex_count(); ++v)
+      values[v] = static_cast<float>(vertex_value(field, view, surface, v));
+    return;
+  }
+  const std::span<const double> of_tet = tet_values(field, view);
+  const TetMesh& mesh = view.simulation.model().mesh;
+  for (int v = 0; v < surface.vertex_count(); ++v) {
+    double sum = 0, weight = 0;
+    for (const int t : surface.tets_at(v)) {
+      const double w = volume(mesh, t);
+      sum += w * of_tet[t];
+      weight += w;
+    }
+    values[v] = static_cast<float>(sum / weight);
+  }
+}
+
+}  // namespace aspic::viewer

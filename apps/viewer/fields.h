@@ -1,0 +1,40 @@
+// The scalar fields that colour a surface.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "viewer/surface.h"
+
+namespace aspic::viewer {
+
+struct Field {
+  std::string name, label, unit;
+  bool is_diverging = false;
+  double center = 0;  // of a diverging one
+};
+std::vector<Field> fields_of(const Model& model);
+
+// A simulation as it is looked at: between steps, or at an iterate of the step under way.
+struct View {
+  const Simulation& simulation;
+  std::span<const double> x;
+};
+
+class FieldValues {
+ public:
+  // One value per vertex of the surface, of a field of the model. Values of tets are averaged by volume.
+  void evaluate(const std::string& field, const View& view, const Surface& surface, std::span<float> values);
+
+ private:
+  std::span<const double> tet_values(const std::string& field, const View& view);
+
+  TetFields fields_;
+  std::vector<double> tet_;
+};
+
+TetFields tet_fields_at(const View& view);
+Mat3d deformation_gradient(const TetMesh& mesh, int tet, std::span<const double> x);
+Vec3d stretches(const Mat3d& F);  // largest first, never negative
+
+}  // namespace aspic::viewer

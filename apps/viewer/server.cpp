@@ -1,0 +1,120 @@
+#include "viewer/server.h"
+
+#include <fmt/format.h>
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <future>
+#include <optional>
+#include <thread>
+
+#include "base/error.h"
+#include "viewer/server_access.h"
+#include "viewer/server_http.h"
+#include "viewer/server_room.h"
+#include "viewer/server_simulation.h"
+
+namespace aspic::viewer {
+namespace {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+constexpr int kMaxConnections = 64;  // that are no pages yet
+constexpr std::chrono::milliseconds kGoodbye(300);
+
+tcp::acceptor listen(asio::io_context& network, int port) {
+  try {
+    return {network, tcp::endpoint(asio::ip::address_v4::loopback(), static_cast<unsigned short>(port))};
+  } catch (const boost::system::system_error& error) {
+    throw InvalidInput(fmt::format("port {}: cannot be listened at ({}); leave --port out to get a free one", port,
+                                   error.code().message()));
+  }
+}
+
+}  // namespace
+
+// One thread does all of the network, another one the simulation.
+struct Server::Impl {
+  explicit Impl(ServerOptions given)
+      : options(std::move(given)),
+        service{.access = access,
+                .options = options,
+                .is_full = [this] { return room.is_full(); },
+                .upgrade = [this](tcp::socket socket,
+                                  const Client::HttpRequest& request) { room.admit(std::move(socket), request); }},
+        acceptor(listen(network, options.port)),
+        access(acceptor.local_endpoint().port()),
+        room(network, options.log) {
+    if (options.session) {
+      simulation.emplace(*options.session, room);
+      room.open(*simulation);
+    }
+    accept();
+    std::promise<void> ended;
+    network_ended = ended.get_future();
+    thread = std::thread([this, promise = std::move(ended)]() mutable {
+      network.run();
+      promise.set_value();
+    });
+  }
+
+  void accept() {
+    acceptor.async_accept([this](const error_code& error, tcp::socket socket) {
+      if (error == asio::error::operation_aborted) return;
+      if (!error && service.connections < kMaxConnections) {
+        error_code ignored;
+        socket.set_option(tcp::no_delay(true), ignored);
+        std::make_shared<HttpConnection>(std::move(socket), service)->serve();
+      }
+      accept();
+    });
+  }
+
+  // The pages are told, but not waited for long.
+  void close_network() {
+    if (!thread.joinable()) return;
+    asio::post(network, [this] {
+      error_code ignored;
+      acceptor.close(ignored);
+      room.close("aspic has ended");
+    });
+    if (network_ended.wait_for(kGoodbye) != std::future_status::ready) network.stop();
+    thread.join();
+    room.cut_off();
+  }
+
+  ServerOptions options;
+  HttpService service;  // outlives the network's last connections
+  asio::io_context network{1};
+  tcp::acceptor acceptor;
+  Access access;
+  Room room;
+  std::optional<SimulationThread> simulation;
+  std::thread thread;
+  std::future<void> network_ended;
+};
+
+Server::Server(ServerOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
+
+Server::~Server() { impl_->close_network(); }
+
+int Server::port() const { return impl_->access.port(); }
+
+std::string Server::address() const {
+  return fmt::format("http://127.0.0.1:{}/?token={}", port(), impl_->access.token());
+}
+
+void Server::announce(const std::string& what) { impl_->room.announce(what); }
+
+void Server::check() const {
+  if (impl_->simulation) impl_->simulation->check();
+}
+
+bool Server::stop(std::chrono::milliseconds patience) {
+  impl_->close_network();
+  return !impl_->simulation || impl_->simulation->stop(patience);
+}
+
+}  // namespace aspic::viewer

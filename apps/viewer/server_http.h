@@ -1,0 +1,49 @@
+// One HTTP request: who asks is checked, then the page is served, what it sends taken in, or its WebSocket handed on.
+// Lives in the network's thread.
+#pragma once
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "viewer/server.h"
+#include "viewer/server_access.h"
+#include "viewer/server_client.h"
+
+namespace aspic::viewer {
+
+struct HttpService {
+  const Access& access;
+  const ServerOptions& options;
+  std::function<bool()> is_full;  // no further page may come
+  std::function<void(Client::Socket, const Client::HttpRequest&)> upgrade;
+  int connections = 0;  // now
+};
+
+class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
+ public:
+  HttpConnection(Client::Socket socket, HttpService& service);
+  ~HttpConnection();
+
+  void serve();
+
+ private:
+  using Response = boost::beast::http::response<boost::beast::http::string_body>;
+  using Status = boost::beast::http::status;
+
+  void handle_head();
+  void handle_body(const std::string& path);
+  std::optional<Response> refusal(const Client::HttpRequest& request) const;
+  Response failure(Status status, const std::string& words) const;
+  Response response(Status status, const std::string& type, std::string body) const;
+  void answer(Response response);
+
+  boost::beast::tcp_stream stream_;
+  HttpService& service_;
+  boost::beast::flat_buffer buffer_;
+  boost::beast::http::request_parser<boost::beast::http::string_body> parser_;
+};
+
+}  // namespace aspic::viewer

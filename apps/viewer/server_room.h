@@ -1,0 +1,74 @@
+// The pages that are connected, and what each of them may do. Lives in the network's thread; what the simulation says
+// comes in through the Audience.
+#pragma once
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "viewer/server_client.h"
+#include "viewer/server_simulation.h"
+
+namespace aspic::viewer {
+
+using Log = std::function<void(const std::string& line)>;
+
+class Room : public Audience {
+ public:
+  static constexpr size_t kMaxPages = 16;
+
+  Room(boost::asio::io_context& network, Log log) : network_(network), urgency_(network), log_(std::move(log)) {}
+
+  void open(SimulationThread& simulation) { simulation_ = &simulation; }
+  bool is_full() const { return pages_.size() >= kMaxPages; }
+  void admit(Client::Socket socket, const Client::HttpRequest& request);
+  void close(const std::string& why);  // for good
+  void cut_off();                      // who has not gone after that
+  void announce(const std::string& what);
+
+  // Audience: from the simulation's thread.
+  void greet(PageId page, Messages messages) override;
+  void tell(PageId page, Messages messages) override;
+  void tell_all(Messages messages) override;
+  void show(Messages pictures, long version) override;
+
+ private:
+  struct Page {
+    std::shared_ptr<Client> client;
+    bool was_told_to_steer = false;
+    bool is_greeted = false;
+    bool wants_picture = true;  // the first one unasked
+    long seen = -1;             // version of its last picture
+  };
+
+  Page* find(PageId id);
+  void enter(std::shared_ptr<Client> client);
+  void leave(PageId id, const std::string& why);
+  void receive(PageId id, std::string text);
+  void take(Page& page, const std::string& id);
+  void steer(PageId id);
+  void tell_role(Page& page);
+  void offer(Page& page);
+  void watch_urgency();
+  void complain(const std::string& line);
+  static void send(const Page& page, std::string text);
+  void post(std::function<void()> work);
+
+  boost::asio::io_context& network_;
+  boost::asio::steady_timer urgency_;
+  bool is_watching_urgency_ = false, is_closed_ = false;
+  SimulationThread* simulation_ = nullptr;
+  Log log_;
+  std::chrono::steady_clock::time_point complaints_since_;
+  int complaints_ = 0;
+
+  std::vector<Page> pages_;  // in the order of their arrival
+  PageId last_id_ = kNoPage, steers_ = kNoPage;
+  bool is_holding_ = false;                               // the page that steers has grabbed the body
+  std::vector<std::shared_ptr<const Message>> pictures_;  // the last ones shown
+  long version_ = -1;
+};
+
+}  // namespace aspic::viewer

@@ -1,0 +1,169 @@
+#include "viewer/server_simulation.h"
+
+#include <algorithm>
+
+namespace aspic::viewer {
+namespace {
+
+constexpr size_t kInboxRequests = 1000, kInboxBytes = size_t{64} << 20;
+constexpr std::chrono::milliseconds kSlow(300);  // a step that an urgent request does not wait for
+constexpr std::chrono::microseconds kBetweenPictures(16'600);
+
+}  // namespace
+
+SimulationThread::SimulationThread(Session& session, Audience& audience) : session_(session), audience_(audience) {
+  thread_ = std::thread([this] {
+    try {
+      run();
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      failure_ = std::current_exception();
+    }
+    const std::lock_guard lock(mutex_);
+    has_ended_ = true;
+    ended_.notify_all();
+  });
+}
+
+SimulationThread::~SimulationThread() {
+  stop(std::chrono::milliseconds(0));
+  thread_.join();
+}
+
+bool SimulationThread::add(Request request) {
+  const std::lock_guard lock(mutex_);
+  const size_t size = request.text.size();
+  if (!inbox_.empty()) {
+    Request& last = inbox_.back();
+    if (last.is_superseded && request.is_superseded && last.page == request.page && last.role == request.role) {
+      inbox_bytes_ += size - last.text.size();
+      last = std::move(request);
+      return true;
+    }
+  }
+  if (inbox_.size() >= kInboxRequests || inbox_bytes_ + size > kInboxBytes) return false;
+  inbox_bytes_ += size;
+  urgent_ += request.is_urgent;
+  inbox_.push_back(std::move(request));
+  woken_ = true;
+  changed_.notify_one();
+  return true;
+}
+
+void SimulationThread::want_pictures() {
+  const std::lock_guard lock(mutex_);
+  pictures_wanted_ = woken_ = true;
+  changed_.notify_one();
+}
+
+bool SimulationThread::interrupt_if_slow() {
+  const std::lock_guard lock(mutex_);
+  if (urgent_ == 0) return false;
+  if (busy_since_ && Clock::now() - *busy_since_ > kSlow) session_.interrupt();
+  return true;
+}
+
+bool SimulationThread::stop(std::chrono::milliseconds patience) {
+  std::unique_lock lock(mutex_);
+  stopping_ = woken_ = true;
+  if (busy_since_) session_.interrupt();
+  changed_.notify_one();
+  return ended_.wait_for(lock, patience, [&] { return has_ended_; });
+}
+
+void SimulationThread::check() const {
+  const std::lock_guard lock(mutex_);
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+void SimulationThread::run() {
+  for (;;) {
+    wait();
+    while (std::optional<Request> request = next()) carry_out(*request);
+    {
+      const std::lock_guard lock(mutex_);
+      if (stopping_) return;
+    }
+    play();
+    show_pictures();
+  }
+}
+
+// Until something arrives, the next step is due, or a picture that somebody waits for.
+void SimulationThread::wait() {
+  const bool playing = session_.is_playing();
+  const bool has_news = shown_ != session_.picture_version();
+  std::unique_lock lock(mutex_);
+  const auto woken = [&] { return woken_; };
+  const bool shows = pictures_wanted_ && has_news;
+  if (playing && shows) {
+    changed_.wait_until(lock, std::min(next_step_, next_picture_), woken);
+  } else if (playing || shows) {
+    changed_.wait_until(lock, playing ? next_step_ : next_picture_, woken);
+  } else {
+    changed_.wait(lock, woken);
+  }
+  woken_ = false;
+}
+
+std::optional<Request> SimulationThread::next() {
+  const std::lock_guard lock(mutex_);
+  if (stopping_ || inbox_.empty()) return std::nullopt;
+  Request request = std::move(inbox_.front());
+  inbox_.pop_front();
+  inbox_bytes_ -= request.text.size();
+  urgent_ -= request.is_urgent;
+  return request;
+}
+
+// Lets interrupt() reach this work, and nothing that comes after it.
+template <class Work>
+auto SimulationThread::interruptibly(Work work) {
+  {
+    const std::lock_guard lock(mutex_);
+    busy_since_ = Clock::now();
+  }
+  auto result = work();
+  const std::lock_guard lock(mutex_);
+  busy_since_.reset();
+  return result;
+}
+
+void SimulationThread::carry_out(const Request& request) {
+  if (request.text.empty()) return audience_.greet(request.page, session_.greeting(request.role));
+  Answer answer = interruptibly([&] { return session_.handle(request.text, request.role); });
+  if (!answer.to_all.empty()) audience_.tell_all(std::move(answer.to_all));
+  if (!answer.to_sender.empty() && request.page != kNoPage) audience_.tell(request.page, std::move(answer.to_sender));
+}
+
+void SimulationThread::play() {
+  const bool starts = !was_playing_;
+  was_playing_ = session_.is_playing();
+  if (!was_playing_) return;
+  const Clock::time_point now = Clock::now();
+  if (starts) {
+    pacing_.pause();
+    rate_.start(session_.time(), now);
+  }
+  next_step_ = pacing_.due(session_.time(), session_.speed(), now);
+  if (next_step_ > now) return;
+  audience_.tell_all(interruptibly([&] { return session_.advance(); }));
+  if (rate_.update(session_.time(), Clock::now())) session_.note_rate(rate_.value());
+  next_step_ = pacing_.due(session_.time(), session_.speed(), Clock::now());
+}
+
+void SimulationThread::show_pictures() {
+  const long version = session_.picture_version();
+  const Clock::time_point now = Clock::now();
+  if (shown_ == version || now < next_picture_) return;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!pictures_wanted_) return;
+    pictures_wanted_ = false;
+  }
+  shown_ = version;
+  next_picture_ = now + kBetweenPictures;
+  audience_.show(session_.pictures(), version);
+}
+
+}  // namespace aspic::viewer

@@ -1,0 +1,114 @@
+// What is behind a Session: its sides, what was done to them, and the commands and queries by name.
+#pragma once
+#include <atomic>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "viewer/command_log.h"
+#include "viewer/picture.h"
+#include "viewer/session_messages.h"
+
+namespace aspic::viewer {
+
+// While something is prepared that may take long: what is announced meanwhile is taken back at the end.
+class Busy {
+ public:
+  explicit Busy(const SessionOptions& options) : options_(options) {}
+  Busy(const Busy&) = delete;
+  Busy& operator=(const Busy&) = delete;
+  ~Busy() {
+    if (spoke_) options_.announce("");
+  }
+  Announce announce() {
+    if (!options_.announce) return {};
+    return [this](const std::string& what) {
+      spoke_ = true;
+      options_.announce(what);
+    };
+  }
+
+ private:
+  const SessionOptions& options_;
+  bool spoke_ = false;
+};
+
+struct Session::Impl {
+  explicit Impl(SessionOptions o) : options(std::move(o)) {}
+
+  // ---- session.cpp
+  Answer handle(std::string_view text, Role role);
+  void advance();   // as play does
+  Consent go_on();  // until interrupt()
+  void tell(Message message) { news.push_back(std::move(message)); }
+  void tell_state();
+  void tell_side(const ShownSide& shown);  // everything but the state and the picture
+  std::unique_ptr<ShownSide> loaded(const std::string& name, const std::filesystem::path& path,
+                                    const std::vector<std::string>& overrides);
+  // Puts fresh sides in the place of what there is; from now on the recording begins with them.
+  void install(std::unique_ptr<ShownSide> first, std::unique_ptr<ShownSide> second,
+               std::optional<Recording::Comparison> compare);
+  void show_surface(ShownSide& shown);
+  ShownSide& next();  // the side whose turn it is: the one that is behind
+  void take_turn();   // its next step
+  void tell_step(ShownSide& shown, Progress progress);
+
+  // ---- session_commands.cpp
+  struct Command;
+  static const std::map<std::string, Command>& commands();
+  void command(const Json& message, Role role);
+  void play(Arguments&);
+  void pause(Arguments&);
+  void step(Arguments&);
+  void iterate(Arguments&);
+  void reset(Arguments&);
+  void rewind(Arguments&);
+  void set_speed(Arguments&);
+  void set(Arguments&);
+  void load(Arguments&);
+  void lesson(Arguments&);
+  void grab(Arguments&);
+  void move(Arguments&);
+  void release(Arguments&);
+  void stiffness(Arguments&);
+  void pin(Arguments&);
+  void compare(Arguments&);
+  void end_compare(Arguments&);
+  void colour(Arguments&);
+  void surface(Arguments&);
+  void replay(Arguments&);
+  void take(Arguments& arguments) { arguments.finish(); }  // roles are given by who knows the pages
+
+  void rewind_to(int step);
+  void note(Json command);  // that it was carried out now
+  void start_replay(Recording recording);
+  void repeat_due_events();
+  bool is_replay_done();
+
+  // ---- session_queries.cpp
+  Json query(const Json& message);
+  ShownSide& side_of(Arguments& arguments);
+
+  SessionOptions options;
+  std::unique_ptr<ShownSide> a, b;  // b: null without a comparison
+  std::vector<std::string> base_overrides;
+  std::optional<Recording::Comparison> comparison;
+  CommandLog log;
+  struct Replay {
+    Recording recording;
+    size_t next = 0;
+  };
+  std::optional<Replay> replaying;
+
+  bool playing = false;
+  double speed = 1, rate = 0;
+  std::string field;  // shown; empty: none
+  bool wants_skin = true;
+  uint32_t generation = 0;  // of the last geometry made
+  long version = 0;         // of what is to be seen
+  std::atomic<bool> stop = false;
+  Messages news;  // for all pages
+  PictureEncoder encoder;
+};
+
+}  // namespace aspic::viewer

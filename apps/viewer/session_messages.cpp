@@ -1,0 +1,125 @@
+#include "viewer/session_messages.h"
+
+#include "mesh/box_tree.h"
+#include "viewer/picture.h"
+
+namespace aspic::viewer {
+namespace {
+
+Json json_of(const Vec3d& x) { return {x[0], x[1], x[2]}; }
+
+// Against gravity; along y where there is none.
+Vec3d up_of(const Table& document) {
+  const Vec3d gravity = document.find("gravity")->vector();
+  const double size = std::sqrt(dot(gravity, gravity));
+  return size > 0 ? (-1 / size) * gravity : Vec3d{{0, 1, 0}};
+}
+
+Box box_of(std::span<const double> q) {
+  Box box;
+  for (size_t i = 0; i + 2 < q.size(); i += 3) box.add({{q[i], q[i + 1], q[i + 2]}});
+  return box;
+}
+
+Json fields_json(const Model& model) {
+  Json list = Json::array();
+  for (const Field& field : fields_of(model))
+    list.push_back({{"name", field.name},
+                    {"label", field.label},
+                    {"unit", field.unit},
+                    {"diverging", field.is_diverging},
+                    {"center", field.center}});
+  return list;
+}
+
+}  // namespace
+
+Message text(const Json& json) { return {false, json.dump(-1, ' ', false, Json::error_handler_t::replace)}; }
+
+Message hello(const std::vector<Lesson>& lessons, Role role) {
+  Json list = Json::array();
+  for (const Lesson& lesson : lessons) {
+    Json json = {{"id", lesson.id},       {"pages", lesson.pages}, {"title", lesson.title},
+                 {"claim", lesson.claim}, {"look", lesson.look},   {"panel", lesson.panel}};
+    if (!lesson.function.empty()) json["function"] = Json::parse(lesson.function, nullptr, false);
+    if (!lesson.missing.empty()) json["missing"] = lesson.missing;
+    list.push_back(std::move(json));
+  }
+  return text({{"kind", "hello"},
+               {"protocol", 1},
+               {"version", ASPIC_VERSION},
+               {"steers", role == Role::steers},
+               {"live", true},
+               {"lessons", std::move(list)}});
+}
+
+Message scene_message(const ShownSide& shown, const std::string& field) {
+  const SteeredScene& steered = shown.side.steered();
+  const Simulation& simulation = steered.scene.simulation;
+  const Model& model = simulation.model();
+  const Box box = box_of(shown.side.start().q);
+  Json bodies = Json::array();
+  for (const BodyRange& body : model.bodies) bodies.push_back(body.name);
+  return text({{"kind", "scene"},
+               {"side", shown.name},
+               {"generation", shown.generation},
+               {"name", steered.scene.name},
+               {"label", shown.label},
+               {"path", steered.path.string()},
+               {"overrides", steered.overrides},
+               {"notes", steered.scene.notes},
+               {"surface", shown.surface.is_fine ? "skin" : "cage"},
+               {"has_skin", has_fine_skin(steered.scene)},
+               {"vertices", model.mesh.vertex_count()},
+               {"tets", model.mesh.tet_count()},
+               {"bodies", std::move(bodies)},
+               {"lower", json_of(box.lower)},
+               {"upper", json_of(box.upper)},
+               {"up", json_of(up_of(steered.document))},
+               {"h", simulation.options().h},
+               {"implicit", simulation.is_implicit()},
+               {"solver", simulation.is_implicit() ? simulation.solver_description() : ""},
+               {"potentials", simulation.potential_names()},
+               {"fields", fields_json(model)},
+               {"field", field},
+               {"settings", settings_json(steered.document)},
+               {"stiffness", shown.side.stiffness()}});
+}
+
+Message geometry_message(const ShownSide& shown) {
+  return {true, encode_geometry({shown.number(), shown.generation}, shown.surface, shown.side.model().numbering)};
+}
+
+Message steps_message(const ShownSide& shown, int from) {
+  return text({{"kind", "steps"}, {"side", shown.name}, {"from", from}, {"steps", shown.side.rows().after(from)}});
+}
+
+Message pins_message(const ShownSide& shown) {
+  Json vertices = Json::array();
+  for (int v = 0; v < shown.surface.vertex_count(); ++v)
+    if (shown.side.is_pinned(shown.surface.anchor(v))) vertices.push_back(v);
+  return text({{"kind", "pins"}, {"side", shown.name}, {"vertices", std::move(vertices)}});
+}
+
+Json state_of(const ShownSide& shown) {
+  const Side& side = shown.side;
+  const StepRow* last = side.rows().last();
+  Json grab;
+  if (side.is_grabbed())
+    grab = {{"point", json_of(side.grabbed_point())},
+            {"target", json_of(side.mouse_target())},
+            {"force", json_of(side.mouse_force())}};
+  return {{"step", side.steps_taken()},
+          {"time", side.time()},
+          {"iteration", side.iteration()},
+          {"timeline", {{"first", 0}, {"last", side.steps_taken()}}},
+          {"status", last ? std::string(to_string(last->report.status)) : ""},
+          {"words", last ? to_json(last->why) : Json()},
+          {"grab", std::move(grab)}};
+}
+
+Message refusal(const Json& id, const std::string& why) {
+  return text({{"kind", "refused"}, {"id", id}, {"why", why}});
+}
+
+}  // namespace aspic::viewer

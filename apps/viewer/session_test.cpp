@@ -1,0 +1,101 @@
+// Steps, iterations, rewinding: what playing and looking do to a simulation.
+#include "viewer/session_test.h"
+
+#include <cmath>
+
+namespace aspic::viewer {
+namespace {
+
+TEST(Session, GreetsAPageWithTheSceneItsGeometryStepsPinsAndState) {
+  Page page;
+  EXPECT_EQ(page.scene()["name"].get<std::string>().substr(0, 5), "scene");
+  EXPECT_EQ(page.scene()["tets"], 6 * 6 * 2 * 2);
+  EXPECT_EQ(page.scene()["up"], Json({0, 1, 0}));
+  EXPECT_EQ(page.pins().size(), 9u);
+  EXPECT_EQ(page.side()["step"], 0);
+  EXPECT_EQ(page.side()["iteration"], -1);
+  EXPECT_EQ(page.geometry().rest.size() / 3, page.geometry().vertex.size());
+}
+
+TEST(Session, StepsAndPlaysAndPauses) {
+  Page page;
+  page.steps(2);
+  EXPECT_EQ(page.side()["step"], 2);
+  EXPECT_EQ(page.rows().size(), 2u);
+  page.send({{"do", "play"}});
+  EXPECT_TRUE(page.session().is_playing());
+  for (int i = 0; i < 3; ++i) page.advance();
+  page.send({{"do", "pause"}});
+  page.advance();
+  EXPECT_EQ(page.side()["step"], 5);
+  EXPECT_NEAR(page.side()["time"].get<double>(), 0.05, 1e-12);
+  EXPECT_EQ(page.rows().size(), 5u);
+  EXPECT_EQ(page.rows()[4]["step"], 5);
+}
+
+TEST(Session, PlayingAfterLookingAtIterationsGivesTheSameBits) {
+  for (const char* integrator : {"backward_euler", "tr_bdf2", "midpoint", "symplectic_euler"}) {
+    const std::vector<std::string> overrides = {std::string("time.integrator=") + integrator, "time.step=0.0005"};
+    Page whole(kBeam, overrides), looked(kBeam, overrides);
+    whole.grab_end({1, 0.3, 0});
+    looked.grab_end({1, 0.3, 0});
+    whole.steps(4);
+    ASSERT_EQ(whole.side()["step"], 4);
+    looked.steps(1);
+    looked.send({{"do", "iterate"}});
+    looked.send({{"do", "step"}});  // the rest of step 2, if there is any
+    for (int i = 0; i < 500 && looked.side()["step"] < 4; ++i) looked.send({{"do", "iterate"}});
+    ASSERT_EQ(looked.side()["step"], 4);
+    if (looked.side()["iteration"] != -1) looked.send({{"do", "step"}});
+    EXPECT_EQ(looked.picture().positions, whole.picture().positions) << integrator;
+    EXPECT_EQ(looked.rows()[3]["kinetic"], whole.rows()[3]["kinetic"]) << integrator;
+  }
+}
+
+TEST(Session, AnIterationShowsItsIterateAndTheLastOneCompletesTheStep) {
+  Page page, whole;
+  whole.steps(1);
+  const size_t iterations = whole.rows()[0]["iterations"].size();
+  ASSERT_GE(iterations, 2u);
+  const Picture before = page.picture();
+  for (size_t k = 0; k + 1 < iterations; ++k) {
+    page.send({{"do", "iterate"}});
+    EXPECT_EQ(page.side()["iteration"], k);
+    EXPECT_EQ(page.side()["step"], 0);
+    EXPECT_EQ(page.picture().iteration, static_cast<int>(k));
+    EXPECT_NE(page.picture().positions, before.positions);
+  }
+  page.send({{"do", "iterate"}});
+  EXPECT_EQ(page.side()["iteration"], -1);
+  EXPECT_EQ(page.side()["step"], 1);
+  EXPECT_EQ(page.picture().positions, whole.picture().positions);
+}
+
+TEST(Session, RewindingAndSteppingAgainGivesTheSameBits) {
+  Page page;
+  page.grab_end({1.2, 0.3, 0});
+  page.steps(3);
+  page.send({{"do", "release"}});
+  page.steps(7);
+  const Picture there = page.picture();
+  page.send({{"do", "rewind"}, {"step", 4}});
+  EXPECT_EQ(page.side()["step"], 4);
+  EXPECT_EQ(page.rows().size(), 4u);
+  page.steps(6);
+  EXPECT_EQ(page.picture().positions, there.positions);
+  page.send({{"do", "reset"}});
+  EXPECT_EQ(page.side()["step"], 0);
+  EXPECT_TRUE(page.rows().empty());
+}
+
+TEST(Session, ALongHistoryIsThinnedOutWithinItsBound) {
+  Page page(kBeam, {}, {.timeline_bytes = 200'000});
+  page.steps(60);
+  page.send({{"do", "rewind"}, {"step", 41}});
+  EXPECT_LE(page.side()["step"], 41);
+  EXPECT_GT(page.side()["step"], 0);
+  EXPECT_EQ(page.rows().size(), page.side()["step"]);
+}
+
+}  // namespace
+}  // namespace aspic::viewer

@@ -1,0 +1,73 @@
+#include "viewer/steered_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "mesh/box_tree.h"
+#include "scene/scene_document.h"
+
+namespace aspic::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Anything else might never end when it is read.
+void require_file(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) return;
+  throw InvalidInput(fmt::format("{}: {}; a scene (.toml) or a mesh is expected", path.string(),
+                                 fs::exists(path, error) ? "is no file" : "no such file"));
+}
+
+}  // namespace
+
+SteeredScene load_steered(const fs::path& path, const std::vector<std::string>& overrides, const Announce& announce) {
+  require_file(path);
+  GrabSpring* mouse = nullptr;
+  size_t mouse_load = 0;
+  const auto amend = [&](Model& model) {
+    auto spring = std::make_unique<GrabSpring>();
+    mouse = spring.get();
+    mouse_load = model.loads.size();
+    model.loads.push_back(std::move(spring));
+  };
+  Scene scene = load_scene(path, {.overrides = overrides, .announce = announce, .amend = amend});
+  Table document = read_scene_document(scene.resolved, path.string());
+  return {std::move(scene), mouse, mouse_load, std::move(document), path, overrides};
+}
+
+bool is_of_solver_alone(const std::string& key) {
+  return key.starts_with("solver.") && key != "solver.mass" && key != "solver.initial_guess";
+}
+
+Table overridden(const SteeredScene& steered, const std::string& override_text) {
+  return read_scene_document(steered.scene.resolved, steered.path.string(), {override_text});
+}
+
+double usual_stiffness(const Model& model) {
+  Box box;
+  for (const Vec3d& X : model.mesh.rest) box.add(X);
+  const Vec3d extent = box.upper - box.lower;
+  const double size = std::sqrt(dot(extent, extent));
+  // The mean of log E: a stiff core does not decide for the flesh around it.
+  double logs = 0, volumes = 0;
+  for (const auto& [name, young] : model.tet_fields) {
+    if (name != "young") continue;
+    for (int t = 0; t < model.mesh.tet_count(); ++t) {
+      if (!(young[t] > 0)) continue;
+      const double v = volume(model.mesh, t);
+      logs += v * std::log(young[t]);
+      volumes += v;
+    }
+  }
+  if (volumes > 0) return 0.1 * std::exp(logs / volumes) * size;
+  // Without elasticity: a swing of about two hertz.
+  double mass = 0;
+  for (const double m : model.mass->vertex_mass()) mass += m;
+  return std::max(100 * mass, 1e-9);
+}
+
+}  // namespace aspic::viewer

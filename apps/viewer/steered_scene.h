@@ -1,0 +1,34 @@
+// A scene with a mouse in it, and its document: loaded, or loaded again with other overrides.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "energy/grab_spring.h"
+#include "scene/scene.h"
+#include "scene/value.h"
+
+namespace aspic::viewer {
+
+struct SteeredScene {
+  Scene scene;
+  GrabSpring* mouse = nullptr;  // one of the model's loads
+  size_t mouse_load = 0;        // which
+  Table document;               // complete
+  std::filesystem::path path;
+  std::vector<std::string> overrides;
+};
+
+// Throws InvalidInput.
+SteeredScene load_steered(const std::filesystem::path& path, const std::vector<std::string>& overrides,
+                          const Announce& announce);
+
+// A new value for a key of [solver] that no more than the solver depends on needs nothing to be loaded again.
+bool is_of_solver_alone(const std::string& key);
+// The document with one more override, checked. Throws InvalidInput.
+Table overridden(const SteeredScene& steered, const std::string& override_text);
+
+// k of the mouse's spring that pulls a body about as hard as the body resists [N/m].
+double usual_stiffness(const Model& model);
+
+}  // namespace aspic::viewer

@@ -1,0 +1,88 @@
+#include "viewer/step_rows.h"
+
+namespace aspic::viewer {
+
+Json to_json(const std::vector<Trial>& tried) {
+  Json list = Json::array();
+  for (const Trial& trial : tried)
+    list.push_back(
+        {{"alpha", trial.alpha}, {"value", trial.value}, {"bound", trial.bound}, {"accepted", trial.accepted}});
+  return list;
+}
+
+Json to_json(const IterationRow& row) {
+  const Iteration& it = row.iteration;
+  return {{"value", it.value},
+          {"gradient_norm", it.gradient_norm},
+          {"decrement", it.decrement},
+          {"alpha", it.alpha},
+          {"projected_elements", it.direction.projected_elements},
+          {"linear_iterations", it.direction.linear_iterations},
+          {"seconds",
+           {{"hessian", it.direction.hessian_seconds},
+            {"factorize", it.direction.factorize_seconds},
+            {"solve", it.direction.solve_seconds},
+            {"line_search", it.line_search_seconds},
+            {"gradient", it.gradient_seconds}}},
+          {"trials", to_json(row.tried)}};
+}
+
+Json to_json(const Explanation& why) {
+  if (why.cause.empty()) return nullptr;
+  return {{"cause", why.cause}, {"place", why.place}, {"remedy", why.remedy}};
+}
+
+Json to_json(const StepRow& row) {
+  const StepReport& report = row.report;
+  Json iterations = Json::array();
+  for (const IterationRow& iteration : row.iterations) iterations.push_back(to_json(iteration));
+  return {{"step", report.step},
+          {"time", report.time},
+          {"status", to_string(report.status)},
+          {"success", is_success(report.status)},
+          {"iterations", std::move(iterations)},
+          {"residual", report.residual},
+          {"threshold", report.residual_threshold},
+          {"min_det_F", report.min_det_F},
+          {"kinetic", report.kinetic},
+          {"potential", report.potential},
+          {"mouse_work", row.mouse_work},
+          {"pin_work", row.pin_work},
+          {"damping_loss", report.damping_loss},
+          {"numerical_loss", report.numerical_loss},
+          {"residual_work", report.residual_work},
+          {"ledger_error", report.ledger_error},
+          {"seconds", report.seconds},
+          {"words", to_json(row.why)}};
+}
+
+void StepRows::add(StepRow row) {
+  rows_.push_back(std::move(row));
+  if (rows_.size() > kMostWithIterations) {
+    auto& old = rows_[rows_.size() - kMostWithIterations - 1].iterations;
+    old.clear();
+    old.shrink_to_fit();
+  }
+  if (rows_.size() > kMostSteps) rows_.pop_front();
+}
+
+void StepRows::drop_after(int step) {
+  while (!rows_.empty() && rows_.back().report.step > step) rows_.pop_back();
+}
+
+const StepRow* StepRows::find(int step) const {
+  if (rows_.empty()) return nullptr;
+  const int first = rows_.front().report.step;
+  return step < first || step > rows_.back().report.step ? nullptr : &rows_[step - first];
+}
+
+Json StepRows::after(int step) const {
+  Json list = Json::array();
+  if (rows_.empty()) return list;
+  const int first = rows_.front().report.step;
+  for (size_t i = step < first ? 0 : static_cast<size_t>(step - first + 1); i < rows_.size(); ++i)
+    list.push_back(to_json(rows_[i]));
+  return list;
+}
+
+}  // namespace aspic::viewer

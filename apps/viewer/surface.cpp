@@ -1,0 +1,153 @@
+#include "viewer/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "energy/incidence.h"
+#include "mesh/surface.h"
+#include "mesh/tet_shape.h"
+#include "mesh/topology.h"
+#include "mesh/triangle_shape.h"
+
+namespace aspic::viewer {
+namespace {
+
+Incidence tets_of_vertices(const TetMesh& mesh) {
+  std::vector<std::pair<int, int>> pairs;
+  pairs.reserve(4 * mesh.tets.size());
+  for (int t = 0; t < mesh.tet_count(); ++t)
+    for (const int v : mesh.tets[t]) pairs.emplace_back(v, t);
+  return {mesh.vertex_count(), pairs};
+}
+
+template <class Corners>
+int tet_with(const TetMesh& mesh, const Incidence& tets, const Corners& corners) {
+  for (const int t : tets.around(corners[0])) {
+    const Tet& tet = mesh.tets[t];
+    if (std::all_of(corners.begin(), corners.end(),
+                    [&](int v) { return std::find(tet.begin(), tet.end(), v) != tet.end(); }))
+      return t;
+  }
+  return tets.around(corners[0]).front();
+}
+
+void add_edges(Surface& surface) {
+  for_each_edge(edge_uses(surface.triangles),
+                [&](const EdgeUse* first, const EdgeUse*) { surface.edges.push_back(first->edge); });
+}
+
+bool is_single_vertex(const std::array<double, 4>& weights) { return weights[0] == 1; }
+
+}  // namespace
+
+std::span<const int> Surface::tets_at(int vertex) const {
+  return std::span(tets).subspan(tets_start[vertex], tets_start[vertex + 1] - tets_start[vertex]);
+}
+
+int Surface::anchor(int vertex) const {
+  const auto& w = weights[vertex];
+  return carrier[vertex][std::max_element(w.begin(), w.end()) - w.begin()];
+}
+
+Vec3d Surface::position(int vertex, std::span<const double> x) const {
+  Vec3d sum{};
+  for (int i = 0; i < 4; ++i) {
+    const int v = carrier[vertex][i];
+    sum = sum + weights[vertex][i] * Vec3d{{x[3 * v], x[3 * v + 1], x[3 * v + 2]}};
+  }
+  return sum;
+}
+
+bool Surface::has_same_shape(const Surface& other) const {
+  return rest.size() == other.rest.size() && triangles == other.triangles;
+}
+
+bool has_fine_skin(const Scene& scene) {
+  for (const Skin& skin : scene.skins)
+    for (const auto& weights : skin.embedding.weights)
+      if (!is_single_vertex(weights)) return true;
+  return false;
+}
+
+Surface fine_surface(const Scene& scene) {
+  const TetMesh& mesh = scene.simulation.model().mesh;
+  const Incidence tets = tets_of_vertices(mesh);
+  Surface surface{.is_fine = true};
+  for (const Skin& skin : scene.skins) {
+    const int first = surface.vertex_count();
+    surface.rest.insert(surface.rest.end(), skin.rest.vertices.begin(), skin.rest.vertices.end());
+    for (const Triangle& t : skin.rest.triangles)
+      surface.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    surface.carrier.insert(surface.carrier.end(), skin.embedding.vertices.begin(), skin.embedding.vertices.end());
+    surface.weights.insert(surface.weights.end(), skin.embedding.weights.begin(), skin.embedding.weights.end());
+  }
+  for (int v = 0; v <= surface.vertex_count(); ++v) surface.tets_start.push_back(v);
+  for (const Tet& carrier : surface.carrier) surface.tets.push_back(tet_with(mesh, tets, carrier));
+  for (const Triangle& t : surface.triangles) surface.tet.push_back(surface.tets[t[0]]);
+  add_edges(surface);
+  return surface;
+}
+
+Surface boundary_of(const Model& model) {
+  const Incidence tets = tets_of_vertices(model.mesh);
+  BoundarySurface boundary = boundary_surface(model.mesh);
+  Surface surface;
+  surface.rest = std::move(boundary.surface.vertices);
+  surface.triangles = std::move(boundary.surface.triangles);
+  surface.tets_start.push_back(0);
+  for (const int v : boundary.tet_vertex) {
+    surface.carrier.push_back({v, v, v, v});
+    surface.weights.push_back({1, 0, 0, 0});
+    const std::span<const int> around = tets.around(v);
+    surface.tets.insert(surface.tets.end(), around.begin(), around.end());
+    surface.tets_start.push_back(static_cast<int>(surface.tets.size()));
+  }
+  for (const Triangle& t : surface.triangles) {
+    const Triangle corners = {boundary.tet_vertex[t[0]], boundary.tet_vertex[t[1]], boundary.tet_vertex[t[2]]};
+    surface.tet.push_back(tet_with(model.mesh, tets, corners));
+  }
+  add_edges(surface);
+  return surface;
+}
+
+TetPoint tet_point(const Surface& surface, const TetMesh& mesh, int triangle, const Vec3d& corner_weights) {
+  const Triangle& corners = surface.triangles[triangle];
+  if (!surface.is_fine) {
+    TetPoint point{mesh.tets[surface.tet[triangle]], {}};
+    for (int c = 0; c < 3; ++c)
+      for (int i = 0; i < 4; ++i)
+        if (point.vertices[i] == surface.anchor(corners[c])) point.weights[i] = corner_weights[c];
+    return point;
+  }
+  // In the tet that carries the nearest corner.
+  int nearest = 0;
+  Vec3d rest{};
+  for (int c = 0; c < 3; ++c) {
+    if (corner_weights[c] > corner_weights[nearest]) nearest = c;
+    rest = rest + corner_weights[c] * surface.rest[corners[c]];
+  }
+  const int tet = surface.tets[corners[nearest]];
+  return {mesh.tets[tet], barycentric(aspic::corners(mesh, tet), rest)};
+}
+
+SurfacePoint nearest_surface_point(const Surface& surface, const Vec3d& rest) {
+  SurfacePoint best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int t = 0; t < surface.triangle_count(); ++t) {
+    const auto [a, b, c] = surface.triangles[t];
+    const Vec3d &A = surface.rest[a], &B = surface.rest[b], &C = surface.rest[c];
+    const Vec3d p = nearest_point(rest, A, B, C), away = p - rest;
+    if (!(dot(away, away) < least)) continue;
+    least = dot(away, away);
+    const Vec3d n = cross(B - A, C - A);
+    const double nn = dot(n, n);
+    best.triangle = t;
+    best.weights = nn > 0 ? Vec3d{{dot(cross(C - B, p - B), n) / nn, dot(cross(A - C, p - C), n) / nn,
+                                   dot(cross(B - A, p - A), n) / nn}}
+                          : Vec3d{{1, 0, 0}};
+  }
+  return best;
+}
+
+}  // namespace aspic::viewer

@@ -1,0 +1,51 @@
+// The states of the steps taken, within a bound of memory: where rewinding can go.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dynamics/simulation.h"
+#include "energy/grab_spring.h"
+
+namespace aspic::viewer {
+
+// Between two steps. Everything that the next ones depend on, besides the settings.
+struct Moment {
+  int step = 0;  // taken so far
+  State state;
+  std::optional<State> previous;  // see Simulation::Snapshot
+  double level = 0;               // likewise
+  double start_time = 0, h = 0;   // [s] see Side::snapshot_of
+  std::string integrator;
+  Grab grab;                                     // resting, after what was done at this moment
+  std::shared_ptr<const std::vector<Pin>> pins;  // likewise
+  Grab acted;                                    // in the step that led here
+  long settings = 0;                             // with which that step was taken
+
+  size_t bytes() const;
+};
+
+class Timeline {
+ public:
+  explicit Timeline(size_t most_bytes) : most_bytes_(most_bytes) {}
+
+  void add(Moment moment);  // of a later step than all others; the first one always stays
+  Moment& last() { return moments_.back(); }
+  const Moment& nearest(int step) const;                       // of that step, or the next earlier one that is held
+  const Moment* find(int step) const;                          // null: not held
+  const Moment* at_time(double time, double tolerance) const;  // the latest one then [s]; null: not held
+  void drop_after(int step);
+  void clear() { moments_.clear(), bytes_ = 0; }
+  bool is_empty() const { return moments_.empty(); }
+  size_t bytes() const { return bytes_; }
+  size_t size() const { return moments_.size(); }
+
+ private:
+  void thin_out();  // every other one of the older half goes
+
+  size_t most_bytes_, bytes_ = 0;
+  std::vector<Moment> moments_;
+};
+
+}  // namespace aspic::viewer

@@ -1,0 +1,326 @@
+// One side in 3-D: draws its newest picture, and only when something has changed.
+import "./view.css";
+import type { Highlight, Page } from "../page";
+import type { Field, SideName } from "../protocol";
+import type { Side, Store } from "../store";
+import { Body } from "./body";
+import type { CameraRig } from "./cameras";
+import { Card } from "./card";
+import type { Display } from "./display";
+import { chooseLabels, type Label } from "./labels";
+import type { Lens } from "./lens";
+import { Overlay, png, readStyle, type Marks, type Style } from "./overlay";
+import { Pace } from "./pace";
+import { interpolated, nearestVertex, type Clip, type Hit, type Surface } from "./picking";
+import { withUnit } from "./ranges";
+import { Stage } from "./stage";
+import { Touch, type Touched } from "./touch";
+
+const kLargest = 8192; // side of a screenshot [px]
+
+export class View implements Touched {
+  private readonly glCanvas = document.createElement("canvas");
+  private readonly overlay = new Overlay();
+  private readonly message = document.createElement("div");
+  private readonly stage: Stage | null;
+  private readonly touch: Touch;
+  private readonly card: Card;
+  private style!: Style;
+  private body: Body | null = null;
+  private valuesOf = ""; // field of the values that the body has
+  private highlights: Highlight[] = [];
+  private readonly pace: Pace;
+  private frame = 0; // requested
+  private fixedSize: [number, number] | null = null;
+  private sharpness = 1; // of a screenshot
+  private rigStop = (): void => {};
+  private readonly stop: (() => void)[] = [];
+  private readonly listeners = new AbortController();
+
+  constructor(
+    readonly host: HTMLElement,
+    readonly store: Store,
+    readonly page: Page,
+    readonly side: SideName,
+    readonly display: Display,
+  ) {
+    this.card = new Card(store, side, () => this.redraw());
+    this.pace = new Pace(store.source, () => this.redraw());
+    this.message.className = "view-message";
+    this.message.hidden = true;
+    this.host.classList.add("view");
+    this.host.replaceChildren(this.glCanvas, this.overlay.canvas, this.message, this.card.element);
+    this.stage = this.makeStage();
+    this.touch = new Touch(this);
+    this.listen();
+    this.applyDisplay();
+    this.takeScene();
+  }
+
+  get rig(): CameraRig {
+    return this.display.camera(this.side);
+  }
+
+  lens(): Lens {
+    return this.rig.lens(...this.size());
+  }
+
+  surface(): Surface | null {
+    if (!this.body?.root.visible) return null;
+    return { positions: this.body.current, triangles: this.body.geometry.triangles, clip: this.clip() };
+  }
+
+  // A PNG of the view; `scale` times as many pixels as the view has on the screen.
+  async screenshot(scale = 1): Promise<Blob> {
+    const [width, height] = this.size();
+    this.sharpness = Math.min(scale, kLargest / (Math.max(width, height, 1) * this.pixelRatio()));
+    const canvas = document.createElement("canvas");
+    this.drawNow();
+    this.overlay.paint(canvas, this.glCanvas);
+    this.sharpness = 1;
+    this.drawNow();
+    return png(canvas);
+  }
+
+  // From now on the view has this many pixels, whatever the page's layout: for pictures without a screen.
+  renderSize(width: number, height: number): void {
+    this.fixedSize = [width, height];
+    this.restyle();
+    this.drawNow();
+  }
+
+  // The body as it is now fills the view.
+  centre(): void {
+    if (this.body?.box) this.rig.centre(this.body.box.lower, this.body.box.upper);
+  }
+
+  read(hit: Hit | null): void {
+    if (hit && this.body) this.card.open(hit, nearestVertex(hit, this.body.geometry.triangles));
+    else this.card.close();
+  }
+
+  showPins(vertices: number[]): void {
+    this.body?.setPins(vertices);
+    this.redraw();
+  }
+
+  // Once, in the next frame.
+  redraw(): void {
+    if (this.frame === 0) this.frame = requestAnimationFrame(() => this.drawNow());
+  }
+
+  drawNow(): void {
+    cancelAnimationFrame(this.frame);
+    this.frame = 0;
+    const [width, height] = this.size();
+    if (this.stage && width > 0 && height > 0) {
+      this.resize(width, height);
+      const lens = this.lens();
+      this.stage.render(lens, this.rig.orientation, this.style.accent);
+      this.overlay.draw(lens, this.style, this.marks(lens));
+    }
+    this.pace.drawn();
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.frame);
+    this.listeners.abort();
+    for (const stop of [...this.stop, this.rigStop]) stop();
+    this.touch.dispose();
+    this.card.close();
+    cancelAnimationFrame(this.frame);
+    this.stage?.dispose();
+    this.display.forget(this.side);
+    this.host.replaceChildren();
+    this.pace.drawn();
+  }
+
+  private get source(): Side | null {
+    return this.store.side(this.side);
+  }
+
+  private makeStage(): Stage | null {
+    const { signal } = this.listeners;
+    this.glCanvas.addEventListener("webglcontextlost", () => this.say("The graphics card is busy; the picture comes back by itself."), { signal });
+    this.glCanvas.addEventListener("webglcontextrestored", () => this.restored(), { signal });
+    try {
+      return new Stage(this.glCanvas);
+    } catch {
+      this.say(
+        "This browser does not draw in 3-D: WebGL 2 is missing or switched off. Switch on hardware acceleration in its " +
+          "settings, or use a current Firefox, Chromium or Safari. Plots and numbers work without it.",
+      );
+      return null;
+    }
+  }
+
+  private say(words: string): void {
+    this.message.textContent = words;
+    this.message.hidden = words === "";
+  }
+
+  // After three.js, which listens, too, has its state again.
+  private restored(): void {
+    setTimeout(() => {
+      if (this.listeners.signal.aborted) return;
+      this.say("");
+      this.applyDisplay();
+    });
+  }
+
+  private listen(): void {
+    const mine = (listener: () => void) => (side: SideName) => side === this.side && listener();
+    const { store, display, page, stop } = this;
+    stop.push(store.on("scene", mine(() => this.takeScene())));
+    stop.push(store.on("geometry", mine(() => this.takeGeometry())));
+    stop.push(store.on("picture", mine(() => this.takePicture())));
+    stop.push(store.on("pins", mine(() => this.showPins(this.source?.pins ?? []))));
+    stop.push(store.on("state", () => this.redraw()));
+    stop.push(display.on("changed", () => this.applyDisplay()));
+    stop.push(display.on("range", () => this.colourBody()));
+    stop.push(page.on("theme", () => this.applyDisplay()));
+    stop.push(page.on("layout", () => this.applyDisplay()));
+    if (this.side === "a") stop.push(page.on("highlight", (highlights) => this.highlight(highlights)));
+    const sizes = new ResizeObserver(() => this.redraw());
+    sizes.observe(this.host);
+    stop.push(() => sizes.disconnect());
+    document.addEventListener("visibilitychange", () => this.pace.go(), { signal: this.listeners.signal });
+  }
+
+  private highlight(highlights: Highlight[]): void {
+    this.highlights = highlights;
+    this.redraw();
+  }
+
+  private takeScene(): void {
+    const scene = this.source?.scene;
+    if (!scene) return;
+    this.display.cameras[this.side].show(scene.path, scene.lower, scene.upper, scene.up);
+    if (this.body && this.body.geometry.generation !== scene.generation) this.dropBody();
+    this.takeGeometry();
+    if (this.side === "a") this.display.setFields(scene.fields, scene.field);
+    else this.applyDisplay();
+  }
+
+  private takeGeometry(): void {
+    const side = this.source;
+    if (!this.stage || !side?.geometry || this.body?.geometry === side.geometry) return;
+    this.dropBody();
+    this.stage.place(side.scene);
+    this.body = new Body(side.geometry);
+    this.stage.show(this.body);
+    this.body.setPins(side.pins);
+    this.showPicture();
+    this.applyDisplay();
+  }
+
+  private dropBody(): void {
+    this.card.close();
+    this.stage?.remove();
+    this.body = null;
+  }
+
+  private takePicture(): void {
+    this.showPicture();
+    this.card.refresh();
+    this.pace.came();
+  }
+
+  private showPicture(): void {
+    const side = this.source;
+    if (!this.body || !side?.picture || side.picture.positions.length !== this.body.current.length) return;
+    const { picture, scene } = side;
+    this.body.show(picture);
+    this.valuesOf = picture.values ? scene.field : "";
+    const field = this.field();
+    if (field) this.display.feed(this.side, field, picture.min, picture.max);
+    this.colourBody();
+    this.stage?.moved();
+  }
+
+  // Whose values the body shows.
+  private field(): Field | null {
+    const scene = this.source?.scene;
+    if (!scene || this.valuesOf !== scene.field) return null;
+    return scene.fields.find((field) => field.name === scene.field) ?? null;
+  }
+
+  private applyDisplay(): void {
+    this.rigStop();
+    this.rigStop = this.rig.on("changed", () => this.redraw());
+    this.restyle();
+    const settings = this.display.settings;
+    this.body?.apply(settings);
+    this.stage?.apply(settings, this.style);
+    this.stage?.clip(this.clip());
+    this.colourBody();
+  }
+
+  private restyle(): void {
+    this.style = readStyle(this.host, this.display.settings, this.fixedSize);
+  }
+
+  private colourBody(): void {
+    const field = this.field();
+    const range = field && this.display.range(field);
+    this.body?.colour(range, field ? this.display.map(field) : "viridis");
+    this.redraw();
+  }
+
+  private clip(): Clip | null {
+    return this.source && this.display.clip(this.source.scene);
+  }
+
+  private size(): [number, number] {
+    return this.fixedSize ?? [this.host.clientWidth, this.host.clientHeight];
+  }
+
+  private pixelRatio(): number {
+    return this.fixedSize ? 1 : Math.min(3, window.devicePixelRatio || 1);
+  }
+
+  private resize(width: number, height: number): void {
+    const ratio = this.pixelRatio() * this.sharpness;
+    const { canvas } = this.overlay;
+    const [columns, rows] = [Math.floor(width * ratio), Math.floor(height * ratio)];
+    if (canvas.width === columns && canvas.height === rows) return;
+    this.stage?.renderer.setPixelRatio(ratio);
+    this.stage?.renderer.setSize(width, height, false);
+    [canvas.width, canvas.height] = [columns, rows];
+  }
+
+  private marks(lens: Lens): Marks {
+    const settings = this.display.settings;
+    const field = this.field();
+    const range = field && this.display.range(field);
+    const grab = this.store.state?.[this.side]?.grab;
+    const { cursor, target } = this.touch;
+    const brushes = settings.tool === "pin" && cursor;
+    return {
+      axes: settings.axes,
+      gridStep: settings.ground && this.body && this.stage ? this.stage.gridStep : 0,
+      bar: field && range ? { field, range, map: this.display.map(field) } : null,
+      labels: this.labels(lens),
+      highlights: [...this.highlights, ...this.card.marks],
+      spring: grab ? { ...grab, target: target ?? grab.target } : null,
+      brush: brushes ? { at: cursor, radius: settings.brush, words: this.touch.pins ? "pin" : "unpin" } : null,
+      tip: this.tip(),
+    };
+  }
+
+  private labels(lens: Lens): Label[] {
+    const { vertexLabels, faceLabels } = this.display.settings;
+    const surface = this.surface();
+    if (!surface || !this.body || !(vertexLabels || faceLabels)) return [];
+    const kinds = { vertices: vertexLabels, tets: faceLabels };
+    return chooseLabels(lens, surface, this.body.geometry, kinds, this.style.em, this.touch.cursor);
+  }
+
+  // The value under the cursor, while it reads.
+  private tip(): Marks["tip"] {
+    const { hover, cursor } = this.touch;
+    const [field, values] = [this.field(), this.source?.picture?.values];
+    if (!hover || !cursor || !field || !values || !this.body || this.display.settings.tool !== "read") return null;
+    return { at: cursor, words: withUnit(interpolated(hover, this.body.geometry.triangles, values), field.unit) };
+  }
+}
