@@ -16,7 +16,9 @@ import { makeEnergyPanel } from "./panels/energy";
 import { makeFunctionsPanel } from "./panels/functions";
 import { makeLandscapePanel } from "./panels/landscape";
 import { makeMicroscopePanel } from "./panels/microscope";
+import { makeReportPanel } from "./panels/report";
 import { Settings } from "./panels/settings";
+import { findRecording, RecordedSource } from "./recorded";
 import { makeRole } from "./role";
 import { listenToKeys, shortcutButton } from "./shortcuts";
 import { Store } from "./store";
@@ -77,6 +79,7 @@ function buildPage(store: Store, page: Page): void {
   const functions = makeFunctionsPanel(store, page);
   const panels: Panel[] = [makeEnergyPanel(store, page), makeMicroscopePanel(store, page)];
   if (store.source.live) panels.push(makeLandscapePanel(store, page), functions);
+  panels.push(makeReportPanel(store, page));
   const settings = makeRight(page);
   new Settings(area("right"), store, page);
   addDisplayControls(new GUI({ container: area("right"), title: "View" }), display, page, views.all);
@@ -92,6 +95,7 @@ function buildPage(store: Store, page: Page): void {
 
 const page = new Page();
 showOwnErrors(page);
-const store = new Store(new LiveSource(sessionAddress()));
+const recording = findRecording();
+const store = new Store(recording === null ? new LiveSource(sessionAddress()) : new RecordedSource(recording));
 buildPage(store, page);
 store.start();
