@@ -12,7 +12,7 @@ namespace aspic {
 namespace {
 
 constexpr std::string_view kMagic("POINTCACHE2\0", 12);
-constexpr uint64_t kHeadSize = 32, kCountOffset = 28;
+constexpr uint64_t kHeadSize = 32, kPointsOffset = 16, kCountOffset = 28;
 
 std::string head(int points, int samples) {
   std::string bytes(kMagic);
@@ -84,6 +84,35 @@ void Pc2File::write_count() {
   std::string count;
   append_bytes(count, static_cast<int32_t>(samples_));
   file_.write_at(kCountOffset, count);
+}
+
+Pc2Reader::Pc2Reader(const std::filesystem::path& path) : path_(path), in_(path, std::ios::binary) {
+  std::string bytes(kHeadSize, '\0');
+  in_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!in_) throw InvalidInput(path.string() + ": cannot be read, or is too short for a point cache");
+  const auto integer = [&](size_t at) {
+    int32_t value = 0;
+    std::memcpy(&value, bytes.data() + at, sizeof(value));
+    return value;
+  };
+  points_ = integer(kPointsOffset);
+  samples_ = integer(kCountOffset);
+  if (points_ < 0 || samples_ < 0 || bytes != head(points_, samples_))
+    throw InvalidInput(path.string() + ": is no point cache of version 1 with one sample per frame");
+  in_.seekg(0, std::ios::end);
+  const uint64_t whole = in_ ? (static_cast<uint64_t>(in_.tellg()) - kHeadSize) / 12 : 0;  // points of all samples
+  if (static_cast<uint64_t>(points_) * static_cast<uint64_t>(samples_) > whole)
+    throw InvalidInput(path.string() + ": the point cache is cut short: its head counts " + std::to_string(samples_) +
+                       " samples of " + std::to_string(points_) + " points");
+}
+
+std::vector<float> Pc2Reader::sample(int index) {
+  ASPIC_CHECK(index >= 0 && index < samples_);
+  std::vector<float> x(3 * static_cast<size_t>(points_));
+  in_.seekg(static_cast<std::streamoff>(kHeadSize + 4 * x.size() * static_cast<uint64_t>(index)));
+  in_.read(reinterpret_cast<char*>(x.data()), static_cast<std::streamsize>(4 * x.size()));
+  if (!in_) throw InvalidInput(path_.string() + ": sample " + std::to_string(index) + " cannot be read");
+  return x;
 }
 
 }  // namespace aspic

@@ -3,6 +3,7 @@
 // then for each sample float32 x y z of every point.
 #pragma once
 #include <filesystem>
+#include <fstream>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,21 @@ class Pc2File {
   void write_count();
 
   OutputFile file_;
+  int points_ = 0, samples_ = 0;
+};
+
+// A cache that somebody else may be writing.
+class Pc2Reader {
+ public:
+  explicit Pc2Reader(const std::filesystem::path& path);  // throws InvalidInput when it is no whole point cache
+
+  int points() const { return points_; }
+  int samples() const { return samples_; }
+  std::vector<float> sample(int index);  // 3 per point; throws InvalidInput when it cannot be read
+
+ private:
+  std::filesystem::path path_;
+  std::ifstream in_;
   int points_ = 0, samples_ = 0;
 };
 

@@ -63,5 +63,31 @@ TEST_F(PointCache, ResumingRefusesWhatDoesNotFit) {
   EXPECT_THAT(message(2, 0), HasSubstr("is no point cache"));
 }
 
+TEST_F(PointCache, IsReadWithoutBeingTouched) {
+  write_two(path("a.pc2"));
+  const std::string bytes = read_file(path("a.pc2"));
+  Pc2Reader cache(path("a.pc2"));
+  EXPECT_EQ(cache.points(), 2);
+  ASSERT_EQ(cache.samples(), 2);
+  EXPECT_EQ(cache.sample(1), (std::vector<float>{0.5, 1.5, 2.5, 3.5, 4.5, 5.5}));
+  EXPECT_EQ(cache.sample(0), (std::vector<float>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(read_file(path("a.pc2")), bytes);
+}
+
+TEST_F(PointCache, ReadingRefusesDamage) {
+  write_two(path("a.pc2"));
+  const std::string bytes = read_file(path("a.pc2"));
+  const auto message = [&](const std::string& damaged) {
+    write_file(path("b.pc2"), damaged);
+    return message_of<InvalidInput>([&] { Pc2Reader(path("b.pc2")); });
+  };
+  EXPECT_THAT(message(bytes.substr(0, 20)), HasSubstr("b.pc2: cannot be read, or is too short"));
+  EXPECT_THAT(message(bytes.substr(0, 70)), HasSubstr("b.pc2: the point cache is cut short"));
+  EXPECT_THAT(message("x" + bytes.substr(1)), HasSubstr("b.pc2: is no point cache"));
+  std::string hostile = bytes;
+  hostile.replace(16, 4, "\xff\xff\xff\x7f").replace(28, 4, "\xff\xff\xff\x7f");  // 2^31 - 1 points and samples
+  EXPECT_THAT(message(hostile), HasSubstr("b.pc2: the point cache is cut short"));
+}
+
 }  // namespace
 }  // namespace aspic

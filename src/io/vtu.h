@@ -31,6 +31,8 @@ struct Vtu {
 // other cell is an error, as are counts, indices and sizes that do not fit. Throws InvalidInput with file and line.
 Vtu read_vtu(const std::filesystem::path& path);
 Vtu parse_vtu(std::string_view contents, const std::string& file);  // `file` is for messages
+// The points alone, 3 numbers each: much less work where the cells are known.
+std::vector<double> read_vtu_points(const std::filesystem::path& path);
 
 // Inline base64, zlib-compressed; positions in double precision. The same input gives the same bytes.
 void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,

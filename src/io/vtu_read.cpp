@@ -79,23 +79,28 @@ void read_cells(const VtkFile& file, Piece& piece) {
   check_cells(file, cells, piece);
 }
 
+std::vector<double> read_points(const VtkFile& file, const XmlElement& piece, size_t count) {
+  if (count == 0) return {};
+  const XmlElement& array = section(file, section(file, piece, "Points"), "DataArray");
+  if (count_attribute(file, array, "NumberOfComponents", 1, 1024) != 3)
+    fail_at(file, array, "points need 3 components");
+  std::vector<double> positions = read_reals(file, array, 3 * count);
+  const auto wrong = std::find_if(positions.begin(), positions.end(), [](double x) { return !std::isfinite(x); });
+  if (wrong != positions.end())
+    fail_at(file, array, "point " + std::to_string((wrong - positions.begin()) / 3) + " is not finite");
+  return positions;
+}
+
+size_t point_count(const VtkFile& file, const XmlElement& piece) {
+  return static_cast<size_t>(count_attribute(file, piece, "NumberOfPoints", 0, kMaxCount));
+}
+
 Piece read_piece(const VtkFile& file, const XmlElement& element) {
   Piece piece;
   piece.element = &element;
-  piece.points = static_cast<size_t>(count_attribute(file, element, "NumberOfPoints", 0, kMaxCount));
+  piece.points = point_count(file, element);
   piece.cells = static_cast<size_t>(count_attribute(file, element, "NumberOfCells", 0, kMaxCount));
-  if (piece.points > 0) {
-    const XmlElement& points = section(file, element, "Points");
-    const XmlElement& array = section(file, points, "DataArray");
-    if (count_attribute(file, array, "NumberOfComponents", 1, 1024) != 3)
-      fail_at(file, array, "points need 3 components");
-    piece.positions = read_reals(file, array, 3 * piece.points);
-    const auto wrong =
-        std::find_if(piece.positions.begin(), piece.positions.end(), [](double x) { return !std::isfinite(x); });
-    if (wrong != piece.positions.end()) {
-      fail_at(file, array, "point " + std::to_string((wrong - piece.positions.begin()) / 3) + " is not finite");
-    }
-  }
+  piece.positions = read_points(file, element, piece.points);
   if (piece.cells > 0) read_cells(file, piece);
   return piece;
 }
@@ -193,6 +198,19 @@ std::vector<int> region_of(const std::string& file, const std::vector<Field>& ce
 }  // namespace
 
 Vtu read_vtu(const std::filesystem::path& path) { return parse_vtu(read_file(path), path.string()); }
+
+std::vector<double> read_vtu_points(const std::filesystem::path& path) {
+  const std::string contents = read_file(path);
+  const XmlElement root = parse_xml(contents, path.string(), "AppendedData");
+  const VtkFile file = vtk_file(root, "UnstructuredGrid", path.string());
+  std::vector<double> points;
+  for (const XmlElement& piece : section(file, root, "UnstructuredGrid").children) {
+    if (piece.name != "Piece") continue;
+    const std::vector<double> more = read_points(file, piece, point_count(file, piece));
+    points.insert(points.end(), more.begin(), more.end());
+  }
+  return points;
+}
 
 Vtu parse_vtu(std::string_view contents, const std::string& name) {
   const XmlElement root = parse_xml(contents, name, "AppendedData");

@@ -124,6 +124,15 @@ TEST_F(VtuFile, WhatIsWrittenReadsBackToTheSameBits) {
   EXPECT_EQ(read_file(path("a.vtu")), read_file(path("b.vtu")));
 }
 
+TEST_F(VtuFile, ThePointsAloneAreThoseOfTheWhole) {
+  const std::vector<double> points = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1.0 / 3};
+  write_vtu(path("tet.vtu"), points, {{0, 1, 2, 3}}, {}, {});
+  EXPECT_EQ(read_vtu_points(path("tet.vtu")), points);
+  std::string text = read_file(path("tet.vtu"));
+  write_file(path("tet.vtu"), text.replace(text.find("NumberOfPoints=\"4\""), 18, "NumberOfPoints=\"9\""));
+  EXPECT_THROW(read_vtu_points(path("tet.vtu")), InvalidInput);
+}
+
 TEST_F(VtuFile, EmptyGridsAreWrittenAndRead) {
   write_vtu(path("a.vtu"), {}, {}, {}, {});
   const Vtu vtu = read_vtu(path("a.vtu"));

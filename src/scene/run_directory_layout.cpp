@@ -122,7 +122,7 @@ void RunLayout::remove_run(const std::vector<fs::path>& needed) const {
     for (const fs::path& file : files_in(folder, is_trace_file)) files.push_back(file);
   }
   for (const fs::path& file :
-       {scene(), iterations(), timings(), checkpoint(), previous_checkpoint(checkpoint()), index(), usd()}) {
+       {scene(), iterations(), timings(), checkpoint(), previous_checkpoint(checkpoint()), index(), usd(), report()}) {
     files.push_back(file);
   }
   files.push_back(steps());  // last: without it the directory is no run any more

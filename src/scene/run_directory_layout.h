@@ -18,6 +18,7 @@ class RunLayout {
   std::filesystem::path checkpoint() const { return root_ / "checkpoint.bin"; }
   std::filesystem::path index() const { return root_ / "run.pvd"; }
   std::filesystem::path usd() const { return root_ / "run.usda"; }
+  std::filesystem::path report() const { return root_ / "report.html"; }
   std::filesystem::path frames() const { return root_ / "frames"; }
   std::filesystem::path skins() const { return root_ / "skins"; }
   std::filesystem::path trace(int first_step) const;  // "trace", or "trace_after_12" of a run resumed there

@@ -39,9 +39,21 @@ std::vector<std::string> step_columns(const std::vector<std::string>& potential_
   return columns;
 }
 
-const std::vector<std::string> kIterationColumns = {
-    "step",      "iteration", "value",     "gradient_norm",  "decrement",         "alpha",    "trials",
-    "gradients", "hessians",  "projected", "factorizations", "linear_iterations", "products", "cycles"};
+const std::vector<std::string> kIterationColumns = {"step",
+                                                    "iteration",
+                                                    "value",
+                                                    "gradient_norm",
+                                                    "decrement",
+                                                    "alpha",
+                                                    "trials",
+                                                    "gradients",
+                                                    "hessians",
+                                                    "projected",
+                                                    "projected_elements",
+                                                    "factorizations",
+                                                    "linear_iterations",
+                                                    "products",
+                                                    "cycles"};
 const std::vector<std::string> kTimingColumns = {"step", "seconds"};
 
 }  // namespace
@@ -85,7 +97,8 @@ void RunTables::add(int step, const Iteration& iteration) {
   CsvRow row;
   row.add(step).add(iteration.index).add(iteration.value).add(iteration.gradient_norm).add(iteration.decrement);
   row.add(iteration.alpha).add(iteration.trials).add(iteration.gradients).add(direction.hessians);
-  row.add(direction.projected ? 1 : 0).add(direction.factorizations).add(direction.linear_iterations);
+  row.add(direction.projected ? 1 : 0).add(direction.projected_elements).add(direction.factorizations);
+  row.add(direction.linear_iterations);
   row.add(direction.products).add(direction.cycles);
   iterations_.append(row);
 }

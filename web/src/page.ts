@@ -56,7 +56,7 @@ export class Page extends Emitter<Events> {
 
 // A tab of the dock.
 export interface Panel {
-  readonly name: PanelName;
+  readonly name: PanelName | "certificate";
   readonly title: string;
   readonly element: HTMLElement;
   show(visible: boolean): void; // draws only while it is visible

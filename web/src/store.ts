@@ -57,6 +57,7 @@ export class Store extends Emitter<Events> {
     switch (message.kind) {
       case "hello":
         this.hello = message;
+        this.endCompare(); // a side b that is still there follows
         this.emit("hello", message);
         this.steers = message.steers;
         return this.emit("role", message.steers);
@@ -66,8 +67,7 @@ export class Store extends Emitter<Events> {
       case "scene":
         return this.receiveScene(message);
       case "end_compare":
-        this.sides.b = null;
-        return this.emit("gone", "b");
+        return this.endCompare();
       case "steps": {
         const side = this.sides[message.side];
         if (!side) return;
@@ -92,6 +92,12 @@ export class Store extends Emitter<Events> {
       case "reply":
         return; // the source hands replies to who asked
     }
+  }
+
+  private endCompare(): void {
+    if (!this.sides.b) return;
+    this.sides.b = null;
+    this.emit("gone", "b");
   }
 
   private receiveScene(scene: Scene): void {

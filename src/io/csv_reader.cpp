@@ -1,0 +1,100 @@
+#include "io/csv_reader.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "base/error.h"
+
+namespace aspic {
+namespace {
+
+constexpr size_t kLongestLine = size_t{1} << 20;  // longer ones are of no table that Aspic writes
+
+// A line break inside quotes is not taken for one of the cell: no table here has any.
+std::vector<std::string> split(std::string_view line) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') {
+      if (quoted && i + 1 < line.size() && line[i + 1] == '"') {
+        cells.back() += line[++i];
+      } else {
+        quoted = !quoted;
+      }
+    } else if (line[i] == ',' && !quoted) {
+      cells.emplace_back();
+    } else if (line[i] != '\r' || quoted) {
+      cells.back() += line[i];
+    }
+  }
+  return cells;
+}
+
+template <class Number>
+bool parse(const std::string& text, Number& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+}  // namespace
+
+CsvReader::CsvReader(const std::filesystem::path& path) : path_(path), in_(path, std::ios::binary) {
+  if (!in_) throw InvalidInput(path.string() + ": cannot be read; check the name and the permissions");
+  if (!read_line()) throw InvalidInput(path.string() + ": is empty; a table begins with the names of its columns");
+  columns_ = cells_;
+}
+
+// A line as cells_; false at the end, also when the last line is torn.
+bool CsvReader::read_line() {
+  std::string line;
+  for (int c; (c = in_.get()) != std::char_traits<char>::eof();) {
+    if (c == '\n') {
+      ++line_;
+      cells_ = split(line);
+      return true;
+    }
+    line += static_cast<char>(c);
+    if (line.size() > kLongestLine)
+      throw InvalidInput(path_.string() + ":" + std::to_string(line_ + 1) + ": is no line of a table: it is too long");
+  }
+  return false;
+}
+
+bool CsvReader::has(std::string_view column) const {
+  return std::find(columns_.begin(), columns_.end(), column) != columns_.end();
+}
+
+size_t CsvReader::column(std::string_view name) const {
+  const auto found = std::find(columns_.begin(), columns_.end(), name);
+  if (found == columns_.end())
+    throw InvalidInput(path_.string() + ":1: has no column '" + std::string(name) +
+                       "'; it is another table, or damaged");
+  return static_cast<size_t>(found - columns_.begin());
+}
+
+bool CsvReader::next() {
+  if (!read_line()) return false;
+  if (cells_.size() != columns_.size())
+    throw InvalidInput(path_.string() + ":" + std::to_string(line_) + ": has " + std::to_string(cells_.size()) +
+                       " cells; the head names " + std::to_string(columns_.size()));
+  return true;
+}
+
+double CsvReader::number(size_t column) const {
+  double value = 0;
+  if (!parse(cells_[column], value)) fail(column, "a number");
+  return value;
+}
+
+int CsvReader::integer(size_t column) const {
+  int value = 0;
+  if (!parse(cells_[column], value)) fail(column, "a whole number");
+  return value;
+}
+
+void CsvReader::fail(size_t column, const char* expected) const {
+  throw InvalidInput(path_.string() + ":" + std::to_string(line_) + ": " + columns_[column] + " = '" +
+                     cells_[column].substr(0, 40) + "' is not " + expected);
+}
+
+}  // namespace aspic

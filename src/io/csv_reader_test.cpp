@@ -1,0 +1,77 @@
+#include "io/csv_reader.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "io/atomic_file.h"
+#include "io/csv.h"
+#include "io/folder_test.h"
+
+namespace aspic {
+namespace {
+
+using testing::HasSubstr;
+
+class CsvReading : public FolderTest {
+ protected:
+  CsvReader reader(const std::string& text) {
+    write_file(path("table.csv"), text);
+    return CsvReader(path("table.csv"));
+  }
+  std::string refusal(const std::string& text) {
+    try {
+      CsvReader table = reader(text);
+      const size_t step = table.column("step"), energy = table.column("energy");
+      while (table.next()) {
+        table.integer(step);
+        table.number(energy);
+      }
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+TEST_F(CsvReading, GivesBackWhatWasWrittenToTheSameBits) {
+  CsvFile file = CsvFile::create(path("table.csv"), {"step", "name, with comma", "value"});
+  file.append(CsvRow().add(1).add("say \"yes\"").add(0.1));
+  file.append(CsvRow().add(2).add("").add(NAN));
+  file.append(CsvRow().add(3).add("b").add(-INFINITY));
+  file.close();
+  CsvReader table(path("table.csv"));
+  EXPECT_EQ(table.column("name, with comma"), 1u);
+  EXPECT_FALSE(table.has("name"));
+  ASSERT_TRUE(table.next());
+  EXPECT_EQ(table.integer(0), 1);
+  EXPECT_EQ(table.text(1), "say \"yes\"");
+  EXPECT_EQ(table.number(2), 0.1);
+  ASSERT_TRUE(table.next());
+  EXPECT_EQ(table.text(1), "");
+  EXPECT_TRUE(std::isnan(table.number(2)));
+  ASSERT_TRUE(table.next());
+  EXPECT_EQ(table.number(2), -INFINITY);
+  EXPECT_FALSE(table.next());
+}
+
+TEST_F(CsvReading, ATornLastLineIsNoRow) {
+  CsvReader table = reader("step,energy\n1,2\n2,3");
+  EXPECT_TRUE(table.next());
+  EXPECT_FALSE(table.next());
+}
+
+TEST_F(CsvReading, DamageIsRefusedWithFileAndLine) {
+  EXPECT_THAT(refusal(""), HasSubstr("table.csv: is empty"));
+  EXPECT_THAT(refusal("step,value\n"), HasSubstr("table.csv:1: has no column 'energy'"));
+  EXPECT_THAT(refusal("step,energy\n1,2\n2\n"), HasSubstr("table.csv:3: has 1 cells; the head names 2"));
+  EXPECT_THAT(refusal("step,energy\n1,two\n"), HasSubstr("table.csv:2: energy = 'two' is not a number"));
+  EXPECT_THAT(refusal("step,energy\n1.5,2\n"), HasSubstr("table.csv:2: step = '1.5' is not a whole number"));
+  EXPECT_THAT(refusal("step,energy\n" + std::string(3'000'000, 'x') + "\n"), HasSubstr("table.csv:2: is no line"));
+  EXPECT_THROW(CsvReader(path("none.csv")), InvalidInput);
+  EXPECT_EQ(refusal("step,energy\r\n1,2\r\n"), "");
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,66 @@
+// Two simulations side by side: the dialog that opens the second.
+import { button, element, labelled, messageOf, openDialog } from "./dom";
+import type { Page } from "./page";
+import { faultOfOverrides, parseOverrides, presets } from "./presets";
+import type { Scene } from "./protocol";
+import { shortcutButton } from "./shortcuts";
+import type { Store } from "./store";
+
+export function makeCompareButton(store: Store, page: Page): HTMLElement {
+  const run = (): void => {
+    const scene = store.side("a")?.scene;
+    if (store.side("b")) store.source.send({ do: "end_compare" });
+    else if (scene) openCompare(store, scene);
+  };
+  const made = shortcutButton(
+    page,
+    { key: "c", does: "Compare two simulations (A/B), or end it", group: "Panels", run },
+    { text: "A/B", label: "Compare two simulations", steers: true },
+  );
+  const show = (): void => {
+    const comparing = store.side("b") !== null;
+    made.textContent = comparing ? "End A/B" : "A/B";
+    made.setAttribute("aria-label", comparing ? "End the comparison" : "Compare two simulations");
+  };
+  store.on("scene", show);
+  store.on("gone", show);
+  return made;
+}
+
+function openCompare(store: Store, scene: Scene): void {
+  const label = element("input", { type: "text", maxlength: "60", required: true });
+  const overrides = element("textarea", { rows: "4", spellcheck: "false", placeholder: "material.young=1e6" });
+  const problem = element("p", { class: "problem", role: "alert" });
+  const choices = presets(scene).map((preset) =>
+    button({ text: preset.title, title: preset.overrides.join("\n") }, () => {
+      label.value = preset.label;
+      overrides.value = preset.overrides.join("\n");
+      problem.textContent = "";
+    }),
+  );
+  const submit = element("button", { type: "submit", class: "primary" }, "Compare");
+  const form = element(
+    "form",
+    {},
+    element("p", {}, "Side A stays as it is. Side B is the same scene, but for:"),
+    element("div", { class: "choices" }, ...choices),
+    labelled("What differs, one KEY=VALUE per line", overrides),
+    labelled("Name of side B", label),
+    problem,
+    element("div", { class: "actions" }, submit),
+  );
+  const dialog = openDialog("Compare two simulations", [form]);
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    const lines = parseOverrides(overrides.value);
+    problem.textContent = faultOfOverrides(lines);
+    if (problem.textContent !== "") return;
+    submit.disabled = true;
+    store.source
+      .request({ do: "compare", overrides: lines, label: label.value.trim() || "B" })
+      .then(() => dialog.close())
+      .catch((reason: unknown) => (problem.textContent = messageOf(reason)))
+      .finally(() => (submit.disabled = false));
+  });
+  choices[0]?.focus();
+}

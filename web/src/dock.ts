@@ -1,0 +1,111 @@
+// The panels below the view, one at a time, chosen by tabs. Closed, only the tabs remain.
+import { makeDivider } from "./divider";
+import { button, element } from "./dom";
+import type { Page, Panel } from "./page";
+import { keyName } from "./shortcuts";
+
+const kKeys: Record<string, string> = { energy: "e", microscope: "m", landscape: "a", functions: "f", certificate: "q" };
+const kSmallest = 120; // [px]
+const kShare = 0.62; // of the window, at most: the mesh keeps the rest
+
+export class Dock {
+  private open: Panel | null = null;
+  private last: Panel | null = null; // opened again by the key
+  private height: number;
+  private readonly tabs = new Map<Panel, HTMLButtonElement>();
+  private readonly body = element("div", { class: "dock-body" });
+  private readonly close: HTMLButtonElement;
+
+  constructor(
+    private readonly root: HTMLElement,
+    private readonly page: Page,
+    private readonly panels: Panel[],
+  ) {
+    this.height = Math.round(innerHeight * 0.36);
+    const list = element("div", { role: "tablist", "aria-label": "Plots" });
+    for (const panel of panels) list.append(this.makeTab(panel));
+    this.close = button({ icon: "close", label: "Close the plots", title: "Close the plots (D)" }, () => this.show(null));
+    const divider = makeDivider({
+      label: "Height of the plots",
+      orientation: "horizontal",
+      size: () => this.height,
+      limits: () => [kSmallest, Math.max(kSmallest, innerHeight * kShare)],
+      resize: (height) => this.resize(height),
+    });
+    root.append(divider, element("div", { class: "dock-tabs" }, list, this.close), this.body);
+    list.addEventListener("keydown", (event) => this.moveBetweenTabs(event));
+    addEventListener("resize", () => this.resize(this.height));
+    page.on("panel", (name) => this.show(this.named(name)));
+    page.shortcut({ key: "d", does: "Open or close the plots", group: "Panels", run: () => this.toggle() });
+    page.keep("dock", {
+      save: () => ({ panel: this.open?.name ?? null, height: this.height }),
+      restore: (saved) => this.restore(saved),
+    });
+    this.show(panels[0] ?? null);
+  }
+
+  show(panel: Panel | null): void {
+    if (panel !== this.open) {
+      this.open?.show(false);
+      this.open = panel;
+      this.last = panel ?? this.last;
+      this.body.replaceChildren(...(panel ? [panel.element] : []));
+    }
+    for (const [other, tab] of this.tabs) {
+      tab.setAttribute("aria-selected", String(other === panel));
+      tab.tabIndex = other === (panel ?? this.panels[0]) ? 0 : -1;
+    }
+    this.close.hidden = panel === null;
+    this.resize(this.height);
+    panel?.show(true);
+  }
+
+  private named(name: string): Panel | null {
+    return this.panels.find((panel) => panel.name === name) ?? this.open;
+  }
+
+  private toggle(): void {
+    this.show(this.open ? null : (this.last ?? this.panels[0]));
+  }
+
+  private resize(height: number): void {
+    this.height = Math.max(kSmallest, Math.min(height, Math.round(innerHeight * kShare)));
+    this.root.classList.toggle("closed", this.open === null);
+    this.root.style.height = this.open === null ? "auto" : `${this.height}px`;
+    this.page.emit("layout", undefined);
+  }
+
+  private makeTab(panel: Panel): HTMLElement {
+    const key = kKeys[panel.name];
+    panel.element.setAttribute("role", "tabpanel");
+    panel.element.setAttribute("aria-label", panel.title);
+    const tab = button({ text: panel.title, title: key ? `${panel.title} (${keyName(key)})` : panel.title }, () =>
+      this.show(panel),
+    );
+    tab.setAttribute("role", "tab");
+    this.tabs.set(panel, tab);
+    if (key) {
+      const run = (): void => this.show(this.open === panel ? null : panel);
+      this.page.shortcut({ key, does: `${panel.title}: open or close`, group: "Panels", run });
+    }
+    return tab;
+  }
+
+  private moveBetweenTabs(event: KeyboardEvent): void {
+    const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (by === undefined) return;
+    const count = this.panels.length;
+    const focused = this.panels.findIndex((panel) => this.tabs.get(panel) === document.activeElement);
+    const next = this.panels[(focused + by + count) % count];
+    event.preventDefault();
+    this.show(next);
+    this.tabs.get(next)?.focus();
+  }
+
+  private restore(saved: unknown): void {
+    const { panel, height } = (saved ?? {}) as { panel?: unknown; height?: unknown };
+    if (typeof height === "number" && Number.isFinite(height)) this.height = height;
+    if (panel === null) this.show(null);
+    else if (typeof panel === "string") this.show(this.named(panel));
+  }
+}

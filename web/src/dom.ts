@@ -1,0 +1,100 @@
+// Elements in one call, and what browsers need more than one line for.
+export type Child = Node | string | null;
+
+export function element<Tag extends keyof HTMLElementTagNameMap>(
+  tag: Tag,
+  attributes: Record<string, string | boolean> = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[Tag] {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === true) made.setAttribute(name, "");
+    else if (value !== false) made.setAttribute(name, value);
+  }
+  made.append(...children.filter((child) => child !== null));
+  return made;
+}
+
+// Outlines on a square of 24 units.
+const kIcons = {
+  play: "M7 4l13 8-13 8z",
+  pause: "M7 4h4v16H7zM14 4h4v16h-4z",
+  step: "M5 4l10 8-10 8zM17 4h3v16h-3z",
+  iterate: "M12 4a8 8 0 1 0 8 8h-3a5 5 0 1 1-5-5v3l6-4.5L12 1z",
+  reset: "M5 4h3v16H5zM20 4v16L9 12z",
+  close: "M6 4l6 6 6-6 2 2-6 6 6 6-2 2-6-6-6 6-2-2 6-6-6-6z",
+  theme: "M12 3a9 9 0 1 0 0 18 9 9 0 0 0 0-18zm0 2v14a7 7 0 0 1 0-14z",
+} as const;
+export type IconName = keyof typeof kIcons;
+
+export function icon(name: IconName): SVGSVGElement {
+  const kSvg = "http://www.w3.org/2000/svg";
+  const svg = document.createElementNS(kSvg, "svg");
+  svg.setAttribute("viewBox", "0 0 24 24");
+  svg.setAttribute("aria-hidden", "true");
+  svg.setAttribute("class", "icon");
+  const path = document.createElementNS(kSvg, "path");
+  path.setAttribute("d", kIcons[name]);
+  path.setAttribute("fill-rule", "evenodd");
+  svg.append(path);
+  return svg;
+}
+
+export interface ButtonOptions {
+  text?: string;
+  icon?: IconName;
+  label?: string; // for screen readers, where it is not the text
+  title?: string;
+  steers?: boolean; // disabled in a page that only watches
+}
+
+export function button(options: ButtonOptions, run: () => void): HTMLButtonElement {
+  const made = element(
+    "button",
+    { type: "button", title: options.title ?? options.label ?? "", "data-steers": options.steers ?? false },
+    options.icon ? icon(options.icon) : null,
+    options.text ?? null,
+  );
+  if (options.label) made.setAttribute("aria-label", options.label);
+  made.addEventListener("click", (event) => {
+    // A click by mouse leaves the keyboard to the shortcuts: Space then plays and does not click again.
+    if (event.detail > 0) made.blur();
+    run();
+  });
+  return made;
+}
+
+export function labelled(text: string, control: HTMLElement, title = ""): HTMLLabelElement {
+  return element("label", { title, class: "labelled" }, element("span", {}, text), control);
+}
+
+// A modal dialog; it is removed when it closes.
+export function openDialog(title: string, content: Child[], className = ""): HTMLDialogElement {
+  const heading = element("h2", {}, title);
+  const dialog = element("dialog", { "aria-label": title, class: className });
+  const close = button({ icon: "close", label: "Close" }, () => dialog.close());
+  dialog.append(element("header", {}, heading, close), ...content.filter((child) => child !== null));
+  dialog.addEventListener("close", () => dialog.remove());
+  document.body.append(dialog);
+  dialog.showModal();
+  return dialog;
+}
+
+export function saveFile(name: string, content: Blob): void {
+  const url = URL.createObjectURL(content);
+  element("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 60_000);
+}
+
+export function chooseFile(accept: string): Promise<File | null> {
+  const input = element("input", { type: "file", accept });
+  return new Promise((resolve) => {
+    input.addEventListener("change", () => resolve(input.files?.[0] ?? null));
+    input.addEventListener("cancel", () => resolve(null));
+    input.click();
+  });
+}
+
+export function messageOf(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}

@@ -1,0 +1,136 @@
+// The menu of files: scenes, workspaces, the recorded mouse, deformed meshes.
+import { chooseFile, element, labelled, messageOf, openDialog, saveFile } from "./dom";
+import { makeMenu } from "./menu";
+import type { Page } from "./page";
+import type { Query, Recording, TextReply } from "./protocol";
+import { shortcutButton } from "./shortcuts";
+import type { Store } from "./store";
+import { fileName } from "./video";
+import { isWorkspace, openWorkspace, parseRecording, parseWorkspace, saveWorkspace } from "./workspace";
+
+const kLargestFile = 50e6; // [bytes] of a workspace or recording
+const kFormats = ["obj", "ply", "vtu", "msh", "mesh"] as const;
+
+export class Files {
+  constructor(
+    private readonly store: Store,
+    private readonly page: Page,
+  ) {}
+
+  // With the commands that make pictures. A recorded run has fewer of its own.
+  makeMenu(pictures: HTMLButtonElement[]): HTMLElement {
+    const saveScene = (): void => this.try(this.saveText({ ask: "scene", side: "a" }));
+    const scene = this.item("Shift+T", "Save the scene with all its values (TOML)", false, saveScene);
+    if (!this.store.source.live) return makeMenu("File", "Save", [scene, ...pictures]);
+    this.acceptDrops();
+    return makeMenu("File", "Load and save", [
+      this.item("Shift+O", "Load a scene or a mesh", true, () => this.openScene()),
+      this.item("Shift+S", "Save the workspace", false, () => this.try(saveWorkspace(this.store, this.page))),
+      this.item("Shift+L", "Load a workspace or a recording", true, () => this.try(this.choose())),
+      this.item("Shift+R", "Save the recording of the mouse", false, () => this.try(this.saveRecording())),
+      this.item("Shift+P", "Repeat the session from its start", true, () => this.try(this.replayNow())),
+      this.item("Shift+M", "Save the deformed mesh", false, () => this.openMesh()),
+      scene,
+      ...pictures,
+    ]);
+  }
+
+  private item(key: string, does: string, steers: boolean, run: () => void): HTMLButtonElement {
+    return shortcutButton(this.page, { key, does, group: "File", run }, { text: does, steers });
+  }
+
+  private try(work: Promise<unknown>): void {
+    work.catch((reason: unknown) => this.page.notice(messageOf(reason), "error"));
+  }
+
+  private openScene(): void {
+    const path = element("input", { type: "text", required: true, spellcheck: "false", size: "50" });
+    path.value = this.store.side("a")?.scene.path ?? "";
+    const problem = element("p", { class: "problem", role: "alert" });
+    const submit = element("button", { type: "submit", class: "primary" }, "Load");
+    const form = element(
+      "form",
+      {},
+      labelled("Scene, mesh or run, a path on the machine of the program", path),
+      problem,
+      element("div", { class: "actions" }, submit),
+    );
+    const dialog = openDialog("Load a scene or a mesh", [form]);
+    path.select();
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      submit.disabled = true;
+      problem.textContent = "";
+      this.store.source
+        .request({ do: "load", scene: path.value.trim() })
+        .then(() => dialog.close())
+        .catch((reason: unknown) => (problem.textContent = messageOf(reason)))
+        .finally(() => (submit.disabled = false));
+    });
+  }
+
+  private openMesh(): void {
+    const format = element("select", {}, ...kFormats.map((name) => element("option", { value: name }, name)));
+    const side = element("select", {}, element("option", { value: "a" }, "A"), element("option", { value: "b" }, "B"));
+    const submit = element("button", { type: "submit", class: "primary" }, "Save");
+    const form = element(
+      "form",
+      {},
+      labelled("Format: obj and ply hold the surface; vtu, msh and mesh the tets", format),
+      this.store.side("b") ? labelled("Side", side) : null,
+      element("div", { class: "actions" }, submit),
+    );
+    const dialog = openDialog("Save the deformed mesh", [form]);
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      dialog.close();
+      const chosen = format.value as (typeof kFormats)[number];
+      this.try(this.saveText({ ask: "mesh", side: side.value === "b" ? "b" : "a", format: chosen }));
+    });
+  }
+
+  private async saveText(query: Query): Promise<void> {
+    const { name, text } = await this.store.source.ask<TextReply>(query);
+    saveFile(name, new Blob([text], { type: "text/plain" }));
+  }
+
+  private async saveRecording(): Promise<void> {
+    const recording = await this.store.source.ask<Recording>({ ask: "recording" });
+    const name = fileName(`${this.store.side("a")?.scene.name ?? ""}.recording`, "json");
+    saveFile(name, new Blob([JSON.stringify(recording)], { type: "application/json" }));
+  }
+
+  private async replayNow(): Promise<void> {
+    const recording = await this.store.source.ask<Recording>({ ask: "recording" });
+    await this.store.source.request({ do: "replay", recording });
+  }
+
+  private async choose(): Promise<void> {
+    const file = await chooseFile(".json,application/json");
+    if (file) await this.open(file);
+  }
+
+  private async open(file: File): Promise<void> {
+    if (file.size > kLargestFile) throw new Error(`${file.name} is too large for a workspace or a recording.`);
+    const text = await file.text();
+    try {
+      if (isWorkspace(text)) await openWorkspace(parseWorkspace(text), this.store, this.page);
+      else await this.store.source.request({ do: "replay", recording: parseRecording(text) });
+    } catch (reason) {
+      throw new Error(`${file.name}: ${messageOf(reason)}`);
+    }
+  }
+
+  private acceptDrops(): void {
+    addEventListener("dragover", (event) => {
+      if (event.dataTransfer?.types.includes("Files")) event.preventDefault();
+    });
+    addEventListener("drop", (event) => {
+      const file = event.dataTransfer?.files[0];
+      if (!file) return;
+      event.preventDefault();
+      if (this.store.steers) this.try(this.open(file));
+      else this.page.notice("This page watches; take the steering to load files.", "error");
+    });
+  }
+}

@@ -1,0 +1,129 @@
+// Lecture mode: the pages of the lecture as a list, each opening its demonstration. A recorded mouse plays; the reader
+// takes over by dragging the body.
+import { button, element, messageOf } from "./dom";
+import type { Page } from "./page";
+import type { FunctionQuestion, Lesson } from "./protocol";
+import { shortcutButton } from "./shortcuts";
+import type { Store } from "./store";
+
+export type ShowFunction = (question: FunctionQuestion) => void;
+
+export function matches(lesson: Lesson, words: string): boolean {
+  const text = `${lesson.pages} ${lesson.title} ${lesson.claim} ${lesson.look}`.toLowerCase();
+  return words
+    .toLowerCase()
+    .split(/\s+/)
+    .every((word) => text.includes(word));
+}
+
+// The next lesson that can be shown, forward (1) or backward (-1).
+export function neighbour(lessons: Lesson[], from: Lesson | null, by: 1 | -1): Lesson | null {
+  const shown = lessons.filter((lesson) => !lesson.missing);
+  if (!from) return shown[0] ?? null;
+  return shown[shown.indexOf(from) + by] ?? null;
+}
+
+export class Lecture {
+  private lessons: Lesson[] = [];
+  private current: Lesson | null = null;
+  private replaying = false;
+  private readonly card = element("article", { class: "lesson", "aria-live": "polite" });
+  private readonly replay = element("p", { class: "replay", hidden: true });
+  private readonly list = element("ol", { class: "lessons" });
+  private readonly search = element("input", { type: "search", placeholder: "Search", "aria-label": "Search the lecture" });
+  private readonly previous = button({ text: "Previous", steers: true }, () => this.move(-1));
+  private readonly next = button({ text: "Next", steers: true }, () => this.move(1));
+  readonly opener: HTMLButtonElement;
+
+  constructor(
+    private readonly root: HTMLElement,
+    private readonly store: Store,
+    private readonly page: Page,
+    private readonly showFunction: ShowFunction,
+  ) {
+    this.opener = shortcutButton(
+      page,
+      { key: "l", does: "The lecture's pages", group: "Panels", run: () => this.toggle() },
+      { text: "Lecture" },
+    );
+    this.opener.hidden = true;
+    const turn = element("div", { class: "turn" }, this.previous, this.next);
+    root.append(turn, this.card, this.replay, this.search, this.list);
+    this.search.addEventListener("input", () => this.fill());
+    store.on("hello", (hello) => this.greet(hello.lessons));
+    store.on("state", ({ replaying }) => this.showReplay(replaying));
+  }
+
+  private greet(lessons: Lesson[]): void {
+    const known = this.current?.id;
+    this.lessons = lessons;
+    this.current = lessons.find((lesson) => lesson.id === known) ?? null;
+    this.opener.hidden = lessons.length === 0;
+    if (lessons.length === 0) this.root.hidden = true;
+    this.fill();
+  }
+
+  private toggle(): void {
+    if (this.lessons.length === 0) return;
+    this.root.hidden = !this.root.hidden;
+    this.opener.setAttribute("aria-expanded", String(!this.root.hidden));
+    this.page.emit("layout", undefined);
+    if (!this.root.hidden) this.search.focus();
+  }
+
+  private fill(): void {
+    const found = this.lessons.filter((lesson) => matches(lesson, this.search.value));
+    this.list.replaceChildren(...found.map((lesson) => element("li", {}, this.entry(lesson))));
+    if (found.length === 0) this.list.append(element("li", { class: "faint" }, "No page has these words."));
+    this.previous.hidden = this.next.hidden = this.current === null;
+    this.previous.classList.toggle("faint", neighbour(this.lessons, this.current, -1) === null);
+    this.next.classList.toggle("faint", neighbour(this.lessons, this.current, 1) === null);
+  }
+
+  private entry(lesson: Lesson): HTMLElement {
+    const title = lesson.missing ? `Not shown: ${lesson.missing}` : lesson.claim;
+    const entry = button({ title, steers: !lesson.missing }, () => {
+      if (lesson.missing) this.page.notice(`Page ${lesson.pages}, ${lesson.title}: ${lesson.missing}`);
+      else void this.open(lesson);
+    });
+    entry.append(element("span", { class: "pages" }, lesson.pages), element("span", {}, lesson.title));
+    if (lesson.missing) entry.append(element("small", {}, lesson.missing));
+    entry.setAttribute("aria-disabled", String(Boolean(lesson.missing)));
+    if (lesson === this.current) entry.setAttribute("aria-current", "true");
+    if (!this.store.steers) entry.disabled = !lesson.missing;
+    return entry;
+  }
+
+  private move(by: 1 | -1): void {
+    const lesson = neighbour(this.lessons, this.current, by);
+    if (lesson) void this.open(lesson);
+    else this.page.notice(by === 1 ? "This is the last page." : "This is the first page.");
+  }
+
+  private async open(lesson: Lesson): Promise<void> {
+    try {
+      await this.store.source.request({ do: "lesson", lesson: lesson.id });
+    } catch (reason) {
+      return this.page.notice(messageOf(reason), "error");
+    }
+    this.current = lesson;
+    this.card.replaceChildren(
+      element("h2", {}, `Page ${lesson.pages}: ${lesson.title}`),
+      element("p", { class: "claim" }, lesson.claim),
+      element("p", {}, lesson.look),
+    );
+    this.fill();
+    this.list.querySelector("[aria-current]")?.scrollIntoView({ block: "nearest" });
+    this.page.emit("panel", lesson.panel);
+    if (lesson.function) this.showFunction(lesson.function);
+  }
+
+  private showReplay(replaying: boolean): void {
+    if (replaying === this.replaying) return;
+    this.replaying = replaying;
+    this.replay.hidden = false;
+    this.replay.textContent = replaying
+      ? "A recorded mouse plays. Drag the body to take over."
+      : "The recorded mouse has ended: the body is yours.";
+  }
+}

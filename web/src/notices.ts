@@ -1,0 +1,57 @@
+// What the page has to say: the state of the connection, what the program is busy with, refusals, notices and errors.
+import { button, element } from "./dom";
+import type { LiveSource } from "./live";
+import type { Page } from "./page";
+import type { Store } from "./store";
+
+const kShown = 4; // at a time
+const kInfoLasts = 6000; // [ms]
+const kErrorLasts = 15000;
+const kGone = 6; // failures to connect after which the program is probably gone
+
+export function connectionText(failures: number): string {
+  return failures < kGone
+    ? "Connection lost, trying again."
+    : "The program does not answer. It has probably ended: start aspic view again and open the address that it prints. " +
+        "This page goes on trying.";
+}
+
+export function showNotices(root: HTMLElement, store: Store, page: Page): void {
+  const lasting = element("div", { class: "lasting" });
+  const list = element("div", { class: "notices" });
+  root.append(lasting, list);
+
+  const say = (text: string, kind: "info" | "error"): void => {
+    const same = [...list.children].find((child) => child.firstChild?.textContent === text);
+    same?.remove();
+    const item = element("div", { class: `notice ${kind}` }, element("span", {}, text));
+    item.append(button({ icon: "close", label: "Dismiss" }, () => item.remove()));
+    list.append(item);
+    while (list.children.length > kShown) list.firstElementChild?.remove();
+    setTimeout(() => item.remove(), kind === "info" ? kInfoLasts : kErrorLasts);
+  };
+  page.on("notice", ({ text, kind }) => say(text, kind));
+  store.on("refused", (why) => say(why, "error"));
+
+  const showLasting = (): void => {
+    const lost = store.source.live && !store.connected && (store.source as LiveSource).failures > 0;
+    const text = lost ? connectionText((store.source as LiveSource).failures) : store.busy;
+    lasting.textContent = text;
+    lasting.className = `lasting ${lost ? "error" : "busy"}`;
+    lasting.hidden = text === "";
+  };
+  store.on("connected", showLasting);
+  store.on("busy", showLasting);
+  showLasting();
+}
+
+// An error in the page's own scripts is shown, not swallowed.
+export function showOwnErrors(page: Page): void {
+  const tell = (text: string): void => page.notice(`Error in this page: ${text}`, "error");
+  addEventListener("error", (event) => {
+    if (!event.message.startsWith("ResizeObserver loop")) tell(event.message);
+  });
+  addEventListener("unhandledrejection", (event) => {
+    tell(event.reason instanceof Error ? event.reason.message : String(event.reason));
+  });
+}

@@ -1,0 +1,95 @@
+// What a run's steps certify: who converged, how far off the others are, what the worst values are and where.
+import type { MaybeNumber, StepRow } from "../protocol";
+
+// Above 1 the step missed what was asked for; null: nothing was asked for.
+export function excess(row: StepRow): MaybeNumber {
+  return row.residual === null || !row.threshold ? null : row.residual / row.threshold;
+}
+
+export interface Column {
+  title: string;
+  meaning: string;
+  value: (row: StepRow) => MaybeNumber | string;
+  worse?: (row: StepRow) => number; // larger is worse; without it the step's number decides
+}
+
+const kUnknown = -Infinity;
+
+export const kColumns: Column[] = [
+  { title: "step", meaning: "number of the time step", value: (row) => row.step },
+  { title: "time [s]", meaning: "at the end of the step", value: (row) => row.time },
+  {
+    title: "status",
+    meaning: "how its minimisation ended; converged and round_off are success",
+    value: (row) => row.status,
+    worse: (row) => (row.success ? 0 : 1),
+  },
+  {
+    title: "residual [N]",
+    meaning: "what is left of the forces: |M a + dV/dx + dD/dx|",
+    value: (row) => row.residual,
+    worse: (row) => row.residual ?? kUnknown,
+  },
+  { title: "wanted [N]", meaning: "the largest residual that counts as converged", value: (row) => row.threshold || null },
+  {
+    title: "residual / wanted",
+    meaning: "above 1: more is left than was asked for",
+    value: excess,
+    worse: (row) => excess(row) ?? kUnknown,
+  },
+  {
+    title: "iterations",
+    meaning: "of the minimiser",
+    value: (row) => row.iterations.length,
+    worse: (row) => row.iterations.length,
+  },
+  {
+    title: "min det F",
+    meaning: "the smallest volume of a tet, relative to its rest; below 0: inverted",
+    value: (row) => row.min_det_F,
+    worse: (row) => (row.min_det_F === null ? Infinity : -row.min_det_F),
+  },
+  {
+    title: "ledger error [J]",
+    meaning: "the part of the energy's change that nothing accounts for",
+    value: (row) => row.ledger_error,
+    worse: (row) => (row.ledger_error === null ? Infinity : Math.abs(row.ledger_error)),
+  },
+];
+
+// The rows to be listed, the worst by a column first, or in the order of time.
+export function listed(steps: readonly StepRow[], column: Column, onlyFailed: boolean): StepRow[] {
+  const rows = onlyFailed ? steps.filter((row) => !row.success) : [...steps];
+  const worse = column.worse;
+  return worse ? rows.sort((a, b) => compare(worse(b), worse(a)) || a.step - b.step) : rows;
+}
+
+// Infinities are equal to themselves, which their difference would not tell.
+function compare(a: number, b: number): number {
+  return a < b ? -1 : a > b ? 1 : 0;
+}
+
+export interface Totals {
+  steps: number;
+  failed: number;
+  iterations: number;
+  worstExcess: StepRow | null;
+  smallestVolume: StepRow | null;
+  largestError: StepRow | null;
+}
+
+export function totals(steps: readonly StepRow[]): Totals {
+  const worst = (badness: (row: StepRow) => MaybeNumber): StepRow | null =>
+    steps.reduce<StepRow | null>((found, row) => {
+      const value = badness(row);
+      return value !== null && (!found || value > (badness(found) as number)) ? row : found;
+    }, null);
+  return {
+    steps: steps.length,
+    failed: steps.filter((row) => !row.success).length,
+    iterations: steps.reduce((sum, row) => sum + row.iterations.length, 0),
+    worstExcess: worst(excess),
+    smallestVolume: worst((row) => (row.min_det_F === null ? null : -row.min_det_F)),
+    largestError: worst((row) => (row.ledger_error === null ? null : Math.abs(row.ledger_error))),
+  };
+}

@@ -1,0 +1,190 @@
+// The folders "Mouse", "Display" and "Camera" of the settings, and their shortcuts.
+import type { Controller, GUI } from "lil-gui";
+import type { Page } from "../page";
+import { kCameraModes, kViewNames, type CameraMode } from "../view/cameras";
+import { kDefaults, kTools, type Display, type DisplaySettings } from "../view/display";
+import type { View } from "../view/view";
+
+type Key = keyof DisplaySettings;
+type Switch = { [K in Key]: DisplaySettings[K] extends boolean ? K : never }[Key];
+type Choices = Record<string, string>;
+
+// A folder whose controls change the display, and follow when something else does.
+class Folder {
+  constructor(
+    private readonly gui: GUI,
+    private readonly display: Display,
+  ) {}
+
+  within(title: string): Folder {
+    return new Folder(this.gui.addFolder(title).close(), this.display);
+  }
+
+  add(key: Key, label: string, choices?: Choices): void {
+    const held = { ...this.display.settings };
+    this.follow(choices ? this.gui.add(held, key, choices) : this.gui.add(held, key), key, label);
+  }
+
+  slider(key: Key, label: string, least: number, most: number, step: number): void {
+    this.follow(this.gui.add({ ...this.display.settings }, key, least, most, step), key, label);
+  }
+
+  colour(key: Key, label: string): void {
+    this.follow(this.gui.addColor({ ...this.display.settings }, key), key, label);
+  }
+
+  button(label: string, press: () => void): void {
+    this.gui.add({ press }, "press").name(label);
+  }
+
+  // The value lives elsewhere: `read` tells it after each change.
+  choice(label: string, choices: () => Choices, read: () => string, write: (value: string) => void): void {
+    const held = { value: read() };
+    let listed = JSON.stringify(choices());
+    let controller = this.gui.add(held, "value", choices());
+    const set = (): Controller => controller.name(label).onChange(write);
+    set();
+    const update = (): void => {
+      held.value = read();
+      const now = JSON.stringify(choices());
+      if (now !== listed) {
+        listed = now;
+        controller = controller.options(choices());
+        set();
+      }
+      controller.updateDisplay();
+    };
+    this.display.on("changed", update);
+    this.display.on("camera", update);
+  }
+
+  private follow(controller: Controller, key: Key, label: string): void {
+    controller.name(label).onChange((value: unknown) => this.display.change({ [key]: value }));
+    const held = controller.object as Record<string, unknown>;
+    this.display.on("changed", () => {
+      if (held[key] === this.display.settings[key]) return;
+      held[key] = this.display.settings[key];
+      controller.updateDisplay();
+    });
+  }
+}
+
+export function addDisplayControls(gui: GUI, display: Display, page: Page, views: () => View[]): void {
+  page.keep("display", display);
+  page.keep("camera", display.cameraKeeper);
+  addMouse(new Folder(gui.addFolder("Mouse"), display));
+  addDisplay(new Folder(gui.addFolder("Display"), display), display, views);
+  addCamera(new Folder(gui.addFolder("Camera"), display), display, views);
+  addDisplayShortcuts(page, display);
+  addCameraShortcuts(page, display, views);
+}
+
+function addMouse(folder: Folder): void {
+  folder.add("tool", "Left button", Object.fromEntries(Object.entries(kTools).map(([tool, words]) => [words, tool])));
+  folder.slider("brush", "Brush radius [px]", 4, 200, 1);
+  folder.add("unpin", "Brush unpins");
+}
+
+function addDisplay(folder: Folder, display: Display, views: () => View[]): void {
+  addField(folder, display, views);
+  folder.add("fill", "Fill");
+  folder.add("smooth", "Smooth shading");
+  folder.add("wires", "Wires");
+  folder.add("ground", "Ground");
+  folder.add("shadows", "Shadows");
+  folder.add("clip", "Cut", { no: "off", "across x": "x", "across y": "y", "across z": "z" });
+  folder.slider("clipAt", "Cut at", 0, 1, 0.001);
+  folder.add("clipOther", "Keep the other half");
+  addNumbers(folder.within("Numbers and marks"));
+  addLook(folder.within("Colours and light"));
+  folder.button("As at the start", () => display.change(kDefaults));
+}
+
+function addNumbers(folder: Folder): void {
+  folder.add("vertexLabels", "Vertex numbers");
+  folder.add("faceLabels", "Tet numbers");
+  folder.add("pins", "Pins");
+  folder.add("axes", "Axes");
+}
+
+function addLook(folder: Folder): void {
+  folder.colour("bodyColour", "Body");
+  folder.colour("lineColour", "Wires");
+  folder.add("wiresOnTop", "Wires shine through");
+  folder.add("inside", "Inside", { "its own colour": "own", "as outside": "same", hidden: "hidden" });
+  folder.colour("insideColour", "Inside's colour");
+  folder.add("invert", "Invert normals");
+  folder.slider("shininess", "Shininess", 0, 200, 1);
+  folder.add("ownBackground", "Own background");
+  folder.colour("background", "Background");
+}
+
+// The field that colours the body, and the range of its colours.
+function addField(folder: Folder, display: Display, views: () => View[]): void {
+  const fields = (): Choices => {
+    const known = display.fields.map((field) => [field.label, field.name] as const);
+    return { none: "", ...Object.fromEntries(known) };
+  };
+  const choose = (field: string): void => views()[0]?.store.source.send({ do: "colour", field });
+  folder.choice("Colour by", fields, () => display.field, choose);
+  const range = folder.within("Colour range");
+  range.add("map", "Colours", { "by field": "auto", viridis: "viridis", cividis: "cividis", "blue to orange": "blue_orange" });
+  range.add("fixedRange", "Fixed range");
+  range.add("low", "From");
+  range.add("high", "To");
+  range.button("Fix at what is shown", () => display.fixRange());
+  range.add("log", "Logarithmic");
+}
+
+function addCamera(folder: Folder, display: Display, views: () => View[]): void {
+  const modes: Record<string, CameraMode> = { "two axes, level": "turntable", orbit: "orbit", "2-D": "flat" };
+  const each = display.eachCamera;
+  folder.choice("Turns about", () => modes, () => display.cameras.a.mode, (mode) => each((rig) => rig.setMode(mode as CameraMode)));
+  const kinds = { perspective: "no", orthographic: "yes" };
+  const kind = (): string => (display.cameras.a.orthographic ? "yes" : "no");
+  folder.choice("Projection", () => kinds, kind, (value) => each((rig) => rig.setOrthographic(value === "yes")));
+  folder.button("Centre the body", () => views().forEach((view) => view.centre()));
+  const look = folder.within("Look from");
+  for (const name of kViewNames) look.button(name, () => each((rig) => rig.look(name)));
+  folder.add("linked", "One for both sides");
+}
+
+function addDisplayShortcuts(page: Page, display: Display): void {
+  const add = (key: string, does: string, run: () => void): void => page.shortcut({ key, does, group: "Display", run });
+  const flip = (key: Switch): void => display.change({ [key]: !display.settings[key] });
+  const { settings } = display;
+  add("w", "Wires: on the body, alone, none", () => {
+    if (!settings.fill) display.change({ fill: true, wires: false });
+    else if (settings.wires) display.change({ fill: false });
+    else display.change({ wires: true });
+  });
+  add("x", "Cut: across x, y, z, no cut", () => {
+    const axes = ["off", "x", "y", "z"] as const;
+    display.change({ clip: axes[(axes.indexOf(settings.clip) + 1) % axes.length] });
+  });
+  add("h", "Shadows", () => flip("shadows"));
+  add("n", "Vertex numbers", () => flip("vertexLabels"));
+  add("b", "Brush that pins, or drag", () => display.change({ tool: settings.tool === "pin" ? "drag" : "pin" }));
+  add("[", "Smaller brush", () => display.change({ brush: settings.brush / 1.25 }));
+  add("]", "Larger brush", () => display.change({ brush: settings.brush * 1.25 }));
+}
+
+function addCameraShortcuts(page: Page, display: Display, views: () => View[]): void {
+  const add = (key: string, does: string, run: () => void): void => page.shortcut({ key, does, group: "Camera", run });
+  kViewNames.forEach((name, i) => add(String(i + 1), `Look from: ${name}`, () => display.eachCamera((rig) => rig.look(name))));
+  const centre = (): void => views().forEach((view) => view.centre());
+  add("0", "Centre the body", centre);
+  add(".", "Centre the body", centre);
+  add("o", "Orthographic or perspective", () => display.eachCamera((rig) => rig.setOrthographic(!rig.orthographic)));
+  add("v", "Camera: two axes, orbit, 2-D", () => {
+    const next = kCameraModes[(kCameraModes.indexOf(display.cameras.a.mode) + 1) % kCameraModes.length];
+    display.eachCamera((rig) => rig.setMode(next));
+  });
+  const turn = (dx: number, dy: number): void => display.eachCamera((rig) => rig.turn(dx, dy));
+  add("Shift+ArrowLeft", "Turn left", () => turn(-20, 0));
+  add("Shift+ArrowRight", "Turn right", () => turn(20, 0));
+  add("Shift+ArrowUp", "Turn up", () => turn(0, -20));
+  add("Shift+ArrowDown", "Turn down", () => turn(0, 20));
+  add("+", "Closer", () => display.eachCamera((rig) => rig.zoom(0.85, 0, 0, 1)));
+  add("-", "Farther", () => display.eachCamera((rig) => rig.zoom(1 / 0.85, 0, 0, 1)));
+}

@@ -1,0 +1,256 @@
+// The energy plot: where the energy is, what brought it in and what took it away.
+import type { Page, Panel } from "../page";
+import type { MaybeNumber, SideName } from "../protocol";
+import type { Store } from "../store";
+import { Chart, type Curve } from "../plots/chart";
+import { button, checkbox, choice, download, downloadCanvas, element, fileName, numberField, oncePerFrame } from "../plots/dom";
+import { Ledger, ledgerColumns } from "../plots/ledger";
+import { csv, short, withUnit } from "../plots/numbers";
+import type { Palette } from "../plots/palette";
+import { lowerBound, magnitude, merged, nearest, thinned, type Table } from "../plots/table";
+import type uPlot from "uplot";
+
+const kSides: SideName[] = ["a", "b"];
+const kWindows = [
+  ["all", "all"],
+  ["10", "last 10 s"],
+  ["2", "last 2 s"],
+  ["typed", "last ... s"],
+] as const;
+
+export function makeEnergyPanel(store: Store, page: Page): Panel {
+  return new EnergyPanel(store, page);
+}
+
+class EnergyPanel implements Panel {
+  readonly name = "energy";
+  readonly title = "Energy";
+  readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Energy plot" });
+  private readonly chart = new Chart();
+  private readonly note = element("span", { class: "plot-note", role: "status" });
+  private readonly ledgers: Record<SideName, Ledger | null> = { a: null, b: null };
+  private readonly typed = numberField("", "Length of the window [s]", 1, { min: 1e-6 }, () => this.setWindow());
+  private readonly windows = choice("Window", "Which part of the time is shown; drag in the plot to zoom, double-click for all", kWindows, "all", () =>
+    this.setWindow(),
+  );
+  private readonly logSwitch = checkbox("log", "Logarithmic axis, of absolute values; zeros have no place on it", false, () => this.configure());
+  private range: [number, number] | null = null; // zoomed by the mouse [s]
+  private visible = false;
+  private byStep = false; // time does not pass: statics
+  private readonly redraw = oncePerFrame(() => this.visible && this.draw());
+
+  constructor(
+    private readonly store: Store,
+    page: Page,
+  ) {
+    this.typed.element.hidden = true;
+    const bar = element("div", { class: "plot-bar" }, this.windows.element, this.typed.element, this.logSwitch.element);
+    bar.append(button("CSV", "Save every column with all its digits", () => this.saveCsv()));
+    bar.append(button("PNG", "Save the plot as a picture", () => this.savePng()), this.note);
+    const fill = element("div", { class: "plot-fill" }, this.chart.element);
+    this.element.append(bar, fill);
+    store.on("scene", (side) => this.newScene(side));
+    store.on("gone", () => this.newScene("b"));
+    store.on("steps", ({ side, from }) => {
+      this.ledgers[side]?.update(store.side(side)?.steps ?? [], from);
+      this.redraw();
+    });
+    store.on("state", () => this.redraw());
+    page.on("theme", () => this.chart.rebuild());
+    page.on("layout", () => this.chart.rebuild());
+    page.keep("energy", { save: () => this.save(), restore: (saved) => this.restore(saved) });
+    for (const side of kSides) this.newScene(side);
+  }
+
+  show(visible: boolean): void {
+    this.visible = visible;
+    if (visible) this.redraw();
+  }
+
+  private newScene(name: SideName): void {
+    const side = this.store.side(name);
+    const known = this.ledgers[name];
+    if (side && known && known.potentials.join() === side.scene.potentials.join()) {
+      known.update(side.steps, Math.min(known.step.length, side.steps.length));
+      return this.configure(); // its label may be another
+    }
+    this.ledgers[name] = side ? new Ledger(side.scene.potentials) : null;
+    if (side) this.ledgers[name]!.update(side.steps, 0);
+    this.configure();
+  }
+
+  private shown(): { side: SideName; ledger: Ledger }[] {
+    return kSides.flatMap((side) => (this.ledgers[side] ? [{ side, ledger: this.ledgers[side] }] : []));
+  }
+
+  private curves(): Curve[] {
+    return this.shown().flatMap(({ side, ledger }) =>
+      ledgerColumns(ledger.potentials).map((column) => ({
+        ...column,
+        dash: side === "b" ? (column.dotted ? [8, 3, 2, 3] : [8, 5]) : column.dotted ? [2, 3] : undefined,
+      })),
+    );
+  }
+
+  private configure(): void {
+    const log = this.logSwitch.input.checked;
+    this.byStep = this.shown().every(({ ledger }) => (ledger.time[ledger.time.length - 1] ?? 0) === 0);
+    this.chart.configure({
+      label: "Energy over time",
+      x: this.byStep ? { label: "step", integer: true } : { label: "time", unit: "s" },
+      y: { label: log ? "|energy|" : "energy", unit: "J", log },
+      curves: this.curves(),
+      legend: "side",
+      read: (key, x) => this.shown().map(({ ledger }) => withUnit(this.valueAt(ledger, key, x), "J")),
+      caption: (x) => this.captionAt(x),
+      xRange: () => this.xRange(),
+      paint: (u, colours) => this.paintNow(u, colours),
+      zoomed: (range) => {
+        this.range = range;
+        this.redraw();
+      },
+    });
+    this.redraw();
+  }
+
+  private xOf(ledger: Ledger): number[] {
+    return this.byStep ? ledger.step : ledger.time;
+  }
+
+  private valueAt(ledger: Ledger, key: string, x: number | null): MaybeNumber {
+    const column = ledger.columns[ledgerColumns(ledger.potentials).findIndex((c) => c.key === key)];
+    if (!column || column.length === 0) return null;
+    return column[x === null ? this.nowIndex(ledger) : nearest(this.xOf(ledger), x)] ?? null;
+  }
+
+  // The last step up to the time that the picture shows.
+  private nowIndex(ledger: Ledger): number {
+    const last = ledger.step.length - 1;
+    const state = this.store.state?.[ledger === this.ledgers.b ? "b" : "a"];
+    return state ? Math.max(0, Math.min(last, lowerBound(ledger.step, state.step + 0.5) - 1)) : last;
+  }
+
+  private captionAt(x: number | null): string {
+    const sides = this.shown().filter(({ ledger }) => ledger.step.length > 0);
+    const texts = sides.map(({ side, ledger }) => {
+      const i = x === null ? this.nowIndex(ledger) : nearest(this.xOf(ledger), x);
+      const label = sides.length > 1 ? `${this.store.side(side)?.scene.label || side}: ` : "";
+      return `${label}step ${ledger.step[i]}${this.byStep ? "" : `, ${withUnit(ledger.time[i], "s")}`}`;
+    });
+    return texts.join(" · ");
+  }
+
+  private xRange(): [number, number] | null {
+    if (this.range) return this.range;
+    const ends = this.shown().flatMap(({ ledger }) => (ledger.step.length > 0 ? [this.xOf(ledger)] : []));
+    if (ends.length === 0) return null;
+    const last = Math.max(...ends.map((x) => x[x.length - 1]!));
+    const length = this.windowLength();
+    const first = length === null ? Math.min(0, ...ends.map((x) => x[0]!)) : last - length;
+    return last > first ? [first, last] : [first, first + 1];
+  }
+
+  private windowLength(): number | null {
+    const value = this.windows.select.value;
+    return value === "all" ? null : value === "typed" ? Math.max(1e-6, this.typed.input.valueAsNumber || 1) : Number(value);
+  }
+
+  private setWindow(): void {
+    this.typed.element.hidden = this.windows.select.value !== "typed";
+    this.range = null;
+    this.redraw();
+  }
+
+  private table(ledger: Ledger): Table {
+    const x = this.xOf(ledger);
+    const range = this.xRange();
+    const from = range ? Math.max(0, lowerBound(x, range[0]) - 1) : 0;
+    const to = range ? Math.min(x.length, lowerBound(x, range[1]) + 1) : x.length;
+    return thinned({ x, columns: ledger.columns }, from, to, Math.max(100, this.chart.width));
+  }
+
+  private draw(): void {
+    const sides = this.shown();
+    const statics = sides.every(({ ledger }) => (ledger.time[ledger.time.length - 1] ?? 0) === 0);
+    if (statics !== this.byStep) return this.configure();
+    const tables = sides.map(({ ledger }) => this.table(ledger));
+    const [first, second] = tables;
+    const table = first && second ? merged(first, second) : (first ?? { x: [], columns: [] });
+    const log = this.logSwitch.input.checked;
+    this.chart.show(table.x, log ? table.columns.map((column) => column.map(magnitude)) : table.columns);
+    this.tell();
+  }
+
+  private tell(): void {
+    const texts = this.shown().map(({ side, ledger }) => {
+      const { drift, scale } = ledger.drift();
+      if (ledger.step.length < 2 || !Number.isFinite(drift)) return "";
+      const name = this.ledgers.b ? `${this.store.side(side)?.scene.label || side}: ` : "";
+      return `${name}the balance moved by ${withUnit(drift, "J", 2)}, ${short(scale > 0 ? drift / scale : 0, 2)} of the largest energy`;
+    });
+    const dashes = this.ledgers.b ? [`${this.store.side("b")?.scene.label || "b"} is dashed`] : [];
+    const logText = this.logSwitch.input.checked ? ["absolute values; zeros are left out"] : [];
+    const text = [...texts.filter((t) => t !== ""), ...dashes, ...logText].join(" · ");
+    if (this.note.textContent !== text) this.note.textContent = text;
+  }
+
+  // A line where the picture is, when that is not the end.
+  private paintNow(u: uPlot, colours: Palette): void {
+    const state = this.store.state?.a;
+    const ledger = this.ledgers.a;
+    if (!state || !ledger || ledger.step.length === 0 || state.step >= ledger.step[ledger.step.length - 1]!) return;
+    const x = Math.round(u.valToPos(this.byStep ? state.step : state.time, "x", true));
+    if (x < u.bbox.left || x > u.bbox.left + u.bbox.width) return;
+    u.ctx.save();
+    u.ctx.strokeStyle = colours.accent;
+    u.ctx.lineWidth = 2;
+    u.ctx.beginPath();
+    u.ctx.moveTo(x, u.bbox.top);
+    u.ctx.lineTo(x, u.bbox.top + u.bbox.height);
+    u.ctx.stroke();
+    u.ctx.restore();
+  }
+
+  private sceneName(): string {
+    return this.store.side("a")?.scene.name ?? "scene";
+  }
+
+  private saveCsv(): void {
+    const sides = this.shown();
+    const tables = sides.map(({ ledger }) => ({
+      x: ledger.step,
+      columns: [ledger.time, ...ledger.columns, ledger.residualWork, ledger.ledgerError],
+    }));
+    const suffixed = (name: string, side: SideName): string => (sides.length > 1 ? `${name}_${side}` : name);
+    const names = sides.flatMap(({ side, ledger }) =>
+      ["time", ...ledgerColumns(ledger.potentials).map((c) => c.key), "residual_work_of_step", "ledger_error_of_step"].map((n) => suffixed(n, side)),
+    );
+    const [first, second] = tables;
+    if (!first) return;
+    const table = second ? merged(first, second) : first;
+    const text = csv(["step", ...names], [table.x, ...table.columns], table.x.length);
+    download(fileName(this.sceneName(), "energy.csv"), new Blob([text], { type: "text/csv" }));
+  }
+
+  private savePng(): void {
+    const sides = this.shown().map(({ side }) => this.store.side(side)?.scene.label || side);
+    const picture = this.chart.picture(`${this.sceneName()}: energy${sides.length > 1 ? ` (${sides[0]}; dashed: ${sides[1]})` : ""}`);
+    if (picture) downloadCanvas(fileName(this.sceneName(), "energy.png"), picture);
+  }
+
+  private save(): unknown {
+    return { window: this.windows.select.value, typed: this.typed.input.value, log: this.logSwitch.input.checked, hidden: [...this.chart.hidden] };
+  }
+
+  private restore(saved: unknown): void {
+    if (typeof saved !== "object" || saved === null) return;
+    const kept = saved as Partial<Record<"window" | "typed" | "log" | "hidden", unknown>>;
+    if (kWindows.some(([name]) => name === kept.window)) this.windows.select.value = kept.window as string;
+    if (Number(kept.typed) > 0) this.typed.input.value = String(kept.typed);
+    this.logSwitch.input.checked = kept.log === true;
+    this.chart.hidden.clear();
+    if (Array.isArray(kept.hidden)) for (const key of kept.hidden) if (typeof key === "string") this.chart.hidden.add(key);
+    this.setWindow();
+    this.configure();
+  }
+}

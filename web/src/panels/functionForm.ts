@@ -1,0 +1,172 @@
+// What is asked of the functions panel: which function, from where, by which method.
+import { choice, element, numberField } from "../plots/dom";
+import type { FunctionQuestion, SettingValue } from "../protocol";
+
+export const kFunctions = [
+  ["rosenbrock", "Rosenbrock's valley"],
+  ["two_bump", "a dip beside a bump"],
+  ["quadratic", "a quadratic, condition 100"],
+  ["formula", "a formula of x and y"],
+] as const;
+
+const kStarts: Record<string, [number, number]> = { rosenbrock: [-0.8, 0.6], two_bump: [-0.4, 0.3], quadratic: [1.2, 0.9], formula: [1, 1] };
+
+const kMethods = [
+  ["newton", "Newton"],
+  ["newton_cg", "Newton, CG inside"],
+  ["gradient_descent", "gradient descent"],
+  ["lbfgs", "L-BFGS"],
+  ["nonlinear_cg", "nonlinear CG"],
+  ["vertex_descent", "vertex descent"],
+] as const;
+const kDefiniteness = ["auto", "on_demand", "progressive", "clamped", "absolute", "exact"].map((name) => [name, name.replace("_", " ")] as const);
+const kTests = [
+  ["textbook", "textbook (Armijo)"],
+  ["slide", "as on the slide"],
+  ["none", "none: first trial"],
+] as const;
+
+export interface Preset {
+  title: string;
+  shows: string;
+  name: string;
+  start: [number, number];
+  settings: Record<string, SettingValue>;
+  log: boolean;
+  iteration: number;
+}
+
+export const kPresets: Preset[] = [
+  {
+    title: "Gradient descent zig-zags",
+    shows: "The negative gradient points across the valley, not along it: after a first jump the path zig-zags and creeps.",
+    name: "rosenbrock",
+    start: [-0.8, 0.6],
+    settings: { method: "gradient_descent", max_iterations: 200 },
+    log: true,
+    iteration: 1,
+  },
+  {
+    title: "Newton overshoots",
+    shows: "Without a line search the full step to the model's minimum may land higher than it started: the orange model is right only nearby.",
+    name: "rosenbrock",
+    start: [-0.8, 0.2],
+    settings: { method: "newton", "line_search.test": "none", definiteness: "exact" },
+    log: false,
+    iteration: 0,
+  },
+  {
+    title: "Backtracking helps",
+    shows: "The same start, but trials that do not lower f enough are rejected (crosses) and the step is halved until one does (dot).",
+    name: "rosenbrock",
+    start: [-0.8, 0.2],
+    settings: { method: "newton", "line_search.test": "textbook" },
+    log: false,
+    iteration: 0,
+  },
+  {
+    title: "An indefinite model",
+    shows: "Beside the bump the Hessian is indefinite and the model has no minimum: its negative curvature is raised before Newton's step is taken.",
+    name: "two_bump",
+    start: [0.1, 0.4],
+    settings: { method: "newton" },
+    log: false,
+    iteration: 0,
+  },
+];
+
+// Defaults of the settings that the form shows.
+const kDefaults: Record<string, SettingValue> = {
+  method: "newton",
+  definiteness: "auto",
+  "line_search.test": "textbook",
+  "line_search.alpha_max": 1,
+  "line_search.c": 1e-4,
+  "line_search.p": 0.5,
+  tolerance: 1e-6,
+  max_iterations: 200,
+};
+
+export class FunctionForm {
+  readonly element = element("form", { class: "functions-form", "aria-label": "Function and method" });
+  readonly error = element("div", { class: "plot-error", role: "alert", id: "function-error" });
+  private readonly formula = element("input", { type: "text", "aria-label": "Formula of x and y", "aria-describedby": "function-error", spellcheck: "false" });
+  private readonly name = choice("f", "The function", kFunctions, "rosenbrock", () => this.nameChanged());
+  private readonly x = numberField("start x", "x of the start; drag the ring in the picture, or Shift and the arrow keys there", -0.8, {}, () => this.changed());
+  private readonly y = numberField("y", "y of the start", 0.6, {}, () => this.changed());
+  private readonly choices = new Map<string, HTMLSelectElement>();
+  private readonly numbers = new Map<string, HTMLInputElement>();
+  private others: Record<string, SettingValue> = {}; // settings that a question had and the form does not show
+
+  constructor(private readonly changed: () => void) {
+    this.formula.value = "cosh(x) + (y - x)^2";
+    this.formula.hidden = true;
+    this.formula.addEventListener("change", changed);
+    this.element.addEventListener("submit", (event) => {
+      event.preventDefault();
+      changed();
+    });
+    const method = [this.pick("method", "method", "How the direction is found", kMethods), this.pick("definiteness", "definiteness", "What is done to an indefinite Hessian", kDefiniteness)];
+    const search = [
+      this.pick("line_search.test", "line search", "When a trial is accepted", kTests),
+      this.number("line_search.alpha_max", "α max", "The first trial", { min: 1e-12, max: 1e6 }),
+      this.number("line_search.c", "c", "Sufficient decrease", { min: 0, max: 1 }),
+      this.number("line_search.p", "p", "Factor between trials", { min: 0.001, max: 0.99 }),
+    ];
+    const ends = [
+      this.number("tolerance", "tolerance", "How small the gradient must become", { min: 0 }),
+      this.number("max_iterations", "at most", "Iterations", { min: 1, max: 100000, step: 1 }),
+    ];
+    const row = (...children: HTMLElement[]): HTMLElement => element("div", { class: "pair" }, ...children);
+    this.element.append(row(this.name.element), this.formula, this.error, row(this.x.element, this.y.element), row(...method), row(...search), row(...ends));
+  }
+
+  get start(): [number, number] {
+    return [this.x.input.valueAsNumber || 0, this.y.input.valueAsNumber || 0];
+  }
+
+  setStart(x: number, y: number): void {
+    this.x.input.value = String(Number(x.toPrecision(4)));
+    this.y.input.value = String(Number(y.toPrecision(4)));
+    this.changed();
+  }
+
+  question(iteration: number, samples: number): FunctionQuestion {
+    const settings: Record<string, SettingValue> = { ...this.others };
+    for (const [key, select] of this.choices) settings[key] = select.value;
+    for (const [key, input] of this.numbers) settings[key] = Number.isFinite(input.valueAsNumber) ? input.valueAsNumber : kDefaults[key]!;
+    const name = this.name.select.value === "formula" ? this.formula.value : this.name.select.value;
+    return { name, start: this.start, settings, iteration, samples };
+  }
+
+  fill(question: Pick<FunctionQuestion, "name" | "start" | "settings">): void {
+    const named = kFunctions.some(([name]) => name === question.name && name !== "formula");
+    this.name.select.value = named ? question.name : "formula";
+    if (!named) this.formula.value = question.name;
+    this.formula.hidden = named;
+    [this.x.input.valueAsNumber, this.y.input.valueAsNumber] = question.start;
+    const settings = { ...kDefaults, ...question.settings };
+    this.others = Object.fromEntries(Object.entries(question.settings).filter(([key]) => !this.choices.has(key) && !this.numbers.has(key)));
+    for (const [key, select] of this.choices) select.value = String(settings[key]);
+    for (const [key, input] of this.numbers) input.value = String(settings[key]);
+  }
+
+  private nameChanged(): void {
+    const name = this.name.select.value;
+    this.formula.hidden = name !== "formula";
+    [this.x.input.valueAsNumber, this.y.input.valueAsNumber] = kStarts[name]!;
+    this.changed();
+  }
+
+  private pick(key: string, text: string, title: string, options: readonly (readonly [string, string])[]): HTMLElement {
+    const made = choice(text, title, options, String(kDefaults[key]), this.changed);
+    this.choices.set(key, made.select);
+    return made.element;
+  }
+
+  private number(key: string, text: string, title: string, limits: { min?: number; max?: number; step?: number }): HTMLElement {
+    const made = numberField(text, title, Number(kDefaults[key]), limits, this.changed);
+    this.numbers.set(key, made.input);
+    return made.element;
+  }
+}

@@ -1,0 +1,162 @@
+// The energy landscape of one iteration: E over the plane through its direction d, and the quadratic model beside it.
+import type { Page, Panel } from "../page";
+import type { IterationReply, MaybeNumber } from "../protocol";
+import type { Store } from "../store";
+import { chosenOf, type Chosen } from "../plots/chosen";
+import { button, checkbox, downloadCanvas, element, fileName, oncePerFrame } from "../plots/dom";
+import { gridOf, isInside, minimizerOf, quadraticFrom, quadraticAt } from "../plots/grid";
+import { legendLines, legendOf, type Sign } from "../plots/legend";
+import { plural, short } from "../plots/numbers";
+import { SurfaceView, type Mark, type SurfaceContent } from "../plots/surface";
+
+export function makeLandscapePanel(store: Store, page: Page): Panel {
+  return new LandscapePanel(store, page);
+}
+
+class LandscapePanel implements Panel {
+  readonly name = "landscape";
+  readonly title = "Landscape";
+  readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Energy landscape" });
+  private readonly chosen: Chosen;
+  private readonly view = new SurfaceView();
+  private readonly follow = checkbox("follow", "Stay at the newest step", true, (on) => this.chosen.follow(on));
+  private readonly model = checkbox("quadratic model", "Shows what Newton's method takes E for", true, () => this.draw());
+  private readonly log = checkbox("log height", "Heights by the logarithm of E above its lowest value here", false, () => this.draw());
+  private readonly where = element("strong");
+  private readonly text = element("p", { class: "plot-note" });
+  private readonly legend = element("div");
+  private readonly note = element("div", { class: "plot-note", role: "status" });
+  private reply: IterationReply | null = null;
+  private asked = "";
+  private signs: Sign[] = [];
+  private visible = false;
+  private readonly refresh = oncePerFrame(() => this.visible && this.ask());
+
+  constructor(
+    private readonly store: Store,
+    page: Page,
+  ) {
+    this.chosen = chosenOf(store, page);
+    const bar = element("div", { class: "plot-bar" });
+    bar.append(button("◀", "The iteration before", () => this.chosen.walk(-1)), this.where, button("▶", "The iteration after", () => this.chosen.walk(1)));
+    bar.append(this.follow.element, this.model.element, this.log.element, button("PNG", "Save the picture", () => this.savePng()), this.note);
+    const side = element("div", { class: "surface-side", style: "flex: 0 0 19em" }, this.text, this.legend);
+    const fill = element("div", { class: "plot-fill" }, this.view.element);
+    this.element.append(bar, element("div", { class: "plot-columns plot-fill" }, fill, side));
+    this.chosen.on("changed", this.refresh);
+    this.chosen.on("rows", this.refresh);
+    page.on("theme", () => this.view.build());
+    page.on("layout", () => this.view.build());
+    page.keep("landscape", {
+      save: () => ({ model: this.model.input.checked, log: this.log.input.checked }),
+      restore: (saved) => this.restore(saved),
+    });
+  }
+
+  show(visible: boolean): void {
+    this.visible = visible;
+    this.view.setVisible(visible);
+    if (visible) this.refresh();
+  }
+
+  private ask(): void {
+    const { side, step, iteration } = this.chosen;
+    this.follow.input.checked = this.chosen.following;
+    const row = this.chosen.row();
+    const count = row?.iterations.length ?? 0;
+    this.where.textContent = count > 0 ? `step ${step}, iteration ${iteration} of ${count}` : step > 0 ? `step ${step}` : "no step yet";
+    const key = `${side} ${step} ${iteration} ${count}`;
+    if (key === this.asked) return;
+    this.asked = key;
+    if (count === 0) {
+      const implicit = this.store.side(side)?.scene.implicit ?? true;
+      return this.settle(null, implicit ? "There is nothing to see before the first iteration." : "This scheme minimises nothing: there is no landscape.");
+    }
+    this.chosen.landscape().then(
+      (reply) => key === this.asked && this.settle(reply, ""),
+      (reason: unknown) => key === this.asked && this.settle(null, `Not known here: ${reason instanceof Error ? reason.message : String(reason)}`),
+    );
+  }
+
+  private settle(reply: IterationReply | null, note: string): void {
+    this.reply = reply;
+    this.note.textContent = note;
+    this.draw();
+  }
+
+  private draw(): void {
+    const content = this.reply ? this.content(this.reply) : null;
+    this.view.show(content);
+    this.legend.replaceChildren(...(content ? [legendOf(this.signs)] : []));
+    this.text.textContent = content ? this.explanation(this.reply!) : "";
+  }
+
+  private content(reply: IterationReply): SurfaceContent {
+    const grid = gridOf(reply.slice);
+    const quadratic = quadraticFrom({ ...grid, value: reply.slice.model });
+    const lowest = quadratic && minimizerOf(quadratic);
+    const showModel = this.model.input.checked;
+    const marks: Mark[] = [];
+    const signs: Sign[] = [
+      { sign: "▇", colour: "series3", text: "E, by colour and height" },
+      { sign: "╌", colour: "accent", text: "d, the direction of the iteration" },
+    ];
+    if (showModel) signs.push({ sign: "▇", colour: "series2", text: "quadratic model of E at the start" });
+    for (const trial of reply.trials.filter((t) => !t.accepted)) marks.push({ x: trial.alpha, y: 0, value: trial.value, shape: "cross", colour: "bad", size: 10 });
+    if (marks.length > 0) signs.push({ sign: "✕", colour: "bad", text: plural(marks.length, "rejected trial") });
+    if (showModel && lowest && quadratic) {
+      marks.push({ ...lowest, value: quadraticAt(quadratic, lowest.x, lowest.y), shape: "diamond", colour: "series2", size: 12, label: "model's minimum" });
+      const place = isInside(grid, lowest) ? "" : `, outside at s = ${short(lowest.x, 3)}, t = ${short(lowest.y, 3)}`;
+      signs.push({ sign: "◆", colour: "series2", text: `the model's minimum${place}` });
+    } else if (showModel) signs.push({ sign: "◆", colour: "series2", text: "the model has no minimum in this plane" });
+    marks.push({ x: 0, y: 0, value: reply.value, shape: "ring", colour: "text", size: 13, label: "start" });
+    signs.push({ sign: "○", colour: "text", text: `start: E = ${short(reply.value, 6)}` });
+    const accepted = reply.trials.find((t) => t.accepted)?.value ?? null;
+    if (reply.alpha > 0) {
+      marks.push({ x: reply.alpha, y: 0, value: accepted, shape: "dot", colour: "good", size: 13, label: "accepted" });
+      signs.push({ sign: "●", colour: "good", text: `accepted: α = ${short(reply.alpha, 3)}${accepted === null ? "" : `, E lower by ${short(reply.value - accepted, 3)}`}` });
+    } else signs.push({ sign: "✕", colour: "bad", text: "no step was found along d" });
+    signs.push({ sign: "•─", colour: "text", text: "the step's iterates, projected onto the plane" });
+    this.signs = signs;
+    const end = grid.x[grid.x.length - 1]!;
+    return {
+      label: `Energy landscape of step ${reply.step}, iteration ${reply.iteration}`,
+      grid,
+      axes: { x: "s: along d (1 = full step)", y: "t: across", value: "E" },
+      model: showModel ? reply.slice.model : null,
+      path: reply.path.map((p) => ({ x: p.s, y: p.t, value: p.value })),
+      draped: false,
+      direction: { from: { x: 0, y: 0 }, to: { x: Math.min(1, end), y: 0 } },
+      marks,
+      keep: [reply.value, accepted],
+      log: this.log.input.checked,
+    };
+  }
+
+  private explanation(reply: IterationReply): string {
+    const cut = this.view.cutAbove;
+    const sentences = [
+      "You look at E over the plane of all positions x + s d + t v: d is the direction that the solver chose, v is as long and lies across it, towards the steepest descent.",
+      "Newton's method goes where the orange model is lowest; where model and surface part, the full step overshoots and the line search has to shorten it.",
+    ];
+    if (cut !== null) sentences.push(`Walls above E = ${short(cut, 4)} are cut off.`);
+    if (reply.slice.value.some((v: MaybeNumber) => v === null)) sentences.push("Holes: E is infinite there.");
+    if (this.log.input.checked) sentences.push("Heights are logarithmic.");
+    return sentences.join(" ");
+  }
+
+  private savePng(): void {
+    const { step, iteration } = this.chosen;
+    const name = this.store.side(this.chosen.side)?.scene.name ?? "scene";
+    const picture = this.reply && this.view.picture(`${name}: energy landscape of step ${step}, iteration ${iteration}`, legendLines(this.signs));
+    if (picture) downloadCanvas(fileName(name, "landscape", step, iteration) + ".png", picture);
+  }
+
+  private restore(saved: unknown): void {
+    if (typeof saved !== "object" || saved === null) return;
+    const kept = saved as { model?: unknown; log?: unknown };
+    this.model.input.checked = kept.model !== false;
+    this.log.input.checked = kept.log === true;
+    this.draw();
+  }
+}

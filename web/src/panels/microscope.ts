@@ -1,0 +1,251 @@
+// The solver under the microscope: the steps, the iterations of one of them, and the line search of one iteration.
+import type { Page, Panel } from "../page";
+import type { IterationReply, IterationRow, SideName, StepRow, WorstReply } from "../protocol";
+import type { Store } from "../store";
+import { chosenOf, type Chosen } from "../plots/chosen";
+import { button, checkbox, choice, element, oncePerFrame } from "../plots/dom";
+import { short, withUnit } from "../plots/numbers";
+import { Rows } from "../plots/rows";
+import type { Search } from "../plots/search";
+import { stepText, totalSeconds } from "../plots/words";
+import { kCharts, StepChart, type ChartName } from "./stepCharts";
+
+export function makeMicroscopePanel(store: Store, page: Page): Panel {
+  return new MicroscopePanel(store, page);
+}
+
+const kOrder: ChartName[] = ["convergence", "search", "time", "steps", "alpha", "inner"];
+
+class MicroscopePanel implements Panel {
+  readonly name = "microscope";
+  readonly title = "Microscope";
+  readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Solver microscope" });
+  private readonly chosen: Chosen;
+  private readonly sides = choice("", "Which side of the comparison", [], "a", (side) => this.chooseSide(side as SideName));
+  private readonly follow = checkbox("follow", "Stay at the newest step", true, (on) => this.chosen.follow(on));
+  private readonly words = element("div", { class: "plot-note", role: "status" });
+  private readonly worst = element("ol", { class: "worst", hidden: "" });
+  private readonly steps = new Rows({
+    label: "Steps",
+    columns: this.stepColumns(),
+    rowClass: (row) => (this.stepAt(row)?.success === false ? "failed" : "success"),
+    choose: (row) => this.chooseStep(row),
+  });
+  private readonly iterations = new Rows({
+    label: "Iterations of the chosen step",
+    columns: this.iterationColumns(),
+    rowClass: (row) => (this.iterationAt(row)?.alpha === 0 ? "failed whole" : ""),
+    choose: (row) => this.chosen.choose(this.chosen.side, this.chosen.step, row),
+  });
+  private readonly grid = element("div", { class: "microscope-charts" });
+  private charts: StepChart[] = [];
+  private names: ChartName[] = [...kOrder];
+  private search: Search | string = "";
+  private searched = ""; // what `search` belongs to
+  private visible = false;
+  private readonly redraw = oncePerFrame(() => this.visible && this.draw());
+
+  constructor(
+    private readonly store: Store,
+    private readonly page: Page,
+  ) {
+    this.chosen = chosenOf(store, page);
+    const worst = button("Worst elements", "Lists the tets that are worst off and marks them on the body", () => void this.findWorst());
+    const bar = element("div", { class: "plot-bar" }, this.sides.element, this.follow.element, worst, this.words);
+    const tables = element("div", { class: "microscope-tables" }, this.steps.element, this.iterations.element);
+    this.element.append(bar, this.worst, element("div", { class: "microscope plot-fill" }, tables, this.grid));
+    this.chosen.on("changed", this.redraw);
+    this.chosen.on("rows", this.redraw);
+    store.on("scene", this.redraw);
+    store.on("gone", this.redraw);
+    page.on("theme", () => this.charts.forEach((chart) => chart.retheme()));
+    page.on("layout", () => this.charts.forEach((chart) => chart.retheme()));
+    page.keep("microscope", { save: () => ({ charts: this.names }), restore: (saved) => this.restore(saved) });
+    new ResizeObserver(() => this.arrange()).observe(this.grid);
+  }
+
+  show(visible: boolean): void {
+    this.visible = visible;
+    if (visible) this.redraw();
+  }
+
+  private rows(): readonly StepRow[] {
+    return this.store.side(this.chosen.side)?.steps ?? [];
+  }
+
+  // The newest step stands first.
+  private stepAt(row: number): StepRow | undefined {
+    const rows = this.rows();
+    return rows[rows.length - 1 - row];
+  }
+
+  private iterationAt(row: number): IterationRow | undefined {
+    return this.chosen.row()?.iterations[row];
+  }
+
+  private stepColumns(): ConstructorParameters<typeof Rows>[0]["columns"] {
+    const of = (text: (step: StepRow) => string) => (row: number) => {
+      const step = this.stepAt(row);
+      return step ? text(step) : "";
+    };
+    return [
+      { title: "step", meaning: "number of the time step; the newest is first", text: of((s) => String(s.step)) },
+      { title: "status", meaning: "how the minimisation ended", left: true, class: "status", text: of((s) => statusText(s)) },
+      { title: "it.", meaning: "iterations of the minimiser", text: of((s) => String(s.iterations.length)) },
+      { title: "residual", meaning: "norm of the forces that are left over", text: of((s) => withUnit(s.residual, "N", 3)) },
+      { title: "threshold", meaning: "what the residual must be below", text: of((s) => withUnit(s.threshold, "N", 3)) },
+      { title: "took", meaning: "wall time", text: of((s) => withUnit(s.seconds, "s", 3)) },
+    ];
+  }
+
+  private iterationColumns(): ConstructorParameters<typeof Rows>[0]["columns"] {
+    const of = (text: (it: IterationRow) => string) => (row: number) => {
+      const iteration = this.iterationAt(row);
+      return iteration ? text(iteration) : "";
+    };
+    return [
+      { title: "#", meaning: "iteration of the step", text: (row) => this.mark(row) },
+      { title: "E", meaning: "the objective before the iteration", text: of((it) => short(it.value, 8)) },
+      { title: "|g|", meaning: "norm of its gradient", text: of((it) => short(it.gradient_norm, 3)) },
+      { title: "decrement", meaning: "−g·d / 2: what the quadratic model promises", text: of((it) => short(it.decrement, 3)) },
+      { title: "α", meaning: "accepted step length; 0: none was found", text: of((it) => (it.alpha === 0 ? "none" : short(it.alpha, 3))) },
+      { title: "trials", meaning: "of the line search", text: of((it) => (it.trials.length > 0 ? String(it.trials.length) : "–")) },
+      { title: "proj.", meaning: "elements whose Hessian was made definite", text: of((it) => String(it.projected_elements)) },
+      { title: "inner", meaning: "iterations of the linear solver", text: of((it) => String(it.linear_iterations)) },
+      { title: "took", meaning: "wall time", text: of((it) => withUnit(totalSeconds(it), "s", 3)) },
+    ];
+  }
+
+  private mark(row: number): string {
+    const count = this.chosen.row()?.iterations.length ?? 0;
+    const done = (this.store.state?.[this.chosen.side]?.iteration ?? -1) < 0 || this.stepAt(0)?.step !== this.chosen.step;
+    return row === count - 1 && done ? `last ${row}` : String(row);
+  }
+
+  private chooseStep(row: number): void {
+    const step = this.stepAt(row);
+    if (step) this.chosen.choose(this.chosen.side, step.step, Math.min(this.chosen.iteration, Math.max(0, step.iterations.length - 1)));
+  }
+
+  private chooseSide(side: SideName): void {
+    const steps = this.store.side(side)?.steps ?? [];
+    const same = steps.find((row) => row.step === this.chosen.step) ?? steps[steps.length - 1];
+    if (same) this.chosen.choose(side, same.step, 0);
+  }
+
+  private draw(): void {
+    const rows = this.rows();
+    const index = rows.findIndex((row) => row.step === this.chosen.step);
+    this.follow.input.checked = this.chosen.following;
+    this.showSides();
+    this.steps.show(rows.length, index < 0 ? -1 : rows.length - 1 - index, true);
+    this.iterations.show(this.chosen.row()?.iterations.length ?? 0, this.chosen.iteration, true);
+    this.tell();
+    this.askSearch();
+    for (const chart of this.charts) chart.show(this.search);
+  }
+
+  private showSides(): void {
+    const two = this.store.side("b") !== null;
+    this.sides.element.hidden = !two;
+    if (!two) return;
+    const options = (["a", "b"] as const).map((side) => new Option(`${side.toUpperCase()}: ${this.store.side(side)?.scene.label || side}`, side));
+    const text = options.map((option) => option.text).join();
+    if (this.sides.element.dataset.text !== text) this.sides.select.replaceChildren(...options);
+    this.sides.element.dataset.text = text;
+    this.sides.select.value = this.chosen.side;
+  }
+
+  private tell(): void {
+    const row = this.chosen.row();
+    const implicit = this.store.side(this.chosen.side)?.scene.implicit ?? true;
+    const underWay = this.store.state?.[this.chosen.side]?.iteration ?? -1;
+    const newest = row !== null && row === this.stepAt(0);
+    if (!row) this.words.textContent = implicit ? "No step has been taken yet." : "This scheme minimises nothing; no step has been taken yet.";
+    else if (newest && underWay >= 0) this.words.textContent = `Step ${row.step} is under way: ${row.iterations.length} of its iterations are done.`;
+    else this.words.textContent = `Step ${row.step}. ${stepText(row, implicit)}`;
+    this.words.dataset.kind = row && !row.success && !(newest && underWay >= 0) ? "bad" : "";
+  }
+
+  // Asks for E along d when a chart shows it and another iteration is chosen.
+  private askSearch(): void {
+    const { side, step, iteration } = this.chosen;
+    const key = `${side} ${step} ${iteration} ${this.chosen.row()?.iterations.length ?? 0}`;
+    if (key === this.searched || !this.charts.some((chart) => chart.name === "search")) return;
+    this.searched = key;
+    const row = this.chosen.iterationRow();
+    if (!row) {
+      this.search = this.store.side(side)?.scene.implicit === false ? "This scheme minimises nothing: there is no line search." : "No iteration is chosen.";
+      return;
+    }
+    const settle = (search: Search | string): void => {
+      if (key !== this.searched) return;
+      this.search = search;
+      this.redraw();
+    };
+    this.chosen.landscape().then(
+      (reply) => settle(this.searchOf(reply)),
+      (reason: unknown) => settle(`E along d is not known here: ${reason instanceof Error ? reason.message : String(reason)}`),
+    );
+  }
+
+  private searchOf(reply: IterationReply): Search {
+    const settings = this.store.side(this.chosen.side)?.scene.settings ?? [];
+    const test = settings.find((setting) => setting.key.endsWith("line_search.test"))?.value;
+    return { curve: reply.curve, trials: reply.trials, test: typeof test === "string" ? test : "textbook" };
+  }
+
+  // As many charts as there is room for.
+  private arrange(): void {
+    const font = Number.parseFloat(getComputedStyle(this.grid).fontSize) || 14;
+    const across = Math.max(1, Math.min(3, Math.floor(this.grid.clientWidth / (19 * font))));
+    const down = Math.max(1, Math.min(2, Math.floor(this.grid.clientHeight / (11 * font))));
+    this.grid.style.gridTemplate = `repeat(${down}, minmax(0, 1fr)) / repeat(${across}, minmax(0, 1fr))`;
+    const count = across * down;
+    while (this.charts.length < count) this.charts.push(this.makeChart(this.charts.length));
+    this.grid.replaceChildren(...this.charts.slice(0, count).map((chart) => chart.element));
+    this.redraw();
+  }
+
+  private makeChart(place: number): StepChart {
+    const chart: StepChart = new StepChart(
+      this.names[place] ?? "steps",
+      this.chosen,
+      () => this.rows(),
+      () => {
+        this.names[place] = chart.name;
+        this.redraw();
+      },
+    );
+    return chart;
+  }
+
+  private async findWorst(): Promise<void> {
+    try {
+      const reply = await this.store.source.ask<WorstReply>({ ask: "worst", side: this.chosen.side });
+      const text = (item: WorstReply["items"][number]): string => `${item.what}: ${item.unit ? withUnit(item.value, item.unit) : short(item.value)}`;
+      const items = reply.items.map((item) => element("li", {}, button(text(item), "Mark it on the body", () => this.highlight(item, text(item)))));
+      this.worst.replaceChildren(...items);
+      this.worst.hidden = items.length === 0;
+      this.page.emit("highlight", reply.items.map((item) => ({ positions: item.positions, text: text(item) })));
+    } catch (reason) {
+      this.page.notice(reason instanceof Error ? reason.message : String(reason), "error");
+    }
+  }
+
+  private highlight(item: WorstReply["items"][number], text: string): void {
+    this.page.emit("highlight", [{ positions: item.positions, text }]);
+  }
+
+  private restore(saved: unknown): void {
+    const charts = (saved as { charts?: unknown } | null)?.charts;
+    if (!Array.isArray(charts)) return;
+    this.names = kOrder.map((name, i) => (kCharts.some(([known]) => known === charts[i]) ? (charts[i] as ChartName) : name));
+    this.charts.forEach((chart, i) => (chart.name = this.names[i]!));
+    this.redraw();
+  }
+}
+
+function statusText(step: StepRow): string {
+  return `${step.success ? "✓" : "✗"} ${step.status.replaceAll("_", " ")}`;
+}

@@ -1,0 +1,153 @@
+// The certificate of a run: totals, a table of its steps with the worst first, and the scene as text.
+import "./report.css";
+import { button, element, labelled, messageOf, saveFile } from "../dom";
+import type { Page, Panel } from "../page";
+import type { MaybeNumber, StepRow, TextReply } from "../protocol";
+import type { Store } from "../store";
+import { excess, kColumns, listed, totals } from "./certificate";
+
+const kRowsPerPage = 100;
+
+function text(value: MaybeNumber | string): string {
+  if (typeof value === "string") return value;
+  if (value === null) return "–";
+  return Number.isInteger(value) && Math.abs(value) < 1e6 ? String(value) : value.toPrecision(4);
+}
+
+class StepTable {
+  readonly element: HTMLElement;
+  private readonly table = element("table");
+  private readonly onlyFailed = element("input", { type: "checkbox" });
+  private readonly range = element("span", { role: "status" });
+  private column = kColumns[0];
+  private first = 0; // row of this page of the table
+
+  constructor(private readonly store: Store) {
+    this.onlyFailed.addEventListener("change", () => this.turn(-Infinity));
+    const bar = element(
+      "div",
+      { class: "bar" },
+      labelled("only steps that did not converge", this.onlyFailed),
+      button({ text: "Earlier rows" }, () => this.turn(-kRowsPerPage)),
+      this.range,
+      button({ text: "Later rows" }, () => this.turn(kRowsPerPage)),
+    );
+    this.element = element("section", { "aria-label": "Steps" }, bar, this.table);
+  }
+
+  draw(): void {
+    const rows = listed(this.steps(), this.column, this.onlyFailed.checked);
+    this.first = Math.max(0, Math.min(this.first, rows.length - 1));
+    this.first -= this.first % kRowsPerPage;
+    const shown = rows.slice(this.first, this.first + kRowsPerPage);
+    this.range.textContent = shown.length ? `${this.first + 1} to ${this.first + shown.length} of ${rows.length}` : "no steps";
+    this.table.replaceChildren(
+      element("caption", { hidden: true }, "Steps"),
+      element("thead", {}, element("tr", {}, ...kColumns.map((column) => this.head(column)))),
+      element("tbody", {}, ...shown.map((row) => this.row(row))),
+    );
+  }
+
+  private steps(): readonly StepRow[] {
+    return this.store.side("a")?.steps ?? [];
+  }
+
+  private turn(rows: number): void {
+    this.first = Math.max(0, this.first + rows);
+    this.draw();
+  }
+
+  private head(column: (typeof kColumns)[number]): HTMLElement {
+    const sorted = column === this.column ? (column.worse ? "descending" : "ascending") : "none";
+    const sort = button({ text: column.title, title: `${column.meaning}; ${column.worse ? "worst first" : "in order"}` }, () => {
+      this.column = column;
+      this.turn(-Infinity);
+    });
+    return element("th", { scope: "col", "aria-sort": sorted }, sort);
+  }
+
+  private row(row: StepRow): HTMLElement {
+    const cells = kColumns.map((column, i) => {
+      const value = text(column.value(row));
+      if (i > 0) return element("td", {}, value);
+      const show = button({ text: value, title: `Show step ${value}` }, () => this.store.source.send({ do: "rewind", step: row.step }));
+      return element("td", {}, show);
+    });
+    if (!row.success) cells[2].className = "bad";
+    if ((excess(row) ?? 0) > 1) cells[5].className = "bad";
+    if ((row.min_det_F ?? 1) <= 0) cells[7].className = "bad";
+    return element("tr", {}, ...cells);
+  }
+}
+
+function entry(name: string, value: string, className = ""): HTMLElement {
+  return element("div", {}, element("dt", {}, name), element("dd", { class: className }, value));
+}
+
+function drawTotals(list: HTMLElement, steps: readonly StepRow[]): void {
+  const all = totals(steps);
+  const at = (row: StepRow | null, value: (row: StepRow) => MaybeNumber): string =>
+    row ? `${text(value(row))} (step ${row.step})` : "–";
+  list.replaceChildren(
+    entry("steps", String(all.steps)),
+    entry("converged", `${all.steps - all.failed} of ${all.steps}`, all.failed ? "bad" : "good"),
+    entry("iterations", `${all.iterations}, ${all.steps ? (all.iterations / all.steps).toFixed(1) : "0"} per step`),
+    entry("largest residual / wanted", at(all.worstExcess, excess)),
+    entry("smallest det F", at(all.smallestVolume, (row) => row.min_det_F)),
+    entry("largest ledger error [J]", at(all.largestError, (row) => row.ledger_error)),
+  );
+}
+
+// The complete scene, asked for when it is opened.
+function makeScene(store: Store, page: Page): HTMLElement {
+  const code = element("pre", { tabindex: "0", "aria-label": "Scene as TOML" });
+  let file: TextReply | null = null;
+  const save = button({ text: "Save", label: "Save the scene" }, () => {
+    if (file) saveFile(file.name, new Blob([file.text], { type: "text/plain" }));
+  });
+  const details = element("details", {}, element("summary", {}, "The scene with all its defaults"), save, code);
+  const load = async (): Promise<void> => {
+    if (!details.open) return;
+    try {
+      file = await store.source.ask<TextReply>({ ask: "scene", side: "a" });
+      code.textContent = file.text;
+    } catch (error) {
+      page.notice(messageOf(error), "error");
+    }
+  };
+  details.addEventListener("toggle", () => void load());
+  store.on("scene", () => void load());
+  return details;
+}
+
+export function makeReportPanel(store: Store, page: Page): Panel {
+  const list = element("dl", { class: "totals" });
+  const notes = element("ul", { class: "notes" });
+  const table = new StepTable(store);
+  const panel = element("div", { class: "report" }, list, notes, table.element, makeScene(store, page));
+  let visible = false;
+  let due = false;
+  const draw = (): void => {
+    due = false;
+    const side = store.side("a");
+    drawTotals(list, side?.steps ?? []);
+    notes.replaceChildren(...(side?.scene.notes ?? []).map((note) => element("li", {}, note)));
+    table.draw();
+  };
+  // Steps may come faster than pictures of the screen.
+  const drawSoon = (): void => {
+    if (!visible || due) return;
+    due = true;
+    requestAnimationFrame(draw);
+  };
+  for (const event of ["steps", "scene"] as const) store.on(event, drawSoon);
+  return {
+    name: "certificate",
+    title: "Certificate",
+    element: panel,
+    show: (wanted) => {
+      visible = wanted;
+      drawSoon();
+    },
+  };
+}

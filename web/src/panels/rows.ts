@@ -1,0 +1,217 @@
+// Rows of a lil-gui folder that it has not got: numbers with a slider of any scale whose typed values may lie outside of
+// it, vectors, and formulas. A typed value counts when it is complete: on Enter, or when the field is left.
+import { Controller } from "lil-gui";
+import type { GUI } from "lil-gui";
+import { element } from "../dom";
+import type { Setting, SettingValue } from "../protocol";
+import { numberText, parseNumber, toPosition, toValue } from "./scale";
+import type { Range } from "./scale";
+
+const kSliderSteps = 500;
+
+export interface Row {
+  display(value: SettingValue): void; // unless the reader is changing it
+  enable(enabled: boolean): unknown;
+  mark(text: string): void; // a remark in the tooltip: "A: 1, B: 2"
+}
+
+type Model = { value: SettingValue };
+
+// A text field that hands over what was typed once, and takes it back on Escape.
+function makeField(label: string, shown: () => string, commit: (text: string) => void): HTMLInputElement {
+  const field = element("input", { type: "text", "aria-label": label, spellcheck: "false", autocomplete: "off" });
+  field.addEventListener("change", () => commit(field.value));
+  field.addEventListener("keydown", (event) => {
+    if (event.key === "Enter") field.blur();
+    if (event.key === "Escape") field.value = shown();
+  });
+  return field;
+}
+
+function markRow(row: Controller, text: string): void {
+  row.domElement.classList.toggle("differs", text !== "");
+  row.domElement.title = text;
+}
+
+abstract class ValueRow extends Controller implements Row {
+  protected held = false; // by the mouse
+  private later: SettingValue | null = null; // from the program, while the reader changes the value
+
+  constructor(
+    gui: GUI,
+    protected readonly model: Model,
+    className: string,
+  ) {
+    super(gui, model, "value", className);
+    this.$widget.addEventListener("focusout", () => this.catchUp());
+  }
+
+  display(value: SettingValue): void {
+    this.later = value;
+    if (!this.held && !this.isTyping()) this.catchUp();
+  }
+
+  override enable(enabled = true): this {
+    super.enable(enabled);
+    for (const input of this.$widget.querySelectorAll("input")) input.disabled = !enabled;
+    return this;
+  }
+
+  mark(text: string): void {
+    markRow(this, text);
+  }
+
+  protected catchUp(): void {
+    if (this.later === null) return;
+    this.model.value = this.later;
+    this.later = null;
+    this.updateDisplay();
+  }
+
+  private isTyping(): boolean {
+    const focused = document.activeElement;
+    return this.$widget.contains(focused) && focused instanceof HTMLInputElement && focused.type === "text";
+  }
+}
+
+export class NumberRow extends ValueRow {
+  private readonly slider: HTMLInputElement;
+  private readonly field: HTMLInputElement;
+
+  constructor(
+    gui: GUI,
+    label: string,
+    model: Model,
+    private readonly range: Range,
+  ) {
+    super(gui, model, "number-row");
+    const bounds = { min: "0", max: String(kSliderSteps), step: "1" };
+    this.slider = element("input", { type: "range", "aria-label": `${label}, slider`, ...bounds });
+    this.field = makeField(label, () => this.text(), (text) => this.commit(text));
+    this.slider.addEventListener("pointerdown", () => (this.held = true));
+    for (const end of ["pointerup", "pointercancel", "blur"]) {
+      this.slider.addEventListener(end, () => this.release());
+    }
+    this.slider.addEventListener("input", () => {
+      this.setValue(toValue(Number(this.slider.value) / kSliderSteps, range));
+    });
+    this.$widget.append(this.slider, this.field);
+    this.updateDisplay();
+  }
+
+  override updateDisplay(): this {
+    this.field.value = this.text();
+    if (typeof this.model.value === "number" && !this.held) {
+      this.slider.value = String(Math.round(toPosition(this.model.value, this.range) * kSliderSteps));
+    }
+    this.slider.setAttribute("aria-valuetext", this.text());
+    return this;
+  }
+
+  private release(): void {
+    this.held = false;
+    this.catchUp();
+  }
+
+  private text(): string {
+    return typeof this.model.value === "number" ? numberText(this.model.value) : String(this.model.value);
+  }
+
+  // A number that varies over the body is a formula; the program judges what is no number.
+  private commit(text: string): void {
+    this.setValue(parseNumber(text) ?? text);
+  }
+}
+
+export class TextRow extends ValueRow {
+  private readonly field: HTMLInputElement;
+
+  constructor(gui: GUI, label: string, model: Model) {
+    super(gui, model, "text-row");
+    this.field = makeField(label, () => String(this.model.value), (text) => this.setValue(parseNumber(text) ?? text));
+    this.$widget.append(this.field);
+    this.updateDisplay();
+  }
+
+  override updateDisplay(): this {
+    this.field.value = String(this.model.value);
+    this.field.title = this.field.value;
+    return this;
+  }
+}
+
+export class VectorRow extends ValueRow {
+  private readonly fields: HTMLInputElement[] = [];
+
+  constructor(gui: GUI, label: string, model: Model) {
+    super(gui, model, "vector-row");
+    this.entries().forEach((_, i) => {
+      const field = makeField(`${label} ${"xyz"[i] ?? i}`, () => this.text(i), (text) => this.commit(i, text));
+      this.fields.push(field);
+      this.$widget.append(field);
+    });
+    this.updateDisplay();
+  }
+
+  override updateDisplay(): this {
+    this.fields.forEach((field, i) => (field.value = this.text(i)));
+    return this;
+  }
+
+  private entries(): (number | string)[] {
+    return Array.isArray(this.model.value) ? this.model.value : [];
+  }
+
+  private text(i: number): string {
+    const entry = this.entries()[i];
+    return typeof entry === "number" ? numberText(entry) : String(entry ?? "");
+  }
+
+  private commit(i: number, text: string): void {
+    this.setValue(this.entries().map((entry, j) => (j === i ? (parseNumber(text) ?? text) : entry)));
+  }
+}
+
+// lil-gui's own rows for a list and a switch.
+class PlainRow implements Row {
+  constructor(
+    private readonly controller: Controller,
+    private readonly model: Model,
+  ) {}
+
+  display(value: SettingValue): void {
+    this.model.value = value;
+    this.controller.updateDisplay();
+  }
+
+  enable(enabled: boolean): void {
+    this.controller.enable(enabled);
+  }
+
+  mark(text: string): void {
+    markRow(this.controller, text);
+  }
+}
+
+export function addRow(gui: GUI, setting: Setting, changed: (value: SettingValue) => void): Row {
+  const model: Model = { value: setting.value };
+  const name = setting.unit === "" ? setting.label : `${setting.label} [${setting.unit}]`;
+  const dress = <C extends Controller>(controller: C): C => {
+    controller.name(name).onChange(changed);
+    controller.$name.title = `${setting.meaning}\n${setting.key}`;
+    return controller;
+  };
+  switch (setting.kind) {
+    case "number":
+    case "integer":
+      return dress(new NumberRow(gui, name, model, setting));
+    case "vector":
+      return dress(new VectorRow(gui, name, model));
+    case "text":
+      return dress(new TextRow(gui, name, model));
+    case "choice":
+      return new PlainRow(dress(gui.add(model, "value", setting.choices)), model);
+    case "switch":
+      return new PlainRow(dress(gui.add(model, "value")), model);
+  }
+}

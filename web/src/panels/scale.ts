@@ -1,0 +1,38 @@
+// Between a setting's value and the position of its slider, 0 to 1.
+import type { Setting } from "../protocol";
+
+export type Range = Pick<Setting, "min" | "max" | "log" | "kind">;
+
+function isLog(range: Range): boolean {
+  return range.log && range.min > 0 && range.max > range.min;
+}
+
+// A value outside of the slider's range, as may be typed, is at the slider's end.
+export function toPosition(value: number, range: Range): number {
+  if (!(range.max > range.min)) return 0;
+  const position = isLog(range)
+    ? Math.log(value / range.min) / Math.log(range.max / range.min)
+    : (value - range.min) / (range.max - range.min);
+  return Number.isFinite(position) ? Math.max(0, Math.min(1, position)) : 0;
+}
+
+// Three digits: what a hand on a slider means.
+export function toValue(position: number, range: Range): number {
+  const value = isLog(range)
+    ? range.min * (range.max / range.min) ** position
+    : range.min + position * (range.max - range.min);
+  return range.kind === "integer" ? Math.round(value) : Number(value.toPrecision(3));
+}
+
+export function numberText(value: number): string {
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  const text = size >= 1e5 || size < 1e-3 ? value.toExponential() : String(value);
+  return text.replace("e+", "e");
+}
+
+// What was typed, or null.
+export function parseNumber(text: string): number | null {
+  const value = Number(text.trim().replace(",", "."));
+  return text.trim() !== "" && Number.isFinite(value) ? value : null;
+}

@@ -1,0 +1,216 @@
+// The microscope's charts: over the iterations of one step, and over the steps.
+import type { Chosen } from "../plots/chosen";
+import { Chart, type ChartOptions, type Curve } from "../plots/chart";
+import { choice, element } from "../plots/dom";
+import { short, withUnit } from "../plots/numbers";
+import type { Palette } from "../plots/palette";
+import { SearchChart, type Search } from "../plots/search";
+import { nearest, thinned } from "../plots/table";
+import { aboveLowest } from "../plots/words";
+import type { IterationRow, MaybeNumber, StepRow } from "../protocol";
+import type uPlot from "uplot";
+
+export const kCharts = [
+  ["search", "Line search: E along d"],
+  ["convergence", "Convergence over the iterations"],
+  ["alpha", "Step length α over the iterations"],
+  ["time", "Time by stage over the iterations"],
+  ["inner", "Inner iterations of the linear solver"],
+  ["projected", "Projected elements over the iterations"],
+  ["steps", "Iterations per step"],
+] as const;
+export type ChartName = (typeof kCharts)[number][0];
+
+const kStages = ["hessian", "factorize", "solve", "line_search", "gradient"] as const;
+const kStageColours = ["series1", "series2", "series3", "series4", "series5"] as const;
+
+interface Plan {
+  options: Pick<ChartOptions, "label" | "x" | "y"> & { curves: Curve[] };
+  x: number[];
+  columns: MaybeNumber[][];
+  text: (column: number, row: number) => string;
+}
+
+function curve(key: string, label: string, meaning: string, colour: Curve["colour"], shape: Curve["shape"] = "both"): Curve {
+  return { key, label, meaning, colour, shape, width: 1.75 };
+}
+
+function convergence(rows: readonly IterationRow[]): Plan {
+  const positive = (values: MaybeNumber[]): MaybeNumber[] => values.map((v) => (v !== null && v > 0 ? v : null));
+  const columns = [
+    positive(rows.map((r) => r.gradient_norm)),
+    aboveLowest(rows.map((r) => r.value)),
+    positive(rows.map((r) => r.decrement)),
+  ];
+  return {
+    options: {
+      label: "Convergence over the iterations",
+      x: { label: "iteration", integer: true },
+      y: { label: "", log: true },
+      curves: [
+        curve("gradient", "|g|", "norm of the gradient before the iteration", "series1"),
+        curve("energy", "E − lowest E", "the objective before the iteration, above its lowest value in this step", "series2"),
+        curve("decrement", "decrement", "−g·d / 2: what the quadratic model promises", "series3"),
+      ],
+    },
+    x: rows.map((_, i) => i),
+    columns,
+    text: (column, row) => short(columns[column]![row]),
+  };
+}
+
+function counted(rows: readonly IterationRow[], label: string, meaning: string, value: (row: IterationRow) => MaybeNumber, shape: Curve["shape"]): Plan {
+  const column = rows.map(value);
+  return {
+    options: {
+      label: `${label} over the iterations`,
+      x: { label: "iteration", integer: true },
+      y: { label: "" },
+      curves: [curve("value", label, meaning, "series1", shape)],
+    },
+    x: rows.map((_, i) => i),
+    columns: [column],
+    text: (_column, row) => short(column[row]),
+  };
+}
+
+// Bars upon each other: a later one is drawn over the sum with the stages below it.
+function stages(rows: readonly IterationRow[]): Plan {
+  const order = [...kStages].reverse();
+  const columns = order.map((_, i) => rows.map((row) => kStages.slice(0, kStages.length - i).reduce((sum, stage) => sum + row.seconds[stage], 0)));
+  return {
+    options: {
+      label: "Time by stage over the iterations",
+      x: { label: "iteration", integer: true },
+      y: { label: "time", unit: "s" },
+      curves: order.map((stage) => curve(stage, stage.replace("_", " "), "wall time of this stage", kStageColours[kStages.indexOf(stage)]!, "bars")),
+    },
+    x: rows.map((_, i) => i),
+    columns,
+    text: (column, row) => withUnit(rows[row]?.seconds[order[column]!], "s", 3),
+  };
+}
+
+function overSteps(steps: readonly StepRow[], width: number): Plan {
+  const whole = { x: steps.map((s) => s.step), columns: [steps.map((s) => s.iterations.length), steps.map((s) => (s.success ? null : s.iterations.length))] };
+  const table = thinned(whole, 0, steps.length, Math.max(100, width));
+  return {
+    options: {
+      label: "Iterations per step",
+      x: { label: "step", integer: true },
+      y: { label: "iterations" },
+      curves: [
+        curve("iterations", "iterations", "of the minimiser, per step", "series1", "line"),
+        curve("failed", "not converged", "steps that did not converge", "bad", "points"),
+      ],
+    },
+    x: table.x,
+    columns: table.columns,
+    text: (column, row) => short(table.columns[column]![row]),
+  };
+}
+
+function planOf(name: Exclude<ChartName, "search">, chosen: Chosen, steps: readonly StepRow[], width: number): Plan {
+  const rows = chosen.row()?.iterations ?? [];
+  switch (name) {
+    case "convergence":
+      return convergence(rows);
+    case "alpha":
+      return counted(rows, "α", "accepted step length; 0: none was found", (r) => r.alpha, "both");
+    case "time":
+      return stages(rows);
+    case "inner":
+      return counted(rows, "inner iterations", "of the iterative linear solver", (r) => r.linear_iterations, "bars");
+    case "projected":
+      return counted(rows, "projected elements", "elements whose Hessian was made definite", (r) => r.projected_elements, "bars");
+    case "steps":
+      return overSteps(steps, width);
+  }
+}
+
+// A chart with a choice of what it shows.
+export class StepChart {
+  readonly element = element("div", { class: "microscope-cell" });
+  private readonly fill = element("div", { class: "plot-fill" });
+  private readonly empty = element("div", { class: "plot-note" });
+  private readonly chart = new Chart();
+  private readonly search = new SearchChart();
+  private readonly select;
+  private configured = "";
+  private plan: Plan | null = null;
+
+  constructor(
+    name: ChartName,
+    private readonly chosen: Chosen,
+    private readonly steps: () => readonly StepRow[],
+    changed: () => void,
+  ) {
+    this.select = choice("", "What this chart shows", kCharts, name, changed);
+    this.element.append(this.select.element, this.empty, this.fill);
+  }
+
+  get name(): ChartName {
+    return this.select.select.value as ChartName;
+  }
+
+  set name(name: ChartName) {
+    this.select.select.value = name;
+  }
+
+  retheme(): void {
+    this.chart.rebuild();
+    this.search.chart.rebuild();
+  }
+
+  // `search`: the line search of the chosen iteration, or why there is none.
+  show(search: Search | string): void {
+    const shown = this.name === "search" ? this.search.element : this.chart.element;
+    if (this.fill.firstChild !== shown) this.fill.replaceChildren(shown);
+    this.empty.textContent = "";
+    if (this.name !== "search") return this.showPlan();
+    if (typeof search === "string") this.empty.textContent = search;
+    this.search.show(typeof search === "string" ? null : search);
+  }
+
+  private showPlan(): void {
+    const name = this.name as Exclude<ChartName, "search">;
+    const plan = planOf(name, this.chosen, this.steps(), this.chart.width);
+    this.plan = plan;
+    this.empty.textContent = plan.x.length === 0 ? "Nothing yet: no iteration of the minimiser is known." : "";
+    if (this.configured !== name) {
+      this.configured = name;
+      const read = (key: string, x: number | null): string[] => this.read(key, x);
+      const paint = (u: uPlot, colours: Palette): void => this.paintChosen(u, colours);
+      this.chart.configure({ ...plan.options, legend: "top", read, paint, clicked: (x) => this.clicked(x) });
+    }
+    this.chart.show(plan.x, plan.columns);
+  }
+
+  private read(key: string, x: number | null): string[] {
+    const plan = this.plan;
+    if (!plan || x === null || plan.x.length === 0) return [];
+    return [plan.text(plan.options.curves.findIndex((c) => c.key === key), nearest(plan.x, x))];
+  }
+
+  private clicked(x: number): void {
+    const index = Math.round(x);
+    const { side, step } = this.chosen;
+    if (this.name === "steps") this.chosen.choose(side, this.steps()[nearest(this.steps().map((s) => s.step), index)]?.step ?? step, 0);
+    else if (index >= 0 && index < (this.chosen.row()?.iterations.length ?? 0)) this.chosen.choose(side, step, index);
+  }
+
+  // A line at the chosen iteration, or step.
+  private paintChosen(u: uPlot, colours: Palette): void {
+    const x = Math.round(u.valToPos(this.name === "steps" ? this.chosen.step : this.chosen.iteration, "x", true));
+    u.ctx.save();
+    u.ctx.strokeStyle = colours.accent;
+    u.ctx.globalAlpha = 0.6;
+    u.ctx.lineWidth = 2;
+    u.ctx.beginPath();
+    u.ctx.moveTo(x, u.bbox.top);
+    u.ctx.lineTo(x, u.bbox.top + u.bbox.height);
+    u.ctx.stroke();
+    u.ctx.restore();
+  }
+}
+

@@ -1,0 +1,313 @@
+// A 2-D chart in the page's colours: curves over x, a legend whose entries show the values under the cursor and hide
+// their curves, and a picture of the whole.
+import uPlot from "uplot";
+import "uplot/dist/uPlot.min.css";
+import "./plots.css";
+import type { MaybeNumber } from "../protocol";
+import { element, oncePerFrame } from "./dom";
+import { palette, type Colour, type Palette } from "./palette";
+import { prefixOf, ticks } from "./numbers";
+
+export interface Curve {
+  key: string; // curves of the same key share an entry of the legend
+  label: string;
+  meaning?: string;
+  colour: Colour;
+  width?: number;
+  dash?: number[];
+  shape?: "line" | "points" | "both" | "bars";
+}
+
+export interface Axis {
+  label: string;
+  unit?: string; // with an SI prefix that fits
+  integer?: boolean;
+}
+
+export interface ChartOptions {
+  label: string; // for a reader that does not see it
+  x: Axis;
+  y: Axis & { log?: boolean };
+  curves: Curve[];
+  legend: "side" | "top";
+  read: (key: string, x: number | null) => string[]; // values for the legend at x, or at the end
+  caption?: (x: number | null) => string; // above them
+  xRange?: () => [number, number] | null;
+  yRange?: () => [number, number] | null; // null: what is shown decides
+  paint?: (u: uPlot, colours: Palette) => void; // over the curves
+  zoomed?: (range: [number, number] | null) => void; // chosen with the mouse; null: all again
+  clicked?: (x: number) => void;
+}
+
+interface Entry {
+  key: string;
+  button: HTMLButtonElement;
+  values: HTMLSpanElement;
+}
+
+export class Chart {
+  readonly element = element("div", { class: "chart" });
+  readonly hidden = new Set<string>();
+  private readonly plot = element("div", { class: "chart-plot", tabindex: "0", role: "img" });
+  private readonly legend = element("div", { class: "chart-legend", role: "group", "aria-label": "Curves" });
+  private readonly caption = element("div", { class: "chart-caption" });
+  private options: ChartOptions | null = null;
+  private data: { x: number[]; columns: MaybeNumber[][] } = { x: [], columns: [] };
+  private chart: uPlot | null = null;
+  private entries: Entry[] = [];
+  private cursor: number | null = null;
+  private readonly resize = oncePerFrame(() => this.fit());
+
+  constructor() {
+    this.element.append(this.plot, this.legend);
+    new ResizeObserver(this.resize).observe(this.plot);
+    this.plot.addEventListener("keydown", (event) => this.walk(event));
+  }
+
+  configure(options: ChartOptions): void {
+    this.options = options;
+    this.element.dataset.legend = options.legend;
+    this.plot.setAttribute("aria-label", `${options.label}. The arrow keys move through its values.`);
+    this.buildLegend();
+    this.rebuild();
+  }
+
+  // Columns in the order of the curves.
+  show(x: number[], columns: MaybeNumber[][]): void {
+    this.data = { x, columns };
+    if (!this.chart) return this.rebuild();
+    this.chart.setData([x, ...columns]);
+    this.readLegend();
+  }
+
+  // Colours, font or scales are others now.
+  rebuild(): void {
+    this.chart?.destroy();
+    this.chart = null;
+    const [width, height] = [this.plot.clientWidth, this.plot.clientHeight];
+    const options = this.options;
+    if (!options || width < 60 || height < 40 || this.data.columns.length !== options.curves.length) return;
+    const colours = palette(this.element);
+    this.chart = new uPlot(this.settings(options, colours, width, height), [this.data.x, ...this.data.columns], this.plot);
+    this.readLegend();
+  }
+
+  redraw(): void {
+    this.chart?.redraw(false);
+  }
+
+  get width(): number {
+    return this.plot.clientWidth;
+  }
+
+  // The chart under a title and above its legend.
+  picture(title: string): HTMLCanvasElement | null {
+    if (!this.chart || !this.options) return null;
+    const source = this.chart.ctx.canvas;
+    const scale = uPlot.pxRatio;
+    const colours = palette(this.element);
+    const line = colours.fontSize * 1.5 * scale;
+    const shown = this.entries.filter((entry) => !this.hidden.has(entry.key));
+    const columns = Math.max(1, Math.floor(source.width / (line * 12)));
+    const canvas = document.createElement("canvas");
+    canvas.width = source.width;
+    canvas.height = source.height + line * (1.6 + Math.ceil(shown.length / columns) + 0.5);
+    const pen = canvas.getContext("2d")!;
+    pen.fillStyle = colours.panel;
+    pen.fillRect(0, 0, canvas.width, canvas.height);
+    pen.drawImage(source, 0, line * 1.6);
+    pen.textBaseline = "middle";
+    pen.fillStyle = colours.text;
+    pen.font = `600 ${colours.fontSize * scale}px sans-serif`;
+    pen.fillText(title, line * 0.5, line * 0.8);
+    pen.font = `${colours.fontSize * 0.86 * scale}px sans-serif`;
+    shown.forEach((entry, i) => {
+      const left = line * 0.5 + (i % columns) * ((canvas.width - line) / columns);
+      const y = source.height + line * (2.1 + Math.floor(i / columns));
+      this.strokeSample(pen, entry.key, colours, left, y, line);
+      pen.fillStyle = colours.text;
+      pen.fillText(this.labelOf(entry.key), left + line * 1.5, y);
+    });
+    return canvas;
+  }
+
+  private strokeSample(pen: CanvasRenderingContext2D, key: string, colours: Palette, x: number, y: number, line: number): void {
+    const curve = this.options!.curves.find((c) => c.key === key)!;
+    pen.strokeStyle = colours[curve.colour];
+    pen.lineWidth = (curve.width ?? 1.5) * uPlot.pxRatio;
+    pen.setLineDash((curve.dash ?? []).map((d) => d * uPlot.pxRatio));
+    pen.beginPath();
+    pen.moveTo(x, y);
+    pen.lineTo(x + line * 1.2, y);
+    pen.stroke();
+    pen.setLineDash([]);
+  }
+
+  private labelOf(key: string): string {
+    return this.options!.curves.find((c) => c.key === key)!.label;
+  }
+
+  private settings(options: ChartOptions, colours: Palette, width: number, height: number): uPlot.Options {
+    const log = options.y.log === true;
+    return {
+      width,
+      height,
+      legend: { show: false },
+      padding: [colours.fontSize * 0.6, colours.fontSize, 0, 0],
+      cursor: {
+        y: false,
+        points: { size: 6 },
+        drag: { x: options.zoomed !== undefined, y: false, setScale: false, dist: 6 },
+      },
+      scales: {
+        x: { time: false, range: (_u, low, high) => options.xRange?.() ?? padded(low, high, options.x.integer === true) },
+        y: { distr: log ? 3 : 1, log: 10, range: (_u, low, high) => options.yRange?.() ?? ranged(low, high, log) },
+      },
+      axes: [axis(options.x, colours, false), axis(options.y, colours, true)],
+      series: [{}, ...options.curves.map((curve) => this.series(curve, colours))],
+      hooks: {
+        setCursor: [(u) => this.moved(u)],
+        setSelect: [(u) => this.selected(u)],
+        draw: [(u) => options.paint?.(u, colours)],
+        ready: [(u) => this.listen(u)],
+      },
+    };
+  }
+
+  private series(curve: Curve, colours: Palette): uPlot.Series {
+    const stroke = colours[curve.colour];
+    const shape = curve.shape ?? "line";
+    return {
+      show: !this.hidden.has(curve.key),
+      stroke,
+      width: shape === "points" ? 0 : (curve.width ?? 1.5),
+      dash: curve.dash,
+      spanGaps: true,
+      fill: shape === "bars" ? stroke : undefined,
+      paths: shape === "bars" ? uPlot.paths.bars!({ size: [0.7, 40] }) : undefined,
+      points: { show: shape === "points" || shape === "both" ? true : undefined, size: 6, fill: shape === "line" ? undefined : stroke },
+    };
+  }
+
+  private listen(u: uPlot): void {
+    u.over.addEventListener("dblclick", () => this.options?.zoomed?.(null));
+    u.over.addEventListener("click", () => {
+      if (u.cursor.left !== undefined && u.cursor.left >= 0) this.options?.clicked?.(u.posToVal(u.cursor.left, "x"));
+    });
+  }
+
+  private moved(u: uPlot): void {
+    const left = u.cursor.left ?? -1;
+    this.cursor = left < 0 ? null : u.posToVal(left, "x");
+    this.readLegend();
+  }
+
+  private selected(u: uPlot): void {
+    if (u.select.width < 4) return;
+    const range: [number, number] = [u.posToVal(u.select.left, "x"), u.posToVal(u.select.left + u.select.width, "x")];
+    u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+    this.options?.zoomed?.(range);
+  }
+
+  private walk(event: KeyboardEvent): void {
+    const u = this.chart;
+    const by = event.key === "ArrowLeft" ? -1 : event.key === "ArrowRight" ? 1 : 0;
+    if (!u || by === 0 || this.data.x.length === 0) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const index = Math.min(this.data.x.length - 1, Math.max(0, (u.cursor.idx ?? this.data.x.length - 1) + by));
+    u.setCursor({ left: u.valToPos(this.data.x[index]!, "x"), top: u.over.clientHeight / 2 });
+  }
+
+  private fit(): void {
+    const [width, height] = [this.plot.clientWidth, this.plot.clientHeight];
+    if (!this.chart) this.rebuild();
+    else if (width >= 60 && height >= 40) this.chart.setSize({ width, height });
+  }
+
+  private buildLegend(): void {
+    const curves = this.options!.curves.filter((curve, i, all) => all.findIndex((c) => c.key === curve.key) === i);
+    this.entries = curves.map((curve) => {
+      const values = element("span", { class: "chart-values" });
+      const sample = element("span", { class: "chart-sample" });
+      const dashed = curve.dash ? "dashed" : "solid";
+      sample.style.borderTop = `${Math.max(2, (curve.width ?? 1.5) * 1.4)}px ${dashed} var(${variableOf(curve.colour)})`;
+      const entry = element("button", { type: "button", class: "chart-entry", title: `${curve.meaning ?? curve.label}. Click to hide or show it.` });
+      entry.append(sample, element("span", { class: "chart-label" }, curve.label), values);
+      entry.addEventListener("click", () => this.toggle(curve.key));
+      entry.setAttribute("aria-pressed", String(!this.hidden.has(curve.key)));
+      return { key: curve.key, button: entry, values };
+    });
+    this.legend.replaceChildren(...(this.options!.caption ? [this.caption] : []), ...this.entries.map((entry) => entry.button));
+  }
+
+  private toggle(key: string): void {
+    if (!this.hidden.delete(key)) this.hidden.add(key);
+    for (const entry of this.entries) entry.button.setAttribute("aria-pressed", String(!this.hidden.has(entry.key)));
+    this.rebuild();
+  }
+
+  private readLegend(): void {
+    const caption = this.options!.caption?.(this.cursor) ?? "";
+    if (this.caption.textContent !== caption) this.caption.textContent = caption;
+    for (const entry of this.entries) {
+      const texts = this.options!.read(entry.key, this.cursor);
+      if (entry.values.childElementCount !== texts.length) entry.values.replaceChildren(...texts.map(() => element("span")));
+      texts.forEach((text, i) => {
+        const cell = entry.values.children[i]!;
+        if (cell.textContent !== text) cell.textContent = text;
+      });
+    }
+  }
+}
+
+function variableOf(colour: Colour): string {
+  return "--" + colour.replace(/(\d)/, "-$1");
+}
+
+function axis(options: Axis & { log?: boolean }, colours: Palette, vertical: boolean): uPlot.Axis {
+  const measure = document.createElement("canvas").getContext("2d")!;
+  measure.font = colours.font;
+  const factorOf = (u: uPlot): { factor: number; letter: string } => {
+    const scale = u.scales[vertical ? "y" : "x"]!;
+    const size = Math.max(Math.abs(scale.min ?? 0), Math.abs(scale.max ?? 0));
+    return options.unit === undefined || options.log === true ? { factor: 1, letter: "" } : prefixOf(size);
+  };
+  return {
+    stroke: colours.faint,
+    font: colours.font,
+    labelFont: colours.font,
+    grid: { stroke: colours.line, width: 1 },
+    ticks: { stroke: colours.line, width: 1, size: 4 },
+    gap: 3,
+    label: (u) => (options.unit === undefined ? options.label : `${options.label} [${factorOf(u).letter}${options.unit}]`),
+    labelSize: colours.fontSize * 1.35,
+    labelGap: 0,
+    space: vertical ? colours.fontSize * 2.2 : colours.fontSize * 5,
+    incrs: options.integer === true ? [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000, 1e6, 1e7] : undefined,
+    size: (_u, values) => (vertical ? Math.max(...(values ?? []).map((v) => measure.measureText(v ?? "").width), colours.fontSize) + 10 : colours.fontSize * 1.7),
+    values: (u, splits) => (options.log === true ? splits.map(powerOfTen) : ticks(splits, factorOf(u).factor)),
+  };
+}
+
+const kSuperscripts = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+function powerOfTen(value: number | null): string {
+  if (value === null) return "";
+  const exponent = Math.log10(value);
+  if (Math.abs(exponent - Math.round(exponent)) > 1e-6) return "";
+  const digits = [...String(Math.abs(Math.round(exponent)))].map((d) => kSuperscripts[Number(d)]).join("");
+  return `10${exponent < -0.5 ? "⁻" : ""}${digits}`;
+}
+
+function padded(low: number | null, high: number | null, integer: boolean): [number, number] {
+  if (low === null || high === null) return [0, 1];
+  if (integer) return [low - 0.5, high + 0.5];
+  return low === high ? [low - Math.abs(low) * 0.1 - 1e-12, high + Math.abs(high) * 0.1 + 1e-12] : [low, high];
+}
+
+function ranged(low: number | null, high: number | null, log: boolean): [number, number] {
+  if (low === null || high === null) return log ? [1e-1, 1e1] : [0, 1];
+  if (log) return [10 ** Math.floor(Math.log10(low) - 1e-9), 10 ** Math.ceil(Math.log10(high) + 1e-9)];
+  const margin = (high - low) * 0.06 || Math.abs(high) * 0.1 || 1;
+  return [low - margin, high + margin];
+}

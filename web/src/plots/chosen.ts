@@ -1,0 +1,149 @@
+// Which iteration of which step the microscope and the landscape look at: the newest, or what the reader chose.
+import type { Page } from "../page";
+import type { IterationReply, IterationRow, SideName, StepRow } from "../protocol";
+import type { Store } from "../store";
+import { Emitter } from "../emitter";
+
+const kFollowEvery = 500; // [ms]
+const kRemembered = 12;
+
+interface Events {
+  changed: void; // another iteration is chosen
+  rows: void; // there are other steps
+}
+
+export class Chosen extends Emitter<Events> {
+  side: SideName = "a";
+  step = 0; // 0: none yet
+  iteration = 0;
+  following = true;
+  private timer: ReturnType<typeof setTimeout> | null = null;
+  private readonly replies = new Map<string, Promise<IterationReply>>();
+
+  constructor(
+    private readonly store: Store,
+    private readonly page: Page,
+  ) {
+    super();
+    store.on("steps", ({ side, from }) => {
+      this.forget(side, from);
+      this.newRows();
+    });
+    store.on("scene", () => {
+      this.replies.clear();
+      this.newRows();
+    });
+    store.on("gone", () => this.side === "b" && this.choose("a", this.newest("a")?.step ?? 0, 0));
+    store.on("state", () => this.newRows());
+    page.on("chosen", (at) => {
+      if (at.side === this.side && at.step === this.step && at.iteration === this.iteration) return;
+      this.following = false;
+      this.set(at.side, at.step, at.iteration);
+    });
+    this.followNow();
+  }
+
+  row(): StepRow | null {
+    return this.rowOf(this.step);
+  }
+
+  iterationRow(): IterationRow | null {
+    return this.row()?.iterations[this.iteration] ?? null;
+  }
+
+  // Of the reader: stays there.
+  choose(side: SideName, step: number, iteration: number): void {
+    this.following = false;
+    this.announce(side, step, iteration);
+  }
+
+  // To the iteration before or after, across steps.
+  walk(by: 1 | -1): void {
+    const row = this.row();
+    if (!row) return;
+    const next = this.iteration + by;
+    if (next >= 0 && next < row.iterations.length) return this.choose(this.side, this.step, next);
+    const neighbour = this.rowOf(this.step + by);
+    if (neighbour) this.choose(this.side, neighbour.step, by > 0 ? 0 : Math.max(0, neighbour.iterations.length - 1));
+  }
+
+  follow(on: boolean): void {
+    this.following = on;
+    if (on) this.followNow();
+    this.emit("changed", undefined);
+  }
+
+  // What the program knows about the iteration. Rejects with the reason.
+  landscape(): Promise<IterationReply> {
+    const { side, step, iteration } = this;
+    const key = `${side} ${step} ${iteration}`;
+    const known = this.replies.get(key);
+    if (known) return known;
+    const reply = this.store.source.ask<IterationReply>({ ask: "iteration", side, step, iteration });
+    this.replies.set(key, reply);
+    reply.catch(() => this.replies.delete(key));
+    for (const oldest of this.replies.keys()) {
+      if (this.replies.size <= kRemembered) break;
+      this.replies.delete(oldest);
+    }
+    return reply;
+  }
+
+  private rowOf(step: number): StepRow | null {
+    const steps = this.store.side(this.side)?.steps ?? [];
+    const guess = steps[step - (steps[0]?.step ?? 1)];
+    return guess?.step === step ? guess : (steps.find((row) => row.step === step) ?? null);
+  }
+
+  private newest(side: SideName): StepRow | null {
+    const steps = this.store.side(side)?.steps ?? [];
+    return steps[steps.length - 1] ?? null;
+  }
+
+  // Steps after a rewind are others.
+  private forget(side: SideName, from: number): void {
+    for (const key of this.replies.keys()) {
+      const [ofSide, step] = key.split(" ");
+      if (ofSide === side && Number(step) > from) this.replies.delete(key);
+    }
+  }
+
+  private newRows(): void {
+    this.emit("rows", undefined);
+    if (!this.row()) return this.followNow();
+    if (this.following && this.timer === null) {
+      this.timer = setTimeout(() => {
+        this.timer = null;
+        if (this.following) this.followNow();
+      }, kFollowEvery);
+    }
+  }
+
+  private followNow(): void {
+    const row = this.newest(this.side);
+    if (!row) return this.set(this.side, 0, 0);
+    const underWay = this.store.state?.[this.side]?.iteration ?? -1;
+    const last = Math.max(0, row.iterations.length - 1);
+    this.announce(this.side, row.step, underWay >= 0 ? last : Math.min(this.iteration, last));
+  }
+
+  private set(side: SideName, step: number, iteration: number): void {
+    [this.side, this.step, this.iteration] = [side, step, iteration];
+    this.emit("changed", undefined);
+  }
+
+  private announce(side: SideName, step: number, iteration: number): void {
+    if (side === this.side && step === this.step && iteration === this.iteration) return this.emit("changed", undefined);
+    this.set(side, step, iteration);
+    if (step > 0) this.page.emit("chosen", { side, step, iteration });
+  }
+}
+
+const known = new WeakMap<Page, Chosen>();
+
+// The one of this page.
+export function chosenOf(store: Store, page: Page): Chosen {
+  const chosen = known.get(page) ?? new Chosen(store, page);
+  known.set(page, chosen);
+  return chosen;
+}

@@ -1,0 +1,101 @@
+// Small builders of the page's elements. Text is always text, never markup.
+type Child = Node | string;
+
+export function element<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  properties: { class?: string; title?: string } & Record<string, string | undefined> = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) if (value !== undefined) made.setAttribute(name, value);
+  made.append(...children);
+  return made;
+}
+
+export function button(text: string, title: string, click: () => void): HTMLButtonElement {
+  const made = element("button", { type: "button", title, class: "plot-button" }, text);
+  made.addEventListener("click", click);
+  return made;
+}
+
+export interface Switch {
+  element: HTMLLabelElement;
+  input: HTMLInputElement;
+}
+
+export function checkbox(text: string, title: string, on: boolean, change: (on: boolean) => void): Switch {
+  const input = element("input", { type: "checkbox" });
+  input.checked = on;
+  input.addEventListener("change", () => change(input.checked));
+  return { element: element("label", { class: "plot-field", title }, input, " " + text), input };
+}
+
+export interface Choice {
+  element: HTMLLabelElement;
+  select: HTMLSelectElement;
+}
+
+export function choice(
+  text: string,
+  title: string,
+  options: readonly (readonly [value: string, text: string])[],
+  value: string,
+  change: (value: string) => void,
+): Choice {
+  const select = element("select", { "aria-label": text || title });
+  for (const [name, shown] of options) select.append(element("option", { value: name }, shown));
+  select.value = value;
+  select.addEventListener("change", () => change(select.value));
+  return { element: element("label", { class: "plot-field", title }, ...(text ? [text + " "] : []), select), select };
+}
+
+export interface NumberField {
+  element: HTMLLabelElement;
+  input: HTMLInputElement;
+}
+
+// `change` hears finite numbers only.
+export function numberField(
+  text: string,
+  title: string,
+  value: number,
+  limits: { min?: number; max?: number; step?: number | "any" },
+  change: (value: number) => void,
+): NumberField {
+  const input = element("input", { type: "number", "aria-label": text || title, step: String(limits.step ?? "any") });
+  if (limits.min !== undefined) input.min = String(limits.min);
+  if (limits.max !== undefined) input.max = String(limits.max);
+  input.value = String(value);
+  input.addEventListener("change", () => {
+    if (input.value.trim() !== "" && Number.isFinite(input.valueAsNumber) && input.checkValidity()) change(input.valueAsNumber);
+  });
+  return { element: element("label", { class: "plot-field", title }, text + " ", input), input };
+}
+
+export function download(name: string, content: Blob): void {
+  const link = element("a", { href: URL.createObjectURL(content), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+export function downloadCanvas(name: string, canvas: HTMLCanvasElement): void {
+  canvas.toBlob((blob) => blob && download(name, blob), "image/png");
+}
+
+// A letter at most of each kind that any file system takes.
+export function fileName(...parts: (string | number)[]): string {
+  return parts.join("_").replace(/[^A-Za-z0-9._-]+/g, "_");
+}
+
+// Calls `draw` at most once per frame, however often it is asked to.
+export function oncePerFrame(draw: () => void): () => void {
+  let asked = false;
+  return () => {
+    if (asked) return;
+    asked = true;
+    requestAnimationFrame(() => {
+      asked = false;
+      draw();
+    });
+  };
+}

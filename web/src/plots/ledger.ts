@@ -1,0 +1,103 @@
+// Where the energy of one side is and where it went, step by step: states as they are, works and losses summed up.
+import type { MaybeNumber, StepRow } from "../protocol";
+import type { Colour } from "./palette";
+
+export interface LedgerColumn {
+  key: string;
+  label: string;
+  meaning: string;
+  colour: Colour;
+  width: number; // of the line [CSS px]
+  dotted: boolean; // sums over the steps
+}
+
+const kTermColours: Colour[] = ["series3", "series6", "series4", "series5", "series1"];
+
+export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
+  const line = (key: string, label: string, meaning: string, colour: Colour, width = 1.5, dotted = false): LedgerColumn => ({
+    key,
+    label,
+    meaning,
+    colour,
+    width,
+    dotted,
+  });
+  const terms = potentials.map((name, i) =>
+    line(`potential_${name}`, `V: ${name.replaceAll("_", " ")}`, "a term of the potential energy", kTermColours[i % kTermColours.length]!, 1.25),
+  );
+  return [
+    line("kinetic", "T", "kinetic energy", "series2", 2),
+    ...terms,
+    line("potential_total", "V", "potential energy, the sum of its terms", "series1", 2),
+    line("total", "T + V", "kinetic plus potential energy", "text", 2.5),
+    line("mouse_work", "work of the mouse", "by the mouse's spring, summed over the steps", "series4", 1.5, true),
+    line("pin_work", "work of pins", "by moving pins and targets, summed over the steps", "series5", 1.5, true),
+    line("damping_loss", "damping loss", "dissipated by damping, summed over the steps", "series7", 1.5, true),
+    line("numerical_loss", "numerical loss", "dissipated by the integrator, summed over the steps", "series2", 1.5, true),
+    line("balance", "balance", "T + V − works + losses: flat where every step was solved accurately", "good", 2.5),
+  ];
+}
+
+export class Ledger {
+  readonly step: number[] = [];
+  readonly time: number[] = [];
+  readonly columns: MaybeNumber[][];
+  readonly residualWork: MaybeNumber[] = []; // in each step
+  readonly ledgerError: MaybeNumber[] = [];
+  private readonly lowest: number[] = []; // of the balance so far
+  private readonly highest: number[] = [];
+  private readonly largest: number[] = []; // magnitude of any column so far
+
+  constructor(readonly potentials: readonly string[]) {
+    this.columns = ledgerColumns(potentials).map(() => []);
+  }
+
+  // Steps from `from` on are as in `rows`; earlier ones are known.
+  update(rows: readonly StepRow[], from: number): void {
+    const keep = Math.min(from, this.step.length, rows.length);
+    const running = [this.lowest, this.highest, this.largest];
+    for (const column of [this.step, this.time, this.residualWork, this.ledgerError, ...running, ...this.columns]) column.length = keep;
+    for (let i = keep; i < rows.length; ++i) this.append(rows[i]!);
+  }
+
+  // The range that the balance has covered since the first step, and the largest energy so far.
+  drift(): { drift: number; scale: number } {
+    const last = this.step.length - 1;
+    return last < 0 ? { drift: 0, scale: 0 } : { drift: this.highest[last]! - this.lowest[last]!, scale: this.largest[last]! };
+  }
+
+  private append(row: StepRow): void {
+    const last = this.step.length - 1;
+    const terms = this.potentials.map((_, i) => row.potential[i] ?? null);
+    const potential = sum(terms);
+    const total = sum([row.kinetic, potential]);
+    const flows = [row.mouse_work, row.pin_work, row.damping_loss, row.numerical_loss];
+    const firstFlow = terms.length + 3;
+    const sums = flows.map((flow, i) => sum([last < 0 ? 0 : this.columns[firstFlow + i]![last]!, flow]));
+    const [mouse, pins, damping, numerical] = sums as [MaybeNumber, MaybeNumber, MaybeNumber, MaybeNumber];
+    const balance = sum([total, negated(mouse), negated(pins), damping, numerical]);
+    const values = [row.kinetic, ...terms, potential, total, ...sums, balance];
+    values.forEach((value, i) => this.columns[i]!.push(value));
+    this.lowest.push(Math.min(this.lowest[last] ?? Infinity, balance ?? Infinity));
+    this.highest.push(Math.max(this.highest[last] ?? -Infinity, balance ?? -Infinity));
+    this.largest.push(Math.max(this.largest[last] ?? 0, ...values.map((v) => Math.abs(v ?? 0))));
+    this.step.push(row.step);
+    this.time.push(row.time);
+    this.residualWork.push(row.residual_work);
+    this.ledgerError.push(row.ledger_error);
+  }
+}
+
+// Unknown if a part is unknown.
+function sum(parts: readonly MaybeNumber[]): MaybeNumber {
+  let total = 0;
+  for (const part of parts) {
+    if (part === null) return null;
+    total += part;
+  }
+  return total;
+}
+
+function negated(value: MaybeNumber): MaybeNumber {
+  return value === null ? null : -value;
+}

@@ -1,0 +1,82 @@
+// Numbers as a reader likes them: few digits, SI prefixes, and a dash for what is not there.
+import type { MaybeNumber } from "../protocol";
+
+const kPrefixes: [factor: number, letter: string][] = [
+  [1e12, "T"],
+  [1e9, "G"],
+  [1e6, "M"],
+  [1e3, "k"],
+  [1, ""],
+  [1e-3, "m"],
+  [1e-6, "µ"],
+  [1e-9, "n"],
+  [1e-12, "p"],
+  [1e-15, "f"],
+];
+
+export interface Prefix {
+  factor: number;
+  letter: string;
+}
+
+// The prefix with which a number of this size has one to three digits before its point.
+export function prefixOf(size: number): Prefix {
+  const magnitude = Math.abs(size);
+  if (!(magnitude > 0) || !Number.isFinite(magnitude)) return { factor: 1, letter: "" };
+  const fits = kPrefixes.find(([factor]) => magnitude >= factor * (1 - 1e-12)) ?? kPrefixes[kPrefixes.length - 1]!;
+  return { factor: fits[0], letter: fits[1] };
+}
+
+// "0.0012", "1.2e-7", "34 500": at most `digits` significant ones, without zeros at the end.
+export function short(value: MaybeNumber | undefined, digits = 4): string {
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  if (value === 0) return "0";
+  if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
+  const size = Math.abs(value);
+  const text =
+    size >= 1e-3 && size < 1e6
+      ? String(Number(value.toPrecision(size >= 1e4 ? Math.max(digits, 6) : digits)))
+      : value.toExponential(digits - 1).replace(/\.?0+e/, "e").replace("e+", "e");
+  return text.replace(/-/g, "−");
+}
+
+// "12.3 mJ"
+export function withUnit(value: MaybeNumber | undefined, unit: string, digits = 4): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  if (value === 0) return `0 ${unit}`;
+  const size = Math.abs(value);
+  if (size < 1e-15 || size >= 1e15) return `${short(value, digits)} ${unit}`;
+  const { factor, letter } = prefixOf(value);
+  return `${short(value / factor, digits)} ${letter}${unit}`;
+}
+
+// Texts of an axis' ticks, with as many decimals as tell neighbours apart.
+export function ticks(values: readonly (number | null)[], factor = 1): string[] {
+  const known = values.filter((v): v is number => v !== null).map((v) => v / factor);
+  const gap = known.length > 1 ? Math.abs(known[1]! - known[0]!) : 1;
+  const largest = Math.max(...known.map(Math.abs), 0);
+  const decimals = Math.min(12, Math.max(0, -Math.floor(Math.log10(gap) + 1e-9)));
+  const plain = largest < 1e6 && (largest === 0 || decimals <= 4);
+  return values.map((value) => {
+    if (value === null) return "";
+    const v = Math.abs(value / factor) < gap * 1e-6 ? 0 : value / factor;
+    if (v === 0) return "0";
+    const digits = Math.min(8, Math.max(1, Math.ceil(Math.log10(Math.abs(v) / gap) + 1)));
+    return plain ? v.toFixed(decimals).replace("-", "−") : short(v, digits);
+  });
+}
+
+export function plural(count: number, noun: string): string {
+  return `${count} ${noun}${count === 1 ? "" : "s"}`;
+}
+
+// As CSV keeps it: the shortest text that reads back to the same bits; nothing for what is not finite.
+export function csv(header: readonly string[], columns: readonly (readonly MaybeNumber[])[], rows: number): string {
+  const lines = [header.map(csvCell).join(",")];
+  for (let row = 0; row < rows; ++row) lines.push(columns.map((c) => (c[row] === null ? "" : String(c[row]))).join(","));
+  return lines.join("\n") + "\n";
+}
+
+function csvCell(text: string): string {
+  return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+}

@@ -1,0 +1,146 @@
+// E along the direction d: the curve, its quadratic model, what the line search asked for, and what it tried.
+import type uPlot from "uplot";
+import type { IterationReply, MaybeNumber, TrialRow } from "../protocol";
+import { Chart, type Curve } from "./chart";
+import { short } from "./numbers";
+import type { Palette } from "./palette";
+import { nearest } from "./table";
+
+export interface Search {
+  curve: IterationReply["curve"];
+  trials: TrialRow[];
+  test: string; // of the line search: "textbook", "slide" or "none"
+}
+
+// What the axis shows: the valley, and trials as long as they do not dwarf it. Values are differences from E at alpha 0.
+export function searchRange(values: readonly MaybeNumber[], model: readonly MaybeNumber[], trials: readonly MaybeNumber[]): [number, number] {
+  const known = [...values, ...model].filter((v): v is number => v !== null && Number.isFinite(v));
+  const low = Math.min(0, ...known, ...trials.filter((v): v is number => v !== null));
+  const depth = -low || Math.max(...known.map(Math.abs), 1e-300);
+  const high = [...values, ...trials].filter((v): v is number => v !== null && v > 0 && v <= 4 * depth);
+  const top = Math.min(4 * depth, Math.max(0.25 * depth, ...high));
+  const margin = 0.07 * (top - low);
+  return [low - margin, top + margin];
+}
+
+export class SearchChart {
+  readonly chart = new Chart();
+  private search: Search | null = null;
+
+  get element(): HTMLElement {
+    return this.chart.element;
+  }
+
+  show(search: Search | null): void {
+    this.search = search;
+    if (!search) {
+      this.chart.element.hidden = true;
+      return;
+    }
+    this.chart.element.hidden = false;
+    this.chart.configure({
+      label: "E along the direction d",
+      x: { label: "α" },
+      y: { label: "E(x + α d) − E(x)" },
+      curves: curvesOf(search),
+      legend: "top",
+      read: (key, alpha) => this.read(key, alpha),
+      yRange: () => this.range(),
+      paint: (u, colours) => this.paintTrials(u, colours),
+    });
+    const { alpha } = search.curve;
+    this.chart.show(alpha, this.columns());
+  }
+
+  private origin(): number {
+    const { curve } = this.search!;
+    return curve.value[nearest(curve.alpha, 0)] ?? curve.model[nearest(curve.alpha, 0)] ?? 0;
+  }
+
+  private columns(): MaybeNumber[][] {
+    const { curve, test } = this.search!;
+    const origin = this.origin();
+    const shifted = (values: MaybeNumber[]): MaybeNumber[] => values.map((v) => (v === null ? null : v - origin));
+    const ahead = (values: MaybeNumber[]): MaybeNumber[] => shifted(values).map((v, i) => (curve.alpha[i]! < 0 ? null : v));
+    const columns = [shifted(curve.value), shifted(curve.model)];
+    if (test !== "none") columns.push(ahead(curve.textbook));
+    if (test === "slide") columns.push(ahead(curve.slide));
+    return columns;
+  }
+
+  private range(): [number, number] {
+    const { curve, trials } = this.search!;
+    const origin = this.origin();
+    const shifted = (values: MaybeNumber[]): MaybeNumber[] => values.map((v) => (v === null ? null : v - origin));
+    return searchRange(shifted(curve.value), shifted(curve.model), shifted(trials.map((t) => t.value)));
+  }
+
+  private read(key: string, alpha: number | null): string[] {
+    if (!this.search || alpha === null) return [];
+    const column = curvesOf(this.search).findIndex((c) => c.key === key);
+    return [short(this.columns()[column]?.[nearest(this.search.curve.alpha, alpha)], 4)];
+  }
+
+  // Rejected trials are crosses, the accepted one a dot; what lies off the axis stands at its edge.
+  private paintTrials(u: uPlot, colours: Palette): void {
+    const { trials } = this.search!;
+    const pen = u.ctx;
+    const scale = u.bbox.width / u.over.clientWidth || 1;
+    const origin = this.origin();
+    pen.save();
+    pen.font = `${colours.fontSize * 0.82 * scale}px sans-serif`;
+    let right = -Infinity; // where the last text ends: texts do not overlap
+    for (const trial of [...trials].sort((p, q) => p.alpha - q.alpha)) {
+      const x = u.valToPos(trial.alpha, "x", true);
+      if (x > u.bbox.left + u.bbox.width + 1) continue;
+      const value = trial.value === null ? Infinity : trial.value - origin;
+      const at = Number.isFinite(value) ? u.valToPos(value, "y", true) : -Infinity;
+      const y = Math.max(u.bbox.top + 6 * scale, at);
+      mark(pen, trial.accepted, x, y, 5 * scale, trial.accepted ? colours.good : colours.bad);
+      const off = at < u.bbox.top ? "↑ " : "";
+      const text = `${off}α = ${short(trial.alpha, 3)}: ${short(value, 3)}`;
+      const width = pen.measureText(text).width;
+      const left = Math.min(Math.max(u.bbox.left, x + 8 * scale), u.bbox.left + u.bbox.width - width);
+      if (left < right && !trial.accepted) continue;
+      right = left + width;
+      pen.fillStyle = trial.accepted ? colours.good : colours.bad;
+      pen.textBaseline = "middle";
+      pen.fillText(text, left, y + (y < u.bbox.top + 14 * scale ? 12 : -10) * scale);
+    }
+    pen.restore();
+  }
+}
+
+function mark(pen: CanvasRenderingContext2D, accepted: boolean, x: number, y: number, r: number, colour: string): void {
+  pen.beginPath();
+  pen.setLineDash([]);
+  pen.fillStyle = pen.strokeStyle = colour;
+  pen.lineWidth = r * 0.45;
+  if (accepted) {
+    pen.arc(x, y, r, 0, 2 * Math.PI);
+    return pen.fill();
+  }
+  for (const sign of [-1, 1]) {
+    pen.moveTo(x - r, y - sign * r);
+    pen.lineTo(x + r, y + sign * r);
+  }
+  pen.stroke();
+}
+
+function curvesOf(search: Search): Curve[] {
+  const curves: Curve[] = [
+    { key: "value", label: "E", meaning: "the objective along d", colour: "series1", width: 2.25 },
+    { key: "model", label: "quadratic model", meaning: "E + α g·d + α²/2 d·H d", colour: "series2", width: 1.75, dash: [6, 4] },
+  ];
+  if (search.test !== "none")
+    curves.push({
+      key: "textbook",
+      label: search.test === "slide" ? "Armijo line (textbook)" : "Armijo line: accepted below it",
+      meaning: "E + c α g·d, which the textbook's test asks for",
+      colour: "series3",
+      dash: [2, 3],
+    });
+  if (search.test === "slide")
+    curves.push({ key: "slide", label: "slide's line: accepted below it", meaning: "E + c g·d, as printed in the lecture", colour: "series4", dash: [2, 3] });
+  return curves;
+}

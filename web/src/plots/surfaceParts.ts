@@ -1,0 +1,166 @@
+// Geometry for the picture of a surface: triangles, grid lines and lines of equal height, in the box of `Frame`.
+import * as THREE from "three";
+import type { MaybeNumber } from "../protocol";
+import { viridis } from "./colourMap";
+import { heightOf, type Grid, type Range, type Scale } from "./grid";
+
+// x to the right, y away from the reader, values up; the longer side of the plane is 2 long.
+export class Frame {
+  readonly width: number;
+  readonly depth: number;
+  readonly tall = 0.95;
+  readonly height: (value: number) => number; // in [0, 1]
+  readonly shade: (value: number) => number; // colour, in [0, 1]
+
+  constructor(
+    readonly grid: Grid,
+    readonly range: Range,
+    readonly scale: Scale,
+  ) {
+    const [dx, dy] = [span(grid.x), span(grid.y)];
+    const ratio = Math.min(1.6, Math.max(1 / 1.6, dx / dy)); // a narrow strip would not show
+    this.width = ratio >= 1 ? 2 : 2 * ratio;
+    this.depth = ratio >= 1 ? 2 / ratio : 2;
+    this.height = heightOf(range, scale);
+    this.shade = this.height;
+  }
+
+  place(x: number, y: number, value: number, lift = 0): THREE.Vector3 {
+    const h = Math.min(1.5, Math.max(-0.5, this.height(value)));
+    return new THREE.Vector3(this.across(x), h * this.tall + lift, this.away(y));
+  }
+
+  across(x: number): number {
+    return ((x - this.grid.x[0]!) / span(this.grid.x) - 0.5) * this.width;
+  }
+
+  away(y: number): number {
+    return -((y - this.grid.y[0]!) / span(this.grid.y) - 0.5) * this.depth;
+  }
+
+  // Back from a place in the picture.
+  at(place: THREE.Vector3): { x: number; y: number } {
+    return {
+      x: this.grid.x[0]! + (place.x / this.width + 0.5) * span(this.grid.x),
+      y: this.grid.y[0]! + (-place.z / this.depth + 0.5) * span(this.grid.y),
+    };
+  }
+}
+
+function span(axis: readonly number[]): number {
+  return axis[axis.length - 1]! - axis[0]! || 1;
+}
+
+// Cells with a corner that is not finite are holes.
+export function surfaceGeometry(frame: Frame, values: readonly MaybeNumber[], coloured: boolean): THREE.BufferGeometry {
+  const { x, y } = frame.grid;
+  const positions = new Float32Array(3 * x.length * y.length);
+  const colours = new Float32Array(coloured ? positions.length : 0);
+  const colour = new THREE.Color();
+  values.forEach((value, k) => {
+    const place = frame.place(x[k % x.length]!, y[Math.floor(k / x.length)]!, value ?? frame.range.low);
+    place.toArray(positions, 3 * k);
+    if (coloured) colour.setRGB(...viridis(frame.shade(value ?? frame.range.low)), THREE.SRGBColorSpace).toArray(colours, 3 * k);
+  });
+  const index: number[] = [];
+  for (let j = 0; j + 1 < y.length; ++j)
+    for (let i = 0; i + 1 < x.length; ++i) {
+      const a = j * x.length + i;
+      const corners = [a, a + 1, a + x.length, a + x.length + 1];
+      if (corners.some((k) => values[k] === null || values[k] === undefined)) continue;
+      index.push(a, a + 1, a + x.length + 1, a, a + x.length + 1, a + x.length);
+    }
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
+  if (coloured) geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
+  geometry.setIndex(index);
+  geometry.computeVertexNormals();
+  return geometry;
+}
+
+// About `lines` of them in each direction.
+export function gridLines(frame: Frame, values: readonly MaybeNumber[], lines: number): THREE.BufferGeometry {
+  const { x, y } = frame.grid;
+  const points: number[] = [];
+  const add = (k: number, l: number): void => {
+    const [v, w] = [values[k], values[l]];
+    if (v === null || v === undefined || w === null || w === undefined) return;
+    for (const [n, value] of [[k, v], [l, w]] as const)
+      points.push(...frame.place(x[n % x.length]!, y[Math.floor(n / x.length)]!, value, 0.002).toArray());
+  };
+  const [everyX, everyY] = [Math.max(1, Math.round((x.length - 1) / lines)), Math.max(1, Math.round((y.length - 1) / lines))];
+  for (let j = 0; j < y.length; ++j)
+    for (let i = 0; i < x.length; ++i) {
+      const k = j * x.length + i;
+      if (i + 1 < x.length && (j % everyY === 0 || j === y.length - 1)) add(k, k + 1);
+      if (j + 1 < y.length && (i % everyX === 0 || i === x.length - 1)) add(k, k + x.length);
+    }
+  return lineGeometry(points);
+}
+
+// Lines of equal height on the surface, and in the plane below it: each triangle of a cell cut at every level.
+export function levelLines(frame: Frame, values: readonly MaybeNumber[], levels: readonly number[], flat: boolean): THREE.BufferGeometry {
+  const { x, y } = frame.grid;
+  const points: number[] = [];
+  const corner = (k: number): [number, number, number] => [x[k % x.length]!, y[Math.floor(k / x.length)]!, values[k] as number];
+  for (let j = 0; j + 1 < y.length; ++j)
+    for (let i = 0; i + 1 < x.length; ++i) {
+      const a = j * x.length + i;
+      for (const triangle of [[a, a + 1, a + x.length + 1], [a, a + x.length + 1, a + x.length]]) {
+        if (triangle.some((k) => values[k] === null || values[k] === undefined)) continue;
+        for (const level of levels) cut(triangle.map(corner), level, frame, flat, points);
+      }
+    }
+  return lineGeometry(points);
+}
+
+function cut(corners: [number, number, number][], level: number, frame: Frame, flat: boolean, points: number[]): void {
+  const ends: THREE.Vector3[] = [];
+  for (let k = 0; k < 3; ++k) {
+    const [p, q] = [corners[k]!, corners[(k + 1) % 3]!];
+    if (p[2] < level === q[2] < level) continue;
+    const f = (level - p[2]) / (q[2] - p[2]);
+    const [x, y] = [p[0] + f * (q[0] - p[0]), p[1] + f * (q[1] - p[1])];
+    ends.push(flat ? new THREE.Vector3(frame.across(x), -0.02, frame.away(y)) : frame.place(x, y, level, 0.003));
+  }
+  if (ends.length === 2) for (const end of ends) points.push(end.x, end.y, end.z);
+}
+
+export function lineGeometry(points: number[]): THREE.BufferGeometry {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
+  return geometry;
+}
+
+export type MarkShape = "dot" | "ring" | "diamond" | "cross";
+
+const marks = new Map<string, THREE.Texture>();
+
+// A small picture of the mark, light on the outside so that it stands off from any surface.
+export function markTexture(shape: MarkShape, colour: string, halo: string): THREE.Texture {
+  const key = `${shape} ${colour} ${halo}`;
+  const known = marks.get(key);
+  if (known) return known;
+  const canvas = document.createElement("canvas");
+  canvas.width = canvas.height = 64;
+  const pen = canvas.getContext("2d")!;
+  for (const [style, width] of [[halo, 22], [colour, 10]] as const) {
+    pen.strokeStyle = pen.fillStyle = style;
+    pen.lineWidth = width;
+    pen.beginPath();
+    if (shape === "cross") {
+      for (const [x0, y0, x1, y1] of [[16, 16, 48, 48], [16, 48, 48, 16]] as const) {
+        pen.moveTo(x0, y0);
+        pen.lineTo(x1, y1);
+      }
+    } else if (shape === "diamond") {
+      for (const [x, y] of [[32, 12], [52, 32], [32, 52], [12, 32], [32, 12], [52, 32]] as const) pen.lineTo(x, y);
+    } else pen.arc(32, 32, shape === "ring" ? 18 : 16, 0, 2 * Math.PI);
+    pen.stroke();
+    if ((shape === "dot" || shape === "diamond") && style === colour) pen.fill();
+  }
+  const texture = new THREE.CanvasTexture(canvas);
+  texture.colorSpace = THREE.SRGBColorSpace;
+  marks.set(key, texture);
+  return texture;
+}

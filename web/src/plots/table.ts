@@ -1,0 +1,81 @@
+// Columns over a common x: merged, cut to a window, and thinned to what a screen can show. Every curve keeps its extremes.
+import type { MaybeNumber } from "../protocol";
+
+export interface Table {
+  x: number[]; // ascending
+  columns: MaybeNumber[][];
+}
+
+// The first index whose x is not below `value`.
+export function lowerBound(x: readonly number[], value: number): number {
+  let [low, high] = [0, x.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (x[middle]! < value) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+export function nearest(x: readonly number[], value: number): number {
+  const above = lowerBound(x, value);
+  if (above === 0) return 0;
+  if (above === x.length) return x.length - 1;
+  return value - x[above - 1]! <= x[above]! - value ? above - 1 : above;
+}
+
+// Rows from `from` to before `to`, at most two per bucket: there every column has its smallest and its largest value,
+// in the order in which they came.
+export function thinned(table: Table, from: number, to: number, buckets: number): Table {
+  const { x, columns } = table;
+  if (to - from <= 2 * buckets) return { x: x.slice(from, to), columns: columns.map((c) => c.slice(from, to)) };
+  const out: Table = { x: [], columns: columns.map(() => []) };
+  const [first, last] = [x[from]!, x[to - 1]!];
+  const width = (last - first) / buckets || 1;
+  for (let begin = from; begin < to; ) {
+    const bucket = Math.min(buckets - 1, Math.floor((x[begin]! - first) / width));
+    let end = begin + 1;
+    while (end < to && Math.min(buckets - 1, Math.floor((x[end]! - first) / width)) === bucket) ++end;
+    addExtremes(table, begin, end, out);
+    begin = end;
+  }
+  return out;
+}
+
+function addExtremes({ x, columns }: Table, begin: number, end: number, out: Table): void {
+  const single = end === begin + 1;
+  out.x.push(x[begin]!);
+  if (!single) out.x.push(x[end - 1]!);
+  columns.forEach((column, c) => {
+    let [low, high] = [-1, -1];
+    for (let i = begin; i < end; ++i) {
+      const value = column[i]!;
+      if (value === null) continue;
+      if (low < 0 || value < column[low]!) low = i;
+      if (high < 0 || value > column[high]!) high = i;
+    }
+    const at = (i: number): MaybeNumber => (i < 0 ? null : column[i]!);
+    if (single) out.columns[c]!.push(at(low));
+    else out.columns[c]!.push(at(Math.min(low, high)), at(Math.max(low, high)));
+  });
+}
+
+// Both tables over the union of their x, with null where a table has no row.
+export function merged(a: Table, b: Table): Table {
+  const out: Table = { x: [], columns: [...a.columns, ...b.columns].map(() => []) };
+  for (let i = 0, j = 0; i < a.x.length || j < b.x.length; ) {
+    const x = Math.min(a.x[i] ?? Infinity, b.x[j] ?? Infinity);
+    const [inA, inB] = [a.x[i] === x, b.x[j] === x];
+    out.x.push(x);
+    a.columns.forEach((column, c) => out.columns[c]!.push(inA ? column[i]! : null));
+    b.columns.forEach((column, c) => out.columns[a.columns.length + c]!.push(inB ? column[j]! : null));
+    if (inA) ++i;
+    if (inB) ++j;
+  }
+  return out;
+}
+
+// For a logarithmic axis: what is zero has no place there.
+export function magnitude(value: MaybeNumber): MaybeNumber {
+  return value === null || value === 0 ? null : Math.abs(value);
+}

@@ -1,0 +1,76 @@
+// How a minimisation went, in sentences that say no more than its numbers do.
+import type { IterationRow, MaybeNumber, StepRow } from "../protocol";
+import { plural, short, withUnit } from "./numbers";
+
+export type Pace = "squaring" | "faster" | "steady" | "none";
+
+// How the gradient's norm fell from iteration to iteration.
+export function pace(norms: readonly MaybeNumber[]): { pace: Pace; factor: number } {
+  const known = norms.filter((n): n is number => n !== null && n > 0);
+  const falls = known.slice(1).map((norm, i) => Math.log(known[i]! / norm));
+  const none = { pace: "none" as const, factor: 1 };
+  if (falls.length < 2 || known[known.length - 1]! >= known[0]!) return none;
+  const [before, last] = falls.slice(-2) as [number, number];
+  const mean = falls.reduce((sum, fall) => sum + fall, 0) / falls.length;
+  // |g| -> C |g|^p: two falls in a row tell p. Below a factor of 3 they tell nothing.
+  if (before > Math.log(3) && last / before >= 1.7) return { pace: "squaring", factor: Math.exp(last) };
+  if (falls.length >= 3) {
+    const late = falls.slice(-Math.max(3, Math.floor(falls.length / 2)));
+    const spread = Math.max(...late) - Math.min(...late);
+    const lateMean = late.reduce((sum, fall) => sum + fall, 0) / late.length;
+    if (lateMean > 0 && Math.min(...late) > 0 && spread <= 0.7 * lateMean) return { pace: "steady", factor: Math.exp(lateMean) };
+  }
+  if (before > 0 && last > 1.2 * before) return { pace: "faster", factor: Math.exp(last) };
+  return mean > 0 ? { pace: "steady", factor: Math.exp(mean) } : none;
+}
+
+function paceText(rows: readonly IterationRow[]): string {
+  const found = pace(rows.map((row) => row.gradient_norm));
+  const factor = short(found.factor, found.factor < 2 ? 3 : 2);
+  switch (found.pace) {
+    case "squaring":
+      return ` The gradient fell ever faster, the last time by a factor of ${factor}: close to the minimum each iteration about squares the error.`;
+    case "faster":
+      return ` The gradient fell faster from one iteration to the next, the last time by a factor of ${factor}.`;
+    case "steady":
+      return ` Each iteration divided the gradient by about ${factor}.`;
+    case "none":
+      return "";
+  }
+}
+
+function residualText(row: StepRow): string {
+  if (row.residual === null || row.threshold === null) return "";
+  return `the residual, ${withUnit(row.residual, "N", 3)}, is ${row.residual <= row.threshold ? "below" : "above"} the threshold of ${withUnit(row.threshold, "N", 3)}`;
+}
+
+function shortened(rows: readonly IterationRow[]): string {
+  const less = rows.filter((row) => row.trials.filter((trial) => !trial.accepted).length > 0).length;
+  return less > 0 ? ` In ${plural(less, "iteration")} the line search rejected the first trial and went less far.` : "";
+}
+
+export function stepText(row: StepRow, implicit: boolean): string {
+  if (row.words) return `${capital(row.words.cause)}${row.words.place ? ` ${capital(row.words.place)}` : ""}${row.words.remedy ? ` ${capital(row.words.remedy)}` : ""}`;
+  if (!implicit) return "Nothing is minimised: this scheme computes the next positions from the forces at hand.";
+  const count = plural(row.iterations.length, "iteration");
+  if (!row.success) return `Not converged (${row.status.replaceAll("_", " ")}) after ${count}${residualText(row) ? `: ${residualText(row)}` : ""}.`;
+  if (row.iterations.length === 0) return `Converged at once: ${residualText(row) || "the guess was good enough"}.`;
+  if (row.status === "round_off") return `As good as double precision allows, after ${count}: the energy no longer changes by more than round-off.`;
+  return `Converged in ${count}: ${residualText(row) || "the criterion is met"}.${paceText(row.iterations)}${shortened(row.iterations)}`;
+}
+
+function capital(text: string): string {
+  const trimmed = text.trim();
+  return trimmed === "" ? "" : trimmed[0]!.toUpperCase() + trimmed.slice(1) + (/[.!?]$/.test(trimmed) ? "" : ".");
+}
+
+export function totalSeconds(row: IterationRow): number {
+  return Object.values(row.seconds).reduce((sum, seconds) => sum + seconds, 0);
+}
+
+// E of the iterates above the lowest of them, which has no place on a logarithmic axis.
+export function aboveLowest(values: readonly MaybeNumber[]): MaybeNumber[] {
+  const known = values.filter((v): v is number => v !== null);
+  const lowest = known.reduce((low, v) => Math.min(low, v), Infinity);
+  return values.map((v) => (v === null || v <= lowest ? null : v - lowest));
+}

@@ -1,0 +1,79 @@
+// Comparisons worth a click: what differs in side b, from the scene of side a.
+import type { Scene, Setting, SettingValue } from "./protocol";
+
+export interface Preset {
+  title: string;
+  label: string; // of side b
+  overrides: string[]; // as after --set
+}
+
+export function toml(value: SettingValue): string {
+  if (typeof value === "string") return JSON.stringify(value);
+  if (Array.isArray(value)) return `[${value.map(toml).join(", ")}]`;
+  return String(value);
+}
+
+function find(scene: Scene, key: string): Setting | undefined {
+  return scene.settings.find((setting) => setting.key === key || setting.key.endsWith(`.${key}`));
+}
+
+// The other one of two values: what side a does not have.
+function other(scene: Scene, key: string, first: string, second: string): string {
+  return find(scene, key)?.value === first ? second : first;
+}
+
+const kWords: Record<string, string> = {
+  symplectic_euler: "explicit: symplectic Euler",
+  backward_euler: "implicit: backward Euler",
+  gradient_descent: "gradient descent",
+  newton: "Newton's method",
+  none: "without line search",
+  textbook: "with line search",
+  corotated: "corotated",
+  neo_hookean: "neo-Hookean",
+  exact: "exact Hessian",
+  clamped: "clamped Hessian",
+};
+
+function choice(scene: Scene, title: string, key: string, first: string, second: string): Preset {
+  const value = other(scene, key, first, second);
+  return { title, label: kWords[value] ?? value, overrides: [`${key}=${toml(value)}`] };
+}
+
+export function presets(scene: Scene): Preset[] {
+  const explicit = scene.implicit ? "symplectic_euler" : "backward_euler";
+  const all: Preset[] = [
+    { title: "Explicit or implicit", label: kWords[explicit], overrides: [`time.integrator=${toml(explicit)}`] },
+  ];
+  if (scene.implicit) {
+    all.push(
+      choice(scene, "Gradient descent or Newton", "solver.method", "gradient_descent", "newton"),
+      choice(scene, "With or without line search", "solver.line_search.test", "none", "textbook"),
+      choice(scene, "Exact or clamped Hessian", "solver.definiteness", "exact", "clamped"),
+    );
+  }
+  all.push({ title: "Half the time step", label: "h / 2", overrides: [`time.step=${toml(scene.h / 2)}`] });
+  const young = find(scene, "material.young")?.value;
+  if (typeof young === "number") {
+    all.push({ title: "Ten times as stiff", label: "10 E", overrides: [`material.young=${toml(10 * young)}`] });
+  } else if (typeof young === "string") {
+    all.push({ title: "Ten times as stiff", label: "10 E", overrides: [`material.young=${toml(`10 * (${young})`)}`] });
+  }
+  all.push(choice(scene, "Another material", "material.model", "corotated", "neo_hookean"));
+  return all;
+}
+
+// One per line; empty lines do not count.
+export function parseOverrides(text: string): string[] {
+  return text
+    .split("\n")
+    .map((line) => line.trim())
+    .filter((line) => line !== "");
+}
+
+// Which line is not KEY=VALUE, in words; "" when all are.
+export function faultOfOverrides(overrides: string[]): string {
+  const wrong = overrides.find((line) => !/^[\w.-]+\s*=\s*\S/.test(line));
+  if (wrong !== undefined) return `'${wrong}' is not KEY=VALUE, such as material.young=1e6`;
+  return overrides.length === 0 ? "Nothing differs: choose a comparison, or write KEY=VALUE, one per line." : "";
+}

@@ -1,0 +1,274 @@
+// A recorded run inside the page as a source of messages: it plays, pauses and rewinds; nothing in it can be changed.
+import type { Command, Picture, Query, State, TextReply, Vec3, VertexReply } from "./protocol";
+import { carried, normalsOf, type RecordedSurface, type Recording, unpack } from "./recording";
+import type { Incoming, Source } from "./source";
+
+// Who tells the time and calls back once per picture of the screen; tests have their own.
+export interface Pulse {
+  now(): number; // [ms]
+  next(callback: () => void): void;
+}
+const kScreen: Pulse = { now: () => performance.now(), next: (callback) => requestAnimationFrame(callback) };
+
+const kUnchangeable = "a recorded run cannot be changed; aspic view SCENE runs it live";
+const kNotRecorded = "a recorded run does not hold this; aspic view SCENE computes it live";
+
+// The page's recording; null: the page belongs to a program.
+export function findRecording(): string | null {
+  const element = document.getElementById("recording");
+  return element ? (JSON.parse(element.textContent ?? "") as string) : null;
+}
+
+export class RecordedSource implements Source {
+  readonly live = false;
+  private receive: (incoming: Incoming) => void = () => {};
+  private recording: Recording | null = null;
+  private shown = 0; // of the surfaces
+  private field = "";
+  private frame = 0;
+  private time = 0; // of the playback, between frames [s]
+  private playing = false;
+  private speed = 1;
+  private lastPulse = 0; // [ms]
+  private drawing = false; // the picture that was sent last
+  private waiting = false; // a newer one
+
+  constructor(
+    private readonly text: string,
+    private readonly pulse: Pulse = kScreen,
+  ) {}
+
+  start(receive: (incoming: Incoming) => void): void {
+    this.receive = receive;
+    unpack(this.text).then(
+      (recording) => this.greet(recording),
+      (error: unknown) =>
+        this.refuse(`the recording in this page is damaged (${String(error)}); make it again with aspic report`),
+    );
+  }
+
+  send(command: Command): void {
+    this.request(command).catch((error: Error) => this.refuse(error.message));
+  }
+
+  async request(command: Command): Promise<unknown> {
+    const recording = this.opened();
+    switch (command.do) {
+      case "play":
+        if (this.frame === recording.frameCount - 1) this.show(0);
+        return this.play(true);
+      case "pause":
+        return this.play(false);
+      case "step":
+        this.play(false);
+        return this.show(Math.min(this.frame + 1, recording.frameCount - 1));
+      case "reset":
+        this.play(false);
+        return this.show(0);
+      case "rewind":
+        return this.show(recording.nearestFrame(command.step));
+      case "speed":
+        if (!(command.value > 0 && command.value < Infinity)) throw new Error("speed: a number above 0 is expected");
+        this.speed = command.value;
+        return this.tellState();
+      case "colour":
+        return this.colour(command.field);
+      case "surface":
+        return this.showSurface(command.which);
+      case "iterate":
+        throw new Error(kNotRecorded);
+      case "take":
+        return undefined; // every page has its own recording
+      default:
+        throw new Error(kUnchangeable);
+    }
+  }
+
+  async ask<Reply>(query: Query): Promise<Reply> {
+    const recording = this.opened();
+    if (query.ask === "scene") {
+      const reply: TextReply = { name: "scene.toml", text: recording.head.toml };
+      return reply as Reply;
+    }
+    if (query.ask === "vertex") return this.vertex(query.vertex) as Reply;
+    if (query.ask === "tet") throw new Error("a recorded run holds the surface only; aspic view SCENE shows tets live");
+    if (query.ask === "mesh") throw new Error("the meshes of a run are the files in its folder frames/");
+    throw new Error(kNotRecorded);
+  }
+
+  ready(): void {
+    this.drawing = false;
+    if (this.waiting) this.sendPicture();
+  }
+
+  private opened(): Recording {
+    if (!this.recording) throw new Error("the recording is not read yet");
+    return this.recording;
+  }
+
+  private get surface(): RecordedSurface {
+    return this.opened().surfaces[this.shown];
+  }
+
+  private refuse(why: string): void {
+    this.receive({ message: { kind: "refused", id: null, why } });
+  }
+
+  private greet(recording: Recording): void {
+    this.recording = recording;
+    this.receive({ connected: true });
+    this.receive({ message: recording.head.hello });
+    this.sendSurface();
+    this.receive({ message: { kind: "steps", side: "a", from: 0, steps: recording.head.steps } });
+    this.show(0);
+  }
+
+  private sendSurface(): void {
+    const { scene, geometry } = this.surface;
+    this.receive({ message: { ...scene, field: this.field } });
+    this.receive({ geometry });
+    const vertices = [...geometry.vertex.keys()].filter((vertex) => this.isPinned(vertex));
+    this.receive({ message: { kind: "pins", side: "a", vertices } });
+  }
+
+  private isPinned(vertex: number): boolean {
+    const { corners, weights } = this.surface;
+    return !weights && this.opened().bytes("point.pinned")[corners[vertex]] === 1;
+  }
+
+  private play(playing: boolean): void {
+    this.playing = playing;
+    this.lastPulse = this.pulse.now();
+    this.tellState();
+    if (playing) this.pulse.next(() => this.onPulse());
+  }
+
+  private onPulse(): void {
+    if (!this.playing) return;
+    const recording = this.opened();
+    const { time } = recording.head.frames;
+    const now = this.pulse.now();
+    const last = time.length - 1;
+    this.time = Math.min(this.time + (this.speed * Math.max(0, now - this.lastPulse)) / 1000, time[last]);
+    this.lastPulse = now;
+    let frame = this.frame;
+    while (frame < last && time[frame + 1] <= this.time) ++frame;
+    this.playing = frame < last;
+    if (frame !== this.frame) {
+      this.frame = frame;
+      this.sendPicture();
+    }
+    this.tellState();
+    if (this.playing) this.pulse.next(() => this.onPulse());
+  }
+
+  private show(frame: number): void {
+    this.frame = frame;
+    this.time = this.opened().head.frames.time[frame];
+    this.sendPicture();
+    this.tellState();
+  }
+
+  private colour(field: string): void {
+    if (field !== "" && !this.surface.scene.fields.some(({ name }) => name === field))
+      throw new Error(`the recording has no field '${field}'`);
+    this.field = field;
+    this.receive({ message: { ...this.surface.scene, field } });
+    this.sendPicture();
+  }
+
+  private showSurface(which: "skin" | "cage"): void {
+    const index = this.opened().surfaces.findIndex(({ scene }) => scene.surface === which);
+    if (index < 0) throw new Error(`the recording has no ${which}`);
+    if (index === this.shown) return;
+    this.shown = index;
+    this.sendSurface();
+    this.sendPicture();
+  }
+
+  private sendPicture(): void {
+    this.waiting = this.drawing;
+    if (this.drawing) return;
+    this.drawing = true;
+    this.receive({ picture: this.picture() });
+  }
+
+  private picture(): Picture {
+    const recording = this.opened();
+    const { geometry, scene } = this.surface;
+    const { step, time } = recording.head.frames;
+    const positions = carried(this.surface, recording.positions(this.frame));
+    const values = this.field === "" ? null : recording.values(this.field, this.frame, this.surface, positions);
+    const finite = (values ?? new Float32Array(0)).filter((value) => Number.isFinite(value));
+    return {
+      side: "a",
+      generation: scene.generation,
+      step: step[this.frame],
+      iteration: -1,
+      time: time[this.frame],
+      positions,
+      normals: normalsOf(positions, geometry.triangles),
+      values,
+      min: finite.reduce((a, b) => Math.min(a, b), finite[0] ?? 0),
+      max: finite.reduce((a, b) => Math.max(a, b), finite[0] ?? 0),
+    };
+  }
+
+  private tellState(): void {
+    const { frames, steps } = this.opened().head;
+    const step = frames.step[this.frame];
+    const row = step > 0 ? steps[step - 1] : undefined;
+    const state: State = {
+      kind: "state",
+      playing: this.playing,
+      speed: this.speed,
+      rate: this.playing ? this.speed : 0,
+      replaying: false,
+      a: {
+        step,
+        time: frames.time[this.frame],
+        iteration: -1,
+        timeline: { first: frames.step[0], last: frames.step[frames.step.length - 1] },
+        status: row?.status ?? "",
+        words: row?.words ?? null,
+        grab: null,
+      },
+      b: null,
+    };
+    this.receive({ message: state });
+  }
+
+  private vertex(vertex: number): VertexReply {
+    const recording = this.opened();
+    const { geometry, corners, weights, scene } = this.surface;
+    if (!(vertex in geometry.vertex)) throw new Error(`there is no vertex ${vertex}`);
+    const positions = carried(this.surface, recording.positions(this.frame));
+    const at = (x: Float32Array): Vec3 => [x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]];
+    const user = geometry.vertex[vertex];
+    const isFine = user === 0xffffffff;
+    const values: VertexReply["values"] = {};
+    for (const { name } of scene.fields) {
+      const value = recording.values(name, this.frame, this.surface, positions)[vertex];
+      values[name] = Number.isFinite(value) ? value : null;
+    }
+    return {
+      vertex: isFine ? -1 : user,
+      first_entry: isFine ? -1 : 3 * user,
+      rest: at(geometry.rest),
+      position: at(positions),
+      velocity: this.velocity(at),
+      mass: weights ? 0 : recording.floats("point.mass")[corners[vertex]],
+      pinned: this.isPinned(vertex),
+      values,
+    };
+  }
+
+  // The mean since the frame before: what backward Euler calls the velocity where every step has a frame.
+  private velocity(at: (x: Float32Array) => Vec3): Vec3 {
+    if (this.frame === 0) return [0, 0, 0];
+    const recording = this.opened();
+    const { time } = recording.head.frames;
+    const [before, now] = [this.frame - 1, this.frame].map((frame) => at(carried(this.surface, recording.positions(frame))));
+    return now.map((x, axis) => (x - before[axis]) / (time[this.frame] - time[this.frame - 1])) as Vec3;
+  }
+}

@@ -1,0 +1,208 @@
+// What a recorded run holds and how it is packed: apps/viewer/recording.h writes it. The text of the page's element
+// "recording" is base64 of gzip of: u32 length of the JSON, the JSON, zeros up to a multiple of 4, the arrays it lists.
+// All numbers little-endian.
+import type { Geometry, Hello, Scene, StepRow, Vec3 } from "./protocol";
+
+export interface RecordingHead {
+  format: 1;
+  hello: Hello;
+  scenes: Scene[]; // one for each surface that can be shown; the first is shown first
+  toml: string; // the whole scene
+  steps: StepRow[];
+  frames: { step: number[]; time: number[] };
+  lower: Vec3; // box of all positions of all frames
+  size: Vec3;
+  arrays: { name: string; type: keyof typeof kTypes; at: number; count: number }[];
+}
+
+const kTypes = { u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, f32: Float32Array };
+type Numbers = Uint8Array | Uint16Array | Uint32Array | Float32Array;
+
+// A surface over the recorded points: each of its vertices is one of them, or a weighted mean of four. Values belong to
+// places, which vertices share.
+export interface RecordedSurface {
+  scene: Scene;
+  geometry: Geometry;
+  corners: Uint32Array;
+  weights: Float32Array | null; // null: one corner per vertex
+  place: Uint32Array;
+}
+
+export async function unpack(text: string): Promise<Recording> {
+  const packed = Uint8Array.from(atob(text.trim()), (character) => character.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Recording(await new Response(stream).arrayBuffer());
+}
+
+// Values of one moment lie between 0 and 254, of a range that belongs to it; 255 is no number.
+const kNoNumber = 255;
+
+export class Recording {
+  readonly head: RecordingHead;
+  readonly surfaces: RecordedSurface[];
+  readonly pointCount: number;
+  private readonly arrays = new Map<string, Numbers>();
+  private readonly codes: Uint16Array; // 3 per point and frame
+
+  constructor(bytes: ArrayBuffer) {
+    const length = new DataView(bytes).getUint32(0, true);
+    this.head = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length))) as RecordingHead;
+    if (this.head.format !== 1) throw new Error(`the recording has format ${String(this.head.format)}; this page reads 1`);
+    const start = Math.ceil((4 + length) / 4) * 4;
+    for (const { name, type, at, count } of this.head.arrays)
+      this.arrays.set(name, new kTypes[type](bytes, start + at, count));
+    this.pointCount = this.floats("point.rest").length / 3;
+    this.codes = unpredicted(this.array("positions") as Uint8Array, 3 * this.pointCount);
+    for (const [name, stored] of this.arrays) if (name.startsWith("field.") && stored instanceof Uint8Array) this.add(stored);
+    this.surfaces = this.head.scenes.map((scene) => this.surface(scene));
+  }
+
+  get frameCount(): number {
+    return this.head.frames.step.length;
+  }
+
+  nearestFrame(step: number): number {
+    const steps = this.head.frames.step;
+    let nearest = 0;
+    for (let frame = 1; frame < steps.length; ++frame)
+      if (Math.abs(steps[frame] - step) < Math.abs(steps[nearest] - step)) nearest = frame;
+    return nearest;
+  }
+
+  // 3 per point [m].
+  positions(frame: number): Float32Array {
+    const { lower, size } = this.head;
+    const n = 3 * this.pointCount;
+    const x = new Float32Array(n);
+    for (let i = 0; i < n; ++i) x[i] = lower[i % 3] + (size[i % 3] * this.codes[frame * n + i]) / 65535;
+    return x;
+  }
+
+  // Of a field at the vertices of a surface; NaN where there is none.
+  values(field: string, frame: number, surface: RecordedSurface, positions: Float32Array): Float32Array {
+    if (field === "displacement") return distances(positions, surface.geometry.rest);
+    const stored = this.array(`field.${field}`);
+    if (stored instanceof Float32Array) return Float32Array.from(surface.place, (place) => stored[place]);
+    const [min, max] = this.floats(`field.${field}.range`).subarray(2 * frame, 2 * frame + 2);
+    const first = (stored.length / this.frameCount) * frame;
+    return Float32Array.from(surface.place, (place) => {
+      const code = stored[first + place];
+      return code === kNoNumber ? NaN : min + ((max - min) * code) / 254;
+    });
+  }
+
+  floats(name: string): Float32Array {
+    return this.array(name) as Float32Array;
+  }
+
+  indices(name: string): Uint32Array {
+    return this.array(name) as Uint32Array;
+  }
+
+  bytes(name: string): Uint8Array {
+    return this.array(name) as Uint8Array;
+  }
+
+  private array(name: string): Numbers {
+    const found = this.arrays.get(name);
+    if (!found) throw new Error(`the recording has no '${name}'`);
+    return found;
+  }
+
+  // Each frame is stored as its difference to the one before, modulo 256.
+  private add(values: Uint8Array): void {
+    const n = values.length / this.frameCount;
+    for (let i = n; i < values.length; ++i) values[i] += values[i - n];
+  }
+
+  private surface(scene: Scene): RecordedSurface {
+    const part = scene.surface;
+    const triangles = this.indices(`${part}.triangles`);
+    const weights = this.arrays.has(`${part}.weights`) ? this.floats(`${part}.weights`) : null;
+    return {
+      scene,
+      geometry: {
+        side: "a",
+        generation: scene.generation,
+        rest: this.floats(`${part}.rest`),
+        triangles,
+        edges: edgesOf(triangles),
+        tet: this.indices(`${part}.tet`),
+        vertex: this.indices(`${part}.vertex`),
+      },
+      corners: this.indices(`${part}.corners`),
+      weights,
+      place: this.arrays.has(`${part}.place`) ? this.indices(`${part}.place`) : new Uint32Array(0),
+    };
+  }
+}
+
+// The positions' codes. Stored is, frame by frame, by how much each differs from the straight line through the two
+// frames before: the low bytes of all, then the high bytes; small differences of either sign are small numbers.
+function unpredicted(bytes: Uint8Array, n: number): Uint16Array {
+  const codes = new Uint16Array(bytes.length / 2);
+  for (let frame = 0; frame * n < codes.length; ++frame) {
+    const here = frame * n;
+    for (let i = 0; i < n; ++i) {
+      const folded = bytes[2 * here + i] | (bytes[2 * here + n + i] << 8);
+      const difference = (folded >> 1) ^ -(folded & 1);
+      const before = frame > 0 ? codes[here - n + i] : 0;
+      const earlier = frame > 1 ? codes[here - 2 * n + i] : before;
+      codes[here + i] = 2 * before - earlier + difference; // modulo 65536
+    }
+  }
+  return codes;
+}
+
+function distances(a: Float32Array, b: Float32Array): Float32Array {
+  const result = new Float32Array(a.length / 3);
+  for (let i = 0; i < result.length; ++i)
+    result[i] = Math.hypot(a[3 * i] - b[3 * i], a[3 * i + 1] - b[3 * i + 1], a[3 * i + 2] - b[3 * i + 2]);
+  return result;
+}
+
+// Every edge of the triangles once.
+function edgesOf(triangles: Uint32Array): Uint32Array {
+  const seen = new Set<number>();
+  const edges: number[] = [];
+  for (let t = 0; t < triangles.length; t += 3) {
+    for (let k = 0; k < 3; ++k) {
+      const [a, b] = [triangles[t + k], triangles[t + ((k + 1) % 3)]];
+      const key = Math.min(a, b) * 0x4000000 + Math.max(a, b);
+      if (seen.has(key)) continue;
+      seen.add(key);
+      edges.push(a, b);
+    }
+  }
+  return Uint32Array.from(edges);
+}
+
+// The positions of the surface's vertices.
+export function carried(surface: RecordedSurface, points: Float32Array): Float32Array {
+  const { corners, weights, geometry } = surface;
+  const positions = new Float32Array(geometry.rest.length);
+  for (let i = 0; i < positions.length; ++i) {
+    const [vertex, axis] = [Math.floor(i / 3), i % 3];
+    if (weights) for (let c = 4 * vertex; c < 4 * vertex + 4; ++c) positions[i] += weights[c] * points[3 * corners[c] + axis];
+    else positions[i] = points[3 * corners[vertex] + axis];
+  }
+  return positions;
+}
+
+// Unit normals times 127, four numbers per vertex, weighted by the triangles' areas.
+export function normalsOf(positions: Float32Array, triangles: Uint32Array): Int8Array {
+  const sums = new Float64Array(positions.length);
+  for (let t = 0; t < triangles.length; t += 3) {
+    const [a, b, c] = [3 * triangles[t], 3 * triangles[t + 1], 3 * triangles[t + 2]];
+    const [ux, uy, uz] = [0, 1, 2].map((k) => positions[b + k] - positions[a + k]);
+    const [vx, vy, vz] = [0, 1, 2].map((k) => positions[c + k] - positions[a + k]);
+    const normal = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+    for (const corner of [a, b, c]) for (let k = 0; k < 3; ++k) sums[corner + k] += normal[k];
+  }
+  const normals = new Int8Array((positions.length / 3) * 4);
+  for (let i = 0; 3 * i < sums.length; ++i) {
+    const length = Math.hypot(sums[3 * i], sums[3 * i + 1], sums[3 * i + 2]) || 1;
+    for (let k = 0; k < 3; ++k) normals[4 * i + k] = Math.round((127 * sums[3 * i + k]) / length);
+  }
+  return normals;
+}

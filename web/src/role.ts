@@ -1,0 +1,20 @@
+// One page steers, the others watch; any of them may take the steering.
+import { button, element } from "./dom";
+import type { Store } from "./store";
+
+export function makeRole(store: Store): HTMLElement {
+  const steer = button({ text: "Steer", title: "This page takes the steering from the other one" }, () =>
+    store.source.send({ do: "take" }),
+  );
+  const role = element("div", { class: "group role", hidden: true }, element("strong", {}, "Watching"), steer);
+  const show = (): void => {
+    const may = store.steers && store.connected;
+    role.hidden = store.steers || !store.source.live || !store.hello;
+    for (const control of document.querySelectorAll<HTMLButtonElement>("[data-steers]")) {
+      control.disabled = store.source.live && !may;
+    }
+  };
+  store.on("role", show);
+  store.on("connected", show);
+  return role;
+}

@@ -1,0 +1,43 @@
+// The steps that the program still holds, as a slider: dragging it rewinds.
+import { element, messageOf } from "./dom";
+import { Newest } from "./newest";
+import type { Page } from "./page";
+import type { State } from "./protocol";
+import type { Store } from "./store";
+
+export function placeText(state: State): string {
+  const { step, time, iteration } = state.a;
+  const within = iteration < 0 ? "" : `, iteration ${iteration}`;
+  return `step ${step}${within}, ${time.toFixed(3)} s`;
+}
+
+export function makeTimeline(store: Store, page: Page): HTMLElement {
+  const slider = element("input", {
+    type: "range",
+    "aria-label": "Timeline: rewinds to a step",
+    title: "Rewinds to a step (Left and Right while it has the focus)",
+    "data-steers": store.source.live,
+    step: "1",
+  });
+  const place = element("span", { class: "place" });
+  const ends = element("span", { class: "faint ends" });
+  const rewind = new Newest<number>(
+    (step) => store.source.request({ do: "rewind", step }),
+    (reason) => page.notice(messageOf(reason), "error"),
+  );
+  let held = false;
+  slider.addEventListener("pointerdown", () => (held = true));
+  for (const end of ["pointerup", "pointercancel", "blur"]) slider.addEventListener(end, () => (held = false));
+  slider.addEventListener("input", () => rewind.push(Number(slider.value)));
+
+  store.on("state", (state) => {
+    const { first, last } = state.a.timeline;
+    place.textContent = placeText(state);
+    ends.textContent = `${first} to ${last}`;
+    slider.min = String(first);
+    slider.max = String(last);
+    if (!held && !rewind.busy) slider.value = String(state.a.step);
+    slider.setAttribute("aria-valuetext", placeText(state));
+  });
+  return element("div", { class: "timeline" }, slider, place, ends);
+}

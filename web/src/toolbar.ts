@@ -1,0 +1,122 @@
+// What is always at hand: the simulation's time, and the doors to everything else.
+import { button, element } from "./dom";
+import type { Page } from "./page";
+import type { SideState } from "./protocol";
+import { openShortcutList, shortcutButton } from "./shortcuts";
+import type { Store } from "./store";
+import type { Theme } from "./theme";
+import { makeTimeline, placeText } from "./timeline";
+
+const kSpeeds = [0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10];
+
+export function makeToolbar(root: HTMLElement, store: Store, page: Page, theme: Theme, tools: HTMLElement[]): void {
+  root.append(
+    makeTransport(store, page),
+    makeTimeline(store, page),
+    makeStatus(store),
+    element("div", { class: "group" }, ...tools, ...makeReader(page, theme)),
+  );
+  store.on("state", (state) => {
+    const name = store.side("a")?.scene.name ?? "";
+    const title = `${name} · ${state.playing ? "playing" : `paused, ${placeText(state)}`} · Aspic`;
+    if (document.title !== title) document.title = title;
+  });
+}
+
+function makeTransport(store: Store, page: Page): HTMLElement {
+  const { source } = store;
+  const group = "Simulation";
+  const steers = source.live;
+  const toggle = (): void => source.send({ do: store.state?.playing ? "pause" : "play" });
+  const play = shortcutButton(
+    page,
+    { key: " ", does: "Play or pause", group, run: toggle },
+    { icon: "play", label: "Play", steers },
+  );
+  const pauseIcon = button({ icon: "pause" }, () => {}).firstElementChild as Element;
+  const playIcon = play.firstElementChild as Element;
+  store.on("state", ({ playing }) => {
+    play.replaceChildren(playing ? pauseIcon : playIcon);
+    play.setAttribute("aria-label", playing ? "Pause" : "Play");
+    play.setAttribute("aria-pressed", String(playing));
+  });
+  const step = shortcutButton(
+    page,
+    { key: "s", does: "One time step", group, run: () => source.send({ do: "step" }) },
+    { icon: "step", label: "Step", steers },
+  );
+  const iterate = shortcutButton(
+    page,
+    { key: "i", does: "One iteration of the minimiser", group, run: () => source.send({ do: "iterate" }) },
+    { icon: "iterate", text: "1 iteration", steers },
+  );
+  iterate.hidden = !source.live;
+  const reset = shortcutButton(
+    page,
+    { key: "r", does: "Back to the start", group, run: () => source.send({ do: "reset" }) },
+    { icon: "reset", label: "Reset", steers },
+  );
+  return element("div", { class: "group" }, reset, play, step, iterate, makeSpeed(store));
+}
+
+function makeSpeed(store: Store): HTMLElement {
+  const select = element("select", {
+    "aria-label": "Speed",
+    title: "Simulated seconds per second that playing aims at",
+    "data-steers": store.source.live,
+  });
+  const offer = (speed: number): void => {
+    const speeds = kSpeeds.includes(speed) ? kSpeeds : [...kSpeeds, speed].sort((x, y) => x - y);
+    select.replaceChildren(...speeds.map((value) => element("option", { value: String(value) }, `${value}x`)));
+    select.value = String(speed);
+  };
+  offer(1);
+  select.addEventListener("change", () => store.source.send({ do: "speed", value: Number(select.value) }));
+  store.on("state", ({ speed }) => {
+    if (select.value !== String(speed)) offer(speed);
+  });
+  return select;
+}
+
+// How the last step ended, in a word, and the rest of it where the mouse or the focus asks.
+function makeStatus(store: Store): HTMLElement {
+  const rate = element("span", { class: "rate faint", title: "Simulated seconds per second of wall time, measured" });
+  const chips = { a: makeChip(), b: makeChip() };
+  store.on("state", (state) => {
+    rate.textContent = state.rate > 0 ? `${Number(state.rate.toPrecision(2))}x real time` : "";
+    showChip(chips.a, state.a, state.b ? "A: " : "");
+    showChip(chips.b, state.b, "B: ");
+  });
+  return element("div", { class: "group status" }, chips.a, chips.b, rate);
+}
+
+function makeChip(): HTMLButtonElement {
+  return element("button", { type: "button", class: "chip", hidden: true });
+}
+
+function showChip(chip: HTMLButtonElement, side: SideState | null, before: string): void {
+  chip.hidden = !side || side.status === "";
+  if (!side) return;
+  const words = side.words;
+  const text = `${before}${side.status}`;
+  const tip = words ? `${words.cause}\n${words.place}\n${words.remedy}` : "The last step converged.";
+  if (chip.dataset.tip === tip && chip.textContent === text) return;
+  chip.textContent = text;
+  chip.dataset.tip = tip;
+  chip.setAttribute("aria-label", `Last step: ${text}. ${tip}`);
+  chip.classList.toggle("bad", words !== null);
+}
+
+function makeReader(page: Page, theme: Theme): HTMLElement[] {
+  const help = shortcutButton(
+    page,
+    { key: "?", does: "Keyboard shortcuts", group: "Panels", run: () => openShortcutList(page) },
+    { text: "?", label: "Keyboard shortcuts" },
+  );
+  return [
+    button({ text: "A-", label: "Smaller letters", title: "Smaller letters (<)" }, () => theme.scale(-1)),
+    button({ text: "A+", label: "Larger letters", title: "Larger letters (>)" }, () => theme.scale(1)),
+    button({ icon: "theme", label: "Light or dark", title: "Light or dark (T)" }, () => theme.toggle()),
+    help,
+  ];
+}

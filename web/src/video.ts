@@ -1,0 +1,139 @@
+// Pictures and videos of the views, as they are on the screen.
+import { button, element, messageOf, saveFile } from "./dom";
+import type { Page } from "./page";
+import { shortcutButton } from "./shortcuts";
+import type { Store } from "./store";
+
+export interface Layers {
+  canvases: HTMLCanvasElement[]; // of one view, the lowest first
+  label: string; // "" for none
+}
+export type DrawViews = () => Layers[];
+
+const kFramesPerSecond = 30;
+const kBitsPerSecond = 8_000_000;
+const kTypes = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
+
+export function fileName(name: string, extension: string): string {
+  const plain = name.replace(/[^\w.-]+/g, "_").replace(/^[_.]+|_+$/g, "");
+  return `${plain || "aspic"}.${extension}`;
+}
+
+// The views beside each other, over the background of the page.
+function compose(target: HTMLCanvasElement, views: Layers[]): void {
+  const widths = views.map(({ canvases }) => Math.max(0, ...canvases.map((canvas) => canvas.width)));
+  const heights = views.map(({ canvases }) => Math.max(0, ...canvases.map((canvas) => canvas.height)));
+  // Encoders want even sizes.
+  const width = widths.reduce((sum, each) => sum + each, 0) & ~1;
+  const height = Math.max(0, ...heights) & ~1;
+  const context = target.getContext("2d");
+  if (!context || width === 0 || height === 0) throw new Error("there is nothing to be seen");
+  if (target.width !== width) target.width = width;
+  if (target.height !== height) target.height = height;
+  const style = getComputedStyle(document.body);
+  context.fillStyle = style.backgroundColor;
+  context.fillRect(0, 0, width, height);
+  let left = 0;
+  views.forEach(({ canvases, label }, i) => {
+    for (const canvas of canvases) context.drawImage(canvas, left, 0);
+    const em = parseFloat(style.fontSize) * devicePixelRatio;
+    context.font = `${em}px ${style.fontFamily}`;
+    context.textAlign = "center";
+    context.fillStyle = style.color;
+    context.fillText(label, left + widths[i] / 2, 1.5 * em);
+    left += widths[i];
+  });
+}
+
+export function makeScreenshotButton(store: Store, page: Page, draw: DrawViews): HTMLButtonElement {
+  const run = (): void => {
+    const canvas = element("canvas");
+    try {
+      compose(canvas, draw());
+    } catch (reason) {
+      return page.notice(`No picture: ${messageOf(reason)}`, "error");
+    }
+    const name = `${store.side("a")?.scene.name ?? "aspic"}_${store.state?.a.step ?? 0}`;
+    canvas.toBlob((blob) => {
+      if (blob) saveFile(fileName(name, "png"), blob);
+      else page.notice("This browser made no picture.", "error");
+    }, "image/png");
+  };
+  return shortcutButton(page, { key: "p", does: "Picture of the view (PNG)", group: "File", run }, { text: "Picture (PNG)" });
+}
+
+export class Video {
+  readonly opener: HTMLButtonElement;
+  readonly indicator: HTMLButtonElement; // while it records
+  private recorder: MediaRecorder | null = null;
+  private started = 0;
+
+  constructor(
+    private readonly store: Store,
+    private readonly page: Page,
+    private readonly draw: DrawViews,
+  ) {
+    const run = (): void => (this.recorder ? this.stop() : this.start());
+    this.opener = shortcutButton(
+      page,
+      { key: "Shift+V", does: "Record a video of the view, or end it", group: "File", run },
+      { text: "Record a video" },
+    );
+    this.indicator = button({ title: "End the video (Shift+V)", label: "End the video" }, () => this.stop());
+    this.indicator.className = "recording";
+    this.indicator.hidden = true;
+  }
+
+  private start(): void {
+    const type = typeof MediaRecorder === "undefined" ? undefined : kTypes.find((t) => MediaRecorder.isTypeSupported(t));
+    if (!type) return this.page.notice("This browser cannot record videos; aspic render can.", "error");
+    try {
+      const canvas = element("canvas");
+      compose(canvas, this.draw());
+      this.record(canvas, type);
+    } catch (reason) {
+      this.page.notice(`No video: ${messageOf(reason)}`, "error");
+    }
+  }
+
+  private record(canvas: HTMLCanvasElement, type: string): void {
+    const stream = canvas.captureStream(kFramesPerSecond);
+    const recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: kBitsPerSecond });
+    const chunks: Blob[] = [];
+    recorder.ondataavailable = (event) => chunks.push(event.data);
+    recorder.onstop = () => {
+      stream.getTracks().forEach((track) => track.stop());
+      const extension = type.startsWith("video/mp4") ? "mp4" : "webm";
+      saveFile(fileName(this.store.side("a")?.scene.name ?? "", extension), new Blob(chunks, { type }));
+    };
+    recorder.onerror = () => {
+      this.page.notice("The browser ended the video.", "error");
+      this.stop();
+    };
+    recorder.start(1000);
+    this.recorder = recorder;
+    this.started = performance.now();
+    this.follow(canvas);
+  }
+
+  private follow(canvas: HTMLCanvasElement): void {
+    if (!this.recorder) return;
+    try {
+      compose(canvas, this.draw());
+    } catch {
+      return this.stop(); // the views are gone
+    }
+    const seconds = Math.floor((performance.now() - this.started) / 1000);
+    this.indicator.hidden = false;
+    this.indicator.textContent = `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
+    this.opener.textContent = "End the video";
+    requestAnimationFrame(() => this.follow(canvas));
+  }
+
+  private stop(): void {
+    if (this.recorder?.state === "recording") this.recorder.stop();
+    this.recorder = null;
+    this.indicator.hidden = true;
+    this.opener.textContent = "Record a video";
+  }
+}

@@ -1,0 +1,173 @@
+// One body on the GPU. A picture's arrays go there as they came; nothing is computed from them but a coarse box.
+import * as THREE from "three";
+import type { ColourRange } from "./ranges";
+import type { Geometry, Picture, Vec3 } from "../protocol";
+import { mapTexels, type MapName } from "./colourMaps";
+import type { DisplaySettings } from "./display";
+import { makeFieldUniforms, makePinMaterial, makeSurfaceMaterial } from "./shading";
+
+export interface Box {
+  lower: Vec3;
+  upper: Vec3;
+}
+
+const kBoxSamples = 2000;
+
+// Of every so many vertices, those that are not finite left out; null when none is left.
+export function coarseBox(positions: Float32Array): Box | null {
+  const count = positions.length / 3;
+  const stride = 3 * Math.max(1, Math.floor(count / kBoxSamples));
+  const lower: Vec3 = [Infinity, Infinity, Infinity];
+  const upper: Vec3 = [-Infinity, -Infinity, -Infinity];
+  for (let i = 0; i + 2 < positions.length; i += stride)
+    for (let c = 0; c < 3; ++c) {
+      const x = positions[i + c];
+      if (!Number.isFinite(x)) continue;
+      if (x < lower[c]) lower[c] = x;
+      if (x > upper[c]) upper[c] = x;
+    }
+  return lower.every((x, c) => x <= upper[c]) ? { lower, upper } : null;
+}
+
+function meanEdge(geometry: Geometry): number {
+  const { rest, edges } = geometry;
+  const stride = 2 * Math.max(1, Math.floor(edges.length / 2 / kBoxSamples));
+  let [sum, count] = [0, 0];
+  for (let e = 0; e < edges.length; e += stride, ++count) {
+    const [a, b] = [3 * edges[e], 3 * edges[e + 1]];
+    sum += Math.hypot(rest[a] - rest[b], rest[a + 1] - rest[b + 1], rest[a + 2] - rest[b + 2]);
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+export class Body {
+  readonly root = new THREE.Group(); // metres inside, unit lengths outside
+  readonly edge: number; // mean length at rest [m]
+  box: Box | null;
+  private readonly positions: THREE.BufferAttribute;
+  private readonly normals: THREE.BufferAttribute;
+  private readonly values: THREE.BufferAttribute;
+  private readonly shapes: THREE.BufferGeometry[] = [];
+  private readonly uniforms = makeFieldUniforms();
+  private readonly surface = makeSurfaceMaterial(this.uniforms);
+  private readonly lines = new THREE.LineBasicMaterial({ transparent: true, depthWrite: false });
+  private readonly lift = { value: 0 };
+  private readonly pinMaterial = makePinMaterial(this.lift);
+  private readonly mesh: THREE.Mesh;
+  private readonly wires: THREE.LineSegments;
+  private readonly pins: THREE.Points;
+  private mapShown: MapName | null = null;
+
+  constructor(readonly geometry: Geometry) {
+    const n = geometry.rest.length / 3;
+    this.edge = meanEdge(geometry);
+    this.box = coarseBox(geometry.rest);
+    this.positions = new THREE.BufferAttribute(geometry.rest, 3);
+    this.normals = new THREE.BufferAttribute(new Int8Array(4 * n), 4, true);
+    this.values = new THREE.BufferAttribute(new Float32Array(n), 1);
+    for (const attribute of [this.positions, this.normals, this.values]) attribute.setUsage(THREE.DynamicDrawUsage);
+    this.mesh = new THREE.Mesh(this.shape(geometry.triangles, true), this.surface);
+    this.wires = new THREE.LineSegments(this.shape(geometry.edges, false), this.lines);
+    this.pins = new THREE.Points(this.shape(new Uint32Array(0), false), this.pinMaterial);
+    this.mesh.castShadow = true;
+    this.mesh.receiveShadow = true;
+    this.wires.renderOrder = 1;
+    this.pins.renderOrder = 2;
+    for (const object of [this.mesh, this.wires, this.pins]) object.frustumCulled = false;
+    this.root.add(this.mesh, this.wires, this.pins);
+    this.root.visible = false; // until the first picture, which brings the normals
+    this.root.matrixAutoUpdate = false;
+  }
+
+  get current(): Float32Array {
+    return this.positions.array as Float32Array;
+  }
+
+  show(picture: Picture): void {
+    this.positions.array = picture.positions;
+    this.normals.array = picture.normals;
+    this.positions.needsUpdate = true;
+    this.normals.needsUpdate = true;
+    if (picture.values) {
+      this.values.array = picture.values;
+      this.values.needsUpdate = true;
+    }
+    this.box = coarseBox(picture.positions) ?? this.box;
+    this.root.visible = true;
+  }
+
+  apply(settings: DisplaySettings): void {
+    this.mesh.visible = settings.fill;
+    this.wires.visible = settings.wires || !settings.fill;
+    this.pins.visible = settings.pins;
+    this.surface.color.set(settings.bodyColour);
+    this.surface.shininess = Math.max(1, settings.shininess);
+    this.surface.specular.setScalar(settings.shininess > 0 ? 0.09 : 0);
+    this.uniforms.insideColour.value.set(settings.insideColour);
+    this.uniforms.insideOwn.value = settings.inside === "own";
+    this.uniforms.inverted.value = settings.invert;
+    const hidden = settings.invert ? THREE.BackSide : THREE.FrontSide;
+    const side = settings.inside === "hidden" ? hidden : THREE.DoubleSide;
+    if (this.surface.flatShading === settings.smooth || this.surface.side !== side) this.surface.needsUpdate = true;
+    this.surface.flatShading = !settings.smooth;
+    this.surface.side = side;
+    this.lines.color.set(settings.lineColour);
+    this.lines.depthTest = !settings.wiresOnTop;
+  }
+
+  // Values take the colours of a range; null: the body has its own colour.
+  colour(range: ColourRange | null, map: MapName): void {
+    this.uniforms.fieldShown.value = range !== null;
+    if (!range) return;
+    const [low, high] = range.log ? [Math.log(range.low), Math.log(range.high)] : [range.low, range.high];
+    // A constant field has the colour in the middle.
+    this.uniforms.fieldLow.value = high > low ? low : low - 0.5;
+    this.uniforms.fieldScale.value = high > low ? 1 / (high - low) : 1;
+    this.uniforms.fieldLog.value = range.log;
+    if (map === this.mapShown) return;
+    this.mapShown = map;
+    this.uniforms.fieldMap.value?.dispose();
+    const texture = new THREE.DataTexture(mapTexels(map, 256), 256, 1);
+    texture.colorSpace = THREE.SRGBColorSpace;
+    texture.magFilter = THREE.LinearFilter;
+    texture.minFilter = THREE.LinearFilter;
+    texture.needsUpdate = true;
+    this.uniforms.fieldMap.value = texture;
+  }
+
+  clip(planes: THREE.Plane[]): void {
+    for (const material of [this.surface, this.lines, this.pinMaterial]) material.clippingPlanes = planes;
+  }
+
+  setPins(vertices: number[]): void {
+    const n = this.current.length / 3;
+    this.pins.geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(vertices.filter((v) => v < n)), 1));
+  }
+
+  // What is this many pixels long would be an edge; a device pixel is 1 / ratio of them. Wires of a dense mesh fade
+  // before they paint it black, and its pins shrink before they hide it.
+  adapt(edgePixels: number, ratio: number, liftPerPixel: number, pinColour: string): void {
+    const density = Math.min(1, Math.max(0, (edgePixels * ratio - 2) / 10));
+    this.lines.opacity = this.mesh.visible ? 0.12 + 0.5 * density : 0.35 + 0.6 * density;
+    const size = Math.min(9, Math.max(4, 0.8 * edgePixels));
+    this.pinMaterial.size = size * ratio;
+    this.pinMaterial.color.set(pinColour);
+    this.lift.value = size * liftPerPixel;
+  }
+
+  dispose(): void {
+    for (const shape of this.shapes) shape.dispose();
+    for (const material of [this.surface, this.lines, this.pinMaterial]) material.dispose();
+    this.uniforms.fieldMap.value?.dispose();
+  }
+
+  private shape(index: Uint32Array, shaded: boolean): THREE.BufferGeometry {
+    const shape = new THREE.BufferGeometry();
+    shape.setAttribute("position", this.positions);
+    if (shaded) shape.setAttribute("normal", this.normals).setAttribute("fieldValue", this.values);
+    shape.setIndex(new THREE.BufferAttribute(index, 1));
+    shape.boundingSphere = new THREE.Sphere(new THREE.Vector3(), 1); // never computed: nothing is culled by it
+    this.shapes.push(shape);
+    return shape;
+  }
+}

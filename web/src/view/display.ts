@@ -1,0 +1,162 @@
+// How bodies are drawn: the settings that the views of both sides share.
+import { Emitter } from "../emitter";
+import type { Keeper } from "../page";
+import type { Field, SideName } from "../protocol";
+import { CameraRig } from "./cameras";
+import { kMapNames, type MapName } from "./colourMaps";
+import { about, logRange, RunningRange, type ColourRange } from "./ranges";
+
+export const kTools = { drag: "Drag with a spring", pin: "Pin with a brush", read: "Read values" } as const;
+export type Tool = keyof typeof kTools;
+
+export const kDefaults = {
+  fill: true,
+  wires: true,
+  wiresOnTop: false,
+  smooth: true,
+  bodyColour: "#4f8fd0",
+  lineColour: "#0d1726",
+  inside: "own" as "own" | "same" | "hidden",
+  insideColour: "#d9a05b",
+  invert: false, // what counts as outside is the inside
+  shininess: 40,
+  ownBackground: false, // else that of the theme
+  background: "#ffffff",
+  ground: true,
+  shadows: true,
+  axes: true,
+  pins: true,
+  clip: "off" as "off" | "x" | "y" | "z",
+  clipAt: 0.5, // in the box of the scene
+  clipOther: false, // keeps the other half
+  vertexLabels: false,
+  faceLabels: false,
+  map: "auto" as "auto" | MapName,
+  log: false,
+  fixedRange: false,
+  low: 0,
+  high: 1,
+  tool: "drag" as Tool,
+  brush: 24, // radius [px]
+  unpin: false, // what the brush does
+  linked: true, // one camera for both sides
+};
+export type DisplaySettings = typeof kDefaults;
+
+const kChoices: { [K in keyof DisplaySettings]?: readonly string[] } = {
+  inside: ["own", "same", "hidden"],
+  clip: ["off", "x", "y", "z"],
+  map: ["auto", ...kMapNames],
+  tool: Object.keys(kTools),
+};
+const kLimits: { [K in keyof DisplaySettings]?: readonly [number, number] } = {
+  shininess: [0, 200],
+  clipAt: [0, 1],
+  brush: [4, 200],
+};
+
+export class Display extends Emitter<{ changed: void; camera: void }> implements Keeper {
+  readonly settings: DisplaySettings = { ...kDefaults };
+  readonly cameras: { a: CameraRig; b: CameraRig } = { a: new CameraRig(), b: new CameraRig() };
+  fields: Field[] = []; // of side a
+  field = ""; // shown; "" for none
+  private readonly running = new RunningRange();
+  private measured = ""; // field whose range is running
+
+  constructor() {
+    super();
+    for (const rig of Object.values(this.cameras)) rig.on("changed", () => this.emit("camera", undefined));
+  }
+
+  // The camera of a side: that of side a for both while they are linked.
+  camera(side: SideName): CameraRig {
+    return this.cameras[this.settings.linked ? "a" : side];
+  }
+
+  change(changes: Partial<DisplaySettings>): void {
+    if (changes.linked === false && this.settings.linked) this.cameras.b.restore(this.cameras.a.save());
+    Object.assign(this.settings, changes);
+    for (const [key, limits] of Object.entries(kLimits)) this.limit(key as keyof DisplaySettings, limits);
+    this.emit("changed", undefined);
+  }
+
+  setFields(fields: Field[], field: string): void {
+    this.fields = fields;
+    this.field = field;
+    this.emit("changed", undefined);
+  }
+
+  // The colours keep the range that they have now.
+  fixRange(): void {
+    const field = this.fields.find((candidate) => candidate.name === this.field);
+    const range = field && this.range(field);
+    if (range) this.change({ fixedRange: true, low: range.low, high: range.high });
+  }
+
+  eachCamera = (act: (rig: CameraRig) => void): void => {
+    act(this.cameras.a);
+    act(this.cameras.b);
+  };
+
+  readonly cameraKeeper: Keeper = {
+    save: () => ({ a: this.cameras.a.save(), b: this.cameras.b.save() }),
+    restore: (saved) => {
+      if (typeof saved !== "object" || saved === null) return;
+      const { a, b } = saved as Record<string, unknown>;
+      this.cameras.a.restore(a);
+      this.cameras.b.restore(b);
+    },
+  };
+
+  // Smallest and largest value of a picture; false: the range is as before.
+  feed(side: SideName, field: Field, min: number, max: number): boolean {
+    if (field.name !== this.measured) this.running.reset();
+    this.measured = field.name;
+    const before = this.running.get();
+    this.running.feed(side, min, max);
+    const after = this.running.get();
+    return before?.low !== after?.low || before?.high !== after?.high;
+  }
+
+  forget(side: SideName): void {
+    this.running.forget(side);
+  }
+
+  range(field: Field): ColourRange | null {
+    const { fixedRange, log, low, high } = this.settings;
+    const running = this.running.get();
+    if (!fixedRange && !running) return null;
+    const chosen = fixedRange ? { low: Math.min(low, high), high: Math.max(low, high) } : running!;
+    const positive = log ? logRange(chosen.low, chosen.high) : null;
+    if (positive) return { ...positive, log: true };
+    return { ...(field.diverging && !fixedRange ? about(field.center, chosen.low, chosen.high) : chosen), log: false };
+  }
+
+  map(field: Field): MapName {
+    if (this.settings.map !== "auto") return this.settings.map;
+    return field.diverging ? "blue_orange" : "viridis";
+  }
+
+  save(): unknown {
+    return { ...this.settings };
+  }
+
+  restore(saved: unknown): void {
+    if (typeof saved !== "object" || saved === null) return;
+    const changes: Record<string, unknown> = {};
+    for (const [key, value] of Object.entries(saved)) {
+      const known = key as keyof DisplaySettings;
+      if (!Object.hasOwn(kDefaults, key) || typeof value !== typeof kDefaults[known]) continue;
+      if (kChoices[known] && !kChoices[known].includes(value as string)) continue;
+      if (typeof value === "number" && !Number.isFinite(value)) continue;
+      if (key.toLowerCase().endsWith("colour") || key === "background") if (!/^#[0-9a-f]{6}$/i.test(String(value))) continue;
+      changes[key] = value;
+    }
+    this.change(changes);
+  }
+
+  private limit(key: keyof DisplaySettings, [least, most]: readonly [number, number]): void {
+    const settings = this.settings as Record<string, unknown>;
+    settings[key] = Math.min(most, Math.max(least, settings[key] as number));
+  }
+}

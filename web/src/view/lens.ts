@@ -1,0 +1,69 @@
+// Where a camera puts a point on the screen, and the ray behind a pixel. In metres and CSS pixels, in double precision,
+// apart from what draws.
+import type { Vec3 } from "../protocol";
+
+export interface Lens {
+  eye: Vec3;
+  right: Vec3; // these three are orthonormal
+  up: Vec3;
+  forward: Vec3;
+  slope: number; // half the height of what is seen, per distance; 0 when orthographic
+  extent: number; // half the height of what is seen when orthographic
+  width: number; // of the screen [px]
+  height: number;
+}
+
+export interface Ray {
+  origin: Vec3;
+  direction: Vec3; // a unit vector
+  from: number; // points before it are behind the camera; an orthographic camera has no behind
+}
+
+export const dot = (a: Vec3, b: Vec3): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+export const minus = (a: Vec3, b: Vec3): Vec3 => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+export const along = (a: Vec3, t: number, d: Vec3): Vec3 => [a[0] + t * d[0], a[1] + t * d[1], a[2] + t * d[2]];
+export const length = (a: Vec3): number => Math.hypot(a[0], a[1], a[2]);
+export const isFinite3 = (a: Vec3): boolean => a.every(Number.isFinite);
+
+export function cross(a: Vec3, b: Vec3): Vec3 {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+export function unit(a: Vec3): Vec3 {
+  const size = length(a);
+  return size > 0 ? [a[0] / size, a[1] / size, a[2] / size] : [0, 0, 0];
+}
+
+// Pixels per metre at a depth.
+export function pixelsPerMetre(lens: Lens, depth: number): number {
+  const half = lens.extent > 0 ? lens.extent : lens.slope * depth;
+  return lens.height / 2 / half;
+}
+
+// Pixel and depth of a point; a depth <= 0 of a perspective camera is behind it.
+export function project(lens: Lens, p: Vec3): Vec3 {
+  const d = minus(p, lens.eye);
+  const depth = dot(d, lens.forward);
+  const scale = pixelsPerMetre(lens, depth);
+  return [lens.width / 2 + scale * dot(d, lens.right), lens.height / 2 - scale * dot(d, lens.up), depth];
+}
+
+export function isBehind(lens: Lens, depth: number): boolean {
+  return lens.extent === 0 && !(depth > 0);
+}
+
+export function rayThrough(lens: Lens, x: number, y: number): Ray {
+  const half = lens.extent > 0 ? lens.extent : lens.slope;
+  const scale = (2 * half) / lens.height;
+  const [u, v] = [scale * (x - lens.width / 2), scale * (lens.height / 2 - y)];
+  if (lens.extent > 0)
+    return { origin: along(along(lens.eye, u, lens.right), v, lens.up), direction: lens.forward, from: -Infinity };
+  return { origin: lens.eye, direction: unit(along(along(lens.forward, u, lens.right), v, lens.up)), from: 0 };
+}
+
+// Where the ray meets the plane through a point that faces the camera; null when it never does.
+export function onFacingPlane(lens: Lens, ray: Ray, point: Vec3): Vec3 | null {
+  const slant = dot(ray.direction, lens.forward);
+  if (!(Math.abs(slant) > 1e-9)) return null;
+  return along(ray.origin, dot(minus(point, ray.origin), lens.forward) / slant, ray.direction);
+}

@@ -1,0 +1,141 @@
+// What is drawn over a view with a 2-D canvas: text and thin shapes that stay readable over anything.
+import type { Field, Vec3 } from "../protocol";
+import { colourAt, type MapName } from "./colourMaps";
+import { isBehind, project, type Lens } from "./lens";
+import { fraction, logTicks, readable, ticks, withUnit, type ColourRange } from "./ranges";
+
+export interface Ink {
+  context: CanvasRenderingContext2D;
+  text: string; // colours
+  halo: string;
+  accent: string;
+  em: number; // height of text [px]
+}
+
+type Point = [number, number];
+
+export function text(ink: Ink, words: string, x: number, y: number, align: CanvasTextAlign = "left"): void {
+  const { context } = ink;
+  context.textAlign = align;
+  context.textBaseline = "middle";
+  context.lineJoin = "round";
+  context.lineWidth = 0.3 * ink.em;
+  context.strokeStyle = ink.halo;
+  context.strokeText(words, x, y);
+  context.fillStyle = ink.text;
+  context.fillText(words, x, y);
+}
+
+function stroke(ink: Ink, points: Point[], width: number, colour: string): void {
+  const { context } = ink;
+  context.lineJoin = context.lineCap = "round";
+  for (const [w, style] of [[width + 2, ink.halo], [width, colour]] as const) {
+    context.lineWidth = w;
+    context.strokeStyle = style;
+    context.beginPath();
+    points.forEach(([x, y], i) => (i === 0 ? context.moveTo(x, y) : context.lineTo(x, y)));
+    context.stroke();
+  }
+}
+
+function dot(ink: Ink, [x, y]: Point, radius: number, colour: string): void {
+  const { context } = ink;
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  context.fillStyle = colour;
+  context.fill();
+  context.lineWidth = 1.5;
+  context.strokeStyle = ink.halo;
+  context.stroke();
+}
+
+function onScreen(lens: Lens, p: Vec3): Point | null {
+  const [x, y, depth] = project(lens, p);
+  return isBehind(lens, depth) || !Number.isFinite(x + y) ? null : [x, y];
+}
+
+// The mouse's spring, from the body to the cursor, with its force.
+export function spring(ink: Ink, lens: Lens, point: Vec3, target: Vec3, force: Vec3 | null): void {
+  const [from, to] = [onScreen(lens, point), onScreen(lens, target)];
+  if (!from || !to) return;
+  const size = Math.hypot(to[0] - from[0], to[1] - from[1]);
+  const [ux, uy] = size > 0 ? [(to[0] - from[0]) / size, (to[1] - from[1]) / size] : [0, 0];
+  if (size > 2) stroke(ink, [from, to], 2, ink.accent);
+  if (size > 12) {
+    const back = (side: number): Point => [to[0] - 10 * ux - side * 5 * uy, to[1] - 10 * uy + side * 5 * ux];
+    stroke(ink, [back(1), to, back(-1)], 2, ink.accent);
+  }
+  dot(ink, from, 4, ink.accent);
+  const newtons = force ? Math.hypot(...force) : NaN;
+  if (Number.isFinite(newtons)) text(ink, withUnit(newtons, "N"), to[0] + ink.em, to[1] - ink.em);
+}
+
+export function ring(ink: Ink, [x, y]: Point, radius: number, words: string): void {
+  const { context } = ink;
+  for (const [width, colour] of [[3.5, ink.halo], [1.5, ink.accent]] as const) {
+    context.beginPath();
+    context.arc(x, y, radius, 0, 2 * Math.PI);
+    context.lineWidth = width;
+    context.strokeStyle = colour;
+    context.stroke();
+  }
+  text(ink, words, x + radius + 0.4 * ink.em, y - radius);
+}
+
+// A vertex, or the edges of a tet, with a label.
+export function highlight(ink: Ink, lens: Lens, positions: Vec3[], words: string): void {
+  const points = positions.map((p) => onScreen(lens, p));
+  if (points.length === 0 || points.some((p) => p === null)) return;
+  const corners = points as Point[];
+  for (let i = 0; i < corners.length; ++i)
+    for (let j = i + 1; j < corners.length; ++j) stroke(ink, [corners[i], corners[j]], 2.5, ink.accent);
+  for (const corner of corners) dot(ink, corner, 3.5, ink.accent);
+  const top = corners.reduce((best, p) => (p[1] < best[1] ? p : best));
+  if (words !== "") text(ink, words, top[0] + 0.6 * ink.em, top[1] - 0.8 * ink.em);
+}
+
+// Directions of the scene's axes, in the lower left corner.
+export function axes(ink: Ink, lens: Lens): void {
+  const size = 2.2 * ink.em;
+  const [x0, y0] = [1.6 * ink.em + size, lens.height - 1.6 * ink.em - size];
+  const colours = ["#d1495b", "#3f9142", "#3a6fd8"];
+  const ends = [0, 1, 2].map((c) => ({ c, x: lens.right[c], y: -lens.up[c], depth: lens.forward[c] }));
+  for (const { c, x, y } of ends.sort((a, b) => b.depth - a.depth)) {
+    stroke(ink, [[x0, y0], [x0 + size * x, y0 + size * y]], 2, colours[c]);
+    text(ink, "xyz"[c], x0 + 1.28 * size * x, y0 + 1.28 * size * y, "center");
+  }
+}
+
+// The colours of a field with ticks, at the right edge.
+export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange, map: MapName): void {
+  const { context, em } = ink;
+  const height = Math.min(16 * em, lens.height - 7 * em);
+  const width = 1.1 * em;
+  if (height < 3 * em) return;
+  const right = lens.width - em;
+  const top = 3.2 * em;
+  const left = right - width;
+  const isConstant = !(range.high > range.low);
+  for (let y = 0; y < height; ++y) {
+    const [r, g, b] = colourAt(map, isConstant ? 0.5 : 1 - y / height);
+    context.fillStyle = `rgb(${r}, ${g}, ${b})`;
+    context.fillRect(left, top + y, width, 1.5);
+  }
+  context.lineWidth = 1;
+  context.strokeStyle = ink.text;
+  context.strokeRect(left - 0.5, top - 0.5, width + 1, height + 1.5);
+  const unit = field.unit === "" ? "" : ` [${field.unit}]`;
+  text(ink, `${field.label}${unit}${range.log ? ", logarithmic" : ""}`, right, top - 1.4 * em, "right");
+  const marks = range.log ? logTicks(range.low, range.high) : ticks(range.low, range.high, height / (2.6 * em));
+  const step = range.log ? undefined : (marks[1] ?? NaN) - marks[0];
+  for (const mark of marks) {
+    const y = top + height * (1 - fraction(range, mark));
+    context.fillStyle = ink.text;
+    context.fillRect(left - 0.35 * em, y - 0.5, 0.35 * em, 1);
+    text(ink, readable(mark, Number.isFinite(step) ? step : undefined), left - 0.6 * em, y, "right");
+  }
+}
+
+export function gridNote(ink: Ink, lens: Lens, step: number): void {
+  text(ink, `grid ${withUnit(step, "m")}`, 1.2 * ink.em, lens.height - 0.9 * ink.em);
+}

@@ -1,0 +1,111 @@
+// The range of values that a colour map spans, and the ticks of its bar.
+
+export interface ColourRange {
+  low: number;
+  high: number;
+  log: boolean;
+}
+
+const kShrink = 0.03; // of the gap, per picture
+
+// Grows at once and shrinks slowly, so that colours do not flicker while the body moves.
+export class RunningRange {
+  private readonly latest = new Map<string, { min: number; max: number }>(); // by side
+  private low = Infinity;
+  private high = -Infinity;
+
+  reset(): void {
+    this.latest.clear();
+    [this.low, this.high] = [Infinity, -Infinity];
+  }
+
+  forget(side: string): void {
+    this.latest.delete(side);
+  }
+
+  feed(side: string, min: number, max: number): void {
+    if (!Number.isFinite(min) || !Number.isFinite(max) || min > max) return;
+    this.latest.set(side, { min, max });
+    const all = [...this.latest.values()];
+    const [least, most] = [Math.min(...all.map((r) => r.min)), Math.max(...all.map((r) => r.max))];
+    this.low = least <= this.low ? least : this.low + kShrink * (least - this.low);
+    this.high = most >= this.high ? most : this.high + kShrink * (most - this.high);
+  }
+
+  get(): { low: number; high: number } | null {
+    return this.low <= this.high ? { low: this.low, high: this.high } : null;
+  }
+}
+
+// As wide on both sides of the center.
+export function about(center: number, low: number, high: number): { low: number; high: number } {
+  const half = Math.max(Math.abs(high - center), Math.abs(center - low));
+  return { low: center - half, high: center + half };
+}
+
+// A logarithmic range needs positive values: at most nine decades below the largest.
+export function logRange(low: number, high: number): { low: number; high: number } | null {
+  if (!(high > 0)) return null;
+  return { low: low > high * 1e-9 ? low : high * 1e-9, high };
+}
+
+// Position of a value in the range, as the shader computes it.
+export function fraction(range: ColourRange, value: number): number {
+  const f = range.log ? Math.log : (x: number): number => x;
+  const width = f(range.high) - f(range.low);
+  return width > 0 ? (f(value) - f(range.low)) / width : 0.5;
+}
+
+// Round values inside [low, high], about `count` of them: 1, 2 or 5 times a power of ten apart.
+export function ticks(low: number, high: number, count: number): number[] {
+  if (!(high > low) || !Number.isFinite(high - low)) return Number.isFinite(low) ? [low] : [];
+  const step = roundStep((high - low) / Math.max(1, count));
+  const first = Math.ceil(low / step - 1e-9);
+  const last = Math.floor(high / step + 1e-9);
+  return Array.from({ length: Math.max(0, Math.min(50, last - first + 1)) }, (_, i) => (first + i) * step);
+}
+
+// Powers of ten inside [low, high]; with 2 and 5 between them when these are few.
+export function logTicks(low: number, high: number): number[] {
+  if (!(low > 0) || !(high > low)) return [];
+  const decades = Math.log10(high / low);
+  const factors = decades < 2 ? [1, 2, 5] : [1];
+  const every = Math.max(1, Math.ceil(decades / 6));
+  const found: number[] = [];
+  for (let k = Math.floor(Math.log10(low)); k <= Math.ceil(Math.log10(high)); ++k)
+    for (const factor of factors) {
+      const tick = factor * 10 ** k;
+      if (k % every === 0 && tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9)) found.push(tick);
+    }
+  return found;
+}
+
+// The least of 1, 2, 5 times a power of ten that is not below x.
+export function roundStep(x: number): number {
+  const power = 10 ** Math.floor(Math.log10(x));
+  const factor = [1, 2, 5, 10].find((f) => f * power >= x * (1 - 1e-9)) ?? 10;
+  return factor * power;
+}
+
+// Short and readable: 0.25, 1200, 3.1e6. `step` is the distance of neighbours, which must differ.
+export function readable(value: number, step = Math.abs(value) * 1e-3): string {
+  if (!Number.isFinite(value)) return "not finite";
+  if (Math.abs(value) < Math.abs(step) * 1e-6 || value === 0) return "0";
+  const digits = Math.min(15, Math.max(1, 1 + Math.ceil(Math.log10(Math.abs(value / step)) - 1e-9)));
+  const rounded = Number(value.toPrecision(digits));
+  const size = Math.abs(rounded);
+  if (size >= 1e5 || size < 1e-3) return rounded.toExponential().replace("e+", "e").replaceAll("-", "−");
+  return String(rounded).replace("-", "−");
+}
+
+const kPrefixes: [number, string][] = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"]];
+
+// With a prefix: 12.3 kPa, 4 mm.
+export function withUnit(value: number, unit: string, digits = 3): string {
+  if (!Number.isFinite(value)) return "not finite";
+  const size = Math.abs(value);
+  const takesPrefix = unit !== "" && !/[/^²³ ]/.test(unit.slice(0, 2)) && unit !== "kg" && size > 0;
+  const [factor, prefix] = (takesPrefix && kPrefixes.find(([least]) => size >= least * (1 - 1e-9))) || [1, ""];
+  const number = readable(Number((value / factor).toPrecision(digits)), Math.abs(value / factor) * 10 ** (1 - digits));
+  return unit === "" ? number : `${number} ${prefix}${unit}`;
+}

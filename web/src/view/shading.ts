@@ -1,0 +1,119 @@
+// Materials of a body: three.js's own, with a few lines added to their shaders.
+import * as THREE from "three";
+
+export interface FieldUniforms {
+  fieldMap: { value: THREE.Texture | null };
+  fieldLow: { value: number }; // logarithms when fieldLog
+  fieldScale: { value: number };
+  fieldLog: { value: boolean };
+  fieldShown: { value: boolean };
+  insideColour: { value: THREE.Color };
+  insideOwn: { value: boolean };
+  inverted: { value: boolean };
+}
+
+export function makeFieldUniforms(): FieldUniforms {
+  return {
+    fieldMap: { value: null },
+    fieldLow: { value: 0 },
+    fieldScale: { value: 1 },
+    fieldLog: { value: false },
+    fieldShown: { value: false },
+    insideColour: { value: new THREE.Color() },
+    insideOwn: { value: true },
+    inverted: { value: false },
+  };
+}
+
+export const kGroundRadius = 7; // in radii of the scene
+
+const kFieldPars = /* glsl */ `
+  uniform sampler2D fieldMap;
+  uniform float fieldLow, fieldScale;
+  uniform bool fieldLog, fieldShown, insideOwn, inverted;
+  uniform vec3 insideColour;
+  varying float vFieldValue;
+`;
+
+const kFieldColour = /* glsl */ `
+  if (fieldShown) {
+    float value = fieldLog ? (vFieldValue > 0.0 ? log(vFieldValue) : -1e30) : vFieldValue;
+    float texels = float(textureSize(fieldMap, 0).x);
+    float at = clamp((value - fieldLow) * fieldScale, 0.0, 1.0);
+    diffuseColor.rgb = texture2D(fieldMap, vec2((at * (texels - 1.0) + 0.5) / texels, 0.5)).rgb;
+    if (isnan(vFieldValue)) diffuseColor.rgb = vec3(0.3);
+  }
+  if (insideOwn && gl_FrontFacing == inverted) diffuseColor.rgb = insideColour;
+`;
+
+export function makeSurfaceMaterial(uniforms: FieldUniforms): THREE.MeshPhongMaterial {
+  const material = new THREE.MeshPhongMaterial({ side: THREE.DoubleSide, clipShadows: true });
+  material.polygonOffset = true; // behind the wires
+  material.polygonOffsetFactor = 1;
+  material.polygonOffsetUnits = 2;
+  material.onBeforeCompile = (shader) => {
+    Object.assign(shader.uniforms, uniforms);
+    shader.vertexShader = shader.vertexShader
+      .replace("#include <common>", "#include <common>\nattribute float fieldValue;\nvarying float vFieldValue;")
+      .replace("#include <begin_vertex>", "#include <begin_vertex>\nvFieldValue = fieldValue;");
+    shader.fragmentShader = shader.fragmentShader
+      .replace("#include <common>", `#include <common>\n${kFieldPars}`)
+      .replace("#include <color_fragment>", kFieldColour);
+  };
+  return material;
+}
+
+// Round markers of constant size on the screen, in front of the surface by as much as they are wide.
+export function makePinMaterial(lift: { value: number }): THREE.PointsMaterial {
+  const material = new THREE.PointsMaterial({ sizeAttenuation: false, transparent: true });
+  material.onBeforeCompile = (shader) => {
+    shader.uniforms.lift = lift; // per distance, or [unit length] when orthographic
+    shader.vertexShader = shader.vertexShader.replace("#include <common>", "#include <common>\nuniform float lift;").replace(
+      "#include <project_vertex>",
+      `#include <project_vertex>
+       vec4 nearer = mvPosition;
+       if (isPerspectiveMatrix(projectionMatrix)) nearer.xyz *= 1.0 - lift; else nearer.z += lift;
+       gl_Position = projectionMatrix * nearer;`,
+    );
+    shader.fragmentShader = shader.fragmentShader.replace(
+      "#include <map_particle_fragment>",
+      `float radius = length(gl_PointCoord - 0.5) * 2.0;
+       float blur = fwidth(radius);
+       diffuseColor.rgb = mix(diffuseColor.rgb, vec3(1.0), smoothstep(0.62 - blur, 0.62 + blur, radius));
+       diffuseColor.a = 1.0 - smoothstep(1.0 - 2.0 * blur, 1.0, radius);`,
+    );
+  };
+  return material;
+}
+
+export interface GroundUniforms {
+  gridStep: { value: number };
+  gridOrigin: { value: THREE.Vector2 };
+  gridColour: { value: THREE.Color };
+}
+
+// Catches shadows, carries a grid, and fades towards its rim.
+export function makeGroundMaterial(uniforms: GroundUniforms): THREE.ShadowMaterial {
+  const material = new THREE.ShadowMaterial({ opacity: 0.35, side: THREE.DoubleSide, depthWrite: false });
+  material.onBeforeCompile = (shader) => {
+    Object.assign(shader.uniforms, uniforms);
+    shader.vertexShader = shader.vertexShader
+      .replace("#include <common>", "#include <common>\nvarying vec2 vPlane;")
+      .replace("#include <begin_vertex>", "#include <begin_vertex>\nvPlane = position.xy;");
+    shader.fragmentShader = shader.fragmentShader
+      .replace("#include <common>", "#include <common>\nuniform float gridStep;\nuniform vec2 gridOrigin;\nuniform vec3 gridColour;\nvarying vec2 vPlane;")
+      .replace("gl_FragColor = vec4( color, opacity * ( 1.0 - getShadowMask() ) );", kGroundColour);
+  };
+  return material;
+}
+
+const kGroundColour = /* glsl */ `
+  vec2 cell = (vPlane - gridOrigin) / gridStep;
+  vec2 blur = max(fwidth(cell), 1e-6);
+  vec2 line = clamp(1.0 - abs(fract(cell - 0.5) - 0.5) / blur, 0.0, 1.0) * (1.0 - smoothstep(0.15, 0.5, blur));
+  float grid = 0.55 * max(line.x, line.y);
+  float shade = opacity * (1.0 - getShadowMask());
+  float fade = 1.0 - smoothstep(0.35, 1.0, length(vPlane) / ${kGroundRadius.toFixed(1)});
+  float cover = 1.0 - (1.0 - shade) * (1.0 - grid);
+  gl_FragColor = vec4(mix(color, gridColour, cover > 0.0 ? grid * (1.0 - shade) / cover : 0.0), fade * cover);
+`;

@@ -1,0 +1,197 @@
+// The three.js scene around a body: lights, ground, camera and renderer. Lengths are in radii of the scene's box, so
+// that bodies of micrometres and of kilometres are the same to the GPU's single precision.
+import * as THREE from "three";
+import type { Scene, Vec3 } from "../protocol";
+import type { Body, Box } from "./body";
+import { sceneAxes } from "./cameras";
+import type { DisplaySettings } from "./display";
+import { dot, length, minus, type Lens } from "./lens";
+import type { Clip } from "./picking";
+import { roundStep } from "./ranges";
+import { kGroundRadius, makeGroundMaterial } from "./shading";
+
+export interface StageColours {
+  background: string;
+  grid: string;
+  pin: string;
+}
+
+const kGap = 0.12; // between the box and the ground below it
+
+export class Stage {
+  readonly renderer: THREE.WebGLRenderer; // the constructor throws when there is no WebGL
+  gridStep = 0; // [m]
+  radius = 1; // of the scene's box [m]
+  private centre: Vec3 = [0, 0, 0];
+  private up: Vec3 = [0, 0, 1];
+  private body: Body | null = null;
+  private floor = 0; // height of the ground along `up` [m]
+  private readonly scene = new THREE.Scene();
+  private readonly perspective = new THREE.PerspectiveCamera();
+  private readonly orthographic = new THREE.OrthographicCamera();
+  private readonly sky = new THREE.HemisphereLight("#ffffff", "#b9b2a8", 1.5);
+  private readonly sun = new THREE.DirectionalLight("#fffaf0", 2.1);
+  private readonly lamp = new THREE.DirectionalLight("#ffffff", 0.55); // at the camera
+  private readonly ground: THREE.Mesh<THREE.CircleGeometry, THREE.ShadowMaterial>;
+  private readonly grid = {
+    gridStep: { value: 1 },
+    gridOrigin: { value: new THREE.Vector2() },
+    gridColour: { value: new THREE.Color() },
+  };
+  private readonly lit = new THREE.Sphere(new THREE.Vector3(), 0); // what the shadow map covers
+
+  constructor(canvas: HTMLCanvasElement) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.renderer.localClippingEnabled = true;
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.autoUpdate = false;
+    this.ground = new THREE.Mesh(new THREE.CircleGeometry(kGroundRadius, 96), makeGroundMaterial(this.grid));
+    this.ground.receiveShadow = true;
+    this.ground.renderOrder = -1;
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(2048, 2048);
+    this.sun.shadow.radius = 5;
+    this.sun.shadow.bias = -0.0008;
+    this.scene.add(this.sky, this.sun, this.sun.target, this.lamp, this.lamp.target, this.ground);
+  }
+
+  // Places ground and lights around the box of a scene.
+  place(scene: Scene): void {
+    this.centre = [0, 1, 2].map((c) => (scene.lower[c] + scene.upper[c]) / 2) as Vec3;
+    this.radius = Math.max(length(minus(scene.upper, scene.lower)) / 2, 1e-12);
+    const { right, front, up } = sceneAxes(scene.up);
+    this.up = up.toArray();
+    this.floor = lowest({ lower: scene.lower, upper: scene.upper }, this.up) - kGap * this.radius;
+    this.gridStep = roundStep(this.radius / 4);
+    this.grid.gridStep.value = this.gridStep / this.radius;
+    // Lines pass through the origin of the scene.
+    const away = (axis: THREE.Vector3): number => -dot(axis.toArray(), this.centre) / this.radius;
+    this.grid.gridOrigin.value.set(away(right), away(front.clone().negate()));
+    this.ground.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(right, front.clone().negate(), up));
+    this.sky.position.copy(up);
+    this.lit.radius = 0;
+    this.sun.userData.from = up.clone().multiplyScalar(1.6).add(front).addScaledVector(right, -0.7).normalize();
+  }
+
+  show(body: Body): void {
+    this.remove();
+    this.body = body;
+    const scale = 1 / this.radius;
+    const [x, y, z] = this.centre;
+    body.root.matrix.makeScale(scale, scale, scale).multiply(new THREE.Matrix4().makeTranslation(-x, -y, -z));
+    this.scene.add(body.root);
+  }
+
+  remove(): void {
+    if (!this.body) return;
+    this.scene.remove(this.body.root);
+    this.body.dispose();
+    this.body = null;
+  }
+
+  // The body moved: its shadow does, too, and the ground stays below it.
+  moved(): void {
+    const box = this.body?.box;
+    if (!box) return;
+    const low = lowest(box, this.up) - 0.02 * this.radius;
+    this.floor = Math.max(Math.min(this.floor, low), this.floor - 20 * this.radius);
+    this.lightUp(box);
+    this.renderer.shadowMap.needsUpdate = true;
+  }
+
+  apply(settings: DisplaySettings, colours: StageColours): void {
+    this.renderer.setClearColor(colours.background);
+    this.ground.visible = settings.ground;
+    this.grid.gridColour.value.set(colours.grid);
+    if (this.sun.castShadow !== settings.shadows) this.sun.castShadow = settings.shadows;
+    this.renderer.shadowMap.needsUpdate = true;
+  }
+
+  clip(clip: Clip | null): void {
+    const plane = clip && new THREE.Plane(new THREE.Vector3(...clip.normal), (dot(clip.normal, this.centre) - clip.offset) / this.radius);
+    this.body?.clip(plane ? [plane] : []);
+    this.renderer.shadowMap.needsUpdate = true;
+  }
+
+  render(lens: Lens, orientation: THREE.Quaternion, pinColour: string): void {
+    const camera = this.camera(lens);
+    camera.position.copy(this.toUnits(lens.eye));
+    camera.quaternion.copy(orientation);
+    this.lamp.position.copy(camera.position);
+    this.lamp.target.position.copy(camera.position).add(new THREE.Vector3(...lens.forward));
+    const drop = (this.floor - dot(this.up, this.centre)) / this.radius;
+    this.ground.position.set(...this.up).multiplyScalar(drop);
+    if (this.body) this.adapt(this.body, lens, pinColour);
+    this.renderer.render(this.scene, camera);
+  }
+
+  dispose(): void {
+    this.remove();
+    this.ground.geometry.dispose();
+    this.ground.material.dispose();
+    this.sun.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss(); // browsers allow about sixteen contexts
+  }
+
+  private toUnits(point: Vec3): THREE.Vector3 {
+    return new THREE.Vector3(...minus(point, this.centre)).divideScalar(this.radius);
+  }
+
+  private camera(lens: Lens): THREE.PerspectiveCamera | THREE.OrthographicCamera {
+    const away = this.toUnits(lens.eye).length();
+    const aspect = lens.width / Math.max(1, lens.height);
+    const far = away + 2 * kGroundRadius + this.reach();
+    if (lens.extent > 0) {
+      const half = lens.extent / this.radius;
+      [this.orthographic.top, this.orthographic.bottom] = [half, -half];
+      [this.orthographic.left, this.orthographic.right] = [-half * aspect, half * aspect];
+      [this.orthographic.near, this.orthographic.far] = [-far, far];
+      this.orthographic.updateProjectionMatrix();
+      return this.orthographic;
+    }
+    this.perspective.fov = (2 * Math.atan(lens.slope) * 180) / Math.PI;
+    this.perspective.aspect = aspect;
+    this.perspective.near = Math.max(1e-5 * far, 0.2 * (away - this.reach()), 1e-3 * Math.min(1, away));
+    this.perspective.far = far;
+    this.perspective.updateProjectionMatrix();
+    return this.perspective;
+  }
+
+  // How far from the middle of the scene the body goes.
+  private reach(): number {
+    const box = this.body?.box;
+    return box ? Math.max(1, this.toUnits(box.lower).length(), this.toUnits(box.upper).length()) : 1;
+  }
+
+  private adapt(body: Body, lens: Lens, pinColour: string): void {
+    const middle = body.box ? ([0, 1, 2].map((c) => (body.box!.lower[c] + body.box!.upper[c]) / 2) as Vec3) : this.centre;
+    const depth = Math.max(dot(minus(middle, lens.eye), lens.forward), 1e-3 * this.radius);
+    const half = lens.extent > 0 ? lens.extent : lens.slope * depth;
+    const pixels = lens.height / 2 / half; // per metre
+    const lift = (lens.extent > 0 ? lens.extent / this.radius : lens.slope) / (lens.height / 2);
+    body.adapt(body.edge * pixels, this.renderer.getPixelRatio(), lift, pinColour);
+  }
+
+  // The shadow map covers the body, and changes only when it has to: else shadows would crawl.
+  private lightUp(box: Box): void {
+    const ball = new THREE.Box3(this.toUnits(box.lower), this.toUnits(box.upper)).getBoundingSphere(new THREE.Sphere());
+    const covered = ball.center.distanceTo(this.lit.center) + ball.radius <= this.lit.radius;
+    if (!covered || ball.radius < this.lit.radius / 3) {
+      this.lit.center.copy(ball.center);
+      this.lit.radius = 1.3 * ball.radius;
+    }
+    const { center, radius } = this.lit;
+    const shadow = this.sun.shadow;
+    this.sun.target.position.copy(center);
+    this.sun.position.copy(center).addScaledVector(this.sun.userData.from as THREE.Vector3, 4 * radius);
+    Object.assign(shadow.camera, { left: -radius, right: radius, top: radius, bottom: -radius, near: radius, far: 12 * radius });
+    shadow.normalBias = 0.012 * radius;
+    shadow.camera.updateProjectionMatrix();
+  }
+}
+
+// The smallest height of a box along `up`.
+function lowest(box: Box, up: Vec3): number {
+  return [0, 1, 2].reduce((sum, c) => sum + up[c] * (up[c] > 0 ? box.lower[c] : box.upper[c]), 0);
+}

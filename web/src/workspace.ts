@@ -1,0 +1,114 @@
+// A workspace file: the scene with its settings, the comparison, and what the reader chose in the page.
+import { saveFile } from "./dom";
+import type { Page } from "./page";
+import type { Recording, SettingValue } from "./protocol";
+import type { Store } from "./store";
+import { fileName } from "./video";
+
+export interface Workspace {
+  aspic_workspace: 1;
+  scene: string;
+  overrides: string[];
+  settings: Record<string, SettingValue>; // of side a
+  compare: Recording["compare"];
+  page: Record<string, unknown>; // by the names of Page.keepers
+}
+
+const isStrings = (value: unknown): value is string[] =>
+  Array.isArray(value) && value.every((entry) => typeof entry === "string");
+const isTable = (value: unknown): value is Record<string, unknown> =>
+  typeof value === "object" && value !== null && !Array.isArray(value);
+
+function isSetting(value: unknown): value is SettingValue {
+  if (Array.isArray(value)) return value.every((entry) => typeof entry === "number" || typeof entry === "string");
+  return ["number", "string", "boolean"].includes(typeof value);
+}
+
+function parseJson(text: string, what: string): Record<string, unknown> {
+  let read: unknown;
+  try {
+    read = JSON.parse(text);
+  } catch {
+    throw new Error(`The file is no JSON, so it is no ${what}.`);
+  }
+  if (!isTable(read)) throw new Error(`The file is no ${what}.`);
+  return read;
+}
+
+function parseCompare(value: unknown): Recording["compare"] {
+  if (!isTable(value) || !isStrings(value.overrides)) return null;
+  return { overrides: value.overrides, label: typeof value.label === "string" ? value.label : "B" };
+}
+
+// What a file says, or an error in words. What is unknown in it is left out.
+export function parseWorkspace(text: string): Workspace {
+  const read = parseJson(text, "workspace");
+  if (!("aspic_workspace" in read)) throw new Error("The file is no workspace of Aspic: it has no aspic_workspace.");
+  if (read.aspic_workspace !== 1) {
+    throw new Error(`The workspace is of version ${String(read.aspic_workspace)}; this page reads version 1.`);
+  }
+  if (typeof read.scene !== "string") throw new Error("The workspace names no scene.");
+  const settings = isTable(read.settings) ? read.settings : {};
+  return {
+    aspic_workspace: 1,
+    scene: read.scene,
+    overrides: isStrings(read.overrides) ? read.overrides : [],
+    settings: Object.fromEntries(Object.entries(settings).filter(([, value]) => isSetting(value))) as Workspace["settings"],
+    compare: parseCompare(read.compare),
+    page: isTable(read.page) ? read.page : {},
+  };
+}
+
+// Of a session, to be repeated. The program judges the events; the page only tells a recording from other files.
+export function parseRecording(text: string): Recording {
+  const read = parseJson(text, "recording");
+  if (typeof read.scene !== "string" || !Array.isArray(read.events) || typeof read.steps !== "number") {
+    throw new Error("The file is no recording of the mouse: it has no scene, events and steps.");
+  }
+  return read as unknown as Recording;
+}
+
+export function isWorkspace(text: string): boolean {
+  return text.includes('"aspic_workspace"');
+}
+
+export async function saveWorkspace(store: Store, page: Page): Promise<void> {
+  const { scene, overrides, compare } = await store.source.ask<Recording>({ ask: "recording" });
+  const shown = store.side("a")?.scene;
+  const workspace: Workspace = {
+    aspic_workspace: 1,
+    scene,
+    overrides,
+    settings: Object.fromEntries((shown?.settings ?? []).map((setting) => [setting.key, setting.value])),
+    compare,
+    page: Object.fromEntries([...page.keepers].map(([name, keeper]) => [name, keeper.save()])),
+  };
+  const text = JSON.stringify(workspace, null, 1);
+  saveFile(fileName(`${shown?.name ?? ""}.aspic`, "json"), new Blob([text], { type: "application/json" }));
+}
+
+export async function openWorkspace(workspace: Workspace, store: Store, page: Page): Promise<void> {
+  const { source } = store;
+  await source.request({ do: "load", scene: workspace.scene, overrides: workspace.overrides });
+  const refused: string[] = [];
+  for (const { key, value } of store.side("a")?.scene.settings ?? []) {
+    const kept = workspace.settings[key];
+    if (kept === undefined || JSON.stringify(kept) === JSON.stringify(value)) continue;
+    await source.request({ do: "set", key, value: kept }).catch(() => refused.push(key));
+  }
+  if (workspace.compare) await source.request({ do: "compare", ...workspace.compare });
+  restorePage(workspace, page);
+  if (refused.length > 0) page.notice(`The program refused these settings of the workspace: ${refused.join(", ")}`, "error");
+}
+
+// A part of the page that cannot use what was saved leaves the others alone.
+function restorePage(workspace: Workspace, page: Page): void {
+  for (const [name, keeper] of page.keepers) {
+    if (!(name in workspace.page)) continue;
+    try {
+      keeper.restore(workspace.page[name]);
+    } catch {
+      page.notice(`The workspace's "${name}" does not fit this page and was left out.`);
+    }
+  }
+}

@@ -1,0 +1,29 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { matches, neighbour } from "../src/lecture";
+import type { Lesson } from "../src/protocol";
+
+const lesson = (id: string, more: Partial<Lesson> = {}): Lesson => ({
+  id,
+  pages: "33-34",
+  title: "The mouse pulls",
+  claim: "A spring.",
+  look: "",
+  panel: "energy",
+  ...more,
+});
+
+test("a lesson is found by words of its text, in any order and case", () => {
+  assert.ok(matches(lesson("a"), "SPRING mouse"));
+  assert.ok(matches(lesson("a"), "33"));
+  assert.ok(matches(lesson("a"), ""));
+  assert.ok(!matches(lesson("a"), "spring hammer"));
+});
+
+test("previous and next skip what cannot be shown", () => {
+  const lessons = [lesson("a"), lesson("b", { missing: "a film" }), lesson("c")];
+  assert.equal(neighbour(lessons, lessons[0], 1), lessons[2]);
+  assert.equal(neighbour(lessons, lessons[2], -1), lessons[0]);
+  assert.equal(neighbour(lessons, lessons[2], 1), null);
+  assert.equal(neighbour(lessons, null, 1), lessons[0]);
+});
