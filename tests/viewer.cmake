@@ -7,4 +7,11 @@ if(TARGET aspic_viewer)
   target_link_libraries(test_viewer PRIVATE aspic_viewer)
   target_include_directories(test_viewer SYSTEM PRIVATE ${BOOST_INCLUDE})
   target_compile_definitions(test_viewer PRIVATE ASPIC_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+
+  # The page: types, unit tests, and the shortcuts in its guide.
+  set(web ${CMAKE_SOURCE_DIR}/web)
+  add_test(NAME page_types COMMAND ${NODE} ${web}/node_modules/typescript/bin/tsc --noEmit --project ${web})
+  add_test(NAME page_units COMMAND ${NODE} ${web}/test/run.mjs)
+  add_test(NAME page_guide COMMAND ${NODE} ${web}/test/guide.mjs ${CMAKE_BINARY_DIR}/web/page.html)
+  set_tests_properties(page_guide PROPERTIES SKIP_RETURN_CODE 77)
 endif()

@@ -20,8 +20,8 @@ constexpr int kComplaints = 5;                       // in one second
 
 // Commands that do not wait for the end of a slow step.
 bool is_urgent(std::string_view command) {
-  constexpr std::array<std::string_view, 9> kUrgent = {"pause",  "reset",  "load", "set",        "rewind",
-                                                       "lesson", "replay", "end",  "end_compare"};
+  constexpr std::array<std::string_view, 9> kUrgent = {"pause",  "reset",  "load",    "set",        "rewind",
+                                                       "lesson", "replay", "compare", "end_compare"};
   return std::find(kUrgent.begin(), kUrgent.end(), command) != kUrgent.end();
 }
 
@@ -73,7 +73,8 @@ void Room::leave(PageId id, const std::string& why) {
 void Room::steer(PageId id) {
   if (steers_ == id) return;
   steers_ = id;
-  simulation_->add({.page = kNoPage, .role = Role::steers, .text = R"({"do":"release"})"});
+  if (is_holding_) simulation_->add({.page = kNoPage, .role = Role::steers, .text = R"({"do":"release"})"});
+  is_holding_ = false;
   for (Page& page : pages_) tell_role(page);
 }
 
@@ -98,6 +99,7 @@ void Room::receive(PageId id, std::string text) {
   if (head.does == "take") return take(*page, head.id);
   if (text.empty()) text = " ";  // refused like any other text that is no message
   const bool steers = steers_ == id;
+  if (steers && (head.does == "grab" || head.does == "release")) is_holding_ = head.does == "grab";
   const bool urgent = steers && is_urgent(head.does);
   const bool is_added = simulation_->add({.page = id,
                                           .role = steers ? Role::steers : Role::watches,

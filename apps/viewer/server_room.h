@@ -66,6 +66,7 @@ class Room : public Audience {
 
   std::vector<Page> pages_;  // in the order of their arrival
   PageId last_id_ = kNoPage, steers_ = kNoPage;
+  bool is_holding_ = false;                               // the page that steers has grabbed the body
   std::vector<std::shared_ptr<const Message>> pictures_;  // the last ones shown
   long version_ = -1;
 };

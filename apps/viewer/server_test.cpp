@@ -23,7 +23,7 @@ constexpr char kScene[] = R"(
 step = 0.01
 [[body]]
 name = "box"
-shape = { box = { size = [0.2, 0.2, 0.2], cells = [2, 2, 2] } }
+shape = { box = { upper = [0.2, 0.2, 0.2], cells = [2, 2, 2] } }
 material = { young = 1e5, poisson = 0.3, density = 1000 }
 )";
 

@@ -3,13 +3,13 @@ export type Child = Node | string | null;
 
 export function element<Tag extends keyof HTMLElementTagNameMap>(
   tag: Tag,
-  attributes: Record<string, string | boolean> = {},
+  attributes: Record<string, string | boolean | undefined> = {},
   ...children: Child[]
 ): HTMLElementTagNameMap[Tag] {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (value === true) made.setAttribute(name, "");
-    else if (value !== false) made.setAttribute(name, value);
+    else if (value !== false && value !== undefined) made.setAttribute(name, value);
   }
   made.append(...children.filter((child) => child !== null));
   return made;

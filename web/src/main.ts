@@ -3,7 +3,6 @@ import { GUI } from "lil-gui";
 import "./style.css";
 import "./shell.css";
 import { makeCompareButton } from "./compare";
-import { makeDivider } from "./divider";
 import { Dock } from "./dock";
 import { Files } from "./files";
 import { Lecture } from "./lecture";
@@ -20,7 +19,8 @@ import { makeReportPanel } from "./panels/report";
 import { Settings } from "./panels/settings";
 import { findRecording, RecordedSource } from "./recorded";
 import { makeRole } from "./role";
-import { listenToKeys, shortcutButton } from "./shortcuts";
+import { listenToKeys } from "./shortcuts";
+import { Sidebar } from "./sidebar";
 import { Store } from "./store";
 import { Theme } from "./theme";
 import { makeToolbar } from "./toolbar";
@@ -34,43 +34,6 @@ function area(id: string): HTMLElement {
   return found;
 }
 
-// The settings, with their width and the key that hides them.
-function makeRight(page: Page): HTMLButtonElement {
-  const right = area("right");
-  const resize = (width: number): void => {
-    document.body.style.setProperty("--right-width", `${width}px`);
-    page.emit("layout", undefined);
-  };
-  right.append(
-    makeDivider({
-      label: "Width of the settings",
-      orientation: "vertical",
-      size: () => right.offsetWidth,
-      limits: () => [160, innerWidth * 0.5],
-      resize,
-    }),
-  );
-  const toggle = (hidden: boolean): void => {
-    right.hidden = hidden;
-    opener.setAttribute("aria-expanded", String(!hidden));
-    page.emit("layout", undefined);
-  };
-  const opener = shortcutButton(
-    page,
-    { key: "g", does: "Settings", group: "Panels", run: () => toggle(!right.hidden) },
-    { text: "Settings" },
-  );
-  page.keep("settings", {
-    save: () => ({ hidden: right.hidden, width: right.offsetWidth }),
-    restore: (saved) => {
-      const { hidden, width } = (saved ?? {}) as { hidden?: unknown; width?: unknown };
-      if (typeof hidden === "boolean") toggle(hidden);
-      if (typeof width === "number" && width >= 160 && width <= innerWidth * 0.5) resize(width);
-    },
-  });
-  return opener;
-}
-
 function buildPage(store: Store, page: Page): void {
   showNotices(area("messages"), store, page);
   const theme = new Theme(page);
@@ -80,16 +43,16 @@ function buildPage(store: Store, page: Page): void {
   const panels: Panel[] = [makeEnergyPanel(store, page), makeMicroscopePanel(store, page)];
   if (store.source.live) panels.push(makeLandscapePanel(store, page), functions);
   panels.push(makeReportPanel(store, page));
-  const settings = makeRight(page);
-  new Settings(area("right"), store, page);
-  addDisplayControls(new GUI({ container: area("right"), title: "View" }), display, page, views.all);
+  const sidebar = new Sidebar(area("right"), page);
+  new Settings(sidebar.body, store, page);
+  addDisplayControls(new GUI({ container: sidebar.body, title: "View" }), display, page, views.all);
   new Dock(area("dock"), page, panels);
   const lecture = new Lecture(area("left"), store, page, (question) => functions.open(question));
   const video = new Video(store, page, views.draw);
   area("views").append(video.indicator);
   const files = new Files(store, page).makeMenu([makeScreenshotButton(store, page, views.draw), video.opener]);
   const live = store.source.live ? [makeCompareButton(store, page), lecture.opener] : [];
-  makeToolbar(area("toolbar"), store, page, theme, [makeRole(store), ...live, files, settings]);
+  makeToolbar(area("toolbar"), store, page, theme, [makeRole(store), ...live, files, sidebar.opener]);
   listenToKeys(page);
 }
 

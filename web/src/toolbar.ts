@@ -45,18 +45,22 @@ function makeTransport(store: Store, page: Page): HTMLElement {
     { key: "s", does: "One time step", group, run: () => source.send({ do: "step" }) },
     { icon: "step", label: "Step", steers },
   );
-  const iterate = shortcutButton(
-    page,
-    { key: "i", does: "One iteration of the minimiser", group, run: () => source.send({ do: "iterate" }) },
-    { icon: "iterate", text: "1 iteration", steers },
-  );
-  iterate.hidden = !source.live;
   const reset = shortcutButton(
     page,
     { key: "r", does: "Back to the start", group, run: () => source.send({ do: "reset" }) },
     { icon: "reset", label: "Reset", steers },
   );
+  const iterate = source.live ? makeIterate(store, page) : null;
   return element("div", { class: "group" }, reset, play, step, iterate, makeSpeed(store));
+}
+
+function makeIterate(store: Store, page: Page): HTMLElement {
+  const run = (): void => store.source.send({ do: "iterate" });
+  return shortcutButton(
+    page,
+    { key: "i", does: "One iteration of the minimiser", group: "Simulation", run },
+    { icon: "iterate", text: "1 iteration", steers: true },
+  );
 }
 
 function makeSpeed(store: Store): HTMLElement {

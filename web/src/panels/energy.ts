@@ -97,7 +97,7 @@ class EnergyPanel implements Panel {
     this.byStep = this.shown().every(({ ledger }) => (ledger.time[ledger.time.length - 1] ?? 0) === 0);
     this.chart.configure({
       label: "Energy over time",
-      x: this.byStep ? { label: "step", integer: true } : { label: "time", unit: "s" },
+      x: this.byStep ? { label: "step", integer: true } : { label: "time [s]" },
       y: { label: log ? "|energy|" : "energy", unit: "J", log },
       curves: this.curves(),
       legend: "side",
@@ -135,7 +135,7 @@ class EnergyPanel implements Panel {
     const texts = sides.map(({ side, ledger }) => {
       const i = x === null ? this.nowIndex(ledger) : nearest(this.xOf(ledger), x);
       const label = sides.length > 1 ? `${this.store.side(side)?.scene.label || side}: ` : "";
-      return `${label}step ${ledger.step[i]}${this.byStep ? "" : `, ${withUnit(ledger.time[i], "s")}`}`;
+      return `${label}step ${ledger.step[i]}${this.byStep ? "" : `, ${short(ledger.time[i])} s`}`;
     });
     return texts.join(" · ");
   }
@@ -186,7 +186,7 @@ class EnergyPanel implements Panel {
       const { drift, scale } = ledger.drift();
       if (ledger.step.length < 2 || !Number.isFinite(drift)) return "";
       const name = this.ledgers.b ? `${this.store.side(side)?.scene.label || side}: ` : "";
-      return `${name}the balance moved by ${withUnit(drift, "J", 2)}, ${short(scale > 0 ? drift / scale : 0, 2)} of the largest energy`;
+      return `${name}balance flat to ${withUnit(drift, "J", 2)} (${short(scale > 0 ? drift / scale : 0, 2)} of the largest energy)`;
     });
     const dashes = this.ledgers.b ? [`${this.store.side("b")?.scene.label || "b"} is dashed`] : [];
     const logText = this.logSwitch.input.checked ? ["absolute values; zeros are left out"] : [];

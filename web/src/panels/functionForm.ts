@@ -39,37 +39,37 @@ export interface Preset {
 export const kPresets: Preset[] = [
   {
     title: "Gradient descent zig-zags",
-    shows: "The negative gradient points across the valley, not along it: after a first jump the path zig-zags and creeps.",
-    name: "rosenbrock",
-    start: [-0.8, 0.6],
+    shows: "The negative gradient points across the valley, not along it: the path jumps from wall to wall and creeps. Newton's method takes one iteration here.",
+    name: "quadratic",
+    start: [0.3, 1.3],
     settings: { method: "gradient_descent", max_iterations: 200 },
-    log: true,
-    iteration: 1,
+    log: false,
+    iteration: 0,
   },
   {
     title: "Newton overshoots",
-    shows: "Without a line search the full step to the model's minimum may land higher than it started: the orange model is right only nearby.",
+    shows: "Iteration 1 goes straight to the model's minimum and lands far up on the other side: the orange model is right only nearby. Nothing stops it without a line search.",
     name: "rosenbrock",
-    start: [-0.8, 0.2],
+    start: [-0.9, 0.5],
     settings: { method: "newton", "line_search.test": "none", definiteness: "exact" },
     log: false,
-    iteration: 0,
+    iteration: 1,
   },
   {
     title: "Backtracking helps",
-    shows: "The same start, but trials that do not lower f enough are rejected (crosses) and the step is halved until one does (dot).",
+    shows: "The same start and the same direction, but trials that do not lower f enough are rejected (crosses) and the step is halved until one does (dot).",
     name: "rosenbrock",
-    start: [-0.8, 0.2],
+    start: [-0.9, 0.5],
     settings: { method: "newton", "line_search.test": "textbook" },
     log: false,
-    iteration: 0,
+    iteration: 1,
   },
   {
     title: "An indefinite model",
-    shows: "Beside the bump the Hessian is indefinite and the model has no minimum: its negative curvature is raised before Newton's step is taken.",
+    shows: "Between dip and bump the Hessian is indefinite and the model has no minimum: its negative curvature is taken as positive before Newton's step is made.",
     name: "two_bump",
-    start: [0.1, 0.4],
-    settings: { method: "newton" },
+    start: [-0.2, 0.6],
+    settings: { method: "newton", definiteness: "absolute" },
     log: false,
     iteration: 0,
   },
@@ -115,7 +115,7 @@ export class FunctionForm {
     ];
     const ends = [
       this.number("tolerance", "tolerance", "How small the gradient must become", { min: 0 }),
-      this.number("max_iterations", "at most", "Iterations", { min: 1, max: 100000, step: 1 }),
+      this.number("max_iterations", "at most", "Iterations", { min: 1, max: 500, step: 1 }),
     ];
     const row = (...children: HTMLElement[]): HTMLElement => element("div", { class: "pair" }, ...children);
     this.element.append(row(this.name.element), this.formula, this.error, row(this.x.element, this.y.element), row(...method), row(...search), row(...ends));
@@ -148,7 +148,7 @@ export class FunctionForm {
     const settings = { ...kDefaults, ...question.settings };
     this.others = Object.fromEntries(Object.entries(question.settings).filter(([key]) => !this.choices.has(key) && !this.numbers.has(key)));
     for (const [key, select] of this.choices) select.value = String(settings[key]);
-    for (const [key, input] of this.numbers) input.value = String(settings[key]);
+    for (const [key, input] of this.numbers) input.value = brief(Number(settings[key]));
   }
 
   private nameChanged(): void {
@@ -166,7 +166,13 @@ export class FunctionForm {
 
   private number(key: string, text: string, title: string, limits: { min?: number; max?: number; step?: number }): HTMLElement {
     const made = numberField(text, title, Number(kDefaults[key]), limits, this.changed);
+    made.input.value = brief(Number(kDefaults[key]));
     this.numbers.set(key, made.input);
     return made.element;
   }
+}
+
+// 1e-6 rather than 0.000001
+function brief(value: number): string {
+  return value !== 0 && Math.abs(value) < 1e-3 ? value.toExponential() : String(value);
 }

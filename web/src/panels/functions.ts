@@ -6,6 +6,7 @@ import { button, checkbox, downloadCanvas, element, fileName } from "../plots/do
 import { isInside, minimizerOf, quadraticAt, uniform, type Grid } from "../plots/grid";
 import { legendLines, legendOf, type Sign } from "../plots/legend";
 import { plural, short } from "../plots/numbers";
+import { sentence } from "../plots/words";
 import { SearchChart } from "../plots/search";
 import { SurfaceView, type Mark, type SurfaceContent } from "../plots/surface";
 import { FunctionForm, kPresets, type Preset } from "./functionForm";
@@ -27,13 +28,14 @@ class PlanarPanel implements FunctionsPanel {
   readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Minimising a function of two variables" });
   private readonly form = new FunctionForm(() => this.formChanged());
   private readonly view = new SurfaceView();
-  private readonly search = new SearchChart();
+  private readonly search = new SearchChart("f");
   private readonly slider = element("input", { type: "range", min: "0", max: "0", value: "0", "aria-label": "Iteration" });
   private readonly where = element("strong");
   private readonly playButton = button("▶ play", "Goes through the iterations", () => this.togglePlay());
   private readonly model = checkbox("quadratic model", "Shows the model that this iteration minimised", true, () => this.draw());
   private readonly log = checkbox("log height", "Heights by the logarithm of f above its lowest value here", false, () => this.draw());
   private readonly words = element("div", { class: "plot-note", role: "status" });
+  private readonly about = element("div", { class: "plot-note" });
   private readonly legend = element("div");
   private reply: FunctionReply | null = null;
   private signs: Sign[] = [];
@@ -49,14 +51,14 @@ class PlanarPanel implements FunctionsPanel {
     private readonly store: Store,
     page: Page,
   ) {
-    const presets = element("div", { class: "plot-bar", role: "group", "aria-label": "Examples" });
+    const presets = element("div", { class: "pair", role: "group", "aria-label": "Examples" });
     for (const preset of kPresets) presets.append(button(preset.title, preset.shows, () => this.openPreset(preset)));
+    this.form.element.prepend(presets);
     const walk = element("div", { class: "plot-bar" }, this.playButton, this.slider, this.where, this.model.element, this.log.element);
     walk.append(button("PNG", "Save the picture", () => this.savePng()), this.words);
-    this.form.element.append(this.legend);
-    const right = element("div", { style: "flex: 0 0 32%; min-width: 0" }, this.search.element);
-    const columns = element("div", { class: "plot-columns plot-fill" }, this.form.element, element("div", { class: "plot-fill" }, this.view.element), right);
-    this.element.append(presets, walk, columns);
+    const chart = element("div", { class: "functions-chart" }, this.search.element);
+    const right = element("div", { class: "functions-side" }, this.about, chart, this.legend);
+    this.element.append(walk, element("div", { class: "plot-columns plot-fill" }, this.form.element, element("div", { class: "plot-fill" }, this.view.element), right));
     this.slider.addEventListener("input", () => {
       this.stop();
       this.goTo(this.slider.valueAsNumber);
@@ -186,7 +188,8 @@ class PlanarPanel implements FunctionsPanel {
     this.where.textContent = row ? `iteration ${this.iteration} of ${reply.iterations.length}` : "no iteration";
     const test = this.form.question(0, 2).settings["line_search.test"];
     this.search.show(row ? { curve: reply.curve, trials: reply.trials, test: String(test) } : null);
-    this.words.textContent = [this.shows, reply.text, this.cutText()].filter((text) => text !== "").join(" ");
+    this.about.textContent = this.shows;
+    this.words.textContent = [sentence(reply.text), this.cutText()].filter((text) => text !== "").join(" ");
     this.words.dataset.kind = reply.status === "converged" || reply.status === "round_off" ? "" : "bad";
   }
 
@@ -211,7 +214,7 @@ class PlanarPanel implements FunctionsPanel {
     if (from) marks.push({ x: from.x, y: from.y, value: from.value, shape: "dot", colour: "accent", size: 12 });
     if (to) marks.push({ x: to.x, y: to.y, value: to.value, shape: "dot", colour: "good", size: 12 });
     const [x, y] = this.form.start;
-    marks.push({ x, y, value: null, shape: "ring", colour: "bad", size: 18, label: "start: drag me" });
+    marks.push({ x, y, value: null, shape: "ring", colour: "bad", size: 13, label: "start: drag me" });
     this.signs.push({ sign: "●", colour: "accent", text: "this iteration begins here" }, { sign: "●", colour: "good", text: "and ends here" });
     this.signs.push({ sign: "•─", colour: "text", text: "iterates so far" });
     return {

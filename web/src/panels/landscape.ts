@@ -40,7 +40,7 @@ class LandscapePanel implements Panel {
     const bar = element("div", { class: "plot-bar" });
     bar.append(button("◀", "The iteration before", () => this.chosen.walk(-1)), this.where, button("▶", "The iteration after", () => this.chosen.walk(1)));
     bar.append(this.follow.element, this.model.element, this.log.element, button("PNG", "Save the picture", () => this.savePng()), this.note);
-    const side = element("div", { class: "surface-side", style: "flex: 0 0 19em" }, this.text, this.legend);
+    const side = element("div", { class: "surface-side", style: "flex: 0 1 34em" }, element("div", { class: "surface-texts" }, this.legend, this.text));
     const fill = element("div", { class: "plot-fill" }, this.view.element);
     this.element.append(bar, element("div", { class: "plot-columns plot-fill" }, fill, side));
     this.chosen.on("changed", this.refresh);
@@ -136,8 +136,8 @@ class LandscapePanel implements Panel {
   private explanation(reply: IterationReply): string {
     const cut = this.view.cutAbove;
     const sentences = [
-      "You look at E over the plane of all positions x + s d + t v: d is the direction that the solver chose, v is as long and lies across it, towards the steepest descent.",
-      "Newton's method goes where the orange model is lowest; where model and surface part, the full step overshoots and the line search has to shorten it.",
+      "This is E over the plane x + s d + t v through the iterate x: d is the direction that the solver chose, v is as long and lies across it, towards steepest descent.",
+      "Newton's method goes where the orange model is lowest; where it parts from the surface, the full step misses and the line search shortens it.",
     ];
     if (cut !== null) sentences.push(`Walls above E = ${short(cut, 4)} are cut off.`);
     if (reply.slice.value.some((v: MaybeNumber) => v === null)) sentences.push("Holes: E is infinite there.");

@@ -92,8 +92,7 @@ class MicroscopePanel implements Panel {
       { title: "step", meaning: "number of the time step; the newest is first", text: of((s) => String(s.step)) },
       { title: "status", meaning: "how the minimisation ended", left: true, class: "status", text: of((s) => statusText(s)) },
       { title: "it.", meaning: "iterations of the minimiser", text: of((s) => String(s.iterations.length)) },
-      { title: "residual", meaning: "norm of the forces that are left over", text: of((s) => withUnit(s.residual, "N", 3)) },
-      { title: "threshold", meaning: "what the residual must be below", text: of((s) => withUnit(s.threshold, "N", 3)) },
+      { title: "residual", meaning: "norm of the forces that are left over, in parts of the threshold that it must be below", text: of(residualText) },
       { title: "took", meaning: "wall time", text: of((s) => withUnit(s.seconds, "s", 3)) },
     ];
   }
@@ -105,9 +104,9 @@ class MicroscopePanel implements Panel {
     };
     return [
       { title: "#", meaning: "iteration of the step", text: (row) => this.mark(row) },
-      { title: "E", meaning: "the objective before the iteration", text: of((it) => short(it.value, 8)) },
+      { title: "E", meaning: "the objective before the iteration", text: of((it) => short(it.value, 6)) },
       { title: "|g|", meaning: "norm of its gradient", text: of((it) => short(it.gradient_norm, 3)) },
-      { title: "decrement", meaning: "−g·d / 2: what the quadratic model promises", text: of((it) => short(it.decrement, 3)) },
+      { title: "decr.", meaning: "−g·d / 2: what the quadratic model promises", text: of((it) => short(it.decrement, 3)) },
       { title: "α", meaning: "accepted step length; 0: none was found", text: of((it) => (it.alpha === 0 ? "none" : short(it.alpha, 3))) },
       { title: "trials", meaning: "of the line search", text: of((it) => (it.trials.length > 0 ? String(it.trials.length) : "–")) },
       { title: "proj.", meaning: "elements whose Hessian was made definite", text: of((it) => String(it.projected_elements)) },
@@ -119,7 +118,7 @@ class MicroscopePanel implements Panel {
   private mark(row: number): string {
     const count = this.chosen.row()?.iterations.length ?? 0;
     const done = (this.store.state?.[this.chosen.side]?.iteration ?? -1) < 0 || this.stepAt(0)?.step !== this.chosen.step;
-    return row === count - 1 && done ? `last ${row}` : String(row);
+    return row === count - 1 && done ? `end ${row}` : String(row);
   }
 
   private chooseStep(row: number): void {
@@ -198,7 +197,7 @@ class MicroscopePanel implements Panel {
   // As many charts as there is room for.
   private arrange(): void {
     const font = Number.parseFloat(getComputedStyle(this.grid).fontSize) || 14;
-    const across = Math.max(1, Math.min(3, Math.floor(this.grid.clientWidth / (19 * font))));
+    const across = Math.max(1, Math.min(3, Math.floor(this.grid.clientWidth / (16 * font))));
     const down = Math.max(1, Math.min(2, Math.floor(this.grid.clientHeight / (11 * font))));
     this.grid.style.gridTemplate = `repeat(${down}, minmax(0, 1fr)) / repeat(${across}, minmax(0, 1fr))`;
     const count = across * down;
@@ -244,6 +243,11 @@ class MicroscopePanel implements Panel {
     this.charts.forEach((chart, i) => (chart.name = this.names[i]!));
     this.redraw();
   }
+}
+
+function residualText(step: StepRow): string {
+  if (step.residual === null || step.threshold === null || step.threshold <= 0) return withUnit(step.residual, "N", 3);
+  return `${short(step.residual / step.threshold, 2)} ×`;
 }
 
 function statusText(step: StepRow): string {

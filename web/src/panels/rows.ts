@@ -92,9 +92,7 @@ export class NumberRow extends ValueRow {
     for (const end of ["pointerup", "pointercancel", "blur"]) {
       this.slider.addEventListener(end, () => this.release());
     }
-    this.slider.addEventListener("input", () => {
-      this.setValue(toValue(Number(this.slider.value) / kSliderSteps, range));
-    });
+    this.slider.addEventListener("input", () => this.setValue(this.slid(Number(this.slider.value) / kSliderSteps)));
     this.$widget.append(this.slider, this.field);
     this.updateDisplay();
   }
@@ -106,6 +104,14 @@ export class NumberRow extends ValueRow {
     }
     this.slider.setAttribute("aria-valuetext", this.text());
     return this;
+  }
+
+  // An arrow key goes to the next integer, however short its way on the slider.
+  private slid(position: number): number {
+    const value = toValue(position, this.range);
+    const before = this.model.value;
+    if (this.held || this.range.kind !== "integer" || value !== before) return value;
+    return value + Math.sign(position - toPosition(before, this.range));
   }
 
   private release(): void {

@@ -43,7 +43,8 @@ export class Settings {
     this.surface = this.makeSurface();
     root.append(element("label", { class: "surface-choice" }, element("span", {}, "Surface"), this.surface));
     this.gui = new GUI({ container: root, title: "Simulation" });
-    this.mouse = this.makeMouse(this.gui.addFolder("Spring of the mouse"));
+    const spring = this.gui.addFolder("Spring of the mouse").show(store.source.live);
+    this.mouse = this.makeMouse(spring);
     store.on("scene", () => this.update());
     store.on("gone", () => this.update());
     store.on("role", () => this.enable());

@@ -183,6 +183,7 @@ export class Chart {
       width: shape === "points" ? 0 : (curve.width ?? 1.5),
       dash: curve.dash,
       spanGaps: true,
+      pxAlign: 0,
       fill: shape === "bars" ? stroke : undefined,
       paths: shape === "bars" ? uPlot.paths.bars!({ size: [0.7, 40] }) : undefined,
       points: { show: shape === "points" || shape === "both" ? true : undefined, size: 6, fill: shape === "line" ? undefined : stroke },
@@ -278,6 +279,7 @@ function axis(options: Axis & { log?: boolean }, colours: Palette, vertical: boo
     font: colours.font,
     labelFont: colours.font,
     grid: { stroke: colours.line, width: 1 },
+    splits: options.log === true ? (u) => powersOfTen(u, colours.fontSize) : undefined,
     ticks: { stroke: colours.line, width: 1, size: 4 },
     gap: 3,
     label: (u) => (options.unit === undefined ? options.label : `${options.label} [${factorOf(u).letter}${options.unit}]`),
@@ -286,15 +288,25 @@ function axis(options: Axis & { log?: boolean }, colours: Palette, vertical: boo
     space: vertical ? colours.fontSize * 2.2 : colours.fontSize * 5,
     incrs: options.integer === true ? [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000, 1e6, 1e7] : undefined,
     size: (_u, values) => (vertical ? Math.max(...(values ?? []).map((v) => measure.measureText(v ?? "").width), colours.fontSize) + 10 : colours.fontSize * 1.7),
-    values: (u, splits) => (options.log === true ? splits.map(powerOfTen) : ticks(splits, factorOf(u).factor)),
+    values: (u, splits) => (options.log === true ? splits.map(superscript) : ticks(splits, factorOf(u).factor)),
   };
 }
 
+// As many as have room for their texts.
+function powersOfTen(u: uPlot, fontSize: number): number[] {
+  const { min, max } = u.scales.y!;
+  if (!(min! > 0) || !(max! > 0)) return [];
+  const [first, last] = [Math.ceil(Math.log10(min!) - 1e-9), Math.floor(Math.log10(max!) + 1e-9)];
+  const room = Math.max(1, u.over.clientHeight / (2 * fontSize));
+  const stride = Math.max(1, Math.ceil((last - first) / room));
+  const out: number[] = [];
+  for (let exponent = last; exponent >= first; exponent -= stride) out.unshift(10 ** exponent);
+  return out;
+}
+
 const kSuperscripts = "⁰¹²³⁴⁵⁶⁷⁸⁹";
-function powerOfTen(value: number | null): string {
-  if (value === null) return "";
+function superscript(value: number): string {
   const exponent = Math.log10(value);
-  if (Math.abs(exponent - Math.round(exponent)) > 1e-6) return "";
   const digits = [...String(Math.abs(Math.round(exponent)))].map((d) => kSuperscripts[Number(d)]).join("");
   return `10${exponent < -0.5 ? "⁻" : ""}${digits}`;
 }

@@ -1,16 +1,7 @@
-// Small builders of the page's elements. Text is always text, never markup.
-type Child = Node | string;
+// Small builders of the plots' controls.
+import { element, saveFile } from "../dom";
 
-export function element<K extends keyof HTMLElementTagNameMap>(
-  tag: K,
-  properties: { class?: string; title?: string } & Record<string, string | undefined> = {},
-  ...children: Child[]
-): HTMLElementTagNameMap[K] {
-  const made = document.createElement(tag);
-  for (const [name, value] of Object.entries(properties)) if (value !== undefined) made.setAttribute(name, value);
-  made.append(...children);
-  return made;
-}
+export { element, saveFile as download };
 
 export function button(text: string, title: string, click: () => void): HTMLButtonElement {
   const made = element("button", { type: "button", title, class: "plot-button" }, text);
@@ -72,14 +63,8 @@ export function numberField(
   return { element: element("label", { class: "plot-field", title }, text + " ", input), input };
 }
 
-export function download(name: string, content: Blob): void {
-  const link = element("a", { href: URL.createObjectURL(content), download: name });
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
-}
-
 export function downloadCanvas(name: string, canvas: HTMLCanvasElement): void {
-  canvas.toBlob((blob) => blob && download(name, blob), "image/png");
+  canvas.toBlob((blob) => blob && saveFile(name, blob), "image/png");
 }
 
 // A letter at most of each kind that any file system takes.

@@ -14,18 +14,31 @@ export interface Search {
 
 // What the axis shows: the valley, and trials as long as they do not dwarf it. Values are differences from E at alpha 0.
 export function searchRange(values: readonly MaybeNumber[], model: readonly MaybeNumber[], trials: readonly MaybeNumber[]): [number, number] {
-  const known = [...values, ...model].filter((v): v is number => v !== null && Number.isFinite(v));
-  const low = Math.min(0, ...known, ...trials.filter((v): v is number => v !== null));
-  const depth = -low || Math.max(...known.map(Math.abs), 1e-300);
-  const high = [...values, ...trials].filter((v): v is number => v !== null && v > 0 && v <= 4 * depth);
+  const known = (list: readonly MaybeNumber[]): number[] => list.filter((v): v is number => v !== null && Number.isFinite(v));
+  const lowest = Math.min(0, ...known(values), ...known(trials));
+  const promised = Math.min(0, ...known(model));
+  const depth = -lowest || -promised || Math.max(...known(values).map(Math.abs), 1e-300);
+  const low = Math.max(Math.min(lowest, promised), -2 * depth); // a model without a minimum has no end
+  const high = [...known(values), ...known(trials)].filter((v) => v > 0 && v <= 4 * depth);
   const top = Math.min(4 * depth, Math.max(0.25 * depth, ...high));
   const margin = 0.07 * (top - low);
   return [low - margin, top + margin];
 }
 
+// Of alpha: all trials, or where the accepted one is much shorter and the curve is known there, its surroundings.
+export function alphaRange(alpha: readonly number[], trials: readonly TrialRow[]): [number, number] {
+  const [first, last] = [alpha[0] ?? 0, alpha[alpha.length - 1] ?? 1];
+  const accepted = trials.find((trial) => trial.accepted)?.alpha ?? 0;
+  const [low, high] = [-0.5 * accepted, 3 * accepted];
+  const known = alpha.filter((a) => a >= low && a <= high).length;
+  return accepted > 0 && last > 2 * high && known >= 12 ? [Math.max(low, first), high] : [first, last];
+}
+
 export class SearchChart {
   readonly chart = new Chart();
   private search: Search | null = null;
+
+  constructor(private readonly symbol = "E") {}
 
   get element(): HTMLElement {
     return this.chart.element;
@@ -41,10 +54,11 @@ export class SearchChart {
     this.chart.configure({
       label: "E along the direction d",
       x: { label: "α" },
-      y: { label: "E(x + α d) − E(x)" },
-      curves: curvesOf(search),
+      y: { label: `${this.symbol} − ${this.symbol}(α = 0)` },
+      curves: curvesOf(search, this.symbol),
       legend: "top",
       read: (key, alpha) => this.read(key, alpha),
+      xRange: () => alphaRange(search.curve.alpha, search.trials),
       yRange: () => this.range(),
       paint: (u, colours) => this.paintTrials(u, colours),
     });
@@ -60,7 +74,10 @@ export class SearchChart {
   private columns(): MaybeNumber[][] {
     const { curve, test } = this.search!;
     const origin = this.origin();
-    const shifted = (values: MaybeNumber[]): MaybeNumber[] => values.map((v) => (v === null ? null : v - origin));
+    const [low, high] = this.range();
+    const far = 20 * (high - low); // canvases take ages to dash lines that are a million times as long
+    const near = (v: number): number => Math.min(high + far, Math.max(low - far, v));
+    const shifted = (values: MaybeNumber[]): MaybeNumber[] => values.map((v) => (v === null ? null : near(v - origin)));
     const ahead = (values: MaybeNumber[]): MaybeNumber[] => shifted(values).map((v, i) => (curve.alpha[i]! < 0 ? null : v));
     const columns = [shifted(curve.value), shifted(curve.model)];
     if (test !== "none") columns.push(ahead(curve.textbook));
@@ -71,13 +88,16 @@ export class SearchChart {
   private range(): [number, number] {
     const { curve, trials } = this.search!;
     const origin = this.origin();
-    const shifted = (values: MaybeNumber[]): MaybeNumber[] => values.map((v) => (v === null ? null : v - origin));
-    return searchRange(shifted(curve.value), shifted(curve.model), shifted(trials.map((t) => t.value)));
+    const [low, high] = alphaRange(curve.alpha, trials);
+    const shown = (alpha: number): boolean => alpha >= low && alpha <= high;
+    const shifted = (values: MaybeNumber[]): MaybeNumber[] => values.map((v, i) => (v === null || !shown(curve.alpha[i]!) ? null : v - origin));
+    const tried = trials.filter((t) => shown(t.alpha)).map((t) => (t.value === null ? null : t.value - origin));
+    return searchRange(shifted(curve.value), shifted(curve.model), tried);
   }
 
   private read(key: string, alpha: number | null): string[] {
     if (!this.search || alpha === null) return [];
-    const column = curvesOf(this.search).findIndex((c) => c.key === key);
+    const column = curvesOf(this.search, this.symbol).findIndex((c) => c.key === key);
     return [short(this.columns()[column]?.[nearest(this.search.curve.alpha, alpha)], 4)];
   }
 
@@ -104,8 +124,13 @@ export class SearchChart {
       if (left < right && !trial.accepted) continue;
       right = left + width;
       pen.fillStyle = trial.accepted ? colours.good : colours.bad;
+      pen.strokeStyle = colours.panel;
+      pen.lineWidth = 4 * scale;
+      pen.lineJoin = "round";
       pen.textBaseline = "middle";
-      pen.fillText(text, left, y + (y < u.bbox.top + 14 * scale ? 12 : -10) * scale);
+      const line = y + (y < u.bbox.top + 18 * scale ? 14 : -13) * scale;
+      pen.strokeText(text, left, line);
+      pen.fillText(text, left, line);
     }
     pen.restore();
   }
@@ -127,9 +152,9 @@ function mark(pen: CanvasRenderingContext2D, accepted: boolean, x: number, y: nu
   pen.stroke();
 }
 
-function curvesOf(search: Search): Curve[] {
+function curvesOf(search: Search, symbol: string): Curve[] {
   const curves: Curve[] = [
-    { key: "value", label: "E", meaning: "the objective along d", colour: "series1", width: 2.25 },
+    { key: "value", label: symbol, meaning: "the objective along d", colour: "series1", width: 2.25 },
     { key: "model", label: "quadratic model", meaning: "E + α g·d + α²/2 d·H d", colour: "series2", width: 1.75, dash: [6, 4] },
   ];
   if (search.test !== "none")

@@ -6,10 +6,10 @@ import { LineGeometry } from "three/addons/lines/LineGeometry.js";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import type { MaybeNumber } from "../protocol";
 import { element, oncePerFrame } from "./dom";
-import { clipped, heightRange, isInside, roundTicks, sample, valueAtHeight, type Grid, type Point } from "./grid";
-import { short, ticks } from "./numbers";
+import { clipped, heightRange, isInside, sample, valueAtHeight, type Grid, type Point } from "./grid";
 import { palette, type Colour, type Palette } from "./palette";
 import { Frame, gridLines, levelLines, markTexture, surfaceGeometry, type MarkShape } from "./surfaceParts";
+import { axisLabels, placed, type Label, type Placed } from "./surfaceLabels";
 import "./plots.css";
 
 export interface Mark extends Point {
@@ -31,13 +31,6 @@ export interface SurfaceContent {
   marks: Mark[];
   keep: MaybeNumber[]; // values that are not cut off
   log: boolean;
-}
-
-interface Label {
-  text: string;
-  place: THREE.Vector3;
-  colour: Colour;
-  important: boolean; // shown even if it covers another
 }
 
 const kHome = { azimuth: -0.55, polar: 1.02 };
@@ -96,7 +89,7 @@ export class SurfaceView {
     this.frame = new Frame(content.grid, range, content.log ? "log" : "linear");
     this.addSurface(content, this.frame, this.colours);
     if (content.model) this.addModel(content.model, this.frame, this.colours);
-    this.addBox(content, this.frame, this.colours);
+    this.addBox(this.frame, this.colours);
     this.addPath(content, this.frame, this.colours);
     for (const mark of content.marks) this.addMark(mark, content, this.frame, this.colours);
     this.redraw();
@@ -118,7 +111,7 @@ export class SurfaceView {
     pen.drawImage(source, 0, line * 1.5);
     pen.textBaseline = "middle";
     pen.font = `${this.colours.fontSize * 0.82 * scale}px sans-serif`;
-    for (const { label, x, y } of this.placed()) {
+    for (const { label, x, y } of this.placedLabels()) {
       pen.fillStyle = this.colours[label.colour];
       pen.fillText(label.text, x * scale, y * scale + line * 1.5);
     }
@@ -165,14 +158,35 @@ export class SurfaceView {
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    const half = Math.tan(((this.camera.fov / 2) * Math.PI) / 180);
-    const distance = Math.max(0.86 / half, 1.5 / (half * this.camera.aspect)) + 0.9;
+    const distance = this.distanceThatShowsAll();
     const offset = this.camera.position.clone().sub(this.controls!.target);
     const factor = this.fitted > 0 ? distance / this.fitted : distance / offset.length();
     this.camera.position.copy(this.controls!.target).add(offset.multiplyScalar(factor));
     this.fitted = distance;
     this.controls!.update();
     this.redraw();
+  }
+
+  // From the usual direction, with room for the numbers at the axes.
+  private distanceThatShowsAll(): number {
+    const probe = this.camera.clone();
+    const [w, d, h] = [1.15 * (this.frame?.width ?? 2) * 0.5, 1.15 * (this.frame?.depth ?? 2) * 0.5, 0.95];
+    const corners = [-w, w].flatMap((x) => [-d, d].flatMap((z) => [-0.02, h].map((y) => new THREE.Vector3(x, y, z))));
+    const margin = 1 - (2.2 * (this.colours?.fontSize ?? 14)) / Math.max(1, this.element.clientHeight);
+    let [near, far] = [1.5, 40];
+    for (let i = 0; i < 24; ++i) {
+      const distance = 0.5 * (near + far);
+      probe.position.setFromSphericalCoords(distance, kHome.polar, kHome.azimuth).add(this.controls!.target);
+      probe.lookAt(this.controls!.target);
+      probe.updateMatrixWorld();
+      const fits = corners.every((corner) => {
+        const at = corner.clone().project(probe);
+        return Math.abs(at.y) <= margin && Math.abs(at.x) <= margin;
+      });
+      if (fits) far = distance;
+      else near = distance;
+    }
+    return far;
   }
 
   private clear(): void {
@@ -193,22 +207,22 @@ export class SurfaceView {
     const lines = new THREE.LineBasicMaterial({ color: 0x000000, transparent: true, opacity: 0.16 });
     const grid = new THREE.LineSegments(gridLines(frame, content.grid.value, 20), lines);
     const toValue = valueAtHeight(frame.range, frame.scale);
-    const levels = Array.from({ length: 15 }, (_, i) => toValue((i + 1) / 16));
+    const levels = Array.from({ length: 11 }, (_, i) => toValue((i + 1) / 12));
     const level = (flat: boolean, colour: string, opacity: number): THREE.LineSegments =>
       new THREE.LineSegments(levelLines(frame, content.grid.value, levels, flat), new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity }));
-    this.content.add(this.surface, grid, level(false, "#ffffff", 0.45), level(true, colours.faint, 0.5));
+    this.content.add(this.surface, grid, level(false, "#ffffff", 0.45), level(true, colours.faint, 0.4));
   }
 
   private addModel(model: MaybeNumber[], frame: Frame, colours: Palette): void {
     const colour = new THREE.Color(colours.series2);
-    const material = new THREE.MeshLambertMaterial({ color: colour, side: THREE.DoubleSide, transparent: true, opacity: 0.42, depthWrite: false });
+    const material = new THREE.MeshLambertMaterial({ color: colour, side: THREE.DoubleSide, transparent: true, opacity: 0.32, depthWrite: false });
     const mesh = new THREE.Mesh(surfaceGeometry(frame, model, false), material);
     const lines = new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity: 0.65 });
     mesh.renderOrder = 1;
     this.content.add(mesh, new THREE.LineSegments(gridLines(frame, model, 14), lines));
   }
 
-  private addBox(content: SurfaceContent, frame: Frame, colours: Palette): void {
+  private addBox(frame: Frame, colours: Palette): void {
     const [w, d] = [frame.width / 2, frame.depth / 2];
     const corners = [[-w, -d], [w, -d], [w, d], [-w, d], [-w, -d]] as const;
     const base = corners.map(([x, z]) => new THREE.Vector3(x, -0.02, z));
@@ -216,7 +230,6 @@ export class SurfaceView {
     this.content.add(new THREE.Line(new THREE.BufferGeometry().setFromPoints(base), material));
     const posts = corners.slice(0, 4).flatMap(([x, z]) => [new THREE.Vector3(x, -0.02, z), new THREE.Vector3(x, frame.tall, z)]);
     this.content.add(new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(posts), new THREE.LineBasicMaterial({ color: colours.line })));
-    void content;
   }
 
   private lineThrough(points: THREE.Vector3[], colour: string, width: number, dashed = false): void {
@@ -237,8 +250,10 @@ export class SurfaceView {
     const ends = clipped(content.grid, p, q);
     if (!ends) return [];
     const points: THREE.Vector3[] = [];
-    for (let i = 0; i <= 24; ++i) {
-      const [x, y] = [ends[0].x + (i / 24) * (ends[1].x - ends[0].x), ends[0].y + (i / 24) * (ends[1].y - ends[0].y)];
+    const [dx, dy] = [ends[1].x - ends[0].x, ends[1].y - ends[0].y];
+    const pieces = Math.min(48, Math.ceil(Math.hypot(frame.across(dx) - frame.across(0), frame.away(dy) - frame.away(0)) / 0.03) + 1);
+    for (let i = 0; i <= pieces; ++i) {
+      const [x, y] = [ends[0].x + (i / pieces) * dx, ends[0].y + (i / pieces) * dy];
       const value = sample(content.grid, x, y);
       if (value !== null) points.push(frame.place(x, y, value, 0.008));
     }
@@ -279,7 +294,7 @@ export class SurfaceView {
       places.push(place);
       this.labels.push({ text: String(i), place, colour: "text", important: false });
     });
-    this.addPoints(places, "dot", colours.text, colours.panel, 9);
+    this.addPoints(places, "dot", colours.text, colours.panel, 7);
   }
 
   private addMark(mark: Mark, content: SurfaceContent, frame: Frame, colours: Palette): void {
@@ -293,7 +308,7 @@ export class SurfaceView {
 
   private addPoints(places: THREE.Vector3[], shape: MarkShape, colour: string, halo: string, size: number): void {
     if (places.length === 0) return;
-    const material = new THREE.PointsMaterial({ map: markTexture(shape, colour, halo), size: size * 1.6, sizeAttenuation: false, transparent: true, alphaTest: 0.2, depthTest: false });
+    const material = new THREE.PointsMaterial({ map: markTexture(shape, colour, halo), size: size * 1.5, sizeAttenuation: false, transparent: true, alphaTest: 0.2, depthTest: false });
     const points = new THREE.Points(new THREE.BufferGeometry().setFromPoints(places), material);
     points.renderOrder = 4;
     this.content.add(points);
@@ -302,7 +317,7 @@ export class SurfaceView {
   private draw(): void {
     if (!this.visible || !this.renderer) return;
     this.renderer.render(this.scene, this.camera);
-    const made = this.placed().map(({ label, x, y }) => {
+    const made = this.placedLabels().map(({ label, x, y }) => {
       const span = element("span", { class: "surface-label" }, label.text);
       span.style.transform = `translate(${x.toFixed(1)}px, calc(${y.toFixed(1)}px - 50%))`;
       span.style.color = `var(--${label.colour.replace(/(\d)/, "-$1")})`;
@@ -311,57 +326,11 @@ export class SurfaceView {
     this.overlay.replaceChildren(...made);
   }
 
-  // Labels and the numbers at the axes, where they are on the screen; those that would cover another are left out.
-  private placed(): { label: Label; x: number; y: number }[] {
+  private placedLabels(): Placed[] {
     if (!this.frame || !this.shown || !this.colours) return [];
-    const [width, height] = [this.element.clientWidth, this.element.clientHeight];
-    const em = this.colours.fontSize * 0.82;
-    const taken: { x: number; y: number; w: number }[] = [];
-    const out: { label: Label; x: number; y: number }[] = [];
-    const important = this.labels.filter((l) => l.important);
-    const others = this.labels.filter((l) => !l.important);
-    for (const label of [...important, ...this.axisLabels(this.frame, this.shown), ...others]) {
-      const at = label.place.clone().project(this.camera);
-      const w = label.text.length * em * 0.58;
-      let [x, y] = [(at.x * 0.5 + 0.5) * width, (-at.y * 0.5 + 0.5) * height];
-      if (this.labels.includes(label)) [x, y] = [x + 9, y - (label.important ? 9 : -9)];
-      else x -= w / 2;
-      x = Math.min(width - w - 2, Math.max(2, x));
-      if (y < 0 || y > height) continue;
-      if (taken.some((t) => Math.abs(t.y - y) < em * 1.1 && x < t.x + t.w + 3 && t.x < x + w + 3)) continue;
-      taken.push({ x, y, w });
-      out.push({ label, x, y });
-    }
-    return out;
-  }
-
-  // Along the edges of the base that are nearest to the reader, and up the post that is furthest to the left.
-  private axisLabels(frame: Frame, content: SurfaceContent): Label[] {
-    const { x, y } = content.grid;
-    const [w, d] = [frame.width / 2, frame.depth / 2];
-    const front = this.camera.position.z >= 0 ? d : -d;
-    const side = this.camera.position.x >= 0 ? w : -w;
-    const out: Label[] = [];
-    const add = (text: string, place: THREE.Vector3, colour: Colour = "faint"): void => void out.push({ text, place, colour, important: false });
-    const alongX = roundTicks(x[0]!, x[x.length - 1]!, 4);
-    const alongY = roundTicks(y[0]!, y[y.length - 1]!, 4);
-    add(content.axes.x, new THREE.Vector3(0, -0.02, front * 1.34), "text");
-    add(content.axes.y, new THREE.Vector3(side * 1.42, -0.02, 0), "text");
-    ticks(alongX).forEach((text, i) => add(text, new THREE.Vector3(frame.across(alongX[i]!), -0.02, front * 1.12)));
-    ticks(alongY).forEach((text, i) => add(text, new THREE.Vector3(side * 1.12, -0.02, frame.away(alongY[i]!))));
-    const post = this.leftPost(w, d);
-    const toValue = valueAtHeight(frame.range, frame.scale);
-    const heights = frame.scale === "linear" ? roundTicks(frame.range.low, frame.range.high, 4) : [0, 0.25, 0.5, 0.75, 1].map(toValue);
-    const texts = frame.scale === "linear" ? ticks(heights) : heights.map((v) => short(v, 3));
-    add(content.axes.value, new THREE.Vector3(post.x, frame.tall * 1.12, post.z), "text");
-    texts.forEach((text, i) => add(text, new THREE.Vector3(post.x * 1.1, frame.height(heights[i]!) * frame.tall, post.z * 1.1)));
-    return out;
-  }
-
-  private leftPost(w: number, d: number): THREE.Vector3 {
-    const posts = [[-w, -d], [w, -d], [w, d], [-w, d]].map(([x, z]) => new THREE.Vector3(x, 0, z));
-    const onScreen = (p: THREE.Vector3): number => p.clone().project(this.camera).x;
-    return posts.reduce((left, p) => (onScreen(p) < onScreen(left) ? p : left));
+    const axes = axisLabels(this.frame, this.shown.axes, this.camera);
+    const size = { width: this.element.clientWidth, height: this.element.clientHeight };
+    return placed(this.labels, axes, this.camera, size, this.colours.fontSize * 0.82);
   }
 
   private key(event: KeyboardEvent): void {

@@ -26,7 +26,7 @@ export function pace(norms: readonly MaybeNumber[]): { pace: Pace; factor: numbe
 
 function paceText(rows: readonly IterationRow[]): string {
   const found = pace(rows.map((row) => row.gradient_norm));
-  const factor = short(found.factor, found.factor < 2 ? 3 : 2);
+  const factor = short(Number(found.factor.toPrecision(found.factor < 2 ? 3 : 2)));
   switch (found.pace) {
     case "squaring":
       return ` The gradient fell ever faster, the last time by a factor of ${factor}: close to the minimum each iteration about squares the error.`;
@@ -50,16 +50,17 @@ function shortened(rows: readonly IterationRow[]): string {
 }
 
 export function stepText(row: StepRow, implicit: boolean): string {
-  if (row.words) return `${capital(row.words.cause)}${row.words.place ? ` ${capital(row.words.place)}` : ""}${row.words.remedy ? ` ${capital(row.words.remedy)}` : ""}`;
+  if (row.words) return `${sentence(row.words.cause)}${row.words.place ? ` ${sentence(row.words.place)}` : ""}${row.words.remedy ? ` ${sentence(row.words.remedy)}` : ""}`;
   if (!implicit) return "Nothing is minimised: this scheme computes the next positions from the forces at hand.";
   const count = plural(row.iterations.length, "iteration");
   if (!row.success) return `Not converged (${row.status.replaceAll("_", " ")}) after ${count}${residualText(row) ? `: ${residualText(row)}` : ""}.`;
-  if (row.iterations.length === 0) return `Converged at once: ${residualText(row) || "the guess was good enough"}.`;
+  if (row.iterations.length === 0) return `Converged: ${residualText(row) || "the criterion is met"}. It needed no iteration, or they are no longer kept.`;
   if (row.status === "round_off") return `As good as double precision allows, after ${count}: the energy no longer changes by more than round-off.`;
   return `Converged in ${count}: ${residualText(row) || "the criterion is met"}.${paceText(row.iterations)}${shortened(row.iterations)}`;
 }
 
-function capital(text: string): string {
+// With a capital and a full stop.
+export function sentence(text: string): string {
   const trimmed = text.trim();
   return trimmed === "" ? "" : trimmed[0]!.toUpperCase() + trimmed.slice(1) + (/[.!?]$/.test(trimmed) ? "" : ".");
 }

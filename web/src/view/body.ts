@@ -56,6 +56,7 @@ export class Body {
   private readonly mesh: THREE.Mesh;
   private readonly wires: THREE.LineSegments;
   private readonly pins: THREE.Points;
+  private gloss = 0;
   private mapShown: MapName | null = null;
 
   constructor(readonly geometry: Geometry) {
@@ -102,7 +103,7 @@ export class Body {
     this.pins.visible = settings.pins;
     this.surface.color.set(settings.bodyColour);
     this.surface.shininess = Math.max(1, settings.shininess);
-    this.surface.specular.setScalar(settings.shininess > 0 ? 0.09 : 0);
+    this.gloss = settings.shininess > 0 ? 0.09 : 0;
     this.uniforms.insideColour.value.set(settings.insideColour);
     this.uniforms.insideOwn.value = settings.inside === "own";
     this.uniforms.inverted.value = settings.invert;
@@ -118,6 +119,7 @@ export class Body {
   // Values take the colours of a range; null: the body has its own colour.
   colour(range: ColourRange | null, map: MapName): void {
     this.uniforms.fieldShown.value = range !== null;
+    this.surface.specular.setScalar(range ? 0.3 * this.gloss : this.gloss); // glare hides colours
     if (!range) return;
     const [low, high] = range.log ? [Math.log(range.low), Math.log(range.high)] : [range.low, range.high];
     // A constant field has the colour in the middle.

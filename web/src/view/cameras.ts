@@ -72,7 +72,10 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
   setMode(mode: CameraMode): void {
     this.mode = mode;
     if (mode === "turntable") this.level();
-    if (mode === "flat") this.faceAxis();
+    if (mode === "flat") {
+      this.faceAxis();
+      this.orthographic = true;
+    }
     this.emit("changed", undefined);
   }
 
@@ -91,7 +94,7 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
     } else {
       const upward = sceneAxes(this.up).up;
       this.orientation.premultiply(new Quaternion().setFromAxisAngle(upward, -kTurn * dx));
-      const tilt = Math.asin(Math.min(1, Math.max(-1, this.axis(2).dot(upward)))); // above the horizon
+      const tilt = Math.atan2(this.axis(2).dot(upward), this.axis(1).dot(upward)); // above the horizon
       const turned = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, tilt + kTurn * dy));
       this.orientation.multiply(new Quaternion().setFromAxisAngle(sideways, tilt - turned));
     }
@@ -127,6 +130,14 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
       width,
       height,
     };
+  }
+
+  // Stands where another does.
+  join(other: CameraRig): void {
+    [this.mode, this.orthographic, this.distance] = [other.mode, other.orthographic, other.distance];
+    this.target.copy(other.target);
+    this.orientation.copy(other.orientation);
+    this.emit("changed", undefined);
   }
 
   save(): unknown {

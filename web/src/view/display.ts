@@ -1,9 +1,10 @@
 // How bodies are drawn: the settings that the views of both sides share.
 import { Emitter } from "../emitter";
 import type { Keeper } from "../page";
-import type { Field, SideName } from "../protocol";
+import type { Field, Scene, SideName, Vec3 } from "../protocol";
 import { CameraRig } from "./cameras";
 import { kMapNames, type MapName } from "./colourMaps";
+import type { Clip } from "./picking";
 import { about, logRange, RunningRange, type ColourRange } from "./ranges";
 
 export const kTools = { drag: "Drag with a spring", pin: "Pin with a brush", read: "Read values" } as const;
@@ -55,7 +56,7 @@ const kLimits: { [K in keyof DisplaySettings]?: readonly [number, number] } = {
   brush: [4, 200],
 };
 
-export class Display extends Emitter<{ changed: void; camera: void }> implements Keeper {
+export class Display extends Emitter<{ changed: void; camera: void; range: void }> implements Keeper {
   readonly settings: DisplaySettings = { ...kDefaults };
   readonly cameras: { a: CameraRig; b: CameraRig } = { a: new CameraRig(), b: new CameraRig() };
   fields: Field[] = []; // of side a
@@ -74,7 +75,7 @@ export class Display extends Emitter<{ changed: void; camera: void }> implements
   }
 
   change(changes: Partial<DisplaySettings>): void {
-    if (changes.linked === false && this.settings.linked) this.cameras.b.restore(this.cameras.a.save());
+    if (changes.linked === false && this.settings.linked) this.cameras.b.join(this.cameras.a);
     Object.assign(this.settings, changes);
     for (const [key, limits] of Object.entries(kLimits)) this.limit(key as keyof DisplaySettings, limits);
     this.emit("changed", undefined);
@@ -108,14 +109,14 @@ export class Display extends Emitter<{ changed: void; camera: void }> implements
     },
   };
 
-  // Smallest and largest value of a picture; false: the range is as before.
-  feed(side: SideName, field: Field, min: number, max: number): boolean {
+  // Smallest and largest value of a picture.
+  feed(side: SideName, field: Field, min: number, max: number): void {
     if (field.name !== this.measured) this.running.reset();
     this.measured = field.name;
     const before = this.running.get();
     this.running.feed(side, min, max);
     const after = this.running.get();
-    return before?.low !== after?.low || before?.high !== after?.high;
+    if (before?.low !== after?.low || before?.high !== after?.high) this.emit("range", undefined);
   }
 
   forget(side: SideName): void {
@@ -130,6 +131,16 @@ export class Display extends Emitter<{ changed: void; camera: void }> implements
     const positive = log ? logRange(chosen.low, chosen.high) : null;
     if (positive) return { ...positive, log: true };
     return { ...(field.diverging && !fixedRange ? about(field.center, chosen.low, chosen.high) : chosen), log: false };
+  }
+
+  // What the plane leaves of a scene.
+  clip(scene: Scene): Clip | null {
+    const { clip, clipAt, clipOther } = this.settings;
+    if (clip === "off") return null;
+    const axis = "xyz".indexOf(clip);
+    const at = scene.lower[axis] + clipAt * (scene.upper[axis] - scene.lower[axis]);
+    const sign = clipOther ? 1 : -1;
+    return { normal: [0, 1, 2].map((c) => (c === axis ? sign : 0)) as Vec3, offset: sign * at };
   }
 
   map(field: Field): MapName {

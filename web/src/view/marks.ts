@@ -26,6 +26,13 @@ export function text(ink: Ink, words: string, x: number, y: number, align: Canva
   context.fillText(words, x, y);
 }
 
+// A number above a dot.
+export function label(ink: Ink, words: string, x: number, y: number): void {
+  ink.context.fillStyle = ink.accent;
+  ink.context.fillRect(x - 1.5, y - 1.5, 3, 3);
+  text(ink, words, x, y - 0.75 * ink.em, "center");
+}
+
 function stroke(ink: Ink, points: Point[], width: number, colour: string): void {
   const { context } = ink;
   context.lineJoin = context.lineCap = "round";

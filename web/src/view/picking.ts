@@ -1,6 +1,6 @@
 // What is under a pixel, computed on demand from the positions shown; no tree is kept, as positions change all the time.
 import type { Vec3 } from "../protocol";
-import { isBehind, pixelsPerMetre, project, type Lens, type Ray } from "./lens";
+import { isBehind, pixelsPerMetre, type Lens, type Ray } from "./lens";
 
 // Half space that is shown: normal . x >= offset.
 export interface Clip {
@@ -51,6 +51,11 @@ export function pick(ray: Ray, positions: Float32Array, triangles: Uint32Array, 
 // The corner of the triangle that the hit is nearest to.
 export function nearestVertex(hit: Hit, triangles: Uint32Array): number {
   return triangles[3 * hit.triangle + hit.weights.indexOf(Math.max(...hit.weights))];
+}
+
+// A value between those of the corners.
+export function interpolated(hit: Hit, triangles: Uint32Array, values: Float32Array): number {
+  return hit.weights.reduce((sum, weight, k) => sum + weight * values[triangles[3 * hit.triangle + k]], 0);
 }
 
 // The depth of what is seen in a rectangle of the screen, coarsely: tells which vertices are hidden behind others.
@@ -113,19 +118,20 @@ export class DepthGrid {
   }
 }
 
-// Pixel and depth of every vertex; not a number for those behind the camera or clipped away.
+// Pixel and depth of every vertex; not a number for those behind the camera or clipped away. The same as project() in
+// lens.ts, without its garbage.
 export function screenPositions(lens: Lens, positions: Float32Array, clip: Clip | null): Float32Array {
   const screen = new Float32Array(positions.length);
-  const point: Vec3 = [0, 0, 0];
+  const { eye, right, up, forward } = lens;
   for (let i = 0; i < positions.length; i += 3) {
-    point[0] = positions[i];
-    point[1] = positions[i + 1];
-    point[2] = positions[i + 2];
-    const p = project(lens, point);
-    const hidden = isBehind(lens, p[2]) || isClipped(clip, point[0], point[1], point[2]);
-    screen[i] = hidden ? NaN : p[0];
-    screen[i + 1] = hidden ? NaN : p[1];
-    screen[i + 2] = p[2];
+    const x = positions[i], y = positions[i + 1], z = positions[i + 2];
+    const dx = x - eye[0], dy = y - eye[1], dz = z - eye[2];
+    const depth = dx * forward[0] + dy * forward[1] + dz * forward[2];
+    const hidden = isBehind(lens, depth) || isClipped(clip, x, y, z);
+    const scale = hidden ? NaN : pixelsPerMetre(lens, depth);
+    screen[i] = lens.width / 2 + scale * (dx * right[0] + dy * right[1] + dz * right[2]);
+    screen[i + 1] = lens.height / 2 - scale * (dx * up[0] + dy * up[1] + dz * up[2]);
+    screen[i + 2] = depth;
   }
   return screen;
 }
@@ -136,7 +142,7 @@ export interface Surface {
   clip: Clip | null;
 }
 
-const kSlope = 8; // steepest surface whose own vertices do not count as hidden by it
+export const kSteepest = 8; // slope of a surface whose own vertices do not count as hidden by it
 
 // Vertices in a disc on the screen that nothing hides.
 export function verticesInDisc(lens: Lens, surface: Surface, x: number, y: number, radius: number): number[] {
@@ -148,7 +154,7 @@ export function verticesInDisc(lens: Lens, surface: Surface, x: number, y: numbe
   for (let i = 0; i < screen.length; i += 3) {
     const [dx, dy] = [screen[i] - x, screen[i + 1] - y];
     if (dx * dx + dy * dy > radius * radius || Number.isNaN(dx)) continue;
-    const slack = (kSlope * 2 * radius) / cells / pixelsPerMetre(lens, screen[i + 2]);
+    const slack = (kSteepest * 2 * radius) / cells / pixelsPerMetre(lens, screen[i + 2]);
     if (grid.sees(screen[i], screen[i + 1], screen[i + 2], slack)) found.push(i / 3);
   }
   return found;

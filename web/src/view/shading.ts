@@ -94,7 +94,7 @@ export interface GroundUniforms {
 
 // Catches shadows, carries a grid, and fades towards its rim.
 export function makeGroundMaterial(uniforms: GroundUniforms): THREE.ShadowMaterial {
-  const material = new THREE.ShadowMaterial({ opacity: 0.35, side: THREE.DoubleSide, depthWrite: false });
+  const material = new THREE.ShadowMaterial({ opacity: 0.3, side: THREE.DoubleSide, depthWrite: false });
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, uniforms);
     shader.vertexShader = shader.vertexShader
@@ -111,7 +111,7 @@ const kGroundColour = /* glsl */ `
   vec2 cell = (vPlane - gridOrigin) / gridStep;
   vec2 blur = max(fwidth(cell), 1e-6);
   vec2 line = clamp(1.0 - abs(fract(cell - 0.5) - 0.5) / blur, 0.0, 1.0) * (1.0 - smoothstep(0.15, 0.5, blur));
-  float grid = 0.55 * max(line.x, line.y);
+  float grid = 0.4 * max(line.x, line.y);
   float shade = opacity * (1.0 - getShadowMask());
   float fade = 1.0 - smoothstep(0.35, 1.0, length(vPlane) / ${kGroundRadius.toFixed(1)});
   float cover = 1.0 - (1.0 - shade) * (1.0 - grid);

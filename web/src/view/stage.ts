@@ -10,12 +10,6 @@ import type { Clip } from "./picking";
 import { roundStep } from "./ranges";
 import { kGroundRadius, makeGroundMaterial } from "./shading";
 
-export interface StageColours {
-  background: string;
-  grid: string;
-  pin: string;
-}
-
 const kGap = 0.12; // between the box and the ground below it
 
 export class Stage {
@@ -29,8 +23,8 @@ export class Stage {
   private readonly scene = new THREE.Scene();
   private readonly perspective = new THREE.PerspectiveCamera();
   private readonly orthographic = new THREE.OrthographicCamera();
-  private readonly sky = new THREE.HemisphereLight("#ffffff", "#b9b2a8", 1.5);
-  private readonly sun = new THREE.DirectionalLight("#fffaf0", 2.1);
+  private readonly sky = new THREE.HemisphereLight("#ffffff", "#c4bfb8", 1.9);
+  private readonly sun = new THREE.DirectionalLight("#fffaf0", 1.9);
   private readonly lamp = new THREE.DirectionalLight("#ffffff", 0.55); // at the camera
   private readonly ground: THREE.Mesh<THREE.CircleGeometry, THREE.ShadowMaterial>;
   private readonly grid = {
@@ -49,8 +43,8 @@ export class Stage {
     this.ground.receiveShadow = true;
     this.ground.renderOrder = -1;
     this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(2048, 2048);
-    this.sun.shadow.radius = 5;
+    this.sun.shadow.mapSize.set(1024, 1024);
+    this.sun.shadow.radius = 6;
     this.sun.shadow.bias = -0.0008;
     this.scene.add(this.sky, this.sun, this.sun.target, this.lamp, this.lamp.target, this.ground);
   }
@@ -99,11 +93,11 @@ export class Stage {
     this.renderer.shadowMap.needsUpdate = true;
   }
 
-  apply(settings: DisplaySettings, colours: StageColours): void {
-    this.renderer.setClearColor(colours.background);
+  apply(settings: DisplaySettings, colours: { background: string; grid: string }): void {
+    this.scene.background = new THREE.Color(colours.background);
     this.ground.visible = settings.ground;
     this.grid.gridColour.value.set(colours.grid);
-    if (this.sun.castShadow !== settings.shadows) this.sun.castShadow = settings.shadows;
+    this.sun.castShadow = settings.shadows;
     this.renderer.shadowMap.needsUpdate = true;
   }
 

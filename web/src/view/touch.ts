@@ -32,6 +32,7 @@ const kClick = 4; // moves of fewer pixels are clicks
 export class Touch {
   cursor: [number, number] | null = null; // in the view [px]
   hover: Hit | null = null;
+  private alt = false;
   private gesture: Gesture | null = null;
   private readonly pointers = new Map<number, [number, number]>();
   private waiting = false; // for the next frame, to send what moved
@@ -56,6 +57,11 @@ export class Touch {
     this.stop.push(view.store.on("geometry", (side) => side === view.side && this.end()));
   }
 
+  // What the brush does; Alt turns it over.
+  get pins(): boolean {
+    return this.view.display.settings.unpin === this.alt;
+  }
+
   // Where the spring is held, while the mouse holds it.
   get target(): Vec3 | null {
     return this.gesture?.kind === "grab" ? this.gesture.target : null;
@@ -70,6 +76,8 @@ export class Touch {
   private down(event: PointerEvent): void {
     if (event.target instanceof Element && event.target.closest("[data-card]")) return;
     const at = this.position(event);
+    this.cursor = at;
+    this.alt = event.altKey;
     this.view.host.setPointerCapture(event.pointerId);
     this.pointers.set(event.pointerId, at);
     if (this.pointers.size > 1) {
@@ -81,17 +89,15 @@ export class Touch {
     const hit = pans ? null : this.pick(at);
     const { tool } = this.view.display.settings;
     const reads = !pans && (event.shiftKey || tool === "read");
-    if (hit && !reads && this.mayTouch() && tool !== "read") this.gesture = this.touch(hit, event.altKey);
+    if (hit && !reads && this.mayTouch()) this.gesture = this.touch(hit);
     else this.gesture = { kind: pans ? "pan" : "turn", moved: 0, hit, reads };
     this.schedule();
   }
 
-  private touch(hit: Hit, alt: boolean): Gesture {
+  private touch(hit: Hit): Gesture {
     const { store, side, display } = this.view;
-    if (display.settings.tool === "pin") {
-      const pinned = display.settings.unpin === alt; // Alt does the opposite
-      return { kind: "brush", pinned, known: new Set(store.side(side)?.pins) };
-    }
+    if (display.settings.tool === "pin")
+      return { kind: "brush", pinned: this.pins, known: new Set(store.side(side)?.pins) };
     store.source.send({ do: "grab", side, triangle: hit.triangle, weights: hit.weights, target: hit.point });
     return { kind: "grab", anchor: hit.point, target: hit.point };
   }
@@ -99,6 +105,7 @@ export class Touch {
   private move(event: PointerEvent): void {
     const at = this.position(event);
     this.cursor = at;
+    this.alt = event.altKey;
     const before = this.pointers.get(event.pointerId);
     if (before) this.pointers.set(event.pointerId, at);
     if (before && this.gesture) this.drag(this.gesture, at[0] - before[0], at[1] - before[1]);

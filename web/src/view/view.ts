@@ -1,28 +1,38 @@
 // One side in 3-D: draws its newest picture, and only when something has changed.
+import "./view.css";
 import type { Highlight, Page } from "../page";
-import type { Field, SideName, Vec3 } from "../protocol";
+import type { Field, SideName } from "../protocol";
 import type { Side, Store } from "../store";
 import { Body } from "./body";
 import type { CameraRig } from "./cameras";
+import { Card } from "./card";
 import type { Display } from "./display";
+import { chooseLabels, type Label } from "./labels";
 import type { Lens } from "./lens";
-import * as marks from "./marks";
-import type { Clip, Hit, Surface } from "./picking";
+import { Overlay, png, readStyle, type Marks, type Style } from "./overlay";
+import { Pace } from "./pace";
+import { interpolated, nearestVertex, type Clip, type Hit, type Surface } from "./picking";
+import { withUnit } from "./ranges";
 import { Stage } from "./stage";
 import { Touch, type Touched } from "./touch";
 
-const kHiddenPause = 500; // between pictures that nobody sees [ms]
+const kLargest = 8192; // side of a screenshot [px]
 
 export class View implements Touched {
   private readonly glCanvas = document.createElement("canvas");
-  private readonly overlay = document.createElement("canvas");
+  private readonly overlay = new Overlay();
+  private readonly message = document.createElement("div");
   private readonly stage: Stage | null;
   private readonly touch: Touch;
+  private readonly card: Card;
+  private style!: Style;
   private body: Body | null = null;
+  private valuesOf = ""; // field of the values that the body has
   private highlights: Highlight[] = [];
-  private undrawn = 0; // pictures that the source waits for
+  private readonly pace: Pace;
   private frame = 0; // requested
   private fixedSize: [number, number] | null = null;
+  private sharpness = 1; // of a screenshot
   private rigStop = (): void => {};
   private readonly stop: (() => void)[] = [];
   private readonly listeners = new AbortController();
@@ -34,10 +44,16 @@ export class View implements Touched {
     readonly side: SideName,
     readonly display: Display,
   ) {
-    this.build();
+    this.card = new Card(store, side, () => this.redraw());
+    this.pace = new Pace(store.source, () => this.redraw());
+    this.message.className = "view-message";
+    this.message.hidden = true;
+    this.host.classList.add("view");
+    this.host.replaceChildren(this.glCanvas, this.overlay.canvas, this.message, this.card.element);
     this.stage = this.makeStage();
     this.touch = new Touch(this);
     this.listen();
+    this.applyDisplay();
     this.takeScene();
   }
 
@@ -50,20 +66,42 @@ export class View implements Touched {
   }
 
   surface(): Surface | null {
-    if (!this.body || !this.source?.picture) return null;
+    if (!this.body?.root.visible) return null;
     return { positions: this.body.current, triangles: this.body.geometry.triangles, clip: this.clip() };
   }
 
-  read(_hit: Hit | null): void {}
+  // A PNG of the view; `scale` times as many pixels as the view has on the screen.
+  async screenshot(scale = 1): Promise<Blob> {
+    const [width, height] = this.size();
+    this.sharpness = Math.min(scale, kLargest / (Math.max(width, height, 1) * this.pixelRatio()));
+    const canvas = document.createElement("canvas");
+    this.drawNow();
+    this.overlay.paint(canvas, this.glCanvas);
+    this.sharpness = 1;
+    this.drawNow();
+    return png(canvas);
+  }
 
-  showPins(vertices: number[]): void {
-    this.body?.setPins(vertices);
-    this.redraw();
+  // From now on the view has this many pixels, whatever the page's layout: for pictures without a screen.
+  renderSize(width: number, height: number): void {
+    this.fixedSize = [width, height];
+    this.restyle();
+    this.drawNow();
   }
 
   // The body as it is now fills the view.
   centre(): void {
     if (this.body?.box) this.rig.centre(this.body.box.lower, this.body.box.upper);
+  }
+
+  read(hit: Hit | null): void {
+    if (hit && this.body) this.card.open(hit, nearestVertex(hit, this.body.geometry.triangles));
+    else this.card.close();
+  }
+
+  showPins(vertices: number[]): void {
+    this.body?.setPins(vertices);
+    this.redraw();
   }
 
   // Once, in the next frame.
@@ -78,10 +116,10 @@ export class View implements Touched {
     if (this.stage && width > 0 && height > 0) {
       this.resize(width, height);
       const lens = this.lens();
-      this.stage.render(lens, this.rig.orientation, this.colour("--series-2"));
-      this.drawMarks(lens);
+      this.stage.render(lens, this.rig.orientation, this.style.accent);
+      this.overlay.draw(lens, this.style, this.marks(lens));
     }
-    this.settle();
+    this.pace.drawn();
   }
 
   dispose(): void {
@@ -89,53 +127,75 @@ export class View implements Touched {
     this.listeners.abort();
     for (const stop of [...this.stop, this.rigStop]) stop();
     this.touch.dispose();
+    this.card.close();
+    cancelAnimationFrame(this.frame);
     this.stage?.dispose();
     this.display.forget(this.side);
     this.host.replaceChildren();
-    this.settle();
+    this.pace.drawn();
   }
 
   private get source(): Side | null {
     return this.store.side(this.side);
   }
 
-  private build(): void {
-    this.host.classList.add("view");
-    this.host.style.position = "relative";
-    this.host.style.touchAction = "none";
-    for (const canvas of [this.glCanvas, this.overlay])
-      Object.assign(canvas.style, { position: "absolute", inset: "0", width: "100%", height: "100%" });
-    this.overlay.style.pointerEvents = "none";
-    this.host.replaceChildren(this.glCanvas, this.overlay);
-  }
-
   private makeStage(): Stage | null {
+    const { signal } = this.listeners;
+    this.glCanvas.addEventListener("webglcontextlost", () => this.say("The graphics card is busy; the picture comes back by itself."), { signal });
+    this.glCanvas.addEventListener("webglcontextrestored", () => this.restored(), { signal });
     try {
       return new Stage(this.glCanvas);
     } catch {
+      this.say(
+        "This browser does not draw in 3-D: WebGL 2 is missing or switched off. Switch on hardware acceleration in its " +
+          "settings, or use a current Firefox, Chromium or Safari. Plots and numbers work without it.",
+      );
       return null;
     }
   }
 
+  private say(words: string): void {
+    this.message.textContent = words;
+    this.message.hidden = words === "";
+  }
+
+  // After three.js, which listens, too, has its state again.
+  private restored(): void {
+    setTimeout(() => {
+      if (this.listeners.signal.aborted) return;
+      this.say("");
+      this.applyDisplay();
+    });
+  }
+
   private listen(): void {
     const mine = (listener: () => void) => (side: SideName) => side === this.side && listener();
-    this.stop.push(this.store.on("scene", mine(() => this.takeScene())));
-    this.stop.push(this.store.on("geometry", mine(() => this.takeGeometry())));
-    this.stop.push(this.store.on("picture", mine(() => this.takePicture())));
-    this.stop.push(this.store.on("pins", mine(() => this.showPins(this.source?.pins ?? []))));
-    this.stop.push(this.store.on("state", () => this.redraw()));
-    this.stop.push(this.display.on("changed", () => this.applyDisplay()));
-    this.stop.push(this.page.on("theme", () => this.applyDisplay()));
-    this.stop.push(this.page.on("layout", () => this.redraw()));
+    const { store, display, page, stop } = this;
+    stop.push(store.on("scene", mine(() => this.takeScene())));
+    stop.push(store.on("geometry", mine(() => this.takeGeometry())));
+    stop.push(store.on("picture", mine(() => this.takePicture())));
+    stop.push(store.on("pins", mine(() => this.showPins(this.source?.pins ?? []))));
+    stop.push(store.on("state", () => this.redraw()));
+    stop.push(display.on("changed", () => this.applyDisplay()));
+    stop.push(display.on("range", () => this.colourBody()));
+    stop.push(page.on("theme", () => this.applyDisplay()));
+    stop.push(page.on("layout", () => this.applyDisplay()));
+    if (this.side === "a") stop.push(page.on("highlight", (highlights) => this.highlight(highlights)));
     const sizes = new ResizeObserver(() => this.redraw());
     sizes.observe(this.host);
-    this.stop.push(() => sizes.disconnect());
+    stop.push(() => sizes.disconnect());
+    document.addEventListener("visibilitychange", () => this.pace.go(), { signal: this.listeners.signal });
+  }
+
+  private highlight(highlights: Highlight[]): void {
+    this.highlights = highlights;
+    this.redraw();
   }
 
   private takeScene(): void {
     const scene = this.source?.scene;
     if (!scene) return;
-    this.rig.show(scene.path, scene.lower, scene.upper, scene.up);
+    this.display.cameras[this.side].show(scene.path, scene.lower, scene.upper, scene.up);
     if (this.body && this.body.geometry.generation !== scene.generation) this.dropBody();
     this.takeGeometry();
     if (this.side === "a") this.display.setFields(scene.fields, scene.field);
@@ -150,112 +210,117 @@ export class View implements Touched {
     this.body = new Body(side.geometry);
     this.stage.show(this.body);
     this.body.setPins(side.pins);
-    if (side.picture) this.body.show(side.picture);
+    this.showPicture();
     this.applyDisplay();
   }
 
   private dropBody(): void {
+    this.card.close();
     this.stage?.remove();
     this.body = null;
   }
 
   private takePicture(): void {
-    this.undrawn += 1;
-    const picture = this.source?.picture;
+    this.showPicture();
+    this.card.refresh();
+    this.pace.came();
+  }
+
+  private showPicture(): void {
+    const side = this.source;
+    if (!this.body || !side?.picture || side.picture.positions.length !== this.body.current.length) return;
+    const { picture, scene } = side;
+    this.body.show(picture);
+    this.valuesOf = picture.values ? scene.field : "";
     const field = this.field();
-    if (picture && this.body && picture.positions.length === this.body.current.length) {
-      this.body.show(picture);
-      if (field && picture.values && this.display.feed(this.side, field, picture.min, picture.max)) this.colourBody();
-      this.stage?.moved();
-    }
-    if (document.hidden) setTimeout(() => this.settle(), kHiddenPause);
-    else this.redraw();
+    if (field) this.display.feed(this.side, field, picture.min, picture.max);
+    this.colourBody();
+    this.stage?.moved();
   }
 
-  // The source may send the next picture.
-  private settle(): void {
-    const count = this.undrawn;
-    this.undrawn = 0;
-    for (let i = 0; i < count; ++i) this.store.source.ready();
-  }
-
+  // Whose values the body shows.
   private field(): Field | null {
     const scene = this.source?.scene;
-    return scene?.fields.find((field) => field.name === scene.field) ?? null;
+    if (!scene || this.valuesOf !== scene.field) return null;
+    return scene.fields.find((field) => field.name === scene.field) ?? null;
   }
 
   private applyDisplay(): void {
     this.rigStop();
     this.rigStop = this.rig.on("changed", () => this.redraw());
+    this.restyle();
     const settings = this.display.settings;
     this.body?.apply(settings);
-    this.stage?.apply(settings, {
-      background: settings.ownBackground ? settings.background : this.colour("--background"),
-      grid: this.colour("--faint"),
-      pin: this.colour("--series-2"),
-    });
+    this.stage?.apply(settings, this.style);
     this.stage?.clip(this.clip());
     this.colourBody();
-    this.redraw();
+  }
+
+  private restyle(): void {
+    this.style = readStyle(this.host, this.display.settings, this.fixedSize);
   }
 
   private colourBody(): void {
     const field = this.field();
-    const range = field && this.source?.picture?.values ? this.display.range(field) : null;
-    if (this.body && field) this.body.colour(range, this.display.map(field));
-    else this.body?.colour(null, "viridis");
+    const range = field && this.display.range(field);
+    this.body?.colour(range, field ? this.display.map(field) : "viridis");
+    this.redraw();
   }
 
   private clip(): Clip | null {
-    const { clip, clipAt, clipOther } = this.display.settings;
-    const scene = this.source?.scene;
-    if (clip === "off" || !scene) return null;
-    const axis = "xyz".indexOf(clip);
-    const at = scene.lower[axis] + clipAt * (scene.upper[axis] - scene.lower[axis]);
-    const sign = clipOther ? 1 : -1;
-    return { normal: [0, 1, 2].map((c) => (c === axis ? sign : 0)) as Vec3, offset: sign * at };
+    return this.source && this.display.clip(this.source.scene);
   }
 
   private size(): [number, number] {
     return this.fixedSize ?? [this.host.clientWidth, this.host.clientHeight];
   }
 
+  private pixelRatio(): number {
+    return this.fixedSize ? 1 : Math.min(3, window.devicePixelRatio || 1);
+  }
+
   private resize(width: number, height: number): void {
-    const ratio = this.fixedSize ? 1 : Math.min(3, window.devicePixelRatio || 1);
-    const wanted = [Math.round(width * ratio), Math.round(height * ratio)];
-    if (this.overlay.width === wanted[0] && this.overlay.height === wanted[1]) return;
+    const ratio = this.pixelRatio() * this.sharpness;
+    const { canvas } = this.overlay;
+    const [columns, rows] = [Math.floor(width * ratio), Math.floor(height * ratio)];
+    if (canvas.width === columns && canvas.height === rows) return;
     this.stage?.renderer.setPixelRatio(ratio);
     this.stage?.renderer.setSize(width, height, false);
-    [this.overlay.width, this.overlay.height] = wanted;
+    [canvas.width, canvas.height] = [columns, rows];
   }
 
-  private drawMarks(lens: Lens): void {
-    const context = this.overlay.getContext("2d");
-    if (!context) return;
-    const ratio = this.overlay.width / lens.width;
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    context.clearRect(0, 0, lens.width, lens.height);
-    const em = parseFloat(getComputedStyle(this.host).fontSize);
-    context.font = `${em}px ${getComputedStyle(this.host).fontFamily}`;
-    const ink = { context, em, text: this.colour("--text"), halo: this.colour("--background"), accent: this.colour("--series-2") };
-    this.drawScales(ink, lens);
+  private marks(lens: Lens): Marks {
     const settings = this.display.settings;
-    if (this.side === "a") for (const { positions, text } of this.highlights) marks.highlight(ink, lens, positions, text);
-    const grab = this.store.state?.[this.side]?.grab;
-    if (grab) marks.spring(ink, lens, grab.point, this.touch.target ?? grab.target, grab.force);
-    if (settings.tool === "pin" && this.touch.cursor) marks.ring(ink, this.touch.cursor, settings.brush, settings.unpin ? "unpin" : "pin");
-  }
-
-  private drawScales(ink: marks.Ink, lens: Lens): void {
-    const settings = this.display.settings;
-    if (settings.axes) marks.axes(ink, lens);
-    if (settings.ground && this.stage && this.body) marks.gridNote(ink, lens, this.stage.gridStep);
     const field = this.field();
-    const range = field && this.source?.picture?.values ? this.display.range(field) : null;
-    if (field && range) marks.colourBar(ink, lens, field, range, this.display.map(field));
+    const range = field && this.display.range(field);
+    const grab = this.store.state?.[this.side]?.grab;
+    const { cursor, target } = this.touch;
+    const brushes = settings.tool === "pin" && cursor;
+    return {
+      axes: settings.axes,
+      gridStep: settings.ground && this.body && this.stage ? this.stage.gridStep : 0,
+      bar: field && range ? { field, range, map: this.display.map(field) } : null,
+      labels: this.labels(lens),
+      highlights: [...this.highlights, ...this.card.marks],
+      spring: grab ? { ...grab, target: target ?? grab.target } : null,
+      brush: brushes ? { at: cursor, radius: settings.brush, words: this.touch.pins ? "pin" : "unpin" } : null,
+      tip: this.tip(),
+    };
   }
 
-  private colour(variable: string): string {
-    return getComputedStyle(this.host).getPropertyValue(variable).trim() || "#808080";
+  private labels(lens: Lens): Label[] {
+    const { vertexLabels, faceLabels } = this.display.settings;
+    const surface = this.surface();
+    if (!surface || !this.body || !(vertexLabels || faceLabels)) return [];
+    const kinds = { vertices: vertexLabels, tets: faceLabels };
+    return chooseLabels(lens, surface, this.body.geometry, kinds, this.style.em, this.touch.cursor);
+  }
+
+  // The value under the cursor, while it reads.
+  private tip(): Marks["tip"] {
+    const { hover, cursor } = this.touch;
+    const [field, values] = [this.field(), this.source?.picture?.values];
+    if (!hover || !cursor || !field || !values || !this.body || this.display.settings.tool !== "read") return null;
+    return { at: cursor, words: withUnit(interpolated(hover, this.body.geometry.triangles, values), field.unit) };
   }
 }

@@ -1,0 +1,76 @@
+// The texts in a picture of a surface: numbers at its axes, and names of marks. They are elements over the canvas.
+import * as THREE from "three";
+import { roundTicks, valueAtHeight } from "./grid";
+import { short, ticks } from "./numbers";
+import type { Colour } from "./palette";
+import type { Frame } from "./surfaceParts";
+
+export interface Label {
+  text: string;
+  place: THREE.Vector3;
+  colour: Colour;
+  important: boolean; // placed first: others that would cover it are left out
+}
+
+export interface Placed {
+  label: Label;
+  x: number; // left and middle [CSS px]
+  y: number;
+}
+
+// Where they are on the screen; one that would cover another is left out.
+export function placed(
+  labels: readonly Label[],
+  axes: readonly Label[],
+  camera: THREE.Camera,
+  size: { width: number; height: number },
+  em: number,
+): Placed[] {
+  const taken: { x: number; y: number; width: number }[] = [];
+  const out: Placed[] = [];
+  const add = (label: Label, beside: boolean): void => {
+    const at = label.place.clone().project(camera);
+    const width = label.text.length * em * 0.58;
+    const left = (at.x * 0.5 + 0.5) * size.width + (beside ? 9 : -width / 2);
+    const y = (-at.y * 0.5 + 0.5) * size.height + (beside ? (label.important ? -9 : 9) : 0);
+    const x = Math.min(size.width - width - 2, Math.max(2, left));
+    if (y < 0 || y > size.height) return;
+    if (taken.some((t) => Math.abs(t.y - y) < em * 1.1 && x < t.x + t.width + 3 && t.x < x + width + 3)) return;
+    taken.push({ x, y, width });
+    out.push({ label, x, y });
+  };
+  for (const label of labels) if (label.important) add(label, true);
+  for (const label of axes) add(label, false);
+  for (const label of labels) if (!label.important) add(label, true);
+  return out;
+}
+
+// Along the edges of the base that are nearest to the reader, and up the post that is furthest to the left.
+export function axisLabels(frame: Frame, names: { x: string; y: string; value: string }, camera: THREE.Camera): Label[] {
+  const { x, y } = frame.grid;
+  const [w, d] = [frame.width / 2, frame.depth / 2];
+  const front = camera.position.z >= 0 ? d : -d;
+  const side = camera.position.x >= 0 ? w : -w;
+  const out: Label[] = [];
+  const add = (text: string, place: THREE.Vector3, colour: Colour = "faint"): void => void out.push({ text, place, colour, important: false });
+  const alongX = roundTicks(x[0]!, x[x.length - 1]!, 4);
+  const alongY = roundTicks(y[0]!, y[y.length - 1]!, 4);
+  add(names.x, new THREE.Vector3(0, -0.02, front * 1.34), "text");
+  add(names.y, new THREE.Vector3(side * 1.42, -0.02, 0), "text");
+  ticks(alongX).forEach((text, i) => add(text, new THREE.Vector3(frame.across(alongX[i]!), -0.02, front * 1.12)));
+  ticks(alongY).forEach((text, i) => add(text, new THREE.Vector3(side * 1.12, -0.02, frame.away(alongY[i]!))));
+  const post = leftPost(w, d, camera);
+  const toValue = valueAtHeight(frame.range, frame.scale);
+  const linear = frame.scale === "linear";
+  const heights = linear ? roundTicks(frame.range.low, frame.range.high, 4) : [0, 0.25, 0.5, 0.75, 1].map(toValue);
+  const texts = linear ? ticks(heights) : heights.map((v) => short(v - frame.range.low, 2));
+  add(linear ? names.value : `${names.value} − lowest`, new THREE.Vector3(post.x, frame.tall * 1.12, post.z), "text");
+  texts.forEach((text, i) => add(text, new THREE.Vector3(post.x * 1.1, frame.height(heights[i]!) * frame.tall, post.z * 1.1)));
+  return out;
+}
+
+function leftPost(w: number, d: number, camera: THREE.Camera): THREE.Vector3 {
+  const posts = [[-w, -d], [w, -d], [w, d], [-w, d]].map(([x, z]) => new THREE.Vector3(x, 0, z));
+  const onScreen = (p: THREE.Vector3): number => p.clone().project(camera).x;
+  return posts.reduce((left, p) => (onScreen(p) < onScreen(left) ? p : left));
+}

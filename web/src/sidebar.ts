@@ -1,0 +1,53 @@
+// The settings' area: its width, and the key that hides it.
+import { makeDivider } from "./divider";
+import { element } from "./dom";
+import type { Page } from "./page";
+import { shortcutButton } from "./shortcuts";
+
+const kNarrowest = 160; // [px]
+const kShare = 0.5; // of the window, at most
+
+export class Sidebar {
+  readonly body = element("div", { class: "settings" });
+  readonly opener: HTMLButtonElement;
+
+  constructor(
+    private readonly root: HTMLElement,
+    private readonly page: Page,
+  ) {
+    const divider = makeDivider({
+      label: "Width of the settings",
+      orientation: "vertical",
+      size: () => root.offsetWidth,
+      limits: () => [kNarrowest, innerWidth * kShare],
+      resize: (width) => this.resize(width),
+    });
+    root.append(divider, this.body);
+    this.opener = shortcutButton(
+      page,
+      { key: "g", does: "Settings", group: "Panels", run: () => this.hide(!root.hidden) },
+      { text: "Settings" },
+    );
+    page.keep("settings", {
+      save: () => ({ hidden: root.hidden, width: root.offsetWidth }),
+      restore: (saved) => this.restore(saved),
+    });
+  }
+
+  private hide(hidden: boolean): void {
+    this.root.hidden = hidden;
+    this.opener.setAttribute("aria-expanded", String(!hidden));
+    this.page.emit("layout", undefined);
+  }
+
+  private resize(width: number): void {
+    document.body.style.setProperty("--right-width", `${width}px`);
+    this.page.emit("layout", undefined);
+  }
+
+  private restore(saved: unknown): void {
+    const { hidden, width } = (saved ?? {}) as { hidden?: unknown; width?: unknown };
+    if (typeof width === "number" && width >= kNarrowest && width <= innerWidth * kShare) this.resize(width);
+    if (typeof hidden === "boolean") this.hide(hidden);
+  }
+}

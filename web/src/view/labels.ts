@@ -1,0 +1,100 @@
+// Which vertices and tets get their numbers written beside them: visible ones, spread so that no two texts overlap.
+import type { Geometry } from "../protocol";
+import { pixelsPerMetre, type Lens } from "./lens";
+import { DepthGrid, kSteepest, screenPositions, type Surface } from "./picking";
+
+export interface Label {
+  x: number;
+  y: number;
+  text: string;
+}
+
+const kMost = 300;
+const kSkinPoint = 0xffffffff; // has no number
+const kCell = 6; // of the grid that tells what is hidden [px]
+
+export interface LabelKinds {
+  vertices: boolean;
+  tets: boolean;
+}
+
+// `em`: height of text [px]. Labels near the cursor come first where there are too many.
+export function chooseLabels(
+  lens: Lens,
+  surface: Surface,
+  geometry: Geometry,
+  kinds: LabelKinds,
+  em: number,
+  cursor: [number, number] | null,
+): Label[] {
+  const screen = screenPositions(lens, surface.positions, surface.clip);
+  const grid = new DepthGrid(0, 0, kCell, Math.ceil(lens.width / kCell), Math.ceil(lens.height / kCell));
+  grid.add(screen, surface.triangles);
+  const chosen = new Spread(lens, grid, em);
+  if (kinds.vertices)
+    for (let i = 0; i < geometry.vertex.length; ++i)
+      if (geometry.vertex[i] !== kSkinPoint)
+        chosen.offer(screen[3 * i], screen[3 * i + 1], screen[3 * i + 2], () => String(geometry.vertex[i]));
+  if (kinds.tets)
+    for (let t = 0; t < geometry.tet.length; ++t) {
+      const middle = (c: number): number =>
+        [0, 1, 2].reduce((sum, k) => sum + screen[3 * surface.triangles[3 * t + k] + c], 0) / 3;
+      chosen.offer(middle(0), middle(1), middle(2), () => `[${geometry.tet[t]}]`);
+    }
+  return chosen.labels(cursor ?? [lens.width / 2, lens.height / 2]);
+}
+
+interface Candidate {
+  x: number;
+  y: number;
+  depth: number;
+  text: () => string;
+}
+
+// Keeps one candidate per cell as large as a label, the nearest to the eye; then drops those that would overlap.
+class Spread {
+  private readonly cells = new Map<number, Candidate>();
+  private readonly width: number;
+  private readonly height: number;
+
+  constructor(
+    private readonly lens: Lens,
+    private readonly grid: DepthGrid,
+    em: number,
+  ) {
+    this.width = 3.2 * em;
+    this.height = 1.3 * em;
+  }
+
+  offer(x: number, y: number, depth: number, text: () => string): void {
+    if (!(x >= 0 && x < this.lens.width && y >= 0 && y < this.lens.height)) return;
+    const cell = this.cell(x, y);
+    const held = this.cells.get(cell);
+    if (held && held.depth <= depth) return;
+    const slack = (kSteepest * kCell) / pixelsPerMetre(this.lens, depth);
+    if (this.grid.sees(x, y, depth, slack)) this.cells.set(cell, { x, y, depth, text });
+  }
+
+  labels([cx, cy]: [number, number]): Label[] {
+    const away = ({ x, y }: Candidate): number => Math.hypot(x - cx, y - cy);
+    const kept = new Map<number, Candidate>();
+    for (const candidate of [...this.cells.values()].sort((a, b) => away(a) - away(b))) {
+      if (kept.size >= kMost) break;
+      if (!this.overlaps(candidate, kept)) kept.set(this.cell(candidate.x, candidate.y), candidate);
+    }
+    return [...kept.values()].map(({ x, y, text }) => ({ x, y, text: text() }));
+  }
+
+  private cell(x: number, y: number): number {
+    return Math.floor(y / this.height) * 65536 + Math.floor(x / this.width);
+  }
+
+  private overlaps({ x, y }: Candidate, kept: Map<number, Candidate>): boolean {
+    for (const dx of [-this.width, 0, this.width])
+      for (const dy of [-this.height, 0, this.height]) {
+        const other = kept.get(this.cell(x + dx, y + dy));
+        if (other && Math.abs(other.x - x) < this.width && Math.abs(other.y - y) < this.height) return true;
+      }
+    return false;
+  }
+}

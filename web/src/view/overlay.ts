@@ -1,0 +1,86 @@
+// The 2-D canvas over a view: axes, colour bar, numbers, highlights, the mouse's spring and brush.
+import type { Highlight } from "../page";
+import type { Field, Vec3 } from "../protocol";
+import type { MapName } from "./colourMaps";
+import type { DisplaySettings } from "./display";
+import type { Label } from "./labels";
+import type { Lens } from "./lens";
+import * as marks from "./marks";
+import type { ColourRange } from "./ranges";
+
+export interface Marks {
+  axes: boolean;
+  gridStep: number; // [m]; 0: no grid
+  bar: { field: Field; range: ColourRange; map: MapName } | null;
+  labels: Label[];
+  highlights: Highlight[];
+  spring: { point: Vec3; target: Vec3; force: Vec3 | null } | null;
+  brush: { at: [number, number]; radius: number; words: string } | null;
+  tip: { at: [number, number]; words: string } | null;
+}
+
+export interface Style {
+  text: string; // colours
+  background: string;
+  accent: string;
+  grid: string;
+  font: string; // family
+  em: number; // height of text [px]
+}
+
+// Of the page's theme, unless the reader chose a background.
+export function readStyle(host: HTMLElement, settings: DisplaySettings, size: [number, number] | null): Style {
+  const style = getComputedStyle(host);
+  const colour = (variable: string): string => style.getPropertyValue(variable).trim() || "#808080";
+  const own = settings.ownBackground ? settings.background : null;
+  return {
+    text: own ? (isLight(own) ? "#1b1f27" : "#e8ebf0") : colour("--text"),
+    background: own ?? colour("--background"),
+    accent: colour("--series-2"),
+    grid: colour("--faint"),
+    font: style.fontFamily,
+    em: size ? Math.max(10, size[1] / 45) : parseFloat(style.fontSize),
+  };
+}
+
+function isLight(colour: string): boolean {
+  const [r, g, b] = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+  return 0.299 * r + 0.587 * g + 0.114 * b > 128;
+}
+
+export function png(canvas: HTMLCanvasElement): Promise<Blob> {
+  return new Promise((resolve, reject) =>
+    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the view has no pixels"))), "image/png"),
+  );
+}
+
+export class Overlay {
+  readonly canvas = document.createElement("canvas");
+  private readonly context = this.canvas.getContext("2d")!;
+
+  draw(lens: Lens, style: Style, what: Marks): void {
+    const { context } = this;
+    const ratio = this.canvas.width / lens.width;
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, lens.width, lens.height);
+    context.font = `${style.em}px ${style.font}`;
+    const ink: marks.Ink = { context, em: style.em, text: style.text, halo: style.background, accent: style.accent };
+    for (const { x, y, text } of what.labels) marks.label(ink, text, x, y);
+    for (const { positions, text } of what.highlights) marks.highlight(ink, lens, positions, text);
+    if (what.axes) marks.axes(ink, lens);
+    if (what.gridStep > 0) marks.gridNote(ink, lens, what.gridStep);
+    if (what.bar) marks.colourBar(ink, lens, what.bar.field, what.bar.range, what.bar.map);
+    if (what.spring) marks.spring(ink, lens, what.spring.point, what.spring.target, what.spring.force);
+    if (what.brush) marks.ring(ink, what.brush.at, what.brush.radius, what.brush.words);
+    if (what.tip) marks.text(ink, what.tip.words, what.tip.at[0] + style.em, what.tip.at[1] - style.em);
+  }
+
+  // Both canvases in one, of the same size.
+  paint(canvas: HTMLCanvasElement, below: HTMLCanvasElement): void {
+    const { width, height } = this.canvas;
+    if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
+    const context = canvas.getContext("2d");
+    context?.drawImage(below, 0, 0);
+    context?.drawImage(this.canvas, 0, 0);
+  }
+}

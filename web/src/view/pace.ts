@@ -1,0 +1,33 @@
+// Tells the source that its pictures are drawn, once for each; a page that nobody sees draws nothing and takes its time.
+import type { Source } from "../source";
+
+const kHiddenPause = 500; // [ms]
+
+export class Pace {
+  private waiting = 0; // pictures that have come and are not drawn
+  private timer = 0;
+
+  constructor(
+    private readonly source: Source,
+    private readonly redraw: () => void,
+  ) {}
+
+  came(): void {
+    this.waiting += 1;
+    this.go();
+  }
+
+  // Also when the page has been hidden or shown: hidden pages have no frames.
+  go(): void {
+    if (!document.hidden) this.redraw();
+    else if (this.waiting > 0 && this.timer === 0) this.timer = window.setTimeout(() => this.drawn(), kHiddenPause);
+  }
+
+  drawn(): void {
+    clearTimeout(this.timer);
+    this.timer = 0;
+    const count = this.waiting;
+    this.waiting = 0;
+    for (let i = 0; i < count; ++i) this.source.ready();
+  }
+}

@@ -1,0 +1,99 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { colourAt, kMapNames, mapTexels } from "../src/view/colourMaps";
+import { about, fraction, logRange, logTicks, readable, RunningRange, ticks, withUnit } from "../src/view/ranges";
+
+const luminance = ([r, g, b]: number[]): number => {
+  const linear = [r, g, b].map((c) => (c / 255) ** 2.2);
+  return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
+};
+
+test("ticks are round, inside the range, and about as many as asked", () => {
+  assert.deepEqual(ticks(0, 10, 5), [0, 2, 4, 6, 8, 10]);
+  assert.deepEqual(ticks(-0.13, 0.31, 4).map((tick) => readable(tick, 0.1)), ["0", "0.2"]);
+  for (const [low, high] of [[1e-7, 3e-7], [-5e9, 4e9], [0.999, 1.001]]) {
+    const found = ticks(low, high, 6);
+    assert(found.length >= 3 && found.length <= 8, `${found}`);
+    for (const tick of found) assert(tick >= low - 1e-9 * (high - low) && tick <= high + 1e-9 * (high - low));
+  }
+});
+
+test("a range without width has one tick, and one that is not finite none", () => {
+  assert.deepEqual(ticks(2, 2, 5), [2]);
+  assert.deepEqual(ticks(NaN, 1, 5), []);
+  assert.deepEqual(ticks(-Infinity, Infinity, 5), []);
+});
+
+test("logarithmic ticks are powers of ten, with 2 and 5 where these are few", () => {
+  assert.deepEqual(logTicks(1, 1000).map((t) => readable(t)), ["1", "10", "100", "1000"]);
+  assert.deepEqual(logTicks(1, 50).map((t) => readable(t)), ["1", "2", "5", "10", "20", "50"]);
+  assert.deepEqual(logTicks(-1, 10), []);
+});
+
+test("numbers are short, and neighbours differ", () => {
+  assert.equal(readable(0.30000000000000004, 0.1), "0.3");
+  assert.equal(readable(1.001, 0.001), "1.001");
+  assert.equal(readable(1234567), "1.235e6");
+  assert.equal(readable(-0.00001234), "−1.234e−5");
+  assert.equal(readable(1e-20, 1), "0");
+  assert.equal(readable(NaN), "not finite");
+});
+
+test("units take prefixes", () => {
+  assert.equal(withUnit(12345, "Pa"), "12.3 kPa");
+  assert.equal(withUnit(0.0042, "m"), "4.2 mm");
+  assert.equal(withUnit(2, ""), "2");
+  assert.equal(withUnit(0.00123, "kg"), "0.00123 kg");
+  assert.equal(withUnit(Infinity, "N"), "not finite");
+});
+
+test("a running range grows at once and shrinks slowly, over both sides", () => {
+  const range = new RunningRange();
+  range.feed("a", 0, 10);
+  range.feed("b", 5, 20);
+  assert.deepEqual(range.get(), { low: 0, high: 20 });
+  range.feed("b", 5, 12);
+  const shrunk = range.get();
+  assert(shrunk && shrunk.high < 20 && shrunk.high > 19);
+  for (let k = 0; k < 500; ++k) range.feed("b", 5, 12);
+  assert(Math.abs(range.get()!.high - 12) < 1e-3);
+});
+
+test("what is not finite leaves a running range as it is", () => {
+  const range = new RunningRange();
+  assert.equal(range.get(), null);
+  range.feed("a", 1, 2);
+  range.feed("a", NaN, 3);
+  range.feed("a", -Infinity, 3);
+  range.feed("a", 9, 3);
+  assert.deepEqual(range.get(), { low: 1, high: 2 });
+});
+
+test("a diverging range is centred", () => {
+  assert.deepEqual(about(1, 0.9, 1.5), { low: 0.5, high: 1.5 });
+});
+
+test("a logarithmic range needs something positive", () => {
+  assert.equal(logRange(-2, 0), null);
+  assert.deepEqual(logRange(0, 1), { low: 1e-9, high: 1 });
+  assert.equal(fraction({ low: 1, high: 100, log: true }, 10), 0.5);
+  assert.equal(fraction({ low: 3, high: 3, log: false }, 3), 0.5);
+});
+
+test("sequential maps get lighter all the way, the diverging one is lightest in the middle", () => {
+  for (const map of kMapNames) {
+    const light = Array.from({ length: 65 }, (_, i) => luminance(colourAt(map, i / 64)));
+    for (let i = 1; i < 65; ++i) {
+      const rises = map !== "blue_orange" || i <= 32;
+      assert(rises ? light[i] > light[i - 1] : light[i] < light[i - 1], `${map} at ${i}`);
+    }
+  }
+});
+
+test("a map's texels are its colours, and values outside take the ends", () => {
+  const texels = mapTexels("viridis", 256);
+  assert.deepEqual([...texels.slice(0, 4)], [0x44, 0x01, 0x54, 255]);
+  assert.deepEqual([...texels.slice(-4)], [0xfd, 0xe7, 0x25, 255]);
+  assert.deepEqual(colourAt("viridis", -3), colourAt("viridis", 0));
+  assert.deepEqual(colourAt("viridis", 7), colourAt("viridis", 1));
+});
