@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "io/atomic_file.h"
 #include "io/base64.h"
 #include "io/checkpoint.h"
 #include "io/gzip.h"
@@ -34,10 +35,10 @@ struct Known {
   int steps = 0;
 };
 
-Known known(const RunLayout& layout, const Scene& scene) {
+Known known(const RunLayout& layout, const std::string& scene_text) {
   if (!layout.holds_run()) throw InvalidInput(layout.root().string() + ": holds no run (there is no steps.csv of one)");
   const Checkpoint checkpoint = read_newest_checkpoint(layout.checkpoint()).checkpoint;
-  if (checkpoint.fingerprint != fingerprint(scene.resolved))
+  if (checkpoint.fingerprint != fingerprint(scene_text))
     throw InvalidInput(layout.root().string() +
                        ": scene.toml was changed after the run began; put back the one that "
                        "the run was computed with, or run again");
@@ -95,7 +96,8 @@ class Recorder {
       : layout_(run),
         scene_(scene),
         options_(options),
-        known_(known(layout_, scene)),
+        scene_text_(read_file(layout_.scene())),
+        known_(known(layout_, scene_text_)),
         tables_(read_run_tables(layout_, known_.steps)),
         step_of_frame_(steps_of_frames(known_, tables_, run)),
         positions_(run_positions(layout_, scene, frame_count())) {
@@ -179,7 +181,7 @@ class Recorder {
     const RecordedScene recorded{scene_, body_, fields_, tables_, start.lower, start.upper, note};
     head["hello"] = hello_message(recorded);
     head["scenes"] = scene_messages(recorded);
-    head["toml"] = scene_.resolved;
+    head["toml"] = scene_text_;
     head["steps"] = Json::array();
     for (const StepRow& row : tables_.steps) head["steps"].push_back(to_json(row));
     head["frames"]["step"] = Json::array();
@@ -244,6 +246,7 @@ class Recorder {
   RunLayout layout_;
   const Scene& scene_;
   RecordingOptions options_;
+  std::string scene_text_;
   Known known_;
   RunTables tables_;
   std::vector<int> step_of_frame_;
