@@ -115,32 +115,47 @@ export function axes(ink: Ink, lens: Lens): void {
 
 // The colours of a field with ticks, at the right edge.
 export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange, map: MapName): void {
-  const { context, em } = ink;
+  const { em } = ink;
   const height = Math.min(16 * em, lens.height - 7 * em);
-  const width = 1.1 * em;
   if (height < 3 * em) return;
-  const right = lens.width - em;
-  const top = 3.2 * em;
-  const left = right - width;
-  const isConstant = !(range.high > range.low);
+  const [left, top, width] = [lens.width - 2.1 * em, 3.2 * em, 1.1 * em];
+  const title = `${field.label}${field.unit && ` [${unitText(field.unit)}]`}${range.log ? ", logarithmic" : ""}`;
+  const values = range.log ? logTicks(range.low, range.high) : ticks(range.low, range.high, height / (2.6 * em));
+  const step = !range.log && values.length > 1 ? values[1] - values[0] : undefined;
+  const words = values.map((value) => readable(value, step));
+  const widest = Math.max(0, ...words.map((word) => ink.context.measureText(word).width)) + 1.6 * em + width;
+  backing(ink, lens.width - 0.4 * em, top - 2.4 * em, Math.max(widest, ink.context.measureText(title).width) + em, height + 3.2 * em);
+  colours(ink, map, left, top, width, height, range.high > range.low);
+  text(ink, title, left + width, top - 1.4 * em, "right");
+  values.forEach((value, i) => {
+    const y = top + height * (1 - fraction(range, value));
+    ink.context.fillStyle = ink.text;
+    ink.context.fillRect(left - 0.35 * em, y - 0.5, 0.35 * em, 1);
+    text(ink, words[i], left - 0.6 * em, y, "right");
+  });
+}
+
+// Sets off what stands on it from the body behind.
+function backing(ink: Ink, right: number, top: number, width: number, height: number): void {
+  const { context } = ink;
+  context.globalAlpha = 0.8;
+  context.fillStyle = ink.halo;
+  context.beginPath();
+  context.roundRect(right - width, top, width, height, 0.4 * ink.em);
+  context.fill();
+  context.globalAlpha = 1;
+}
+
+function colours(ink: Ink, map: MapName, left: number, top: number, width: number, height: number, varies: boolean): void {
+  const { context } = ink;
   for (let y = 0; y < height; ++y) {
-    const [r, g, b] = colourAt(map, isConstant ? 0.5 : 1 - y / height);
+    const [r, g, b] = colourAt(map, varies ? 1 - y / height : 0.5);
     context.fillStyle = `rgb(${r}, ${g}, ${b})`;
     context.fillRect(left, top + y, width, 1.5);
   }
   context.lineWidth = 1;
   context.strokeStyle = ink.text;
   context.strokeRect(left - 0.5, top - 0.5, width + 1, height + 1.5);
-  const unit = field.unit === "" ? "" : ` [${unitText(field.unit)}]`;
-  text(ink, `${field.label}${unit}${range.log ? ", logarithmic" : ""}`, right, top - 1.4 * em, "right");
-  const marks = range.log ? logTicks(range.low, range.high) : ticks(range.low, range.high, height / (2.6 * em));
-  const step = range.log ? undefined : (marks[1] ?? NaN) - marks[0];
-  for (const mark of marks) {
-    const y = top + height * (1 - fraction(range, mark));
-    context.fillStyle = ink.text;
-    context.fillRect(left - 0.35 * em, y - 0.5, 0.35 * em, 1);
-    text(ink, readable(mark, Number.isFinite(step) ? step : undefined), left - 0.6 * em, y, "right");
-  }
 }
 
 export function gridNote(ink: Ink, lens: Lens, step: number): void {
