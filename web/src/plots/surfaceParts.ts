@@ -4,7 +4,7 @@ import type { MaybeNumber } from "../protocol";
 import { viridis } from "./colourMap";
 import { heightOf, type Grid, type Range, type Scale } from "./grid";
 
-// x to the right, y away from the reader, values up; the longer side of the plane is 2 long.
+// x to the right, y away from the reader, values up; the longer side of the plane is 2 long, before it is stretched.
 export class Frame {
   readonly width: number;
   readonly depth: number;
@@ -16,10 +16,11 @@ export class Frame {
     readonly grid: Grid,
     readonly range: Range,
     readonly scale: Scale,
+    stretch: number, // of the width
   ) {
     const [dx, dy] = [span(grid.x), span(grid.y)];
     const ratio = Math.min(1.6, Math.max(1 / 1.6, dx / dy)); // a narrow strip would not show
-    this.width = ratio >= 1 ? 2 : 2 * ratio;
+    this.width = (ratio >= 1 ? 2 : 2 * ratio) * stretch;
     this.depth = ratio >= 1 ? 2 / ratio : 2;
     this.height = heightOf(range, scale);
     this.shade = this.height;
