@@ -77,8 +77,8 @@ export class View implements Touched {
     const canvas = document.createElement("canvas");
     this.drawNow();
     this.overlay.paint(canvas, this.glCanvas);
+    if (this.sharpness !== 1) this.redraw();
     this.sharpness = 1;
-    this.drawNow();
     return png(canvas);
   }
 
