@@ -1,8 +1,10 @@
 // What is drawn over a view with a 2-D canvas: text and thin shapes that stay readable over anything.
+import { short, ticks as tickTexts } from "../plots/numbers";
 import type { Field, Vec3 } from "../protocol";
 import { colourAt, type MapName } from "./colourMaps";
 import { isBehind, project, type Lens } from "./lens";
-import { fraction, logTicks, readable, ticks, unitText, withUnit, type ColourRange } from "./ranges";
+import { fraction, logTicks, ticks, type ColourRange } from "./ranges";
+import { unitText, valueText } from "./values";
 
 export interface Ink {
   context: CanvasRenderingContext2D;
@@ -74,7 +76,7 @@ export function spring(ink: Ink, lens: Lens, point: Vec3, target: Vec3, force: V
   }
   dot(ink, from, 4, ink.accent);
   const newtons = force ? Math.hypot(...force) : NaN;
-  if (Number.isFinite(newtons)) text(ink, withUnit(newtons, "N"), to[0] + ink.em, to[1] - ink.em);
+  if (Number.isFinite(newtons)) text(ink, valueText(newtons, "N", 3), to[0] + ink.em, to[1] - ink.em);
 }
 
 export function ring(ink: Ink, [x, y]: Point, radius: number, words: string): void {
@@ -121,8 +123,7 @@ export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange
   const [left, top, width] = [lens.width - 2.1 * em, 3.2 * em, 1.1 * em];
   const title = `${field.label}${field.unit && ` [${unitText(field.unit)}]`}${range.log ? ", logarithmic" : ""}`;
   const values = range.log ? logTicks(range.low, range.high) : ticks(range.low, range.high, height / (2.6 * em));
-  const step = !range.log && values.length > 1 ? values[1] - values[0] : undefined;
-  const words = values.map((value) => readable(value, step));
+  const words = range.log || values.length < 2 ? values.map((value) => short(value)) : tickTexts(values);
   const widest = Math.max(0, ...words.map((word) => ink.context.measureText(word).width)) + 1.6 * em + width;
   backing(ink, lens.width - 0.4 * em, top - 2.4 * em, Math.max(widest, ink.context.measureText(title).width) + em, height + 3.2 * em);
   colours(ink, map, left, top, width, height, range.high > range.low);
@@ -159,5 +160,5 @@ function colours(ink: Ink, map: MapName, left: number, top: number, width: numbe
 }
 
 export function gridNote(ink: Ink, lens: Lens, step: number): void {
-  text(ink, `grid ${withUnit(step, "m")}`, 1.2 * ink.em, lens.height - 0.9 * ink.em);
+  text(ink, `grid ${valueText(step, "m")}`, 1.2 * ink.em, lens.height - 0.9 * ink.em);
 }

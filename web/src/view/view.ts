@@ -12,9 +12,9 @@ import type { Lens } from "./lens";
 import { Overlay, png, readStyle, type Marks, type Style } from "./overlay";
 import { Pace } from "./pace";
 import { interpolated, nearestVertex, type Hit, type Surface } from "./picking";
-import { withUnit } from "./ranges";
 import { Stage } from "./stage";
 import { Touch, type Touched } from "./touch";
+import { valueText } from "./values";
 
 const kLargest = 8192; // side of a screenshot [px]
 
@@ -282,6 +282,6 @@ export class View implements Touched {
     const { hover, cursor } = this.touch;
     const [shown, values] = [this.figure.coloured(), this.figure.side?.picture?.values];
     if (!hover || !cursor || !shown || !values || !this.figure.body || this.display.settings.tool !== "read") return null;
-    return { at: cursor, words: withUnit(interpolated(hover, this.figure.body.geometry.triangles, values), shown.field.unit) };
+    return { at: cursor, words: valueText(interpolated(hover, this.figure.body.geometry.triangles, values), shown.field.unit) };
   }
 }
