@@ -1,7 +1,7 @@
 // Geometry for the picture of a surface: triangles, grid lines and lines of equal height, in the box of `Frame`.
 import * as THREE from "three";
 import type { MaybeNumber } from "../protocol";
-import { viridis } from "./colourMap";
+import { colourAt } from "../view/colourMaps";
 import { heightOf, type Grid, type Range, type Scale } from "./grid";
 
 // x to the right, y away from the reader, values up; the longer side of the plane is 2 long, before it is stretched.
@@ -61,7 +61,10 @@ export function surfaceGeometry(frame: Frame, values: readonly MaybeNumber[], co
   values.forEach((value, k) => {
     const place = frame.place(x[k % x.length]!, y[Math.floor(k / x.length)]!, value ?? frame.range.low);
     place.toArray(positions, 3 * k);
-    if (coloured) colour.setRGB(...viridis(frame.shade(value ?? frame.range.low)), THREE.SRGBColorSpace).toArray(colours, 3 * k);
+    if (coloured) {
+      const [r, g, b] = colourAt("viridis", frame.shade(value ?? frame.range.low));
+      colour.setRGB(r / 255, g / 255, b / 255, THREE.SRGBColorSpace).toArray(colours, 3 * k);
+    }
   });
   const index: number[] = [];
   for (let j = 0; j + 1 < y.length; ++j)
