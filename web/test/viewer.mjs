@@ -101,10 +101,14 @@ test("Space plays and pauses, R goes back, S takes one step", async () => {
 
 test("the timeline rewinds by arrow keys", async () => {
   const { page, seen, until, checkErrors } = await open();
+  await page.keyboard.press("r");
+  await until("the start", () => seen.state.a.step === 0);
   for (let i = 0; i < 3; ++i) await page.keyboard.press("s");
-  await until("three more steps", () => seen.state.a.step >= 3);
+  await until("three steps", () => seen.state.a.step === 3);
   const step = seen.state.a.step;
-  await page.getByLabel("Timeline: rewinds to a step").press("ArrowLeft");
+  const timeline = page.getByLabel("Timeline: rewinds to a step");
+  await page.waitForFunction((value) => document.querySelector(".timeline input").value === value, String(step));
+  await timeline.press("ArrowLeft");
   await until("the step before", () => seen.state.a.step === step - 1);
   checkErrors();
 });
