@@ -34,7 +34,7 @@ struct Lesson {
     std::string label;
   };
   std::vector<Comparison> comparison;  // none or one
-  std::string recording;               // JSON of the mouse's recorded events; empty: none
+  std::string recording;               // JSON of a Recording, whose events are repeated; empty: none
 };
 
 struct SessionOptions {
