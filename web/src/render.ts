@@ -107,6 +107,8 @@ async function draw(request: RenderRequest, source: RecordedSource, token: strin
   view.renderSize(request.width, request.height);
   const scene = store.side("a")?.scene;
   if (!scene) throw new Error("the recording has no scene");
+  if (request.step !== null) await source.request({ do: "rewind", step: request.step }); // whose range colours it
+  view.drawNow();
   if (request.colour !== "") await colour(request, source, display, scene.fields);
   aim(display.camera("a"), request, source, scene.up);
   const steps = stepsToShow(source.frames, request);
