@@ -1,7 +1,7 @@
 // What is always at hand: the simulation's time, and the doors to everything else.
-import { button, element } from "./dom";
+import { button, element, icon, messageOf } from "./dom";
 import type { Page } from "./page";
-import type { SideState } from "./protocol";
+import type { SideState, State } from "./protocol";
 import { openShortcutList, shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
 import type { Theme } from "./theme";
@@ -27,16 +27,27 @@ function makeTransport(store: Store, page: Page): HTMLElement {
   const { source } = store;
   const group = "Simulation";
   const steers = source.live;
-  const toggle = (): void => source.send({ do: store.state?.playing ? "pause" : "play" });
+  let wanted: boolean | null = null; // while the program has not answered
+  const toggle = (): void => {
+    wanted = !(wanted ?? store.state?.playing ?? false);
+    source
+      .request({ do: wanted ? "play" : "pause" })
+      .catch((reason: unknown) => page.notice(messageOf(reason), "error"))
+      .finally(() => (wanted = null));
+  };
   const play = shortcutButton(
     page,
     { key: " ", does: "Play or pause", group, run: toggle },
     { icon: "play", label: "Play", steers },
   );
-  const pauseIcon = button({ icon: "pause" }, () => {}).firstElementChild as Element;
-  const playIcon = play.firstElementChild as Element;
+  let played = false;
+  store.on("state", (state) => {
+    if ((wanted ?? played) && !state.playing) tellWhyItStopped(state, page);
+    played = state.playing;
+  });
   store.on("state", ({ playing }) => {
-    play.replaceChildren(playing ? pauseIcon : playIcon);
+    if (play.getAttribute("aria-pressed") === String(playing)) return;
+    play.replaceChildren(icon(playing ? "pause" : "play"));
     play.setAttribute("aria-label", playing ? "Pause" : "Play");
     play.setAttribute("aria-pressed", String(playing));
   });
@@ -52,6 +63,12 @@ function makeTransport(store: Store, page: Page): HTMLElement {
   );
   const iterate = source.live ? makeIterate(store, page) : null;
   return element("div", { class: "group" }, reset, play, step, iterate, makeSpeed(store));
+}
+
+// Where nobody paused: an explicit scheme that blew up, for example.
+function tellWhyItStopped(state: State, page: Page): void {
+  const words = state.a.words ?? state.b?.words;
+  if (words) page.notice(`Stopped: ${words.cause}; ${words.place}. Remedy: ${words.remedy}`, "error");
 }
 
 function makeIterate(store: Store, page: Page): HTMLElement {

@@ -1,10 +1,10 @@
 // The solver under the microscope: the steps, the iterations of one of them, and the line search of one iteration.
 import type { Page, Panel } from "../page";
-import type { IterationReply, IterationRow, SideName, StepRow, WorstReply } from "../protocol";
+import type { IterationRow, SideName, StepRow, WorstReply } from "../protocol";
 import type { Store } from "../store";
 import { chosenOf, type Chosen } from "../plots/chosen";
 import { button, checkbox, choice, element, oncePerFrame } from "../plots/dom";
-import { short, withUnit } from "../plots/numbers";
+import { plural, short, withUnit } from "../plots/numbers";
 import { Rows } from "../plots/rows";
 import type { Search } from "../plots/search";
 import { stepText, totalSeconds } from "../plots/words";
@@ -21,7 +21,9 @@ class MicroscopePanel implements Panel {
   readonly title = "Microscope";
   readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Solver microscope" });
   private readonly chosen: Chosen;
-  private readonly sides = choice("", "Which side of the comparison", [], "a", (side) => this.chooseSide(side as SideName));
+  private readonly sides = choice("", "Which side of the comparison", [], "a", (side) =>
+    this.chooseSide(side as SideName),
+  );
   private readonly follow = checkbox("follow", "Stay at the newest step", true, (on) => this.chosen.follow(on));
   private readonly words = element("div", { class: "plot-note", role: "status" });
   private readonly worst = element("ol", { class: "worst", hidden: "" });
@@ -40,8 +42,6 @@ class MicroscopePanel implements Panel {
   private readonly grid = element("div", { class: "microscope-charts" });
   private charts: StepChart[] = [];
   private names: ChartName[] = [...kOrder];
-  private search: Search | string = "";
-  private searched = ""; // what `search` belongs to
   private visible = false;
   private readonly redraw = oncePerFrame(() => this.visible && this.draw());
 
@@ -50,12 +50,17 @@ class MicroscopePanel implements Panel {
     private readonly page: Page,
   ) {
     this.chosen = chosenOf(store, page);
-    const worst = button("Worst elements", "Lists the tets that are worst off and marks them on the body", () => void this.findWorst());
+    const worst = button(
+      "Worst elements",
+      "Lists the tets that are worst off and marks them on the body",
+      () => void this.findWorst(),
+    );
     const bar = element("div", { class: "plot-bar" }, this.sides.element, this.follow.element, worst, this.words);
     const tables = element("div", { class: "microscope-tables" }, this.steps.element, this.iterations.element);
     this.element.append(bar, this.worst, element("div", { class: "microscope plot-fill" }, tables, this.grid));
     this.chosen.on("changed", this.redraw);
     this.chosen.on("rows", this.redraw);
+    this.chosen.on("looked", this.redraw);
     store.on("scene", this.redraw);
     store.on("gone", this.redraw);
     page.on("theme", () => this.charts.forEach((chart) => chart.retheme()));
@@ -70,7 +75,7 @@ class MicroscopePanel implements Panel {
   }
 
   private rows(): readonly StepRow[] {
-    return this.store.side(this.chosen.side)?.steps ?? [];
+    return this.chosen.rows();
   }
 
   // The newest step stands first.
@@ -90,9 +95,19 @@ class MicroscopePanel implements Panel {
     };
     return [
       { title: "step", meaning: "number of the time step; the newest is first", text: of((s) => String(s.step)) },
-      { title: "status", meaning: "how the minimisation ended", left: true, class: "status", text: of((s) => statusText(s)) },
+      {
+        title: "status",
+        meaning: "how the minimisation ended",
+        left: true,
+        class: "status",
+        text: of((s) => statusText(s)),
+      },
       { title: "it.", meaning: "iterations of the minimiser", text: of((s) => String(s.iterations.length)) },
-      { title: "residual", meaning: "norm of the forces that are left over, in parts of the threshold that it must be below", text: of(residualText) },
+      {
+        title: "resid.",
+        meaning: "norm of the forces that are left over, in parts of the threshold that it must be below",
+        text: of(residualText),
+      },
       { title: "took", meaning: "wall time", text: of((s) => withUnit(s.seconds, "s", 3)) },
     ];
   }
@@ -104,12 +119,28 @@ class MicroscopePanel implements Panel {
     };
     return [
       { title: "#", meaning: "iteration of the step", text: (row) => this.mark(row) },
-      { title: "E", meaning: "the objective before the iteration", text: of((it) => short(it.value, 6)) },
+      { title: "E", meaning: "the objective before the iteration", text: of((it) => short(it.value, 5)) },
       { title: "|g|", meaning: "norm of its gradient", text: of((it) => short(it.gradient_norm, 3)) },
-      { title: "decr.", meaning: "−g·d / 2: what the quadratic model promises", text: of((it) => short(it.decrement, 3)) },
-      { title: "α", meaning: "accepted step length; 0: none was found", text: of((it) => (it.alpha === 0 ? "none" : short(it.alpha, 3))) },
-      { title: "trials", meaning: "of the line search", text: of((it) => (it.trials.length > 0 ? String(it.trials.length) : "–")) },
-      { title: "proj.", meaning: "elements whose Hessian was made definite", text: of((it) => String(it.projected_elements)) },
+      {
+        title: "decr.",
+        meaning: "−g·d / 2: what the quadratic model promises",
+        text: of((it) => short(it.decrement, 3)),
+      },
+      {
+        title: "α",
+        meaning: "accepted step length; 0: none was found",
+        text: of((it) => (it.alpha === 0 ? "none" : short(it.alpha, 3))),
+      },
+      {
+        title: "trials",
+        meaning: "of the line search",
+        text: of((it) => (it.trials.length > 0 ? String(it.trials.length) : "–")),
+      },
+      {
+        title: "proj.",
+        meaning: "elements whose Hessian was made definite",
+        text: of((it) => String(it.projected_elements)),
+      },
       { title: "inner", meaning: "iterations of the linear solver", text: of((it) => String(it.linear_iterations)) },
       { title: "took", meaning: "wall time", text: of((it) => withUnit(totalSeconds(it), "s", 3)) },
     ];
@@ -117,13 +148,17 @@ class MicroscopePanel implements Panel {
 
   private mark(row: number): string {
     const count = this.chosen.row()?.iterations.length ?? 0;
-    const done = (this.store.state?.[this.chosen.side]?.iteration ?? -1) < 0 || this.stepAt(0)?.step !== this.chosen.step;
-    return row === count - 1 && done ? `end ${row}` : String(row);
+    return row === count - 1 && !this.chosen.isUnderWay() ? `end ${row}` : String(row);
   }
 
   private chooseStep(row: number): void {
     const step = this.stepAt(row);
-    if (step) this.chosen.choose(this.chosen.side, step.step, Math.min(this.chosen.iteration, Math.max(0, step.iterations.length - 1)));
+    if (step)
+      this.chosen.choose(
+        this.chosen.side,
+        step.step,
+        Math.min(this.chosen.iteration, Math.max(0, step.iterations.length - 1)),
+      );
   }
 
   private chooseSide(side: SideName): void {
@@ -140,15 +175,17 @@ class MicroscopePanel implements Panel {
     this.steps.show(rows.length, index < 0 ? -1 : rows.length - 1 - index, true);
     this.iterations.show(this.chosen.row()?.iterations.length ?? 0, this.chosen.iteration, true);
     this.tell();
-    this.askSearch();
-    for (const chart of this.charts) chart.show(this.search);
+    const search = this.searchNow();
+    for (const chart of this.charts) chart.show(search);
   }
 
   private showSides(): void {
     const two = this.store.side("b") !== null;
     this.sides.element.hidden = !two;
     if (!two) return;
-    const options = (["a", "b"] as const).map((side) => new Option(`${side.toUpperCase()}: ${this.store.side(side)?.scene.label || side}`, side));
+    const options = (["a", "b"] as const).map(
+      (side) => new Option(`${side.toUpperCase()}: ${this.store.side(side)?.scene.label || side}`, side),
+    );
     const text = options.map((option) => option.text).join();
     if (this.sides.element.dataset.text !== text) this.sides.select.replaceChildren(...options);
     this.sides.element.dataset.text = text;
@@ -158,46 +195,43 @@ class MicroscopePanel implements Panel {
   private tell(): void {
     const row = this.chosen.row();
     const implicit = this.store.side(this.chosen.side)?.scene.implicit ?? true;
-    const underWay = this.store.state?.[this.chosen.side]?.iteration ?? -1;
-    const newest = row !== null && row === this.stepAt(0);
-    if (!row) this.words.textContent = implicit ? "No step has been taken yet." : "This scheme minimises nothing; no step has been taken yet.";
-    else if (newest && underWay >= 0) this.words.textContent = `Step ${row.step} is under way: ${row.iterations.length} of its iterations are done.`;
+    const underWay = this.chosen.isUnderWay();
+    if (!row)
+      this.words.textContent = implicit
+        ? "No step has been taken yet."
+        : "This scheme minimises nothing; no step has been taken yet.";
+    else if (underWay)
+      this.words.textContent = `Step ${row.step} is under way; known so far: ${plural(row.iterations.length, "iteration")}.`;
     else this.words.textContent = `Step ${row.step}. ${stepText(row, implicit)}`;
-    this.words.dataset.kind = row && !row.success && !(newest && underWay >= 0) ? "bad" : "";
+    this.words.dataset.kind = row && !row.success ? "bad" : "";
   }
 
-  // Asks for E along d when a chart shows it and another iteration is chosen.
-  private askSearch(): void {
-    const { side, step, iteration } = this.chosen;
-    const key = `${side} ${step} ${iteration} ${this.chosen.row()?.iterations.length ?? 0}`;
-    if (key === this.searched || !this.charts.some((chart) => chart.name === "search")) return;
-    this.searched = key;
-    const row = this.chosen.iterationRow();
-    if (!row) {
-      this.search = this.store.side(side)?.scene.implicit === false ? "This scheme minimises nothing: there is no line search." : "No iteration is chosen.";
-      return;
+  // E along d at the chosen iteration, asked for when a chart shows it; or why it is not there.
+  private searchNow(): Search | string {
+    if (!this.charts.some((chart) => chart.name === "search")) return "";
+    if (!this.chosen.iterationRow()) {
+      const implicit = this.store.side(this.chosen.side)?.scene.implicit ?? true;
+      return implicit ? "No iteration is chosen." : "This scheme minimises nothing: there is no line search.";
     }
-    const settle = (search: Search | string): void => {
-      if (key !== this.searched) return;
-      this.search = search;
-      this.redraw();
-    };
-    this.chosen.landscape().then(
-      (reply) => settle(this.searchOf(reply)),
-      (reason: unknown) => settle(`E along d is not known here: ${reason instanceof Error ? reason.message : String(reason)}`),
-    );
-  }
-
-  private searchOf(reply: IterationReply): Search {
-    const settings = this.store.side(this.chosen.side)?.scene.settings ?? [];
+    this.chosen.look();
+    const seen = this.chosen.seen;
+    if (!seen) return "The program is asked for E along d ...";
+    if (!seen.reply) return `E along d is not known here: ${seen.why}`;
+    const settings = this.store.side(seen.at.side)?.scene.settings ?? [];
     const test = settings.find((setting) => setting.key.endsWith("line_search.test"))?.value;
-    return { curve: reply.curve, trials: reply.trials, test: typeof test === "string" ? test : "textbook" };
+    const about = this.chosen.isSeen() ? "" : `of step ${seen.at.step}, iteration ${seen.at.iteration}`;
+    return {
+      curve: seen.reply.curve,
+      trials: seen.reply.trials,
+      test: typeof test === "string" ? test : "textbook",
+      about,
+    };
   }
 
   // As many charts as there is room for.
   private arrange(): void {
     const font = Number.parseFloat(getComputedStyle(this.grid).fontSize) || 14;
-    const across = Math.max(1, Math.min(3, Math.floor(this.grid.clientWidth / (16 * font))));
+    const across = Math.max(1, Math.min(3, Math.floor(this.grid.clientWidth / (14.5 * font))));
     const down = Math.max(1, Math.min(2, Math.floor(this.grid.clientHeight / (11 * font))));
     this.grid.style.gridTemplate = `repeat(${down}, minmax(0, 1fr)) / repeat(${across}, minmax(0, 1fr))`;
     const count = across * down;
@@ -222,11 +256,21 @@ class MicroscopePanel implements Panel {
   private async findWorst(): Promise<void> {
     try {
       const reply = await this.store.source.ask<WorstReply>({ ask: "worst", side: this.chosen.side });
-      const text = (item: WorstReply["items"][number]): string => `${item.what}: ${item.unit ? withUnit(item.value, item.unit) : short(item.value)}`;
-      const items = reply.items.map((item) => element("li", {}, button(text(item), "Mark it on the body", () => this.highlight(item, text(item)))));
+      const text = (item: WorstReply["items"][number]): string =>
+        `${item.what}: ${item.unit ? withUnit(item.value, item.unit) : short(item.value)}`;
+      const items = reply.items.map((item) =>
+        element(
+          "li",
+          {},
+          button(text(item), "Mark it on the body", () => this.highlight(item, text(item))),
+        ),
+      );
       this.worst.replaceChildren(...items);
       this.worst.hidden = items.length === 0;
-      this.page.emit("highlight", reply.items.map((item) => ({ positions: item.positions, text: text(item) })));
+      this.page.emit(
+        "highlight",
+        reply.items.map((item) => ({ positions: item.positions, text: text(item) })),
+      );
     } catch (reason) {
       this.page.notice(reason instanceof Error ? reason.message : String(reason), "error");
     }
@@ -239,7 +283,9 @@ class MicroscopePanel implements Panel {
   private restore(saved: unknown): void {
     const charts = (saved as { charts?: unknown } | null)?.charts;
     if (!Array.isArray(charts)) return;
-    this.names = kOrder.map((name, i) => (kCharts.some(([known]) => known === charts[i]) ? (charts[i] as ChartName) : name));
+    this.names = kOrder.map((name, i) =>
+      kCharts.some(([known]) => known === charts[i]) ? (charts[i] as ChartName) : name,
+    );
     this.charts.forEach((chart, i) => (chart.name = this.names[i]!));
     this.redraw();
   }
@@ -251,5 +297,6 @@ function residualText(step: StepRow): string {
 }
 
 function statusText(step: StepRow): string {
+  if (step.status === "under way") return "… under way";
   return `${step.success ? "✓" : "✗"} ${step.status.replaceAll("_", " ")}`;
 }

@@ -1,5 +1,6 @@
 // Where the energy of one side is and where it went, step by step: states as they are, works and losses summed up.
 import type { MaybeNumber, StepRow } from "../protocol";
+import { short, withUnit } from "./numbers";
 import type { Colour } from "./palette";
 
 export interface LedgerColumn {
@@ -14,7 +15,14 @@ export interface LedgerColumn {
 const kTermColours: Colour[] = ["series3", "series6", "series4", "series5", "series1"];
 
 export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
-  const line = (key: string, label: string, meaning: string, colour: Colour, width = 1.5, dotted = false): LedgerColumn => ({
+  const line = (
+    key: string,
+    label: string,
+    meaning: string,
+    colour: Colour,
+    width = 1.5,
+    dotted = false,
+  ): LedgerColumn => ({
     key,
     label,
     meaning,
@@ -23,7 +31,13 @@ export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
     dotted,
   });
   const terms = potentials.map((name, i) =>
-    line(`potential_${name}`, `V: ${name.replaceAll("_", " ")}`, "a term of the potential energy", kTermColours[i % kTermColours.length]!, 1.25),
+    line(
+      `potential_${name}`,
+      `V: ${name.replaceAll("_", " ")}`,
+      "a term of the potential energy",
+      kTermColours[i % kTermColours.length]!,
+      1.25,
+    ),
   );
   return [
     line("kinetic", "T", "kinetic energy", "series2", 2),
@@ -33,7 +47,7 @@ export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
     line("mouse_work", "work of the mouse", "by the mouse's spring, summed over the steps", "series4", 1.5, true),
     line("pin_work", "work of pins", "by moving pins and targets, summed over the steps", "series5", 1.5, true),
     line("damping_loss", "damping loss", "dissipated by damping, summed over the steps", "series7", 1.5, true),
-    line("numerical_loss", "numerical loss", "dissipated by the integrator, summed over the steps", "series2", 1.5, true),
+    line("numerical_loss", "numerical loss", "dissipated by the integrator, summed over the steps", "bad", 1.5, true),
     line("balance", "balance", "T + V − works + losses: flat where every step was solved accurately", "good", 2.5),
   ];
 }
@@ -56,14 +70,17 @@ export class Ledger {
   update(rows: readonly StepRow[], from: number): void {
     const keep = Math.min(from, this.step.length, rows.length);
     const running = [this.lowest, this.highest, this.largest];
-    for (const column of [this.step, this.time, this.residualWork, this.ledgerError, ...running, ...this.columns]) column.length = keep;
+    for (const column of [this.step, this.time, this.residualWork, this.ledgerError, ...running, ...this.columns])
+      column.length = keep;
     for (let i = keep; i < rows.length; ++i) this.append(rows[i]!);
   }
 
   // The range that the balance has covered since the first step, and the largest energy so far.
   drift(): { drift: number; scale: number } {
     const last = this.step.length - 1;
-    return last < 0 ? { drift: 0, scale: 0 } : { drift: this.highest[last]! - this.lowest[last]!, scale: this.largest[last]! };
+    return last < 0
+      ? { drift: 0, scale: 0 }
+      : { drift: this.highest[last]! - this.lowest[last]!, scale: this.largest[last]! };
   }
 
   private append(row: StepRow): void {
@@ -100,4 +117,10 @@ function sum(parts: readonly MaybeNumber[]): MaybeNumber {
 
 function negated(value: MaybeNumber): MaybeNumber {
   return value === null ? null : -value;
+}
+
+export function balanceText(drift: number, scale: number): string {
+  const part = scale > 0 ? drift / scale : 0;
+  if (part <= 1e-3) return `balance flat to ${withUnit(drift, "J", 2)} (${short(part, 2)} of the largest energy)`;
+  return `balance drifts by ${withUnit(drift, "J", 2)} (${short(part, 2)} of the largest energy): some steps were not solved accurately`;
 }

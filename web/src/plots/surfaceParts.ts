@@ -1,10 +1,10 @@
 // Geometry for the picture of a surface: triangles, grid lines and lines of equal height, in the box of `Frame`.
 import * as THREE from "three";
 import type { MaybeNumber } from "../protocol";
-import { viridis } from "./colourMap";
+import { colourAt } from "../view/colourMaps";
 import { heightOf, type Grid, type Range, type Scale } from "./grid";
 
-// x to the right, y away from the reader, values up; the longer side of the plane is 2 long.
+// x to the right, y away from the reader, values up; the longer side of the plane is 2 long, before it is stretched.
 export class Frame {
   readonly width: number;
   readonly depth: number;
@@ -16,10 +16,11 @@ export class Frame {
     readonly grid: Grid,
     readonly range: Range,
     readonly scale: Scale,
+    stretch: number, // of the width
   ) {
     const [dx, dy] = [span(grid.x), span(grid.y)];
     const ratio = Math.min(1.6, Math.max(1 / 1.6, dx / dy)); // a narrow strip would not show
-    this.width = ratio >= 1 ? 2 : 2 * ratio;
+    this.width = (ratio >= 1 ? 2 : 2 * ratio) * stretch;
     this.depth = ratio >= 1 ? 2 / ratio : 2;
     this.height = heightOf(range, scale);
     this.shade = this.height;
@@ -60,7 +61,10 @@ export function surfaceGeometry(frame: Frame, values: readonly MaybeNumber[], co
   values.forEach((value, k) => {
     const place = frame.place(x[k % x.length]!, y[Math.floor(k / x.length)]!, value ?? frame.range.low);
     place.toArray(positions, 3 * k);
-    if (coloured) colour.setRGB(...viridis(frame.shade(value ?? frame.range.low)), THREE.SRGBColorSpace).toArray(colours, 3 * k);
+    if (coloured) {
+      const [r, g, b] = colourAt("viridis", frame.shade(value ?? frame.range.low));
+      colour.setRGB(r / 255, g / 255, b / 255, THREE.SRGBColorSpace).toArray(colours, 3 * k);
+    }
   });
   const index: number[] = [];
   for (let j = 0; j + 1 < y.length; ++j)
@@ -85,10 +89,16 @@ export function gridLines(frame: Frame, values: readonly MaybeNumber[], lines: n
   const add = (k: number, l: number): void => {
     const [v, w] = [values[k], values[l]];
     if (v === null || v === undefined || w === null || w === undefined) return;
-    for (const [n, value] of [[k, v], [l, w]] as const)
+    for (const [n, value] of [
+      [k, v],
+      [l, w],
+    ] as const)
       points.push(...frame.place(x[n % x.length]!, y[Math.floor(n / x.length)]!, value, 0.002).toArray());
   };
-  const [everyX, everyY] = [Math.max(1, Math.round((x.length - 1) / lines)), Math.max(1, Math.round((y.length - 1) / lines))];
+  const [everyX, everyY] = [
+    Math.max(1, Math.round((x.length - 1) / lines)),
+    Math.max(1, Math.round((y.length - 1) / lines)),
+  ];
   for (let j = 0; j < y.length; ++j)
     for (let i = 0; i < x.length; ++i) {
       const k = j * x.length + i;
@@ -99,14 +109,26 @@ export function gridLines(frame: Frame, values: readonly MaybeNumber[], lines: n
 }
 
 // Lines of equal height on the surface, and in the plane below it: each triangle of a cell cut at every level.
-export function levelLines(frame: Frame, values: readonly MaybeNumber[], levels: readonly number[], flat: boolean): THREE.BufferGeometry {
+export function levelLines(
+  frame: Frame,
+  values: readonly MaybeNumber[],
+  levels: readonly number[],
+  flat: boolean,
+): THREE.BufferGeometry {
   const { x, y } = frame.grid;
   const points: number[] = [];
-  const corner = (k: number): [number, number, number] => [x[k % x.length]!, y[Math.floor(k / x.length)]!, values[k] as number];
+  const corner = (k: number): [number, number, number] => [
+    x[k % x.length]!,
+    y[Math.floor(k / x.length)]!,
+    values[k] as number,
+  ];
   for (let j = 0; j + 1 < y.length; ++j)
     for (let i = 0; i + 1 < x.length; ++i) {
       const a = j * x.length + i;
-      for (const triangle of [[a, a + 1, a + x.length + 1], [a, a + x.length + 1, a + x.length]]) {
+      for (const triangle of [
+        [a, a + 1, a + x.length + 1],
+        [a, a + x.length + 1, a + x.length],
+      ]) {
         if (triangle.some((k) => values[k] === null || values[k] === undefined)) continue;
         for (const level of levels) cut(triangle.map(corner), level, frame, flat, points);
       }
@@ -144,17 +166,31 @@ export function markTexture(shape: MarkShape, colour: string, halo: string): THR
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = 64;
   const pen = canvas.getContext("2d")!;
-  for (const [style, width] of [[halo, 22], [colour, 10]] as const) {
+  for (const [style, width] of [
+    [halo, 22],
+    [colour, 10],
+  ] as const) {
     pen.strokeStyle = pen.fillStyle = style;
     pen.lineWidth = width;
     pen.beginPath();
     if (shape === "cross") {
-      for (const [x0, y0, x1, y1] of [[16, 16, 48, 48], [16, 48, 48, 16]] as const) {
+      for (const [x0, y0, x1, y1] of [
+        [16, 16, 48, 48],
+        [16, 48, 48, 16],
+      ] as const) {
         pen.moveTo(x0, y0);
         pen.lineTo(x1, y1);
       }
     } else if (shape === "diamond") {
-      for (const [x, y] of [[32, 12], [52, 32], [32, 52], [12, 32], [32, 12], [52, 32]] as const) pen.lineTo(x, y);
+      for (const [x, y] of [
+        [32, 12],
+        [52, 32],
+        [32, 52],
+        [12, 32],
+        [32, 12],
+        [52, 32],
+      ] as const)
+        pen.lineTo(x, y);
     } else pen.arc(32, 32, shape === "ring" ? 18 : 16, 0, 2 * Math.PI);
     pen.stroke();
     if ((shape === "dot" || shape === "diamond") && style === colour) pen.fill();

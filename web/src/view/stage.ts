@@ -10,11 +10,14 @@ import type { Clip } from "./picking";
 import { roundStep } from "./ranges";
 import { kGroundRadius, makeGroundMaterial } from "./shading";
 
+const kFarthest = 1e4; // of a body that bursts, else depths lose their digits
+const kBlownUp = 30; // radii of the scene, and heights of the view
 const kGap = 0.12; // between the box and the ground below it
 
 export class Stage {
   readonly renderer: THREE.WebGLRenderer; // the constructor throws when there is no WebGL
   gridStep = 0; // [m]
+  isBlownUp = false; // the body, so far that it is not drawn
   radius = 1; // of the scene's box [m]
   private centre: Vec3 = [0, 0, 0];
   private up: Vec3 = [0, 0, 1];
@@ -102,8 +105,12 @@ export class Stage {
   }
 
   clip(clip: Clip | null): void {
-    const plane = clip && new THREE.Plane(new THREE.Vector3(...clip.normal), (dot(clip.normal, this.centre) - clip.offset) / this.radius);
-    this.body?.clip(plane ? [plane] : []);
+    const planes: THREE.Plane[] = [];
+    if (clip) {
+      const inside = (dot(clip.normal, this.centre) - clip.offset) / this.radius; // of the middle of the scene
+      planes.push(new THREE.Plane(new THREE.Vector3(...clip.normal), inside));
+    }
+    this.body?.clip(planes);
     this.renderer.shadowMap.needsUpdate = true;
   }
 
@@ -155,7 +162,7 @@ export class Stage {
   // How far from the middle of the scene the body goes.
   private reach(): number {
     const box = this.body?.box;
-    return box ? Math.max(1, this.toUnits(box.lower).length(), this.toUnits(box.upper).length()) : 1;
+    return box ? Math.min(kFarthest, Math.max(1, this.toUnits(box.lower).length(), this.toUnits(box.upper).length())) : 1;
   }
 
   private adapt(body: Body, lens: Lens, pinColour: string): void {
@@ -164,6 +171,10 @@ export class Stage {
     const half = lens.extent > 0 ? lens.extent : lens.slope * depth;
     const pixels = lens.height / 2 / half; // per metre
     const lift = (lens.extent > 0 ? lens.extent / this.radius : lens.slope) / (lens.height / 2);
+    // Each triangle would fill the view: nothing to be seen in it, and minutes for a renderer without a GPU.
+    const height = lens.extent > 0 ? lens.extent : lens.slope * length(minus(this.centre, lens.eye));
+    this.isBlownUp = this.reach() > kBlownUp && this.reach() * this.radius > kBlownUp * height;
+    body.root.visible = !this.isBlownUp;
     body.adapt(body.edge * pixels, this.renderer.getPixelRatio(), lift, pinColour);
   }
 
@@ -179,7 +190,8 @@ export class Stage {
     const shadow = this.sun.shadow;
     this.sun.target.position.copy(center);
     this.sun.position.copy(center).addScaledVector(this.sun.userData.from as THREE.Vector3, 4 * radius);
-    Object.assign(shadow.camera, { left: -radius, right: radius, top: radius, bottom: -radius, near: radius, far: 12 * radius });
+    Object.assign(shadow.camera, { left: -radius, right: radius, top: radius, bottom: -radius });
+    Object.assign(shadow.camera, { near: radius, far: 12 * radius });
     shadow.normalBias = 0.012 * radius;
     shadow.camera.updateProjectionMatrix();
   }
