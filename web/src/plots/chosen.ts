@@ -170,7 +170,8 @@ export class Chosen extends Emitter<Events> {
 
   private newRows(): void {
     this.emit("rows", undefined);
-    if (!this.row()) return this.followNow();
+    const steppedByHand = (this.store.state?.[this.side]?.iteration ?? -1) >= 0;
+    if (!this.row() || (this.following && steppedByHand)) return this.followNow();
     if (this.following && this.timer === null) {
       this.timer = setTimeout(() => {
         this.timer = null;
