@@ -98,6 +98,14 @@ export class Chosen extends Emitter<Events> {
     this.announce(side, step, iteration);
   }
 
+  // The same step of the other side, or its newest.
+  chooseSide(side: SideName): void {
+    const row = this.following
+      ? this.newest(side)
+      : (this.store.side(side)?.steps.find((s) => s.step === this.step) ?? this.newest(side));
+    this.announce(side, row?.step ?? 0, 0);
+  }
+
   // To the iteration before or after, across steps.
   walk(by: 1 | -1): void {
     const row = this.row();
