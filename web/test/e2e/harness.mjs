@@ -114,8 +114,9 @@ function noteDrawnTexts() {
   };
 }
 
-// A page of its own. `close` fails on every error of its scripts, refusal of its content policy and foreign request.
-export async function openPage(address, { size = [1280, 720], watchRequests = true, prepare, ...context } = {}) {
+// A page of its own. `close` fails on every error of its scripts, refusal of its content policy and foreign request,
+// but for errors that are `expected`.
+export async function openPage(address, { size = [1280, 720], watchRequests = true, expected = /^$/, prepare, ...context } = {}) {
   const inside = await (await theBrowser()).newContext({ viewport: { width: size[0], height: size[1] }, ...context });
   contexts.add(inside);
   const page = await inside.newPage();
@@ -142,7 +143,7 @@ export async function openPage(address, { size = [1280, 720], watchRequests = tr
     errors,
     until: (what, condition) => until(what, () => condition(heard), () => JSON.stringify(heard.state)),
     close: async () => {
-      assert.deepEqual(errors, []);
+      assert.deepEqual(errors.filter((error) => !expected.test(error)), []);
       contexts.delete(inside);
       await inside.close();
     },

@@ -9,7 +9,8 @@ const length = (v) => Math.hypot(...v);
 const minus = (a, b) => a.map((x, i) => x - b[i]);
 
 test("the first picture shows the body, and the token leaves the address", async () => {
-  const opened = await openSession(program);
+  // A reload asks without the token; the answer finds it where the tab keeps it.
+  const opened = await openSession(program, { expected: /status of 403/ });
   const { page, heard, close } = opened;
   await findBody(opened);
   assert.ok((await contrast(page, await page.locator("#views").screenshot())) > 5);
