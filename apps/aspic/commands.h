@@ -29,6 +29,7 @@ void add_minimize(CLI::App& app, Action& action);
 void add_lecture(CLI::App& app, Action& action);
 void add_viewer_commands(CLI::App& app, Action& action);  // view, report, render
 void add_view(CLI::App& app, Action& action);
+void add_report(CLI::App& app, Action& action);
 
 std::string version_text();
 

@@ -10,6 +10,7 @@
 #include "aspic/interrupt.h"
 #include "aspic/landscape_picture.h"
 #include "aspic/progress.h"
+#include "aspic/run_report.h"
 #include "aspic/step_json.h"
 #include "aspic/summary.h"
 #include "base/error.h"
@@ -257,6 +258,7 @@ int run(const Arguments& arguments) {
                    .solver = scene.simulation.is_implicit() ? scene.simulation.solver_description() : "",
                    .directory = directory.path()});
   }
+  write_run_report(directory.path(), scene, arguments.quiet ? nullptr : runner.human());
   if (runner.has_blown_up()) return exit_unconverged;  // an unfinished run is not a matter of allowing
   return exit_code(arguments, earlier + runner.totals().unconverged);
 }

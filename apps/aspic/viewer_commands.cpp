@@ -3,6 +3,9 @@
 
 namespace aspic::cli {
 
-void add_viewer_commands(CLI::App& app, Action& action) { add_view(app, action); }
+void add_viewer_commands(CLI::App& app, Action& action) {
+  add_view(app, action);
+  add_report(app, action);
+}
 
 }  // namespace aspic::cli

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "aspic/commands.h"
+#include "aspic/run_report.h"
 #include "base/error.h"
 
 namespace aspic::cli {
@@ -20,6 +21,10 @@ void add_viewer_commands(CLI::App& app, Action& action) {
       };
     });
   }
+}
+
+void write_run_report(const std::filesystem::path&, const Scene& scene, std::FILE* stream) {
+  if (scene.output.report && stream) fmt::print(stream, "no report.html: this aspic was built without its viewer\n");
 }
 
 }  // namespace aspic::cli

@@ -116,6 +116,11 @@ std::optional<Request> SimulationThread::next() {
   return request;
 }
 
+bool SimulationThread::is_woken() const {
+  const std::lock_guard lock(mutex_);
+  return woken_;
+}
+
 // Lets interrupt() reach this work, and nothing that comes after it.
 template <class Work>
 auto SimulationThread::interruptibly(Work work) {
@@ -147,7 +152,12 @@ void SimulationThread::play() {
   }
   next_step_ = pacing_.due(session_.time(), session_.speed(), now);
   if (next_step_ > now) return;
-  audience_.tell_all(interruptibly([&] { return session_.advance(); }));
+  // Short steps are told together.
+  const auto goes_on = [&, together = now + kBetweenPictures] {
+    const Clock::time_point then = Clock::now();
+    return then < together && !is_woken() && pacing_.due(session_.time(), session_.speed(), then) <= then;
+  };
+  audience_.tell_all(interruptibly([&] { return session_.advance(goes_on); }));
   if (rate_.update(session_.time(), Clock::now())) session_.note_rate(rate_.value());
   next_step_ = pacing_.due(session_.time(), session_.speed(), Clock::now());
 }

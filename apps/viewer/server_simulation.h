@@ -55,6 +55,7 @@ class SimulationThread {
 
   void run();
   void wait();
+  bool is_woken() const;
   std::optional<Request> next();
   void carry_out(const Request& request);
   void play();

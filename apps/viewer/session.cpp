@@ -17,6 +17,11 @@ constexpr double kSameTime = 1e-6;       // of a step
 // ---------------------------------------------------------------- messages
 
 void Session::Impl::tell_state() {
+  for (ShownSide* shown : {a.get(), b.get()}) {
+    if (!shown || shown->told_steps >= shown->side.steps_taken()) continue;
+    tell(steps_message(*shown, shown->told_steps));
+    shown->told_steps = shown->side.steps_taken();
+  }
   tell(text({{"kind", "state"},
              {"playing", playing},
              {"speed", speed},
@@ -113,10 +118,9 @@ Consent Session::Impl::go_on() {
   return [this] { return !stop.load(std::memory_order_relaxed); };
 }
 
-void Session::Impl::tell_step(ShownSide& shown, Progress progress) {
+void Session::Impl::note_progress(Progress progress) {
   if (progress == Progress::interrupted) return;
   ++version;
-  if (progress != Progress::iterated) tell(steps_message(shown, shown.side.steps_taken() - 1));
   if (progress == Progress::blown_up) playing = false;
 }
 
@@ -130,19 +134,21 @@ void Session::Impl::take_turn() {
     shown.side.rewind(shown.side.steps_taken());
     throw;
   }
-  tell_step(shown, progress);
+  note_progress(progress);
 }
 
-void Session::Impl::advance() {
+void Session::Impl::advance(const std::function<bool()>& goes_on) {
   news.clear();
   stop = false;
   if (!playing) return;
   try {
-    take_turn();
-    if (replaying && is_replay_done()) {
-      replaying.reset();
-      playing = false;
-    }
+    do {
+      take_turn();
+      if (replaying && is_replay_done()) {
+        replaying.reset();
+        playing = false;
+      }
+    } while (playing && goes_on && goes_on());
   } catch (const std::exception& e) {
     playing = false;
     replaying.reset();
@@ -179,8 +185,8 @@ double Session::speed() const { return impl_->speed; }
 double Session::time() const { return impl_->next().side.time(); }
 void Session::note_rate(double rate) { impl_->rate = rate; }
 
-Messages Session::advance() {
-  impl_->advance();
+Messages Session::advance(const std::function<bool()>& goes_on) {
+  impl_->advance(goes_on);
   return std::move(impl_->news);
 }
 

@@ -34,7 +34,7 @@ struct Lesson {
     std::string label;
   };
   std::vector<Comparison> comparison;  // none or one
-  std::string recording;               // JSON of the mouse's recorded events; empty: none
+  std::string recording;               // JSON of a Recording, whose events are repeated; empty: none
 };
 
 struct SessionOptions {
@@ -60,7 +60,8 @@ class Session {
   double speed() const;         // simulated seconds per second that play aims at
   double time() const;          // simulated so far, of the side that is behind [s]
   void note_rate(double rate);  // measured by who knows the time, for the pages
-  Messages advance();           // the next step of the side that is behind; what is new, for all pages
+  // The next step of the side that is behind, and further ones as long as `goes_on`; what is new, for all pages.
+  Messages advance(const std::function<bool()>& goes_on = {});
 
   Messages pictures() const;     // the newest of every side
   long picture_version() const;  // another number when they are others

@@ -164,7 +164,7 @@ void Session::Impl::iterate(Arguments& arguments) {
     shown.side.rewind(shown.side.steps_taken());
     throw;
   }
-  tell_step(shown, progress);
+  note_progress(progress);
 }
 
 void Session::Impl::reset(Arguments& arguments) {
@@ -192,9 +192,10 @@ void Session::Impl::rewind_to(int step) {
   a->side.rewind(to);
   log.rewind(to, b ? b->side.steps_taken() : -1);
   ++version;
-  for (const ShownSide* shown : {a.get(), b.get()}) {
+  for (ShownSide* shown : {a.get(), b.get()}) {
     if (!shown) continue;
-    tell(steps_message(*shown, shown->side.steps_taken()));
+    shown->told_steps = shown->side.steps_taken();
+    tell(steps_message(*shown, shown->told_steps));
     tell(pins_message(*shown));
   }
 }

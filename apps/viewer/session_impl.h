@@ -38,10 +38,10 @@ struct Session::Impl {
 
   // ---- session.cpp
   Answer handle(std::string_view text, Role role);
-  void advance();   // as play does
-  Consent go_on();  // until interrupt()
+  void advance(const std::function<bool()>& goes_on);  // as play does
+  Consent go_on();                                     // until interrupt()
   void tell(Message message) { news.push_back(std::move(message)); }
-  void tell_state();
+  void tell_state();                       // and the steps taken since
   void tell_side(const ShownSide& shown);  // everything but the state and the picture
   std::unique_ptr<ShownSide> loaded(const std::string& name, const std::filesystem::path& path,
                                     const std::vector<std::string>& overrides);
@@ -51,7 +51,7 @@ struct Session::Impl {
   void show_surface(ShownSide& shown);
   ShownSide& next();  // the side whose turn it is: the one that is behind
   void take_turn();   // its next step
-  void tell_step(ShownSide& shown, Progress progress);
+  void note_progress(Progress progress);
 
   // ---- session_commands.cpp
   struct Command;

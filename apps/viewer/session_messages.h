@@ -13,6 +13,7 @@ struct ShownSide {
   Side side;
   Surface surface;
   uint32_t generation = 1;  // of its geometry
+  int told_steps = 0;       // whose rows the pages have
 
   int number() const { return name == "a" ? 0 : 1; }
 };

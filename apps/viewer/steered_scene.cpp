@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "mesh/box_tree.h"
 #include "scene/scene_document.h"
 
 namespace aspic::viewer {
@@ -48,12 +47,9 @@ Table overridden(const SteeredScene& steered, const std::string& override_text) 
 }
 
 double usual_stiffness(const Model& model) {
-  Box box;
-  for (const Vec3d& X : model.mesh.rest) box.add(X);
-  const Vec3d extent = box.upper - box.lower;
-  const double size = std::sqrt(dot(extent, extent));
   // The mean of log E: a stiff core does not decide for the flesh around it.
   double logs = 0, volumes = 0;
+  int tets = 0;
   for (const auto& [name, young] : model.tet_fields) {
     if (name != "young") continue;
     for (int t = 0; t < model.mesh.tet_count(); ++t) {
@@ -61,9 +57,10 @@ double usual_stiffness(const Model& model) {
       const double v = volume(model.mesh, t);
       logs += v * std::log(young[t]);
       volumes += v;
+      ++tets;
     }
   }
-  if (volumes > 0) return 0.1 * std::exp(logs / volumes) * size;
+  if (tets > 0) return std::exp(logs / volumes) * std::cbrt(6 * std::sqrt(2.0) * volumes / tets);
   // Without elasticity: a swing of about two hertz.
   double mass = 0;
   for (const double m : model.mass->vertex_mass()) mass += m;

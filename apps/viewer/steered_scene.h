@@ -28,7 +28,8 @@ bool is_of_solver_alone(const std::string& key);
 // The document with one more override, checked. Throws InvalidInput.
 Table overridden(const SteeredScene& steered, const std::string& override_text);
 
-// k of the mouse's spring that pulls a body about as hard as the body resists [N/m].
+// k of the mouse's spring, about that of the tets that it pulls: E times the length of an edge [N/m]. A stiffer one
+// would turn them inside out before the body follows.
 double usual_stiffness(const Model& model);
 
 }  // namespace aspic::viewer

@@ -30,6 +30,9 @@ void expect_closed(const SimulationOptions& options) {
     pin_work += std::abs(report.pin_work);
     damping_loss += report.damping_loss;
     EXPECT_LT(std::abs(report.ledger_error), 1e-11 * largest) << options.integrator;
+    ASSERT_EQ(report.target_work.size(), simulation.model().loads.size());
+    EXPECT_EQ(report.target_work.front(), 0) << "gravity has no target that moves";
+    EXPECT_NE(report.target_work.back(), 0) << "the pulled spring has one";
     flows += report.pin_work - report.damping_loss - report.numerical_loss + report.residual_work;
     // From step to step, too: energies at the end of one are those at the start of the next.
     EXPECT_NEAR(report.kinetic + report.potential_total, energy + flows, 1e-10 * largest) << options.integrator;

@@ -207,6 +207,24 @@ TEST(Simulation, OptionsThatAnIntegratorCannotHeedAreRefusedInWords) {
               HasSubstr("last_increment"));
 }
 
+TEST(Simulation, OtherPinsHoldFromTheNextStepOnAsIfTheyHadAlwaysBeenThere) {
+  const auto with_pin = [](Model model, const std::string& name, std::vector<int> vertices) {
+    model.pins.push_back({name, std::move(vertices), {}});
+    return model;
+  };
+  for (const std::string& integrator : integrator_names()) {
+    const SimulationOptions options{.h = is_explicit(integrator) ? 1e-4 : 0.01, .integrator = integrator, .solver = {}};
+    Simulation from_start = simulate(with_pin(beam(2), "end", {24, 25, 26}), options), set = simulate(beam(2), options);
+    std::vector<Pin> pins = set.model().pins;
+    pins.push_back({"end", {24, 25, 26}, {}});
+    set.step();
+    set.set_pins(pins);
+    set.restore(from_start.snapshot());
+    for (int i = 0; i < 3; ++i) from_start.step(), set.step();
+    EXPECT_EQ(set.state().q, from_start.state().q) << integrator;
+  }
+}
+
 TEST(Simulation, BadModelsAreRefusedInWords) {
   const auto message = [](auto&& make) -> std::string {
     try {

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "dynamics/step_derivatives.h"
+#include "energy/grab_spring.h"
 #include "energy/linear_load.h"
 #include "energy/mass.h"
 #include "energy/rayleigh_damping.h"
@@ -87,6 +88,38 @@ TEST(TetElasticity, DerivativesAreThoseOfTheEnergyForEveryMaterial) {
     auto V = make_tet_elasticity(info.name, mesh(), 0, heterogeneous(info));
     expect_consistent(*V, deformed(0.03), info.name);
   }
+}
+
+TEST(GrabSpring, DerivativesAreThoseOfTheEnergy) {
+  GrabSpring V;
+  V.set({.vertices = mesh().tets[5], .weights = {0.1, -0.2, 0.6, 0.5}, .stiffness = 30, .to = {{1, 2, 3}}}, 0);
+  const auto tets = make_tet_elasticity("neo_hookean", mesh(), 0, heterogeneous(material_info("neo_hookean")));
+  Couplings couplings;  // the spring lives on those of its tet
+  tets->add_couplings(couplings);
+  const BlockPattern pattern = make_pattern(mesh().vertex_count(), couplings);
+  V.bind(pattern);
+  const std::vector<double> x = deformed(0.03);
+  const DerivativeReport report = check_derivatives(differentiable(V, pattern), x, {.length = 0.3});
+  EXPECT_TRUE(report.gradient.passed) << report.gradient.smallest_error;
+  EXPECT_TRUE(report.hessian.passed) << report.hessian.smallest_error;
+  expect_vertex_systems_to_be_parts(V, pattern, x, "mouse");
+}
+
+TEST(GrabSpring, ItsTargetMovesAlongALineAndRestsBeforeAndAfter) {
+  const Grab grab{.stiffness = 1, .from = {{0, 0, 0}}, .to = {{2, 4, 8}}, .from_time = 1, .to_time = 3};
+  EXPECT_EQ(grab.target(0)[1], 0);
+  EXPECT_EQ(grab.target(1.5)[1], 1);
+  EXPECT_EQ(grab.target(3)[2], 8);
+  EXPECT_EQ(grab.target(9)[2], 8);
+}
+
+TEST(GrabSpring, WithoutStiffnessIsNothing) {
+  GrabSpring V;
+  const std::vector<double> x = deformed(0.03);
+  std::vector<double> g(x.size());
+  V.add_gradient(x, 1, g);
+  EXPECT_EQ(V.value(x), 0);
+  EXPECT_EQ(std::count(g.begin(), g.end(), 0.0), static_cast<std::ptrdiff_t>(g.size()));
 }
 
 TEST(TetElasticity, InternalForcesSumToZeroForEveryMaterial) {

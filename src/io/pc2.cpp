@@ -100,8 +100,8 @@ Pc2Reader::Pc2Reader(const std::filesystem::path& path) : path_(path), in_(path,
   if (points_ < 0 || samples_ < 0 || bytes != head(points_, samples_))
     throw InvalidInput(path.string() + ": is no point cache of version 1 with one sample per frame");
   in_.seekg(0, std::ios::end);
-  const uint64_t size = kHeadSize + 12 * static_cast<uint64_t>(points_) * static_cast<uint64_t>(samples_);
-  if (!in_ || static_cast<uint64_t>(in_.tellg()) < size)
+  const uint64_t whole = in_ ? (static_cast<uint64_t>(in_.tellg()) - kHeadSize) / 12 : 0;  // points of all samples
+  if (static_cast<uint64_t>(points_) * static_cast<uint64_t>(samples_) > whole)
     throw InvalidInput(path.string() + ": the point cache is cut short: its head counts " + std::to_string(samples_) +
                        " samples of " + std::to_string(points_) + " points");
 }

@@ -104,6 +104,7 @@ OutputOptions output_of(const Value& table) {
           .ply = table["ply"].boolean(),
           .pc2 = table["pc2"].boolean(),
           .usd = table["usd"].boolean(),
+          .report = table["report"].boolean(),
           .checkpoint_every = table["checkpoint_every"].number()};
 }
 

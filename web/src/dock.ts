@@ -21,7 +21,7 @@ export class Dock {
     private readonly page: Page,
     private readonly panels: Panel[],
   ) {
-    this.height = Math.round(innerHeight * 0.36);
+    this.height = Math.round(innerHeight * 0.4);
     const list = element("div", { role: "tablist", "aria-label": "Plots" });
     for (const panel of panels) list.append(this.makeTab(panel));
     this.close = button({ icon: "close", label: "Close the plots", title: "Close the plots (D)" }, () => this.show(null));

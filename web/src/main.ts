@@ -42,8 +42,7 @@ function buildPage(store: Store, page: Page): void {
   const functions = makeFunctionsPanel(store, page);
   const panels: Panel[] = [makeEnergyPanel(store, page), makeMicroscopePanel(store, page)];
   if (store.source.live) panels.push(makeLandscapePanel(store, page), functions);
-  const certificate = makeReportPanel(store, page);
-  panels.push({ name: "certificate", title: "Certificate", element: certificate, show: () => {} });
+  panels.push(makeReportPanel(store, page));
   const sidebar = new Sidebar(area("right"), page);
   new Settings(sidebar.body, store, page);
   addDisplayControls(new GUI({ container: sidebar.body, title: "View" }), display, page, views.all);

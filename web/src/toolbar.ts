@@ -1,5 +1,5 @@
 // What is always at hand: the simulation's time, and the doors to everything else.
-import { button, element } from "./dom";
+import { button, element, icon, messageOf } from "./dom";
 import type { Page } from "./page";
 import type { SideState } from "./protocol";
 import { openShortcutList, shortcutButton } from "./shortcuts";
@@ -27,16 +27,22 @@ function makeTransport(store: Store, page: Page): HTMLElement {
   const { source } = store;
   const group = "Simulation";
   const steers = source.live;
-  const toggle = (): void => source.send({ do: store.state?.playing ? "pause" : "play" });
+  let wanted: boolean | null = null; // while the program has not answered
+  const toggle = (): void => {
+    wanted = !(wanted ?? store.state?.playing ?? false);
+    source
+      .request({ do: wanted ? "play" : "pause" })
+      .catch((reason: unknown) => page.notice(messageOf(reason), "error"))
+      .finally(() => (wanted = null));
+  };
   const play = shortcutButton(
     page,
     { key: " ", does: "Play or pause", group, run: toggle },
     { icon: "play", label: "Play", steers },
   );
-  const pauseIcon = button({ icon: "pause" }, () => {}).firstElementChild as Element;
-  const playIcon = play.firstElementChild as Element;
   store.on("state", ({ playing }) => {
-    play.replaceChildren(playing ? pauseIcon : playIcon);
+    if (play.getAttribute("aria-pressed") === String(playing)) return;
+    play.replaceChildren(icon(playing ? "pause" : "play"));
     play.setAttribute("aria-label", playing ? "Pause" : "Play");
     play.setAttribute("aria-pressed", String(playing));
   });

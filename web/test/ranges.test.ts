@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { colourAt, kMapNames, mapTexels } from "../src/view/colourMaps";
-import { about, fraction, logRange, logTicks, readable, RunningRange, ticks, withUnit } from "../src/view/ranges";
+import { about, fraction, logRange, logTicks, RunningRange, ticks } from "../src/view/ranges";
 
 const luminance = ([r, g, b]: number[]): number => {
   const linear = [r, g, b].map((c) => (c / 255) ** 2.2);
@@ -10,7 +10,7 @@ const luminance = ([r, g, b]: number[]): number => {
 
 test("ticks are round, inside the range, and about as many as asked", () => {
   assert.deepEqual(ticks(0, 10, 5), [0, 2, 4, 6, 8, 10]);
-  assert.deepEqual(ticks(-0.13, 0.31, 4).map((tick) => readable(tick, 0.1)), ["0", "0.2"]);
+  assert.deepEqual(ticks(-0.13, 0.31, 4), [0, 0.2]);
   for (const [low, high] of [[1e-7, 3e-7], [-5e9, 4e9], [0.999, 1.001]]) {
     const found = ticks(low, high, 6);
     assert(found.length >= 3 && found.length <= 8, `${found}`);
@@ -25,26 +25,9 @@ test("a range without width has one tick, and one that is not finite none", () =
 });
 
 test("logarithmic ticks are powers of ten, with 2 and 5 where these are few", () => {
-  assert.deepEqual(logTicks(1, 1000).map((t) => readable(t)), ["1", "10", "100", "1000"]);
-  assert.deepEqual(logTicks(1, 50).map((t) => readable(t)), ["1", "2", "5", "10", "20", "50"]);
+  assert.deepEqual(logTicks(1, 1000), [1, 10, 100, 1000]);
+  assert.deepEqual(logTicks(1, 50), [1, 2, 5, 10, 20, 50]);
   assert.deepEqual(logTicks(-1, 10), []);
-});
-
-test("numbers are short, and neighbours differ", () => {
-  assert.equal(readable(0.30000000000000004, 0.1), "0.3");
-  assert.equal(readable(1.001, 0.001), "1.001");
-  assert.equal(readable(1234567), "1.235e6");
-  assert.equal(readable(-0.00001234), "−1.234e−5");
-  assert.equal(readable(1e-20, 1), "0");
-  assert.equal(readable(NaN), "not finite");
-});
-
-test("units take prefixes", () => {
-  assert.equal(withUnit(12345, "Pa"), "12.3 kPa");
-  assert.equal(withUnit(0.0042, "m"), "4.2 mm");
-  assert.equal(withUnit(2, ""), "2");
-  assert.equal(withUnit(0.00123, "kg"), "0.00123 kg");
-  assert.equal(withUnit(Infinity, "N"), "not finite");
 });
 
 test("a running range grows at once and shrinks slowly, over both sides", () => {

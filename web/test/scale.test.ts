@@ -29,9 +29,10 @@ test("a logarithmic range that reaches 0 is shown linearly", () => {
 });
 
 test("numbers are written shortly and read back as they are", () => {
-  for (const value of [0, 1, -9.81, 1e5, 123456, 1e-4, 2.5e-7, 0.01]) assert.equal(parseNumber(numberText(value)), value);
+  for (const value of [0, 1, -9.81, 1e5, 12345.6, 1e-4, 2.5e-7, 0.01]) assert.equal(parseNumber(numberText(value)), value);
   assert.equal(numberText(1e5), "1e5");
   assert.equal(numberText(0.01), "0.01");
+  assert.equal(numberText(15628.4790123), "15628.5");
 });
 
 test("what is no number is none", () => {

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
-import { after, before, test } from "node:test";
+import { after, afterEach, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 
@@ -17,6 +17,7 @@ if (!executablePath) {
 const kPatience = 20_000; // [ms]
 
 let program, browser, address;
+const contexts = []; // of the test under way
 
 before(async () => {
   program = spawn(aspic, ["view", scene, "--no-browser"], { stdio: ["ignore", "pipe", "inherit"] });
@@ -40,9 +41,14 @@ after(async () => {
   program?.kill("SIGINT");
 });
 
+afterEach(async () => {
+  for (const context of contexts.splice(0)) await context.close();
+});
+
 // A page of its own, with what it was told and every error of its scripts.
 async function open() {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 } });
+  contexts.push(context);
   const page = await context.newPage();
   const seen = { messages: [], errors: [], sockets: [], state: null, scenes: {} };
   page.on("pageerror", (error) => seen.errors.push(error.message));
@@ -63,12 +69,9 @@ async function open() {
       await page.waitForTimeout(20);
     }
   };
-  await until("a state", () => seen.state);
-  const close = async () => {
-    assert.deepEqual(seen.errors, []);
-    await context.close();
-  };
-  return { page, seen, until, close };
+  await page.waitForFunction(() => document.title.includes("·"));
+  const checkErrors = () => assert.deepEqual(seen.errors, []);
+  return { page, seen, until, checkErrors };
 }
 
 function note(seen, message) {
@@ -81,7 +84,7 @@ function note(seen, message) {
 const valueOf = (seen, key, side = "a") => seen.scenes[side].settings.find((setting) => setting.key === key).value;
 
 test("Space plays and pauses, R goes back, S takes one step", async () => {
-  const { page, seen, until, close } = await open();
+  const { page, seen, until, checkErrors } = await open();
   assert.ok(!page.url().includes("token"));
   await page.keyboard.press(" ");
   await until("five steps", () => seen.state.a.step >= 5);
@@ -92,21 +95,21 @@ test("Space plays and pauses, R goes back, S takes one step", async () => {
   await page.keyboard.press("s");
   await until("one step", () => seen.state.a.step === 1);
   assert.match(await page.title(), /beam/);
-  await close();
+  checkErrors();
 });
 
 test("the timeline rewinds by arrow keys", async () => {
-  const { page, seen, until, close } = await open();
+  const { page, seen, until, checkErrors } = await open();
   for (let i = 0; i < 3; ++i) await page.keyboard.press("s");
   await until("three more steps", () => seen.state.a.step >= 3);
   const step = seen.state.a.step;
   await page.getByLabel("Timeline: rewinds to a step").press("ArrowLeft");
   await until("the step before", () => seen.state.a.step === step - 1);
-  await close();
+  checkErrors();
 });
 
 test("the body follows the mouse, and the force is told", async () => {
-  const { page, seen, until, close } = await open();
+  const { page, seen, until, checkErrors } = await open();
   const box = await page.locator("#views").boundingBox();
   const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
   await page.waitForTimeout(500); // pictures are drawn
@@ -118,11 +121,11 @@ test("the body follows the mouse, and the force is told", async () => {
   await until("a force", () => seen.state.a.grab && Math.hypot(...seen.state.a.grab.force) > 0);
   await page.mouse.up();
   await until("a release", () => seen.state.a.grab === null);
-  await close();
+  checkErrors();
 });
 
 test("a typed value is taken, an impossible one told and put back", async () => {
-  const { page, seen, until, close } = await open();
+  const { page, seen, until, checkErrors } = await open();
   const young = page.getByLabel("E [Pa]", { exact: true });
   await young.fill("2e6");
   await young.press("Enter");
@@ -131,11 +134,11 @@ test("a typed value is taken, an impossible one told and put back", async () => 
   await young.press("Enter");
   await page.locator(".notice.error").waitFor();
   await page.waitForFunction(() => document.querySelector('[aria-label="E [Pa]"]').value === "2e6");
-  await close();
+  checkErrors();
 });
 
 test("every choice of every setting is taken or refused in words", async () => {
-  const { page, seen, until, close } = await open();
+  const { page, seen, until, checkErrors } = await open();
   for (const { key, label, choices, value: first } of seen.scenes.a.settings.filter(({ kind }) => kind === "choice")) {
     for (const value of [...choices, first]) {
       const before = seen.messages.length;
@@ -144,11 +147,11 @@ test("every choice of every setting is taken or refused in words", async () => {
       await until(`${key} = ${value}`, () => seen.messages.slice(before).some(answered) || valueOf(seen, key) === value);
     }
   }
-  await close();
+  checkErrors();
 });
 
 test("iterations are taken one by one, and listed in the microscope", async () => {
-  const { page, seen, until, close } = await open();
+  const { page, seen, until, checkErrors } = await open();
   await page.keyboard.press("m");
   await page.keyboard.press("i");
   await until("an iteration", () => seen.state.a.iteration >= 0);
@@ -160,11 +163,11 @@ test("iterations are taken one by one, and listed in the microscope", async () =
   }
   assert.equal(seen.state.a.step, step + 1);
   await page.locator("#dock [role=row], #dock tr").nth(1).waitFor();
-  await close();
+  checkErrors();
 });
 
 test("two simulations are compared, and their settings are set apart", async () => {
-  const { page, seen, until, close } = await open();
+  const { page, seen, until, checkErrors } = await open();
   await page.keyboard.press("c");
   await page.getByRole("button", { name: "Half the time step" }).click();
   await page.getByRole("button", { name: "Compare", exact: true }).click();
@@ -180,11 +183,11 @@ test("two simulations are compared, and their settings are set apart", async () 
   await page.keyboard.press("c");
   await until("the end of the comparison", () => !seen.scenes.b);
   assert.equal(await page.locator(".side").count(), 1);
-  await close();
+  checkErrors();
 });
 
 test("a workspace brings back settings and panels", async () => {
-  const { page, seen, until, close } = await open();
+  const { page, seen, until, checkErrors } = await open();
   const nu = page.getByLabel("nu", { exact: true });
   await nu.fill("0.2");
   await nu.press("Enter");
@@ -201,11 +204,11 @@ test("a workspace brings back settings and panels", async () => {
   await chooser.setFiles({ name: "workspace.json", mimeType: "application/json", buffer: readFileSync(file) });
   await until("nu as it was", () => valueOf(seen, "material.poisson") === 0.2);
   await page.locator('[role=tab][aria-selected="true"]', { hasText: "Microscope" }).waitFor();
-  await close();
+  checkErrors();
 });
 
 test("a recorded session is repeated", async () => {
-  const { page, seen, until, close } = await open();
+  const { page, seen, until, checkErrors } = await open();
   await page.keyboard.press("r");
   await until("the start", () => seen.state.a.step === 0);
   for (let i = 0; i < 3; ++i) await page.keyboard.press("s");
@@ -215,11 +218,11 @@ test("a recorded session is repeated", async () => {
   await until("the repetition", () => seen.state.replaying);
   await until("its end", () => !seen.state.replaying && seen.state.a.step === 3);
   assert.equal(seen.messages.filter(({ kind }) => kind === "steps").at(-1).steps.at(-1).kinetic, energy);
-  await close();
+  checkErrors();
 });
 
 test("a dropped connection is made anew, and the page goes on", async () => {
-  const { page, seen, until, close } = await open();
+  const { page, seen, until, checkErrors } = await open();
   const { socket, server } = seen.sockets[0];
   await server.close();
   await socket.close();
@@ -229,21 +232,21 @@ test("a dropped connection is made anew, and the page goes on", async () => {
   const step = seen.state.a.step;
   await page.keyboard.press("s");
   await until("a step", () => seen.state.a.step === step + 1);
-  await close();
+  checkErrors();
 });
 
 test("a second page watches until it takes the steering", async () => {
   const one = await open();
   const two = await open();
-  await two.page.getByText("Watching").waitFor();
-  assert.ok(await two.page.getByRole("button", { name: "Play" }).isDisabled());
-  await two.page.getByRole("button", { name: "Steer" }).click();
-  await one.page.getByText("Watching").waitFor();
+  await two.page.getByText("Watching", { exact: true }).waitFor();
+  assert.ok(await two.page.getByRole("button", { name: "Play", exact: true }).isDisabled());
+  await two.page.getByRole("button", { name: "Steer", exact: true }).click();
+  await one.page.getByText("Watching", { exact: true }).waitFor();
   const step = two.seen.state.a.step;
   await two.page.keyboard.press("s");
   await one.until("a step in the watching page", () => one.seen.state.a.step === step + 1);
-  await two.close();
-  await one.close();
+  two.checkErrors();
+  one.checkErrors();
 });
 
 test("without the token there is no page", async () => {

@@ -29,6 +29,13 @@ class Folder {
     this.follow(this.gui.add({ ...this.display.settings }, key, least, most, step), key, label);
   }
 
+  // To type a number changes `also`, too.
+  number(key: Key, label: string, also: Partial<DisplaySettings>): void {
+    const controller = this.gui.add({ ...this.display.settings }, key);
+    this.follow(controller, key, label);
+    controller.onChange((value: number) => this.display.change({ ...also, [key]: value }));
+  }
+
   colour(key: Key, label: string): void {
     this.follow(this.gui.addColor({ ...this.display.settings }, key), key, label);
   }
@@ -130,8 +137,8 @@ function addField(folder: Folder, display: Display, views: () => View[]): void {
   const range = folder.within("Colour range");
   range.add("map", "Colours", { "by field": "auto", viridis: "viridis", cividis: "cividis", "blue to orange": "blue_orange" });
   range.add("fixedRange", "Fixed range");
-  range.add("low", "From");
-  range.add("high", "To");
+  range.number("low", "From", { fixedRange: true });
+  range.number("high", "To", { fixedRange: true });
   range.button("Fix at what is shown", () => display.fixRange());
   range.add("log", "Logarithmic");
 }

@@ -4,7 +4,7 @@ import type { MaybeNumber, SideName } from "../protocol";
 import type { Store } from "../store";
 import { Chart, type Curve } from "../plots/chart";
 import { button, checkbox, choice, download, downloadCanvas, element, fileName, numberField, oncePerFrame } from "../plots/dom";
-import { Ledger, ledgerColumns } from "../plots/ledger";
+import { balanceText, Ledger, ledgerColumns } from "../plots/ledger";
 import { csv, short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
 import { lowerBound, magnitude, merged, nearest, thinned, type Table } from "../plots/table";
@@ -166,7 +166,7 @@ class EnergyPanel implements Panel {
     const range = this.xRange();
     const from = range ? Math.max(0, lowerBound(x, range[0]) - 1) : 0;
     const to = range ? Math.min(x.length, lowerBound(x, range[1]) + 1) : x.length;
-    return thinned({ x, columns: ledger.columns }, from, to, Math.max(100, this.chart.width));
+    return thinned({ x, columns: ledger.columns }, from, to, Math.max(100, this.chart.width / 2));
   }
 
   private draw(): void {
@@ -186,7 +186,7 @@ class EnergyPanel implements Panel {
       const { drift, scale } = ledger.drift();
       if (ledger.step.length < 2 || !Number.isFinite(drift)) return "";
       const name = this.ledgers.b ? `${this.store.side(side)?.scene.label || side}: ` : "";
-      return `${name}balance flat to ${withUnit(drift, "J", 2)} (${short(scale > 0 ? drift / scale : 0, 2)} of the largest energy)`;
+      return `${name}${balanceText(drift, scale)}`;
     });
     const dashes = this.ledgers.b ? [`${this.store.side("b")?.scene.label || "b"} is dashed`] : [];
     const logText = this.logSwitch.input.checked ? ["absolute values; zeros are left out"] : [];
@@ -202,6 +202,7 @@ class EnergyPanel implements Panel {
     const x = Math.round(u.valToPos(this.byStep ? state.step : state.time, "x", true));
     if (x < u.bbox.left || x > u.bbox.left + u.bbox.width) return;
     u.ctx.save();
+    u.ctx.setLineDash([]);
     u.ctx.strokeStyle = colours.accent;
     u.ctx.lineWidth = 2;
     u.ctx.beginPath();

@@ -33,44 +33,49 @@ export interface Preset {
   start: [number, number];
   settings: Record<string, SettingValue>;
   log: boolean;
+  model: boolean; // shown
   iteration: number;
 }
 
 export const kPresets: Preset[] = [
   {
-    title: "Gradient descent zig-zags",
-    shows: "The negative gradient points across the valley, not along it: the path jumps from wall to wall and creeps. Newton's method takes one iteration here.",
+    title: "Zig-zag",
+    shows: "Gradient descent: the negative gradient points across the valley, not along it: the path jumps from wall to wall and creeps. Newton's method takes one iteration here.",
     name: "quadratic",
     start: [0.3, 1.3],
     settings: { method: "gradient_descent", max_iterations: 200 },
     log: false,
+    model: false,
     iteration: 0,
   },
   {
-    title: "Newton overshoots",
-    shows: "Iteration 1 goes straight to the model's minimum and lands far up on the other side: the orange model is right only nearby. Nothing stops it without a line search.",
+    title: "Overshoot",
+    shows: "Newton's method: iteration 1 goes straight to the model's minimum and lands far up on the other side: the orange model is right only nearby. Nothing stops it without a line search.",
     name: "rosenbrock",
-    start: [-0.9, 0.5],
+    start: [-0.2, -0.2],
     settings: { method: "newton", "line_search.test": "none", definiteness: "exact" },
     log: false,
+    model: true,
     iteration: 1,
   },
   {
-    title: "Backtracking helps",
+    title: "Backtracking",
     shows: "The same start and the same direction, but trials that do not lower f enough are rejected (crosses) and the step is halved until one does (dot).",
     name: "rosenbrock",
-    start: [-0.9, 0.5],
+    start: [-0.2, -0.2],
     settings: { method: "newton", "line_search.test": "textbook" },
     log: false,
+    model: true,
     iteration: 1,
   },
   {
-    title: "An indefinite model",
+    title: "Indefinite",
     shows: "Between dip and bump the Hessian is indefinite and the model has no minimum: its negative curvature is taken as positive before Newton's step is made.",
     name: "two_bump",
     start: [-0.2, 0.6],
     settings: { method: "newton", definiteness: "absolute" },
     log: false,
+    model: true,
     iteration: 0,
   },
 ];

@@ -4,7 +4,7 @@ import type { FunctionQuestion, FunctionReply } from "../protocol";
 import type { Store } from "../store";
 import { button, checkbox, downloadCanvas, element, fileName } from "../plots/dom";
 import { isInside, minimizerOf, quadraticAt, uniform, type Grid } from "../plots/grid";
-import { legendLines, legendOf, type Sign } from "../plots/legend";
+import { legendOf, type Sign } from "../plots/legend";
 import { plural, short } from "../plots/numbers";
 import { sentence } from "../plots/words";
 import { SearchChart } from "../plots/search";
@@ -87,6 +87,7 @@ class PlanarPanel implements FunctionsPanel {
 
   private openPreset(preset: Preset): void {
     this.log.input.checked = preset.log;
+    this.model.input.checked = preset.model;
     this.open({ ...preset, samples: kSamples });
     this.shows = preset.shows;
   }
@@ -245,7 +246,7 @@ class PlanarPanel implements FunctionsPanel {
   }
 
   private addModel(reply: FunctionReply, grid: Grid, marks: Mark[]): void {
-    this.signs.push({ sign: "▇", colour: "series2", text: "quadratic model that this iteration minimised" });
+    this.signs.push({ sign: "▇", colour: "series2", text: "this iteration's quadratic model" });
     const lowest = minimizerOf(reply.model);
     if (!lowest) return void this.signs.push({ sign: "◆", colour: "series2", text: "the model has no minimum" });
     marks.push({ ...lowest, value: quadraticAt(reply.model, lowest.x, lowest.y), shape: "diamond", colour: "series2", size: 12 });
@@ -255,7 +256,7 @@ class PlanarPanel implements FunctionsPanel {
 
   private savePng(): void {
     const name = this.form.question(0, 2).name;
-    const picture = this.reply && this.view.picture(`f = ${this.reply.formula}: iteration ${this.iteration} of ${this.reply.iterations.length}`, legendLines(this.signs));
+    const picture = this.reply && this.view.picture(`f = ${this.reply.formula}: iteration ${this.iteration} of ${this.reply.iterations.length}`, this.signs);
     if (picture) downloadCanvas(fileName(name, this.iteration) + ".png", picture);
   }
 

@@ -5,7 +5,7 @@ import type { Store } from "../store";
 import { chosenOf, type Chosen } from "../plots/chosen";
 import { button, checkbox, downloadCanvas, element, fileName, oncePerFrame } from "../plots/dom";
 import { gridOf, isInside, minimizerOf, quadraticFrom, quadraticAt } from "../plots/grid";
-import { legendLines, legendOf, type Sign } from "../plots/legend";
+import { legendOf, type Sign } from "../plots/legend";
 import { plural, short } from "../plots/numbers";
 import { SurfaceView, type Mark, type SurfaceContent } from "../plots/surface";
 
@@ -40,7 +40,7 @@ class LandscapePanel implements Panel {
     const bar = element("div", { class: "plot-bar" });
     bar.append(button("◀", "The iteration before", () => this.chosen.walk(-1)), this.where, button("▶", "The iteration after", () => this.chosen.walk(1)));
     bar.append(this.follow.element, this.model.element, this.log.element, button("PNG", "Save the picture", () => this.savePng()), this.note);
-    const side = element("div", { class: "surface-side", style: "flex: 0 1 34em" }, element("div", { class: "surface-texts" }, this.legend, this.text));
+    const side = element("div", { class: "surface-side", style: "flex: 0 1 min(32em, 45%)" }, element("div", { class: "surface-texts" }, this.legend, this.text));
     const fill = element("div", { class: "plot-fill" }, this.view.element);
     this.element.append(bar, element("div", { class: "plot-columns plot-fill" }, fill, side));
     this.chosen.on("changed", this.refresh);
@@ -99,9 +99,9 @@ class LandscapePanel implements Panel {
     const marks: Mark[] = [];
     const signs: Sign[] = [
       { sign: "▇", colour: "series3", text: "E, by colour and height" },
-      { sign: "╌", colour: "accent", text: "d, the direction of the iteration" },
+      { sign: "╌", colour: "accent", text: "direction d" },
     ];
-    if (showModel) signs.push({ sign: "▇", colour: "series2", text: "quadratic model of E at the start" });
+    if (showModel) signs.push({ sign: "▇", colour: "series2", text: "quadratic model" });
     for (const trial of reply.trials.filter((t) => !t.accepted)) marks.push({ x: trial.alpha, y: 0, value: trial.value, shape: "cross", colour: "bad", size: 10 });
     if (marks.length > 0) signs.push({ sign: "✕", colour: "bad", text: plural(marks.length, "rejected trial") });
     if (showModel && lowest && quadratic) {
@@ -116,7 +116,7 @@ class LandscapePanel implements Panel {
       marks.push({ x: reply.alpha, y: 0, value: accepted, shape: "dot", colour: "good", size: 13, label: "accepted" });
       signs.push({ sign: "●", colour: "good", text: `accepted: α = ${short(reply.alpha, 3)}${accepted === null ? "" : `, E lower by ${short(reply.value - accepted, 3)}`}` });
     } else signs.push({ sign: "✕", colour: "bad", text: "no step was found along d" });
-    signs.push({ sign: "•─", colour: "text", text: "the step's iterates, projected onto the plane" });
+    signs.push({ sign: "•─", colour: "text", text: "iterates, projected" });
     this.signs = signs;
     const end = grid.x[grid.x.length - 1]!;
     return {
@@ -148,7 +148,7 @@ class LandscapePanel implements Panel {
   private savePng(): void {
     const { step, iteration } = this.chosen;
     const name = this.store.side(this.chosen.side)?.scene.name ?? "scene";
-    const picture = this.reply && this.view.picture(`${name}: energy landscape of step ${step}, iteration ${iteration}`, legendLines(this.signs));
+    const picture = this.reply && this.view.picture(`${name}: energy landscape of step ${step}, iteration ${iteration}`, this.signs);
     if (picture) downloadCanvas(fileName(name, "landscape", step, iteration) + ".png", picture);
   }
 

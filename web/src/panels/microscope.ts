@@ -104,7 +104,7 @@ class MicroscopePanel implements Panel {
     };
     return [
       { title: "#", meaning: "iteration of the step", text: (row) => this.mark(row) },
-      { title: "E", meaning: "the objective before the iteration", text: of((it) => short(it.value, 6)) },
+      { title: "E", meaning: "the objective before the iteration", text: of((it) => short(it.value, 5)) },
       { title: "|g|", meaning: "norm of its gradient", text: of((it) => short(it.gradient_norm, 3)) },
       { title: "decr.", meaning: "−g·d / 2: what the quadratic model promises", text: of((it) => short(it.decrement, 3)) },
       { title: "α", meaning: "accepted step length; 0: none was found", text: of((it) => (it.alpha === 0 ? "none" : short(it.alpha, 3))) },
@@ -197,7 +197,7 @@ class MicroscopePanel implements Panel {
   // As many charts as there is room for.
   private arrange(): void {
     const font = Number.parseFloat(getComputedStyle(this.grid).fontSize) || 14;
-    const across = Math.max(1, Math.min(3, Math.floor(this.grid.clientWidth / (16 * font))));
+    const across = Math.max(1, Math.min(3, Math.floor(this.grid.clientWidth / (14.5 * font))));
     const down = Math.max(1, Math.min(2, Math.floor(this.grid.clientHeight / (11 * font))));
     this.grid.style.gridTemplate = `repeat(${down}, minmax(0, 1fr)) / repeat(${across}, minmax(0, 1fr))`;
     const count = across * down;

@@ -1,7 +1,7 @@
 // The certificate of a run: totals, a table of its steps with the worst first, and the scene as text.
 import "./report.css";
 import { button, element, labelled, messageOf, saveFile } from "../dom";
-import type { Page } from "../page";
+import type { Page, Panel } from "../page";
 import type { MaybeNumber, StepRow, TextReply } from "../protocol";
 import type { Store } from "../store";
 import { excess, kColumns, listed, totals } from "./certificate";
@@ -120,26 +120,34 @@ function makeScene(store: Store, page: Page): HTMLElement {
   return details;
 }
 
-export function makeReportPanel(store: Store, page: Page): HTMLElement {
+export function makeReportPanel(store: Store, page: Page): Panel {
   const list = element("dl", { class: "totals" });
   const notes = element("ul", { class: "notes" });
   const table = new StepTable(store);
   const panel = element("div", { class: "report" }, list, notes, table.element, makeScene(store, page));
+  let visible = false;
   let due = false;
   const draw = (): void => {
     due = false;
-    drawTotals(list, store.side("a")?.steps ?? []);
-    notes.replaceChildren(...(store.side("a")?.scene.notes ?? []).map((note) => element("li", {}, note)));
+    const side = store.side("a");
+    drawTotals(list, side?.steps ?? []);
+    notes.replaceChildren(...(side?.scene.notes ?? []).map((note) => element("li", {}, note)));
     table.draw();
   };
-  // Steps may come faster than pictures of the screen; a hidden panel waits until it is seen.
+  // Steps may come faster than pictures of the screen.
   const drawSoon = (): void => {
-    if (due) return;
+    if (!visible || due) return;
     due = true;
-    requestAnimationFrame(() => (panel.offsetParent ? draw() : (due = false)));
+    requestAnimationFrame(draw);
   };
   for (const event of ["steps", "scene"] as const) store.on(event, drawSoon);
-  page.on("panel", drawSoon);
-  new ResizeObserver(drawSoon).observe(panel); // also when it becomes visible
-  return panel;
+  return {
+    name: "certificate",
+    title: "Certificate",
+    element: panel,
+    show: (wanted) => {
+      visible = wanted;
+      drawSoon();
+    },
+  };
 }

@@ -201,7 +201,8 @@ class PlainRow implements Row {
 
 export function addRow(gui: GUI, setting: Setting, changed: (value: SettingValue) => void): Row {
   const model: Model = { value: setting.value };
-  const name = setting.unit === "" ? setting.label : `${setting.label} [${setting.unit}]`;
+  const unit = setting.unit.replace("^2", "²").replace("^3", "³");
+  const name = unit === "" ? setting.label : `${setting.label} [${unit}]`;
   const dress = <C extends Controller>(controller: C): C => {
     controller.name(name).onChange(changed);
     controller.$name.title = `${setting.meaning}\n${setting.key}`;

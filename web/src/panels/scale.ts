@@ -24,10 +24,11 @@ export function toValue(position: number, range: Range): number {
   return range.kind === "integer" ? Math.round(value) : Number(value.toPrecision(3));
 }
 
-export function numberText(value: number): string {
-  if (value === 0) return "0";
+// At most six digits: a field has no room for more.
+export function numberText(exact: number): string {
+  const value = Number(exact.toPrecision(6));
   const size = Math.abs(value);
-  const text = size >= 1e5 || size < 1e-3 ? value.toExponential() : String(value);
+  const text = size >= 1e5 || (size < 1e-3 && size > 0) ? value.toExponential() : String(value);
   return text.replace("e+", "e");
 }
 

@@ -203,6 +203,7 @@ export class StepChart {
   private paintChosen(u: uPlot, colours: Palette): void {
     const x = Math.round(u.valToPos(this.name === "steps" ? this.chosen.step : this.chosen.iteration, "x", true));
     u.ctx.save();
+    u.ctx.setLineDash([]);
     u.ctx.strokeStyle = colours.accent;
     u.ctx.globalAlpha = 0.6;
     u.ctx.lineWidth = 2;

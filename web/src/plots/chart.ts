@@ -280,6 +280,7 @@ function axis(options: Axis & { log?: boolean }, colours: Palette, vertical: boo
     labelFont: colours.font,
     grid: { stroke: colours.line, width: 1 },
     splits: options.log === true ? (u) => powersOfTen(u, colours.fontSize) : undefined,
+    filter: (_u, splits) => splits,
     ticks: { stroke: colours.line, width: 1, size: 4 },
     gap: 3,
     label: (u) => (options.unit === undefined ? options.label : `${options.label} [${factorOf(u).letter}${options.unit}]`),

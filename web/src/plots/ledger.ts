@@ -1,5 +1,6 @@
 // Where the energy of one side is and where it went, step by step: states as they are, works and losses summed up.
 import type { MaybeNumber, StepRow } from "../protocol";
+import { short, withUnit } from "./numbers";
 import type { Colour } from "./palette";
 
 export interface LedgerColumn {
@@ -33,7 +34,7 @@ export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
     line("mouse_work", "work of the mouse", "by the mouse's spring, summed over the steps", "series4", 1.5, true),
     line("pin_work", "work of pins", "by moving pins and targets, summed over the steps", "series5", 1.5, true),
     line("damping_loss", "damping loss", "dissipated by damping, summed over the steps", "series7", 1.5, true),
-    line("numerical_loss", "numerical loss", "dissipated by the integrator, summed over the steps", "series2", 1.5, true),
+    line("numerical_loss", "numerical loss", "dissipated by the integrator, summed over the steps", "bad", 1.5, true),
     line("balance", "balance", "T + V − works + losses: flat where every step was solved accurately", "good", 2.5),
   ];
 }
@@ -100,4 +101,10 @@ function sum(parts: readonly MaybeNumber[]): MaybeNumber {
 
 function negated(value: MaybeNumber): MaybeNumber {
   return value === null ? null : -value;
+}
+
+export function balanceText(drift: number, scale: number): string {
+  const part = scale > 0 ? drift / scale : 0;
+  if (part <= 1e-3) return `balance flat to ${withUnit(drift, "J", 2)} (${short(part, 2)} of the largest energy)`;
+  return `balance drifts by ${withUnit(drift, "J", 2)} (${short(part, 2)} of the largest energy): some steps were not solved accurately`;
 }

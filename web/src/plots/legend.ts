@@ -1,6 +1,6 @@
 // What the signs in a picture of a surface mean.
 import { element } from "./dom";
-import type { Colour } from "./palette";
+import type { Colour, Palette } from "./palette";
 
 export interface Sign {
   sign: string;
@@ -18,6 +18,18 @@ export function legendOf(signs: readonly Sign[]): HTMLDListElement {
   return list;
 }
 
-export function legendLines(signs: readonly Sign[]): string[] {
-  return [signs.map(({ sign, text }) => `${sign} ${text}`).join("   ")];
+// The same on a canvas, in columns.
+export function paintLegend(pen: CanvasRenderingContext2D, signs: readonly Sign[], colours: Palette, top: number, line: number): void {
+  const columns = legendColumns(pen.canvas.width, line);
+  signs.forEach(({ sign, colour, text }, i) => {
+    const [x, y] = [line * 0.5 + (i % columns) * ((pen.canvas.width - line) / columns), top + line * (Math.floor(i / columns) + 0.5)];
+    pen.fillStyle = colours[colour];
+    pen.fillText(sign, x, y);
+    pen.fillStyle = colours.text;
+    pen.fillText(text, x + line * 1.5, y);
+  });
+}
+
+export function legendColumns(width: number, line: number): number {
+  return Math.max(1, Math.floor(width / (line * 16)));
 }

@@ -61,7 +61,7 @@ export function ticks(values: readonly (number | null)[], factor = 1): string[] 
     if (value === null) return "";
     const v = Math.abs(value / factor) < gap * 1e-6 ? 0 : value / factor;
     if (v === 0) return "0";
-    const digits = Math.min(8, Math.max(1, Math.ceil(Math.log10(Math.abs(v) / gap) + 1)));
+    const digits = Math.min(12, Math.max(1, Math.ceil(Math.log10(Math.abs(v) / gap) + 1)));
     return plain ? v.toFixed(decimals).replace("-", "−") : short(v, digits);
   });
 }

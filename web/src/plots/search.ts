@@ -128,6 +128,7 @@ export class SearchChart {
       pen.lineWidth = 4 * scale;
       pen.lineJoin = "round";
       pen.textBaseline = "middle";
+      pen.textAlign = "left";
       const line = y + (y < u.bbox.top + 18 * scale ? 14 : -13) * scale;
       pen.strokeText(text, left, line);
       pen.fillText(text, left, line);

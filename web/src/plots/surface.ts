@@ -7,6 +7,7 @@ import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import type { MaybeNumber } from "../protocol";
 import { element, oncePerFrame } from "./dom";
 import { clipped, heightRange, isInside, sample, valueAtHeight, type Grid, type Point } from "./grid";
+import { legendColumns, paintLegend, type Sign } from "./legend";
 import { palette, type Colour, type Palette } from "./palette";
 import { Frame, gridLines, levelLines, markTexture, surfaceGeometry, type MarkShape } from "./surfaceParts";
 import { axisLabels, placed, type Label, type Placed } from "./surfaceLabels";
@@ -52,6 +53,7 @@ export class SurfaceView {
   private labels: Label[] = [];
   private colours: Palette | null = null;
   private visible = false;
+  private stretch = 1; // of the width: flat panels show flat boxes
   private fitted = 0; // distance of the camera that shows all
   readonly redraw = oncePerFrame(() => this.draw());
 
@@ -86,7 +88,8 @@ export class SurfaceView {
     if (!content || content.grid.x.length < 2 || content.grid.y.length < 2) return this.redraw();
     if (this.renderer) this.renderer.domElement.setAttribute("aria-label", `${content.label}. The arrow keys turn it, + and − zoom, 0 resets.`);
     const range = heightRange(content.grid.value, content.keep);
-    this.frame = new Frame(content.grid, range, content.log ? "log" : "linear");
+    this.stretch = this.wantedStretch();
+    this.frame = new Frame(content.grid, range, content.log ? "log" : "linear", this.stretch);
     this.addSurface(content, this.frame, this.colours);
     if (content.model) this.addModel(content.model, this.frame, this.colours);
     this.addBox(this.frame, this.colours);
@@ -96,7 +99,7 @@ export class SurfaceView {
   }
 
   // The view with its labels on it, a title above and what the signs mean below.
-  picture(title: string, legend: readonly string[]): HTMLCanvasElement | null {
+  picture(title: string, legend: readonly Sign[]): HTMLCanvasElement | null {
     if (!this.renderer || !this.colours) return null;
     this.draw();
     const source = this.renderer.domElement;
@@ -104,7 +107,8 @@ export class SurfaceView {
     const line = this.colours.fontSize * 1.5 * scale;
     const canvas = document.createElement("canvas");
     canvas.width = source.width;
-    canvas.height = source.height + line * (1.8 + legend.length);
+    const rows = Math.ceil(legend.length / legendColumns(canvas.width, line));
+    canvas.height = source.height + line * (2 + rows);
     const pen = canvas.getContext("2d")!;
     pen.fillStyle = this.colours.panel;
     pen.fillRect(0, 0, canvas.width, canvas.height);
@@ -116,7 +120,8 @@ export class SurfaceView {
       pen.fillText(label.text, x * scale, y * scale + line * 1.5);
     }
     pen.fillStyle = this.colours.text;
-    legend.forEach((text, i) => pen.fillText(text, line * 0.5, source.height + line * (2 + i)));
+    paintLegend(pen, legend, this.colours, source.height + line * 1.6, line);
+    pen.fillStyle = this.colours.text;
     pen.font = `600 ${this.colours.fontSize * scale}px sans-serif`;
     pen.fillText(title, line * 0.5, line * 0.75);
     return canvas;
@@ -146,6 +151,10 @@ export class SurfaceView {
     this.build();
   }
 
+  private wantedStretch(): number {
+    return Math.min(1.8, Math.max(1, this.element.clientWidth / Math.max(1, this.element.clientHeight) / 1.3));
+  }
+
   private home(): void {
     this.camera.position.setFromSphericalCoords(5, kHome.polar, kHome.azimuth).add(this.controls!.target);
     this.fitted = 0;
@@ -156,6 +165,7 @@ export class SurfaceView {
     const [width, height] = [this.element.clientWidth, this.element.clientHeight];
     if (!this.renderer || !this.visible || width < 20 || height < 20) return;
     this.renderer.setSize(width, height, false);
+    if (Math.abs(this.wantedStretch() - this.stretch) > 0.1) this.build();
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     const distance = this.distanceThatShowsAll();
@@ -172,7 +182,7 @@ export class SurfaceView {
     const probe = this.camera.clone();
     const [w, d, h] = [1.15 * (this.frame?.width ?? 2) * 0.5, 1.15 * (this.frame?.depth ?? 2) * 0.5, 0.95];
     const corners = [-w, w].flatMap((x) => [-d, d].flatMap((z) => [-0.02, h].map((y) => new THREE.Vector3(x, y, z))));
-    const margin = 1 - (2.2 * (this.colours?.fontSize ?? 14)) / Math.max(1, this.element.clientHeight);
+    const margin = 1 - (1.2 * (this.colours?.fontSize ?? 14)) / Math.max(1, this.element.clientHeight);
     let [near, far] = [1.5, 40];
     for (let i = 0; i < 24; ++i) {
       const distance = 0.5 * (near + far);
@@ -215,7 +225,7 @@ export class SurfaceView {
 
   private addModel(model: MaybeNumber[], frame: Frame, colours: Palette): void {
     const colour = new THREE.Color(colours.series2);
-    const material = new THREE.MeshLambertMaterial({ color: colour, side: THREE.DoubleSide, transparent: true, opacity: 0.32, depthWrite: false });
+    const material = new THREE.MeshLambertMaterial({ color: colour, side: THREE.DoubleSide, transparent: true, opacity: 0.32, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1 });
     const mesh = new THREE.Mesh(surfaceGeometry(frame, model, false), material);
     const lines = new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity: 0.65 });
     mesh.renderOrder = 1;

@@ -1,10 +1,10 @@
 // Geometry for the picture of a surface: triangles, grid lines and lines of equal height, in the box of `Frame`.
 import * as THREE from "three";
 import type { MaybeNumber } from "../protocol";
-import { viridis } from "./colourMap";
+import { colourAt } from "../view/colourMaps";
 import { heightOf, type Grid, type Range, type Scale } from "./grid";
 
-// x to the right, y away from the reader, values up; the longer side of the plane is 2 long.
+// x to the right, y away from the reader, values up; the longer side of the plane is 2 long, before it is stretched.
 export class Frame {
   readonly width: number;
   readonly depth: number;
@@ -16,10 +16,11 @@ export class Frame {
     readonly grid: Grid,
     readonly range: Range,
     readonly scale: Scale,
+    stretch: number, // of the width
   ) {
     const [dx, dy] = [span(grid.x), span(grid.y)];
     const ratio = Math.min(1.6, Math.max(1 / 1.6, dx / dy)); // a narrow strip would not show
-    this.width = ratio >= 1 ? 2 : 2 * ratio;
+    this.width = (ratio >= 1 ? 2 : 2 * ratio) * stretch;
     this.depth = ratio >= 1 ? 2 / ratio : 2;
     this.height = heightOf(range, scale);
     this.shade = this.height;
@@ -60,7 +61,10 @@ export function surfaceGeometry(frame: Frame, values: readonly MaybeNumber[], co
   values.forEach((value, k) => {
     const place = frame.place(x[k % x.length]!, y[Math.floor(k / x.length)]!, value ?? frame.range.low);
     place.toArray(positions, 3 * k);
-    if (coloured) colour.setRGB(...viridis(frame.shade(value ?? frame.range.low)), THREE.SRGBColorSpace).toArray(colours, 3 * k);
+    if (coloured) {
+      const [r, g, b] = colourAt("viridis", frame.shade(value ?? frame.range.low));
+      colour.setRGB(r / 255, g / 255, b / 255, THREE.SRGBColorSpace).toArray(colours, 3 * k);
+    }
   });
   const index: number[] = [];
   for (let j = 0; j + 1 < y.length; ++j)

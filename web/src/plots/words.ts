@@ -11,17 +11,13 @@ export function pace(norms: readonly MaybeNumber[]): { pace: Pace; factor: numbe
   const none = { pace: "none" as const, factor: 1 };
   if (falls.length < 2 || known[known.length - 1]! >= known[0]!) return none;
   const [before, last] = falls.slice(-2) as [number, number];
-  const mean = falls.reduce((sum, fall) => sum + fall, 0) / falls.length;
   // |g| -> C |g|^p: two falls in a row tell p. Below a factor of 3 they tell nothing.
   if (before > Math.log(3) && last / before >= 1.7) return { pace: "squaring", factor: Math.exp(last) };
-  if (falls.length >= 3) {
-    const late = falls.slice(-Math.max(3, Math.floor(falls.length / 2)));
-    const spread = Math.max(...late) - Math.min(...late);
-    const lateMean = late.reduce((sum, fall) => sum + fall, 0) / late.length;
-    if (lateMean > 0 && Math.min(...late) > 0 && spread <= 0.7 * lateMean) return { pace: "steady", factor: Math.exp(lateMean) };
-  }
   if (before > 0 && last > 1.2 * before) return { pace: "faster", factor: Math.exp(last) };
-  return mean > 0 ? { pace: "steady", factor: Math.exp(mean) } : none;
+  const late = falls.slice(-Math.max(2, Math.ceil(falls.length / 2)));
+  const mean = late.reduce((sum, fall) => sum + fall, 0) / late.length;
+  const isSteady = Math.min(...late) > 0 && Math.max(...late) - Math.min(...late) <= 0.7 * mean;
+  return isSteady ? { pace: "steady", factor: Math.exp(mean) } : none;
 }
 
 function paceText(rows: readonly IterationRow[]): string {

@@ -4,6 +4,7 @@ import type { ColourRange } from "./ranges";
 import type { Geometry, Picture, Vec3 } from "../protocol";
 import { mapTexels, type MapName } from "./colourMaps";
 import type { DisplaySettings } from "./display";
+import { kSkinPoint } from "./labels";
 import { makeFieldUniforms, makePinMaterial, makeSurfaceMaterial } from "./shading";
 
 export interface Box {
@@ -43,6 +44,7 @@ function meanEdge(geometry: Geometry): number {
 export class Body {
   readonly root = new THREE.Group(); // metres inside, unit lengths outside
   readonly edge: number; // mean length at rest [m]
+  readonly numbered: boolean; // some vertex has a number of the user's
   box: Box | null;
   private readonly positions: THREE.BufferAttribute;
   private readonly normals: THREE.BufferAttribute;
@@ -62,6 +64,7 @@ export class Body {
   constructor(readonly geometry: Geometry) {
     const n = geometry.rest.length / 3;
     this.edge = meanEdge(geometry);
+    this.numbered = geometry.vertex.some((vertex) => vertex !== kSkinPoint);
     this.box = coarseBox(geometry.rest);
     this.positions = new THREE.BufferAttribute(geometry.rest, 3);
     this.normals = new THREE.BufferAttribute(new Int8Array(4 * n), 4, true);

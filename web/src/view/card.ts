@@ -1,18 +1,22 @@
 // A card with the numbers behind a clicked point: its vertex and its tet. Follows the body while it moves.
+import { element, messageOf } from "../dom";
 import type { Highlight } from "../page";
-import type { MaybeNumber, Scene, SideName, TetReply, Vec3, VertexReply } from "../protocol";
+import type { Scene, SideName, TetReply, Vec3, VertexReply } from "../protocol";
 import type { Store } from "../store";
+import { isFinite3 } from "./lens";
 import type { Hit } from "./picking";
-import { readable, withUnit } from "./ranges";
+import { matrixText, valueText, vectorText } from "./values";
 
 type Row = [label: string, value: string];
 
 const kPause = 200; // between two questions [ms]
 
 export class Card {
-  readonly element = document.createElement("section");
+  readonly element = element("section", { class: "view-card", "data-card": true, "aria-label": "Values at the point" });
   marks: Highlight[] = []; // what the numbers belong to
-  private readonly body = document.createElement("div");
+  private readonly vertex = new Section(true);
+  private readonly fields = new Section(false);
+  private readonly tet = new Section(true);
   private chosen: { triangle: number; vertex: number } | null = null;
   private asking = false;
   private stale = false;
@@ -23,15 +27,10 @@ export class Card {
     private readonly side: SideName,
     private readonly changed: () => void,
   ) {
-    const close = document.createElement("button");
-    close.textContent = "×";
-    close.ariaLabel = "Close";
+    const close = element("button", { type: "button", "aria-label": "Close" }, "×");
     close.addEventListener("click", () => this.close());
-    this.element.className = "view-card";
-    this.element.dataset.card = "";
-    this.element.ariaLabel = "Values at the point";
     this.element.hidden = true;
-    this.element.append(close, this.body);
+    this.element.append(close, this.vertex.element, this.fields.element, this.tet.element);
   }
 
   open(hit: Hit, vertex: number): void {
@@ -79,85 +78,81 @@ export class Card {
 
   private fill(scene: Scene, vertex: PromiseSettledResult<VertexReply>, tet: PromiseSettledResult<TetReply>): void {
     this.marks = [];
-    const parts: HTMLElement[] = [];
     if (vertex.status === "fulfilled") {
       const { value } = vertex;
-      parts.push(...section(value.vertex < 0 ? "Point of the skin" : `Vertex ${value.vertex}`, vertexRows(value, scene)));
-      this.marks.push({ positions: [value.position], text: "" });
-    } else parts.push(...section("Vertex", [["not told", reason(vertex.reason)]]));
+      this.vertex.show(value.vertex < 0 ? "Point of the skin" : `Vertex ${value.vertex}`, vertexRows(value));
+      this.fields.show("Fields there", fieldRows(value, scene));
+      this.mark([value.position]);
+    } else {
+      this.vertex.show("Vertex", [["not told", messageOf(vertex.reason)]]);
+      this.fields.show("Fields there", []);
+    }
     if (tet.status === "fulfilled") {
-      parts.push(...section(`Tet ${tet.value.tet}`, tetRows(tet.value)));
-      this.marks.push({ positions: tet.value.positions, text: "" });
-    } else parts.push(...section("Tet", [["not told", reason(tet.reason)]]));
-    this.body.replaceChildren(...parts);
+      this.tet.show(`Tet ${tet.value.tet}`, tetRows(tet.value));
+      this.mark(tet.value.positions);
+    } else this.tet.show("Tet", [["not told", messageOf(tet.reason)]]);
     this.element.hidden = false;
     this.changed();
   }
+
+  private mark(positions: Vec3[]): void {
+    if (positions.every(isFinite3)) this.marks.push({ positions, text: "" });
+  }
 }
 
-function reason(why: unknown): string {
-  return why instanceof Error ? why.message : String(why);
+// Rows under a title that folds them. Its elements stay when the values change, for the reader may be about to press one.
+class Section {
+  readonly element = document.createElement("details");
+  private readonly title = document.createElement("summary");
+  private readonly table = document.createElement("table");
+
+  constructor(open: boolean) {
+    this.element.open = open;
+    this.element.append(this.title, this.table);
+  }
+
+  show(title: string, rows: Row[]): void {
+    this.title.textContent = title;
+    this.table.replaceChildren();
+    for (const [label, value] of rows) {
+      const row = this.table.insertRow();
+      row.append(element("th", { scope: "row" }, label));
+      row.insertCell().textContent = value;
+    }
+  }
 }
 
-function number(value: MaybeNumber, unit = ""): string {
-  return value === null ? "not finite" : withUnit(value, unit, 4);
-}
-
-function vector(values: Vec3, unit: string): string {
-  const largest = Math.max(...values.map(Math.abs));
-  return `${values.map((x) => readable(x, largest * 1e-4)).join("  ")} ${unit}`;
-}
-
-function matrix(rows: [Vec3, Vec3, Vec3], unit: string): string {
-  const largest = Math.max(...rows.flat().map(Math.abs));
-  const texts = rows.map((row) => row.map((x) => readable(x, largest * 1e-3)));
-  const width = Math.max(...texts.flat().map((text) => text.length));
-  return texts.map((row) => row.map((text) => text.padStart(width, "\u2007")).join("  ")).join("\n") + (unit && ` ${unit}`);
-}
-
-function vertexRows(reply: VertexReply, scene: Scene): Row[] {
+function vertexRows(reply: VertexReply): Row[] {
   const first = reply.first_entry;
-  const fields = scene.fields.filter((field) => field.name in reply.values);
   return [
     ...(reply.vertex < 0 ? [] : [["entries", `q[${first}], q[${first + 1}], q[${first + 2}]`] as Row]),
-    ["position", vector(reply.position, "m")],
-    ["rest", vector(reply.rest, "m")],
-    ["velocity", vector(reply.velocity, "m/s")],
-    ["mass", `${readable(reply.mass)} kg`],
+    ["position", vectorText(reply.position, "m")],
+    ["rest", vectorText(reply.rest, "m")],
+    ["velocity", vectorText(reply.velocity, "m/s")],
+    ["mass", valueText(reply.mass, "kg")],
     ["pinned", reply.pinned ? "yes" : "no"],
-    ...fields.map((field): Row => [field.label, number(reply.values[field.name], field.unit)]),
   ];
+}
+
+function fieldRows(reply: VertexReply, scene: Scene): Row[] {
+  const fields = scene.fields.filter((field) => field.name in reply.values);
+  return fields.map((field) => [field.label, valueText(reply.values[field.name], field.unit)]);
 }
 
 function tetRows(reply: TetReply): Row[] {
   return [
     ["corners", reply.corners.join(", ")],
-    ["F", matrix(reply.F, "")],
-    ["J = det F", number(reply.J)],
-    ["stretches", vector(reply.stretches, "")],
-    ["Cauchy stress", matrix(reply.cauchy, "Pa")],
-    ["von Mises", number(reply.von_mises, "Pa")],
-    ["energy density", number(reply.energy_density, "J/m³")],
-    ["energy", number(reply.energy, "J")],
-    ["rest volume", `${readable(reply.volume)} m³`],
-    ["quality", number(reply.quality)],
-    ["E", number(reply.young, "Pa")],
-    ["ν", number(reply.poisson)],
-    ["density", `${readable(reply.density)} kg/m³`],
+    ["F", matrixText(reply.F, "")],
+    ["J = det F", valueText(reply.J, "")],
+    ["stretches", vectorText(reply.stretches, "")],
+    ["Cauchy stress", matrixText(reply.cauchy, "Pa")],
+    ["von Mises", valueText(reply.von_mises, "Pa")],
+    ["energy density", valueText(reply.energy_density, "J/m^3")],
+    ["energy", valueText(reply.energy, "J")],
+    ["rest volume", valueText(reply.volume, "m^3")],
+    ["quality", valueText(reply.quality, "")],
+    ["E", valueText(reply.young, "Pa")],
+    ["ν", valueText(reply.poisson, "")],
+    ["density", valueText(reply.density, "kg/m^3")],
   ];
-}
-
-function section(title: string, rows: Row[]): HTMLElement[] {
-  const heading = document.createElement("h3");
-  heading.textContent = title;
-  const table = document.createElement("table");
-  for (const [label, value] of rows) {
-    const row = table.insertRow();
-    const head = document.createElement("th");
-    head.scope = "row";
-    head.textContent = label;
-    row.append(head);
-    row.insertCell().textContent = value;
-  }
-  return [heading, table];
 }

@@ -10,7 +10,7 @@ export interface Label {
 }
 
 const kMost = 300;
-const kSkinPoint = 0xffffffff; // has no number
+export const kSkinPoint = 0xffffffff; // has no number
 const kCell = 6; // of the grid that tells what is hidden [px]
 
 export interface LabelKinds {

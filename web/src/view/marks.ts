@@ -1,8 +1,10 @@
 // What is drawn over a view with a 2-D canvas: text and thin shapes that stay readable over anything.
+import { short, ticks as tickTexts } from "../plots/numbers";
 import type { Field, Vec3 } from "../protocol";
 import { colourAt, type MapName } from "./colourMaps";
 import { isBehind, project, type Lens } from "./lens";
-import { fraction, logTicks, readable, ticks, withUnit, type ColourRange } from "./ranges";
+import { fraction, logTicks, ticks, type ColourRange } from "./ranges";
+import { unitText, valueText } from "./values";
 
 export interface Ink {
   context: CanvasRenderingContext2D;
@@ -74,7 +76,7 @@ export function spring(ink: Ink, lens: Lens, point: Vec3, target: Vec3, force: V
   }
   dot(ink, from, 4, ink.accent);
   const newtons = force ? Math.hypot(...force) : NaN;
-  if (Number.isFinite(newtons)) text(ink, withUnit(newtons, "N"), to[0] + ink.em, to[1] - ink.em);
+  if (Number.isFinite(newtons)) text(ink, valueText(newtons, "N", 3), to[0] + ink.em, to[1] - ink.em);
 }
 
 export function ring(ink: Ink, [x, y]: Point, radius: number, words: string): void {
@@ -115,34 +117,48 @@ export function axes(ink: Ink, lens: Lens): void {
 
 // The colours of a field with ticks, at the right edge.
 export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange, map: MapName): void {
-  const { context, em } = ink;
+  const { em } = ink;
   const height = Math.min(16 * em, lens.height - 7 * em);
-  const width = 1.1 * em;
   if (height < 3 * em) return;
-  const right = lens.width - em;
-  const top = 3.2 * em;
-  const left = right - width;
-  const isConstant = !(range.high > range.low);
+  const [left, top, width] = [lens.width - 2.1 * em, 3.2 * em, 1.1 * em];
+  const title = `${field.label}${field.unit && ` [${unitText(field.unit)}]`}${range.log ? ", logarithmic" : ""}`;
+  const values = range.log ? logTicks(range.low, range.high) : ticks(range.low, range.high, height / (2.6 * em));
+  const words = range.log || values.length < 2 ? values.map((value) => short(value)) : tickTexts(values);
+  const widest = Math.max(0, ...words.map((word) => ink.context.measureText(word).width)) + 1.6 * em + width;
+  backing(ink, lens.width - 0.4 * em, top - 2.4 * em, Math.max(widest, ink.context.measureText(title).width) + em, height + 3.2 * em);
+  colours(ink, map, left, top, width, height, range.high > range.low);
+  text(ink, title, left + width, top - 1.4 * em, "right");
+  values.forEach((value, i) => {
+    const y = top + height * (1 - fraction(range, value));
+    ink.context.fillStyle = ink.text;
+    ink.context.fillRect(left - 0.35 * em, y - 0.5, 0.35 * em, 1);
+    text(ink, words[i], left - 0.6 * em, y, "right");
+  });
+}
+
+// Sets off what stands on it from the body behind.
+function backing(ink: Ink, right: number, top: number, width: number, height: number): void {
+  const { context } = ink;
+  context.globalAlpha = 0.8;
+  context.fillStyle = ink.halo;
+  context.beginPath();
+  context.roundRect(right - width, top, width, height, 0.4 * ink.em);
+  context.fill();
+  context.globalAlpha = 1;
+}
+
+function colours(ink: Ink, map: MapName, left: number, top: number, width: number, height: number, varies: boolean): void {
+  const { context } = ink;
   for (let y = 0; y < height; ++y) {
-    const [r, g, b] = colourAt(map, isConstant ? 0.5 : 1 - y / height);
+    const [r, g, b] = colourAt(map, varies ? 1 - y / height : 0.5);
     context.fillStyle = `rgb(${r}, ${g}, ${b})`;
     context.fillRect(left, top + y, width, 1.5);
   }
   context.lineWidth = 1;
   context.strokeStyle = ink.text;
   context.strokeRect(left - 0.5, top - 0.5, width + 1, height + 1.5);
-  const unit = field.unit === "" ? "" : ` [${field.unit}]`;
-  text(ink, `${field.label}${unit}${range.log ? ", logarithmic" : ""}`, right, top - 1.4 * em, "right");
-  const marks = range.log ? logTicks(range.low, range.high) : ticks(range.low, range.high, height / (2.6 * em));
-  const step = range.log ? undefined : (marks[1] ?? NaN) - marks[0];
-  for (const mark of marks) {
-    const y = top + height * (1 - fraction(range, mark));
-    context.fillStyle = ink.text;
-    context.fillRect(left - 0.35 * em, y - 0.5, 0.35 * em, 1);
-    text(ink, readable(mark, Number.isFinite(step) ? step : undefined), left - 0.6 * em, y, "right");
-  }
 }
 
 export function gridNote(ink: Ink, lens: Lens, step: number): void {
-  text(ink, `grid ${withUnit(step, "m")}`, 1.2 * ink.em, lens.height - 0.9 * ink.em);
+  text(ink, `grid ${valueText(step, "m")}`, 1.2 * ink.em, lens.height - 0.9 * ink.em);
 }

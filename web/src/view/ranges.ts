@@ -86,26 +86,3 @@ export function roundStep(x: number): number {
   const factor = [1, 2, 5, 10].find((f) => f * power >= x * (1 - 1e-9)) ?? 10;
   return factor * power;
 }
-
-// Short and readable: 0.25, 1200, 3.1e6. `step` is the distance of neighbours, which must differ.
-export function readable(value: number, step = Math.abs(value) * 1e-3): string {
-  if (!Number.isFinite(value)) return "not finite";
-  if (Math.abs(value) < Math.abs(step) * 1e-6 || value === 0) return "0";
-  const digits = Math.min(15, Math.max(1, 1 + Math.ceil(Math.log10(Math.abs(value / step)) - 1e-9)));
-  const rounded = Number(value.toPrecision(digits));
-  const size = Math.abs(rounded);
-  if (size >= 1e5 || size < 1e-3) return rounded.toExponential().replace("e+", "e").replaceAll("-", "−");
-  return String(rounded).replace("-", "−");
-}
-
-const kPrefixes: [number, string][] = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"]];
-
-// With a prefix: 12.3 kPa, 4 mm.
-export function withUnit(value: number, unit: string, digits = 3): string {
-  if (!Number.isFinite(value)) return "not finite";
-  const size = Math.abs(value);
-  const takesPrefix = unit !== "" && !/[/^²³ ]/.test(unit.slice(0, 2)) && unit !== "kg" && size > 0;
-  const [factor, prefix] = (takesPrefix && kPrefixes.find(([least]) => size >= least * (1 - 1e-9))) || [1, ""];
-  const number = readable(Number((value / factor).toPrecision(digits)), Math.abs(value / factor) * 10 ** (1 - digits));
-  return unit === "" ? number : `${number} ${prefix}${unit}`;
-}

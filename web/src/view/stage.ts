@@ -10,6 +10,7 @@ import type { Clip } from "./picking";
 import { roundStep } from "./ranges";
 import { kGroundRadius, makeGroundMaterial } from "./shading";
 
+const kFarthest = 1e4; // of a body that bursts, else depths lose their digits
 const kGap = 0.12; // between the box and the ground below it
 
 export class Stage {
@@ -155,7 +156,7 @@ export class Stage {
   // How far from the middle of the scene the body goes.
   private reach(): number {
     const box = this.body?.box;
-    return box ? Math.max(1, this.toUnits(box.lower).length(), this.toUnits(box.upper).length()) : 1;
+    return box ? Math.min(kFarthest, Math.max(1, this.toUnits(box.lower).length(), this.toUnits(box.upper).length())) : 1;
   }
 
   private adapt(body: Body, lens: Lens, pinColour: string): void {

@@ -1,20 +1,20 @@
 // One side in 3-D: draws its newest picture, and only when something has changed.
 import "./view.css";
 import type { Highlight, Page } from "../page";
-import type { Field, SideName } from "../protocol";
-import type { Side, Store } from "../store";
-import { Body } from "./body";
+import type { SideName } from "../protocol";
+import type { Store } from "../store";
 import type { CameraRig } from "./cameras";
 import { Card } from "./card";
 import type { Display } from "./display";
+import { Figure } from "./figure";
 import { chooseLabels, type Label } from "./labels";
 import type { Lens } from "./lens";
 import { Overlay, png, readStyle, type Marks, type Style } from "./overlay";
 import { Pace } from "./pace";
-import { interpolated, nearestVertex, type Clip, type Hit, type Surface } from "./picking";
-import { withUnit } from "./ranges";
+import { interpolated, nearestVertex, type Hit, type Surface } from "./picking";
 import { Stage } from "./stage";
 import { Touch, type Touched } from "./touch";
+import { valueText } from "./values";
 
 const kLargest = 8192; // side of a screenshot [px]
 
@@ -26,8 +26,8 @@ export class View implements Touched {
   private readonly touch: Touch;
   private readonly card: Card;
   private style!: Style;
-  private body: Body | null = null;
-  private valuesOf = ""; // field of the values that the body has
+  private readonly figure: Figure;
+  private toldUnnumbered = false;
   private highlights: Highlight[] = [];
   private readonly pace: Pace;
   private frame = 0; // requested
@@ -51,6 +51,7 @@ export class View implements Touched {
     this.host.classList.add("view");
     this.host.replaceChildren(this.glCanvas, this.overlay.canvas, this.message, this.card.element);
     this.stage = this.makeStage();
+    this.figure = new Figure(store, side, display, this.stage);
     this.touch = new Touch(this);
     this.listen();
     this.applyDisplay();
@@ -66,8 +67,7 @@ export class View implements Touched {
   }
 
   surface(): Surface | null {
-    if (!this.body?.root.visible) return null;
-    return { positions: this.body.current, triangles: this.body.geometry.triangles, clip: this.clip() };
+    return this.figure.surface();
   }
 
   // A PNG of the view; `scale` times as many pixels as the view has on the screen.
@@ -77,8 +77,8 @@ export class View implements Touched {
     const canvas = document.createElement("canvas");
     this.drawNow();
     this.overlay.paint(canvas, this.glCanvas);
+    if (this.sharpness !== 1) this.redraw();
     this.sharpness = 1;
-    this.drawNow();
     return png(canvas);
   }
 
@@ -91,16 +91,16 @@ export class View implements Touched {
 
   // The body as it is now fills the view.
   centre(): void {
-    if (this.body?.box) this.rig.centre(this.body.box.lower, this.body.box.upper);
+    if (this.figure.body?.box) this.rig.centre(this.figure.body.box.lower, this.figure.body.box.upper);
   }
 
   read(hit: Hit | null): void {
-    if (hit && this.body) this.card.open(hit, nearestVertex(hit, this.body.geometry.triangles));
+    if (hit && this.figure.body) this.card.open(hit, nearestVertex(hit, this.figure.body.geometry.triangles));
     else this.card.close();
   }
 
   showPins(vertices: number[]): void {
-    this.body?.setPins(vertices);
+    this.figure.body?.setPins(vertices);
     this.redraw();
   }
 
@@ -123,7 +123,6 @@ export class View implements Touched {
   }
 
   dispose(): void {
-    cancelAnimationFrame(this.frame);
     this.listeners.abort();
     for (const stop of [...this.stop, this.rigStop]) stop();
     this.touch.dispose();
@@ -135,13 +134,10 @@ export class View implements Touched {
     this.pace.drawn();
   }
 
-  private get source(): Side | null {
-    return this.store.side(this.side);
-  }
-
   private makeStage(): Stage | null {
     const { signal } = this.listeners;
-    this.glCanvas.addEventListener("webglcontextlost", () => this.say("The graphics card is busy; the picture comes back by itself."), { signal });
+    const lost = (): void => this.say("The graphics card is busy; the picture comes back by itself.");
+    this.glCanvas.addEventListener("webglcontextlost", lost, { signal });
     this.glCanvas.addEventListener("webglcontextrestored", () => this.restored(), { signal });
     try {
       return new Stage(this.glCanvas);
@@ -174,10 +170,10 @@ export class View implements Touched {
     stop.push(store.on("scene", mine(() => this.takeScene())));
     stop.push(store.on("geometry", mine(() => this.takeGeometry())));
     stop.push(store.on("picture", mine(() => this.takePicture())));
-    stop.push(store.on("pins", mine(() => this.showPins(this.source?.pins ?? []))));
+    stop.push(store.on("pins", mine(() => this.showPins(this.figure.side?.pins ?? []))));
     stop.push(store.on("state", () => this.redraw()));
     stop.push(display.on("changed", () => this.applyDisplay()));
-    stop.push(display.on("range", () => this.colourBody()));
+    stop.push(display.on("range", () => this.recolour()));
     stop.push(page.on("theme", () => this.applyDisplay()));
     stop.push(page.on("layout", () => this.applyDisplay()));
     if (this.side === "a") stop.push(page.on("highlight", (highlights) => this.highlight(highlights)));
@@ -193,82 +189,48 @@ export class View implements Touched {
   }
 
   private takeScene(): void {
-    const scene = this.source?.scene;
-    if (!scene) return;
-    this.display.cameras[this.side].show(scene.path, scene.lower, scene.upper, scene.up);
-    if (this.body && this.body.geometry.generation !== scene.generation) this.dropBody();
-    this.takeGeometry();
-    if (this.side === "a") this.display.setFields(scene.fields, scene.field);
+    if (this.figure.takeScene()) this.card.close();
+    const scene = this.figure.side?.scene;
+    // Side a tells the fields to the display, which then changes for all.
+    if (scene && this.side === "a") this.display.setFields(scene.fields, scene.field);
     else this.applyDisplay();
   }
 
   private takeGeometry(): void {
-    const side = this.source;
-    if (!this.stage || !side?.geometry || this.body?.geometry === side.geometry) return;
-    this.dropBody();
-    this.stage.place(side.scene);
-    this.body = new Body(side.geometry);
-    this.stage.show(this.body);
-    this.body.setPins(side.pins);
-    this.showPicture();
+    if (!this.figure.takeGeometry()) return;
+    this.card.close();
     this.applyDisplay();
   }
 
-  private dropBody(): void {
-    this.card.close();
-    this.stage?.remove();
-    this.body = null;
-  }
-
   private takePicture(): void {
-    this.showPicture();
+    this.figure.takePicture();
     this.card.refresh();
     this.pace.came();
-  }
-
-  private showPicture(): void {
-    const side = this.source;
-    if (!this.body || !side?.picture || side.picture.positions.length !== this.body.current.length) return;
-    const { picture, scene } = side;
-    this.body.show(picture);
-    this.valuesOf = picture.values ? scene.field : "";
-    const field = this.field();
-    if (field) this.display.feed(this.side, field, picture.min, picture.max);
-    this.colourBody();
-    this.stage?.moved();
-  }
-
-  // Whose values the body shows.
-  private field(): Field | null {
-    const scene = this.source?.scene;
-    if (!scene || this.valuesOf !== scene.field) return null;
-    return scene.fields.find((field) => field.name === scene.field) ?? null;
   }
 
   private applyDisplay(): void {
     this.rigStop();
     this.rigStop = this.rig.on("changed", () => this.redraw());
     this.restyle();
-    const settings = this.display.settings;
-    this.body?.apply(settings);
-    this.stage?.apply(settings, this.style);
-    this.stage?.clip(this.clip());
-    this.colourBody();
+    this.figure.apply(this.style);
+    this.tellUnnumbered();
+    this.redraw();
+  }
+
+  // Once, when numbers are asked for that the fine skin does not have.
+  private tellUnnumbered(): void {
+    const missing = this.display.settings.vertexLabels && this.figure.body !== null && !this.figure.body.numbered;
+    if (missing && !this.toldUnnumbered) this.page.notice("The points of the fine skin have no numbers; the cage's vertices have.");
+    this.toldUnnumbered = missing;
   }
 
   private restyle(): void {
     this.style = readStyle(this.host, this.display.settings, this.fixedSize);
   }
 
-  private colourBody(): void {
-    const field = this.field();
-    const range = field && this.display.range(field);
-    this.body?.colour(range, field ? this.display.map(field) : "viridis");
+  private recolour(): void {
+    this.figure.colour();
     this.redraw();
-  }
-
-  private clip(): Clip | null {
-    return this.source && this.display.clip(this.source.scene);
   }
 
   private size(): [number, number] {
@@ -291,15 +253,14 @@ export class View implements Touched {
 
   private marks(lens: Lens): Marks {
     const settings = this.display.settings;
-    const field = this.field();
-    const range = field && this.display.range(field);
+    const shown = this.figure.coloured();
     const grab = this.store.state?.[this.side]?.grab;
     const { cursor, target } = this.touch;
     const brushes = settings.tool === "pin" && cursor;
     return {
       axes: settings.axes,
-      gridStep: settings.ground && this.body && this.stage ? this.stage.gridStep : 0,
-      bar: field && range ? { field, range, map: this.display.map(field) } : null,
+      gridStep: settings.ground && this.figure.body && this.stage ? this.stage.gridStep : 0,
+      bar: shown && { ...shown, map: this.display.map(shown.field) },
       labels: this.labels(lens),
       highlights: [...this.highlights, ...this.card.marks],
       spring: grab ? { ...grab, target: target ?? grab.target } : null,
@@ -311,16 +272,16 @@ export class View implements Touched {
   private labels(lens: Lens): Label[] {
     const { vertexLabels, faceLabels } = this.display.settings;
     const surface = this.surface();
-    if (!surface || !this.body || !(vertexLabels || faceLabels)) return [];
+    if (!surface || !this.figure.body || !(vertexLabels || faceLabels)) return [];
     const kinds = { vertices: vertexLabels, tets: faceLabels };
-    return chooseLabels(lens, surface, this.body.geometry, kinds, this.style.em, this.touch.cursor);
+    return chooseLabels(lens, surface, this.figure.body.geometry, kinds, this.style.em, this.touch.cursor);
   }
 
   // The value under the cursor, while it reads.
   private tip(): Marks["tip"] {
     const { hover, cursor } = this.touch;
-    const [field, values] = [this.field(), this.source?.picture?.values];
-    if (!hover || !cursor || !field || !values || !this.body || this.display.settings.tool !== "read") return null;
-    return { at: cursor, words: withUnit(interpolated(hover, this.body.geometry.triangles, values), field.unit) };
+    const [shown, values] = [this.figure.coloured(), this.figure.side?.picture?.values];
+    if (!hover || !cursor || !shown || !values || !this.figure.body || this.display.settings.tool !== "read") return null;
+    return { at: cursor, words: valueText(interpolated(hover, this.figure.body.geometry.triangles, values), shown.field.unit) };
   }
 }

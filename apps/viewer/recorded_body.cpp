@@ -1,0 +1,109 @@
+#include "viewer/recorded_body.h"
+
+#include <map>
+#include <utility>
+
+namespace aspic::viewer {
+namespace {
+
+constexpr uint32_t kNoVertex = 0xffffffff;
+
+RecordedSurface numbered(std::string name, Surface surface, const Numbering& numbering) {
+  RecordedSurface recorded{.name = std::move(name), .surface = std::move(surface)};
+  for (const int t : recorded.surface.tet) recorded.tet.push_back(static_cast<uint32_t>(numbering.tet.to_user(t)));
+  for (int v = 0; v < recorded.surface.vertex_count(); ++v)
+    recorded.vertex.push_back(recorded.surface.is_fine
+                                  ? kNoVertex
+                                  : static_cast<uint32_t>(numbering.vertex.to_user(recorded.surface.anchor(v))));
+  return recorded;
+}
+
+// Vertices with the same tets around them share a place.
+void find_places(RecordedBody& body) {
+  std::map<std::vector<int>, uint32_t> known;
+  body.places.tets_start.push_back(0);
+  for (RecordedSurface& recorded : body.surfaces) {
+    for (int v = 0; v < recorded.surface.vertex_count(); ++v) {
+      const std::span<const int> around = recorded.surface.tets_at(v);
+      const auto [found, is_new] = known.try_emplace({around.begin(), around.end()}, body.places.rest.size());
+      recorded.place.push_back(found->second);
+      if (!is_new) continue;
+      body.places.rest.push_back(recorded.surface.rest[v]);
+      body.places.tets.insert(body.places.tets.end(), around.begin(), around.end());
+      body.places.tets_start.push_back(static_cast<int>(body.places.tets.size()));
+    }
+  }
+}
+
+// Keeps the vertices of the model that carry a surface, and numbers the carriers by them.
+void keep_carriers(const Model& model, RecordedBody& body) {
+  std::vector<int> point(model.mesh.rest.size(), -1);
+  const auto for_carriers = [&](auto act) {
+    for (RecordedSurface& recorded : body.surfaces)
+      for (Tet& carrier : recorded.surface.carrier)
+        for (int& v : carrier) act(v);
+  };
+  for_carriers([&](int v) { point[v] = 0; });
+  for (size_t v = 0; v < point.size(); ++v) {
+    if (point[v] < 0) continue;
+    point[v] = static_cast<int>(body.source.size());
+    body.source.push_back(static_cast<int>(v));
+    body.rest.push_back(model.mesh.rest[v]);
+  }
+  for_carriers([&](int& v) { v = point[v]; });
+}
+
+std::vector<uint8_t> pinned_vertices(const Model& model) {
+  std::vector<uint8_t> is_pinned(model.mesh.rest.size(), 0);
+  for (const Pin& pin : model.pins)
+    for (const int v : pin.vertices) is_pinned[v] = 1;
+  return is_pinned;
+}
+
+std::vector<double> lumped_mass(const Model& model) {
+  std::vector<double> mass(model.mesh.rest.size(), 0.0);
+  for (size_t t = 0; t < model.density.size(); ++t)
+    for (const int v : model.mesh.tets[t]) mass[v] += model.density[t] * volume(model.mesh, static_cast<int>(t)) / 4;
+  return mass;
+}
+
+}  // namespace
+
+RecordedBody body_with_interior(const Scene& scene) {
+  const Model& model = scene.simulation.model();
+  RecordedBody body;
+  if (has_fine_skin(scene)) body.surfaces.push_back(numbered("skin", fine_surface(scene), model.numbering));
+  body.surfaces.push_back(numbered("cage", boundary_of(model), model.numbering));
+  find_places(body);
+  keep_carriers(model, body);
+  const std::vector<uint8_t> is_pinned = pinned_vertices(model);
+  const std::vector<double> mass = lumped_mass(model);
+  for (const int v : body.source) {
+    body.is_pinned.push_back(is_pinned[v]);
+    body.mass.push_back(mass[v]);
+  }
+  return body;
+}
+
+RecordedBody body_of_skins(const Scene& scene) {
+  const Model& model = scene.simulation.model();
+  Surface skins = fine_surface(scene);
+  skins.is_fine = has_fine_skin(scene);
+  RecordedBody body;
+  body.rest = skins.rest;
+  body.surfaces.push_back(numbered(skins.is_fine ? "skin" : "cage", std::move(skins), model.numbering));
+  RecordedSurface& recorded = body.surfaces[0];
+  const std::vector<uint8_t> is_pinned = pinned_vertices(model);
+  const std::vector<double> mass = lumped_mass(model);
+  for (int v = 0; v < recorded.surface.vertex_count(); ++v) {
+    const int anchor = recorded.surface.anchor(v);
+    body.source.push_back(v);
+    body.is_pinned.push_back(recorded.surface.is_fine ? 0 : is_pinned[anchor]);
+    body.mass.push_back(recorded.surface.is_fine ? 0 : mass[anchor]);
+    recorded.surface.carrier[v] = {v, v, v, v};
+    recorded.surface.weights[v] = {1, 0, 0, 0};
+  }
+  return body;
+}
+
+}  // namespace aspic::viewer

@@ -1,0 +1,267 @@
+#include "viewer/recording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+#include <span>
+#include <utility>
+
+#include "base/error.h"
+#include "io/atomic_file.h"
+#include "io/base64.h"
+#include "io/checkpoint.h"
+#include "io/gzip.h"
+#include "viewer/fields.h"
+#include "viewer/recorded_body.h"
+#include "viewer/recording_code.h"
+#include "viewer/recording_messages.h"
+#include "viewer/run_positions.h"
+#include "viewer/run_tables.h"
+
+namespace aspic::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Frames in memory, of numbers that are not yet made small: no more than could become a text of the allowed size.
+constexpr double kBytesInMemoryPerByteOfText = 12;
+// A new choice of frames aims a little below the limit: fewer frames are each a little harder to compress.
+constexpr double kAim = 0.95;
+
+// What is known up to the newest checkpoint of the run: everything before it is on the disk.
+struct Known {
+  std::vector<double> frame_times;  // [s]
+  int steps = 0;
+};
+
+Known known(const RunLayout& layout, const std::string& scene_text) {
+  if (!layout.holds_run()) throw InvalidInput(layout.root().string() + ": holds no run (there is no steps.csv of one)");
+  const Checkpoint checkpoint = read_newest_checkpoint(layout.checkpoint()).checkpoint;
+  if (checkpoint.fingerprint != fingerprint(scene_text))
+    throw InvalidInput(layout.root().string() +
+                       ": scene.toml was changed after the run began; put back the one that "
+                       "the run was computed with, or run again");
+  Known result{checkpoint.array("frame_times"), static_cast<int>(checkpoint.integer("steps_taken"))};
+  if (result.frame_times.empty()) throw InvalidInput(layout.root().string() + ": the checkpoint counts no frame");
+  return result;
+}
+
+// The step that ended at the time of each frame; the start is step 0.
+std::vector<int> steps_of_frames(const Known& known, const RunTables& tables, const fs::path& run) {
+  std::vector<int> steps;
+  size_t step = 0;
+  for (const double time : known.frame_times) {
+    if (!steps.empty())
+      while (step < tables.steps.size() && (step == 0 || tables.steps[step - 1].report.time < time)) ++step;
+    if (!steps.empty() && (step == 0 || tables.steps[step - 1].report.time != time))
+      throw InvalidInput(run.string() + ": steps.csv has no step at the time " + std::to_string(time) + " s of frame " +
+                         std::to_string(steps.size()) + "; the files are of different runs");
+    steps.push_back(static_cast<int>(step));
+  }
+  return steps;
+}
+
+// `wanted` of `count` indices, evenly spread, the first and the last among them.
+std::vector<int> evenly(int count, int wanted) {
+  std::vector<int> indices;
+  if (wanted >= count) {
+    for (int i = 0; i < count; ++i) indices.push_back(i);
+    return indices;
+  }
+  for (int i = 0; i < wanted; ++i)
+    indices.push_back(static_cast<int>(std::lround(static_cast<double>(i) * (count - 1) / std::max(1, wanted - 1))));
+  return indices;
+}
+
+struct Frame {
+  int index = 0;
+  std::vector<float> x;                    // 3 per point
+  std::vector<std::vector<float>> values;  // of the fields that move and cannot be told from x
+};
+
+const std::string kDisplacement = "displacement";  // follows from the positions
+const std::set<std::string> kMoving = {"von_mises", "energy_density", "det_F", "stretch"};
+
+std::vector<float> flat(const std::vector<Vec3d>& points) {
+  std::vector<float> numbers;
+  for (const Vec3d& X : points)
+    for (int k = 0; k < 3; ++k) numbers.push_back(static_cast<float>(X[k]));
+  return numbers;
+}
+
+class Recorder {
+ public:
+  Recorder(const fs::path& run, const Scene& scene, const RecordingOptions& options)
+      : layout_(run),
+        scene_(scene),
+        options_(options),
+        scene_text_(read_file(layout_.scene())),
+        known_(known(layout_, scene_text_)),
+        tables_(read_run_tables(layout_, known_.steps)),
+        step_of_frame_(steps_of_frames(known_, tables_, run)),
+        positions_(run_positions(layout_, scene, frame_count())) {
+    choose_fields();
+    body_ = positions_->are_of_model() ? body_with_interior(scene) : body_of_skins(scene);
+  }
+
+  Recording record() {
+    const std::vector<Frame> frames = read(evenly(frame_count(), most_in_memory()));
+    for (int wanted = static_cast<int>(frames.size());;) {
+      const std::vector<int> chosen = evenly(static_cast<int>(frames.size()), wanted);
+      const std::string note = left_out(wanted);
+      std::string text = packed(frames, chosen, note);
+      if (text.size() <= options_.max_bytes) return {std::move(text), frame_count(), wanted, note};
+      if (wanted <= 2) refuse(text.size());
+      const double share = kAim * static_cast<double>(options_.max_bytes) / static_cast<double>(text.size());
+      wanted = std::max(2, std::min(wanted - 1, static_cast<int>(wanted * share)));
+    }
+  }
+
+ private:
+  int frame_count() const { return static_cast<int>(known_.frame_times.size()); }
+
+  int most_in_memory() const {
+    const size_t numbers = 3 * body_.source.size() + moving_.size() * body_.places.rest.size();
+    const double per_frame = static_cast<double>(numbers) * sizeof(float);
+    const double most =
+        kBytesInMemoryPerByteOfText * static_cast<double>(options_.max_bytes) / std::max(1.0, per_frame);
+    return static_cast<int>(std::clamp(most, 2.0, 1e9));
+  }
+
+  // Of the fields of a live session all but those that positions do not tell.
+  void choose_fields() {
+    const bool knows_interior = positions_->are_of_model();
+    for (const Field& field : fields_of(scene_.simulation.model())) {
+      if (field.name == "speed" || (!knows_interior && field.name != kDisplacement)) continue;
+      fields_.push_back(field);
+      if (kMoving.contains(field.name)) moving_.push_back(field.name);
+      if (field.name != kDisplacement && !kMoving.contains(field.name)) fixed_.push_back(field.name);
+    }
+  }
+
+  std::vector<float> values(const std::string& field, std::span<const double> x) {
+    std::vector<float> result(body_.places.rest.size());
+    evaluator_.evaluate(field, {scene_.simulation, x}, body_.places, result);
+    return result;
+  }
+
+  std::vector<Frame> read(const std::vector<int>& indices) {
+    std::vector<Frame> frames;
+    for (const int index : indices) {
+      const std::vector<double> x = positions_->frame(index);
+      Frame& frame = frames.emplace_back(Frame{index, {}, {}});
+      for (const int v : body_.source)
+        for (size_t k = 0; k < 3; ++k) frame.x.push_back(static_cast<float>(x[3 * static_cast<size_t>(v) + k]));
+      for (const std::string& field : moving_) frame.values.push_back(values(field, x));
+      if (fixed_values_.empty())
+        for (const std::string& field : fixed_) fixed_values_.push_back(values(field, x));
+    }
+    return frames;
+  }
+
+  std::string left_out(int frames) const {
+    if (frames == frame_count()) return "";
+    return std::to_string(frames) + " of the run's " + std::to_string(frame_count()) +
+           " frames are shown, evenly spread, so that the page stays below its limit (--max-size)";
+  }
+
+  [[noreturn]] void refuse(size_t bytes) const {
+    throw InvalidInput(layout_.root().string() + ": two frames and the tables alone take " +
+                       std::to_string(bytes / 1'000'000 + 1) + " MB, more than there is room for; raise --max-size");
+  }
+
+  std::string packed(const std::vector<Frame>& frames, const std::vector<int>& chosen, const std::string& note) const {
+    ArrayPack pack;
+    add_body(pack);
+    const PositionRange range = add_motion(pack, frames, chosen);
+    Json head = {{"format", 1}};
+    PositionRange start;
+    start.add(frames.front().x);
+    const RecordedScene recorded{scene_, body_, fields_, tables_, start.lower, start.upper, note};
+    head["hello"] = hello_message(recorded);
+    head["scenes"] = scene_messages(recorded);
+    head["toml"] = scene_text_;
+    head["steps"] = Json::array();
+    for (const StepRow& row : tables_.steps) head["steps"].push_back(to_json(row));
+    head["frames"]["step"] = Json::array();
+    head["frames"]["time"] = Json::array();
+    for (const int i : chosen) {
+      const size_t index = static_cast<size_t>(frames[i].index);
+      head["frames"]["step"].push_back(step_of_frame_[index]);
+      head["frames"]["time"].push_back(known_.frame_times[index]);
+    }
+    head["lower"] = range.lower.a;
+    head["size"] = range.size().a;
+    std::string text;
+    append_base64(gzipped(pack.bytes(std::move(head))), text);
+    return text;
+  }
+
+  void add_body(ArrayPack& pack) const {
+    pack.add("point.rest", flat(body_.rest));
+    pack.add("point.mass", std::vector<float>(body_.mass.begin(), body_.mass.end()));
+    pack.add("point.pinned", body_.is_pinned);
+    for (const RecordedSurface& surface : body_.surfaces) add_surface(pack, surface);
+    for (size_t i = 0; i < fixed_.size(); ++i) pack.add("field." + fixed_[i], fixed_values_[i]);
+  }
+
+  void add_surface(ArrayPack& pack, const RecordedSurface& recorded) const {
+    const Surface& surface = recorded.surface;
+    const std::string prefix = recorded.name + ".";
+    const bool is_plain =
+        std::all_of(surface.weights.begin(), surface.weights.end(), [](const auto& w) { return w[0] == 1; });
+    std::vector<uint32_t> triangles, corners;
+    std::vector<float> weights;
+    for (const Triangle& t : surface.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+    for (size_t v = 0; v < surface.rest.size(); ++v) {
+      const auto width = is_plain ? 1 : 4;
+      corners.insert(corners.end(), surface.carrier[v].begin(), surface.carrier[v].begin() + width);
+      weights.insert(weights.end(), surface.weights[v].begin(), surface.weights[v].begin() + width);
+    }
+    pack.add(prefix + "rest", flat(surface.rest));
+    pack.add(prefix + "triangles", triangles);
+    pack.add(prefix + "tet", recorded.tet);
+    pack.add(prefix + "vertex", recorded.vertex);
+    pack.add(prefix + "corners", corners);
+    if (!is_plain) pack.add(prefix + "weights", weights);
+    if (!recorded.place.empty()) pack.add(prefix + "place", recorded.place);
+  }
+
+  PositionRange add_motion(ArrayPack& pack, const std::vector<Frame>& frames, const std::vector<int>& chosen) const {
+    PositionRange range;
+    for (const int i : chosen) range.add(frames[i].x);
+    PositionCode positions(range);
+    for (const int i : chosen) positions.add(frames[i].x);
+    pack.add("positions", positions.bytes());
+    for (size_t k = 0; k < moving_.size(); ++k) {
+      ValueCode values;
+      for (const int i : chosen) values.add(frames[i].values[k]);
+      pack.add("field." + moving_[k], values.bytes());
+      pack.add("field." + moving_[k] + ".range", values.ranges());
+    }
+    return range;
+  }
+
+  RunLayout layout_;
+  const Scene& scene_;
+  RecordingOptions options_;
+  std::string scene_text_;
+  Known known_;
+  RunTables tables_;
+  std::vector<int> step_of_frame_;
+  std::unique_ptr<RunPositions> positions_;
+  RecordedBody body_;
+  std::vector<Field> fields_;  // that can be shown; none where the interior is not known, but for the displacement
+  std::vector<std::string> moving_, fixed_;  // those of them that are stored: for each frame, once
+  std::vector<std::vector<float>> fixed_values_;
+  FieldValues evaluator_;
+};
+
+}  // namespace
+
+Recording record(const fs::path& run, const Scene& scene, const RecordingOptions& options) {
+  return Recorder(run, scene, options).record();
+}
+
+}  // namespace aspic::viewer

@@ -1,0 +1,105 @@
+#include "viewer/recording_code.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "io/number_text.h"
+
+namespace aspic::viewer {
+namespace {
+
+constexpr double kLargestCode = 65535, kLargestValue = 254;
+constexpr uint8_t kNoNumber = 255;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+void pad(std::string& bytes) { bytes.append((4 - bytes.size() % 4) % 4, '\0'); }
+
+uint16_t folded(int difference) {
+  const auto small = static_cast<int16_t>(static_cast<uint16_t>(difference));
+  return static_cast<uint16_t>((static_cast<uint32_t>(small) << 1) ^ static_cast<uint32_t>(small >> 15));
+}
+
+}  // namespace
+
+void ArrayPack::add_bytes(const std::string& name, const char* type, const void* data, size_t count, size_t size) {
+  list_.push_back({{"name", name}, {"type", type}, {"at", bytes_.size()}, {"count", count}});
+  bytes_.append(static_cast<const char*>(data), count * size);
+  pad(bytes_);
+}
+
+void ArrayPack::add(const std::string& name, const std::vector<float>& numbers) {
+  add_bytes(name, "f32", numbers.data(), numbers.size(), sizeof(float));
+}
+void ArrayPack::add(const std::string& name, const std::vector<uint32_t>& numbers) {
+  add_bytes(name, "u32", numbers.data(), numbers.size(), sizeof(uint32_t));
+}
+void ArrayPack::add(const std::string& name, const std::vector<uint8_t>& numbers) {
+  add_bytes(name, "u8", numbers.data(), numbers.size(), sizeof(uint8_t));
+}
+
+std::string ArrayPack::bytes(Json head) const {
+  head["arrays"] = list_;
+  // Text that is no UTF-8, such as the name of a file, is mended rather than refused.
+  const std::string json = head.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string bytes;
+  append_bytes(bytes, static_cast<uint32_t>(json.size()));
+  bytes += json;
+  pad(bytes);
+  return bytes + bytes_;
+}
+
+PositionRange::PositionRange() {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  lower = {{kFar, kFar, kFar}};
+  upper = {{-kFar, -kFar, -kFar}};
+}
+
+void PositionRange::add(std::span<const float> x) {
+  for (size_t i = 0; i < x.size(); ++i) {
+    const int axis = static_cast<int>(i % 3);
+    lower[axis] = std::min<double>(lower[axis], x[i]);
+    upper[axis] = std::max<double>(upper[axis], x[i]);
+  }
+}
+
+void PositionCode::add(std::span<const float> x) {
+  const size_t n = x.size(), start = bytes_.size();
+  std::vector<uint16_t> codes(n);
+  bytes_.resize(start + 2 * n);
+  for (size_t i = 0; i < n; ++i) {
+    const int axis = static_cast<int>(i % 3);
+    const double size = range_.size()[axis];
+    const double code = size > 0 ? kLargestCode * ((x[i] - range_.lower[axis]) / size) : 0;
+    codes[i] = static_cast<uint16_t>(std::lround(code));
+    const int before = last_.empty() ? 0 : last_[i];
+    const int earlier = before_last_.empty() ? before : before_last_[i];
+    const uint16_t difference = folded(codes[i] - (2 * before - earlier));
+    bytes_[start + i] = static_cast<uint8_t>(difference & 0xff);
+    bytes_[start + n + i] = static_cast<uint8_t>(difference >> 8);
+  }
+  before_last_ = std::move(last_);
+  last_ = std::move(codes);
+}
+
+void ValueCode::add(std::span<const float> values) {
+  float min = kInfinity, max = -kInfinity;
+  for (const float value : values) {
+    if (!std::isfinite(value)) continue;
+    min = std::min(min, value);
+    max = std::max(max, value);
+  }
+  if (min > max) min = max = 0;  // nothing is finite
+  ranges_.push_back(min);
+  ranges_.push_back(max);
+  const double size = double{max} - double{min};
+  std::vector<uint8_t> codes(values.size(), kNoNumber);
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i]))
+      codes[i] = static_cast<uint8_t>(size > 0 ? std::lround(kLargestValue * ((double{values[i]} - min) / size)) : 0);
+    bytes_.push_back(static_cast<uint8_t>(codes[i] - (last_.empty() ? 0 : last_[i])));
+  }
+  last_ = std::move(codes);
+}
+
+}  // namespace aspic::viewer

@@ -1,0 +1,89 @@
+#include "viewer/recording_messages.h"
+
+#include "mesh/tet_shape.h"
+#include "scene/scene_document.h"
+#include "viewer/settings.h"
+
+namespace aspic::viewer {
+namespace {
+
+Table document_of(const Scene& scene) { return read_scene_document(scene.resolved, "scene.toml"); }
+
+// After the bodies: the directory may have any name, and the same run in another one gives the same recording.
+std::string name_of(const Scene& scene) {
+  std::string name;
+  for (const BodyRange& body : scene.simulation.model().bodies) name += (name.empty() ? "" : ", ") + body.name;
+  return shortened(name);
+}
+
+// What the scene asks for; which of the solvers `auto` became is told in the summary of the run.
+std::string solver_words(const Table& document) {
+  const Value& solver = *document.find("solver");
+  return solver["method"].text() + ", " + solver["linear"].text() + " for the linear systems";
+}
+
+Vec3d up(const Table& document) {
+  const Vec3d gravity = document.find("gravity")->vector();
+  const double size = length(gravity);
+  return size > 0 ? (-1 / size) * gravity : Vec3d{{0, 1, 0}};
+}
+
+Json list(const Vec3d& x) { return {x[0], x[1], x[2]}; }
+
+Json fields_json(const std::vector<Field>& fields) {
+  Json list = Json::array();
+  for (const Field& field : fields)
+    list.push_back({{"name", field.name},
+                    {"label", field.label},
+                    {"unit", field.unit},
+                    {"diverging", field.is_diverging},
+                    {"center", field.center}});
+  return list;
+}
+
+}  // namespace
+
+Json hello_message(const RecordedScene& recorded) {
+  const Value* version = document_of(recorded.scene).find("version");
+  return {{"kind", "hello"}, {"protocol", 1}, {"version", version ? version->text() : ""},
+          {"steers", true},  {"live", false}, {"lessons", Json::array()}};
+}
+
+Json scene_messages(const RecordedScene& recorded) {
+  const Scene& scene = recorded.scene;
+  const Model& model = scene.simulation.model();
+  const Table document = document_of(scene);
+  Json message = {{"kind", "scene"},
+                  {"side", "a"},
+                  {"name", name_of(scene)},
+                  {"label", ""},
+                  {"path", ""},
+                  {"overrides", Json::array()},
+                  {"notes", Json::array()},
+                  {"has_skin", has_fine_skin(scene)},
+                  {"vertices", model.mesh.vertex_count()},
+                  {"tets", model.mesh.tet_count()},
+                  {"bodies", Json::array()},
+                  {"lower", list(recorded.lower)},
+                  {"upper", list(recorded.upper)},
+                  {"up", list(up(document))},
+                  {"h", scene.simulation.options().h},
+                  {"implicit", scene.simulation.is_implicit()},
+                  {"solver", solver_words(document)},
+                  {"potentials", recorded.tables.potentials},
+                  {"fields", fields_json(recorded.fields)},
+                  {"field", ""},
+                  {"settings", settings_json(document)},
+                  {"stiffness", 0}};
+  if (!recorded.note.empty()) message["notes"].push_back(recorded.note);
+  for (const BodyRange& body : model.bodies) message["bodies"].push_back(body.name);
+  Json messages = Json::array();
+  for (size_t i = 0; i < recorded.body.surfaces.size(); ++i) {
+    message["generation"] = i + 1;
+    message["surface"] = recorded.body.surfaces[i].name;
+    messages.push_back(message);
+  }
+  return messages;
+}
+
+}  // namespace aspic::viewer

@@ -1,0 +1,81 @@
+#include "viewer/run_positions.h"
+
+#include <system_error>
+
+#include "base/error.h"
+#include "io/pc2.h"
+#include "io/vtu.h"
+
+namespace aspic::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+class BodyFrames : public RunPositions {
+ public:
+  BodyFrames(const RunLayout& layout, const Model& model) : root_(layout.root()), model_(model) {}
+
+  std::vector<double> frame(int index) override {
+    const fs::path file = root_ / RunLayout::frame_file(index);
+    const std::vector<double> x = read_vtu_points(file);
+    const size_t expected = 3 * model_.mesh.rest.size();
+    if (x.size() != expected)
+      throw InvalidInput(file.string() + ": has " + std::to_string(x.size() / 3) + " points; the scene has " +
+                         std::to_string(expected / 3) + " vertices");
+    return model_.numbering.vertex.from_user(x, 3);
+  }
+  bool are_of_model() const override { return true; }
+
+ private:
+  fs::path root_;
+  const Model& model_;
+};
+
+class SkinCaches : public RunPositions {
+ public:
+  SkinCaches(const RunLayout& layout, const Scene& scene, int frames) {
+    std::vector<std::string> bodies;
+    for (const Skin& skin : scene.skins) bodies.push_back(skin.body);
+    const std::vector<std::string> names = file_names(bodies);
+    for (size_t i = 0; i < names.size(); ++i) {
+      const fs::path file = layout.skin_cache(names[i]);
+      const Pc2Reader& cache = caches_.emplace_back(file);
+      const int points = scene.skins[i].rest.vertex_count();
+      if (cache.points() != points || cache.samples() < frames)
+        throw InvalidInput(file.string() + ": holds " + std::to_string(cache.samples()) + " samples of " +
+                           std::to_string(cache.points()) + " points; the run has " + std::to_string(frames) +
+                           " frames of " + std::to_string(points));
+    }
+  }
+
+  std::vector<double> frame(int index) override {
+    std::vector<double> x;
+    for (Pc2Reader& cache : caches_) {
+      const std::vector<float> sample = cache.sample(index);
+      x.insert(x.end(), sample.begin(), sample.end());
+    }
+    return x;
+  }
+  bool are_of_model() const override { return false; }
+
+ private:
+  std::vector<Pc2Reader> caches_;
+};
+
+bool is_there(const fs::path& file) {
+  std::error_code error;
+  return fs::exists(file, error);
+}
+
+}  // namespace
+
+std::unique_ptr<RunPositions> run_positions(const RunLayout& layout, const Scene& scene, int frames) {
+  if (is_there(layout.root() / RunLayout::frame_file(0)))
+    return std::make_unique<BodyFrames>(layout, scene.simulation.model());
+  if (!scene.skins.empty() && is_there(layout.skins())) return std::make_unique<SkinCaches>(layout, scene, frames);
+  throw InvalidInput(layout.root().string() +
+                     ": holds neither frames nor skins that show its motion; run it again with output.vtu = true (or "
+                     "output.pc2 = true, for the surface alone)");
+}
+
+}  // namespace aspic::viewer

@@ -1,0 +1,173 @@
+#include "viewer/run_tables.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <optional>
+#include <system_error>
+
+#include "base/error.h"
+#include "io/csv_reader.h"
+
+namespace aspic::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPotential = "potential_", kTotal = "potential_total";
+
+Status status_named(const std::string& name, const fs::path& file, int step) {
+  for (int i = 0; i <= static_cast<int>(Status::inaccurate); ++i)
+    if (to_string(static_cast<Status>(i)) == name) return static_cast<Status>(i);
+  throw InvalidInput(file.string() + ": step " + std::to_string(step) + " has the unknown status '" + name +
+                     "'; was the run made by another version?");
+}
+
+[[noreturn]] void fail_order(const fs::path& file, int step) {
+  throw InvalidInput(file.string() + ": the row of step " + std::to_string(step) + " is not where it belongs");
+}
+
+std::vector<StepRow> read_steps(const fs::path& file, int last_step, std::vector<std::string>& potentials) {
+  CsvReader table(file);
+  std::vector<size_t> potential_columns;
+  for (size_t i = 0; i < table.columns().size(); ++i) {
+    const std::string& name = table.columns()[i];
+    if (!name.starts_with(kPotential) || name == kTotal) continue;
+    potentials.push_back(name.substr(kPotential.size()));
+    potential_columns.push_back(i);
+  }
+  const auto number = [&](const char* name) { return [&table, i = table.column(name)] { return table.number(i); }; };
+  const auto time = number("time"), residual = number("residual"), threshold = number("residual_threshold"),
+             min_det_F = number("min_det_F"), kinetic = number("kinetic"), total = number("potential_total"),
+             pin_work = number("pin_work"), damping_loss = number("damping_loss"),
+             numerical_loss = number("numerical_loss"), residual_work = number("residual_work"),
+             ledger_error = number("ledger_error");
+  const size_t step = table.column("step"), status = table.column("status"), iterations = table.column("iterations");
+  std::vector<StepRow> steps;
+  while (static_cast<int>(steps.size()) < last_step && table.next()) {
+    StepReport& report = steps.emplace_back().report;
+    report.step = table.integer(step);
+    if (report.step != static_cast<int>(steps.size())) fail_order(file, report.step);
+    report.time = time();
+    report.status = status_named(table.text(status), file, report.step);
+    report.iterations = table.integer(iterations);
+    report.residual = residual();
+    report.residual_threshold = threshold();
+    report.min_det_F = min_det_F();
+    report.kinetic = kinetic();
+    for (const size_t column : potential_columns) report.potential.push_back(table.number(column));
+    report.potential_total = total();
+    steps.back().pin_work = pin_work();
+    report.damping_loss = damping_loss();
+    report.numerical_loss = numerical_loss();
+    report.residual_work = residual_work();
+    report.ledger_error = ledger_error();
+  }
+  if (static_cast<int>(steps.size()) < last_step)
+    throw InvalidInput(file.string() + ": ends at step " + std::to_string(steps.size()) +
+                       ", before the checkpoint at step " + std::to_string(last_step) + "; the file is damaged");
+  return steps;
+}
+
+void read_iterations(const fs::path& file, std::vector<StepRow>& steps) {
+  CsvReader table(file);
+  const size_t step = table.column("step"), index = table.column("iteration"), value = table.column("value"),
+               gradient_norm = table.column("gradient_norm"), decrement = table.column("decrement"),
+               alpha = table.column("alpha"), trials = table.column("trials"),
+               projected_elements = table.column("projected_elements"),
+               linear_iterations = table.column("linear_iterations");
+  int last = 1;
+  while (table.next()) {
+    const int at = table.integer(step);
+    if (at < last) fail_order(file, at);
+    if (at > static_cast<int>(steps.size())) break;
+    last = at;
+    Iteration& iteration = steps[static_cast<size_t>(at) - 1].iterations.emplace_back().iteration;
+    iteration.index = table.integer(index);
+    iteration.value = table.number(value);
+    iteration.gradient_norm = table.number(gradient_norm);
+    iteration.decrement = table.number(decrement);
+    iteration.alpha = table.number(alpha);
+    iteration.trials = table.integer(trials);
+    iteration.direction.projected_elements = table.integer(projected_elements);
+    iteration.direction.linear_iterations = table.integer(linear_iterations);
+  }
+}
+
+// A folder written by a trace that began after a step.
+struct TraceFolder {
+  fs::path path;
+  int after = 0;
+};
+
+std::vector<TraceFolder> trace_folders(const RunLayout& layout) {
+  constexpr std::string_view kAfter = "trace_after_";
+  std::error_code error;
+  std::vector<TraceFolder> folders;
+  for (fs::directory_iterator entry(layout.root(), error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    int after = 0;
+    if (name.starts_with(kAfter)) std::from_chars(name.data() + kAfter.size(), name.data() + name.size(), after);
+    if (fs::is_regular_file(layout.trace(after) / "trials.csv", error) && layout.trace(after).filename() == name)
+      folders.push_back({entry->path(), after});
+  }
+  std::sort(folders.begin(), folders.end(), [](const auto& a, const auto& b) { return a.after < b.after; });
+  return folders;
+}
+
+// Finds the iteration that a row of a trace is about: a step of several minimisations counts from 0 in each.
+class IterationFinder {
+ public:
+  explicit IterationFinder(const StepRow& step) {
+    int solve = 0;
+    for (size_t i = 0; i < step.iterations.size(); ++i) {
+      if (step.iterations[i].iteration.index == 0) ++solve;
+      place_[{solve, step.iterations[i].iteration.index}] = i;
+    }
+  }
+  std::optional<size_t> find(int solve, int iteration) const {
+    const auto found = place_.find({solve, iteration});
+    return found == place_.end() ? std::nullopt : std::optional(found->second);
+  }
+
+ private:
+  std::map<std::pair<int, int>, size_t> place_;
+};
+
+// Of the steps after `first` and up to `last`.
+void read_trials(const fs::path& file, std::vector<StepRow>& steps, int first, int last) {
+  CsvReader table(file);
+  const size_t step = table.column("step"), solve = table.column("solve"), iteration = table.column("iteration"),
+               alpha = table.column("alpha"), value = table.column("value"), bound = table.column("bound"),
+               by_slope = table.column("by_slope"), accepted = table.column("accepted");
+  std::optional<IterationFinder> finder;
+  int known = 0;
+  while (table.next()) {
+    const int at = table.integer(step);
+    if (at <= first || at > last) continue;
+    StepRow& row = steps[static_cast<size_t>(at) - 1];
+    if (at != known) finder.emplace(row), known = at;
+    const std::optional<size_t> place = finder->find(table.integer(solve), table.integer(iteration));
+    if (!place)
+      throw InvalidInput(file.string() + ": step " + std::to_string(at) +
+                         " has no such iteration in iterations.csv; the trace is of another run, or damaged");
+    row.iterations[*place].tried.push_back({table.number(alpha), table.number(value), table.number(bound),
+                                            table.integer(by_slope) != 0, table.integer(accepted) != 0});
+  }
+}
+
+}  // namespace
+
+RunTables read_run_tables(const RunLayout& layout, int last_step) {
+  RunTables tables;
+  tables.steps = read_steps(layout.steps(), last_step, tables.potentials);
+  read_iterations(layout.iterations(), tables.steps);
+  const std::vector<TraceFolder> folders = trace_folders(layout);
+  for (size_t i = 0; i < folders.size(); ++i) {
+    const int last = i + 1 < folders.size() ? std::min(folders[i + 1].after, last_step) : last_step;
+    read_trials(folders[i].path / "trials.csv", tables.steps, folders[i].after, last);
+  }
+  return tables;
+}
+
+}  // namespace aspic::viewer

@@ -1,0 +1,94 @@
+// The body of one side on the stage, as its scene, its newest picture and the display want it.
+import type { Field, SideName } from "../protocol";
+import type { Side, Store } from "../store";
+import { Body } from "./body";
+import type { Display } from "./display";
+import type { Style } from "./overlay";
+import type { Surface } from "./picking";
+import type { ColourRange } from "./ranges";
+import type { Stage } from "./stage";
+
+export class Figure {
+  body: Body | null = null; // none without a stage
+  private valuesOf = ""; // field of the values that the body has
+
+  constructor(
+    private readonly store: Store,
+    private readonly name: SideName,
+    private readonly display: Display,
+    private readonly stage: Stage | null,
+  ) {}
+
+  get side(): Side | null {
+    return this.store.side(this.name);
+  }
+
+  // True when the body is another one.
+  takeScene(): boolean {
+    const scene = this.side?.scene;
+    if (!scene) return false;
+    this.display.cameras[this.name].show(scene.path, scene.lower, scene.upper, scene.up);
+    const isOld = this.body !== null && this.body.geometry.generation !== scene.generation;
+    if (isOld) this.drop();
+    return this.takeGeometry() || isOld;
+  }
+
+  takeGeometry(): boolean {
+    const { side, stage } = this;
+    if (!stage || !side?.geometry || this.body?.geometry === side.geometry) return false;
+    this.drop();
+    stage.place(side.scene);
+    this.body = new Body(side.geometry);
+    stage.show(this.body);
+    this.body.setPins(side.pins);
+    this.takePicture();
+    return true;
+  }
+
+  takePicture(): void {
+    const { side, body } = this;
+    if (!body || !side?.picture || side.picture.positions.length !== body.current.length) return;
+    body.show(side.picture);
+    this.valuesOf = side.picture.values ? side.scene.field : "";
+    const field = this.field();
+    if (field) this.display.feed(this.name, field, side.picture.min, side.picture.max);
+    this.colour();
+    this.stage?.moved();
+  }
+
+  apply(style: Style): void {
+    this.body?.apply(this.display.settings);
+    this.stage?.apply(this.display.settings, style);
+    this.stage?.clip(this.side && this.display.clip(this.side.scene));
+    this.colour();
+  }
+
+  colour(): void {
+    const shown = this.coloured();
+    this.body?.colour(shown && shown.range, shown ? this.display.map(shown.field) : "viridis");
+  }
+
+  // What the body's colours mean.
+  coloured(): { field: Field; range: ColourRange } | null {
+    const field = this.field();
+    const range = field && this.display.range(field);
+    return field && range ? { field, range } : null;
+  }
+
+  surface(): Surface | null {
+    if (!this.body?.root.visible || !this.side) return null;
+    const { current, geometry } = this.body;
+    return { positions: current, triangles: geometry.triangles, clip: this.display.clip(this.side.scene) };
+  }
+
+  private drop(): void {
+    this.stage?.remove();
+    this.body = null;
+  }
+
+  private field(): Field | null {
+    const scene = this.side?.scene;
+    if (!scene || this.valuesOf !== scene.field) return null;
+    return scene.fields.find((field) => field.name === scene.field) ?? null;
+  }
+}

@@ -1,0 +1,32 @@
+// Values of the body in words.
+import { short, withUnit } from "../plots/numbers";
+import type { MaybeNumber, Vec3 } from "../protocol";
+
+export function unitText(unit: string): string {
+  return unit.replaceAll("^2", "²").replaceAll("^3", "³");
+}
+
+// With a prefix where the unit takes one: 12.3 kPa, 4 mm, but 1000 kg/m³.
+export function valueText(value: MaybeNumber, unit: string, digits = 4): string {
+  if (value === null || !Number.isFinite(value)) return "not finite";
+  if (/^(Pa|N|J|W|m|s|Hz)(\/|$)/.test(unit)) return withUnit(value, unitText(unit), digits);
+  return unit === "" ? short(value, digits) : `${short(value, digits)} ${unitText(unit)}`;
+}
+
+// Entries of a vector or matrix: what is round-off beside the others is 0.
+export function entryTexts(values: readonly number[]): string[] {
+  const largest = Math.max(...values.map(Math.abs));
+  return values.map((x) => short(Math.abs(x) < 1e-9 * largest ? 0 : x, 4));
+}
+
+export function vectorText(values: Vec3, unit: string): string {
+  return `${entryTexts(values).join("  ")} ${unit}`.trimEnd();
+}
+
+// Rows below each other, in columns for digits of equal width.
+export function matrixText(rows: [Vec3, Vec3, Vec3], unit: string): string {
+  const texts = entryTexts(rows.flat());
+  const width = Math.max(...texts.map((text) => text.length));
+  const padded = texts.map((text) => text.padStart(width, "\u2007"));
+  return [0, 3, 6].map((k) => padded.slice(k, k + 3).join("  ")).join("\n") + (unit && ` ${unit}`);
+}
