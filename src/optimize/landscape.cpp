@@ -39,18 +39,29 @@ Vector across_direction(const LiveIteration& at) {
   return v;
 }
 
+// Half of them around the accepted step where the longest trial is so much longer that others would miss it.
+Vector samples_along(const LiveIteration& at, int samples) {
+  double last = at.tried.empty() ? 1 : 1.25 * at.alpha;
+  for (const Trial& trial : at.tried) last = std::max(last, 1.25 * trial.alpha);
+  const int around = at.alpha > 0 && last > 6 * at.alpha && samples >= 8 ? samples / 2 : 0;
+  Vector alphas;
+  for (int i = 0; i < around; ++i) alphas.push_back(between(-0.5 * at.alpha, 3 * at.alpha, i, around));
+  for (int i = 0; i < samples - around; ++i) alphas.push_back(between(-0.2 * last, last, i, samples - around));
+  std::ranges::sort(alphas);
+  return alphas;
+}
+
 }  // namespace
 
 std::vector<CurvePoint> curve_along(const LiveIteration& at, double c, int samples) {
   ASPIC_CHECK(samples >= 2);
   const double slope = at.E.dot(at.g, at.d), curvature = at.E.dot(at.d, hessian_times(at, at.d));
-  double last = at.tried.empty() ? 1 : 1.25 * at.alpha;
-  for (const Trial& trial : at.tried) last = std::max(last, 1.25 * trial.alpha);
+  const Vector alphas = samples_along(at, samples);
   std::vector<CurvePoint> curve(samples);
   Vector x(at.x.size());
   for (int i = 0; i < samples; ++i) {
     CurvePoint& point = curve[i];
-    const double alpha = point.alpha = between(-0.2 * last, last, i, samples);
+    const double alpha = point.alpha = alphas[i];
     for (size_t k = 0; k < x.size(); ++k) x[k] = at.x[k] + alpha * at.d[k];
     point.value = at.E.value(x);
     point.model = at.value + alpha * slope + alpha * alpha / 2 * curvature;

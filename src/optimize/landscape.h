@@ -14,8 +14,8 @@ struct CurvePoint {
   double slide_bound = 0;     // E + c g.d
 };
 
-// E along d, from a little behind x to a little beyond the longest trial; `c` is the sufficient decrease. At least two
-// samples.
+// E along d, from a little behind x to a little beyond the longest trial, closer around an accepted step that is much
+// shorter; alpha ascends. `c` is the sufficient decrease. At least two samples.
 std::vector<CurvePoint> curve_along(const LiveIteration& iteration, double c, int samples = 101);
 
 // The plane x + s d + t v: v has the length of d and lies across it, in the direction of -g; where d is along g, in

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "optimize/gradient_descent.h"
@@ -45,6 +46,17 @@ TEST(Landscape, TheCurvePassesThroughTheTrialsOfTheLineSearch) {
     EXPECT_EQ(iteration.E.value(x), first.value);
     EXPECT_NEAR(curve.back().textbook_bound, iteration.value - 0.25 * last * 2 * iteration.decrement, 1e-9);
     EXPECT_NEAR(curve.back().slide_bound, iteration.value - 0.25 * 2 * iteration.decrement, 1e-9);
+  });
+}
+
+// Gradient descent accepts an eighth of its first trial.
+TEST(Landscape, AnAcceptedStepMuchShorterThanTheFirstTrialHasSamplesAroundIt) {
+  look_at_first_iteration(GradientDescent(), [](const LiveIteration& iteration) {
+    ASSERT_EQ(iteration.alpha, 0.125);
+    const auto curve = curve_along(iteration, 1e-4, 101);
+    ASSERT_EQ(curve.size(), 101u);
+    EXPECT_GE(std::ranges::count_if(curve, [](const CurvePoint& point) { return std::abs(point.alpha) < 0.2; }), 30);
+    EXPECT_TRUE(std::ranges::is_sorted(curve, {}, &CurvePoint::alpha));
   });
 }
 

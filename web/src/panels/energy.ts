@@ -56,8 +56,8 @@ class EnergyPanel implements Panel {
       this.redraw();
     });
     store.on("state", () => this.redraw());
-    page.on("theme", () => this.chart.rebuild());
-    page.on("layout", () => this.chart.rebuild());
+    page.on("theme", () => this.chart.retheme());
+    page.on("layout", () => this.chart.retheme());
     page.keep("energy", { save: () => this.save(), restore: (saved) => this.restore(saved) });
     for (const side of kSides) this.newScene(side);
   }

@@ -175,8 +175,8 @@ class PlanarPanel implements FunctionsPanel {
   }
 
   private retheme(): void {
-    this.view.build();
-    this.search.chart.rebuild();
+    this.view.retheme();
+    this.search.chart.retheme();
   }
 
   private draw(): void {

@@ -45,8 +45,8 @@ class LandscapePanel implements Panel {
     this.element.append(bar, element("div", { class: "plot-columns plot-fill" }, fill, side));
     this.chosen.on("changed", this.refresh);
     this.chosen.on("rows", this.refresh);
-    page.on("theme", () => this.view.build());
-    page.on("layout", () => this.view.build());
+    page.on("theme", () => this.view.retheme());
+    page.on("layout", () => this.view.retheme());
     page.keep("landscape", {
       save: () => ({ model: this.model.input.checked, log: this.log.input.checked }),
       restore: (saved) => this.restore(saved),

@@ -92,7 +92,7 @@ class MicroscopePanel implements Panel {
       { title: "step", meaning: "number of the time step; the newest is first", text: of((s) => String(s.step)) },
       { title: "status", meaning: "how the minimisation ended", left: true, class: "status", text: of((s) => statusText(s)) },
       { title: "it.", meaning: "iterations of the minimiser", text: of((s) => String(s.iterations.length)) },
-      { title: "residual", meaning: "norm of the forces that are left over, in parts of the threshold that it must be below", text: of(residualText) },
+      { title: "resid.", meaning: "norm of the forces that are left over, in parts of the threshold that it must be below", text: of(residualText) },
       { title: "took", meaning: "wall time", text: of((s) => withUnit(s.seconds, "s", 3)) },
     ];
   }

@@ -158,8 +158,8 @@ export class StepChart {
   }
 
   retheme(): void {
-    this.chart.rebuild();
-    this.search.chart.rebuild();
+    this.chart.retheme();
+    this.search.chart.retheme();
   }
 
   // `search`: the line search of the chosen iteration, or why there is none.

@@ -5,7 +5,7 @@ import "uplot/dist/uPlot.min.css";
 import "./plots.css";
 import type { MaybeNumber } from "../protocol";
 import { element, oncePerFrame } from "./dom";
-import { palette, type Colour, type Palette } from "./palette";
+import { palette, sameLook, type Colour, type Palette } from "./palette";
 import { prefixOf, ticks } from "./numbers";
 
 export interface Curve {
@@ -56,6 +56,7 @@ export class Chart {
   private chart: uPlot | null = null;
   private entries: Entry[] = [];
   private cursor: number | null = null;
+  private look: Palette | null = null;
   private readonly resize = oncePerFrame(() => this.fit());
 
   constructor() {
@@ -80,14 +81,18 @@ export class Chart {
     this.readLegend();
   }
 
-  // Colours, font or scales are others now.
-  rebuild(): void {
+  // Colours or the font may be others now.
+  retheme(): void {
+    if (!sameLook(this.look, palette(this.element))) this.rebuild();
+  }
+
+  private rebuild(): void {
     this.chart?.destroy();
     this.chart = null;
     const [width, height] = [this.plot.clientWidth, this.plot.clientHeight];
     const options = this.options;
     if (!options || width < 60 || height < 40 || this.data.columns.length !== options.curves.length) return;
-    const colours = palette(this.element);
+    const colours = (this.look = palette(this.element));
     this.chart = new uPlot(this.settings(options, colours, width, height), [this.data.x, ...this.data.columns], this.plot);
     this.readLegend();
   }

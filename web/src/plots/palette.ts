@@ -24,6 +24,10 @@ export interface Palette extends Record<Colour, string> {
   fontSize: number; // [CSS px]
 }
 
+export function sameLook(a: Palette | null, b: Palette): boolean {
+  return a !== null && Object.entries(b).every(([name, value]) => a[name as keyof Palette] === value);
+}
+
 export function palette(of: HTMLElement): Palette {
   const style = getComputedStyle(of);
   const colours = Object.fromEntries(

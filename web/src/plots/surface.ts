@@ -8,7 +8,7 @@ import type { MaybeNumber } from "../protocol";
 import { element, oncePerFrame } from "./dom";
 import { clipped, heightRange, isInside, sample, valueAtHeight, type Grid, type Point } from "./grid";
 import { legendColumns, paintLegend, type Sign } from "./legend";
-import { palette, type Colour, type Palette } from "./palette";
+import { palette, sameLook, type Colour, type Palette } from "./palette";
 import { Frame, gridLines, levelLines, markTexture, surfaceGeometry, type MarkShape } from "./surfaceParts";
 import { axisLabels, placed, type Label, type Placed } from "./surfaceLabels";
 import "./plots.css";
@@ -81,7 +81,12 @@ export class SurfaceView {
     this.build();
   }
 
-  build(): void {
+  // Colours or the font may be others now.
+  retheme(): void {
+    if (!sameLook(this.colours, palette(this.element))) this.build();
+  }
+
+  private build(): void {
     this.clear();
     const content = this.shown;
     this.colours = palette(this.element);

@@ -61,9 +61,11 @@ export function axisLabels(frame: Frame, names: { x: string; y: string; value: s
   ticks(alongY).forEach((text, i) => add(text, new THREE.Vector3(side * 1.12, -0.02, frame.away(alongY[i]!))));
   const post = leftPost(w, d, camera);
   const toValue = valueAtHeight(frame.range, frame.scale);
-  const linear = frame.scale === "linear";
-  const heights = linear ? roundTicks(frame.range.low, frame.range.high, 4) : [0, 0.25, 0.5, 0.75, 1].map(toValue);
-  const texts = linear ? ticks(heights) : heights.map((v) => short(v - frame.range.low, 2));
+  const { low, high } = frame.range;
+  const even = frame.scale === "linear";
+  const linear = even && high - low > 1e-3 * Math.max(Math.abs(low), Math.abs(high)); // else numbers of many digits
+  const heights = linear ? roundTicks(low, high, 4) : even ? roundTicks(0, high - low, 4).map((v) => low + v) : [0, 0.25, 0.5, 0.75, 1].map(toValue);
+  const texts = linear ? ticks(heights) : heights.map((v) => short(v - low, 2));
   add(linear ? names.value : `${names.value} − lowest`, new THREE.Vector3(post.x, frame.tall * 1.12, post.z), "text");
   texts.forEach((text, i) => add(text, new THREE.Vector3(post.x * 1.1, frame.height(heights[i]!) * frame.tall, post.z * 1.1)));
   return out;
