@@ -14,7 +14,7 @@ if (!executablePath) {
   console.log("no Chromium: skipped");
   process.exit(77);
 }
-const kPatience = 20_000; // [ms]
+const kPatience = 60_000; // [ms]
 
 let program, browser, address;
 const contexts = []; // of the test under way
@@ -70,7 +70,8 @@ async function open() {
     }
   };
   await page.waitForFunction(() => document.title.includes("·"));
-  const checkErrors = () => assert.deepEqual(seen.errors, []);
+  // A lost connection is an error of the browser, not of the page.
+  const checkErrors = () => assert.deepEqual(seen.errors.filter((text) => !text.includes("WebSocket")), []);
   return { page, seen, until, checkErrors };
 }
 
@@ -94,7 +95,7 @@ test("Space plays and pauses, R goes back, S takes one step", async () => {
   await until("the start", () => seen.state.a.step === 0);
   await page.keyboard.press("s");
   await until("one step", () => seen.state.a.step === 1);
-  assert.match(await page.title(), /beam/);
+  assert.match(await page.title(), /^cantilever · paused, step 1/);
   checkErrors();
 });
 
@@ -162,7 +163,7 @@ test("iterations are taken one by one, and listed in the microscope", async () =
     await until("the next one", () => JSON.stringify(seen.state.a) !== before);
   }
   assert.equal(seen.state.a.step, step + 1);
-  await page.locator("#dock [role=row], #dock tr").nth(1).waitFor();
+  await page.locator('#dock [role=gridcell]').first().waitFor();
   checkErrors();
 });
 
