@@ -93,7 +93,7 @@ class MicroscopePanel implements Panel {
       { title: "status", meaning: "how the minimisation ended", left: true, class: "status", text: of((s) => statusText(s)) },
       { title: "it.", meaning: "iterations of the minimiser", text: of((s) => String(s.iterations.length)) },
       { title: "resid.", meaning: "norm of the forces that are left over, in parts of the threshold that it must be below", text: of(residualText) },
-      { title: "took", meaning: "wall time", text: of((s) => withUnit(s.seconds, "s", 3)) },
+      { title: "took", meaning: "wall time", text: of((s) => (s.status === "" ? "" : withUnit(s.seconds, "s", 3))) },
     ];
   }
 
@@ -251,5 +251,6 @@ function residualText(step: StepRow): string {
 }
 
 function statusText(step: StepRow): string {
+  if (step.status === "") return "under way";
   return `${step.success ? "✓" : "✗"} ${step.status.replaceAll("_", " ")}`;
 }

@@ -4,7 +4,7 @@ import { button, element, labelled, messageOf, saveFile } from "../dom";
 import type { Page, Panel } from "../page";
 import type { MaybeNumber, StepRow, TextReply } from "../protocol";
 import type { Store } from "../store";
-import { excess, kColumns, listed, totals } from "./certificate";
+import { completed, excess, kColumns, listed, totals } from "./certificate";
 
 const kRowsPerPage = 100;
 
@@ -49,7 +49,7 @@ class StepTable {
   }
 
   private steps(): readonly StepRow[] {
-    return this.store.side("a")?.steps ?? [];
+    return completed(this.store.side("a")?.steps ?? []);
   }
 
   private turn(rows: number): void {
@@ -130,7 +130,7 @@ export function makeReportPanel(store: Store, page: Page): Panel {
   const draw = (): void => {
     due = false;
     const side = store.side("a");
-    drawTotals(list, side?.steps ?? []);
+    drawTotals(list, completed(side?.steps ?? []));
     notes.replaceChildren(...(side?.scene.notes ?? []).map((note) => element("li", {}, note)));
     table.draw();
   };

@@ -206,3 +206,7 @@ export async function contrast(page, png) {
 }
 
 export const downloaded = async (page, act) => (await Promise.all([page.waitForEvent("download"), act()]))[0];
+
+// Positions and pictures are too long to be printed where they differ.
+export const sameBits = (a, b) => Buffer.compare(Buffer.from(a.buffer, a.byteOffset, a.byteLength), Buffer.from(b.buffer, b.byteOffset, b.byteLength)) === 0;
+export const assertSameBits = (a, b, what = "the same bits") => assert.ok(sameBits(a, b), what);

@@ -11,7 +11,6 @@ const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 const rowOf = (page, key) => page.locator("#right .lil-controller").filter({ has: page.locator(`.lil-name[title$="\\a ${key}"]`) });
 
 async function backToTheScene({ page, heard, until }) {
-  await page.evaluate(() => 0);
   const from = heard.messages.length;
   await page.keyboard.press("Shift+O");
   await page.getByRole("dialog").getByRole("button", { name: "Load" }).click();
@@ -110,6 +109,7 @@ test("every choice of every setting is taken or refused in words, and a step can
   const { page, heard, until, close } = opened;
   for (const { key, choices, value: first } of heard.scenes.a.settings.filter(({ kind }) => kind === "choice")) {
     for (const value of [...choices.filter((choice) => choice !== first), first]) {
+      if (settingOf(heard, key).value === value) continue;
       const answer = await answered(opened, key, () => rowOf(page, key).locator("select").selectOption(value));
       if (answer.kind === "refused") {
         assert.ok(answer.why.length > 15, `${key} = ${value}`);
@@ -128,7 +128,7 @@ test("every choice of every setting is taken or refused in words, and a step can
 test("what is typed wrongly is refused in words, put back, and the simulation goes on", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
-  for (const { key, kind } of heard.scenes.a.settings.filter(({ kind }) => ["number", "integer", "vector"].includes(kind))) {
+  for (const { key } of heard.scenes.a.settings.filter(({ kind }) => ["number", "integer", "vector"].includes(kind))) {
     const setting = settingOf(heard, key);
     const field = rowOf(page, key).locator("input[type=text]").first();
     const before = await field.inputValue();
@@ -151,7 +151,6 @@ test("what is typed wrongly is refused in words, put back, and the simulation go
         assert.ok(same(settingOf(heard, key).value, setting.value));
       } else {
         // A value that is allowed though extreme: back to the one before.
-        assert.ok(kind !== "vector" || true);
         await typeInto(field, before);
         await until(`${key} is back`, () => same(settingOf(heard, key).value, setting.value));
       }
@@ -168,6 +167,7 @@ test("extremes while it plays: it goes on, and says what failed", async () => {
   await pressAndWait(opened, " ", "play", () => heard.state.playing);
   for (const setting of heard.scenes.a.settings.filter(({ kind, value }) => kind === "number" && typeof value === "number")) {
     for (const value of [setting.min, setting.max, setting.value]) {
+      if (settingOf(heard, setting.key).value === value) continue;
       await answered(opened, setting.key, () => typeInto(rowOf(page, setting.key).locator("input[type=text]"), String(value)));
     }
   }
