@@ -1,7 +1,7 @@
 // What is always at hand: the simulation's time, and the doors to everything else.
 import { button, element, icon, messageOf } from "./dom";
 import type { Page } from "./page";
-import type { SideState } from "./protocol";
+import type { SideState, State } from "./protocol";
 import { openShortcutList, shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
 import type { Theme } from "./theme";
@@ -40,6 +40,11 @@ function makeTransport(store: Store, page: Page): HTMLElement {
     { key: " ", does: "Play or pause", group, run: toggle },
     { icon: "play", label: "Play", steers },
   );
+  let played = false;
+  store.on("state", (state) => {
+    if (played && !state.playing && wanted !== false) tellWhyItStopped(state, page);
+    played = state.playing;
+  });
   store.on("state", ({ playing }) => {
     if (play.getAttribute("aria-pressed") === String(playing)) return;
     play.replaceChildren(icon(playing ? "pause" : "play"));
@@ -58,6 +63,12 @@ function makeTransport(store: Store, page: Page): HTMLElement {
   );
   const iterate = source.live ? makeIterate(store, page) : null;
   return element("div", { class: "group" }, reset, play, step, iterate, makeSpeed(store));
+}
+
+// Where nobody paused: an explicit scheme that blew up, for example.
+function tellWhyItStopped(state: State, page: Page): void {
+  const words = state.a.words ?? state.b?.words;
+  if (words) page.notice(`Stopped: ${words.cause}; ${words.place}. Remedy: ${words.remedy}`, "error");
 }
 
 function makeIterate(store: Store, page: Page): HTMLElement {

@@ -1,7 +1,7 @@
 // The folders "Mouse", "Display" and "Camera" of the settings, and their shortcuts.
 import type { Controller, GUI } from "lil-gui";
 import type { Page } from "../page";
-import { kCameraModes, kViewNames, type CameraMode } from "../view/cameras";
+import { kCameraModes, kViewNames, type CameraMode, type ViewName } from "../view/cameras";
 import { kDefaults, kTools, type Display, type DisplaySettings } from "../view/display";
 import type { View } from "../view/view";
 
@@ -135,7 +135,8 @@ function addField(folder: Folder, display: Display, views: () => View[]): void {
   const choose = (field: string): void => views()[0]?.store.source.send({ do: "colour", field });
   folder.choice("Colour by", fields, () => display.field, choose);
   const range = folder.within("Colour range");
-  range.add("map", "Colours", { "by field": "auto", viridis: "viridis", cividis: "cividis", "blue to orange": "blue_orange" });
+  const maps = { "by field": "auto", viridis: "viridis", cividis: "cividis", "blue to orange": "blue_orange" };
+  range.add("map", "Colours", maps);
   range.add("fixedRange", "Fixed range");
   range.number("low", "From", { fixedRange: true });
   range.number("high", "To", { fixedRange: true });
@@ -146,7 +147,8 @@ function addField(folder: Folder, display: Display, views: () => View[]): void {
 function addCamera(folder: Folder, display: Display, views: () => View[]): void {
   const modes: Record<string, CameraMode> = { "two axes, level": "turntable", orbit: "orbit", "2-D": "flat" };
   const each = display.eachCamera;
-  folder.choice("Turns about", () => modes, () => display.cameras.a.mode, (mode) => each((rig) => rig.setMode(mode as CameraMode)));
+  const setMode = (mode: string): void => each((rig) => rig.setMode(mode as CameraMode));
+  folder.choice("Turns about", () => modes, () => display.cameras.a.mode, setMode);
   const kinds = { perspective: "no", orthographic: "yes" };
   const kind = (): string => (display.cameras.a.orthographic ? "yes" : "no");
   folder.choice("Projection", () => kinds, kind, (value) => each((rig) => rig.setOrthographic(value === "yes")));
@@ -178,7 +180,8 @@ function addDisplayShortcuts(page: Page, display: Display): void {
 
 function addCameraShortcuts(page: Page, display: Display, views: () => View[]): void {
   const add = (key: string, does: string, run: () => void): void => page.shortcut({ key, does, group: "Camera", run });
-  kViewNames.forEach((name, i) => add(String(i + 1), `Look from: ${name}`, () => display.eachCamera((rig) => rig.look(name))));
+  const look = (name: ViewName): void => display.eachCamera((rig) => rig.look(name));
+  kViewNames.forEach((name, i) => add(String(i + 1), `Look from: ${name}`, () => look(name)));
   const centre = (): void => views().forEach((view) => view.centre());
   add("0", "Centre the body", centre);
   add(".", "Centre the body", centre);

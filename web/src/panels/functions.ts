@@ -1,4 +1,5 @@
 // Functions of two variables, minimised by the simulation's own methods: the lecture's surfaces, from any start.
+import { Newest } from "../newest";
 import type { Page, Panel } from "../page";
 import type { FunctionQuestion, FunctionReply } from "../protocol";
 import type { Store } from "../store";
@@ -41,8 +42,10 @@ class PlanarPanel implements FunctionsPanel {
   private signs: Sign[] = [];
   private iteration = 0;
   private shows = ""; // of the preset
-  private asking = false;
-  private wanted: FunctionQuestion | null = null;
+  private readonly questions = new Newest<FunctionQuestion>(
+    (question) => this.send(question),
+    (reason) => this.fail(reason instanceof Error ? reason.message : String(reason)),
+  );
   private asked = false; // at least once
   private visible = false;
   private timer: ReturnType<typeof setInterval> | null = null;
@@ -99,25 +102,13 @@ class PlanarPanel implements FunctionsPanel {
     this.ask();
   }
 
-  // One question is under way at a time; of those that come meanwhile the newest counts.
   private ask(): void {
     this.asked = true;
-    this.wanted = this.form.question(this.iteration, kSamples);
-    if (!this.asking) void this.send();
+    this.questions.push(this.form.question(this.iteration, kSamples));
   }
 
-  private async send(): Promise<void> {
-    this.asking = true;
-    while (this.wanted) {
-      const question = this.wanted;
-      this.wanted = null;
-      try {
-        this.take(await this.store.source.ask<FunctionReply>({ ask: "function", ...question }), question);
-      } catch (reason) {
-        this.fail(reason instanceof Error ? reason.message : String(reason));
-      }
-    }
-    this.asking = false;
+  private async send(question: FunctionQuestion): Promise<void> {
+    this.take(await this.store.source.ask<FunctionReply>({ ask: "function", ...question }), question);
   }
 
   private take(reply: FunctionReply, question: FunctionQuestion): void {
@@ -147,7 +138,7 @@ class PlanarPanel implements FunctionsPanel {
     if (this.iteration >= Number(this.slider.max)) this.goTo(0);
     this.playButton.textContent = "❚❚ pause";
     this.timer = setInterval(() => {
-      if (this.asking) return;
+      if (this.questions.busy) return;
       if (this.iteration >= Number(this.slider.max)) this.stop();
       else this.goTo(this.iteration + 1);
     }, kPlayEvery);

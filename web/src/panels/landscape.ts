@@ -27,7 +27,6 @@ class LandscapePanel implements Panel {
   private readonly legend = element("div");
   private readonly note = element("div", { class: "plot-note", role: "status" });
   private reply: IterationReply | null = null;
-  private asked = "";
   private signs: Sign[] = [];
   private visible = false;
   private readonly refresh = oncePerFrame(() => this.visible && this.ask());
@@ -45,6 +44,7 @@ class LandscapePanel implements Panel {
     this.element.append(bar, element("div", { class: "plot-columns plot-fill" }, fill, side));
     this.chosen.on("changed", this.refresh);
     this.chosen.on("rows", this.refresh);
+    this.chosen.on("looked", this.refresh);
     page.on("theme", () => this.view.retheme());
     page.on("layout", () => this.view.retheme());
     page.keep("landscape", {
@@ -65,22 +65,21 @@ class LandscapePanel implements Panel {
     const row = this.chosen.row();
     const count = row?.iterations.length ?? 0;
     this.where.textContent = count > 0 ? `step ${step}, iteration ${iteration} of ${count}` : step > 0 ? `step ${step}` : "no step yet";
-    const key = `${side} ${step} ${iteration} ${count}`;
-    if (key === this.asked) return;
-    this.asked = key;
     if (count === 0) {
       const implicit = this.store.side(side)?.scene.implicit ?? true;
       return this.settle(null, implicit ? "There is nothing to see before the first iteration." : "This scheme minimises nothing: there is no landscape.");
     }
-    this.chosen.landscape().then(
-      (reply) => key === this.asked && this.settle(reply, ""),
-      (reason: unknown) => key === this.asked && this.settle(null, `Not known here: ${reason instanceof Error ? reason.message : String(reason)}`),
-    );
+    this.chosen.look();
+    const seen = this.chosen.seen;
+    if (!seen) return this.settle(null, "The program is asked for E around the iteration ...");
+    if (!seen.reply) return this.settle(null, `Not known here: ${seen.why}`);
+    this.settle(seen.reply, this.chosen.isSeen() ? "" : `Shown: step ${seen.at.step}, iteration ${seen.at.iteration}; the program is asked for this one.`);
   }
 
   private settle(reply: IterationReply | null, note: string): void {
-    this.reply = reply;
     this.note.textContent = note;
+    if (reply === this.reply && reply !== null) return;
+    this.reply = reply;
     this.draw();
   }
 

@@ -1,6 +1,6 @@
 // The solver under the microscope: the steps, the iterations of one of them, and the line search of one iteration.
 import type { Page, Panel } from "../page";
-import type { IterationReply, IterationRow, SideName, StepRow, WorstReply } from "../protocol";
+import type { IterationRow, SideName, StepRow, WorstReply } from "../protocol";
 import type { Store } from "../store";
 import { chosenOf, type Chosen } from "../plots/chosen";
 import { button, checkbox, choice, element, oncePerFrame } from "../plots/dom";
@@ -40,8 +40,6 @@ class MicroscopePanel implements Panel {
   private readonly grid = element("div", { class: "microscope-charts" });
   private charts: StepChart[] = [];
   private names: ChartName[] = [...kOrder];
-  private search: Search | string = "";
-  private searched = ""; // what `search` belongs to
   private visible = false;
   private readonly redraw = oncePerFrame(() => this.visible && this.draw());
 
@@ -56,6 +54,7 @@ class MicroscopePanel implements Panel {
     this.element.append(bar, this.worst, element("div", { class: "microscope plot-fill" }, tables, this.grid));
     this.chosen.on("changed", this.redraw);
     this.chosen.on("rows", this.redraw);
+    this.chosen.on("looked", this.redraw);
     store.on("scene", this.redraw);
     store.on("gone", this.redraw);
     page.on("theme", () => this.charts.forEach((chart) => chart.retheme()));
@@ -140,8 +139,8 @@ class MicroscopePanel implements Panel {
     this.steps.show(rows.length, index < 0 ? -1 : rows.length - 1 - index, true);
     this.iterations.show(this.chosen.row()?.iterations.length ?? 0, this.chosen.iteration, true);
     this.tell();
-    this.askSearch();
-    for (const chart of this.charts) chart.show(this.search);
+    const search = this.searchNow();
+    for (const chart of this.charts) chart.show(search);
   }
 
   private showSides(): void {
@@ -166,32 +165,21 @@ class MicroscopePanel implements Panel {
     this.words.dataset.kind = row && !row.success && !(newest && underWay >= 0) ? "bad" : "";
   }
 
-  // Asks for E along d when a chart shows it and another iteration is chosen.
-  private askSearch(): void {
-    const { side, step, iteration } = this.chosen;
-    const key = `${side} ${step} ${iteration} ${this.chosen.row()?.iterations.length ?? 0}`;
-    if (key === this.searched || !this.charts.some((chart) => chart.name === "search")) return;
-    this.searched = key;
-    const row = this.chosen.iterationRow();
-    if (!row) {
-      this.search = this.store.side(side)?.scene.implicit === false ? "This scheme minimises nothing: there is no line search." : "No iteration is chosen.";
-      return;
+  // E along d at the chosen iteration, asked for when a chart shows it; or why it is not there.
+  private searchNow(): Search | string {
+    if (!this.charts.some((chart) => chart.name === "search")) return "";
+    if (!this.chosen.iterationRow()) {
+      const implicit = this.store.side(this.chosen.side)?.scene.implicit ?? true;
+      return implicit ? "No iteration is chosen." : "This scheme minimises nothing: there is no line search.";
     }
-    const settle = (search: Search | string): void => {
-      if (key !== this.searched) return;
-      this.search = search;
-      this.redraw();
-    };
-    this.chosen.landscape().then(
-      (reply) => settle(this.searchOf(reply)),
-      (reason: unknown) => settle(`E along d is not known here: ${reason instanceof Error ? reason.message : String(reason)}`),
-    );
-  }
-
-  private searchOf(reply: IterationReply): Search {
-    const settings = this.store.side(this.chosen.side)?.scene.settings ?? [];
+    this.chosen.look();
+    const seen = this.chosen.seen;
+    if (!seen) return "The program is asked for E along d ...";
+    if (!seen.reply) return `E along d is not known here: ${seen.why}`;
+    const settings = this.store.side(seen.at.side)?.scene.settings ?? [];
     const test = settings.find((setting) => setting.key.endsWith("line_search.test"))?.value;
-    return { curve: reply.curve, trials: reply.trials, test: typeof test === "string" ? test : "textbook" };
+    const about = this.chosen.isSeen() ? "" : `of step ${seen.at.step}, iteration ${seen.at.iteration}`;
+    return { curve: seen.reply.curve, trials: seen.reply.trials, test: typeof test === "string" ? test : "textbook", about };
   }
 
   // As many charts as there is room for.

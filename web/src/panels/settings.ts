@@ -43,6 +43,7 @@ export class Settings {
     this.surface = this.makeSurface();
     root.append(element("label", { class: "surface-choice" }, element("span", {}, "Surface"), this.surface));
     this.gui = new GUI({ container: root, title: "Simulation" });
+    if (!store.source.live) this.gui.close();
     const spring = this.gui.addFolder("Spring of the mouse").show(store.source.live);
     this.mouse = this.makeMouse(spring);
     store.on("scene", () => this.update());

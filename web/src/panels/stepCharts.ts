@@ -168,7 +168,7 @@ export class StepChart {
     if (this.fill.firstChild !== shown) this.fill.replaceChildren(shown);
     this.empty.textContent = "";
     if (this.name !== "search") return this.showPlan();
-    if (typeof search === "string") this.empty.textContent = search;
+    this.empty.textContent = typeof search === "string" ? search : (search.about ?? "");
     this.search.show(typeof search === "string" ? null : search);
   }
 

@@ -1,5 +1,6 @@
 // Which iteration of which step the microscope and the landscape look at: the newest, or what the reader chose.
-import type { Page } from "../page";
+import { Newest } from "../newest";
+import type { ChosenIteration, Page } from "../page";
 import type { IterationReply, IterationRow, SideName, StepRow } from "../protocol";
 import type { Store } from "../store";
 import { Emitter } from "../emitter";
@@ -10,6 +11,17 @@ const kRemembered = 12;
 interface Events {
   changed: void; // another iteration is chosen
   rows: void; // there are other steps
+  looked: void; // the program answered about an iteration
+}
+
+export interface Seen {
+  at: ChosenIteration;
+  reply: IterationReply | null;
+  why: string; // there is no reply
+}
+
+function keyOf({ side, step, iteration }: ChosenIteration): string {
+  return `${side} ${step} ${iteration}`;
 }
 
 export class Chosen extends Emitter<Events> {
@@ -18,7 +30,13 @@ export class Chosen extends Emitter<Events> {
   iteration = 0;
   following = true;
   private timer: ReturnType<typeof setTimeout> | null = null;
-  private readonly replies = new Map<string, Promise<IterationReply>>();
+  seen: Seen | null = null; // the newest answer
+  private asked = "";
+  private readonly replies = new Map<string, IterationReply>();
+  private readonly questions = new Newest<ChosenIteration>(
+    (at) => this.ask(at),
+    () => {},
+  );
 
   constructor(
     private readonly store: Store,
@@ -31,6 +49,7 @@ export class Chosen extends Emitter<Events> {
     });
     store.on("scene", () => {
       this.replies.clear();
+      this.asked = "";
       this.newRows();
     });
     store.on("gone", () => this.side === "b" && this.choose("a", this.newest("a")?.step ?? 0, 0));
@@ -73,20 +92,40 @@ export class Chosen extends Emitter<Events> {
     this.emit("changed", undefined);
   }
 
-  // What the program knows about the iteration. Rejects with the reason.
-  landscape(): Promise<IterationReply> {
-    const { side, step, iteration } = this;
-    const key = `${side} ${step} ${iteration}`;
+  // Asks the program about the chosen iteration, once; `looked` tells when an answer is there. While steps fly by, the
+  // answer may be about one that was chosen before.
+  look(): void {
+    const at = { side: this.side, step: this.step, iteration: this.iteration };
+    const key = keyOf(at);
+    if (key === this.asked || !this.iterationRow()) return;
+    this.asked = key;
     const known = this.replies.get(key);
-    if (known) return known;
-    const reply = this.store.source.ask<IterationReply>({ ask: "iteration", side, step, iteration });
-    this.replies.set(key, reply);
-    reply.catch(() => this.replies.delete(key));
-    for (const oldest of this.replies.keys()) {
-      if (this.replies.size <= kRemembered) break;
-      this.replies.delete(oldest);
+    if (known) this.take({ at, reply: known, why: "" });
+    else this.questions.push(at);
+  }
+
+  // Whether `seen` is about the chosen iteration.
+  isSeen(): boolean {
+    return this.seen !== null && keyOf(this.seen.at) === keyOf(this);
+  }
+
+  private async ask(at: ChosenIteration): Promise<void> {
+    try {
+      const reply = await this.store.source.ask<IterationReply>({ ask: "iteration", ...at });
+      this.replies.set(keyOf(at), reply);
+      for (const oldest of this.replies.keys()) {
+        if (this.replies.size <= kRemembered) break;
+        this.replies.delete(oldest);
+      }
+      this.take({ at, reply, why: "" });
+    } catch (reason) {
+      this.take({ at, reply: null, why: reason instanceof Error ? reason.message : String(reason) });
     }
-    return reply;
+  }
+
+  private take(seen: Seen): void {
+    this.seen = seen;
+    this.emit("looked", undefined);
   }
 
   private rowOf(step: number): StepRow | null {
@@ -102,10 +141,9 @@ export class Chosen extends Emitter<Events> {
 
   // Steps after a rewind are others.
   private forget(side: SideName, from: number): void {
-    for (const key of this.replies.keys()) {
-      const [ofSide, step] = key.split(" ");
-      if (ofSide === side && Number(step) > from) this.replies.delete(key);
-    }
+    const isVoid = (key: string): boolean => key.split(" ")[0] === side && Number(key.split(" ")[1]) > from;
+    for (const key of this.replies.keys()) if (isVoid(key)) this.replies.delete(key);
+    if (isVoid(this.asked)) this.asked = "";
   }
 
   private newRows(): void {

@@ -10,6 +10,7 @@ export interface Search {
   curve: IterationReply["curve"];
   trials: TrialRow[];
   test: string; // of the line search: "textbook", "slide" or "none"
+  about?: string; // which iteration, where that is not clear
 }
 
 // What the axis shows: the valley, and trials as long as they do not dwarf it. Values are differences from E at alpha 0.

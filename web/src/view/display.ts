@@ -160,7 +160,8 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
       if (!Object.hasOwn(kDefaults, key) || typeof value !== typeof kDefaults[known]) continue;
       if (kChoices[known] && !kChoices[known].includes(value as string)) continue;
       if (typeof value === "number" && !Number.isFinite(value)) continue;
-      if (key.toLowerCase().endsWith("colour") || key === "background") if (!/^#[0-9a-f]{6}$/i.test(String(value))) continue;
+      const isColour = key.endsWith("Colour") || key === "background";
+      if (isColour && !/^#[0-9a-f]{6}$/i.test(String(value))) continue;
       changes[key] = value;
     }
     this.change(changes);

@@ -16,6 +16,13 @@ export interface Ink {
 
 type Point = [number, number];
 
+interface Place {
+  left: number;
+  top: number;
+  width: number;
+  height: number;
+}
+
 export function text(ink: Ink, words: string, x: number, y: number, align: CanvasTextAlign = "left"): void {
   const { context } = ink;
   context.textAlign = align;
@@ -125,8 +132,9 @@ export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange
   const values = range.log ? logTicks(range.low, range.high) : ticks(range.low, range.high, height / (2.6 * em));
   const words = range.log || values.length < 2 ? values.map((value) => short(value)) : tickTexts(values);
   const widest = Math.max(0, ...words.map((word) => ink.context.measureText(word).width)) + 1.6 * em + width;
-  backing(ink, lens.width - 0.4 * em, top - 2.4 * em, Math.max(widest, ink.context.measureText(title).width) + em, height + 3.2 * em);
-  colours(ink, map, left, top, width, height, range.high > range.low);
+  const backed = Math.max(widest, ink.context.measureText(title).width) + em;
+  backing(ink, { left: lens.width - 0.4 * em - backed, top: top - 2.4 * em, width: backed, height: height + 3.2 * em });
+  colours(ink, { left, top, width, height }, map, range.high > range.low);
   text(ink, title, left + width, top - 1.4 * em, "right");
   values.forEach((value, i) => {
     const y = top + height * (1 - fraction(range, value));
@@ -137,17 +145,17 @@ export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange
 }
 
 // Sets off what stands on it from the body behind.
-function backing(ink: Ink, right: number, top: number, width: number, height: number): void {
+function backing(ink: Ink, { left, top, width, height }: Place): void {
   const { context } = ink;
   context.globalAlpha = 0.8;
   context.fillStyle = ink.halo;
   context.beginPath();
-  context.roundRect(right - width, top, width, height, 0.4 * ink.em);
+  context.roundRect(left, top, width, height, 0.4 * ink.em);
   context.fill();
   context.globalAlpha = 1;
 }
 
-function colours(ink: Ink, map: MapName, left: number, top: number, width: number, height: number, varies: boolean): void {
+function colours(ink: Ink, { left, top, width, height }: Place, map: MapName, varies: boolean): void {
   const { context } = ink;
   for (let y = 0; y < height; ++y) {
     const [r, g, b] = colourAt(map, varies ? 1 - y / height : 0.5);

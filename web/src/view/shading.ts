@@ -68,23 +68,27 @@ export function makePinMaterial(lift: { value: number }): THREE.PointsMaterial {
   const material = new THREE.PointsMaterial({ sizeAttenuation: false, transparent: true });
   material.onBeforeCompile = (shader) => {
     shader.uniforms.lift = lift; // per distance, or [unit length] when orthographic
-    shader.vertexShader = shader.vertexShader.replace("#include <common>", "#include <common>\nuniform float lift;").replace(
-      "#include <project_vertex>",
-      `#include <project_vertex>
-       vec4 nearer = mvPosition;
-       if (isPerspectiveMatrix(projectionMatrix)) nearer.xyz *= 1.0 - lift; else nearer.z += lift;
-       gl_Position = projectionMatrix * nearer;`,
-    );
-    shader.fragmentShader = shader.fragmentShader.replace(
-      "#include <map_particle_fragment>",
-      `float radius = length(gl_PointCoord - 0.5) * 2.0;
-       float blur = fwidth(radius);
-       diffuseColor.rgb = mix(diffuseColor.rgb, vec3(1.0), smoothstep(0.62 - blur, 0.62 + blur, radius));
-       diffuseColor.a = 1.0 - smoothstep(1.0 - 2.0 * blur, 1.0, radius);`,
-    );
+    shader.vertexShader = shader.vertexShader
+      .replace("#include <common>", "#include <common>\nuniform float lift;")
+      .replace("#include <project_vertex>", kPinPosition);
+    shader.fragmentShader = shader.fragmentShader.replace("#include <map_particle_fragment>", kPinColour);
   };
   return material;
 }
+
+const kPinPosition = /* glsl */ `
+  #include <project_vertex>
+  vec4 nearer = mvPosition;
+  if (isPerspectiveMatrix(projectionMatrix)) nearer.xyz *= 1.0 - lift; else nearer.z += lift;
+  gl_Position = projectionMatrix * nearer;
+`;
+
+const kPinColour = /* glsl */ `
+  float radius = length(gl_PointCoord - 0.5) * 2.0;
+  float blur = fwidth(radius);
+  diffuseColor.rgb = mix(diffuseColor.rgb, vec3(1.0), smoothstep(0.62 - blur, 0.62 + blur, radius));
+  diffuseColor.a = 1.0 - smoothstep(1.0 - 2.0 * blur, 1.0, radius);
+`;
 
 export interface GroundUniforms {
   gridStep: { value: number };
@@ -101,11 +105,18 @@ export function makeGroundMaterial(uniforms: GroundUniforms): THREE.ShadowMateri
       .replace("#include <common>", "#include <common>\nvarying vec2 vPlane;")
       .replace("#include <begin_vertex>", "#include <begin_vertex>\nvPlane = position.xy;");
     shader.fragmentShader = shader.fragmentShader
-      .replace("#include <common>", "#include <common>\nuniform float gridStep;\nuniform vec2 gridOrigin;\nuniform vec3 gridColour;\nvarying vec2 vPlane;")
+      .replace("#include <common>", `#include <common>\n${kGroundPars}`)
       .replace("gl_FragColor = vec4( color, opacity * ( 1.0 - getShadowMask() ) );", kGroundColour);
   };
   return material;
 }
+
+const kGroundPars = /* glsl */ `
+  uniform float gridStep;
+  uniform vec2 gridOrigin;
+  uniform vec3 gridColour;
+  varying vec2 vPlane;
+`;
 
 const kGroundColour = /* glsl */ `
   vec2 cell = (vPlane - gridOrigin) / gridStep;

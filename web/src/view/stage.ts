@@ -103,8 +103,12 @@ export class Stage {
   }
 
   clip(clip: Clip | null): void {
-    const plane = clip && new THREE.Plane(new THREE.Vector3(...clip.normal), (dot(clip.normal, this.centre) - clip.offset) / this.radius);
-    this.body?.clip(plane ? [plane] : []);
+    const planes: THREE.Plane[] = [];
+    if (clip) {
+      const inside = (dot(clip.normal, this.centre) - clip.offset) / this.radius; // of the middle of the scene
+      planes.push(new THREE.Plane(new THREE.Vector3(...clip.normal), inside));
+    }
+    this.body?.clip(planes);
     this.renderer.shadowMap.needsUpdate = true;
   }
 
@@ -180,7 +184,8 @@ export class Stage {
     const shadow = this.sun.shadow;
     this.sun.target.position.copy(center);
     this.sun.position.copy(center).addScaledVector(this.sun.userData.from as THREE.Vector3, 4 * radius);
-    Object.assign(shadow.camera, { left: -radius, right: radius, top: radius, bottom: -radius, near: radius, far: 12 * radius });
+    Object.assign(shadow.camera, { left: -radius, right: radius, top: radius, bottom: -radius });
+    Object.assign(shadow.camera, { near: radius, far: 12 * radius });
     shadow.normalBias = 0.012 * radius;
     shadow.camera.updateProjectionMatrix();
   }

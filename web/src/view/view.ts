@@ -219,8 +219,9 @@ export class View implements Touched {
 
   // Once, when numbers are asked for that the fine skin does not have.
   private tellUnnumbered(): void {
-    const missing = this.display.settings.vertexLabels && this.figure.body !== null && !this.figure.body.numbered;
-    if (missing && !this.toldUnnumbered) this.page.notice("The points of the fine skin have no numbers; the cage's vertices have.");
+    const missing = this.display.settings.vertexLabels && this.figure.body?.numbered === false;
+    if (missing && !this.toldUnnumbered)
+      this.page.notice("The points of the fine skin have no numbers; the cage's vertices have.");
     this.toldUnnumbered = missing;
   }
 
@@ -281,7 +282,8 @@ export class View implements Touched {
   private tip(): Marks["tip"] {
     const { hover, cursor } = this.touch;
     const [shown, values] = [this.figure.coloured(), this.figure.side?.picture?.values];
-    if (!hover || !cursor || !shown || !values || !this.figure.body || this.display.settings.tool !== "read") return null;
-    return { at: cursor, words: valueText(interpolated(hover, this.figure.body.geometry.triangles, values), shown.field.unit) };
+    const triangles = this.figure.body?.geometry.triangles;
+    if (!hover || !cursor || !shown || !values || !triangles || this.display.settings.tool !== "read") return null;
+    return { at: cursor, words: valueText(interpolated(hover, triangles, values), shown.field.unit) };
   }
 }

@@ -1,0 +1,116 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { chosenOf, type Chosen } from "../src/plots/chosen";
+import { Page } from "../src/page";
+import type { IterationReply, Query, Scene, ServerMessage, StepRow } from "../src/protocol";
+import type { Incoming, Source } from "../src/source";
+import { Store } from "../src/store";
+import { iterationRow, stepRow } from "./rowsOfSteps";
+
+interface Asked {
+  step: number;
+  iteration: number;
+  answer: (reply?: string) => void; // a text: the refusal
+}
+
+class Stub implements Source {
+  readonly live = true;
+  readonly asked: Asked[] = [];
+  receive: (incoming: Incoming) => void = () => {};
+  start(receive: (incoming: Incoming) => void): void {
+    this.receive = receive;
+  }
+  send(): void {}
+  request(): Promise<unknown> {
+    return Promise.resolve();
+  }
+  ask<Reply>(query: Query): Promise<Reply> {
+    const { step, iteration } = query as { step: number; iteration: number };
+    return new Promise((resolve, reject) => {
+      const answer = (why?: string): void => (why ? reject(new Error(why)) : resolve({ step, iteration } as IterationReply as Reply));
+      this.asked.push({ step, iteration, answer });
+    });
+  }
+  ready(): void {}
+  say(message: ServerMessage): void {
+    this.receive({ message });
+  }
+}
+
+const rows = (from: number, count: number): StepRow[] =>
+  Array.from({ length: count }, (_, i) => stepRow({ step: from + i + 1, iterations: [iterationRow(), iterationRow(), iterationRow()] }));
+const settled = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
+
+function opened(): { source: Stub; chosen: Chosen } {
+  const source = new Stub();
+  const store = new Store(source);
+  const chosen = chosenOf(store, new Page());
+  store.start();
+  source.say({ kind: "scene", side: "a", generation: 1, potentials: [] } as unknown as Scene);
+  source.say({ kind: "steps", side: "a", from: 0, steps: rows(0, 5) });
+  return { source, chosen };
+}
+
+test("the newest step is chosen until the reader chooses another", () => {
+  const { source, chosen } = opened();
+  assert.equal(chosen.step, 5);
+  chosen.choose("a", 2, 1);
+  source.say({ kind: "steps", side: "a", from: 5, steps: rows(5, 3) });
+  assert.deepEqual([chosen.step, chosen.iteration, chosen.following], [2, 1, false]);
+  chosen.follow(true);
+  assert.equal(chosen.step, 8);
+});
+
+test("walking goes on into the neighbouring steps, and ends at the ends", () => {
+  const { chosen } = opened();
+  chosen.choose("a", 2, 2);
+  chosen.walk(1);
+  assert.deepEqual([chosen.step, chosen.iteration], [3, 0]);
+  chosen.walk(-1);
+  assert.deepEqual([chosen.step, chosen.iteration], [2, 2]);
+  chosen.choose("a", 5, 2);
+  chosen.walk(1);
+  assert.deepEqual([chosen.step, chosen.iteration], [5, 2]);
+});
+
+test("one question is under way, and of those that come meanwhile the newest is asked", async () => {
+  const { source, chosen } = opened();
+  for (const step of [1, 2, 3]) {
+    chosen.choose("a", step, 0);
+    chosen.look();
+    chosen.look();
+  }
+  assert.deepEqual(source.asked.map((q) => q.step), [1]);
+  source.asked[0]!.answer();
+  await settled();
+  assert.deepEqual(source.asked.map((q) => q.step), [1, 3]);
+  assert.ok(chosen.seen?.reply && !chosen.isSeen());
+  source.asked[1]!.answer();
+  await settled();
+  assert.ok(chosen.isSeen());
+});
+
+test("an answer is remembered, but not after a rewind; a refusal is told", async () => {
+  const { source, chosen } = opened();
+  const look = async (step: number, why?: string): Promise<void> => {
+    chosen.choose("a", step, 0);
+    chosen.look();
+    source.asked.at(-1)!.answer(why);
+    await settled();
+  };
+  await look(4);
+  await look(2, "too long ago");
+  assert.equal(chosen.seen!.why, "too long ago");
+  await look(4);
+  assert.equal(source.asked.length, 2);
+  source.say({ kind: "steps", side: "a", from: 3, steps: rows(3, 2) });
+  chosen.look();
+  assert.equal(source.asked.length, 3);
+});
+
+test("a rewind past the chosen step goes to the newest that is left", () => {
+  const { source, chosen } = opened();
+  chosen.choose("a", 5, 1);
+  source.say({ kind: "steps", side: "a", from: 2, steps: [] });
+  assert.equal(chosen.step, 2);
+});
