@@ -27,7 +27,8 @@ class Stub implements Source {
   ask<Reply>(query: Query): Promise<Reply> {
     const { step, iteration } = query as { step: number; iteration: number };
     return new Promise((resolve, reject) => {
-      const answer = (why?: string): void => (why ? reject(new Error(why)) : resolve({ step, iteration } as IterationReply as Reply));
+      const answer = (why?: string): void =>
+        why ? reject(new Error(why)) : resolve({ step, iteration } as IterationReply as Reply);
       this.asked.push({ step, iteration, answer });
     });
   }
@@ -38,7 +39,9 @@ class Stub implements Source {
 }
 
 const rows = (from: number, count: number): StepRow[] =>
-  Array.from({ length: count }, (_, i) => stepRow({ step: from + i + 1, iterations: [iterationRow(), iterationRow(), iterationRow()] }));
+  Array.from({ length: count }, (_, i) =>
+    stepRow({ step: from + i + 1, iterations: [iterationRow(), iterationRow(), iterationRow()] }),
+  );
 const settled = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
 
 function opened(): { source: Stub; chosen: Chosen } {
@@ -80,10 +83,16 @@ test("one question is under way, and of those that come meanwhile the newest is 
     chosen.look();
     chosen.look();
   }
-  assert.deepEqual(source.asked.map((q) => q.step), [1]);
+  assert.deepEqual(
+    source.asked.map((q) => q.step),
+    [1],
+  );
   source.asked[0]!.answer();
   await settled();
-  assert.deepEqual(source.asked.map((q) => q.step), [1, 3]);
+  assert.deepEqual(
+    source.asked.map((q) => q.step),
+    [1, 3],
+  );
   assert.ok(chosen.seen?.reply && !chosen.isSeen());
   source.asked[1]!.answer();
   await settled();

@@ -1,9 +1,25 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { clipped, gridOf, heightOf, heightRange, isInside, minimizerOf, quadraticAt, quadraticFrom, roundTicks, sample, uniform, valueAtHeight, type Quadratic } from "../src/plots/grid";
+import {
+  clipped,
+  gridOf,
+  heightOf,
+  heightRange,
+  isInside,
+  minimizerOf,
+  quadraticAt,
+  quadraticFrom,
+  roundTicks,
+  sample,
+  uniform,
+  valueAtHeight,
+  type Quadratic,
+} from "../src/plots/grid";
 
 const square = { x: uniform(-1, 1, 5), y: uniform(0, 2, 3), value: [] };
-const filled = (f: (x: number, y: number) => number | null): { x: number[]; y: number[]; value: (number | null)[] } => ({
+const filled = (
+  f: (x: number, y: number) => number | null,
+): { x: number[]; y: number[]; value: (number | null)[] } => ({
   ...square,
   value: square.y.flatMap((y) => square.x.map((x) => f(x, y))),
 });
@@ -26,7 +42,8 @@ test("a constant, and nothing at all, have heights, too", () => {
 test("heights and values are each other's inverse, linear and logarithmic", () => {
   const range = { low: -2, high: 8, cut: false };
   for (const scale of ["linear", "log"] as const)
-    for (const height of [0, 0.1, 0.5, 1]) assert.ok(Math.abs(heightOf(range, scale)(valueAtHeight(range, scale)(height)) - height) < 1e-12);
+    for (const height of [0, 0.1, 0.5, 1])
+      assert.ok(Math.abs(heightOf(range, scale)(valueAtHeight(range, scale)(height)) - height) < 1e-12);
   assert.equal(heightOf(range, "log")(8), 1);
   assert.ok(heightOf(range, "log")(-2 + 0.1) > 0.4);
 });
@@ -44,7 +61,12 @@ test("bilinear samples are exact for bilinear functions, and unknown outside and
 test("a quadratic is found from its samples, with its minimum", () => {
   const q: Quadratic = { center: [0.5, -1], value: 3, gradient: [1, -2], xx: 4, xy: 1, yy: 2 };
   const found = quadraticFrom(filled((x, y) => quadraticAt(q, x, y)))!;
-  for (const [x, y] of [[0, 0], [0.3, 1.9], [-5, 7]] as const) assert.ok(Math.abs(quadraticAt(found, x, y) - quadraticAt(q, x, y)) < 1e-9);
+  for (const [x, y] of [
+    [0, 0],
+    [0.3, 1.9],
+    [-5, 7],
+  ] as const)
+    assert.ok(Math.abs(quadraticAt(found, x, y) - quadraticAt(q, x, y)) < 1e-9);
   const [p, lowest] = [minimizerOf(found)!, minimizerOf(q)!];
   assert.ok(Math.hypot(p.x - lowest.x, p.y - lowest.y) < 1e-9);
   assert.ok(quadraticAt(q, lowest.x, lowest.y) < quadraticAt(q, lowest.x + 0.01, lowest.y - 0.02));
@@ -59,10 +81,16 @@ test("a saddle, a trough and a hill have no minimum", () => {
 });
 
 test("segments are cut at the edge of the picture", () => {
-  assert.deepEqual(clipped(square, { x: 0, y: 1 }, { x: 4, y: 1 }), [{ x: 0, y: 1 }, { x: 1, y: 1 }]);
+  assert.deepEqual(clipped(square, { x: 0, y: 1 }, { x: 4, y: 1 }), [
+    { x: 0, y: 1 },
+    { x: 1, y: 1 },
+  ]);
   assert.equal(clipped(square, { x: 2, y: 0 }, { x: 3, y: 1 }), null);
   assert.equal(clipped(square, { x: -3, y: 5 }, { x: 3, y: 5 }), null);
-  assert.deepEqual(clipped(square, { x: 0.5, y: 0.5 }, { x: 0.5, y: 0.5 }), [{ x: 0.5, y: 0.5 }, { x: 0.5, y: 0.5 }]);
+  assert.deepEqual(clipped(square, { x: 0.5, y: 0.5 }, { x: 0.5, y: 0.5 }), [
+    { x: 0.5, y: 0.5 },
+    { x: 0.5, y: 0.5 },
+  ]);
   assert.ok(isInside(square, { x: 1, y: 2 }) && !isInside(square, { x: 1, y: 2.1 }));
 });
 

@@ -4,7 +4,8 @@ import { balanceText, Ledger, ledgerColumns } from "../src/plots/ledger";
 import { stepRow } from "./rowsOfSteps";
 
 const potentials = ["elasticity", "gravity"];
-const at = (ledger: Ledger, key: string): (number | null)[] => ledger.columns[ledgerColumns(potentials).findIndex((c) => c.key === key)]!;
+const at = (ledger: Ledger, key: string): (number | null)[] =>
+  ledger.columns[ledgerColumns(potentials).findIndex((c) => c.key === key)]!;
 
 // Energy comes in by the mouse and goes out by damping and the integrator; nothing is lost from the books.
 function steps(count: number): ReturnType<typeof stepRow>[] {
@@ -12,7 +13,15 @@ function steps(count: number): ReturnType<typeof stepRow>[] {
   return Array.from({ length: count }, (_, i) => {
     const [mouse, damping, numerical] = [0.5, 0.2, 0.1 * i];
     energy += mouse - damping - numerical;
-    return stepRow({ step: i + 1, time: 0.1 * (i + 1), kinetic: 0.25 * energy, potential: [0.5 * energy, 0.25 * energy], mouse_work: mouse, damping_loss: damping, numerical_loss: numerical });
+    return stepRow({
+      step: i + 1,
+      time: 0.1 * (i + 1),
+      kinetic: 0.25 * energy,
+      potential: [0.5 * energy, 0.25 * energy],
+      mouse_work: mouse,
+      damping_loss: damping,
+      numerical_loss: numerical,
+    });
   });
 }
 
@@ -50,5 +59,8 @@ test("what is not known stays unknown, also in sums", () => {
   const ledger = new Ledger(potentials);
   ledger.update(rows, 0);
   assert.deepEqual(at(ledger, "mouse_work"), [0.5, null, null]);
-  assert.deepEqual(at(ledger, "balance").map((v) => v === null), [false, true, true]);
+  assert.deepEqual(
+    at(ledger, "balance").map((v) => v === null),
+    [false, true, true],
+  );
 });

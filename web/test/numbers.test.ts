@@ -39,5 +39,15 @@ test("ticks tell their neighbours apart", () => {
 
 test("CSV keeps every digit, and quotes names that need it", () => {
   const x = 0.1 + 0.2;
-  assert.equal(csv(["a", 'b,"c"'], [[1, x], [null, 2]], 2), `a,"b,""c"""\n1,\n${x},2\n`);
+  assert.equal(
+    csv(
+      ["a", 'b,"c"'],
+      [
+        [1, x],
+        [null, 2],
+      ],
+      2,
+    ),
+    `a,"b,""c"""\n1,\n${x},2\n`,
+  );
 });

@@ -27,5 +27,15 @@ export function stepRow(change: Partial<StepRow> = {}): StepRow {
 
 export function iterationRow(change: Partial<IterationRow> = {}): IterationRow {
   const seconds = { hessian: 1, factorize: 2, solve: 3, line_search: 4, gradient: 5 };
-  return { value: 1, gradient_norm: 1, decrement: 1, alpha: 1, projected_elements: 0, linear_iterations: 0, seconds, trials: [], ...change };
+  return {
+    value: 1,
+    gradient_norm: 1,
+    decrement: 1,
+    alpha: 1,
+    projected_elements: 0,
+    linear_iterations: 0,
+    seconds,
+    trials: [],
+    ...change,
+  };
 }

@@ -2,7 +2,10 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { alphaRange, searchRange } from "../src/plots/search";
 
-const trial = (alpha: number, accepted: boolean): { alpha: number; value: number; bound: number; accepted: boolean } => ({ alpha, value: 0, bound: 0, accepted });
+const trial = (
+  alpha: number,
+  accepted: boolean,
+): { alpha: number; value: number; bound: number; accepted: boolean } => ({ alpha, value: 0, bound: 0, accepted });
 
 test("the axis shows the valley, not the wall behind it", () => {
   const [low, high] = searchRange([0, -1, 1e6, null], [0, -1.1], [1e9, -1]);

@@ -25,7 +25,13 @@ test("a bucket without values stays empty", () => {
 
 test("two tables merge over the union of their x", () => {
   const both = merged({ x: [1, 2, 3], columns: [[10, 20, 30]] }, { x: [1.5, 2], columns: [[1, 2]] });
-  assert.deepEqual(both, { x: [1, 1.5, 2, 3], columns: [[10, null, 20, 30], [null, 1, 2, null]] });
+  assert.deepEqual(both, {
+    x: [1, 1.5, 2, 3],
+    columns: [
+      [10, null, 20, 30],
+      [null, 1, 2, null],
+    ],
+  });
 });
 
 test("rows are found by their x", () => {

@@ -3,7 +3,8 @@ import { test } from "node:test";
 import { aboveLowest, pace, stepText, totalSeconds } from "../src/plots/words";
 import { iterationRow, stepRow } from "./rowsOfSteps";
 
-const withNorms = (norms: number[]): ReturnType<typeof stepRow> => stepRow({ iterations: norms.map((gradient_norm) => iterationRow({ gradient_norm })) });
+const withNorms = (norms: number[]): ReturnType<typeof stepRow> =>
+  stepRow({ iterations: norms.map((gradient_norm) => iterationRow({ gradient_norm })) });
 
 test("squaring is told from a steady pace", () => {
   assert.equal(pace([1, 1e-1, 1e-2, 1e-4, 1e-8]).pace, "squaring");
@@ -28,9 +29,14 @@ test("a converged step tells its residual and its pace", () => {
 
 test("a failure never reads like success", () => {
   const failed = stepRow({ success: false, status: "iteration_limit", residual: 1, iterations: [iterationRow()] });
-  assert.equal(stepText(failed, true), "Not converged (iteration limit) after 1 iteration: the residual, 1 N, is above the threshold of 1 mN.");
+  assert.equal(
+    stepText(failed, true),
+    "Not converged (iteration limit) after 1 iteration: the residual, 1 N, is above the threshold of 1 mN.",
+  );
   const explained = { ...failed, words: { cause: "no trial was accepted", place: "", remedy: "lower c." } };
   assert.equal(stepText(explained, true), "No trial was accepted. Lower c.");
+  const byKey = { ...failed, words: { cause: "slow", place: "", remedy: 'solver.method = "newton"' } };
+  assert.equal(stepText(byKey, true), `Slow. solver.method = "newton".`);
 });
 
 test("a rejected first trial is mentioned", () => {
@@ -38,7 +44,10 @@ test("a rejected first trial is mentioned", () => {
     { alpha: 1, value: 5, bound: 1, accepted: false },
     { alpha: 0.5, value: 0.5, bound: 1, accepted: true },
   ];
-  assert.match(stepText(stepRow({ iterations: [iterationRow({ trials })] }), true), /In 1 iteration the line search rejected the first trial/);
+  assert.match(
+    stepText(stepRow({ iterations: [iterationRow({ trials })] }), true),
+    /In 1 iteration the line search rejected the first trial/,
+  );
 });
 
 test("an explicit scheme minimises nothing", () => {

@@ -3,7 +3,17 @@ import type { Page, Panel } from "../page";
 import type { MaybeNumber, SideName } from "../protocol";
 import type { Store } from "../store";
 import { Chart, type Curve } from "../plots/chart";
-import { button, checkbox, choice, download, downloadCanvas, element, fileName, numberField, oncePerFrame } from "../plots/dom";
+import {
+  button,
+  checkbox,
+  choice,
+  download,
+  downloadCanvas,
+  element,
+  fileName,
+  numberField,
+  oncePerFrame,
+} from "../plots/dom";
 import { balanceText, Ledger, ledgerColumns } from "../plots/ledger";
 import { csv, short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
@@ -30,10 +40,19 @@ class EnergyPanel implements Panel {
   private readonly note = element("span", { class: "plot-note", role: "status" });
   private readonly ledgers: Record<SideName, Ledger | null> = { a: null, b: null };
   private readonly typed = numberField("", "Length of the window [s]", 1, { min: 1e-6 }, () => this.setWindow());
-  private readonly windows = choice("Window", "Which part of the time is shown; drag in the plot to zoom, double-click for all", kWindows, "all", () =>
-    this.setWindow(),
+  private readonly windows = choice(
+    "Window",
+    "Which part of the time is shown; drag in the plot to zoom, double-click for all",
+    kWindows,
+    "all",
+    () => this.setWindow(),
   );
-  private readonly logSwitch = checkbox("log", "Logarithmic axis, of absolute values; zeros have no place on it", false, () => this.configure());
+  private readonly logSwitch = checkbox(
+    "log",
+    "Logarithmic axis, of absolute values; zeros have no place on it",
+    false,
+    () => this.configure(),
+  );
   private range: [number, number] | null = null; // zoomed by the mouse [s]
   private visible = false;
   private byStep = false; // time does not pass: statics
@@ -46,7 +65,10 @@ class EnergyPanel implements Panel {
     this.typed.element.hidden = true;
     const bar = element("div", { class: "plot-bar" }, this.windows.element, this.typed.element, this.logSwitch.element);
     bar.append(button("CSV", "Save every column with all its digits", () => this.saveCsv()));
-    bar.append(button("PNG", "Save the plot as a picture", () => this.savePng()), this.note);
+    bar.append(
+      button("PNG", "Save the plot as a picture", () => this.savePng()),
+      this.note,
+    );
     const fill = element("div", { class: "plot-fill" }, this.chart.element);
     this.element.append(bar, fill);
     store.on("scene", (side) => this.newScene(side));
@@ -152,7 +174,11 @@ class EnergyPanel implements Panel {
 
   private windowLength(): number | null {
     const value = this.windows.select.value;
-    return value === "all" ? null : value === "typed" ? Math.max(1e-6, this.typed.input.valueAsNumber || 1) : Number(value);
+    return value === "all"
+      ? null
+      : value === "typed"
+        ? Math.max(1e-6, this.typed.input.valueAsNumber || 1)
+        : Number(value);
   }
 
   private setWindow(): void {
@@ -224,7 +250,12 @@ class EnergyPanel implements Panel {
     }));
     const suffixed = (name: string, side: SideName): string => (sides.length > 1 ? `${name}_${side}` : name);
     const names = sides.flatMap(({ side, ledger }) =>
-      ["time", ...ledgerColumns(ledger.potentials).map((c) => c.key), "residual_work_of_step", "ledger_error_of_step"].map((n) => suffixed(n, side)),
+      [
+        "time",
+        ...ledgerColumns(ledger.potentials).map((c) => c.key),
+        "residual_work_of_step",
+        "ledger_error_of_step",
+      ].map((n) => suffixed(n, side)),
     );
     const [first, second] = tables;
     if (!first) return;
@@ -235,12 +266,19 @@ class EnergyPanel implements Panel {
 
   private savePng(): void {
     const sides = this.shown().map(({ side }) => this.store.side(side)?.scene.label || side);
-    const picture = this.chart.picture(`${this.sceneName()}: energy${sides.length > 1 ? ` (${sides[0]}; dashed: ${sides[1]})` : ""}`);
+    const picture = this.chart.picture(
+      `${this.sceneName()}: energy${sides.length > 1 ? ` (${sides[0]}; dashed: ${sides[1]})` : ""}`,
+    );
     if (picture) downloadCanvas(fileName(this.sceneName(), "energy.png"), picture);
   }
 
   private save(): unknown {
-    return { window: this.windows.select.value, typed: this.typed.input.value, log: this.logSwitch.input.checked, hidden: [...this.chart.hidden] };
+    return {
+      window: this.windows.select.value,
+      typed: this.typed.input.value,
+      log: this.logSwitch.input.checked,
+      hidden: [...this.chart.hidden],
+    };
   }
 
   private restore(saved: unknown): void {
@@ -250,7 +288,8 @@ class EnergyPanel implements Panel {
     if (Number(kept.typed) > 0) this.typed.input.value = String(kept.typed);
     this.logSwitch.input.checked = kept.log === true;
     this.chart.hidden.clear();
-    if (Array.isArray(kept.hidden)) for (const key of kept.hidden) if (typeof key === "string") this.chart.hidden.add(key);
+    if (Array.isArray(kept.hidden))
+      for (const key of kept.hidden) if (typeof key === "string") this.chart.hidden.add(key);
     this.setWindow();
     this.configure();
   }

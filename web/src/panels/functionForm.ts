@@ -9,7 +9,12 @@ export const kFunctions = [
   ["formula", "a formula of x and y"],
 ] as const;
 
-const kStarts: Record<string, [number, number]> = { rosenbrock: [-0.8, 0.6], two_bump: [-0.4, 0.3], quadratic: [1.2, 0.9], formula: [1, 1] };
+const kStarts: Record<string, [number, number]> = {
+  rosenbrock: [-0.8, 0.6],
+  two_bump: [-0.4, 0.3],
+  quadratic: [1.2, 0.9],
+  formula: [1, 1],
+};
 
 const kMethods = [
   ["newton", "Newton"],
@@ -19,7 +24,9 @@ const kMethods = [
   ["nonlinear_cg", "nonlinear CG"],
   ["vertex_descent", "vertex descent"],
 ] as const;
-const kDefiniteness = ["auto", "on_demand", "progressive", "clamped", "absolute", "exact"].map((name) => [name, name.replace("_", " ")] as const);
+const kDefiniteness = ["auto", "on_demand", "progressive", "clamped", "absolute", "exact"].map(
+  (name) => [name, name.replace("_", " ")] as const,
+);
 const kTests = [
   ["textbook", "textbook (Armijo)"],
   ["slide", "as on the slide"],
@@ -40,7 +47,8 @@ export interface Preset {
 export const kPresets: Preset[] = [
   {
     title: "Zig-zag",
-    shows: "Gradient descent: the negative gradient points across the valley, not along it: the path jumps from wall to wall and creeps. Newton's method takes one iteration here.",
+    shows:
+      "Gradient descent: the negative gradient points across the valley, not along it: the path jumps from wall to wall and creeps. Newton's method takes one iteration here.",
     name: "quadratic",
     start: [0.3, 1.3],
     settings: { method: "gradient_descent", max_iterations: 200 },
@@ -50,7 +58,8 @@ export const kPresets: Preset[] = [
   },
   {
     title: "Overshoot",
-    shows: "Newton's method: iteration 1 goes straight to the model's minimum and lands far up on the other side: the orange model is right only nearby. Nothing stops it without a line search.",
+    shows:
+      "Newton's method: iteration 1 goes straight to the model's minimum and lands far up on the other side: the orange model is right only nearby. Nothing stops it without a line search.",
     name: "rosenbrock",
     start: [-0.2, -0.2],
     settings: { method: "newton", "line_search.test": "none", definiteness: "exact" },
@@ -60,7 +69,8 @@ export const kPresets: Preset[] = [
   },
   {
     title: "Backtracking",
-    shows: "The same start and the same direction, but trials that do not lower f enough are rejected (crosses) and the step is halved until one does (dot).",
+    shows:
+      "The same start and the same direction, but trials that do not lower f enough are rejected (crosses) and the step is halved until one does (dot).",
     name: "rosenbrock",
     start: [-0.2, -0.2],
     settings: { method: "newton", "line_search.test": "textbook" },
@@ -70,7 +80,8 @@ export const kPresets: Preset[] = [
   },
   {
     title: "Indefinite",
-    shows: "Between dip and bump the Hessian is indefinite and the model has no minimum: its negative curvature is taken as positive before Newton's step is made.",
+    shows:
+      "Between dip and bump the Hessian is indefinite and the model has no minimum: its negative curvature is taken as positive before Newton's step is made.",
     name: "two_bump",
     start: [-0.2, 0.6],
     settings: { method: "newton", definiteness: "absolute" },
@@ -95,9 +106,20 @@ const kDefaults: Record<string, SettingValue> = {
 export class FunctionForm {
   readonly element = element("form", { class: "functions-form", "aria-label": "Function and method" });
   readonly error = element("div", { class: "plot-error", role: "alert", id: "function-error" });
-  private readonly formula = element("input", { type: "text", "aria-label": "Formula of x and y", "aria-describedby": "function-error", spellcheck: "false" });
+  private readonly formula = element("input", {
+    type: "text",
+    "aria-label": "Formula of x and y",
+    "aria-describedby": "function-error",
+    spellcheck: "false",
+  });
   private readonly name = choice("f", "The function", kFunctions, "rosenbrock", () => this.nameChanged());
-  private readonly x = numberField("start x", "x of the start; drag the ring in the picture, or Shift and the arrow keys there", -0.8, {}, () => this.changed());
+  private readonly x = numberField(
+    "start x",
+    "x of the start; drag the ring in the picture, or Shift and the arrow keys there",
+    -0.8,
+    {},
+    () => this.changed(),
+  );
   private readonly y = numberField("y", "y of the start", 0.6, {}, () => this.changed());
   private readonly choices = new Map<string, HTMLSelectElement>();
   private readonly numbers = new Map<string, HTMLInputElement>();
@@ -111,7 +133,10 @@ export class FunctionForm {
       event.preventDefault();
       changed();
     });
-    const method = [this.pick("method", "method", "How the direction is found", kMethods), this.pick("definiteness", "definiteness", "What is done to an indefinite Hessian", kDefiniteness)];
+    const method = [
+      this.pick("method", "method", "How the direction is found", kMethods),
+      this.pick("definiteness", "definiteness", "What is done to an indefinite Hessian", kDefiniteness),
+    ];
     const search = [
       this.pick("line_search.test", "line search", "When a trial is accepted", kTests),
       this.number("line_search.alpha_max", "α max", "The first trial", { min: 1e-12, max: 1e6 }),
@@ -123,7 +148,15 @@ export class FunctionForm {
       this.number("max_iterations", "at most", "Iterations", { min: 1, max: 500, step: 1 }),
     ];
     const row = (...children: HTMLElement[]): HTMLElement => element("div", { class: "pair" }, ...children);
-    this.element.append(row(this.name.element), this.formula, this.error, row(this.x.element, this.y.element), row(...method), row(...search), row(...ends));
+    this.element.append(
+      row(this.name.element),
+      this.formula,
+      this.error,
+      row(this.x.element, this.y.element),
+      row(...method),
+      row(...search),
+      row(...ends),
+    );
   }
 
   get start(): [number, number] {
@@ -139,7 +172,8 @@ export class FunctionForm {
   question(iteration: number, samples: number): FunctionQuestion {
     const settings: Record<string, SettingValue> = { ...this.others };
     for (const [key, select] of this.choices) settings[key] = select.value;
-    for (const [key, input] of this.numbers) settings[key] = Number.isFinite(input.valueAsNumber) ? input.valueAsNumber : kDefaults[key]!;
+    for (const [key, input] of this.numbers)
+      settings[key] = Number.isFinite(input.valueAsNumber) ? input.valueAsNumber : kDefaults[key]!;
     const name = this.name.select.value === "formula" ? this.formula.value : this.name.select.value;
     return { name, start: this.start, settings, iteration, samples };
   }
@@ -151,7 +185,9 @@ export class FunctionForm {
     this.formula.hidden = named;
     [this.x.input.valueAsNumber, this.y.input.valueAsNumber] = question.start;
     const settings = { ...kDefaults, ...question.settings };
-    this.others = Object.fromEntries(Object.entries(question.settings).filter(([key]) => !this.choices.has(key) && !this.numbers.has(key)));
+    this.others = Object.fromEntries(
+      Object.entries(question.settings).filter(([key]) => !this.choices.has(key) && !this.numbers.has(key)),
+    );
     for (const [key, select] of this.choices) select.value = String(settings[key]);
     for (const [key, input] of this.numbers) input.value = brief(Number(settings[key]));
   }
@@ -169,7 +205,12 @@ export class FunctionForm {
     return made.element;
   }
 
-  private number(key: string, text: string, title: string, limits: { min?: number; max?: number; step?: number }): HTMLElement {
+  private number(
+    key: string,
+    text: string,
+    title: string,
+    limits: { min?: number; max?: number; step?: number },
+  ): HTMLElement {
     const made = numberField(text, title, Number(kDefaults[key]), limits, this.changed);
     made.input.value = brief(Number(kDefaults[key]));
     this.numbers.set(key, made.input);

@@ -9,7 +9,8 @@ import { legendOf, type Sign } from "../plots/legend";
 import { plural, short } from "../plots/numbers";
 import { sentence } from "../plots/words";
 import { SearchChart } from "../plots/search";
-import { SurfaceView, type Mark, type SurfaceContent } from "../plots/surface";
+import { SurfaceView } from "../plots/surface";
+import type { Mark, SurfaceContent } from "../plots/surfaceBody";
 import { FunctionForm, kPresets, type Preset } from "./functionForm";
 
 const kSamples = 81;
@@ -26,15 +27,32 @@ export function makeFunctionsPanel(store: Store, page: Page): FunctionsPanel {
 class PlanarPanel implements FunctionsPanel {
   readonly name = "functions";
   readonly title = "Functions";
-  readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Minimising a function of two variables" });
+  readonly element = element("div", {
+    class: "plot-panel",
+    role: "group",
+    "aria-label": "Minimising a function of two variables",
+  });
   private readonly form = new FunctionForm(() => this.formChanged());
   private readonly view = new SurfaceView();
   private readonly search = new SearchChart("f");
-  private readonly slider = element("input", { type: "range", min: "0", max: "0", value: "0", "aria-label": "Iteration" });
+  private readonly slider = element("input", {
+    type: "range",
+    min: "0",
+    max: "0",
+    value: "0",
+    "aria-label": "Iteration",
+  });
   private readonly where = element("strong");
   private readonly playButton = button("▶ play", "Goes through the iterations", () => this.togglePlay());
-  private readonly model = checkbox("quadratic model", "Shows the model that this iteration minimised", true, () => this.draw());
-  private readonly log = checkbox("log height", "Heights by the logarithm of f above its lowest value here", false, () => this.draw());
+  private readonly model = checkbox("quadratic model", "Shows the model that this iteration minimised", true, () =>
+    this.draw(),
+  );
+  private readonly log = checkbox(
+    "log height",
+    "Heights by the logarithm of f above its lowest value here",
+    false,
+    () => this.draw(),
+  );
   private readonly words = element("div", { class: "plot-note", role: "status" });
   private readonly about = element("div", { class: "plot-note" });
   private readonly legend = element("div");
@@ -57,11 +75,31 @@ class PlanarPanel implements FunctionsPanel {
     const presets = element("div", { class: "pair", role: "group", "aria-label": "Examples" });
     for (const preset of kPresets) presets.append(button(preset.title, preset.shows, () => this.openPreset(preset)));
     this.form.element.prepend(presets);
-    const walk = element("div", { class: "plot-bar" }, this.playButton, this.slider, this.where, this.model.element, this.log.element);
-    walk.append(button("PNG", "Save the picture", () => this.savePng()), this.words);
+    const walk = element(
+      "div",
+      { class: "plot-bar" },
+      this.playButton,
+      this.slider,
+      this.where,
+      this.model.element,
+      this.log.element,
+    );
+    walk.append(
+      button("PNG", "Save the picture", () => this.savePng()),
+      this.words,
+    );
     const chart = element("div", { class: "functions-chart" }, this.search.element);
     const right = element("div", { class: "functions-side" }, this.about, chart, this.legend);
-    this.element.append(walk, element("div", { class: "plot-columns plot-fill" }, this.form.element, element("div", { class: "plot-fill" }, this.view.element), right));
+    this.element.append(
+      walk,
+      element(
+        "div",
+        { class: "plot-columns plot-fill" },
+        this.form.element,
+        element("div", { class: "plot-fill" }, this.view.element),
+        right,
+      ),
+    );
     this.slider.addEventListener("input", () => {
       this.stop();
       this.goTo(this.slider.valueAsNumber);
@@ -70,7 +108,10 @@ class PlanarPanel implements FunctionsPanel {
     this.view.nudged = (dx, dy) => this.nudge(dx, dy);
     page.on("theme", () => this.retheme());
     page.on("layout", () => this.retheme());
-    page.keep("functions", { save: () => this.form.question(this.iteration, kSamples), restore: (saved) => this.restore(saved) });
+    page.keep("functions", {
+      save: () => this.form.question(this.iteration, kSamples),
+      restore: (saved) => this.restore(saved),
+    });
   }
 
   show(visible: boolean): void {
@@ -162,7 +203,11 @@ class PlanarPanel implements FunctionsPanel {
     const reply = this.reply;
     if (!reply) return;
     const [x, y] = this.form.start;
-    this.drag(x + (dx * (reply.upper[0] - reply.lower[0])) / 100, y + (dy * (reply.upper[1] - reply.lower[1])) / 100, true);
+    this.drag(
+      x + (dx * (reply.upper[0] - reply.lower[0])) / 100,
+      y + (dy * (reply.upper[1] - reply.lower[1])) / 100,
+      true,
+    );
   }
 
   private retheme(): void {
@@ -191,7 +236,11 @@ class PlanarPanel implements FunctionsPanel {
   }
 
   private content(reply: FunctionReply): SurfaceContent {
-    const grid: Grid = { x: uniform(reply.lower[0], reply.upper[0], reply.samples), y: uniform(reply.lower[1], reply.upper[1], reply.samples), value: reply.value };
+    const grid: Grid = {
+      x: uniform(reply.lower[0], reply.upper[0], reply.samples),
+      y: uniform(reply.lower[1], reply.upper[1], reply.samples),
+      value: reply.value,
+    };
     const showModel = this.model.input.checked && reply.iterations.length > 0;
     const from = reply.path[this.iteration];
     const to = reply.path[this.iteration + 1];
@@ -200,20 +249,35 @@ class PlanarPanel implements FunctionsPanel {
     this.addTrials(reply, marks);
     if (showModel) this.addModel(reply, grid, marks);
     if (reply.minimizer) {
-      marks.push({ x: reply.minimizer[0], y: reply.minimizer[1], value: null, shape: "cross", colour: "good", size: 11, label: "minimum" });
+      marks.push({
+        x: reply.minimizer[0],
+        y: reply.minimizer[1],
+        value: null,
+        shape: "cross",
+        colour: "good",
+        size: 11,
+        label: "minimum",
+      });
       this.signs.push({ sign: "✕", colour: "good", text: "the minimum of f" });
     }
     if (from) marks.push({ x: from.x, y: from.y, value: from.value, shape: "dot", colour: "accent", size: 12 });
     if (to) marks.push({ x: to.x, y: to.y, value: to.value, shape: "dot", colour: "good", size: 12 });
     const [x, y] = this.form.start;
     marks.push({ x, y, value: null, shape: "ring", colour: "bad", size: 13, label: "start: drag me" });
-    this.signs.push({ sign: "●", colour: "accent", text: "this iteration begins here" }, { sign: "●", colour: "good", text: "and ends here" });
+    this.signs.push(
+      { sign: "●", colour: "accent", text: "this iteration begins here" },
+      { sign: "●", colour: "good", text: "and ends here" },
+    );
     this.signs.push({ sign: "•─", colour: "text", text: "iterates so far" });
     return {
       label: `f = ${reply.formula}, with the path of ${plural(reply.iterations.length, "iteration")}`,
       grid,
       axes: { x: "x", y: "y", value: "f" },
-      model: showModel ? grid.value.map((_, k) => quadraticAt(reply.model, grid.x[k % reply.samples]!, grid.y[Math.floor(k / reply.samples)]!)) : null,
+      model: showModel
+        ? grid.value.map((_, k) =>
+            quadraticAt(reply.model, grid.x[k % reply.samples]!, grid.y[Math.floor(k / reply.samples)]!),
+          )
+        : null,
       path: reply.path.slice(0, this.timer === null && this.iteration === 0 ? undefined : this.iteration + 2),
       draped: true,
       direction: null,
@@ -231,31 +295,55 @@ class PlanarPanel implements FunctionsPanel {
     const rejected = reply.trials.filter((trial) => !trial.accepted);
     for (const trial of rejected) {
       const f = trial.alpha / alpha;
-      marks.push({ x: from.x + f * (to.x - from.x), y: from.y + f * (to.y - from.y), value: trial.value, shape: "cross", colour: "bad", size: 10 });
+      marks.push({
+        x: from.x + f * (to.x - from.x),
+        y: from.y + f * (to.y - from.y),
+        value: trial.value,
+        shape: "cross",
+        colour: "bad",
+        size: 10,
+      });
     }
-    if (rejected.length > 0) this.signs.push({ sign: "✕", colour: "bad", text: plural(rejected.length, "rejected trial") });
+    if (rejected.length > 0)
+      this.signs.push({ sign: "✕", colour: "bad", text: plural(rejected.length, "rejected trial") });
   }
 
   private addModel(reply: FunctionReply, grid: Grid, marks: Mark[]): void {
     this.signs.push({ sign: "▇", colour: "series2", text: "this iteration's quadratic model" });
     const lowest = minimizerOf(reply.model);
     if (!lowest) return void this.signs.push({ sign: "◆", colour: "series2", text: "the model has no minimum" });
-    marks.push({ ...lowest, value: quadraticAt(reply.model, lowest.x, lowest.y), shape: "diamond", colour: "series2", size: 12 });
+    marks.push({
+      ...lowest,
+      value: quadraticAt(reply.model, lowest.x, lowest.y),
+      shape: "diamond",
+      colour: "series2",
+      size: 12,
+    });
     const place = isInside(grid, lowest) ? "" : `, outside at (${short(lowest.x, 3)}, ${short(lowest.y, 3)})`;
     this.signs.push({ sign: "◆", colour: "series2", text: `the model's minimum${place}` });
   }
 
   private savePng(): void {
     const name = this.form.question(0, 2).name;
-    const picture = this.reply && this.view.picture(`f = ${this.reply.formula}: iteration ${this.iteration} of ${this.reply.iterations.length}`, this.signs);
+    const picture =
+      this.reply &&
+      this.view.picture(
+        `f = ${this.reply.formula}: iteration ${this.iteration} of ${this.reply.iterations.length}`,
+        this.signs,
+      );
     if (picture) downloadCanvas(fileName(name, this.iteration) + ".png", picture);
   }
 
   private restore(saved: unknown): void {
     const kept = saved as Partial<FunctionQuestion> | null;
     const start = kept?.start;
-    if (typeof kept?.name !== "string" || !Array.isArray(start) || !start.every(Number.isFinite) || start.length !== 2) return;
-    this.form.fill({ name: kept.name, start, settings: typeof kept.settings === "object" && kept.settings !== null ? kept.settings : {} });
+    if (typeof kept?.name !== "string" || !Array.isArray(start) || !start.every(Number.isFinite) || start.length !== 2)
+      return;
+    this.form.fill({
+      name: kept.name,
+      start,
+      settings: typeof kept.settings === "object" && kept.settings !== null ? kept.settings : {},
+    });
     if (this.visible) this.formChanged();
     else this.asked = false;
   }

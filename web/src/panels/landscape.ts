@@ -7,7 +7,8 @@ import { button, checkbox, downloadCanvas, element, fileName, oncePerFrame } fro
 import { gridOf, isInside, minimizerOf, quadraticFrom, quadraticAt } from "../plots/grid";
 import { legendOf, type Sign } from "../plots/legend";
 import { plural, short } from "../plots/numbers";
-import { SurfaceView, type Mark, type SurfaceContent } from "../plots/surface";
+import { SurfaceView } from "../plots/surface";
+import type { Mark, SurfaceContent } from "../plots/surfaceBody";
 
 export function makeLandscapePanel(store: Store, page: Page): Panel {
   return new LandscapePanel(store, page);
@@ -20,8 +21,15 @@ class LandscapePanel implements Panel {
   private readonly chosen: Chosen;
   private readonly view = new SurfaceView();
   private readonly follow = checkbox("follow", "Stay at the newest step", true, (on) => this.chosen.follow(on));
-  private readonly model = checkbox("quadratic model", "Shows what Newton's method takes E for", true, () => this.draw());
-  private readonly log = checkbox("log height", "Heights by the logarithm of E above its lowest value here", false, () => this.draw());
+  private readonly model = checkbox("quadratic model", "Shows what Newton's method takes E for", true, () =>
+    this.draw(),
+  );
+  private readonly log = checkbox(
+    "log height",
+    "Heights by the logarithm of E above its lowest value here",
+    false,
+    () => this.draw(),
+  );
   private readonly where = element("strong");
   private readonly text = element("p", { class: "plot-note" });
   private readonly legend = element("div");
@@ -37,9 +45,23 @@ class LandscapePanel implements Panel {
   ) {
     this.chosen = chosenOf(store, page);
     const bar = element("div", { class: "plot-bar" });
-    bar.append(button("◀", "The iteration before", () => this.chosen.walk(-1)), this.where, button("▶", "The iteration after", () => this.chosen.walk(1)));
-    bar.append(this.follow.element, this.model.element, this.log.element, button("PNG", "Save the picture", () => this.savePng()), this.note);
-    const side = element("div", { class: "surface-side", style: "flex: 0 1 min(32em, 45%)" }, element("div", { class: "surface-texts" }, this.legend, this.text));
+    bar.append(
+      button("◀", "The iteration before", () => this.chosen.walk(-1)),
+      this.where,
+      button("▶", "The iteration after", () => this.chosen.walk(1)),
+    );
+    bar.append(
+      this.follow.element,
+      this.model.element,
+      this.log.element,
+      button("PNG", "Save the picture", () => this.savePng()),
+      this.note,
+    );
+    const side = element(
+      "div",
+      { class: "surface-side", style: "flex: 0 1 min(32em, 45%)" },
+      element("div", { class: "surface-texts" }, this.legend, this.text),
+    );
     const fill = element("div", { class: "plot-fill" }, this.view.element);
     this.element.append(bar, element("div", { class: "plot-columns plot-fill" }, fill, side));
     this.chosen.on("changed", this.refresh);
@@ -64,16 +86,27 @@ class LandscapePanel implements Panel {
     this.follow.input.checked = this.chosen.following;
     const row = this.chosen.row();
     const count = row?.iterations.length ?? 0;
-    this.where.textContent = count > 0 ? `step ${step}, iteration ${iteration} of ${count}` : step > 0 ? `step ${step}` : "no step yet";
+    this.where.textContent =
+      count > 0 ? `step ${step}, iteration ${iteration} of ${count}` : step > 0 ? `step ${step}` : "no step yet";
     if (count === 0) {
       const implicit = this.store.side(side)?.scene.implicit ?? true;
-      return this.settle(null, implicit ? "There is nothing to see before the first iteration." : "This scheme minimises nothing: there is no landscape.");
+      return this.settle(
+        null,
+        implicit
+          ? "There is nothing to see before the first iteration."
+          : "This scheme minimises nothing: there is no landscape.",
+      );
     }
     this.chosen.look();
     const seen = this.chosen.seen;
     if (!seen) return this.settle(null, "The program is asked for E around the iteration ...");
     if (!seen.reply) return this.settle(null, `Not known here: ${seen.why}`);
-    this.settle(seen.reply, this.chosen.isSeen() ? "" : `Shown: step ${seen.at.step}, iteration ${seen.at.iteration}; the program is asked for this one.`);
+    this.settle(
+      seen.reply,
+      this.chosen.isSeen()
+        ? ""
+        : `Shown: step ${seen.at.step}, iteration ${seen.at.iteration}; the program is asked for this one.`,
+    );
   }
 
   private settle(reply: IterationReply | null, note: string): void {
@@ -101,10 +134,18 @@ class LandscapePanel implements Panel {
       { sign: "╌", colour: "accent", text: "direction d" },
     ];
     if (showModel) signs.push({ sign: "▇", colour: "series2", text: "quadratic model" });
-    for (const trial of reply.trials.filter((t) => !t.accepted)) marks.push({ x: trial.alpha, y: 0, value: trial.value, shape: "cross", colour: "bad", size: 10 });
+    for (const trial of reply.trials.filter((t) => !t.accepted))
+      marks.push({ x: trial.alpha, y: 0, value: trial.value, shape: "cross", colour: "bad", size: 10 });
     if (marks.length > 0) signs.push({ sign: "✕", colour: "bad", text: plural(marks.length, "rejected trial") });
     if (showModel && lowest && quadratic) {
-      marks.push({ ...lowest, value: quadraticAt(quadratic, lowest.x, lowest.y), shape: "diamond", colour: "series2", size: 12, label: "model's minimum" });
+      marks.push({
+        ...lowest,
+        value: quadraticAt(quadratic, lowest.x, lowest.y),
+        shape: "diamond",
+        colour: "series2",
+        size: 12,
+        label: "model's minimum",
+      });
       const place = isInside(grid, lowest) ? "" : `, outside at s = ${short(lowest.x, 3)}, t = ${short(lowest.y, 3)}`;
       signs.push({ sign: "◆", colour: "series2", text: `the model's minimum${place}` });
     } else if (showModel) signs.push({ sign: "◆", colour: "series2", text: "the model has no minimum in this plane" });
@@ -113,7 +154,11 @@ class LandscapePanel implements Panel {
     const accepted = reply.trials.find((t) => t.accepted)?.value ?? null;
     if (reply.alpha > 0) {
       marks.push({ x: reply.alpha, y: 0, value: accepted, shape: "dot", colour: "good", size: 13, label: "accepted" });
-      signs.push({ sign: "●", colour: "good", text: `accepted: α = ${short(reply.alpha, 3)}${accepted === null ? "" : `, E lower by ${short(reply.value - accepted, 3)}`}` });
+      signs.push({
+        sign: "●",
+        colour: "good",
+        text: `accepted: α = ${short(reply.alpha, 3)}${accepted === null ? "" : `, E lower by ${short(reply.value - accepted, 3)}`}`,
+      });
     } else signs.push({ sign: "✕", colour: "bad", text: "no step was found along d" });
     signs.push({ sign: "•─", colour: "text", text: "iterates, projected" });
     this.signs = signs;
@@ -147,7 +192,8 @@ class LandscapePanel implements Panel {
   private savePng(): void {
     const { step, iteration } = this.chosen;
     const name = this.store.side(this.chosen.side)?.scene.name ?? "scene";
-    const picture = this.reply && this.view.picture(`${name}: energy landscape of step ${step}, iteration ${iteration}`, this.signs);
+    const picture =
+      this.reply && this.view.picture(`${name}: energy landscape of step ${step}, iteration ${iteration}`, this.signs);
     if (picture) downloadCanvas(fileName(name, "landscape", step, iteration) + ".png", picture);
   }
 

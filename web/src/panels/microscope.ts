@@ -21,7 +21,9 @@ class MicroscopePanel implements Panel {
   readonly title = "Microscope";
   readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Solver microscope" });
   private readonly chosen: Chosen;
-  private readonly sides = choice("", "Which side of the comparison", [], "a", (side) => this.chooseSide(side as SideName));
+  private readonly sides = choice("", "Which side of the comparison", [], "a", (side) =>
+    this.chooseSide(side as SideName),
+  );
   private readonly follow = checkbox("follow", "Stay at the newest step", true, (on) => this.chosen.follow(on));
   private readonly words = element("div", { class: "plot-note", role: "status" });
   private readonly worst = element("ol", { class: "worst", hidden: "" });
@@ -48,7 +50,11 @@ class MicroscopePanel implements Panel {
     private readonly page: Page,
   ) {
     this.chosen = chosenOf(store, page);
-    const worst = button("Worst elements", "Lists the tets that are worst off and marks them on the body", () => void this.findWorst());
+    const worst = button(
+      "Worst elements",
+      "Lists the tets that are worst off and marks them on the body",
+      () => void this.findWorst(),
+    );
     const bar = element("div", { class: "plot-bar" }, this.sides.element, this.follow.element, worst, this.words);
     const tables = element("div", { class: "microscope-tables" }, this.steps.element, this.iterations.element);
     this.element.append(bar, this.worst, element("div", { class: "microscope plot-fill" }, tables, this.grid));
@@ -89,9 +95,19 @@ class MicroscopePanel implements Panel {
     };
     return [
       { title: "step", meaning: "number of the time step; the newest is first", text: of((s) => String(s.step)) },
-      { title: "status", meaning: "how the minimisation ended", left: true, class: "status", text: of((s) => statusText(s)) },
+      {
+        title: "status",
+        meaning: "how the minimisation ended",
+        left: true,
+        class: "status",
+        text: of((s) => statusText(s)),
+      },
       { title: "it.", meaning: "iterations of the minimiser", text: of((s) => String(s.iterations.length)) },
-      { title: "resid.", meaning: "norm of the forces that are left over, in parts of the threshold that it must be below", text: of(residualText) },
+      {
+        title: "resid.",
+        meaning: "norm of the forces that are left over, in parts of the threshold that it must be below",
+        text: of(residualText),
+      },
       { title: "took", meaning: "wall time", text: of((s) => (s.status === "" ? "" : withUnit(s.seconds, "s", 3))) },
     ];
   }
@@ -105,10 +121,26 @@ class MicroscopePanel implements Panel {
       { title: "#", meaning: "iteration of the step", text: (row) => this.mark(row) },
       { title: "E", meaning: "the objective before the iteration", text: of((it) => short(it.value, 5)) },
       { title: "|g|", meaning: "norm of its gradient", text: of((it) => short(it.gradient_norm, 3)) },
-      { title: "decr.", meaning: "−g·d / 2: what the quadratic model promises", text: of((it) => short(it.decrement, 3)) },
-      { title: "α", meaning: "accepted step length; 0: none was found", text: of((it) => (it.alpha === 0 ? "none" : short(it.alpha, 3))) },
-      { title: "trials", meaning: "of the line search", text: of((it) => (it.trials.length > 0 ? String(it.trials.length) : "–")) },
-      { title: "proj.", meaning: "elements whose Hessian was made definite", text: of((it) => String(it.projected_elements)) },
+      {
+        title: "decr.",
+        meaning: "−g·d / 2: what the quadratic model promises",
+        text: of((it) => short(it.decrement, 3)),
+      },
+      {
+        title: "α",
+        meaning: "accepted step length; 0: none was found",
+        text: of((it) => (it.alpha === 0 ? "none" : short(it.alpha, 3))),
+      },
+      {
+        title: "trials",
+        meaning: "of the line search",
+        text: of((it) => (it.trials.length > 0 ? String(it.trials.length) : "–")),
+      },
+      {
+        title: "proj.",
+        meaning: "elements whose Hessian was made definite",
+        text: of((it) => String(it.projected_elements)),
+      },
       { title: "inner", meaning: "iterations of the linear solver", text: of((it) => String(it.linear_iterations)) },
       { title: "took", meaning: "wall time", text: of((it) => withUnit(totalSeconds(it), "s", 3)) },
     ];
@@ -116,13 +148,19 @@ class MicroscopePanel implements Panel {
 
   private mark(row: number): string {
     const count = this.chosen.row()?.iterations.length ?? 0;
-    const done = (this.store.state?.[this.chosen.side]?.iteration ?? -1) < 0 || this.stepAt(0)?.step !== this.chosen.step;
+    const done =
+      (this.store.state?.[this.chosen.side]?.iteration ?? -1) < 0 || this.stepAt(0)?.step !== this.chosen.step;
     return row === count - 1 && done ? `end ${row}` : String(row);
   }
 
   private chooseStep(row: number): void {
     const step = this.stepAt(row);
-    if (step) this.chosen.choose(this.chosen.side, step.step, Math.min(this.chosen.iteration, Math.max(0, step.iterations.length - 1)));
+    if (step)
+      this.chosen.choose(
+        this.chosen.side,
+        step.step,
+        Math.min(this.chosen.iteration, Math.max(0, step.iterations.length - 1)),
+      );
   }
 
   private chooseSide(side: SideName): void {
@@ -147,7 +185,9 @@ class MicroscopePanel implements Panel {
     const two = this.store.side("b") !== null;
     this.sides.element.hidden = !two;
     if (!two) return;
-    const options = (["a", "b"] as const).map((side) => new Option(`${side.toUpperCase()}: ${this.store.side(side)?.scene.label || side}`, side));
+    const options = (["a", "b"] as const).map(
+      (side) => new Option(`${side.toUpperCase()}: ${this.store.side(side)?.scene.label || side}`, side),
+    );
     const text = options.map((option) => option.text).join();
     if (this.sides.element.dataset.text !== text) this.sides.select.replaceChildren(...options);
     this.sides.element.dataset.text = text;
@@ -159,8 +199,12 @@ class MicroscopePanel implements Panel {
     const implicit = this.store.side(this.chosen.side)?.scene.implicit ?? true;
     const underWay = this.store.state?.[this.chosen.side]?.iteration ?? -1;
     const newest = row !== null && row === this.stepAt(0);
-    if (!row) this.words.textContent = implicit ? "No step has been taken yet." : "This scheme minimises nothing; no step has been taken yet.";
-    else if (newest && underWay >= 0) this.words.textContent = `Step ${row.step} is under way: ${row.iterations.length} of its iterations are done.`;
+    if (!row)
+      this.words.textContent = implicit
+        ? "No step has been taken yet."
+        : "This scheme minimises nothing; no step has been taken yet.";
+    else if (newest && underWay >= 0)
+      this.words.textContent = `Step ${row.step} is under way: ${row.iterations.length} of its iterations are done.`;
     else this.words.textContent = `Step ${row.step}. ${stepText(row, implicit)}`;
     this.words.dataset.kind = row && !row.success && !(newest && underWay >= 0) ? "bad" : "";
   }
@@ -179,7 +223,12 @@ class MicroscopePanel implements Panel {
     const settings = this.store.side(seen.at.side)?.scene.settings ?? [];
     const test = settings.find((setting) => setting.key.endsWith("line_search.test"))?.value;
     const about = this.chosen.isSeen() ? "" : `of step ${seen.at.step}, iteration ${seen.at.iteration}`;
-    return { curve: seen.reply.curve, trials: seen.reply.trials, test: typeof test === "string" ? test : "textbook", about };
+    return {
+      curve: seen.reply.curve,
+      trials: seen.reply.trials,
+      test: typeof test === "string" ? test : "textbook",
+      about,
+    };
   }
 
   // As many charts as there is room for.
@@ -210,11 +259,21 @@ class MicroscopePanel implements Panel {
   private async findWorst(): Promise<void> {
     try {
       const reply = await this.store.source.ask<WorstReply>({ ask: "worst", side: this.chosen.side });
-      const text = (item: WorstReply["items"][number]): string => `${item.what}: ${item.unit ? withUnit(item.value, item.unit) : short(item.value)}`;
-      const items = reply.items.map((item) => element("li", {}, button(text(item), "Mark it on the body", () => this.highlight(item, text(item)))));
+      const text = (item: WorstReply["items"][number]): string =>
+        `${item.what}: ${item.unit ? withUnit(item.value, item.unit) : short(item.value)}`;
+      const items = reply.items.map((item) =>
+        element(
+          "li",
+          {},
+          button(text(item), "Mark it on the body", () => this.highlight(item, text(item))),
+        ),
+      );
       this.worst.replaceChildren(...items);
       this.worst.hidden = items.length === 0;
-      this.page.emit("highlight", reply.items.map((item) => ({ positions: item.positions, text: text(item) })));
+      this.page.emit(
+        "highlight",
+        reply.items.map((item) => ({ positions: item.positions, text: text(item) })),
+      );
     } catch (reason) {
       this.page.notice(reason instanceof Error ? reason.message : String(reason), "error");
     }
@@ -227,7 +286,9 @@ class MicroscopePanel implements Panel {
   private restore(saved: unknown): void {
     const charts = (saved as { charts?: unknown } | null)?.charts;
     if (!Array.isArray(charts)) return;
-    this.names = kOrder.map((name, i) => (kCharts.some(([known]) => known === charts[i]) ? (charts[i] as ChartName) : name));
+    this.names = kOrder.map((name, i) =>
+      kCharts.some(([known]) => known === charts[i]) ? (charts[i] as ChartName) : name,
+    );
     this.charts.forEach((chart, i) => (chart.name = this.names[i]!));
     this.redraw();
   }

@@ -31,7 +31,13 @@ interface Plan {
   text: (column: number, row: number) => string;
 }
 
-function curve(key: string, label: string, meaning: string, colour: Curve["colour"], shape: Curve["shape"] = "both"): Curve {
+function curve(
+  key: string,
+  label: string,
+  meaning: string,
+  colour: Curve["colour"],
+  shape: Curve["shape"] = "both",
+): Curve {
   return { key, label, meaning, colour, shape, width: 1.75 };
 }
 
@@ -49,7 +55,12 @@ function convergence(rows: readonly IterationRow[]): Plan {
       y: { label: "", log: true },
       curves: [
         curve("gradient", "|g|", "norm of the gradient before the iteration", "series1"),
-        curve("energy", "E − lowest E", "the objective before the iteration, above its lowest value in this step", "series2"),
+        curve(
+          "energy",
+          "E − lowest E",
+          "the objective before the iteration, above its lowest value in this step",
+          "series2",
+        ),
         curve("decrement", "decrement", "−g·d / 2: what the quadratic model promises", "series3"),
       ],
     },
@@ -59,7 +70,13 @@ function convergence(rows: readonly IterationRow[]): Plan {
   };
 }
 
-function counted(rows: readonly IterationRow[], label: string, meaning: string, value: (row: IterationRow) => MaybeNumber, shape: Curve["shape"]): Plan {
+function counted(
+  rows: readonly IterationRow[],
+  label: string,
+  meaning: string,
+  value: (row: IterationRow) => MaybeNumber,
+  shape: Curve["shape"],
+): Plan {
   const column = rows.map(value);
   return {
     options: {
@@ -77,13 +94,23 @@ function counted(rows: readonly IterationRow[], label: string, meaning: string, 
 // Bars upon each other: a later one is drawn over the sum with the stages below it.
 function stages(rows: readonly IterationRow[]): Plan {
   const order = [...kStages].reverse();
-  const columns = order.map((_, i) => rows.map((row) => kStages.slice(0, kStages.length - i).reduce((sum, stage) => sum + row.seconds[stage], 0)));
+  const columns = order.map((_, i) =>
+    rows.map((row) => kStages.slice(0, kStages.length - i).reduce((sum, stage) => sum + row.seconds[stage], 0)),
+  );
   return {
     options: {
       label: "Time by stage over the iterations",
       x: { label: "iteration", integer: true },
       y: { label: "time", unit: "s" },
-      curves: order.map((stage) => curve(stage, stage.replace("_", " "), "wall time of this stage", kStageColours[kStages.indexOf(stage)]!, "bars")),
+      curves: order.map((stage) =>
+        curve(
+          stage,
+          stage.replace("_", " "),
+          "wall time of this stage",
+          kStageColours[kStages.indexOf(stage)]!,
+          "bars",
+        ),
+      ),
     },
     x: rows.map((_, i) => i),
     columns,
@@ -92,7 +119,10 @@ function stages(rows: readonly IterationRow[]): Plan {
 }
 
 function overSteps(steps: readonly StepRow[], width: number): Plan {
-  const whole = { x: steps.map((s) => s.step), columns: [steps.map((s) => s.iterations.length), steps.map((s) => (s.success ? null : s.iterations.length))] };
+  const whole = {
+    x: steps.map((s) => s.step),
+    columns: [steps.map((s) => s.iterations.length), steps.map((s) => (s.success ? null : s.iterations.length))],
+  };
   const table = thinned(whole, 0, steps.length, Math.max(100, width));
   return {
     options: {
@@ -122,7 +152,13 @@ function planOf(name: Exclude<ChartName, "search">, chosen: Chosen, steps: reado
     case "inner":
       return counted(rows, "inner iterations", "of the iterative linear solver", (r) => r.linear_iterations, "bars");
     case "projected":
-      return counted(rows, "projected elements", "elements whose Hessian was made definite", (r) => r.projected_elements, "bars");
+      return counted(
+        rows,
+        "projected elements",
+        "elements whose Hessian was made definite",
+        (r) => r.projected_elements,
+        "bars",
+      );
     case "steps":
       return overSteps(steps, width);
   }
@@ -189,13 +225,28 @@ export class StepChart {
   private read(key: string, x: number | null): string[] {
     const plan = this.plan;
     if (!plan || x === null || plan.x.length === 0) return [];
-    return [plan.text(plan.options.curves.findIndex((c) => c.key === key), nearest(plan.x, x))];
+    return [
+      plan.text(
+        plan.options.curves.findIndex((c) => c.key === key),
+        nearest(plan.x, x),
+      ),
+    ];
   }
 
   private clicked(x: number): void {
     const index = Math.round(x);
     const { side, step } = this.chosen;
-    if (this.name === "steps") this.chosen.choose(side, this.steps()[nearest(this.steps().map((s) => s.step), index)]?.step ?? step, 0);
+    if (this.name === "steps")
+      this.chosen.choose(
+        side,
+        this.steps()[
+          nearest(
+            this.steps().map((s) => s.step),
+            index,
+          )
+        ]?.step ?? step,
+        0,
+      );
     else if (index >= 0 && index < (this.chosen.row()?.iterations.length ?? 0)) this.chosen.choose(side, step, index);
   }
 
@@ -214,4 +265,3 @@ export class StepChart {
     u.ctx.restore();
   }
 }
-

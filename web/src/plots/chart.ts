@@ -4,9 +4,9 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import "./plots.css";
 import type { MaybeNumber } from "../protocol";
+import { axis, padded, ranged, type Axis } from "./axes";
 import { element, oncePerFrame } from "./dom";
 import { palette, sameLook, type Colour, type Palette } from "./palette";
-import { prefixOf, ticks } from "./numbers";
 
 export interface Curve {
   key: string; // curves of the same key share an entry of the legend
@@ -16,12 +16,6 @@ export interface Curve {
   width?: number;
   dash?: number[];
   shape?: "line" | "points" | "both" | "bars";
-}
-
-export interface Axis {
-  label: string;
-  unit?: string; // with an SI prefix that fits
-  integer?: boolean;
 }
 
 export interface ChartOptions {
@@ -93,7 +87,11 @@ export class Chart {
     const options = this.options;
     if (!options || width < 60 || height < 40 || this.data.columns.length !== options.curves.length) return;
     const colours = (this.look = palette(this.element));
-    this.chart = new uPlot(this.settings(options, colours, width, height), [this.data.x, ...this.data.columns], this.plot);
+    this.chart = new uPlot(
+      this.settings(options, colours, width, height),
+      [this.data.x, ...this.data.columns],
+      this.plot,
+    );
     this.readLegend();
   }
 
@@ -136,7 +134,14 @@ export class Chart {
     return canvas;
   }
 
-  private strokeSample(pen: CanvasRenderingContext2D, key: string, colours: Palette, x: number, y: number, line: number): void {
+  private strokeSample(
+    pen: CanvasRenderingContext2D,
+    key: string,
+    colours: Palette,
+    x: number,
+    y: number,
+    line: number,
+  ): void {
     const curve = this.options!.curves.find((c) => c.key === key)!;
     pen.strokeStyle = colours[curve.colour];
     pen.lineWidth = (curve.width ?? 1.5) * uPlot.pxRatio;
@@ -165,7 +170,10 @@ export class Chart {
         drag: { x: options.zoomed !== undefined, y: false, setScale: false, dist: 6 },
       },
       scales: {
-        x: { time: false, range: (_u, low, high) => options.xRange?.() ?? padded(low, high, options.x.integer === true) },
+        x: {
+          time: false,
+          range: (_u, low, high) => options.xRange?.() ?? padded(low, high, options.x.integer === true),
+        },
         y: { distr: log ? 3 : 1, log: 10, range: (_u, low, high) => options.yRange?.() ?? ranged(low, high, log) },
       },
       axes: [axis(options.x, colours, false), axis(options.y, colours, true)],
@@ -191,7 +199,12 @@ export class Chart {
       pxAlign: 0,
       fill: shape === "bars" ? stroke : undefined,
       paths: shape === "bars" ? uPlot.paths.bars!({ size: [0.7, 40] }) : undefined,
-      points: { show: shape === "points" || shape === "both" ? true : undefined, size: 6, fill: shape === "line" ? undefined : stroke },
+      points: {
+        show: shape === "points" ? true : undefined,
+        space: 7,
+        size: 6,
+        fill: shape === "line" ? undefined : stroke,
+      },
     };
   }
 
@@ -238,13 +251,20 @@ export class Chart {
       const sample = element("span", { class: "chart-sample" });
       const dashed = curve.dash ? "dashed" : "solid";
       sample.style.borderTop = `${Math.max(2, (curve.width ?? 1.5) * 1.4)}px ${dashed} var(${variableOf(curve.colour)})`;
-      const entry = element("button", { type: "button", class: "chart-entry", title: `${curve.meaning ?? curve.label}. Click to hide or show it.` });
+      const entry = element("button", {
+        type: "button",
+        class: "chart-entry",
+        title: `${curve.meaning ?? curve.label}. Click to hide or show it.`,
+      });
       entry.append(sample, element("span", { class: "chart-label" }, curve.label), values);
       entry.addEventListener("click", () => this.toggle(curve.key));
       entry.setAttribute("aria-pressed", String(!this.hidden.has(curve.key)));
       return { key: curve.key, button: entry, values };
     });
-    this.legend.replaceChildren(...(this.options!.caption ? [this.caption] : []), ...this.entries.map((entry) => entry.button));
+    this.legend.replaceChildren(
+      ...(this.options!.caption ? [this.caption] : []),
+      ...this.entries.map((entry) => entry.button),
+    );
   }
 
   private toggle(key: string): void {
@@ -258,7 +278,8 @@ export class Chart {
     if (this.caption.textContent !== caption) this.caption.textContent = caption;
     for (const entry of this.entries) {
       const texts = this.options!.read(entry.key, this.cursor);
-      if (entry.values.childElementCount !== texts.length) entry.values.replaceChildren(...texts.map(() => element("span")));
+      if (entry.values.childElementCount !== texts.length)
+        entry.values.replaceChildren(...texts.map(() => element("span")));
       texts.forEach((text, i) => {
         const cell = entry.values.children[i]!;
         if (cell.textContent !== text) cell.textContent = text;
@@ -269,63 +290,4 @@ export class Chart {
 
 function variableOf(colour: Colour): string {
   return "--" + colour.replace(/(\d)/, "-$1");
-}
-
-function axis(options: Axis & { log?: boolean }, colours: Palette, vertical: boolean): uPlot.Axis {
-  const measure = document.createElement("canvas").getContext("2d")!;
-  measure.font = colours.font;
-  const factorOf = (u: uPlot): { factor: number; letter: string } => {
-    const scale = u.scales[vertical ? "y" : "x"]!;
-    const size = Math.max(Math.abs(scale.min ?? 0), Math.abs(scale.max ?? 0));
-    return options.unit === undefined || options.log === true ? { factor: 1, letter: "" } : prefixOf(size);
-  };
-  return {
-    stroke: colours.faint,
-    font: colours.font,
-    labelFont: colours.font,
-    grid: { stroke: colours.line, width: 1 },
-    splits: options.log === true ? (u) => powersOfTen(u, colours.fontSize) : undefined,
-    filter: (_u, splits) => splits,
-    ticks: { stroke: colours.line, width: 1, size: 4 },
-    gap: 3,
-    label: (u) => (options.unit === undefined ? options.label : `${options.label} [${factorOf(u).letter}${options.unit}]`),
-    labelSize: colours.fontSize * 1.35,
-    labelGap: 0,
-    space: vertical ? colours.fontSize * 2.2 : colours.fontSize * 5,
-    incrs: options.integer === true ? [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000, 1e6, 1e7] : undefined,
-    size: (_u, values) => (vertical ? Math.max(...(values ?? []).map((v) => measure.measureText(v ?? "").width), colours.fontSize) + 10 : colours.fontSize * 1.7),
-    values: (u, splits) => (options.log === true ? splits.map(superscript) : ticks(splits, factorOf(u).factor)),
-  };
-}
-
-// As many as have room for their texts.
-function powersOfTen(u: uPlot, fontSize: number): number[] {
-  const { min, max } = u.scales.y!;
-  if (!(min! > 0) || !(max! > 0)) return [];
-  const [first, last] = [Math.ceil(Math.log10(min!) - 1e-9), Math.floor(Math.log10(max!) + 1e-9)];
-  const room = Math.max(1, u.over.clientHeight / (2 * fontSize));
-  const stride = Math.max(1, Math.ceil((last - first) / room));
-  const out: number[] = [];
-  for (let exponent = last; exponent >= first; exponent -= stride) out.unshift(10 ** exponent);
-  return out;
-}
-
-const kSuperscripts = "⁰¹²³⁴⁵⁶⁷⁸⁹";
-function superscript(value: number): string {
-  const exponent = Math.log10(value);
-  const digits = [...String(Math.abs(Math.round(exponent)))].map((d) => kSuperscripts[Number(d)]).join("");
-  return `10${exponent < -0.5 ? "⁻" : ""}${digits}`;
-}
-
-function padded(low: number | null, high: number | null, integer: boolean): [number, number] {
-  if (low === null || high === null) return [0, 1];
-  if (integer) return [low - 0.5, high + 0.5];
-  return low === high ? [low - Math.abs(low) * 0.1 - 1e-12, high + Math.abs(high) * 0.1 + 1e-12] : [low, high];
-}
-
-function ranged(low: number | null, high: number | null, log: boolean): [number, number] {
-  if (low === null || high === null) return log ? [1e-1, 1e1] : [0, 1];
-  if (log) return [10 ** Math.floor(Math.log10(low) - 1e-9), 10 ** Math.ceil(Math.log10(high) + 1e-9)];
-  const margin = (high - low) * 0.06 || Math.abs(high) * 0.1 || 1;
-  return [low - margin, high + margin];
 }

@@ -171,7 +171,8 @@ export class Chosen extends Emitter<Events> {
   }
 
   private announce(side: SideName, step: number, iteration: number): void {
-    if (side === this.side && step === this.step && iteration === this.iteration) return this.emit("changed", undefined);
+    if (side === this.side && step === this.step && iteration === this.iteration)
+      return this.emit("changed", undefined);
     this.set(side, step, iteration);
     if (step > 0) this.page.emit("chosen", { side, step, iteration });
   }

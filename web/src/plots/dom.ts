@@ -58,7 +58,8 @@ export function numberField(
   if (limits.max !== undefined) input.max = String(limits.max);
   input.value = String(value);
   input.addEventListener("change", () => {
-    if (input.value.trim() !== "" && Number.isFinite(input.valueAsNumber) && input.checkValidity()) change(input.valueAsNumber);
+    if (input.value.trim() !== "" && Number.isFinite(input.valueAsNumber) && input.checkValidity())
+      change(input.valueAsNumber);
   });
   return { element: element("label", { class: "plot-field", title }, text + " ", input), input };
 }

@@ -39,7 +39,9 @@ export function heightRange(values: readonly MaybeNumber[], keep: readonly Maybe
   const highest = known[known.length - 1]!;
   const quantile = known[Math.floor(0.75 * (known.length - 1))]!;
   const tall = highest - low > 4 * (quantile - low) && quantile > low;
-  const high = tall ? Math.min(highest, Math.max(low + 2 * (quantile - low), ...kept.map((v) => v + 0.05 * (v - low)))) : highest;
+  const high = tall
+    ? Math.min(highest, Math.max(low + 2 * (quantile - low), ...kept.map((v) => v + 0.05 * (v - low))))
+    : highest;
   return high > low ? { low, high, cut: high < highest } : { low, high: low + (Math.abs(low) * 1e-9 || 1), cut: false };
 }
 
@@ -95,7 +97,9 @@ export interface Quadratic {
 
 export function quadraticAt(q: Quadratic, x: number, y: number): number {
   const [px, py] = [x - q.center[0], y - q.center[1]];
-  return q.value + q.gradient[0] * px + q.gradient[1] * py + 0.5 * (q.xx * px * px + 2 * q.xy * px * py + q.yy * py * py);
+  return (
+    q.value + q.gradient[0] * px + q.gradient[1] * py + 0.5 * (q.xx * px * px + 2 * q.xy * px * py + q.yy * py * py)
+  );
 }
 
 // Where the quadratic is smallest; null if it has no minimum.
@@ -103,7 +107,10 @@ export function minimizerOf(q: Quadratic): Point | null {
   const determinant = q.xx * q.yy - q.xy * q.xy;
   if (!(q.xx > 0) || !(determinant > 1e-14 * q.xx * q.yy)) return null;
   const [gx, gy] = q.gradient;
-  return { x: q.center[0] - (q.yy * gx - q.xy * gy) / determinant, y: q.center[1] - (q.xx * gy - q.xy * gx) / determinant };
+  return {
+    x: q.center[0] - (q.yy * gx - q.xy * gy) / determinant,
+    y: q.center[1] - (q.xx * gy - q.xy * gx) / determinant,
+  };
 }
 
 // The quadratic through samples on a uniform grid, about its middle, by differences over half of the grid.
@@ -122,7 +129,9 @@ export function quadraticFrom(grid: Grid): Quadratic | null {
     yy: (at(1, 2) - 2 * value + at(1, 0)) / (hy * hy),
     xy: (at(2, 2) - at(2, 0) - at(0, 2) + at(0, 0)) / (4 * hx * hy),
   };
-  return [value, ...quadratic.gradient, quadratic.xx, quadratic.xy, quadratic.yy].every(Number.isFinite) ? quadratic : null;
+  return [value, ...quadratic.gradient, quadratic.xx, quadratic.xy, quadratic.yy].every(Number.isFinite)
+    ? quadratic
+    : null;
 }
 
 // The part of a segment inside the grid's rectangle; null if there is none. [Liang, Barsky 1984]
@@ -130,7 +139,12 @@ export function clipped(grid: Grid, p: Point, q: Point): [Point, Point] | null {
   let [from, to] = [0, 1];
   const [dx, dy] = [q.x - p.x, q.y - p.y];
   const [left, right, bottom, top] = [grid.x[0]!, grid.x[grid.x.length - 1]!, grid.y[0]!, grid.y[grid.y.length - 1]!];
-  for (const [slope, room] of [[-dx, p.x - left], [dx, right - p.x], [-dy, p.y - bottom], [dy, top - p.y]] as const) {
+  for (const [slope, room] of [
+    [-dx, p.x - left],
+    [dx, right - p.x],
+    [-dy, p.y - bottom],
+    [dy, top - p.y],
+  ] as const) {
     if (slope === 0 && room < 0) return null;
     if (slope < 0) from = Math.max(from, room / slope);
     if (slope > 0) to = Math.min(to, room / slope);
@@ -141,7 +155,9 @@ export function clipped(grid: Grid, p: Point, q: Point): [Point, Point] | null {
 }
 
 export function isInside(grid: Grid, p: Point): boolean {
-  return p.x >= grid.x[0]! && p.x <= grid.x[grid.x.length - 1]! && p.y >= grid.y[0]! && p.y <= grid.y[grid.y.length - 1]!;
+  return (
+    p.x >= grid.x[0]! && p.x <= grid.x[grid.x.length - 1]! && p.y >= grid.y[0]! && p.y <= grid.y[grid.y.length - 1]!
+  );
 }
 
 // Round numbers in [low, high], about `count` of them.

@@ -15,7 +15,14 @@ export interface LedgerColumn {
 const kTermColours: Colour[] = ["series3", "series6", "series4", "series5", "series1"];
 
 export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
-  const line = (key: string, label: string, meaning: string, colour: Colour, width = 1.5, dotted = false): LedgerColumn => ({
+  const line = (
+    key: string,
+    label: string,
+    meaning: string,
+    colour: Colour,
+    width = 1.5,
+    dotted = false,
+  ): LedgerColumn => ({
     key,
     label,
     meaning,
@@ -24,7 +31,13 @@ export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
     dotted,
   });
   const terms = potentials.map((name, i) =>
-    line(`potential_${name}`, `V: ${name.replaceAll("_", " ")}`, "a term of the potential energy", kTermColours[i % kTermColours.length]!, 1.25),
+    line(
+      `potential_${name}`,
+      `V: ${name.replaceAll("_", " ")}`,
+      "a term of the potential energy",
+      kTermColours[i % kTermColours.length]!,
+      1.25,
+    ),
   );
   return [
     line("kinetic", "T", "kinetic energy", "series2", 2),
@@ -58,14 +71,17 @@ export class Ledger {
     const rows = told.filter((row) => row.status !== "");
     const keep = Math.min(from, this.step.length, rows.length);
     const running = [this.lowest, this.highest, this.largest];
-    for (const column of [this.step, this.time, this.residualWork, this.ledgerError, ...running, ...this.columns]) column.length = keep;
+    for (const column of [this.step, this.time, this.residualWork, this.ledgerError, ...running, ...this.columns])
+      column.length = keep;
     for (let i = keep; i < rows.length; ++i) this.append(rows[i]!);
   }
 
   // The range that the balance has covered since the first step, and the largest energy so far.
   drift(): { drift: number; scale: number } {
     const last = this.step.length - 1;
-    return last < 0 ? { drift: 0, scale: 0 } : { drift: this.highest[last]! - this.lowest[last]!, scale: this.largest[last]! };
+    return last < 0
+      ? { drift: 0, scale: 0 }
+      : { drift: this.highest[last]! - this.lowest[last]!, scale: this.largest[last]! };
   }
 
   private append(row: StepRow): void {

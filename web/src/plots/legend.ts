@@ -19,10 +19,19 @@ export function legendOf(signs: readonly Sign[]): HTMLDListElement {
 }
 
 // The same on a canvas, in columns.
-export function paintLegend(pen: CanvasRenderingContext2D, signs: readonly Sign[], colours: Palette, top: number, line: number): void {
+export function paintLegend(
+  pen: CanvasRenderingContext2D,
+  signs: readonly Sign[],
+  colours: Palette,
+  top: number,
+  line: number,
+): void {
   const columns = legendColumns(pen.canvas.width, line);
   signs.forEach(({ sign, colour, text }, i) => {
-    const [x, y] = [line * 0.5 + (i % columns) * ((pen.canvas.width - line) / columns), top + line * (Math.floor(i / columns) + 0.5)];
+    const [x, y] = [
+      line * 0.5 + (i % columns) * ((pen.canvas.width - line) / columns),
+      top + line * (Math.floor(i / columns) + 0.5),
+    ];
     pen.fillStyle = colours[colour];
     pen.fillText(sign, x, y);
     pen.fillStyle = colours.text;

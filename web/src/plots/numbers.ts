@@ -36,7 +36,10 @@ export function short(value: MaybeNumber | undefined, digits = 4): string {
   const text =
     size >= 1e-3 && size < 1e6
       ? String(Number(value.toPrecision(size >= 1e4 ? Math.max(digits, 6) : digits)))
-      : value.toExponential(digits - 1).replace(/\.?0+e/, "e").replace("e+", "e");
+      : value
+          .toExponential(digits - 1)
+          .replace(/\.?0+e/, "e")
+          .replace("e+", "e");
   return text.replace(/-/g, "−");
 }
 
@@ -73,7 +76,8 @@ export function plural(count: number, noun: string): string {
 // As CSV keeps it: the shortest text that reads back to the same bits; nothing for what is not finite.
 export function csv(header: readonly string[], columns: readonly (readonly MaybeNumber[])[], rows: number): string {
   const lines = [header.map(csvCell).join(",")];
-  for (let row = 0; row < rows; ++row) lines.push(columns.map((c) => (c[row] === null ? "" : String(c[row]))).join(","));
+  for (let row = 0; row < rows; ++row)
+    lines.push(columns.map((c) => (c[row] === null ? "" : String(c[row]))).join(","));
   return lines.join("\n") + "\n";
 }
 

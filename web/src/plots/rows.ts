@@ -26,7 +26,11 @@ export class Rows {
 
   constructor(private readonly options: RowsOptions) {
     this.element.setAttribute("aria-label", `${options.label}; the arrow keys choose a row`);
-    const head = element("tr", {}, ...options.columns.map((c) => element("th", { title: c.meaning, class: c.left ? "left" : "" }, c.title)));
+    const head = element(
+      "tr",
+      {},
+      ...options.columns.map((c) => element("th", { title: c.meaning, class: c.left ? "left" : "" }, c.title)),
+    );
     this.element.append(element("table", {}, element("thead", {}, head), this.body));
     this.element.addEventListener("scroll", this.redraw);
     this.element.addEventListener("keydown", (event) => this.key(event));
@@ -58,7 +62,11 @@ export class Rows {
   }
 
   private padTo(): void {
-    const filler = element("tr", { "aria-hidden": "true" }, element("td", { style: `height:${this.count * this.rowHeight()}px` }));
+    const filler = element(
+      "tr",
+      { "aria-hidden": "true" },
+      element("td", { style: `height:${this.count * this.rowHeight()}px` }),
+    );
     this.body.replaceChildren(filler);
   }
 
@@ -84,9 +92,17 @@ export class Rows {
 
   private row(index: number): HTMLTableRowElement {
     const cells = this.options.columns.map((column) =>
-      element("td", { class: `${column.left ? "left" : ""} ${column.class ?? ""}`, role: "gridcell" }, column.text(index)),
+      element(
+        "td",
+        { class: `${column.left ? "left" : ""} ${column.class ?? ""}`, role: "gridcell" },
+        column.text(index),
+      ),
     );
-    const made = element("tr", { "aria-selected": String(index === this.chosen), class: this.options.rowClass?.(index) ?? "" }, ...cells);
+    const made = element(
+      "tr",
+      { "aria-selected": String(index === this.chosen), class: this.options.rowClass?.(index) ?? "" },
+      ...cells,
+    );
     made.addEventListener("click", () => this.options.choose(index));
     return made;
   }

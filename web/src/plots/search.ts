@@ -14,8 +14,13 @@ export interface Search {
 }
 
 // What the axis shows: the valley, and trials as long as they do not dwarf it. Values are differences from E at alpha 0.
-export function searchRange(values: readonly MaybeNumber[], model: readonly MaybeNumber[], trials: readonly MaybeNumber[]): [number, number] {
-  const known = (list: readonly MaybeNumber[]): number[] => list.filter((v): v is number => v !== null && Number.isFinite(v));
+export function searchRange(
+  values: readonly MaybeNumber[],
+  model: readonly MaybeNumber[],
+  trials: readonly MaybeNumber[],
+): [number, number] {
+  const known = (list: readonly MaybeNumber[]): number[] =>
+    list.filter((v): v is number => v !== null && Number.isFinite(v));
   const lowest = Math.min(0, ...known(values), ...known(trials));
   const promised = Math.min(0, ...known(model));
   const depth = -lowest || -promised || Math.max(...known(values).map(Math.abs), 1e-300);
@@ -79,7 +84,8 @@ export class SearchChart {
     const far = 20 * (high - low); // canvases take ages to dash lines that are a million times as long
     const near = (v: number): number => Math.min(high + far, Math.max(low - far, v));
     const shifted = (values: MaybeNumber[]): MaybeNumber[] => values.map((v) => (v === null ? null : near(v - origin)));
-    const ahead = (values: MaybeNumber[]): MaybeNumber[] => shifted(values).map((v, i) => (curve.alpha[i]! < 0 ? null : v));
+    const ahead = (values: MaybeNumber[]): MaybeNumber[] =>
+      shifted(values).map((v, i) => (curve.alpha[i]! < 0 ? null : v));
     const columns = [shifted(curve.value), shifted(curve.model)];
     if (test !== "none") columns.push(ahead(curve.textbook));
     if (test === "slide") columns.push(ahead(curve.slide));
@@ -91,7 +97,8 @@ export class SearchChart {
     const origin = this.origin();
     const [low, high] = alphaRange(curve.alpha, trials);
     const shown = (alpha: number): boolean => alpha >= low && alpha <= high;
-    const shifted = (values: MaybeNumber[]): MaybeNumber[] => values.map((v, i) => (v === null || !shown(curve.alpha[i]!) ? null : v - origin));
+    const shifted = (values: MaybeNumber[]): MaybeNumber[] =>
+      values.map((v, i) => (v === null || !shown(curve.alpha[i]!) ? null : v - origin));
     const tried = trials.filter((t) => shown(t.alpha)).map((t) => (t.value === null ? null : t.value - origin));
     return searchRange(shifted(curve.value), shifted(curve.model), tried);
   }
@@ -157,7 +164,14 @@ function mark(pen: CanvasRenderingContext2D, accepted: boolean, x: number, y: nu
 function curvesOf(search: Search, symbol: string): Curve[] {
   const curves: Curve[] = [
     { key: "value", label: symbol, meaning: "the objective along d", colour: "series1", width: 2.25 },
-    { key: "model", label: "quadratic model", meaning: "E + α g·d + α²/2 d·H d", colour: "series2", width: 1.75, dash: [6, 4] },
+    {
+      key: "model",
+      label: "quadratic model",
+      meaning: "E + α g·d + α²/2 d·H d",
+      colour: "series2",
+      width: 1.75,
+      dash: [6, 4],
+    },
   ];
   if (search.test !== "none")
     curves.push({
@@ -168,6 +182,12 @@ function curvesOf(search: Search, symbol: string): Curve[] {
       dash: [2, 3],
     });
   if (search.test === "slide")
-    curves.push({ key: "slide", label: "slide's line: accepted below it", meaning: "E + c g·d, as printed in the lecture", colour: "series4", dash: [2, 3] });
+    curves.push({
+      key: "slide",
+      label: "slide's line: accepted below it",
+      meaning: "E + c g·d, as printed in the lecture",
+      colour: "series4",
+      dash: [2, 3],
+    });
   return curves;
 }

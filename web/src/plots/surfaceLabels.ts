@@ -46,13 +46,18 @@ export function placed(
 }
 
 // Along the edges of the base that are nearest to the reader, and up the post that is furthest to the left.
-export function axisLabels(frame: Frame, names: { x: string; y: string; value: string }, camera: THREE.Camera): Label[] {
+export function axisLabels(
+  frame: Frame,
+  names: { x: string; y: string; value: string },
+  camera: THREE.Camera,
+): Label[] {
   const { x, y } = frame.grid;
   const [w, d] = [frame.width / 2, frame.depth / 2];
   const front = camera.position.z >= 0 ? d : -d;
   const side = camera.position.x >= 0 ? w : -w;
   const out: Label[] = [];
-  const add = (text: string, place: THREE.Vector3, colour: Colour = "faint"): void => void out.push({ text, place, colour, important: false });
+  const add = (text: string, place: THREE.Vector3, colour: Colour = "faint"): void =>
+    void out.push({ text, place, colour, important: false });
   const alongX = roundTicks(x[0]!, x[x.length - 1]!, 4);
   const alongY = roundTicks(y[0]!, y[y.length - 1]!, 4);
   add(names.x, new THREE.Vector3(0, -0.02, front * 1.34), "text");
@@ -64,15 +69,26 @@ export function axisLabels(frame: Frame, names: { x: string; y: string; value: s
   const { low, high } = frame.range;
   const even = frame.scale === "linear";
   const linear = even && high - low > 1e-3 * Math.max(Math.abs(low), Math.abs(high)); // else numbers of many digits
-  const heights = linear ? roundTicks(low, high, 4) : even ? roundTicks(0, high - low, 4).map((v) => low + v) : [0, 0.25, 0.5, 0.75, 1].map(toValue);
+  const heights = linear
+    ? roundTicks(low, high, 4)
+    : even
+      ? roundTicks(0, high - low, 4).map((v) => low + v)
+      : [0, 0.25, 0.5, 0.75, 1].map(toValue);
   const texts = linear ? ticks(heights) : heights.map((v) => short(v - low, 2));
   add(linear ? names.value : `${names.value} − lowest`, new THREE.Vector3(post.x, frame.tall * 1.12, post.z), "text");
-  texts.forEach((text, i) => add(text, new THREE.Vector3(post.x * 1.1, frame.height(heights[i]!) * frame.tall, post.z * 1.1)));
+  texts.forEach((text, i) =>
+    add(text, new THREE.Vector3(post.x * 1.1, frame.height(heights[i]!) * frame.tall, post.z * 1.1)),
+  );
   return out;
 }
 
 function leftPost(w: number, d: number, camera: THREE.Camera): THREE.Vector3 {
-  const posts = [[-w, -d], [w, -d], [w, d], [-w, d]].map(([x, z]) => new THREE.Vector3(x, 0, z));
+  const posts = [
+    [-w, -d],
+    [w, -d],
+    [w, d],
+    [-w, d],
+  ].map(([x, z]) => new THREE.Vector3(x, 0, z));
   const onScreen = (p: THREE.Vector3): number => p.clone().project(camera).x;
   return posts.reduce((left, p) => (onScreen(p) < onScreen(left) ? p : left));
 }

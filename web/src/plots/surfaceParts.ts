@@ -89,10 +89,16 @@ export function gridLines(frame: Frame, values: readonly MaybeNumber[], lines: n
   const add = (k: number, l: number): void => {
     const [v, w] = [values[k], values[l]];
     if (v === null || v === undefined || w === null || w === undefined) return;
-    for (const [n, value] of [[k, v], [l, w]] as const)
+    for (const [n, value] of [
+      [k, v],
+      [l, w],
+    ] as const)
       points.push(...frame.place(x[n % x.length]!, y[Math.floor(n / x.length)]!, value, 0.002).toArray());
   };
-  const [everyX, everyY] = [Math.max(1, Math.round((x.length - 1) / lines)), Math.max(1, Math.round((y.length - 1) / lines))];
+  const [everyX, everyY] = [
+    Math.max(1, Math.round((x.length - 1) / lines)),
+    Math.max(1, Math.round((y.length - 1) / lines)),
+  ];
   for (let j = 0; j < y.length; ++j)
     for (let i = 0; i < x.length; ++i) {
       const k = j * x.length + i;
@@ -103,14 +109,26 @@ export function gridLines(frame: Frame, values: readonly MaybeNumber[], lines: n
 }
 
 // Lines of equal height on the surface, and in the plane below it: each triangle of a cell cut at every level.
-export function levelLines(frame: Frame, values: readonly MaybeNumber[], levels: readonly number[], flat: boolean): THREE.BufferGeometry {
+export function levelLines(
+  frame: Frame,
+  values: readonly MaybeNumber[],
+  levels: readonly number[],
+  flat: boolean,
+): THREE.BufferGeometry {
   const { x, y } = frame.grid;
   const points: number[] = [];
-  const corner = (k: number): [number, number, number] => [x[k % x.length]!, y[Math.floor(k / x.length)]!, values[k] as number];
+  const corner = (k: number): [number, number, number] => [
+    x[k % x.length]!,
+    y[Math.floor(k / x.length)]!,
+    values[k] as number,
+  ];
   for (let j = 0; j + 1 < y.length; ++j)
     for (let i = 0; i + 1 < x.length; ++i) {
       const a = j * x.length + i;
-      for (const triangle of [[a, a + 1, a + x.length + 1], [a, a + x.length + 1, a + x.length]]) {
+      for (const triangle of [
+        [a, a + 1, a + x.length + 1],
+        [a, a + x.length + 1, a + x.length],
+      ]) {
         if (triangle.some((k) => values[k] === null || values[k] === undefined)) continue;
         for (const level of levels) cut(triangle.map(corner), level, frame, flat, points);
       }
@@ -148,17 +166,31 @@ export function markTexture(shape: MarkShape, colour: string, halo: string): THR
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = 64;
   const pen = canvas.getContext("2d")!;
-  for (const [style, width] of [[halo, 22], [colour, 10]] as const) {
+  for (const [style, width] of [
+    [halo, 22],
+    [colour, 10],
+  ] as const) {
     pen.strokeStyle = pen.fillStyle = style;
     pen.lineWidth = width;
     pen.beginPath();
     if (shape === "cross") {
-      for (const [x0, y0, x1, y1] of [[16, 16, 48, 48], [16, 48, 48, 16]] as const) {
+      for (const [x0, y0, x1, y1] of [
+        [16, 16, 48, 48],
+        [16, 48, 48, 16],
+      ] as const) {
         pen.moveTo(x0, y0);
         pen.lineTo(x1, y1);
       }
     } else if (shape === "diamond") {
-      for (const [x, y] of [[32, 12], [52, 32], [32, 52], [12, 32], [32, 12], [52, 32]] as const) pen.lineTo(x, y);
+      for (const [x, y] of [
+        [32, 12],
+        [52, 32],
+        [32, 52],
+        [12, 32],
+        [32, 12],
+        [52, 32],
+      ] as const)
+        pen.lineTo(x, y);
     } else pen.arc(32, 32, shape === "ring" ? 18 : 16, 0, 2 * Math.PI);
     pen.stroke();
     if ((shape === "dot" || shape === "diamond") && style === colour) pen.fill();

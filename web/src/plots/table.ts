@@ -32,7 +32,7 @@ export function thinned(table: Table, from: number, to: number, buckets: number)
   const out: Table = { x: [], columns: columns.map(() => []) };
   const [first, last] = [x[from]!, x[to - 1]!];
   const width = (last - first) / buckets || 1;
-  for (let begin = from; begin < to; ) {
+  for (let begin = from; begin < to;) {
     const bucket = Math.min(buckets - 1, Math.floor((x[begin]! - first) / width));
     let end = begin + 1;
     while (end < to && Math.min(buckets - 1, Math.floor((x[end]! - first) / width)) === bucket) ++end;
@@ -63,7 +63,7 @@ function addExtremes({ x, columns }: Table, begin: number, end: number, out: Tab
 // Both tables over the union of their x, with null where a table has no row.
 export function merged(a: Table, b: Table): Table {
   const out: Table = { x: [], columns: [...a.columns, ...b.columns].map(() => []) };
-  for (let i = 0, j = 0; i < a.x.length || j < b.x.length; ) {
+  for (let i = 0, j = 0; i < a.x.length || j < b.x.length;) {
     const x = Math.min(a.x[i] ?? Infinity, b.x[j] ?? Infinity);
     const [inA, inB] = [a.x[i] === x, b.x[j] === x];
     out.x.push(x);

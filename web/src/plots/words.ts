@@ -46,19 +46,25 @@ function shortened(rows: readonly IterationRow[]): string {
 }
 
 export function stepText(row: StepRow, implicit: boolean): string {
-  if (row.words) return `${sentence(row.words.cause)}${row.words.place ? ` ${sentence(row.words.place)}` : ""}${row.words.remedy ? ` ${sentence(row.words.remedy)}` : ""}`;
+  if (row.words)
+    return `${sentence(row.words.cause)}${row.words.place ? ` ${sentence(row.words.place)}` : ""}${row.words.remedy ? ` ${sentence(row.words.remedy)}` : ""}`;
   if (!implicit) return "Nothing is minimised: this scheme computes the next positions from the forces at hand.";
   const count = plural(row.iterations.length, "iteration");
-  if (!row.success) return `Not converged (${row.status.replaceAll("_", " ")}) after ${count}${residualText(row) ? `: ${residualText(row)}` : ""}.`;
-  if (row.iterations.length === 0) return `Converged: ${residualText(row) || "the criterion is met"}. It needed no iteration, or they are no longer kept.`;
-  if (row.status === "round_off") return `As good as double precision allows, after ${count}: the energy no longer changes by more than round-off.`;
+  if (!row.success)
+    return `Not converged (${row.status.replaceAll("_", " ")}) after ${count}${residualText(row) ? `: ${residualText(row)}` : ""}.`;
+  if (row.iterations.length === 0)
+    return `Converged: ${residualText(row) || "the criterion is met"}. It needed no iteration, or they are no longer kept.`;
+  if (row.status === "round_off")
+    return `As good as double precision allows, after ${count}: the energy no longer changes by more than round-off.`;
   return `Converged in ${count}: ${residualText(row) || "the criterion is met"}.${paceText(row.iterations)}${shortened(row.iterations)}`;
 }
 
-// With a capital and a full stop.
+// With a capital, unless a key of a scene stands first, and a full stop.
 export function sentence(text: string): string {
   const trimmed = text.trim();
-  return trimmed === "" ? "" : trimmed[0]!.toUpperCase() + trimmed.slice(1) + (/[.!?]$/.test(trimmed) ? "" : ".");
+  if (trimmed === "") return "";
+  const isKey = /^\S*[._=]\S/.test(trimmed);
+  return (isKey ? trimmed[0]! : trimmed[0]!.toUpperCase()) + trimmed.slice(1) + (/[.!?]$/.test(trimmed) ? "" : ".");
 }
 
 export function totalSeconds(row: IterationRow): number {

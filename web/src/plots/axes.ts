@@ -1,0 +1,76 @@
+// The axes of a chart: units with SI prefixes, powers of ten, and how much of the numbers is shown.
+import type uPlot from "uplot";
+import { prefixOf, ticks } from "./numbers";
+import type { Palette } from "./palette";
+
+export interface Axis {
+  label: string;
+  unit?: string; // with an SI prefix that fits
+  integer?: boolean;
+}
+
+export function axis(options: Axis & { log?: boolean }, colours: Palette, vertical: boolean): uPlot.Axis {
+  const measure = document.createElement("canvas").getContext("2d")!;
+  measure.font = colours.font;
+  const factorOf = (u: uPlot): { factor: number; letter: string } => {
+    const scale = u.scales[vertical ? "y" : "x"]!;
+    const size = Math.max(Math.abs(scale.min ?? 0), Math.abs(scale.max ?? 0));
+    return options.unit === undefined || options.log === true ? { factor: 1, letter: "" } : prefixOf(size);
+  };
+  return {
+    stroke: colours.faint,
+    font: colours.font,
+    labelFont: colours.font,
+    grid: { stroke: colours.line, width: 1 },
+    splits: options.log === true ? (u) => powersOfTen(u, colours.fontSize) : undefined,
+    filter: (_u, splits) => splits,
+    ticks: { stroke: colours.line, width: 1, size: 4 },
+    gap: 3,
+    label: (u) =>
+      options.unit === undefined ? options.label : `${options.label} [${factorOf(u).letter}${options.unit}]`,
+    labelSize: colours.fontSize * 1.35,
+    labelGap: 0,
+    space: vertical ? colours.fontSize * 2.2 : colours.fontSize * 5,
+    incrs:
+      options.integer === true
+        ? [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000, 1e6, 1e7]
+        : undefined,
+    size: (_u, values) =>
+      vertical
+        ? Math.max(...(values ?? []).map((v) => measure.measureText(v ?? "").width), colours.fontSize) + 10
+        : colours.fontSize * 1.7,
+    values: (u, splits) => (options.log === true ? splits.map(superscript) : ticks(splits, factorOf(u).factor)),
+  };
+}
+
+// As many as have room for their texts.
+function powersOfTen(u: uPlot, fontSize: number): number[] {
+  const { min, max } = u.scales.y!;
+  if (!(min! > 0) || !(max! > 0)) return [];
+  const [first, last] = [Math.ceil(Math.log10(min!) - 1e-9), Math.floor(Math.log10(max!) + 1e-9)];
+  const room = Math.max(1, u.over.clientHeight / (2 * fontSize));
+  const stride = Math.max(1, Math.ceil((last - first) / room));
+  const out: number[] = [];
+  for (let exponent = last; exponent >= first; exponent -= stride) out.unshift(10 ** exponent);
+  return out;
+}
+
+const kSuperscripts = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+function superscript(value: number): string {
+  const exponent = Math.log10(value);
+  const digits = [...String(Math.abs(Math.round(exponent)))].map((d) => kSuperscripts[Number(d)]).join("");
+  return `10${exponent < -0.5 ? "⁻" : ""}${digits}`;
+}
+
+export function padded(low: number | null, high: number | null, integer: boolean): [number, number] {
+  if (low === null || high === null) return [0, 1];
+  if (integer) return [low - 0.5, high + 0.5];
+  return low === high ? [low - Math.abs(low) * 0.1 - 1e-12, high + Math.abs(high) * 0.1 + 1e-12] : [low, high];
+}
+
+export function ranged(low: number | null, high: number | null, log: boolean): [number, number] {
+  if (low === null || high === null) return log ? [1e-1, 1e1] : [0, 1];
+  if (log) return [10 ** Math.floor(Math.log10(low) - 1e-9), 10 ** Math.ceil(Math.log10(high) + 1e-9)];
+  const margin = (high - low) * 0.06 || Math.abs(high) * 0.1 || 1;
+  return [low - margin, high + margin];
+}

@@ -1,0 +1,246 @@
+// What stands in the picture of a surface: the surface with its lines, the quadratic model, the path and the marks.
+import * as THREE from "three";
+import { Line2 } from "three/addons/lines/Line2.js";
+import { LineGeometry } from "three/addons/lines/LineGeometry.js";
+import { LineMaterial } from "three/addons/lines/LineMaterial.js";
+import type { MaybeNumber } from "../protocol";
+import { clipped, heightRange, isInside, sample, valueAtHeight, type Grid, type Point } from "./grid";
+import type { Colour, Palette } from "./palette";
+import type { Label } from "./surfaceLabels";
+import { Frame, gridLines, levelLines, markTexture, surfaceGeometry, type MarkShape } from "./surfaceParts";
+
+const kNumbered = 40; // iterates, and the last one
+
+export interface Mark extends Point {
+  value: MaybeNumber; // null: on the surface
+  shape: MarkShape;
+  colour: Colour;
+  size: number; // [CSS px]
+  label?: string;
+}
+
+export interface SurfaceContent {
+  label: string; // for a reader that does not see it
+  grid: Grid;
+  axes: { x: string; y: string; value: string };
+  model: MaybeNumber[] | null; // on the same grid
+  path: (Point & { value: MaybeNumber })[];
+  draped: boolean; // the path runs on the surface; else straight from point to point
+  direction: { from: Point; to: Point } | null;
+  marks: Mark[];
+  keep: MaybeNumber[]; // values that are not cut off
+  log: boolean;
+}
+
+export class SurfaceBody {
+  readonly group = new THREE.Group();
+  readonly frame: Frame;
+  readonly surface: THREE.Mesh;
+  readonly labels: Label[] = [];
+
+  constructor(
+    private readonly content: SurfaceContent,
+    private readonly colours: Palette,
+    stretch: number, // of the width
+  ) {
+    this.frame = new Frame(
+      content.grid,
+      heightRange(content.grid.value, content.keep),
+      content.log ? "log" : "linear",
+      stretch,
+    );
+    this.surface = this.addSurface();
+    if (content.model) this.addModel(content.model);
+    this.addBox();
+    this.addPath();
+    for (const mark of content.marks) this.addMark(mark);
+  }
+
+  dispose(): void {
+    this.group.traverse((part) => {
+      if (!(part instanceof THREE.Mesh || part instanceof THREE.Line || part instanceof THREE.Points)) return;
+      part.geometry.dispose();
+      for (const material of [part.material].flat()) material.dispose();
+    });
+  }
+
+  private addSurface(): THREE.Mesh {
+    const material = new THREE.MeshLambertMaterial({
+      vertexColors: true,
+      side: THREE.DoubleSide,
+      polygonOffset: true,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1,
+    });
+    const surface = new THREE.Mesh(surfaceGeometry(this.frame, this.content.grid.value, true), material);
+    const lines = new THREE.LineBasicMaterial({ color: 0x000000, transparent: true, opacity: 0.16 });
+    const grid = new THREE.LineSegments(gridLines(this.frame, this.content.grid.value, 20), lines);
+    const toValue = valueAtHeight(this.frame.range, this.frame.scale);
+    const levels = Array.from({ length: 11 }, (_, i) => toValue((i + 1) / 12));
+    const level = (flat: boolean, colour: string, opacity: number): THREE.LineSegments =>
+      new THREE.LineSegments(
+        levelLines(this.frame, this.content.grid.value, levels, flat),
+        new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity }),
+      );
+    this.group.add(surface, grid, level(false, "#ffffff", 0.45), level(true, this.colours.faint, 0.4));
+    return surface;
+  }
+
+  private addModel(model: MaybeNumber[]): void {
+    const colour = new THREE.Color(this.colours.series2);
+    const material = new THREE.MeshLambertMaterial({
+      color: colour,
+      side: THREE.DoubleSide,
+      transparent: true,
+      opacity: 0.32,
+      depthWrite: false,
+      polygonOffset: true,
+      polygonOffsetFactor: -1,
+      polygonOffsetUnits: -1,
+    });
+    const mesh = new THREE.Mesh(surfaceGeometry(this.frame, model, false), material);
+    const lines = new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity: 0.65 });
+    mesh.renderOrder = 1;
+    this.group.add(mesh, new THREE.LineSegments(gridLines(this.frame, model, 14), lines));
+  }
+
+  private addBox(): void {
+    const [w, d] = [this.frame.width / 2, this.frame.depth / 2];
+    const corners = [
+      [-w, -d],
+      [w, -d],
+      [w, d],
+      [-w, d],
+      [-w, -d],
+    ] as const;
+    const base = corners.map(([x, z]) => new THREE.Vector3(x, -0.02, z));
+    const material = new THREE.LineBasicMaterial({ color: this.colours.faint });
+    this.group.add(new THREE.Line(new THREE.BufferGeometry().setFromPoints(base), material));
+    const posts = corners
+      .slice(0, 4)
+      .flatMap(([x, z]) => [new THREE.Vector3(x, -0.02, z), new THREE.Vector3(x, this.frame.tall, z)]);
+    this.group.add(
+      new THREE.LineSegments(
+        new THREE.BufferGeometry().setFromPoints(posts),
+        new THREE.LineBasicMaterial({ color: this.colours.line }),
+      ),
+    );
+  }
+
+  private lineThrough(points: THREE.Vector3[], colour: string, width: number, dashed = false): void {
+    if (points.length < 2) return;
+    const geometry = new LineGeometry();
+    geometry.setPositions(points.flatMap((p) => p.toArray()));
+    for (const hidden of [true, false]) {
+      const material = new LineMaterial({
+        color: new THREE.Color(colour).getHex(),
+        linewidth: width,
+        transparent: true,
+        opacity: hidden ? 0.35 : 1,
+        depthTest: !hidden,
+        dashed,
+        dashSize: 0.05,
+        gapSize: 0.03,
+      });
+      const line = new Line2(geometry, material);
+      if (dashed) line.computeLineDistances();
+      line.renderOrder = hidden ? 2 : 3;
+      this.group.add(line);
+    }
+  }
+
+  // Along the surface between two points of the plane.
+  private drape(p: Point, q: Point): THREE.Vector3[] {
+    const ends = clipped(this.content.grid, p, q);
+    if (!ends) return [];
+    const points: THREE.Vector3[] = [];
+    const [dx, dy] = [ends[1].x - ends[0].x, ends[1].y - ends[0].y];
+    const pieces = Math.min(
+      48,
+      Math.ceil(
+        Math.hypot(this.frame.across(dx) - this.frame.across(0), this.frame.away(dy) - this.frame.away(0)) / 0.03,
+      ) + 1,
+    );
+    for (let i = 0; i <= pieces; ++i) {
+      const [x, y] = [ends[0].x + (i / pieces) * dx, ends[0].y + (i / pieces) * dy];
+      const value = sample(this.content.grid, x, y);
+      if (value !== null) points.push(this.frame.place(x, y, value, 0.008));
+    }
+    return points;
+  }
+
+  private addPath(): void {
+    if (this.content.direction)
+      this.lineThrough(
+        this.drape(this.content.direction.from, this.content.direction.to),
+        this.colours.accent,
+        2.5,
+        true,
+      );
+    const pieces: THREE.Vector3[][] = [];
+    for (let i = 0; i + 1 < this.content.path.length; ++i) {
+      const [p, q] = [this.content.path[i]!, this.content.path[i + 1]!];
+      pieces.push(this.content.draped ? this.drape(p, q) : this.straight(p, q));
+    }
+    // Pieces that touch are one line.
+    let line: THREE.Vector3[] = [];
+    for (const piece of pieces) {
+      const joins = line.length > 0 && piece.length > 0 && line[line.length - 1]!.distanceTo(piece[0]!) < 1e-6;
+      if (!joins) {
+        this.lineThrough(line, this.colours.text, 2.5);
+        line = [];
+      }
+      line.push(...piece);
+    }
+    this.lineThrough(line, this.colours.text, 2.5);
+    this.addDots();
+  }
+
+  private straight(p: Point & { value: MaybeNumber }, q: Point & { value: MaybeNumber }): THREE.Vector3[] {
+    if (p.value === null || q.value === null || !isInside(this.content.grid, p) || !isInside(this.content.grid, q))
+      return [];
+    return [this.frame.place(p.x, p.y, p.value, 0.008), this.frame.place(q.x, q.y, q.value, 0.008)];
+  }
+
+  private addDots(): void {
+    const places: THREE.Vector3[] = [];
+    this.content.path.forEach((point, i) => {
+      if (point.value === null || !isInside(this.content.grid, point)) return;
+      const place = this.frame.place(point.x, point.y, Math.min(point.value, this.frame.range.high), 0.008);
+      places.push(place);
+      if (i < kNumbered || i === this.content.path.length - 1)
+        this.labels.push({ text: String(i), place, colour: "text", important: false });
+    });
+    this.addPoints(places, "dot", this.colours.text, this.colours.panel, places.length > 60 ? 4 : 7);
+  }
+
+  private addMark(mark: Mark): void {
+    const value = mark.value ?? sample(this.content.grid, mark.x, mark.y) ?? this.frame.range.high;
+    if (!isInside(this.content.grid, mark)) return;
+    const above = value > this.frame.range.high;
+    const place = this.frame.place(
+      mark.x,
+      mark.y,
+      Math.max(Math.min(value, this.frame.range.high), this.frame.range.low),
+      0.008,
+    );
+    this.addPoints([place], mark.shape, this.colours[mark.colour], this.colours.panel, mark.size);
+    if (mark.label)
+      this.labels.push({ text: (above ? "↑ " : "") + mark.label, place, colour: mark.colour, important: true });
+  }
+
+  private addPoints(places: THREE.Vector3[], shape: MarkShape, colour: string, halo: string, size: number): void {
+    if (places.length === 0) return;
+    const material = new THREE.PointsMaterial({
+      map: markTexture(shape, colour, halo),
+      size: size * 1.5,
+      sizeAttenuation: false,
+      transparent: true,
+      alphaTest: 0.2,
+      depthTest: false,
+    });
+    const points = new THREE.Points(new THREE.BufferGeometry().setFromPoints(places), material);
+    points.renderOrder = 4;
+    this.group.add(points);
+  }
+}
