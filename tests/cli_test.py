@@ -448,6 +448,8 @@ class Run(CommandLine):
         rows = [json.loads(line) for line in (trace / "trace.jsonl").read_text().splitlines()]
         self.assertEqual(len(rows), len((self.folder / "plain" / "iterations.csv").read_text().splitlines()) - 1)
         shutil.rmtree(trace)
+        for run in ("plain", "traced"):
+            (self.folder / run / "report.html").unlink(missing_ok=True)  # it shows the trace
         self.assert_same_results("plain", "traced")
 
     def test_force_replaces_a_trace_too(self):
@@ -513,6 +515,80 @@ class Run(CommandLine):
         os.close(master)
         self.assertEqual(process.wait(), 0)
         self.assertIn(b"[####################] 100%", text)
+
+
+class Report(CommandLine):
+    def page(self, file):
+        return (self.folder / file).read_text()
+
+    def test_a_run_leaves_one_that_needs_nothing_else(self):
+        text = self.aspic("run", self.beam()).stdout
+        self.assertIn("browser: open out/beam/report.html: 6 frames", text)
+        page = self.page("out/beam/report.html")
+        self.assertIn('id="recording"', page)
+        self.assertIsNone(re.search(r'<(script|link|img)[^>]*(src|href)="(?!data:)', page))
+        self.assertNotIn(str(self.folder), page)
+
+    def test_it_is_made_again_to_the_same_bytes_and_replaced_by_force(self):
+        scene = self.beam()
+        self.aspic("run", scene)
+        first = self.page("out/beam/report.html")
+        self.aspic("report", "out/beam", "-o", "again.html")
+        self.assertEqual(self.page("again.html"), first)
+        self.aspic("run", scene, "--force", "--set", "output.report=false")
+        self.assertFalse((self.folder / "out/beam/report.html").exists())
+
+    def test_what_cannot_be_shown_is_no_failure_of_the_run(self):
+        off = [word for name in ("vtu", "pc2", "usd") for word in ("--set", f"output.{name}=false")]
+        done = self.aspic("run", self.beam(), "--quiet", *off)
+        self.assertIn("warning: no report.html", done.stderr)
+        self.assertIn("output.vtu = true", self.aspic("report", "out/beam", code=2).stderr)
+
+    def test_bad_input_is_named(self):
+        self.assertIn("no directory of a run", self.aspic("report", self.beam(), code=2).stderr)
+        (self.folder / "empty").mkdir()
+        self.assertIn("holds no run", self.aspic("report", "empty", code=2).stderr)
+        self.aspic("run", "beam.toml")
+        (self.folder / "out/beam/frames/body_000003.vtu").write_text("<VTKFile")
+        self.assertIn("body_000003.vtu", self.aspic("report", "out/beam", code=2).stderr)
+        self.assertIn("--max-size", self.aspic("report", "out/beam", "--max-size", "0.1", code=2).stderr)
+
+
+@unittest.skipUnless(shutil.which("chromium") and shutil.which("ffmpeg"), "chromium or ffmpeg is missing")
+class Render(CommandLine):
+    def setUp(self):
+        super().setUp()
+        self.aspic("run", self.beam(duration=0.04))
+
+    def test_frames_a_picture_and_a_video(self):
+        self.aspic("render", "out/beam", "-o", "frames", "--size", "160x120", "--colour", "von_mises", timeout=200)
+        frames = sorted((self.folder / "frames").iterdir())
+        self.assertEqual([f.name for f in frames], [f"frame_{i:06}.png" for i in range(1, 6)])
+        for frame in frames:
+            self.assertEqual(frame.read_bytes()[:24], b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR" + bytes([0, 0, 0, 160, 0, 0, 0, 120]))
+        self.assertNotEqual(frames[0].read_bytes(), frames[4].read_bytes())
+        self.aspic("render", "out/beam", "-o", "last.png", "--size", "160x120", "--step", "4", "--dark", timeout=200)
+        self.assertNotEqual((self.folder / "last.png").read_bytes(), frames[4].read_bytes())
+        self.aspic("render", "out/beam", "-o", "beam.webm", "--size", "160x120", "--every-frame", timeout=200)
+        self.assertGreater((self.folder / "beam.webm").stat().st_size, 500)
+        self.assertEqual([f for f in self.folder.iterdir() if f.name.startswith(".aspic")], [])
+
+    def test_bad_input_is_named(self):
+        render = lambda *arguments: self.aspic("render", "out/beam", *arguments, code=2, timeout=200).stderr
+        self.assertIn("--size 9x: write WIDTHxHEIGHT", render("-o", "a.png", "--step", "1", "--size", "9x"))
+        self.assertIn("one picture needs --step", render("-o", "a.png"))
+        self.assertIn("a video needs even numbers", render("-o", "a.mp4", "--size", "101x100"))
+        self.assertIn("a.gif: pictures become", render("-o", "a.gif"))
+        self.assertIn("choose one of displacement", render("-o", "a.png", "--step", "1", "--colour", "stress"))
+        self.assertIn("choose one of front", render("-o", "a.png", "--step", "1", "--view", "above"))
+        self.assertFalse((self.folder / "a.png").exists())
+
+    def test_a_missing_browser_is_told_with_its_package(self):
+        without = dict(os.environ, PATH=str(self.folder))
+        done = subprocess.run([ASPIC, "render", "out/beam", "-o", "frames"], cwd=self.folder, env=without,
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("apt-get install chromium", done.stderr)
 
 
 class Compare(CommandLine):

@@ -30,6 +30,7 @@ void add_lecture(CLI::App& app, Action& action);
 void add_viewer_commands(CLI::App& app, Action& action);  // view, report, render
 void add_view(CLI::App& app, Action& action);
 void add_report(CLI::App& app, Action& action);
+void add_render(CLI::App& app, Action& action);
 
 std::string version_text();
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "math/eigen3.h"
 #include "mesh/tet_shape.h"
 
@@ -75,9 +76,10 @@ std::span<const double> FieldValues::tet_values(const std::string& field, const 
   const int tets = model.mesh.tet_count();
   if (field == "quality" || field == "stretch") {
     tet_.resize(tets);
-    for (int t = 0; t < tets; ++t)
+    parallel_for(tets, [&](int t) {
       tet_[t] = field == "quality" ? mean_ratio(corners(model.mesh, t))
                                    : stretches(deformation_gradient(model.mesh, t, view.x))[0];
+    });
     return tet_;
   }
   evaluate_elasticity(view, fields_);

@@ -1,7 +1,7 @@
 #include "viewer/recording_messages.h"
 
-#include "mesh/tet_shape.h"
 #include "scene/scene_document.h"
+#include "viewer/scene_json.h"
 #include "viewer/settings.h"
 
 namespace aspic::viewer {
@@ -20,25 +20,6 @@ std::string name_of(const Scene& scene) {
 std::string solver_words(const Table& document) {
   const Value& solver = *document.find("solver");
   return solver["method"].text() + ", " + solver["linear"].text() + " for the linear systems";
-}
-
-Vec3d up(const Table& document) {
-  const Vec3d gravity = document.find("gravity")->vector();
-  const double size = length(gravity);
-  return size > 0 ? (-1 / size) * gravity : Vec3d{{0, 1, 0}};
-}
-
-Json list(const Vec3d& x) { return {x[0], x[1], x[2]}; }
-
-Json fields_json(const std::vector<Field>& fields) {
-  Json list = Json::array();
-  for (const Field& field : fields)
-    list.push_back({{"name", field.name},
-                    {"label", field.label},
-                    {"unit", field.unit},
-                    {"diverging", field.is_diverging},
-                    {"center", field.center}});
-  return list;
 }
 
 }  // namespace
@@ -64,12 +45,12 @@ Json scene_messages(const RecordedScene& recorded) {
                   {"vertices", model.mesh.vertex_count()},
                   {"tets", model.mesh.tet_count()},
                   {"bodies", Json::array()},
-                  {"lower", list(recorded.lower)},
-                  {"upper", list(recorded.upper)},
-                  {"up", list(up(document))},
+                  {"lower", json_of(recorded.lower)},
+                  {"upper", json_of(recorded.upper)},
+                  {"up", json_of(up_of(document))},
                   {"h", scene.simulation.options().h},
                   {"implicit", scene.simulation.is_implicit()},
-                  {"solver", solver_words(document)},
+                  {"solver", scene.simulation.is_implicit() ? solver_words(document) : ""},
                   {"potentials", recorded.tables.potentials},
                   {"fields", fields_json(recorded.fields)},
                   {"field", ""},

@@ -307,8 +307,9 @@ TEST_F(RecordedRun, ThatWasKilledIsShownUpToItsCheckpoint) {
 }
 
 TEST_F(RecordedRun, RefusesWhatIsDamagedNamingTheFile) {
+  int count = 0;
   const auto after = [&](auto damage) {
-    const fs::path directory = run("run");
+    const fs::path directory = run("run" + std::to_string(++count));
     damage(directory);
     return refusal(directory);
   };
@@ -355,7 +356,7 @@ step = 0.01
 max_iterations = 1
 [[body]]
 name = "block"
-shape = { box = { cells = [13, 14, 14] } }
+shape = { box = { upper = [1, 1, 1], cells = [13, 14, 14] } }
 material = { model = "neo_hookean", young = 1e5, poisson = 0.4, density = 1000 }
 [[body.pin]]
 name = "base"

@@ -2,34 +2,15 @@
 
 #include "mesh/box_tree.h"
 #include "viewer/picture.h"
+#include "viewer/scene_json.h"
 
 namespace aspic::viewer {
 namespace {
-
-Json json_of(const Vec3d& x) { return {x[0], x[1], x[2]}; }
-
-// Against gravity; along y where there is none.
-Vec3d up_of(const Table& document) {
-  const Vec3d gravity = document.find("gravity")->vector();
-  const double size = std::sqrt(dot(gravity, gravity));
-  return size > 0 ? (-1 / size) * gravity : Vec3d{{0, 1, 0}};
-}
 
 Box box_of(std::span<const double> q) {
   Box box;
   for (size_t i = 0; i + 2 < q.size(); i += 3) box.add({{q[i], q[i + 1], q[i + 2]}});
   return box;
-}
-
-Json fields_json(const Model& model) {
-  Json list = Json::array();
-  for (const Field& field : fields_of(model))
-    list.push_back({{"name", field.name},
-                    {"label", field.label},
-                    {"unit", field.unit},
-                    {"diverging", field.is_diverging},
-                    {"center", field.center}});
-  return list;
 }
 
 }  // namespace
@@ -80,7 +61,7 @@ Message scene_message(const ShownSide& shown, const std::string& field) {
                {"implicit", simulation.is_implicit()},
                {"solver", simulation.is_implicit() ? simulation.solver_description() : ""},
                {"potentials", simulation.potential_names()},
-               {"fields", fields_json(model)},
+               {"fields", fields_json(fields_of(model))},
                {"field", field},
                {"settings", settings_json(steered.document)},
                {"stiffness", shown.side.stiffness()}});

@@ -18,9 +18,11 @@ import { makeMicroscopePanel } from "./panels/microscope";
 import { makeReportPanel } from "./panels/report";
 import { Settings } from "./panels/settings";
 import { findRecording, RecordedSource } from "./recorded";
+import { isRendering, renderPictures } from "./render";
 import { makeRole } from "./role";
 import { listenToKeys } from "./shortcuts";
 import { Sidebar } from "./sidebar";
+import type { Source } from "./source";
 import { Store } from "./store";
 import { Theme } from "./theme";
 import { makeToolbar } from "./toolbar";
@@ -56,9 +58,15 @@ function buildPage(store: Store, page: Page): void {
   listenToKeys(page);
 }
 
-const page = new Page();
-showOwnErrors(page);
+function openPage(source: Source): void {
+  const page = new Page();
+  showOwnErrors(page);
+  const store = new Store(source);
+  buildPage(store, page);
+  store.start();
+}
+
 const recording = findRecording();
-const store = new Store(recording === null ? new LiveSource(sessionAddress()) : new RecordedSource(recording));
-buildPage(store, page);
-store.start();
+if (recording === null) openPage(new LiveSource(sessionAddress()));
+else if (isRendering()) void renderPictures(new RecordedSource(recording));
+else openPage(new RecordedSource(recording));

@@ -101,6 +101,31 @@ export class RecordedSource implements Source {
     if (this.waiting) this.sendPicture();
   }
 
+  // Of the whole run, for pictures of it.
+  get frames(): { step: number[]; time: number[] } {
+    return this.opened().head.frames;
+  }
+
+  // That holds every position of every frame.
+  get box(): { lower: Vec3; upper: Vec3 } {
+    const { lower, size } = this.opened().head;
+    return { lower, upper: [lower[0] + size[0], lower[1] + size[1], lower[2] + size[2]] };
+  }
+
+  // The smallest and the largest value of a field on the surface in the whole run.
+  range(field: string): [number, number] {
+    const recording = this.opened();
+    const range: [number, number] = [Infinity, -Infinity];
+    for (let frame = 0; frame < recording.frameCount; ++frame) {
+      const positions = carried(this.surface, recording.positions(frame));
+      for (const value of recording.values(field, frame, this.surface, positions)) {
+        if (value < range[0]) range[0] = value;
+        if (value > range[1]) range[1] = value;
+      }
+    }
+    return range[0] <= range[1] ? range : [0, 0];
+  }
+
   private opened(): Recording {
     if (!this.recording) throw new Error("the recording is not read yet");
     return this.recording;

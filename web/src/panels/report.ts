@@ -1,7 +1,8 @@
 // The certificate of a run: totals, a table of its steps with the worst first, and the scene as text.
 import "./report.css";
-import { button, element, labelled, messageOf, saveFile } from "../dom";
+import { button, element, messageOf, saveFile } from "../dom";
 import type { Page, Panel } from "../page";
+import { short } from "../plots/numbers";
 import type { MaybeNumber, StepRow, TextReply } from "../protocol";
 import type { Store } from "../store";
 import { completed, excess, kColumns, listed, totals } from "./certificate";
@@ -9,9 +10,7 @@ import { completed, excess, kColumns, listed, totals } from "./certificate";
 const kRowsPerPage = 100;
 
 function text(value: MaybeNumber | string): string {
-  if (typeof value === "string") return value;
-  if (value === null) return "–";
-  return Number.isInteger(value) && Math.abs(value) < 1e6 ? String(value) : value.toPrecision(4);
+  return typeof value === "string" ? value : short(value);
 }
 
 class StepTable {
@@ -27,7 +26,7 @@ class StepTable {
     const bar = element(
       "div",
       { class: "bar" },
-      labelled("only steps that did not converge", this.onlyFailed),
+      element("label", {}, this.onlyFailed, " only steps that did not converge"),
       button({ text: "Earlier rows" }, () => this.turn(-kRowsPerPage)),
       this.range,
       button({ text: "Later rows" }, () => this.turn(kRowsPerPage)),
@@ -105,7 +104,7 @@ function makeScene(store: Store, page: Page): HTMLElement {
   const save = button({ text: "Save", label: "Save the scene" }, () => {
     if (file) saveFile(file.name, new Blob([file.text], { type: "text/plain" }));
   });
-  const details = element("details", {}, element("summary", {}, "The scene with all its defaults"), save, code);
+  const details = element("details", {}, element("summary", {}, "Scene, with every default filled in"), save, code);
   const load = async (): Promise<void> => {
     if (!details.open) return;
     try {
@@ -124,7 +123,7 @@ export function makeReportPanel(store: Store, page: Page): Panel {
   const list = element("dl", { class: "totals" });
   const notes = element("ul", { class: "notes" });
   const table = new StepTable(store);
-  const panel = element("div", { class: "report" }, list, notes, table.element, makeScene(store, page));
+  const panel = element("div", { class: "report" }, list, notes, makeScene(store, page), table.element);
   let visible = false;
   let due = false;
   const draw = (): void => {

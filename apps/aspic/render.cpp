@@ -1,0 +1,175 @@
+// `aspic render`: pictures and videos of a run, without a display.
+#include "viewer/render.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+
+#include "aspic/commands.h"
+#include "aspic/interrupt.h"
+#include "base/error.h"
+#include "io/atomic_file.h"
+#include "scene/run_directory.h"
+#include "viewer/report.h"
+
+namespace aspic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  fs::path run, out;
+  std::string size = "1280x720", view = "isometric", colour;
+  double fps = 30, speed = 1;
+  int step = -1;
+  bool wires = true, dark = false, every_frame = false;
+};
+
+constexpr size_t kMostBytes = 100'000'000;  // of the page: what a browser bears
+
+viewer::RenderOptions render_options(const Arguments& arguments) {
+  viewer::RenderOptions options{.view = arguments.view,
+                                .colour = arguments.colour,
+                                .wires = arguments.wires,
+                                .dark = arguments.dark,
+                                .step = arguments.step};
+  const char* end = arguments.size.data() + arguments.size.size();
+  const auto [x, width_error] = std::from_chars(arguments.size.data(), end, options.width);
+  const bool has_both = width_error == std::errc() && x != end && *x == 'x' &&
+                        std::from_chars(x + 1, end, options.height).ptr == end && x + 1 != end;
+  if (!has_both || std::min(options.width, options.height) < 16 || std::max(options.width, options.height) > 8192)
+    throw InvalidInput(
+        fmt::format("--size {}: write WIDTHxHEIGHT, each from 16 to 8192, such as 1280x720", arguments.size));
+  return options;
+}
+
+// Where the pictures go.
+class Output {
+ public:
+  virtual ~Output() = default;
+  virtual void add(int index, std::string_view png) = 0;
+  virtual void finish(int count) = 0;
+};
+
+class OnePicture : public Output {
+ public:
+  explicit OnePicture(fs::path path) : path_(std::move(path)) {}
+  void add(int, std::string_view png) override { write_file(path_, png); }
+  void finish(int) override {}
+
+ private:
+  fs::path path_;
+};
+
+class Video : public Output {
+ public:
+  Video(const fs::path& path, double fps) : file_(path, fps) {}
+  void add(int, std::string_view png) override { file_.add(png); }
+  void finish(int) override { file_.finish(); }
+
+ private:
+  viewer::VideoFile file_;
+};
+
+class Folder : public Output {
+ public:
+  explicit Folder(fs::path path) : path_(std::move(path)) {
+    std::error_code error;
+    fs::create_directories(path_, error);
+    if (error) throw InvalidInput(fmt::format("{}: cannot be created: {}", path_.string(), error.message()));
+  }
+  void add(int index, std::string_view png) override { write_file(file(index), png); }
+  // Of an earlier, longer rendering nothing is left that would look like part of this one.
+  void finish(int count) override {
+    std::error_code none;
+    while (fs::remove(file(count), none)) ++count;
+  }
+
+ private:
+  fs::path file(int index) const { return path_ / fmt::format("frame_{:06}.png", index + 1); }
+  fs::path path_;
+};
+
+bool is_picture(const fs::path& path) { return path.extension() == ".png"; }
+
+std::unique_ptr<Output> open_output(const Arguments& arguments, const viewer::RenderOptions& options) {
+  const fs::path& out = arguments.out;
+  if (is_picture(out)) return std::make_unique<OnePicture>(out);
+  if (viewer::VideoFile::is_video(out)) {
+    if (options.width % 2 || options.height % 2)
+      throw InvalidInput(fmt::format("--size {}: a video needs even numbers", arguments.size));
+    return std::make_unique<Video>(out, arguments.fps);
+  }
+  if (out.has_extension() && !fs::is_directory(out))
+    throw InvalidInput(fmt::format("{}: pictures become .png, .mp4, .webm, or a folder such as frames/", out.string()));
+  return std::make_unique<Folder>(out);
+}
+
+int render(const Arguments& arguments) {
+  viewer::RenderOptions options = render_options(arguments);
+  if (is_picture(arguments.out) && options.step < 0)
+    throw InvalidInput(
+        fmt::format("{}: one picture needs --step; of the whole run: -o frames/", arguments.out.string()));
+  const bool is_video = viewer::VideoFile::is_video(arguments.out);
+  options.every = arguments.every_frame || !is_video ? 0 : arguments.speed / arguments.fps;
+  if (!fs::is_directory(arguments.run))
+    throw InvalidInput(fmt::format("{}: is no directory of a run", arguments.run.string()));
+
+  const Scene scene = load_scene(scene_of_run(arguments.run));
+  const viewer::Report report = viewer::make_report(arguments.run, scene, {.max_bytes = kMostBytes});
+  if (!report.note.empty()) fmt::print("note: {} of {} frames are drawn\n", report.frames, report.frames_of_run);
+  const std::unique_ptr<Output> output = open_output(arguments, options);
+  catch_interrupts();
+  const bool is_terminal = ::isatty(STDOUT_FILENO) != 0;
+  int drawn = 0;
+  const auto take = [&](int index, int count, std::string_view png) {
+    output->add(index, png);
+    drawn = index + 1;
+    if (is_terminal) fmt::print("\r{} of {} pictures", drawn, count);
+    std::fflush(stdout);
+  };
+  const viewer::RenderEnd end = viewer::render(report.html, options, take, [] { return interrupt_signal() == 0; });
+  if (is_terminal && drawn > 0) fmt::print("\n");
+  if (end == viewer::RenderEnd::interrupted) return exit_signal + interrupt_signal();
+  output->finish(drawn);
+  fmt::print("{}: {} {}\n", arguments.out.string(), drawn, drawn == 1 ? "picture" : "pictures");
+  return exit_done;
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, Action& action) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("render", "Draws a run as pictures or a video; needs no display");
+  command->footer(R"(
+Examples:
+  aspic render out/bunny -o bunny.mp4                          as fast as it happened; needs ffmpeg
+  aspic render out/bunny -o slow.webm --speed 0.25 --colour von_mises
+  aspic render out/bunny -o frames/ --size 1920x1080           frame_000001.png, ... of every frame of the run
+  aspic render out/bunny -o bunny.png --step 40 --view front --dark
+
+Chromium draws them with the page of aspic view and aspic report, on the processor where there is no graphics card.)");
+  command->add_option("RUN", arguments->run, "Directory of a run")->required();
+  command->add_option("-o,--out", arguments->out, "Folder, .mp4, .webm, or with --step .png")->required();
+  command->add_option("--size", arguments->size, "Width and height in pixels, 1280x720 by default");
+  command->add_option("--view", arguments->view,
+                      "front, back, left, right, top, bottom, isometric, or the direction to look from: \"1,2,0.5\"");
+  command->add_option("--colour,--color", arguments->colour, "Field, such as von_mises or displacement");
+  command->add_option("--fps", arguments->fps, "Pictures per second of a video, 30 by default")
+      ->check(CLI::Range(1.0, 240.0));
+  command->add_option("--speed", arguments->speed, "Simulated seconds per second of a video, 1 by default")
+      ->check(CLI::Range(1e-9, 1e9));
+  command->add_flag("--every-frame", arguments->every_frame, "A video with one picture of each frame of the run");
+  command->add_option("--step", arguments->step, "One picture, of the frame nearest to this step")
+      ->check(CLI::Range(0, 1000000000));
+  command->add_flag("--wires,!--no-wires", arguments->wires, "Edges of the mesh; on by default");
+  command->add_flag("--dark", arguments->dark, "Dark background");
+  command->callback([arguments, &action] { action = [arguments] { return render(*arguments); }; });
+}
+
+}  // namespace aspic::cli

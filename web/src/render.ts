@@ -1,0 +1,137 @@
+// Pictures of a recorded run for a program: frame after frame is drawn and sent to the server of this page, which makes
+// files of them (apps/viewer/render.h). What is wanted stands in the address.
+import { Vector3 } from "three";
+import { element, messageOf } from "./dom";
+import { Page } from "./page";
+import type { Field } from "./protocol";
+import type { RecordedSource } from "./recorded";
+import { Store } from "./store";
+import { type CameraRig, kViewNames, lookingFrom, sceneAxes, type ViewName } from "./view/cameras";
+import { Display } from "./view/display";
+import { View } from "./view/view";
+
+export interface RenderRequest {
+  width: number;
+  height: number;
+  view: ViewName | [number, number, number]; // or the direction that the camera looks from
+  colour: string; // a field; "" for none
+  wires: boolean;
+  dark: boolean;
+  step: number | null; // one picture, of the frame nearest to it
+  every: number; // simulated time from picture to picture [s]; 0: a picture of every frame
+}
+
+// Throws for a view that there is not.
+export function renderRequest(query: URLSearchParams): RenderRequest {
+  const number = (name: string, fallback: number): number => Number(query.get(name) ?? fallback);
+  const view = query.get("view") ?? "isometric";
+  const direction = view.split(",").map(Number);
+  return {
+    width: number("width", 1280),
+    height: number("height", 720),
+    view: direction.length === 3 ? [direction[0], direction[1], direction[2]] : named(view),
+    colour: query.get("colour") ?? "",
+    wires: query.get("wires") !== "0",
+    dark: query.get("dark") === "1",
+    step: query.has("step") ? number("step", 0) : null,
+    every: number("every", 0),
+  };
+}
+
+function named(view: string): ViewName {
+  const found = kViewNames.find((name) => name === view);
+  if (!found) throw new Error(`--view: there is no view '${view}'; choose one of ${kViewNames.join(", ")}, or a direction x,y,z`);
+  return found;
+}
+
+// The steps to be shown, one per picture: at every multiple of `every` the last frame that is not later.
+export function stepsToShow(frames: { step: number[]; time: number[] }, request: Pick<RenderRequest, "step" | "every">): number[] {
+  const { step, time } = frames;
+  if (request.step !== null) return [request.step];
+  if (request.every <= 0) return step;
+  const last = time.length - 1;
+  const count = Math.floor((time[last] - time[0]) / request.every + 1e-6) + 1;
+  let frame = 0;
+  return Array.from({ length: count }, (_, i) => {
+    const now = time[0] + i * request.every * (1 + 1e-9);
+    while (frame < last && time[frame + 1] <= now) ++frame;
+    return step[frame];
+  });
+}
+
+async function send(path: string, token: string, body: Blob | string): Promise<void> {
+  const answer = await fetch(`${path}?token=${encodeURIComponent(token)}`, { method: "POST", body });
+  if (!answer.ok) throw new Error(await answer.text());
+}
+
+function aim(rig: CameraRig, request: RenderRequest, source: RecordedSource, up: [number, number, number]): void {
+  if (typeof request.view === "string") {
+    rig.look(request.view);
+  } else {
+    const axes = sceneAxes(up);
+    rig.orientation.copy(lookingFrom(new Vector3(...request.view).normalize(), axes.up, axes.right));
+  }
+  rig.centre(source.box.lower, source.box.upper);
+}
+
+// Until the store has what the source sends in answer to a request, which it does at once.
+function started(store: Store): Promise<void> {
+  return new Promise((resolve, reject) => {
+    store.on("picture", () => resolve());
+    store.on("refused", (why) => reject(new Error(why)));
+    store.start();
+  });
+}
+
+// In a video the same colour stands for the same value throughout.
+async function colour(request: RenderRequest, source: RecordedSource, display: Display, fields: Field[]): Promise<void> {
+  const field = fields.find(({ name }) => name === request.colour);
+  if (!field) throw new Error(`--colour: the run has no field '${request.colour}'; choose one of ${fields.map(({ name }) => name).join(", ")}`);
+  await source.request({ do: "colour", field: field.name });
+  if (request.step !== null) return;
+  const [least, most] = source.range(field.name);
+  const reach = Math.max(most - field.center, field.center - least);
+  const [low, high] = field.diverging ? [field.center - reach, field.center + reach] : [least, most];
+  display.change({ fixedRange: true, low, high });
+}
+
+async function draw(request: RenderRequest, source: RecordedSource, token: string): Promise<void> {
+  document.documentElement.dataset.theme = request.dark ? "dark" : "light";
+  const store = new Store(source);
+  const display = new Display();
+  const host = element("div");
+  document.body.replaceChildren(host);
+  const view = new View(host, store, new Page(), "a", display);
+  await started(store);
+  display.change({ wires: request.wires });
+  view.renderSize(request.width, request.height);
+  const scene = store.side("a")?.scene;
+  if (!scene) throw new Error("the recording has no scene");
+  if (request.step !== null) await source.request({ do: "rewind", step: request.step }); // whose range colours it
+  view.drawNow();
+  if (request.colour !== "") await colour(request, source, display, scene.fields);
+  aim(display.camera("a"), request, source, scene.up);
+  const steps = stepsToShow(source.frames, request);
+  await send("/count", token, String(steps.length));
+  for (const step of steps) {
+    view.drawNow(); // the source waits until the picture before is drawn
+    await source.request({ do: "rewind", step });
+    await send("/frame", token, await view.screenshot());
+  }
+}
+
+// False: the page is for a reader.
+export function isRendering(): boolean {
+  return new URL(location.href).searchParams.has("render");
+}
+
+export async function renderPictures(source: RecordedSource): Promise<void> {
+  const query = new URL(location.href).searchParams;
+  const token = query.get("token") ?? "";
+  try {
+    await draw(renderRequest(query), source, token);
+    await send("/end", token, "");
+  } catch (error) {
+    await send("/failed", token, messageOf(error));
+  }
+}

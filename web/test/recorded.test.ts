@@ -1,0 +1,240 @@
+// A recorded run as a source: what is packed here as apps/viewer/recording.h says plays, rewinds and answers.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { gzipSync } from "node:zlib";
+import type { Picture, Scene, ServerMessage, State, StepRow, TextReply, VertexReply } from "../src/protocol";
+import { RecordedSource } from "../src/recorded";
+import { stepsToShow } from "../src/render";
+import type { Incoming } from "../src/source";
+
+// Three corners and one triangle that move along x: frame f is at the codes 100 f^2.
+const kFrames = 5;
+const kSize = 6.5535; // so that a code is 0.0001
+
+function positionBytes(): Uint8Array {
+  const n = 9;
+  const bytes = new Uint8Array(2 * n * kFrames);
+  for (let frame = 0; frame < kFrames; ++frame) {
+    for (let i = 0; i < n; ++i) {
+      const code = (f: number): number => (f < 0 || i % 3 !== 0 ? 0 : 100 * f * f + i);
+      const line = frame === 0 ? 0 : frame === 1 ? code(0) : 2 * code(frame - 1) - code(frame - 2);
+      const difference = code(frame) - line;
+      const folded = (difference << 1) ^ (difference >> 31);
+      bytes[2 * n * frame + i] = folded & 255;
+      bytes[2 * n * frame + n + i] = folded >> 8;
+    }
+  }
+  return bytes;
+}
+
+const kField = { unit: "", diverging: false, center: 0 };
+const kScene = {
+  kind: "scene",
+  side: "a",
+  generation: 1,
+  surface: "cage",
+  notes: [],
+  fields: [
+    { ...kField, name: "displacement", label: "displacement" },
+    { ...kField, name: "stress", label: "stress" },
+    { ...kField, name: "young", label: "E" },
+  ],
+} as unknown as Scene;
+
+function recordingText(): string {
+  const arrays: [string, "u8" | "u32" | "f32", Uint8Array | Uint32Array | Float32Array][] = [
+    ["point.rest", "f32", new Float32Array(9)],
+    ["point.mass", "f32", Float32Array.of(1, 2, 3)],
+    ["point.pinned", "u8", Uint8Array.of(0, 1, 0)],
+    ["cage.rest", "f32", new Float32Array(9)],
+    ["cage.triangles", "u32", Uint32Array.of(0, 1, 2)],
+    ["cage.tet", "u32", Uint32Array.of(7)],
+    ["cage.vertex", "u32", Uint32Array.of(10, 11, 12)],
+    ["cage.corners", "u32", Uint32Array.of(0, 1, 2)],
+    ["cage.place", "u32", Uint32Array.of(0, 1, 1)],
+    ["positions", "u8", positionBytes()],
+    ["field.stress", "u8", Uint8Array.of(0, 254, 0, 0, 255 - 0, 1, 0, 0, 0, 0)],
+    ["field.stress.range", "f32", Float32Array.of(0, 10, 0, 10, 0, 20, 0, 20, 0, 20)],
+    ["field.young", "f32", Float32Array.of(5, 6)],
+  ];
+  let at = 0;
+  const blocks: Uint8Array[] = [];
+  const list = arrays.map(([name, type, numbers]) => {
+    const entry = { name, type, at, count: numbers.length };
+    const padded = new Uint8Array(Math.ceil(numbers.byteLength / 4) * 4);
+    padded.set(new Uint8Array(numbers.buffer));
+    blocks.push(padded);
+    at += padded.length;
+    return entry;
+  });
+  const steps = [10, 20, 30, 40].map((step) => ({ step, status: "converged" }) as StepRow);
+  const all = Array.from({ length: 40 }, (_, i) => steps.find(({ step }) => step === i + 1) ?? ({ step: i + 1, status: "stuck" } as StepRow));
+  const head = {
+    format: 1,
+    hello: { kind: "hello", live: false },
+    scenes: [kScene],
+    toml: "name = 1\n",
+    steps: all,
+    frames: { step: [0, 10, 20, 30, 40], time: [0, 0.1, 0.2, 0.3, 0.4] },
+    lower: [0, 0, 0],
+    size: [kSize, kSize, kSize],
+    arrays: list,
+  };
+  const json = Buffer.from(JSON.stringify(head));
+  const length = Buffer.alloc(4);
+  length.writeUInt32LE(json.length);
+  const padding = Buffer.alloc((4 - ((4 + json.length) % 4)) % 4);
+  return gzipSync(Buffer.concat([length, json, padding, ...blocks])).toString("base64");
+}
+
+class Reader {
+  readonly messages: ServerMessage[] = [];
+  readonly pictures: Picture[] = [];
+  readonly source: RecordedSource;
+  now = 0; // [ms]
+  private pulse: (() => void) | null = null;
+  private greeted: () => void = () => {};
+
+  constructor(text: string) {
+    this.source = new RecordedSource(text, { now: () => this.now, next: (callback) => (this.pulse = callback) });
+  }
+
+  start(): Promise<void> {
+    return new Promise((resolve) => {
+      this.greeted = resolve;
+      this.source.start((incoming) => this.take(incoming));
+    });
+  }
+
+  // The screen shows pictures for so long.
+  pass(milliseconds: number): void {
+    for (let elapsed = 0; elapsed < milliseconds; elapsed += 10) {
+      this.now += 10;
+      const pulse = this.pulse;
+      this.pulse = null;
+      pulse?.();
+      this.source.ready();
+    }
+  }
+
+  get state(): State {
+    return this.messages.filter((message): message is State => message.kind === "state").at(-1)!;
+  }
+
+  get picture(): Picture {
+    return this.pictures.at(-1)!;
+  }
+
+  private take(incoming: Incoming): void {
+    if ("message" in incoming) this.messages.push(incoming.message);
+    if ("picture" in incoming) this.pictures.push(incoming.picture);
+    if ("message" in incoming && ["state", "refused"].includes(incoming.message.kind)) this.greeted();
+  }
+}
+
+async function opened(): Promise<Reader> {
+  const reader = new Reader(recordingText());
+  await reader.start();
+  reader.source.ready();
+  return reader;
+}
+
+test("a recording greets as a program does, and shows its start", async () => {
+  const reader = await opened();
+  assert.deepEqual(reader.messages.map(({ kind }) => kind), ["hello", "scene", "pins", "steps", "state"]);
+  assert.deepEqual(reader.messages[2], { kind: "pins", side: "a", vertices: [1] });
+  assert.deepEqual(reader.state.a.timeline, { first: 0, last: 40 });
+  assert.equal(reader.picture.step, 0);
+  assert.equal(reader.picture.values, null);
+});
+
+test("positions are what was packed", async () => {
+  const reader = await opened();
+  for (const frame of [4, 2, 0, 3]) {
+    await reader.source.request({ do: "rewind", step: 10 * frame });
+    reader.source.ready();
+    const x = [0, 3, 6].map((i) => (100 * frame * frame + i) * 1e-4);
+    reader.picture.positions.forEach((value, i) => assert.ok(Math.abs(value - (i % 3 === 0 ? x[i / 3] : 0)) < 1e-6));
+  }
+});
+
+test("it plays at its speed, ends at the last frame, and begins again", async () => {
+  const reader = await opened();
+  await reader.source.request({ do: "speed", value: 0.5 });
+  await reader.source.request({ do: "play" });
+  reader.pass(500);
+  assert.equal(reader.state.a.step, 20);
+  assert.equal(reader.state.rate, 0.5);
+  reader.pass(500);
+  assert.equal(reader.state.a.step, 40);
+  assert.equal(reader.state.playing, false);
+  await reader.source.request({ do: "play" });
+  assert.equal(reader.state.a.step, 0);
+  await reader.source.request({ do: "pause" });
+  reader.pass(500);
+  assert.equal(reader.state.a.step, 0);
+});
+
+test("it steps by frames and rewinds to the nearest one", async () => {
+  const reader = await opened();
+  await reader.source.request({ do: "step" });
+  assert.equal(reader.state.a.step, 10);
+  assert.equal(reader.state.a.status, "converged");
+  await reader.source.request({ do: "rewind", step: 27 });
+  assert.equal(reader.state.a.step, 30);
+  await reader.source.request({ do: "reset" });
+  assert.equal(reader.state.a.step, 0);
+});
+
+test("a picture waits until the one before is drawn; then the newest comes", async () => {
+  const reader = await opened();
+  for (const step of [10, 20, 30]) await reader.source.request({ do: "rewind", step });
+  assert.deepEqual(reader.pictures.map(({ step }) => step), [0, 10]);
+  reader.source.ready();
+  assert.deepEqual(reader.pictures.map(({ step }) => step), [0, 10, 30]);
+});
+
+test("fields are of places that vertices share; what is no number stays none", async () => {
+  const reader = await opened();
+  await reader.source.request({ do: "colour", field: "stress" });
+  assert.deepEqual([...reader.picture.values!], [0, 10, 10]);
+  assert.equal(reader.picture.max, 10);
+  await reader.source.request({ do: "rewind", step: 20 });
+  reader.source.ready();
+  assert.deepEqual([...reader.picture.values!].map(Number.isNaN), [true, true, true]);
+  await assert.rejects(reader.source.request({ do: "colour", field: "colour" }), /no field 'colour'/);
+});
+
+test("it answers what it knows and refuses the rest in words", async () => {
+  const reader = await opened();
+  await reader.source.request({ do: "rewind", step: 20 });
+  const text = await reader.source.ask<TextReply>({ ask: "scene", side: "a" });
+  assert.equal(text.text, "name = 1\n");
+  const vertex = await reader.source.ask<VertexReply>({ ask: "vertex", side: "a", vertex: 1 });
+  assert.equal(vertex.vertex, 11);
+  assert.equal(vertex.pinned, true);
+  assert.ok(Math.abs(vertex.position[0] - 0.0403) < 1e-6);
+  assert.ok(Math.abs(vertex.velocity[0] - 0.3) < 1e-4);
+  assert.equal(vertex.values.young, 6);
+  assert.equal(vertex.values.stress, null);
+  await assert.rejects(reader.source.ask({ ask: "vertex", side: "a", vertex: 3 }), /no vertex 3/);
+  await assert.rejects(reader.source.ask({ ask: "worst", side: "a" }), /does not hold/);
+  await assert.rejects(reader.source.request({ do: "set", key: "time.step", value: 1 }), /cannot be changed/);
+  await assert.rejects(reader.source.request({ do: "surface", which: "skin" }), /no skin/);
+});
+
+test("a damaged recording is told in words", async () => {
+  for (const text of [recordingText().slice(0, 400), "", "no base64 at all!"]) {
+    const reader = new Reader(text);
+    await reader.start();
+    assert.match(JSON.stringify(reader.messages), /recording in this page is damaged/);
+  }
+});
+
+test("pictures of a video are the frames that are not later", () => {
+  const frames = { step: [0, 10, 20, 30, 40], time: [0, 0.1, 0.2, 0.3, 0.4] };
+  assert.deepEqual(stepsToShow(frames, { step: null, every: 0 }), frames.step);
+  assert.deepEqual(stepsToShow(frames, { step: null, every: 0.05 }), [0, 0, 10, 10, 20, 20, 30, 30, 40]);
+  assert.deepEqual(stepsToShow(frames, { step: null, every: 0.2 }), [0, 20, 40]);
+  assert.deepEqual(stepsToShow(frames, { step: 17, every: 0 }), [17]);
+});
