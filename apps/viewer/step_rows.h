@@ -15,6 +15,7 @@ struct IterationRow {
   std::vector<Trial> tried;
 };
 Json to_json(const IterationRow& row);
+Json to_json(const std::vector<IterationRow>& rows);
 
 // The iterations of a step as far as they are kept: one of very many would fill memory and page.
 class IterationRows {
@@ -41,6 +42,8 @@ struct StepRow {
   Explanation why;
 };
 Json to_json(const StepRow& row);
+Json under_way_json(int step, double time,
+                    const std::vector<IterationRow>& iterations);  // of a step that has not ended
 
 class StepRows {
  public:

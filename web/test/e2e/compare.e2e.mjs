@@ -1,0 +1,120 @@
+// A/B: two simulations side by side under one mouse.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { test } from "node:test";
+import { findBody, openSession, out, pageModule, pressAndWait, settingOf, startProgram } from "./harness.mjs";
+
+const { presets } = await pageModule("presets.ts");
+const program = await startProgram("scenes/cantilever.toml");
+
+async function compare({ page, until }, title) {
+  await page.keyboard.press("c");
+  const dialog = page.getByRole("dialog");
+  await dialog.getByRole("button", { name: title }).click();
+  await dialog.getByRole("button", { name: "Compare", exact: true }).click();
+  await until(`side b of '${title}'`, ({ scenes, state, pictures }) => scenes.b && state.b && pictures.b);
+  await dialog.waitFor({ state: "detached" });
+}
+
+async function endCompare({ page, until }) {
+  await page.getByRole("button", { name: "End the comparison" }).click();
+  await until("the end of the comparison", ({ scenes, state }) => !scenes.b && !state.b);
+  await page.waitForFunction(() => document.querySelectorAll(".side").length === 1);
+}
+
+test("each offered comparison opens two sides, which advance together", async () => {
+  const opened = await openSession(program);
+  const { page, heard, until, close } = opened;
+  const all = presets(heard.scenes.a);
+  assert.ok(all.length >= 6);
+  for (const { title, label } of all) {
+    await pressAndWait(opened, "r", "the start", () => heard.state.a.step === 0);
+    await compare(opened, title);
+    assert.equal(await page.locator(".side").count(), 2);
+    await page.getByText(`B: ${label}`).waitFor();
+    assert.equal(heard.scenes.b.label, label);
+    const told = heard.messages.length;
+    for (let i = 0; i < 3; ++i) {
+      const { a, b } = heard.state;
+      await page.keyboard.press("s");
+      await until(`both sides of '${title}' step`, () => heard.state.a.step > a.step && heard.state.b.step > b.step);
+      const h = Math.max(heard.scenes.a.h, heard.scenes.b.h);
+      assert.ok(Math.abs(heard.state.a.time - heard.state.b.time) < 0.51 * h, `${heard.state.a.time} and ${heard.state.b.time} s`);
+    }
+    for (const side of ["a", "b"]) assert.ok(heard.messages.slice(told).some((m) => m.kind === "steps" && m.side === side));
+    await until("both pictures", ({ pictures }) => pictures.a.step > 0 && pictures.b.step > 0);
+    await endCompare(opened);
+  }
+  await close();
+});
+
+test("the cameras are one, and so is the mouse; the legend and the note name both sides", async () => {
+  const opened = await openSession(program);
+  const { page, heard, until, close } = opened;
+  await pressAndWait(opened, "r", "the start", () => heard.state.a.step === 0);
+  await compare(opened, "Ten times as stiff");
+  assert.equal(settingOf(heard, "material.young", "b").value, 10 * settingOf(heard, "material.young").value);
+  await page.getByRole("tab", { name: "Energy" }).click();
+  const canvases = [0, 1].map((i) => page.locator(".side").nth(i).locator("canvas").first());
+  const shown = () => Promise.all(canvases.map((canvas) => canvas.screenshot()));
+  const before = await shown();
+  const box = await page.locator(".side").first().boundingBox();
+  await page.mouse.move(box.x + 30, box.y + 60); // beside the body
+  await page.mouse.down();
+  await page.mouse.move(box.x + 130, box.y + 80, { steps: 5 });
+  await page.mouse.up();
+  await until("both cameras turn", async () => (await shown()).every((picture, i) => !picture.equals(before[i])));
+  const [x, y] = await findBody(opened);
+  await page.mouse.down();
+  await page.mouse.move(x + 10, y - 60, { steps: 5 });
+  await until("a grab of both", ({ state }) => state.a.grab && state.b.grab);
+  for (let i = 0; i < 3; ++i) {
+    const { step } = heard.state.a;
+    await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step > step);
+  }
+  await page.mouse.up();
+  await until("a release of both", ({ state }) => !state.a.grab && !state.b.grab);
+  const panel = page.getByRole("tabpanel", { name: "Energy" });
+  await panel.getByText(/10 E is dashed/).waitFor();
+  const legend = await panel.innerText();
+  assert.ok(/10 E/.test(legend), legend);
+  await page.screenshot({ path: join(out, "compare.png") });
+  await page.keyboard.press("m");
+  await page.getByLabel("Which side of the comparison").or(page.getByTitle("Which side of the comparison")).first().waitFor();
+  await page.screenshot({ path: join(out, "compare_microscope.png") });
+  await endCompare(opened);
+  await close();
+});
+
+test("settings of the sides are set apart or together", async () => {
+  const opened = await openSession(program);
+  const { page, heard, until, close } = opened;
+  await compare(opened, "Half the time step");
+  assert.equal(settingOf(heard, "time.step", "b").value, settingOf(heard, "time.step").value / 2);
+  const poisson = page.getByLabel("nu", { exact: true });
+  for (const [side, value, a, b] of [["B", 0.3, 0.4, 0.3], ["A", 0.2, 0.2, 0.3], ["both", 0.1, 0.1, 0.1]]) {
+    await page.locator(".sides").getByLabel(side, { exact: true }).check();
+    await poisson.fill(String(value));
+    await poisson.press("Enter");
+    await until(`nu of ${side}`, () => settingOf(heard, "material.poisson").value === a && settingOf(heard, "material.poisson", "b").value === b);
+  }
+  await endCompare(opened);
+  await close();
+});
+
+test("what cannot be compared is told in the dialog", async () => {
+  const opened = await openSession(program);
+  const { page, heard, close } = opened;
+  await page.keyboard.press("c");
+  const dialog = page.getByRole("dialog");
+  await dialog.getByLabel("Name of side B").fill("wrong");
+  for (const typed of ["nonsense", "material.yuong=1e5", "material.young=-3", ""]) {
+    await dialog.getByRole("textbox", { name: /What differs/ }).fill(typed);
+    await dialog.getByRole("button", { name: "Compare", exact: true }).click();
+    await dialog.getByRole("alert").filter({ hasText: /\w{4}/ }).waitFor();
+  }
+  await page.keyboard.press("Escape");
+  await dialog.waitFor({ state: "detached" });
+  assert.equal(heard.scenes.b, undefined);
+  await close();
+});

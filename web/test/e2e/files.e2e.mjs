@@ -1,0 +1,168 @@
+// What can be saved and loaded: workspaces, meshes, pictures, videos, recordings.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import { assertSameBits, contrast, downloaded, findBody, openSession, pressAndWait, sameBits, settingOf, startProgram } from "./harness.mjs";
+
+const program = await startProgram("scenes/cantilever.toml");
+const read = async (file) => readFileSync(await file.path());
+
+async function loadFile({ page }, name, buffer) {
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.keyboard.press("Shift+L")]);
+  await chooser.setFiles({ name, mimeType: "application/json", buffer });
+}
+
+test("a workspace brings back settings, comparison, camera and panels", async () => {
+  const opened = await openSession(program);
+  const { page, heard, until, close } = opened;
+  await pressAndWait(opened, "r", "the start", ({ state }) => state.a.step === 0);
+  const nu = page.getByLabel("nu", { exact: true });
+  await nu.fill("0.2");
+  await nu.press("Enter");
+  await until("nu", () => settingOf(heard, "material.poisson").value === 0.2);
+  await page.keyboard.press("c");
+  await page.getByRole("dialog").getByRole("button", { name: "Half the time step" }).click();
+  await page.getByRole("dialog").getByRole("button", { name: "Compare", exact: true }).click();
+  await until("side b", ({ scenes }) => scenes.b);
+  await page.getByRole("dialog").waitFor({ state: "detached" });
+  await page.keyboard.press("m");
+  await page.keyboard.press("5"); // from the top
+  const file = await downloaded(page, () => page.keyboard.press("Shift+S"));
+  assert.match(file.suggestedFilename(), /\.json$/);
+  const saved = await read(file);
+  const workspace = JSON.parse(saved);
+  assert.equal(workspace.aspic_workspace, 1);
+  assert.equal(workspace.settings["material.poisson"], 0.2);
+  await page.keyboard.press("c");
+  await until("no side b", ({ scenes }) => !scenes.b);
+  await nu.fill("0.35");
+  await nu.press("Enter");
+  await until("another nu", () => settingOf(heard, "material.poisson").value === 0.35);
+  await page.keyboard.press("e");
+  await page.keyboard.press("1");
+  await loadFile(opened, "workspace.json", saved);
+  await until("nu and side b as they were", ({ scenes }) => scenes.b && settingOf(heard, "material.poisson").value === 0.2);
+  await page.locator('[role=tab][aria-selected="true"]', { hasText: "Microscope" }).waitFor();
+  const again = await read(await downloaded(page, () => page.keyboard.press("Shift+S")));
+  assert.deepEqual(JSON.parse(again).page, workspace.page);
+  assert.deepEqual(JSON.parse(again).settings, workspace.settings);
+  await page.keyboard.press("c");
+  await until("no side b", ({ scenes }) => !scenes.b);
+  await close();
+});
+
+test("files that are none of Aspic's are told from those that are", async () => {
+  const opened = await openSession(program);
+  const { page, heard, close } = opened;
+  const files = ["not json", "[]", "{}", '{"aspic_workspace": 7}', '{"aspic_workspace": 1}', '{"aspic_workspace": 1, "scene": "/none.toml"}', '{"scene": "x", "events": [], "steps": 3}'];
+  for (const [i, text] of files.entries()) {
+    await loadFile(opened, `file${i}.json`, Buffer.from(text));
+    await page.locator(".notice.error").filter({ hasText: `file${i}.json: ` }).waitFor();
+  }
+  const { step } = heard.state.a;
+  await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === step + 1);
+  await close();
+});
+
+test("the deformed mesh is saved in each format", async () => {
+  const opened = await openSession(program);
+  const { page, heard, close } = opened;
+  await pressAndWait(opened, "r", "the start", ({ state }) => state.a.step === 0);
+  for (let step = 1; step <= 3; ++step) await pressAndWait(opened, "s", "a step", ({ state, pictures }) => state.a.step === step && pictures.a.step === step);
+  const { vertices, tets } = heard.scenes.a;
+  const save = async (format) => {
+    await page.keyboard.press("Shift+M");
+    const dialog = page.getByRole("dialog");
+    await dialog.getByRole("combobox").first().selectOption(format);
+    return String(await read(await downloaded(page, () => dialog.getByRole("button", { name: "Save" }).click())));
+  };
+  const points = (await save("obj")).split("\n").filter((line) => line.startsWith("v ")).map((line) => line.split(/\s+/).slice(1, 4).map(Number));
+  assert.ok(points.length > 0 && points.flat().every(Number.isFinite));
+  assert.ok(Math.min(...points.map(([, , z]) => z)) < -1e-3, "it sags");
+  assert.match(await save("ply"), /^ply\n[^]*element vertex \d+/);
+  const vtu = await save("vtu");
+  assert.match(vtu, new RegExp(`NumberOfPoints="${vertices}"`));
+  assert.match(vtu, new RegExp(`NumberOfCells="${tets}"`));
+  assert.match(await save("msh"), /\$MeshFormat/);
+  assert.match(await save("mesh"), new RegExp(`Tetrahedra\\s+${tets}`));
+  await close();
+});
+
+test("the scene is saved with all its values", async () => {
+  const { page, close } = await openSession(program);
+  const text = String(await read(await downloaded(page, () => page.keyboard.press("Shift+T"))));
+  assert.match(text, /poisson = /);
+  assert.match(text, /\[solver\]/);
+  await close();
+});
+
+test("a picture of the view is a PNG that shows something", async () => {
+  const opened = await openSession(program);
+  const { page, close } = opened;
+  await findBody(opened);
+  const picture = await read(await downloaded(page, () => page.keyboard.press("p")));
+  assert.deepEqual([...picture.subarray(1, 4)], [..."PNG"].map((letter) => letter.charCodeAt(0)));
+  assert.ok((await contrast(page, picture)) > 5);
+  await close();
+});
+
+test("a video of the view is recorded", async () => {
+  const opened = await openSession(program);
+  const { page, close } = opened;
+  await page.keyboard.press("Shift+V");
+  await page.getByRole("button", { name: "End the video" }).first().waitFor();
+  for (let i = 0; i < 5; ++i) {
+    const { step } = opened.heard.state.a;
+    await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === step + 1);
+  }
+  await page.waitForTimeout(1200); // of video
+  const file = await downloaded(page, () => page.keyboard.press("Shift+V"));
+  assert.match(file.suggestedFilename(), /\.(webm|mp4)$/);
+  const bytes = await read(file);
+  assert.ok(bytes.length > 2000, `${bytes.length} bytes`);
+  if (file.suggestedFilename().endsWith("webm")) assert.deepEqual([...bytes.subarray(0, 4)], [0x1a, 0x45, 0xdf, 0xa3]);
+  await close();
+});
+
+test("a recorded session is repeated to the bit, from memory and from its file", async () => {
+  const opened = await openSession(program);
+  const { page, heard, until, close } = opened;
+  await pressAndWait(opened, "r", "the start", ({ state }) => state.a.step === 0);
+  const atStep = async (step) => pressAndWait(opened, "s", `step ${step}`, ({ state, pictures }) => state.a.step === step && pictures.a.step === step);
+  await atStep(1);
+  const [x, y] = await findBody(opened);
+  await page.mouse.down();
+  await page.mouse.move(x + 20, y - 60, { steps: 4 });
+  await until("a grab", ({ state }) => state.a.grab);
+  await atStep(2);
+  await page.mouse.move(x - 20, y - 30, { steps: 4 });
+  await atStep(3);
+  await page.mouse.up();
+  await until("a release", ({ state }) => !state.a.grab);
+  const nu = page.getByLabel("nu", { exact: true });
+  const before = await nu.inputValue();
+  await nu.fill("0.3");
+  await nu.press("Enter");
+  await until("nu", () => settingOf(heard, "material.poisson").value === 0.3);
+  await atStep(4);
+  await atStep(5);
+  const known = heard.pictures.a.positions;
+  const recording = await read(await downloaded(page, () => page.keyboard.press("Shift+R")));
+  assert.ok(JSON.parse(recording).events.length >= 4);
+  const repeat = async (start) => {
+    const told = heard.messages.length;
+    await start();
+    await until("the repetition", () => heard.messages.slice(told).some(({ kind, replaying }) => kind === "state" && replaying));
+    await until("its end", ({ state, pictures }) => !state.replaying && state.a.step === 5 && pictures.a.step === 5);
+    await until("its picture", ({ pictures }) => sameBits(pictures.a.positions, known)).catch(() => {});
+    assertSameBits(heard.pictures.a.positions, known);
+  };
+  await repeat(() => page.keyboard.press("Shift+P"));
+  await pressAndWait(opened, "r", "the start", ({ state }) => state.a.step === 0);
+  await pressAndWait(opened, "s", "another step", ({ state }) => state.a.step === 1);
+  await repeat(() => loadFile(opened, "recording.json", recording));
+  await nu.fill(before);
+  await nu.press("Enter");
+  await until("nu", () => String(settingOf(heard, "material.poisson").value) === before);
+  await close();
+});

@@ -1,0 +1,212 @@
+// Programs, browsers and pages for the tests. Everything waits for facts, with patience; no time decides a test.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { after, afterEach } from "node:test";
+import { fileURLToPath } from "node:url";
+import { build } from "esbuild";
+import { launchChromium } from "./chromium.mjs";
+
+export const aspic = process.env.ASPIC;
+export const out = process.env.OUT; // for pictures
+export const root = join(dirname(fileURLToPath(import.meta.url)), "../../..");
+export const kPatience = 60_000; // [ms]
+
+// A module of the page itself.
+export async function pageModule(name) {
+  const entry = join(root, "web/src", name);
+  const { outputFiles } = await build({ entryPoints: [entry], bundle: true, format: "esm", write: false });
+  return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`);
+}
+const { decode } = await pageModule("protocol.ts");
+
+// Ends with the test file, the newest first.
+const endings = [];
+after(async () => {
+  for (const end of endings.reverse()) await end();
+});
+export const atTheEnd = (end) => endings.push(end);
+
+export function temporaryFolder() {
+  const folder = mkdtempSync(join(tmpdir(), "aspic-page-"));
+  atTheEnd(() => rmSync(folder, { recursive: true, force: true }));
+  return folder;
+}
+
+export async function until(what, condition, told = () => "") {
+  const end = Date.now() + kPatience;
+  for (;;) {
+    const found = await condition();
+    if (found) return found;
+    if (Date.now() > end) throw new Error(`never: ${what}; ${told()}`);
+    await new Promise((resolve) => setTimeout(resolve, 20));
+  }
+}
+
+// `aspic view`, with its address and what it said.
+export async function startProgram(scene, more = []) {
+  const child = spawn(aspic, ["view", join(root, scene), "--no-browser", ...more]);
+  const program = { child, address: "", said: "", complained: "", ended: null };
+  child.stdout.on("data", (chunk) => (program.said += chunk));
+  child.stderr.on("data", (chunk) => (program.complained += chunk));
+  child.on("exit", (code, signal) => (program.ended = signal ?? code));
+  program.end = async () => {
+    if (program.ended === null) child.kill("SIGINT");
+    await until("the program's end", () => program.ended !== null).catch(() => child.kill("SIGKILL"));
+    return program.ended;
+  };
+  atTheEnd(program.end);
+  const heard = () => `${program.said}${program.complained}${program.ended ?? ""}`;
+  await until("an address", () => program.ended !== null || /http:\S+\s/.test(program.said), heard);
+  assert.equal(program.ended, null, heard());
+  program.address = program.said.match(/http:\S+/)[0];
+  return program;
+}
+
+const contexts = new Set(); // of the test under way
+afterEach(async () => {
+  for (const context of contexts) await context.close();
+  contexts.clear();
+});
+
+let browser = null;
+export async function theBrowser() {
+  if (browser) return browser;
+  browser = await launchChromium();
+  atTheEnd(() => browser.close());
+  return browser;
+}
+
+// What the program told the page, as far as a test wants to know.
+function listener() {
+  const heard = { messages: [], sent: [], state: null, scenes: {}, geometries: {}, pictures: {}, counted: 0, bytes: 0 };
+  const forget = { end_compare: () => ["scenes", "geometries", "pictures"].forEach((kind) => delete heard[kind].b) };
+  heard.take = (payload) => {
+    if (typeof payload === "string") {
+      const message = JSON.parse(payload);
+      heard.messages.push(message);
+      if (message.kind === "state") heard.state = message;
+      if (message.kind === "scene") heard.scenes[message.side] = message;
+      forget[message.kind]?.();
+      return;
+    }
+    const bytes = payload.buffer.slice(payload.byteOffset, payload.byteOffset + payload.byteLength);
+    const { geometry, picture } = decode(bytes);
+    if (geometry) heard.geometries[geometry.side] = geometry;
+    if (!picture) return;
+    heard.pictures[picture.side] = picture;
+    heard.counted += 1;
+    heard.bytes = bytes.byteLength;
+  };
+  return heard;
+}
+
+// Notes what canvases write, since no element holds it.
+function noteDrawnTexts() {
+  window.drawnTexts = [];
+  const { fillText } = CanvasRenderingContext2D.prototype;
+  CanvasRenderingContext2D.prototype.fillText = function (text, ...rest) {
+    window.drawnTexts.push(text);
+    if (window.drawnTexts.length > 5000) window.drawnTexts.splice(0, 2500);
+    return fillText.call(this, text, ...rest);
+  };
+}
+
+// A page of its own. `close` fails on every error of its scripts, refusal of its content policy and foreign request,
+// but for errors that are `expected`.
+export async function openPage(address, { size = [1280, 720], watchRequests = true, expected = /^$/, prepare, ...context } = {}) {
+  const inside = await (await theBrowser()).newContext({ viewport: { width: size[0], height: size[1] }, ...context });
+  contexts.add(inside);
+  const page = await inside.newPage();
+  page.setDefaultTimeout(kPatience);
+  const errors = [];
+  const heard = listener();
+  page.on("pageerror", (error) => errors.push(error.stack ?? error.message));
+  page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
+  const origin = new URL(address).origin;
+  page.on("request", (request) => {
+    const own = request.url() === address || request.url().startsWith(`${origin}/`) || /^(data|blob):/.test(request.url());
+    if (watchRequests && !own) errors.push(`asked for ${request.url()}`);
+  });
+  page.on("websocket", (socket) => {
+    socket.on("framereceived", ({ payload }) => heard.take(payload));
+    socket.on("framesent", ({ payload }) => typeof payload === "string" && payload !== "ready" && heard.sent.push(payload));
+  });
+  await page.addInitScript(noteDrawnTexts);
+  await prepare?.(page);
+  await page.goto(address);
+  const opened = {
+    page,
+    heard,
+    errors,
+    until: (what, condition) => until(what, () => condition(heard), () => JSON.stringify(heard.state)),
+    close: async () => {
+      assert.deepEqual(errors.filter((error) => !expected.test(error)), []);
+      contexts.delete(inside);
+      await inside.close();
+    },
+  };
+  return opened;
+}
+
+export async function openSession(program, options) {
+  const opened = await openPage(program.address, options);
+  await opened.until("a picture", ({ state, pictures }) => state && pictures.a);
+  await opened.page.locator("#views canvas").first().waitFor();
+  return opened;
+}
+
+export const settingOf = (heard, key, side = "a") => heard.scenes[side].settings.find((setting) => setting.key === key);
+
+// Since `from` messages: the program's answer to something that a page asked.
+export const answerSince = (heard, from) =>
+  heard.messages.slice(from).find(({ kind }) => kind === "refused" || kind === "reply");
+
+// A command straight to the program, past the controls of the page.
+export async function pressAndWait(opened, key, what, condition) {
+  await opened.page.keyboard.press(key);
+  await opened.until(what, condition);
+}
+
+// The middle of what of the body the mouse can hold.
+export async function findBody({ page }, view = 0) {
+  const host = page.locator("#views .view").nth(view);
+  const box = await host.boundingBox();
+  const holds = () => host.evaluate((element) => ["grab", "crosshair", "help"].includes(element.style.cursor));
+  for (const round of [0, 1, 2]) {
+    for (const [u, v] of [[0.5, 0.5], [0.5, 0.6], [0.5, 0.4], [0.6, 0.5], [0.4, 0.5], [0.5, 0.7], [0.5, 0.3], [0.7, 0.6]]) {
+      const [x, y] = [box.x + u * box.width, box.y + v * box.height];
+      await page.mouse.move(x, y);
+      await page.waitForTimeout(60 + 400 * round); // a frame looks what is under the mouse
+      if (await holds()) return [x, y];
+    }
+  }
+  throw new Error("no body under the mouse");
+}
+
+// Standard deviation of the brightness of a PNG: 0 for one of a single colour.
+export async function contrast(page, png) {
+  return page.evaluate(async (base64) => {
+    const image = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))]));
+    const canvas = new OffscreenCanvas(image.width, image.height);
+    const context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, image.width, image.height);
+    let [sum, squares] = [0, 0];
+    for (let i = 0; i < data.length; i += 4) {
+      const y = 0.3 * data[i] + 0.6 * data[i + 1] + 0.1 * data[i + 2];
+      sum += y;
+      squares += y * y;
+    }
+    const n = data.length / 4;
+    return Math.sqrt(Math.max(0, squares / n - (sum / n) ** 2));
+  }, png.toString("base64"));
+}
+
+export const downloaded = async (page, act) => (await Promise.all([page.waitForEvent("download"), act()]))[0];
+
+// Positions and pictures are too long to be printed where they differ.
+export const sameBits = (a, b) => Buffer.compare(Buffer.from(a.buffer, a.byteOffset, a.byteLength), Buffer.from(b.buffer, b.byteOffset, b.byteLength)) === 0;
+export const assertSameBits = (a, b, what = "the same bits") => assert.ok(sameBits(a, b), what);

@@ -1,0 +1,195 @@
+// For every reader: keys, names for screen readers, light and dark, large letters on a small screen.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { test } from "node:test";
+import { findBody, openSession, out, pressAndWait, startProgram } from "./harness.mjs";
+
+const program = await startProgram("scenes/cantilever.toml");
+const kPanels = ["Energy", "Microscope", "Landscape", "Functions", "Certificate"];
+const frames = (page, count = 3) =>
+  page.evaluate(async (n) => {
+    for (let i = 0; i < n; ++i) await new Promise((done) => requestAnimationFrame(done));
+  }, count);
+
+async function withSteps(options) {
+  const opened = await openSession(program, options);
+  await pressAndWait(opened, "r", "the start", ({ state }) => state.a.step === 0);
+  for (let step = 1; step <= 4; ++step) await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === step);
+  return opened;
+}
+
+test("every shortcut of the list does something that goes well", async () => {
+  const opened = await withSteps();
+  const { page, errors, until, close } = opened;
+  await page.keyboard.press("?");
+  const dialog = page.getByRole("dialog", { name: "Keyboard shortcuts" });
+  const keys = await dialog.locator("kbd").allInnerTexts();
+  assert.ok(keys.length > 30, `${keys.length} shortcuts`);
+  assert.equal(new Set(keys).size, keys.length, "no key twice");
+  await page.screenshot({ path: join(out, "shortcuts.png") });
+  await page.keyboard.press("Escape");
+  await dialog.waitFor({ state: "detached" });
+  const pressed = (key) => (key === "Space" ? " " : key.length === 1 ? key.toLowerCase() : key.replace(/^Shift\+(Left|Right|Up|Down)$/, "Shift+Arrow$1"));
+  for (const key of keys.filter((key) => !["Shift+L"].includes(key))) {
+    await page.keyboard.press(pressed(key));
+    await frames(page, 2);
+    await page.keyboard.press("Escape"); // of a dialog that it opened
+    await page.waitForFunction(() => !document.querySelector("dialog[open]"));
+    assert.deepEqual(errors, [], `after ${key}`);
+  }
+  await until("an end of what was begun", ({ state }) => !state.replaying);
+  if (opened.heard.state.b) await pressAndWait(opened, "c", "no comparison", ({ state }) => !state.b);
+  if (opened.heard.state.playing) await pressAndWait(opened, " ", "a pause", ({ state }) => !state.playing);
+  await close();
+});
+
+// Which controls have no name, by the browser's own rules.
+async function nameless(page, context) {
+  const session = await page.context().newCDPSession(page);
+  await session.send("Accessibility.enable");
+  const { nodes } = await session.send("Accessibility.getFullAXTree");
+  const roles = /^(button|textbox|searchbox|combobox|checkbox|radio|slider|spinbutton|tab|switch|menuitem|separator|grid|ColorWell|DisclosureTriangle|application|dialog)$/;
+  const wrong = nodes.filter((node) => !node.ignored && roles.test(node.role?.value) && !node.name?.value?.trim());
+  const told = [];
+  for (const node of wrong) {
+    const { node: found } = await session.send("DOM.describeNode", { backendNodeId: node.backendDOMNodeId });
+    told.push(`${context}: ${node.role.value} <${found.localName} ${found.attributes.join(" ")}>`);
+  }
+  await session.detach();
+  return told;
+}
+
+test("every control has a name, in every panel and dialog", async () => {
+  const opened = await withSteps();
+  const { page, close } = opened;
+  for (const title of await page.locator("#right .lil-closed > .lil-title").all()) await title.evaluate((element) => element.click());
+  const found = [];
+  for (const panel of kPanels) {
+    await page.getByRole("tab", { name: panel }).click();
+    await frames(page);
+    found.push(...(await nameless(page, panel)));
+  }
+  for (const key of ["?", "c", "Shift+O", "Shift+M"]) {
+    await page.keyboard.press(key);
+    await page.locator("dialog[open]").waitFor();
+    found.push(...(await nameless(page, `dialog of ${key}`)));
+    await page.keyboard.press("Escape");
+    await page.locator("dialog").waitFor({ state: "detached" });
+  }
+  assert.deepEqual([...new Set(found)], []);
+  await close();
+});
+
+test("the Tab key reaches every control that is shown", async () => {
+  const opened = await withSteps();
+  const { page, close } = opened;
+  await page.evaluate(() => document.body.focus());
+  const expected = await page.evaluate(() => {
+    const controls = [...document.querySelectorAll("button, input, select, textarea, [tabindex]")];
+    const shown = controls.filter((c) => c.checkVisibility({ visibilityProperty: true }) && !c.disabled && c.tabIndex >= 0);
+    shown.forEach((control, i) => (control.dataset.nth = String(i)));
+    return shown.length;
+  });
+  const reached = new Set();
+  for (let i = 0; i < expected + 20; ++i) {
+    await page.keyboard.press("Tab");
+    const nth = await page.evaluate(() => document.activeElement?.dataset.nth);
+    if (nth !== undefined && reached.has(nth) && reached.size > 5 && nth === [...reached][0]) break;
+    if (nth !== undefined) reached.add(nth);
+  }
+  const missed = await page.evaluate((nths) => [...document.querySelectorAll("[data-nth]")].filter((c) => !nths.includes(c.dataset.nth) && c.type !== "radio").map((c) => c.outerHTML.slice(0, 160)), [...reached]);
+  assert.deepEqual(missed, []);
+  await close();
+});
+
+test("every control of the view's display can be used, and nothing breaks", async () => {
+  const opened = await withSteps();
+  const { page, errors, until, close } = opened;
+  for (const title of await page.locator("#right .lil-closed > .lil-title").all()) await title.evaluate((element) => element.click());
+  const view = page.locator("#right .lil-gui.lil-root").nth(1);
+  for (const select of await view.locator("select").all()) {
+    const values = await select.locator("option").evaluateAll((options) => options.map((option) => option.value));
+    const first = await select.inputValue();
+    for (const value of [...values, first]) {
+      await select.selectOption(value);
+      await frames(page, 2);
+    }
+  }
+  for (const box of await view.locator("input[type=checkbox]").all()) {
+    if (!(await box.isVisible()) || (await box.isDisabled())) continue;
+    await box.click();
+    await frames(page, 2);
+    await box.click();
+  }
+  for (const field of await view.locator("input[type=text], input[type=number]").all()) {
+    if (!(await field.isVisible()) || (await field.isDisabled())) continue;
+    const before = await field.inputValue();
+    for (const typed of ["nan", "1e400", "-1", "", "text", before]) {
+      if ((await field.getAttribute("type")) === "number" && !/^-?[\d.]*$/.test(typed)) continue;
+      await field.fill(typed);
+      await field.press("Enter");
+      await frames(page, 1);
+    }
+  }
+  for (const button of await view.locator(".lil-controller button").all()) if (await button.isVisible()) await button.click();
+  assert.deepEqual(errors, []);
+  await page.getByRole("button", { name: "As at the start" }).click();
+  await page.keyboard.press("0");
+  await findBody(opened);
+  const { step } = opened.heard.state.a;
+  await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === step + 1);
+  await until("its picture", ({ pictures }) => pictures.a.step === step + 1);
+  await close();
+});
+
+// Parts of the page that cover each other, and panels that scroll sideways.
+async function layoutFaults(page) {
+  return page.evaluate(() => {
+    const faults = [];
+    const parts = ["toolbar", "left", "views", "right", "dock"].map((id) => document.getElementById(id)).filter((part) => part.checkVisibility());
+    const boxes = parts.map((part) => part.getBoundingClientRect());
+    boxes.forEach((a, i) => {
+      if (a.left < -1 || a.top < -1 || a.right > innerWidth + 1 || a.bottom > innerHeight + 1) faults.push(`${parts[i].id} leaves the window`);
+      boxes.slice(i + 1).forEach((b, j) => {
+        const wide = Math.min(a.right, b.right) - Math.max(a.left, b.left);
+        const high = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
+        if (wide > 1 && high > 1) faults.push(`${parts[i].id} covers ${parts[i + 1 + j].id}`);
+      });
+    });
+    const view = document.getElementById("views").getBoundingClientRect();
+    if (view.width < 200 || view.height < 120) faults.push(`the view is only ${view.width} by ${view.height}`);
+    for (const element of document.querySelectorAll("#toolbar, #right *, #left *, #dock *, #right, #left, #dock")) {
+      if (!element.checkVisibility() || element.closest("svg")) continue;
+      const { overflowX } = getComputedStyle(element);
+      if (/auto|scroll/.test(overflowX) && element.scrollWidth > element.clientWidth + 1 && element.tagName !== "PRE" && element.tagName !== "TEXTAREA")
+        faults.push(`scrolls sideways: ${element.tagName} ${element.className} in ${element.closest("[id]")?.id} (${element.scrollWidth} > ${element.clientWidth})`);
+      const box = element.getBoundingClientRect();
+      const inside = element.closest("#toolbar, #right, #left, #dock").getBoundingClientRect();
+      if (element.matches("button, input, select") && box.width > 0 && box.right > inside.right + 1) faults.push(`cut off: ${element.outerHTML.slice(0, 100)}`);
+    }
+    return [...new Set(faults)];
+  });
+}
+
+for (const [name, scheme, size, larger] of [
+  ["light", "light", [1280, 720], 0],
+  ["dark", "dark", [1280, 720], 0],
+  ["large", "light", [1024, 768], 4], // 22 px: 1.5 times and more
+]) {
+  test(`nothing is covered or cut off: ${name}, ${size.join(" by ")}`, async () => {
+    const opened = await withSteps({ size, colorScheme: scheme });
+    const { page, close } = opened;
+    assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), scheme);
+    for (let i = 0; i < larger; ++i) await page.keyboard.press(">");
+    const found = [];
+    for (const panel of kPanels) {
+      await page.getByRole("tab", { name: panel }).click();
+      await frames(page);
+      await page.waitForTimeout(600); // questions of the panel are answered
+      found.push(...(await layoutFaults(page)).map((fault) => `${panel}: ${fault}`));
+      await page.screenshot({ path: join(out, `${name}_${panel.toLowerCase()}.png`) });
+    }
+    assert.deepEqual(found, []);
+    await close();
+  });
+}

@@ -1,0 +1,229 @@
+// The minimisation under the microscope: iterations one by one, their tables, curves and landscapes; plane functions.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { assertSameBits, contrast, downloaded, openSession, out, pageModule, pressAndWait, startProgram } from "./harness.mjs";
+
+const { kPresets } = await pageModule("panels/functionForm.ts");
+const program = await startProgram("scenes/cantilever.toml");
+
+async function open(panel) {
+  const opened = await openSession(program);
+  await pressAndWait(opened, "r", "the start", ({ state }) => state.a.step === 0 && state.a.iteration < 0);
+  const { page } = opened;
+  const tab = page.getByRole("tab", { name: panel });
+  await tab.click();
+  assert.equal(await tab.getAttribute("aria-selected"), "true");
+  return opened;
+}
+
+const rowsOf = (page, label) => page.getByRole("grid", { name: label });
+const countOf = async (page, label) => Number(await rowsOf(page, label).getAttribute("aria-rowcount"));
+
+// Anything but one colour.
+async function isDrawn(page, canvas) {
+  return (await contrast(page, await canvas.screenshot())) > 3;
+}
+
+test("iterations are taken one by one, and each has its row", async () => {
+  const { page, heard, until, close } = await open("Microscope");
+  let rows = 0;
+  for (;;) {
+    const before = JSON.stringify(heard.state.a);
+    await page.keyboard.press("i");
+    await until("an iteration", () => JSON.stringify(heard.state.a) !== before);
+    const { iteration, step } = heard.state.a;
+    if (iteration < 0) {
+      assert.equal(step, 1);
+      break;
+    }
+    assert.equal(step, 0);
+    rows = iteration + 1;
+    await page.waitForFunction((n) => Number(document.querySelector('[aria-label^="Iterations"]').getAttribute("aria-rowcount")) === n, rows);
+    if (iteration === 1) await page.screenshot({ path: join(out, "microscope_mid_step.png") });
+    await until("the picture of this iteration", () => heard.pictures.a.iteration === iteration);
+  }
+  assert.ok(rows > 1, `${rows} iterations`);
+  const { steps } = heard.messages.findLast(({ kind }) => kind === "steps");
+  assert.equal(await countOf(page, "Iterations of the chosen step"), steps.at(-1).iterations.length);
+  assert.equal(await countOf(page, "Steps"), 1);
+  await page.getByText(/^Step 1\./).waitFor();
+  await close();
+});
+
+test("a step by iterations ends where a whole step ends, to the bit", async () => {
+  const opened = await open("Microscope");
+  const { page, heard, until, close } = opened;
+  await pressAndWait(opened, "s", "a step", ({ state, pictures }) => state.a.step === 1 && pictures.a.step === 1);
+  const whole = heard.pictures.a.positions;
+  await pressAndWait(opened, "r", "the start", ({ state }) => state.a.step === 0);
+  while (heard.state.a.step === 0) {
+    const before = JSON.stringify(heard.state.a);
+    await page.keyboard.press("i");
+    await until("an iteration", () => JSON.stringify(heard.state.a) !== before);
+  }
+  await until("its picture", ({ pictures }) => pictures.a.step === 1 && pictures.a.iteration === -1);
+  assertSameBits(heard.pictures.a.positions, whole);
+  await close();
+});
+
+test("the chosen iteration has its line search, and the keys choose another", async () => {
+  const opened = await open("Microscope");
+  const { page, heard, until, close } = opened;
+  await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === 1);
+  const replies = () => heard.messages.filter(({ kind, reply }) => kind === "reply" && reply?.curve);
+  await until("E along d", () => replies().length > 0);
+  const table = rowsOf(page, "Iterations of the chosen step");
+  await table.locator('tr[aria-selected="true"]').waitFor();
+  const last = (await countOf(page, "Iterations")) - 1;
+  await table.press("Home");
+  await until("iteration 0", () => replies().at(-1).reply.iteration === 0);
+  await table.press("End");
+  await until("the last iteration", () => replies().some(({ reply }) => reply.iteration === last));
+  await table.press("Home");
+  const { curve, trials, value } = replies().find(({ reply }) => reply.iteration === 0).reply;
+  assert.ok(curve.alpha.length > 20 && curve.value.length === curve.alpha.length);
+  assert.ok(trials.some(({ accepted }) => accepted));
+  assert.ok(Number.isFinite(value));
+  const charts = page.locator(".microscope-charts canvas");
+  assert.ok((await charts.count()) >= 2, "several charts");
+  for (const chart of await charts.all()) if (await chart.isVisible()) assert.ok(await isDrawn(page, chart), "a chart is blank");
+  await page.screenshot({ path: join(out, "microscope.png") });
+  await close();
+});
+
+test("the worst elements are listed and marked on the body", async () => {
+  const opened = await open("Microscope");
+  const { page, heard, until, close } = opened;
+  await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === 1);
+  await page.getByRole("button", { name: "Worst elements" }).click();
+  await until("the list", () => heard.messages.some(({ kind, reply }) => kind === "reply" && reply?.items?.length > 0));
+  await page.locator("ol.worst li").first().waitFor();
+  await page.screenshot({ path: join(out, "worst_elements.png") });
+  await close();
+});
+
+test("the landscape shows E, its model and the path", async () => {
+  const opened = await open("Landscape");
+  const { page, heard, until, close } = opened;
+  await page.getByText("nothing to see before the first iteration").waitFor();
+  await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === 1);
+  const slice = await until("the slice", () => heard.messages.find(({ kind, reply }) => kind === "reply" && reply?.slice)?.reply.slice);
+  assert.equal(slice.value.length, slice.columns * slice.rows);
+  const canvas = page.getByRole("tabpanel", { name: "Landscape" }).locator("canvas").first();
+  await page.getByText("This is E over the plane").waitFor();
+  await until("a surface", () => isDrawn(page, canvas));
+  await page.screenshot({ path: join(out, "landscape.png") });
+  const before = await canvas.screenshot();
+  await page.getByRole("checkbox", { name: "quadratic model" }).uncheck();
+  await until("another picture", async () => !(await canvas.screenshot()).equals(before));
+  await page.getByRole("button", { name: "◀" }).or(page.getByTitle("The iteration before")).first().click();
+  await page.getByText(/step 1, iteration \d+ of/).waitFor();
+  await close();
+});
+
+test("each example of the functions is minimised, from any start", async () => {
+  const opened = await open("Functions");
+  const { page, heard, until, close } = opened;
+  const panel = page.getByRole("tabpanel", { name: "Functions" });
+  const replies = () => heard.messages.filter(({ kind, reply }) => kind === "reply" && reply?.formula !== undefined);
+  await until("the first function", () => replies().length > 0);
+  const canvas = panel.locator("canvas").first();
+  for (const [i, preset] of kPresets.entries()) {
+    const known = replies().length;
+    await panel.getByRole("button", { name: preset.title }).click();
+    await until(preset.title, () => replies().length > known);
+    const { reply } = replies().at(-1);
+    assert.deepEqual([reply.path[0].x, reply.path[0].y], preset.start);
+    assert.equal(reply.value.length, reply.samples ** 2);
+    assert.ok(reply.iterations.length > 0 && reply.text !== "");
+    await until("its surface", () => isDrawn(page, canvas));
+    await page.screenshot({ path: join(out, `functions_${i}.png`) });
+  }
+  for (const typed of ["0.25", "-0.5"]) {
+    const x = panel.getByLabel("start x");
+    await x.fill(typed);
+    await x.press("Enter");
+    await until(`a start at ${typed}`, () => replies().at(-1).reply.path[0].x === Number(typed));
+  }
+  await close();
+});
+
+test("the start of a function is moved by keys and by the mouse", async () => {
+  const opened = await open("Functions");
+  const { page, heard, until, close } = opened;
+  const panel = page.getByRole("tabpanel", { name: "Functions" });
+  const replies = () => heard.messages.filter(({ kind, reply }) => kind === "reply" && reply?.formula !== undefined);
+  await until("the first function", () => replies().length > 0);
+  const startOf = () => replies().at(-1).reply.path[0];
+  const start = startOf();
+  const view = panel.locator("canvas").first();
+  await view.press("Shift+ArrowRight");
+  await until("a start to the right", () => startOf().x > start.x);
+  const nudged = startOf();
+  const ring = panel.getByText("start: drag me");
+  await ring.waitFor();
+  const mark = await ring.boundingBox();
+  const box = await view.boundingBox();
+  // The label stands beside its ring.
+  for (const [dx, dy] of [[-10, 0], [-14, 4], [-8, 8], [-8, -8], [mark.width + 10, 0]]) {
+    await page.mouse.move(mark.x + dx, mark.y + mark.height / 2 + dy);
+    await page.mouse.down();
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2, { steps: 8 });
+    await page.mouse.up();
+    await page.waitForTimeout(300);
+    if (startOf().x !== nudged.x) break;
+  }
+  await until("a start elsewhere", () => startOf().x !== nudged.x || startOf().y !== nudged.y);
+  await close();
+});
+
+test("impossible functions are refused in words", async () => {
+  const opened = await open("Functions");
+  const { page, heard, until, close } = opened;
+  const panel = page.getByRole("tabpanel", { name: "Functions" });
+  await panel.getByLabel("f", { exact: true }).selectOption("formula");
+  const formula = panel.getByLabel("Formula of x and y");
+  for (const typed of ["x +", "sin(", "z^2", "1/0", "(".repeat(900), ""]) {
+    const asked = heard.sent.length;
+    const from = heard.messages.length;
+    await formula.fill(typed);
+    await formula.press("Enter");
+    await until("a question", () => heard.sent.length > asked);
+    const { id } = JSON.parse(heard.sent.at(-1));
+    const answer = await until("an answer", () => heard.messages.slice(from).find((message) => message.id === id));
+    if (answer.kind === "refused") await panel.locator("#function-error").filter({ hasText: /\w{3}/ }).waitFor();
+  }
+  await formula.fill("x^2 + 3 * y^2");
+  await formula.press("Enter");
+  await until("a function again", () => heard.messages.some(({ reply }) => reply?.formula?.includes("3")));
+  await page.waitForFunction(() => document.querySelector("#function-error").textContent === "");
+  await close();
+});
+
+test("energies are told as they are, and saved with a row for each step", async () => {
+  const opened = await open("Energy");
+  const { page, heard, close } = opened;
+  for (let step = 1; step <= 12; ++step) await pressAndWait(opened, "s", `step ${step}`, ({ state }) => state.a.step === step);
+  const panel = page.getByRole("tabpanel", { name: "Energy" });
+  const file = await downloaded(page, () => panel.getByRole("button", { name: "CSV" }).click());
+  const [head, ...rows] = readFileSync(await file.path(), "utf8").trim().split("\n").map((line) => line.split(","));
+  assert.equal(rows.filter(([step]) => Number(step) > 0).length, 12);
+  const kinetic = head.findIndex((name) => /kinetic/.test(name));
+  assert.ok(kinetic > 0, head.join());
+  const told = new Map(heard.messages.filter(({ kind }) => kind === "steps").flatMap(({ steps }) => steps).map((row) => [row.step, row]));
+  for (const row of rows) {
+    assert.equal(row.length, head.length);
+    assert.ok(row.every((entry) => entry === "" || Number.isFinite(Number(entry))), row.join());
+    if (Number(row[0]) > 0) assert.equal(Number(row[kinetic]), told.get(Number(row[0])).kinetic);
+  }
+  const picture = await downloaded(page, () => panel.getByRole("button", { name: "PNG" }).click());
+  assert.ok((await contrast(page, readFileSync(await picture.path()))) > 3);
+  const log = panel.getByRole("checkbox", { name: "log" });
+  await log.check();
+  await page.screenshot({ path: join(out, "energy_log.png") });
+  await log.uncheck();
+  await page.screenshot({ path: join(out, "energy.png") });
+  await close();
+});

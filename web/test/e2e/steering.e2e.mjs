@@ -1,0 +1,171 @@
+// Time and touch: play, step, rewind, drag, pin.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { assertSameBits, contrast, findBody, openSession, pageModule, pressAndWait, sameBits, startProgram } from "./harness.mjs";
+
+const { withUnit } = await pageModule("view/ranges.ts");
+const program = await startProgram("scenes/cantilever.toml");
+const length = (v) => Math.hypot(...v);
+const minus = (a, b) => a.map((x, i) => x - b[i]);
+
+test("the first picture shows the body, and the token leaves the address", async () => {
+  // A reload asks without the token; the answer finds it where the tab keeps it.
+  const opened = await openSession(program, { expected: /status of 403/ });
+  const { page, heard, close } = opened;
+  await findBody(opened);
+  assert.ok((await contrast(page, await page.locator("#views").screenshot())) > 5);
+  assert.ok(!page.url().includes("token"));
+  assert.match(await page.title(), /cantilever/);
+  assert.equal(heard.geometries.a.rest.length, heard.pictures.a.positions.length);
+  await page.reload();
+  await findBody(opened);
+  await close();
+});
+
+test("it plays and pauses, steps, and goes back to the start", async () => {
+  const opened = await openSession(program);
+  const { page, heard, until, close } = opened;
+  await page.getByRole("button", { name: "Play", exact: true }).click();
+  await until("five steps", () => heard.state.a.step >= 5 && heard.pictures.a.step >= 1);
+  await page.getByRole("button", { name: "Pause" }).click();
+  await until("a pause", () => !heard.state.playing);
+  await pressAndWait(opened, "r", "the start", () => heard.state.a.step === 0);
+  await until("its picture", () => heard.pictures.a.step === 0);
+  const start = heard.pictures.a.positions;
+  await pressAndWait(opened, "s", "one step", () => heard.state.a.step === 1 && heard.pictures.a.step === 1);
+  assert.ok(!sameBits(heard.pictures.a.positions, start));
+  await pressAndWait(opened, " ", "play", () => heard.state.playing);
+  await pressAndWait(opened, " ", "a pause", () => !heard.state.playing);
+  await close();
+});
+
+test("the timeline rewinds, by mouse and by keys, to what was shown before", async () => {
+  const opened = await openSession(program);
+  const { page, heard, until, close } = opened;
+  await pressAndWait(opened, "r", "the start", () => heard.state.a.step === 0);
+  const seen = [];
+  for (let step = 1; step <= 6; ++step) {
+    await pressAndWait(opened, "s", `step ${step}`, () => heard.state.a.step === step && heard.pictures.a.step === step);
+    seen[step] = heard.pictures.a.positions;
+  }
+  const timeline = page.getByLabel("Timeline: rewinds to a step");
+  await timeline.press("ArrowLeft");
+  await until("step 5", () => heard.state.a.step === 5 && heard.pictures.a.step === 5);
+  assertSameBits(heard.pictures.a.positions, seen[5]);
+  const box = await timeline.boundingBox();
+  await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+  await until("step 3", () => heard.state.a.step === 3 && heard.pictures.a.step === 3);
+  assertSameBits(heard.pictures.a.positions, seen[3]);
+  await close();
+});
+
+test("a dragged body follows the mouse, the force is written beside it, and the mouse lets go", async () => {
+  const opened = await openSession(program);
+  const { page, heard, until, close } = opened;
+  await pressAndWait(opened, "r", "the start", () => heard.state.a.step === 0);
+  const [x, y] = await findBody(opened);
+  await page.mouse.down();
+  await page.mouse.move(x + 30, y - 80, { steps: 6 });
+  await until("the spring's end", ({ state }) => state.a.grab && length(minus(state.a.grab.target, state.a.grab.point)) > 0.01);
+  const held = heard.state.a.grab;
+  const pull = minus(held.target, held.point);
+  for (let step = 1; step <= 8; ++step)
+    await pressAndWait(opened, "s", `step ${step}`, () => heard.state.a.step === step && heard.pictures.a.step === step);
+  const { grab } = heard.state.a;
+  assert.ok(length(minus(grab.target, grab.point)) < length(pull), "the point comes closer to the mouse");
+  const { rest } = heard.geometries.a;
+  const moved = heard.pictures.a.positions.map((value, i) => value - rest[i]);
+  let farthest = 0;
+  for (let i = 0; i < moved.length; i += 3) {
+    const along = (moved[i] * pull[0] + moved[i + 1] * pull[1] + moved[i + 2] * pull[2]) / length(pull);
+    farthest = Math.max(farthest, along);
+  }
+  assert.ok(farthest > 0.005, `vertices move towards the mouse: ${farthest} m`);
+  const newtons = withUnit(length(grab.force), "N");
+  await page.waitForFunction((text) => window.drawnTexts.includes(text), newtons);
+  await page.mouse.up();
+  await until("a release", () => heard.state.a.grab === null);
+  await page.evaluate(() => (window.drawnTexts = []));
+  await pressAndWait(opened, "s", "a step", () => heard.state.a.step === 9 && heard.pictures.a.step === 9);
+  await page.waitForFunction(() => window.drawnTexts.length > 0);
+  assert.deepEqual(await page.evaluate(() => window.drawnTexts.filter((text) => / [munkM]?N$/.test(text))), []);
+  await close();
+});
+
+test("Escape, and leaving the window, let go, too", async () => {
+  const opened = await openSession(program);
+  const { page, heard, until, close } = opened;
+  for (const leave of [() => page.keyboard.press("Escape"), () => page.evaluate(() => dispatchEvent(new Event("blur")))]) {
+    const [x, y] = await findBody(opened);
+    await page.mouse.down();
+    await page.mouse.move(x + 30, y - 30, { steps: 3 });
+    await until("a grab", () => heard.state.a.grab);
+    await leave();
+    await until("a release", () => heard.state.a.grab === null);
+    await page.mouse.up();
+  }
+  await close();
+});
+
+test("who watches turns the camera only", async () => {
+  const one = await openSession(program);
+  const two = await openSession(program);
+  await two.page.getByText("Watching").waitFor();
+  const box = await two.page.locator("#views").boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  const before = await two.page.locator("#views canvas").first().screenshot();
+  await two.page.mouse.move(x, y);
+  await two.page.mouse.down();
+  await two.page.mouse.move(x + 120, y - 40, { steps: 5 });
+  await two.page.mouse.up();
+  await two.page.waitForFunction(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true)))));
+  assert.notDeepEqual(await two.page.locator("#views canvas").first().screenshot(), before);
+  assert.deepEqual(two.heard.sent, []);
+  assert.equal(one.heard.state.a.grab, null);
+  await two.close();
+  await one.close();
+});
+
+test("the brush pins and unpins what it covers", async () => {
+  const opened = await openSession(program);
+  const { page, heard, until, close } = opened;
+  await pressAndWait(opened, "r", "the start", () => heard.state.a.step === 0);
+  const pins = () => heard.messages.findLast(({ kind, side }) => kind === "pins" && side === "a")?.vertices ?? [];
+  const clamped = pins().length;
+  await page.keyboard.press("b");
+  const [x, y] = await findBody(opened);
+  const stroke = async () => {
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 12, y, { steps: 3 });
+    await page.mouse.up();
+  };
+  await stroke();
+  await until("pins", () => pins().length > clamped);
+  const pinned = pins();
+  const places = (picture) => pinned.map((v) => [...picture.positions.subarray(3 * v, 3 * v + 3)]);
+  const start = places(heard.pictures.a);
+  await pressAndWait(opened, "s", "a step", () => heard.pictures.a.step === 1);
+  assert.deepEqual(places(heard.pictures.a), start, "pinned vertices stay");
+  await page.keyboard.down("Alt");
+  await stroke();
+  await page.keyboard.up("Alt");
+  await until("no pins but the clamp's", () => pins().length === clamped);
+  await close();
+});
+
+test("a click of the reading tool tells the numbers of a vertex and its tet", async () => {
+  const opened = await openSession(program);
+  const { page, close } = opened;
+  const [x, y] = await findBody(opened);
+  await page.keyboard.down("Shift");
+  await page.mouse.click(x, y);
+  await page.keyboard.up("Shift");
+  const card = page.getByLabel("Values at the point");
+  await card.getByText(/^Vertex \d+/).waitFor();
+  await card.getByText(/^Tet \d+/).waitFor();
+  assert.match(await card.innerText(), /von Mises/);
+  await card.getByLabel("Close").click();
+  await card.waitFor({ state: "hidden" });
+  await close();
+});
