@@ -22,7 +22,7 @@ class MicroscopePanel implements Panel {
   readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Solver microscope" });
   private readonly chosen: Chosen;
   private readonly sides = choice("", "Which side of the comparison", [], "a", (side) =>
-    this.chooseSide(side as SideName),
+    this.chosen.chooseSide(side as SideName),
   );
   private readonly follow = checkbox("follow", "Stay at the newest step", true, (on) => this.chosen.follow(on));
   private readonly words = element("div", { class: "plot-note", role: "status" });
@@ -159,12 +159,6 @@ class MicroscopePanel implements Panel {
         step.step,
         Math.min(this.chosen.iteration, Math.max(0, step.iterations.length - 1)),
       );
-  }
-
-  private chooseSide(side: SideName): void {
-    const steps = this.store.side(side)?.steps ?? [];
-    const same = steps.find((row) => row.step === this.chosen.step) ?? steps[steps.length - 1];
-    if (same) this.chosen.choose(side, same.step, 0);
   }
 
   private draw(): void {

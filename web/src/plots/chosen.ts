@@ -98,6 +98,14 @@ export class Chosen extends Emitter<Events> {
     this.announce(side, step, iteration);
   }
 
+  // The same step of the other side, or its newest.
+  chooseSide(side: SideName): void {
+    const row = this.following
+      ? this.newest(side)
+      : (this.store.side(side)?.steps.find((s) => s.step === this.step) ?? this.newest(side));
+    this.announce(side, row?.step ?? 0, 0);
+  }
+
   // To the iteration before or after, across steps.
   walk(by: 1 | -1): void {
     const row = this.row();
@@ -170,7 +178,8 @@ export class Chosen extends Emitter<Events> {
 
   private newRows(): void {
     this.emit("rows", undefined);
-    if (!this.row()) return this.followNow();
+    const steppedByHand = (this.store.state?.[this.side]?.iteration ?? -1) >= 0;
+    if (!this.row() || (this.following && steppedByHand)) return this.followNow();
     if (this.following && this.timer === null) {
       this.timer = setTimeout(() => {
         this.timer = null;
