@@ -22,7 +22,7 @@ std::string view(beast::string_view text) { return {text.data(), text.size()}; }
 // What a browser lets the page do: run what it brings along, talk to this server, and nothing else.
 std::string content_policy(int port) {
   return fmt::format(
-      "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
+      "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; font-src data:; "
       "media-src blob:; connect-src 'self' ws://127.0.0.1:{0} ws://localhost:{0} data: blob:; frame-ancestors 'none'; "
       "base-uri 'none'; form-action 'none'",
       port);
