@@ -28,7 +28,10 @@ TEST(Comparison, StepsTheSideThatIsBehind) {
 TEST(Comparison, IsGrabbedPinnedAndSetOnBothSides) {
   Page page;
   page.send({{"do", "compare"}, {"overrides", {"material.young=1e6"}}, {"label", "stiff"}});
-  page.send({{"do", "grab"}, {"side", "b"}, {"triangle", page.end_triangle()}, {"weights", {0.2, 0.3, 0.5}},
+  page.send({{"do", "grab"},
+             {"side", "b"},
+             {"triangle", page.end_triangle()},
+             {"weights", {0.2, 0.3, 0.5}},
              {"target", {1, 0.5, 0}}});
   EXPECT_FALSE(page.side("a")["grab"].is_null());
   EXPECT_EQ(page.side("a")["grab"]["point"], page.side("b")["grab"]["point"]);

@@ -44,7 +44,8 @@ void expect_balance(Page& page, size_t first) {
   ASSERT_EQ(page.scene()["potentials"].back(), "mouse");
   for (size_t i = first; i < page.rows().size(); ++i) {
     const Json &row = page.rows()[i], &before = page.rows()[i - 1];
-    const double gain = number(row["kinetic"]) + sum(row["potential"]) - number(before["kinetic"]) - sum(before["potential"]);
+    const double gain =
+        number(row["kinetic"]) + sum(row["potential"]) - number(before["kinetic"]) - sum(before["potential"]);
     const double work = number(row["mouse_work"]) + number(row["pin_work"]) - number(row["damping_loss"]) -
                         number(row["numerical_loss"]) + number(row["residual_work"]);
     const double size = std::abs(number(row["kinetic"])) + std::abs(sum(row["potential"])) +

@@ -45,8 +45,12 @@ TEST(Pictures, HaveUnitNormalsThatPointOutwards) {
     const int8_t* n = &picture.normals[4 * v];
     EXPECT_NEAR(std::hypot(n[0], n[1], n[2]), 127, 1.5);
     EXPECT_EQ(n[3], 0);
-    if (geometry.rest[3 * v] == 0) { EXPECT_LT(n[0], 0); }
-    if (geometry.rest[3 * v] == 1) { EXPECT_GT(n[0], 0); }
+    if (geometry.rest[3 * v] == 0) {
+      EXPECT_LT(n[0], 0);
+    }
+    if (geometry.rest[3 * v] == 1) {
+      EXPECT_GT(n[0], 0);
+    }
   }
 }
 
@@ -75,8 +79,7 @@ TEST(Pictures, OfDisplacementAndStressAgreeWithTheState) {
   const Picture picture = page.picture();
   for (size_t v = 0; v < picture.values.size(); ++v) {
     double squared = 0;
-    for (int r = 0; r < 3; ++r)
-      squared += std::pow(picture.positions[3 * v + r] - page.geometry().rest[3 * v + r], 2);
+    for (int r = 0; r < 3; ++r) squared += std::pow(picture.positions[3 * v + r] - page.geometry().rest[3 * v + r], 2);
     EXPECT_NEAR(picture.values[v], std::sqrt(squared), 1e-6);
   }
   page.send({{"do", "colour"}, {"field", "det_F"}});
@@ -101,8 +104,9 @@ TEST(Pictures, OfAFineSkinOrOfItsCage) {
   };
   save("mesh", "cage.mesh");
   // A smaller surface inside.
-  folder.write("skin.obj", "v 0.1 0.05 0.05\nv 0.9 0.05 0.05\nv 0.5 0.15 0.05\nv 0.5 0.1 0.15\n"
-                           "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  folder.write("skin.obj",
+               "v 0.1 0.05 0.05\nv 0.9 0.05 0.05\nv 0.5 0.15 0.05\nv 0.5 0.1 0.15\n"
+               "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
   folder.write("scene.toml", kSkinned);
   Session session(folder / "scene.toml", {});
   const Messages greeting = session.greeting(Role::steers);
@@ -115,8 +119,8 @@ TEST(Pictures, OfAFineSkinOrOfItsCage) {
   for (int i = 0; i < 10; ++i) answer = send({{"do", "step"}});
   const Json grab = last(answer.to_all, "state")["a"]["grab"];
   EXPECT_GT(vec(grab["point"])[1], 0.12);
-  const Json vertex = Json::parse(
-      send({{"id", 1}, {"ask", "vertex"}, {"side", "a"}, {"vertex", 1}}).to_sender[0].bytes)["reply"];
+  const Json vertex =
+      Json::parse(send({{"id", 1}, {"ask", "vertex"}, {"side", "a"}, {"vertex", 1}}).to_sender[0].bytes)["reply"];
   EXPECT_EQ(vertex["vertex"], -1);
   answer = send({{"do", "pin"}, {"side", "a"}, {"vertices", {1}}, {"pinned", true}});
   EXPECT_FALSE(last(answer.to_all, "pins")["vertices"].empty());
@@ -172,7 +176,8 @@ TEST(Questions, AboutAnIterationAreAnsweredForAnyStepThatIsHeldAndChangeNothing)
   for (const int step : {1, 3, 6, 7}) {
     const Json reply = page.send({{"ask", "iteration"}, {"side", "a"}, {"step", step}, {"iteration", 1}});
     EXPECT_EQ(reply["curve"]["alpha"].size(), 101u);
-    EXPECT_EQ(reply["slice"]["value"].size(), reply["slice"]["columns"].get<size_t>() * reply["slice"]["rows"].get<size_t>());
+    EXPECT_EQ(reply["slice"]["value"].size(),
+              reply["slice"]["columns"].get<size_t>() * reply["slice"]["rows"].get<size_t>());
     EXPECT_NEAR(reply["path"][1]["s"].get<double>(), 0, 1e-12);
     EXPECT_NEAR(reply["path"][2]["s"].get<double>(), reply["alpha"].get<double>(), 1e-9);
     EXPECT_NEAR(reply["path"][2]["t"].get<double>(), 0, 1e-9);
@@ -206,8 +211,9 @@ TEST(Questions, AboutTheStepUnderWay) {
 TEST(Questions, AnExplicitStepHasNoIterations) {
   Page page(kBeam, {"time.integrator=symplectic_euler", "time.step=1e-4"});
   page.steps(2);
-  EXPECT_NE(page.refused({{"ask", "iteration"}, {"side", "a"}, {"step", 1}, {"iteration", 0}}).find("minimises nothing"),
-            std::string::npos);
+  EXPECT_NE(
+      page.refused({{"ask", "iteration"}, {"side", "a"}, {"step", 1}, {"iteration", 0}}).find("minimises nothing"),
+      std::string::npos);
 }
 
 TEST(Questions, ForAMeshAndTheScene) {
@@ -226,8 +232,8 @@ TEST(Questions, ForAMeshAndTheScene) {
 TEST(Questions, AboutAFunction) {
   Page page;
   const auto ask = [&](Json changes) {
-    Json question = {{"ask", "function"}, {"name", "rosenbrock"}, {"start", {-1.2, 1}},
-                     {"settings", Json::object()}, {"iteration", 2}, {"samples", 21}};
+    Json question = {{"ask", "function"},          {"name", "rosenbrock"}, {"start", {-1.2, 1}},
+                     {"settings", Json::object()}, {"iteration", 2},       {"samples", 21}};
     question.update(changes);
     return question;
   };
@@ -238,7 +244,8 @@ TEST(Questions, AboutAFunction) {
   EXPECT_NEAR(reply["path"].back()["x"].get<double>(), 1, 1e-5);
   EXPECT_EQ(reply["model"]["center"][0], reply["path"][2]["x"]);
   EXPECT_EQ(reply["curve"]["alpha"].size(), 101u);
-  reply = page.send(ask({{"settings", {{"method", "gradient_descent"}, {"line_search.p", 0.8}, {"max_iterations", 100000}}}}));
+  reply = page.send(
+      ask({{"settings", {{"method", "gradient_descent"}, {"line_search.p", 0.8}, {"max_iterations", 100000}}}}));
   EXPECT_EQ(reply["status"], "iteration_limit");
   EXPECT_EQ(reply["iterations"].size(), 500u);
   reply = page.send(ask({{"name", "cosh(x) + (y - x)^2"}, {"samples", 5000}}));

@@ -1,5 +1,7 @@
 // Whatever arrives: nothing is thrown, nothing hangs, nothing changes that was not asked for.
+#include <atomic>
 #include <random>
+#include <thread>
 
 #include "viewer/session_test.h"
 
@@ -79,16 +81,31 @@ TEST(Session, AnExplicitSchemeThatBlowsUpStopsPlaying) {
   EXPECT_TRUE(page.rows().back()["success"].get<bool>());
 }
 
-TEST(Session, AStepUnderWayIsDroppedWhenInterrupted) {
-  std::vector<std::string> said;
+TEST(Session, AnInterruptionBetweenStepsIsForgotten) {
   Page page;
-  page.steps(1);
+  page.send({{"do", "play"}});
+  page.session().interrupt();
+  page.advance();
+  EXPECT_EQ(page.side()["step"], 1);
+}
+
+TEST(Session, AStepUnderWayIsDroppedWhenInterrupted) {
+  // Each step would take a thousand million iterations.
+  Page page(kBeam, {"solver.method=gradient_descent", "solver.max_iterations=1000000000", "solver.tolerance=0",
+                    "material.young=1e7"});
   const Picture before = page.picture();
   page.send({{"do", "play"}});
-  page.session().interrupt();  // too early: no step is under way
+  std::atomic<bool> has_begun = false, is_done = false;
+  std::thread other([&] {
+    for (has_begun = true; !is_done;) page.session().interrupt();
+  });
+  while (!has_begun) std::this_thread::yield();
   page.advance();
-  EXPECT_EQ(page.side()["step"], 2);
-  EXPECT_NE(page.picture().positions, before.positions);
+  is_done = true;
+  other.join();
+  EXPECT_EQ(page.side()["step"], 0);
+  EXPECT_EQ(page.picture().positions, before.positions);
+  EXPECT_TRUE(page.session().is_playing());
 }
 
 TEST(Session, OpensLessons) {
@@ -130,14 +147,20 @@ const std::vector<Json>& valid_messages() {
       {{"do", "end_compare"}},
       {{"do", "colour"}, {"field", "von_mises"}},
       {{"do", "surface"}, {"which", "cage"}},
-      {{"do", "replay"}, {"recording", {{"scene", "x"}, {"overrides", Json::array()}, {"compare", nullptr},
-                                        {"events", Json::array()}, {"steps", 2}}}},
+      {{"do", "replay"},
+       {"recording",
+        {{"scene", "x"}, {"overrides", Json::array()}, {"compare", nullptr}, {"events", Json::array()}, {"steps", 2}}}},
       {{"ask", "vertex"}, {"side", "a"}, {"vertex", 1}, {"id", 1}},
       {{"ask", "tet"}, {"side", "a"}, {"triangle", 1}, {"id", 2}},
       {{"ask", "iteration"}, {"side", "a"}, {"step", 1}, {"iteration", 0}, {"id", 3}},
       {{"ask", "worst"}, {"side", "a"}, {"id", 4}},
-      {{"ask", "function"}, {"name", "x^2 + y^2"}, {"start", {1, 1}}, {"settings", {{"method", "newton"}}},
-       {"iteration", 0}, {"samples", 5}, {"id", 5}},
+      {{"ask", "function"},
+       {"name", "x^2 + y^2"},
+       {"start", {1, 1}},
+       {"settings", {{"method", "newton"}}},
+       {"iteration", 0},
+       {"samples", 5},
+       {"id", 5}},
       {{"ask", "mesh"}, {"side", "a"}, {"format", "obj"}, {"id", 6}},
       {{"ask", "scene"}, {"side", "a"}, {"id", 7}},
       {{"ask", "recording"}, {"id", 8}}};
@@ -151,9 +174,29 @@ class Mutations {
   int below(int n) { return std::uniform_int_distribution<int>(0, n - 1)(random_); }
 
   Json odd_value() {
-    const std::vector<Json> odd = {nullptr, true, -1, 0, 1, 1e300, -1e-300, 4294967296, 2147483648, "", "b", "a\nb=1",
-                                   std::string(5000, 'x'), Json::array(), {1, 2}, {"x", {}, nullptr}, Json::object(),
-                                   {{"do", "play"}}, 0.5, "material.young", "1e5", "--", "\u00e9"};
+    const std::vector<Json> odd = {nullptr,
+                                   true,
+                                   -1,
+                                   0,
+                                   1,
+                                   1e300,
+                                   -1e-300,
+                                   4294967296,
+                                   2147483648,
+                                   "",
+                                   "b",
+                                   "a\nb=1",
+                                   std::string(5000, 'x'),
+                                   Json::array(),
+                                   {1, 2},
+                                   {"x", {}, nullptr},
+                                   Json::object(),
+                                   {{"do", "play"}},
+                                   0.5,
+                                   "material.young",
+                                   "1e5",
+                                   "--",
+                                   "\u00e9"};
     return odd[below(static_cast<int>(odd.size()))];
   }
 
@@ -206,8 +249,8 @@ where = "x < 0.1"
   Mutations mutations(20);
   for (int i = 0; i < 3000; ++i) {
     const Json& valid = valid_messages()[mutations.below(static_cast<int>(valid_messages().size()))];
-    const std::string text = mutations.mutated_text(
-        mutations.mutated(valid).dump(-1, ' ', false, Json::error_handler_t::replace));
+    const std::string text =
+        mutations.mutated_text(mutations.mutated(valid).dump(-1, ' ', false, Json::error_handler_t::replace));
     const Role role = mutations.below(20) == 0 ? Role::watches : Role::steers;
     Answer answer;
     ASSERT_NO_THROW(answer = page.session().handle(text, role)) << text;

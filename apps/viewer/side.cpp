@@ -98,7 +98,7 @@ Progress Side::complete(const StepReport& report) {
   grab_.from = grab_.to = wanted_;
   let_mouse_rest();
   StepRow row{.report = report,
-              .iterations = std::move(iterations_),
+              .iterations = iterations_.take(),
               .mouse_work = report.target_work[steered_.mouse_load] + mouse_jumps_,
               .pin_work = report.pin_work - report.target_work[steered_.mouse_load],
               .why = explain(simulation(), report)};
@@ -112,11 +112,10 @@ Progress Side::complete(const StepReport& report) {
 }
 
 Progress Side::step(const Consent& go_on) {
-  iterations_.clear();
+  iterations_.begin();
   steered_.mouse->set(acting(), time());
   const auto observe = [&](const LiveIteration& live) {
-    if (iterations_.size() < StepRows::kMostIterations)
-      iterations_.push_back({live, {live.tried.begin(), live.tried.end()}});
+    iterations_.add(live);
     return go_on();
   };
   const StepReport report = simulated().step(observe, go_on);
@@ -130,14 +129,13 @@ Progress Side::step(const Consent& go_on) {
 Progress Side::iterate(const Consent& go_on) {
   const int shown = iteration_ + 1;
   int count = 0;
-  iterations_.clear();
+  iterations_.begin();
   std::vector<double> iterate;
   steered_.mouse->set(acting(), time());
   const auto observe = [&](const LiveIteration& live) {
     if (count == shown) iterate.assign(live.x_next.begin(), live.x_next.end());
     if (count++ > shown) return false;
-    if (iterations_.size() < StepRows::kMostIterations)
-      iterations_.push_back({live, {live.tried.begin(), live.tried.end()}});
+    iterations_.add(live);
     return go_on();
   };
   const StepReport report = simulated().step(observe, go_on);

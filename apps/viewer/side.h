@@ -104,7 +104,7 @@ class Side {
 
   int iteration_ = -1;
   std::vector<double> iterate_;
-  std::vector<IterationRow> iterations_;  // of the step that is being taken
+  IterationRows iterations_;  // of the step that is being taken
   bool is_blown_up_ = false;
 };
 

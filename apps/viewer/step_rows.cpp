@@ -1,6 +1,15 @@
 #include "viewer/step_rows.h"
 
 namespace aspic::viewer {
+namespace {
+
+size_t details_of(const StepRow& row) {
+  size_t count = row.iterations.size();
+  for (const IterationRow& iteration : row.iterations) count += iteration.tried.size();
+  return count;
+}
+
+}  // namespace
 
 Json to_json(const std::vector<Trial>& tried) {
   Json list = Json::array();
@@ -56,18 +65,30 @@ Json to_json(const StepRow& row) {
           {"words", to_json(row.why)}};
 }
 
+void IterationRows::add(const LiveIteration& live) {
+  size_ += 1 + live.tried.size();
+  if (size_ <= kMost) rows_.push_back({live, {live.tried.begin(), live.tried.end()}});
+}
+
 void StepRows::add(StepRow row) {
+  details_ += details_of(row);
   rows_.push_back(std::move(row));
-  if (rows_.size() > kMostWithIterations) {
-    auto& old = rows_[rows_.size() - kMostWithIterations - 1].iterations;
-    old.clear();
-    old.shrink_to_fit();
-  }
-  if (rows_.size() > kMostSteps) rows_.pop_front();
+  for (size_t i = 0; details_ > kMostDetails && i + 1 < rows_.size(); ++i) forget_details_of(rows_[i]);
+  if (rows_.size() <= kMostSteps) return;
+  forget_details_of(rows_.front());
+  rows_.pop_front();
+}
+
+void StepRows::forget_details_of(StepRow& row) {
+  details_ -= details_of(row);
+  std::vector<IterationRow>().swap(row.iterations);
 }
 
 void StepRows::drop_after(int step) {
-  while (!rows_.empty() && rows_.back().report.step > step) rows_.pop_back();
+  while (!rows_.empty() && rows_.back().report.step > step) {
+    details_ -= details_of(rows_.back());
+    rows_.pop_back();
+  }
 }
 
 const StepRow* StepRows::find(int step) const {

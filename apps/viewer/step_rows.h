@@ -15,6 +15,20 @@ struct IterationRow {
   std::vector<Trial> tried;
 };
 Json to_json(const IterationRow& row);
+
+// The iterations of a step as far as they are kept: one of very many would fill memory and page.
+class IterationRows {
+ public:
+  static constexpr size_t kMost = 5'000;  // iterations and trials
+
+  void begin() { rows_.clear(), size_ = 0; }
+  void add(const LiveIteration& live);
+  std::vector<IterationRow> take() { return std::move(rows_); }
+
+ private:
+  std::vector<IterationRow> rows_;
+  size_t size_ = 0;
+};
 Json to_json(const std::vector<Trial>& tried);
 Json to_json(const Explanation& why);  // null when there is nothing to explain
 
@@ -29,19 +43,20 @@ Json to_json(const StepRow& row);
 
 class StepRows {
  public:
-  static constexpr size_t kMostSteps = 20'000;          // rows of earlier steps are forgotten
-  static constexpr size_t kMostWithIterations = 2'000;  // of the latest steps
-  static constexpr size_t kMostIterations = 1'000;      // of a step
+  static constexpr size_t kMostSteps = 20'000;     // rows of earlier steps are forgotten
+  static constexpr size_t kMostDetails = 300'000;  // iterations and trials; those of earlier steps are forgotten
 
   void add(StepRow row);
   void drop_after(int step);
-  void clear() { rows_.clear(); }
   const StepRow* last() const { return rows_.empty() ? nullptr : &rows_.back(); }
   const StepRow* find(int step) const;
   Json after(int step) const;  // an array
 
  private:
+  void forget_details_of(StepRow& row);
+
   std::deque<StepRow> rows_;
+  size_t details_ = 0;
 };
 
 }  // namespace aspic::viewer

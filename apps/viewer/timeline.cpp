@@ -5,11 +5,18 @@
 #include "base/check.h"
 
 namespace aspic::viewer {
+namespace {
+
+constexpr size_t kPinBytes = sizeof(Pin) + 64;  // of a vertex pinned by hand
+
+}  // namespace
 
 size_t Moment::bytes() const {
   size_t numbers = state.q.size() + state.qdot.size();
   if (previous) numbers += previous->q.size() + previous->qdot.size();
-  return sizeof(Moment) + sizeof(double) * numbers;
+  size_t size = sizeof(Moment) + sizeof(double) * numbers;
+  if (pins) size += kPinBytes * pins->size();  // more than there are where several moments share them
+  return size;
 }
 
 void Timeline::add(Moment moment) {

@@ -218,7 +218,9 @@ void Simulation::set_pins(std::vector<Pin> pins) {
   impl_->model.pins = std::move(pins);
   *impl_->pins = Pins(impl_->model.pins, impl_->start.q);
   impl_->E = std::make_unique<IncrementalPotential>(impl_->model, *impl_->pins);
+  // What was factorised has other rows of the identity.
   impl_->direction = make_search_direction(impl_->options.solver);
+  impl_->integrator = make_integrator(impl_->options.integrator);
   impl_->stand_at(impl_->state.time);
 }
 

@@ -201,7 +201,8 @@ export interface Recording {
   scene: string;
   overrides: string[];
   compare: { overrides: string[]; label: string } | null;
-  events: { step: number; command: Command }[]; // carried out before that step of side a
+  // Carried out before that step of side a and, in a comparison, when side b had taken `b` steps.
+  events: { step: number; b?: number; command: Command }[];
   steps: number;
 }
 

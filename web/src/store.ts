@@ -7,7 +7,7 @@ export interface Side {
   scene: Scene;
   geometry: Geometry | null;
   picture: Picture | null;
-  steps: StepRow[]; // of steps 1, 2, ...
+  steps: StepRow[]; // of consecutive steps, from 1 unless the program has forgotten the first ones
   pins: number[];
 }
 
@@ -71,7 +71,7 @@ export class Store extends Emitter<Events> {
       case "steps": {
         const side = this.sides[message.side];
         if (!side) return;
-        side.steps.length = Math.min(side.steps.length, message.from);
+        while (side.steps.length > 0 && side.steps[side.steps.length - 1].step > message.from) side.steps.pop();
         side.steps.push(...message.steps);
         return this.emit("steps", { side: message.side, from: message.from });
       }
