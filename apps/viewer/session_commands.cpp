@@ -444,7 +444,7 @@ void Session::Impl::repeat_due_events() {
 
 // What is left to do are neither steps nor events that were carried out after the last one.
 bool Session::Impl::is_replay_done() {
-  if (a->side.steps_taken() < replaying->recording.steps) return false;
+  if (a->side.steps_taken() < replaying->recording.steps && !a->side.is_blown_up()) return false;
   if (b && &next() == b.get()) return false;
   repeat_due_events();
   return true;
