@@ -13,6 +13,14 @@ if(TARGET aspic_viewer)
   add_test(NAME page_types COMMAND ${NODE} ${web}/node_modules/typescript/bin/tsc --noEmit --project ${web})
   add_test(NAME page_units COMMAND ${NODE} ${web}/test/run.mjs)
   add_test(NAME page_guide COMMAND ${NODE} ${web}/test/guide.mjs ${CMAKE_BINARY_DIR}/web/page.html)
-  add_test(NAME page_viewer COMMAND ${NODE} ${web}/test/viewer.mjs $<TARGET_FILE:aspic_cli>)
-  set_tests_properties(page_guide page_viewer PROPERTIES SKIP_RETURN_CODE 77)
+  set_tests_properties(page_guide PROPERTIES SKIP_RETURN_CODE 77)
+
+  # The page with its program, in Chromium; pictures of its panels go to the build's folder pictures/.
+  file(GLOB page_themes CONFIGURE_DEPENDS ${web}/test/e2e/*.e2e.mjs)
+  foreach(file ${page_themes})
+    get_filename_component(theme ${file} NAME_WE)
+    add_test(NAME page.${theme} COMMAND ${NODE} ${web}/test/e2e/run.mjs $<TARGET_FILE:aspic_cli>
+                                        ${CMAKE_BINARY_DIR}/pictures ${theme})
+    set_tests_properties(page.${theme} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 900)
+  endforeach()
 endif()
