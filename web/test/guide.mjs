@@ -1,24 +1,20 @@
 // node test/guide.mjs PAGE [--write]: the shortcuts in docs/viewer.md are those of the page. PAGE is what build.mjs made;
 // needs Chromium. --write brings the guide up to date.
-import { existsSync, readFileSync, writeFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
-import { chromium } from "playwright-core";
+import { findChromium, launchChromium } from "./e2e/chromium.mjs";
 
 const [pagePath, write] = process.argv.slice(2);
 const guidePath = join(dirname(fileURLToPath(import.meta.url)), "../../docs/viewer.md");
-const executablePath = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
-if (!executablePath) {
+if (!findChromium()) {
   console.log("no Chromium: skipped");
   process.exit(77);
 }
 
 // The list that "?" opens: groups of rows of a key and what it does.
 async function listedShortcuts() {
-  const browser = await chromium.launch({
-    executablePath,
-    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-  });
+  const browser = await launchChromium();
   try {
     const page = await browser.newPage();
     const body = readFileSync(pagePath, "utf8");

@@ -6,7 +6,7 @@ import { test } from "node:test";
 import { assertSameBits, contrast, downloaded, openSession, out, pageModule, pressAndWait, startProgram } from "./harness.mjs";
 
 const { kPresets } = await pageModule("panels/functionForm.ts");
-const program = await startProgram("scenes/cantilever.toml");
+const program = await startProgram("scenes/cantilever.toml", ["--set", "time.step=0.05"]); // several iterations
 
 async function open(panel) {
   const opened = await openSession(program);

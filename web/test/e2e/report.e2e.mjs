@@ -1,0 +1,85 @@
+// A run as one file, opened from disk without a network: it plays, and holds its numbers.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { readFileSync, statSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { aspic, contrast, downloaded, openPage, out, root, temporaryFolder } from "./harness.mjs";
+
+const folder = temporaryFolder();
+const run = join(folder, "run");
+const kSteps = 20;
+const make = (...words) => {
+  const made = spawnSync(aspic, words, { encoding: "utf8" });
+  assert.equal(made.status, 0, made.stdout + made.stderr);
+};
+make("run", join(root, "scenes/cantilever.toml"), "--out", run, "--set", `time.duration=${kSteps / 100}`);
+const report = join(run, "report.html");
+
+const placeOf = (page) => page.locator(".place").innerText();
+
+async function open() {
+  const opened = await openPage(pathToFileURL(report).href, { offline: true });
+  await opened.page.locator(".place").filter({ hasText: /^step \d+/ }).waitFor();
+  await opened.page.locator("#views canvas").first().waitFor();
+  return opened;
+}
+
+test("a run writes its report, and `aspic report` writes it again", () => {
+  assert.ok(statSync(report).size < 10e6);
+  const again = join(folder, "again.html");
+  make("report", run, "-o", again);
+  assert.ok(statSync(again).size < 10e6);
+  assert.doesNotMatch(readFileSync(again, "utf8").replace(/http:\/\/www\.w3\.org\/\S*/g, ""), /(src|href)="https?:/);
+});
+
+test("it plays, pauses and rewinds, without a request", async () => {
+  const { page, close } = await open();
+  const views = page.locator("#views");
+  assert.ok((await contrast(page, await views.screenshot())) > 5);
+  const start = await placeOf(page);
+  await page.keyboard.press("r");
+  await page.locator(".place").filter({ hasText: /^step 0,/ }).waitFor();
+  const first = await views.screenshot();
+  await page.keyboard.press(" ");
+  await page.waitForFunction(() => !document.querySelector(".place").textContent.startsWith("step 0,"));
+  await page.getByLabel("Timeline: rewinds to a step").press("End");
+  await page.locator(".place").filter({ hasText: new RegExp(`^step ${kSteps},`) }).waitFor();
+  assert.ok(!(await views.screenshot()).equals(first));
+  assert.notEqual(start, "");
+  await page.screenshot({ path: join(out, "report.png") });
+  await close();
+});
+
+test("it has the certificate of every step, the energies and the scene", async () => {
+  const { page, close } = await open();
+  await page.getByRole("tab", { name: "Certificate" }).click();
+  const panel = page.getByRole("tabpanel", { name: "Certificate" });
+  await panel.locator("tbody tr").nth(kSteps - 1).waitFor();
+  assert.equal(await panel.locator("tbody tr").count(), kSteps);
+  await page.screenshot({ path: join(out, "report_certificate.png") });
+  await panel.getByText("The scene with all its defaults").click();
+  await panel.locator("pre").filter({ hasText: /\[solver\]/ }).waitFor();
+  await panel.locator("tbody tr").nth(4).getByRole("button").click();
+  await page.locator(".place").filter({ hasText: /^step 5,/ }).waitFor();
+  await page.getByRole("tab", { name: "Energy" }).click();
+  const file = await downloaded(page, () => page.getByRole("tabpanel").getByRole("button", { name: "CSV" }).click());
+  const rows = readFileSync(await file.path(), "utf8").trim().split("\n").slice(1);
+  assert.equal(rows.filter((row) => Number(row.split(",")[0]) > 0).length, kSteps);
+  await page.getByRole("tab", { name: "Microscope" }).click();
+  await page.getByRole("grid", { name: "Steps" }).locator("tr[aria-selected]").first().waitFor();
+  await page.screenshot({ path: join(out, "report_microscope.png") });
+  await close();
+});
+
+test("it says that a recorded body cannot be touched", async () => {
+  const { page, close } = await open();
+  const box = await page.locator("#views").boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2 + 60, box.y + box.height / 2, { steps: 5 });
+  await page.mouse.up();
+  await page.getByText("This run is recorded").waitFor();
+  await close();
+});
