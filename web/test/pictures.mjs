@@ -1,0 +1,126 @@
+// node test/pictures.mjs ASPIC OUT: the pictures of the page in README.md and docs, in Chromium.
+import { execFileSync, spawn } from "node:child_process";
+import { mkdirSync, mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath, pathToFileURL } from "node:url";
+import { findChromium, launchChromium } from "./e2e/chromium.mjs";
+
+const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
+const [aspic, out] = process.argv.slice(2).map((path) => resolve(path));
+if (!aspic || !out) throw new Error("node test/pictures.mjs ASPIC OUT");
+if (!findChromium()) throw new Error("there is no Chromium (Debian: apt-get install chromium)");
+
+// The address of `aspic view`, which ends with this program at the latest.
+let program = null;
+async function startProgram(scene, more = []) {
+  program?.kill("SIGINT");
+  const child = spawn(aspic, ["view", join(root, scene), "--no-browser", ...more]);
+  program = child;
+  return new Promise((found, failed) => {
+    let said = "";
+    child.stdout.on("data", (chunk) => {
+      said += chunk;
+      const line = said.match(/http:\S+(?=\s)/);
+      if (line) found(line[0]);
+    });
+    child.on("exit", (code) => failed(new Error(`aspic view ended with ${code}: ${said}`)));
+  });
+}
+
+async function openPage(browser, address, height) {
+  const page = await browser.newPage({ viewport: { width: 1280, height } });
+  page.setDefaultTimeout(60_000);
+  page.on("pageerror", (error) => {
+    throw error;
+  });
+  await page.goto(address);
+  await page.locator("#views canvas").first().waitFor();
+  return page;
+}
+
+// At that step, or a later one.
+const reached = (page, step) =>
+  page.waitForFunction((wanted) => Number(document.querySelector(".place")?.textContent.match(/^step (\d+)/)?.[1]) >= wanted, step);
+
+// Until the page looks the same for a second.
+async function settled(page) {
+  for (let last = ""; ; ) {
+    const now = (await page.screenshot()).toString("base64");
+    if (now === last) return;
+    last = now;
+    await page.waitForTimeout(1000);
+  }
+}
+
+// The topmost point of the body: the tip of an ear.
+async function highestPoint(page) {
+  const view = page.locator("#views .view");
+  const box = await view.boundingBox();
+  for (let y = 20; y < box.height; y += 10) {
+    for (let x = 0.3 * box.width; x < 0.7 * box.width; x += 12) {
+      await page.mouse.move(box.x + x, box.y + y);
+      await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+      if (await view.evaluate((element) => element.style.cursor === "grab")) return [box.x + x, box.y + y + 6];
+    }
+  }
+  throw new Error("no body under the mouse");
+}
+
+// The bunny, coloured by its displacement and dragged by an ear, with the minimisation of each step.
+async function drawViewer(browser) {
+  const address = await startProgram("scenes/bunny.toml", ["--set", "body.0.deform.displacement=[0, 0, 0]"]);
+  const page = await openPage(browser, address, 800);
+  await page.getByRole("tab", { name: "Microscope" }).click();
+  await page.getByRole("combobox", { name: "Colour by" }).selectOption("displacement");
+  const [x, y] = await highestPoint(page);
+  await page.keyboard.press(" ");
+  await page.mouse.down();
+  for (const share of [0.2, 0.4, 0.6, 0.8]) {
+    await page.mouse.move(x + 200 * share, y - 40 * share, { steps: 4 });
+    await reached(page, 50 * share);
+  }
+  await page.keyboard.press(" "); // everything shows one step, the mouse still pulls
+  await page.getByRole("button", { name: "Play" }).waitFor();
+  await settled(page);
+  await page.screenshot({ path: join(out, "viewer.png") });
+}
+
+// E over a plane through Newton's direction, on a step that needs the line search.
+async function drawLandscape(browser) {
+  const address = await startProgram("scenes/lecture/53_hard_step.toml", ["--set", `mesh=${join(root, "assets/bunny.mesh")}`, "--set", "scale=0.1"]);
+  const page = await openPage(browser, address, 1200);
+  await page.getByRole("tab", { name: "Landscape" }).click();
+  await page.keyboard.press("s");
+  await reached(page, 1);
+  const panel = page.getByRole("tabpanel", { name: "Landscape" });
+  await panel.getByText("This is E over the plane").waitFor();
+  await panel.getByRole("checkbox", { name: "log height" }).check();
+  await settled(page);
+  await panel.screenshot({ path: join(out, "landscape.png") });
+}
+
+// The report that a run leaves: its certificate.
+async function drawReport(browser, folder) {
+  const run = join(folder, "run");
+  execFileSync(aspic, ["run", join(root, "scenes/bunny.toml"), "--out", run, "--quiet"], { stdio: "inherit" });
+  const page = await openPage(browser, pathToFileURL(join(run, "report.html")).href, 800);
+  await page.getByRole("tab", { name: "Certificate" }).click();
+  const rows = page.getByRole("tabpanel", { name: "Certificate" }).locator("tbody tr");
+  await rows.nth(39).getByRole("button").click();
+  await reached(page, 40);
+  await page.screenshot({ path: join(out, "report.png") });
+}
+
+mkdirSync(out, { recursive: true });
+const folder = mkdtempSync(join(tmpdir(), "aspic-pictures-"));
+const browser = await launchChromium();
+try {
+  await drawViewer(browser);
+  await drawLandscape(browser);
+  await drawReport(browser, folder);
+} finally {
+  await browser.close();
+  program?.kill("SIGINT");
+  rmSync(folder, { recursive: true });
+}
