@@ -18,12 +18,9 @@ constexpr double kSameTime = 1e-6;       // of a step
 
 void Session::Impl::tell_state() {
   for (ShownSide* shown : {a.get(), b.get()}) {
-    if (!shown) continue;
-    const Side& side = shown->side;
-    if (shown->told_steps >= side.steps_taken() && shown->told_iteration == side.iteration()) continue;
+    if (!shown || shown->told_steps >= shown->side.steps_taken()) continue;
     tell(steps_message(*shown, shown->told_steps));
-    shown->told_steps = side.steps_taken();
-    shown->told_iteration = side.iteration();
+    shown->told_steps = shown->side.steps_taken();
   }
   tell(text({{"kind", "state"},
              {"playing", playing},

@@ -195,7 +195,6 @@ void Session::Impl::rewind_to(int step) {
   for (ShownSide* shown : {a.get(), b.get()}) {
     if (!shown) continue;
     shown->told_steps = shown->side.steps_taken();
-    shown->told_iteration = -1;
     tell(steps_message(*shown, shown->told_steps));
     tell(pins_message(*shown));
   }

@@ -72,11 +72,7 @@ Message geometry_message(const ShownSide& shown) {
 }
 
 Message steps_message(const ShownSide& shown, int from) {
-  const Side& side = shown.side;
-  Json steps = side.rows().after(from);
-  if (side.iteration() >= 0)
-    steps.push_back(under_way_json(side.steps_taken() + 1, side.time(), side.iterations_so_far()));
-  return text({{"kind", "steps"}, {"side", shown.name}, {"from", from}, {"steps", std::move(steps)}});
+  return text({{"kind", "steps"}, {"side", shown.name}, {"from", from}, {"steps", shown.side.rows().after(from)}});
 }
 
 Message pins_message(const ShownSide& shown) {

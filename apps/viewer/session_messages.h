@@ -14,7 +14,6 @@ struct ShownSide {
   Surface surface;
   uint32_t generation = 1;  // of its geometry
   int told_steps = 0;       // whose rows the pages have
-  int told_iteration = -1;  // of the step under way
 
   int number() const { return name == "a" ? 0 : 1; }
 };

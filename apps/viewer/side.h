@@ -32,7 +32,6 @@ class Side {
   int steps_taken() const { return simulation().steps_taken(); }
   double time() const { return simulation().state().time; }
   int iteration() const { return iteration_; }  // of the step under way; -1 between steps
-  const std::vector<IterationRow>& iterations_so_far() const { return iterations_.rows(); }  // of that step
   bool is_blown_up() const { return is_blown_up_; }
   View view() const;  // what is to be seen now
   const StepRows& rows() const { return rows_; }

@@ -41,19 +41,15 @@ Json to_json(const Explanation& why) {
   return {{"cause", why.cause}, {"place", why.place}, {"remedy", why.remedy}};
 }
 
-Json to_json(const std::vector<IterationRow>& rows) {
-  Json list = Json::array();
-  for (const IterationRow& row : rows) list.push_back(to_json(row));
-  return list;
-}
-
 Json to_json(const StepRow& row) {
   const StepReport& report = row.report;
+  Json iterations = Json::array();
+  for (const IterationRow& iteration : row.iterations) iterations.push_back(to_json(iteration));
   return {{"step", report.step},
           {"time", report.time},
           {"status", to_string(report.status)},
           {"success", is_success(report.status)},
-          {"iterations", to_json(row.iterations)},
+          {"iterations", std::move(iterations)},
           {"residual", report.residual},
           {"threshold", report.residual_threshold},
           {"min_det_F", report.min_det_F},
@@ -67,16 +63,6 @@ Json to_json(const StepRow& row) {
           {"ledger_error", report.ledger_error},
           {"seconds", report.seconds},
           {"words", to_json(row.why)}};
-}
-
-Json under_way_json(int step, double time, const std::vector<IterationRow>& iterations) {
-  Json row = {{"step", step}, {"time", time}, {"status", ""}, {"success", true}, {"iterations", to_json(iterations)}};
-  for (const char* unknown : {"residual", "threshold", "min_det_F", "kinetic", "mouse_work", "pin_work", "damping_loss",
-                              "numerical_loss", "residual_work", "ledger_error", "words"})
-    row[unknown] = nullptr;
-  row["potential"] = Json::array();
-  row["seconds"] = 0;
-  return row;
 }
 
 void IterationRows::add(const LiveIteration& live) {

@@ -15,7 +15,6 @@ struct IterationRow {
   std::vector<Trial> tried;
 };
 Json to_json(const IterationRow& row);
-Json to_json(const std::vector<IterationRow>& rows);
 
 // The iterations of a step as far as they are kept: one of very many would fill memory and page.
 class IterationRows {
@@ -24,7 +23,6 @@ class IterationRows {
 
   void begin() { rows_.clear(), size_ = 0; }
   void add(const LiveIteration& live);
-  const std::vector<IterationRow>& rows() const { return rows_; }
   std::vector<IterationRow> take() { return std::move(rows_); }
 
  private:
@@ -42,8 +40,6 @@ struct StepRow {
   Explanation why;
 };
 Json to_json(const StepRow& row);
-Json under_way_json(int step, double time,
-                    const std::vector<IterationRow>& iterations);  // of a step that has not ended
 
 class StepRows {
  public:

@@ -140,7 +140,7 @@ export interface Setting {
 export interface StepRow {
   step: number;
   time: number; // [s]
-  status: string; // "": the step is under way, and only its iterations so far are known
+  status: string;
   success: boolean;
   iterations: IterationRow[];
   residual: MaybeNumber; // [N]

@@ -1,11 +1,6 @@
 // What a run's steps certify: who converged, how far off the others are, what the worst values are and where.
 import type { MaybeNumber, StepRow } from "../protocol";
 
-// Without the step under way.
-export function completed(steps: readonly StepRow[]): readonly StepRow[] {
-  return steps.filter((row) => row.status !== "");
-}
-
 // Above 1 the step missed what was asked for; null: nothing was asked for.
 export function excess(row: StepRow): MaybeNumber {
   return row.residual === null || !row.threshold ? null : row.residual / row.threshold;

@@ -108,7 +108,7 @@ class MicroscopePanel implements Panel {
         meaning: "norm of the forces that are left over, in parts of the threshold that it must be below",
         text: of(residualText),
       },
-      { title: "took", meaning: "wall time", text: of((s) => (s.status === "" ? "" : withUnit(s.seconds, "s", 3))) },
+      { title: "took", meaning: "wall time", text: of((s) => withUnit(s.seconds, "s", 3)) },
     ];
   }
 
@@ -300,6 +300,5 @@ function residualText(step: StepRow): string {
 }
 
 function statusText(step: StepRow): string {
-  if (step.status === "") return "under way";
   return `${step.success ? "✓" : "✗"} ${step.status.replaceAll("_", " ")}`;
 }

@@ -5,7 +5,7 @@ import type { Page, Panel } from "../page";
 import { short } from "../plots/numbers";
 import type { MaybeNumber, StepRow, TextReply } from "../protocol";
 import type { Store } from "../store";
-import { completed, excess, kColumns, listed, totals } from "./certificate";
+import { excess, kColumns, listed, totals } from "./certificate";
 
 const kRowsPerPage = 100;
 
@@ -48,7 +48,7 @@ class StepTable {
   }
 
   private steps(): readonly StepRow[] {
-    return completed(this.store.side("a")?.steps ?? []);
+    return this.store.side("a")?.steps ?? [];
   }
 
   private turn(rows: number): void {
@@ -129,7 +129,7 @@ export function makeReportPanel(store: Store, page: Page): Panel {
   const draw = (): void => {
     due = false;
     const side = store.side("a");
-    drawTotals(list, completed(side?.steps ?? []));
+    drawTotals(list, side?.steps ?? []);
     notes.replaceChildren(...(side?.scene.notes ?? []).map((note) => element("li", {}, note)));
     table.draw();
   };

@@ -66,9 +66,8 @@ export class Ledger {
     this.columns = ledgerColumns(potentials).map(() => []);
   }
 
-  // Steps from `from` on are as in `rows`; earlier ones are known. A step under way has no energies yet.
-  update(told: readonly StepRow[], from: number): void {
-    const rows = told.filter((row) => row.status !== "");
+  // Steps from `from` on are as in `rows`; earlier ones are known.
+  update(rows: readonly StepRow[], from: number): void {
     const keep = Math.min(from, this.step.length, rows.length);
     const running = [this.lowest, this.highest, this.largest];
     for (const column of [this.step, this.time, this.residualWork, this.ledgerError, ...running, ...this.columns])
