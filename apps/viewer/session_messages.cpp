@@ -90,13 +90,16 @@ Json state_of(const ShownSide& shown) {
     grab = {{"point", json_of(side.grabbed_point())},
             {"target", json_of(side.mouse_target())},
             {"force", json_of(side.mouse_force())}};
-  return {{"step", side.steps_taken()},
-          {"time", side.time()},
-          {"iteration", side.iteration()},
-          {"timeline", {{"first", 0}, {"last", side.steps_taken()}}},
-          {"status", last ? std::string(to_string(last->report.status)) : ""},
-          {"words", last ? to_json(last->why) : Json()},
-          {"grab", std::move(grab)}};
+  Json state = {{"step", side.steps_taken()},
+                {"time", side.time()},
+                {"iteration", side.iteration()},
+                {"timeline", {{"first", 0}, {"last", side.steps_taken()}}},
+                {"status", last ? std::string(to_string(last->report.status)) : ""},
+                {"words", last ? to_json(last->why) : Json()},
+                {"grab", std::move(grab)}};
+  if (side.iteration() >= 0)
+    for (const IterationRow& row : side.iterations()) state["iterations"].push_back(to_json(row));
+  return state;
 }
 
 Message refusal(const Json& id, const std::string& why) {

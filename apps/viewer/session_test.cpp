@@ -61,12 +61,15 @@ TEST(Session, AnIterationShowsItsIterateAndTheLastOneCompletesTheStep) {
   for (size_t k = 0; k + 1 < iterations; ++k) {
     page.send({{"do", "iterate"}});
     EXPECT_EQ(page.side()["iteration"], k);
+    EXPECT_EQ(page.side()["iterations"].size(), k + 1);
+    EXPECT_EQ(page.side()["iterations"][k]["value"], whole.rows()[0]["iterations"][k]["value"]);
     EXPECT_EQ(page.side()["step"], 0);
     EXPECT_EQ(page.picture().iteration, static_cast<int>(k));
     EXPECT_NE(page.picture().positions, before.positions);
   }
   page.send({{"do", "iterate"}});
   EXPECT_EQ(page.side()["iteration"], -1);
+  EXPECT_FALSE(page.side().contains("iterations"));
   EXPECT_EQ(page.side()["step"], 1);
   EXPECT_EQ(page.picture().positions, whole.picture().positions);
 }

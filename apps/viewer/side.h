@@ -32,6 +32,7 @@ class Side {
   int steps_taken() const { return simulation().steps_taken(); }
   double time() const { return simulation().state().time; }
   int iteration() const { return iteration_; }  // of the step under way; -1 between steps
+  const std::vector<IterationRow>& iterations() const { return iterations_.rows(); }  // of the step under way, so far
   bool is_blown_up() const { return is_blown_up_; }
   View view() const;  // what is to be seen now
   const StepRows& rows() const { return rows_; }

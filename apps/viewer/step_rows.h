@@ -23,6 +23,7 @@ class IterationRows {
 
   void begin() { rows_.clear(), size_ = 0; }
   void add(const LiveIteration& live);
+  const std::vector<IterationRow>& rows() const { return rows_; }
   std::vector<IterationRow> take() { return std::move(rows_); }
 
  private:

@@ -190,6 +190,7 @@ export interface SideState {
   step: number;
   time: number;
   iteration: number; // of the step under way, shown by the picture; -1 between steps
+  iterations?: IterationRow[]; // of that step, so far
   timeline: { first: number; last: number }; // steps that rewind can reach; steps in between may be thinned out
   status: string; // of the last step; "" at the start
   words: { cause: string; place: string; remedy: string } | null;

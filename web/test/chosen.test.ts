@@ -117,6 +117,22 @@ test("an answer is remembered, but not after a rewind; a refusal is told", async
   assert.equal(source.asked.length, 3);
 });
 
+test("the step under way stands after the others, with the iterations that were shown", () => {
+  const { source, chosen } = opened();
+  const a = { step: 5, time: 0.05, iteration: 1, iterations: [iterationRow(), iterationRow()] };
+  source.say({ kind: "state", a, b: null } as unknown as ServerMessage);
+  assert.deepEqual([chosen.step, chosen.iteration, chosen.rows().length], [6, 1, 6]);
+  assert.ok(chosen.isUnderWay());
+  source.say({ kind: "steps", side: "a", from: 5, steps: rows(5, 1) });
+  source.say({
+    kind: "state",
+    a: { ...a, step: 6, iteration: -1, iterations: undefined },
+    b: null,
+  } as unknown as ServerMessage);
+  assert.ok(!chosen.isUnderWay());
+  assert.equal(chosen.row()!.iterations.length, 3);
+});
+
 test("a rewind past the chosen step goes to the newest that is left", () => {
   const { source, chosen } = opened();
   chosen.choose("a", 5, 1);

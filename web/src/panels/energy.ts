@@ -156,7 +156,7 @@ class EnergyPanel implements Panel {
     const sides = this.shown().filter(({ ledger }) => ledger.step.length > 0);
     const texts = sides.map(({ side, ledger }) => {
       const i = x === null ? this.nowIndex(ledger) : nearest(this.xOf(ledger), x);
-      const label = sides.length > 1 ? `${this.store.side(side)?.scene.label || side}: ` : "";
+      const label = sides.length > 1 ? `${this.store.side(side)?.scene.label || side.toUpperCase()}: ` : "";
       return `${label}step ${ledger.step[i]}${this.byStep ? "" : `, ${short(ledger.time[i])} s`}`;
     });
     return texts.join(" · ");
@@ -211,7 +211,7 @@ class EnergyPanel implements Panel {
     const texts = this.shown().map(({ side, ledger }) => {
       const { drift, scale } = ledger.drift();
       if (ledger.step.length < 2 || !Number.isFinite(drift)) return "";
-      const name = this.ledgers.b ? `${this.store.side(side)?.scene.label || side}: ` : "";
+      const name = this.ledgers.b ? `${this.store.side(side)?.scene.label || side.toUpperCase()}: ` : "";
       return `${name}${balanceText(drift, scale)}`;
     });
     const dashes = this.ledgers.b ? [`${this.store.side("b")?.scene.label || "b"} is dashed`] : [];
@@ -265,7 +265,7 @@ class EnergyPanel implements Panel {
   }
 
   private savePng(): void {
-    const sides = this.shown().map(({ side }) => this.store.side(side)?.scene.label || side);
+    const sides = this.shown().map(({ side }) => this.store.side(side)?.scene.label || side.toUpperCase());
     const picture = this.chart.picture(
       `${this.sceneName()}: energy${sides.length > 1 ? ` (${sides[0]}; dashed: ${sides[1]})` : ""}`,
     );

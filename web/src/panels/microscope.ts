@@ -4,7 +4,7 @@ import type { IterationRow, SideName, StepRow, WorstReply } from "../protocol";
 import type { Store } from "../store";
 import { chosenOf, type Chosen } from "../plots/chosen";
 import { button, checkbox, choice, element, oncePerFrame } from "../plots/dom";
-import { short, withUnit } from "../plots/numbers";
+import { plural, short, withUnit } from "../plots/numbers";
 import { Rows } from "../plots/rows";
 import type { Search } from "../plots/search";
 import { stepText, totalSeconds } from "../plots/words";
@@ -22,7 +22,7 @@ class MicroscopePanel implements Panel {
   readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Solver microscope" });
   private readonly chosen: Chosen;
   private readonly sides = choice("", "Which side of the comparison", [], "a", (side) =>
-    this.chooseSide(side as SideName),
+    this.chosen.chooseSide(side as SideName),
   );
   private readonly follow = checkbox("follow", "Stay at the newest step", true, (on) => this.chosen.follow(on));
   private readonly words = element("div", { class: "plot-note", role: "status" });
@@ -75,7 +75,7 @@ class MicroscopePanel implements Panel {
   }
 
   private rows(): readonly StepRow[] {
-    return this.store.side(this.chosen.side)?.steps ?? [];
+    return this.chosen.rows();
   }
 
   // The newest step stands first.
@@ -148,9 +148,7 @@ class MicroscopePanel implements Panel {
 
   private mark(row: number): string {
     const count = this.chosen.row()?.iterations.length ?? 0;
-    const done =
-      (this.store.state?.[this.chosen.side]?.iteration ?? -1) < 0 || this.stepAt(0)?.step !== this.chosen.step;
-    return row === count - 1 && done ? `end ${row}` : String(row);
+    return row === count - 1 && !this.chosen.isUnderWay() ? `end ${row}` : String(row);
   }
 
   private chooseStep(row: number): void {
@@ -161,12 +159,6 @@ class MicroscopePanel implements Panel {
         step.step,
         Math.min(this.chosen.iteration, Math.max(0, step.iterations.length - 1)),
       );
-  }
-
-  private chooseSide(side: SideName): void {
-    const steps = this.store.side(side)?.steps ?? [];
-    const same = steps.find((row) => row.step === this.chosen.step) ?? steps[steps.length - 1];
-    if (same) this.chosen.choose(side, same.step, 0);
   }
 
   private draw(): void {
@@ -197,16 +189,15 @@ class MicroscopePanel implements Panel {
   private tell(): void {
     const row = this.chosen.row();
     const implicit = this.store.side(this.chosen.side)?.scene.implicit ?? true;
-    const underWay = this.store.state?.[this.chosen.side]?.iteration ?? -1;
-    const newest = row !== null && row === this.stepAt(0);
+    const underWay = this.chosen.isUnderWay();
     if (!row)
       this.words.textContent = implicit
         ? "No step has been taken yet."
         : "This scheme minimises nothing; no step has been taken yet.";
-    else if (newest && underWay >= 0)
-      this.words.textContent = `Step ${row.step} is under way: ${row.iterations.length} of its iterations are done.`;
+    else if (underWay)
+      this.words.textContent = `Step ${row.step} is under way; known so far: ${plural(row.iterations.length, "iteration")}.`;
     else this.words.textContent = `Step ${row.step}. ${stepText(row, implicit)}`;
-    this.words.dataset.kind = row && !row.success && !(newest && underWay >= 0) ? "bad" : "";
+    this.words.dataset.kind = row && !row.success ? "bad" : "";
   }
 
   // E along d at the chosen iteration, asked for when a chart shows it; or why it is not there.
@@ -300,5 +291,6 @@ function residualText(step: StepRow): string {
 }
 
 function statusText(step: StepRow): string {
+  if (step.status === "under way") return "… under way";
   return `${step.success ? "✓" : "✗"} ${step.status.replaceAll("_", " ")}`;
 }

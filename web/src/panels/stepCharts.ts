@@ -212,12 +212,14 @@ export class StepChart {
     const name = this.name as Exclude<ChartName, "search">;
     const plan = planOf(name, this.chosen, this.steps(), this.chart.width);
     this.plan = plan;
-    this.empty.textContent = plan.x.length === 0 ? "Nothing yet: no iteration of the minimiser is known." : "";
+    this.empty.textContent = plan.x.length === 0 ? "No iteration of a minimiser is known here." : "";
+    this.chart.element.hidden = plan.x.length === 0;
     if (this.configured !== name) {
       this.configured = name;
       const read = (key: string, x: number | null): string[] => this.read(key, x);
       const paint = (u: uPlot, colours: Palette): void => this.paintChosen(u, colours);
-      this.chart.configure({ ...plan.options, legend: "top", read, paint, clicked: (x) => this.clicked(x) });
+      const xRange = (): [number, number] | null => this.xRange();
+      this.chart.configure({ ...plan.options, legend: "top", read, paint, xRange, clicked: (x) => this.clicked(x) });
     }
     this.chart.show(plan.x, plan.columns);
   }
@@ -233,21 +235,18 @@ export class StepChart {
     ];
   }
 
+  private xRange(): [number, number] | null {
+    const x = this.plan?.x ?? [];
+    return x.length > 0 ? [x[0]! - 0.5, x[x.length - 1]! + 0.5] : null;
+  }
+
   private clicked(x: number): void {
     const index = Math.round(x);
     const { side, step } = this.chosen;
-    if (this.name === "steps")
-      this.chosen.choose(
-        side,
-        this.steps()[
-          nearest(
-            this.steps().map((s) => s.step),
-            index,
-          )
-        ]?.step ?? step,
-        0,
-      );
-    else if (index >= 0 && index < (this.chosen.row()?.iterations.length ?? 0)) this.chosen.choose(side, step, index);
+    if (this.name === "steps") {
+      const numbers = this.steps().map((s) => s.step);
+      if (numbers.length > 0) this.chosen.choose(side, numbers[nearest(numbers, index)]!, 0);
+    } else if (index >= 0 && index < (this.chosen.row()?.iterations.length ?? 0)) this.chosen.choose(side, step, index);
   }
 
   // A line at the chosen iteration, or step.

@@ -200,10 +200,9 @@ export class Chart {
       fill: shape === "bars" ? stroke : undefined,
       paths: shape === "bars" ? uPlot.paths.bars!({ size: [0.7, 40] }) : undefined,
       points: {
-        show: shape === "points" ? true : undefined,
-        space: 7,
+        show: (u, _series, first, last) => showsPoints(shape, last - first, u.over.clientWidth),
         size: 6,
-        fill: shape === "line" ? undefined : stroke,
+        fill: stroke,
       },
     };
   }
@@ -290,4 +289,9 @@ export class Chart {
 
 function variableOf(colour: Colour): string {
   return "--" + colour.replace(/(\d)/, "-$1");
+}
+
+// Dots on a line only where they stand apart.
+function showsPoints(shape: Curve["shape"], count: number, width: number): boolean {
+  return shape === "points" || (shape === "both" && count * 9 <= width);
 }

@@ -32,6 +32,8 @@ export class Chosen extends Emitter<Events> {
   private timer: ReturnType<typeof setTimeout> | null = null;
   seen: Seen | null = null; // the newest answer
   private asked = "";
+  private underWay: StepRow | null = null;
+  private withUnderWay: StepRow[] = [];
   private readonly replies = new Map<string, IterationReply>();
   private readonly questions = new Newest<ChosenIteration>(
     (at) => this.ask(at),
@@ -66,6 +68,26 @@ export class Chosen extends Emitter<Events> {
     return this.rowOf(this.step);
   }
 
+  // The steps of the side, and the one under way as far as it is known.
+  rows(): readonly StepRow[] {
+    const steps = this.store.side(this.side)?.steps ?? [];
+    const state = this.store.state?.[this.side];
+    if (!state || state.iteration < 0 || !state.iterations?.length) return steps;
+    if (
+      this.underWay?.iterations !== state.iterations ||
+      this.underWay.step !== state.step + 1 ||
+      this.withUnderWay.length !== steps.length + 1
+    ) {
+      this.underWay = unfinished(state.step + 1, state.time, state.iterations);
+      this.withUnderWay = [...steps, this.underWay];
+    }
+    return this.withUnderWay;
+  }
+
+  isUnderWay(): boolean {
+    return this.row() !== null && this.row() === this.underWay;
+  }
+
   iterationRow(): IterationRow | null {
     return this.row()?.iterations[this.iteration] ?? null;
   }
@@ -74,6 +96,14 @@ export class Chosen extends Emitter<Events> {
   choose(side: SideName, step: number, iteration: number): void {
     this.following = false;
     this.announce(side, step, iteration);
+  }
+
+  // The same step of the other side, or its newest.
+  chooseSide(side: SideName): void {
+    const row = this.following
+      ? this.newest(side)
+      : (this.store.side(side)?.steps.find((s) => s.step === this.step) ?? this.newest(side));
+    this.announce(side, row?.step ?? 0, 0);
   }
 
   // To the iteration before or after, across steps.
@@ -129,13 +159,13 @@ export class Chosen extends Emitter<Events> {
   }
 
   private rowOf(step: number): StepRow | null {
-    const steps = this.store.side(this.side)?.steps ?? [];
+    const steps = this.rows();
     const guess = steps[step - (steps[0]?.step ?? 1)];
     return guess?.step === step ? guess : (steps.find((row) => row.step === step) ?? null);
   }
 
   private newest(side: SideName): StepRow | null {
-    const steps = this.store.side(side)?.steps ?? [];
+    const steps = side === this.side ? this.rows() : (this.store.side(side)?.steps ?? []);
     return steps[steps.length - 1] ?? null;
   }
 
@@ -148,7 +178,8 @@ export class Chosen extends Emitter<Events> {
 
   private newRows(): void {
     this.emit("rows", undefined);
-    if (!this.row()) return this.followNow();
+    const steppedByHand = (this.store.state?.[this.side]?.iteration ?? -1) >= 0;
+    if (!this.row() || (this.following && steppedByHand)) return this.followNow();
     if (this.following && this.timer === null) {
       this.timer = setTimeout(() => {
         this.timer = null;
@@ -176,6 +207,13 @@ export class Chosen extends Emitter<Events> {
     this.set(side, step, iteration);
     if (step > 0) this.page.emit("chosen", { side, step, iteration });
   }
+}
+
+// What a step has while it is under way.
+function unfinished(step: number, time: number, iterations: IterationRow[]): StepRow {
+  const unknown = { residual: null, threshold: null, min_det_F: null, kinetic: null, mouse_work: null, pin_work: null };
+  const more = { damping_loss: null, numerical_loss: null, residual_work: null, ledger_error: null, potential: [] };
+  return { step, time, status: "under way", success: true, iterations, ...unknown, ...more, seconds: 0, words: null };
 }
 
 const known = new WeakMap<Page, Chosen>();
