@@ -249,7 +249,7 @@ void add_output(Schema& s) {
   format("pc2", usual.pc2, "a PC2 cache with its OBJ, for Blender", "small");
   format("usd", usual.usd, "one time-sampled USD text file", "opens in most 3-D programs");
   format("report", usual.report, "report.html, one page with playback, plots and certificate, from `aspic run`",
-         "opens in any browser; adds a few percent to the time of most runs");
+         "opens in any browser; takes less time than the VTU frames");
   add_key(s, "output",
           {.name = "checkpoint_every",
            .accepts = kNumber,

@@ -42,7 +42,7 @@ function makeTransport(store: Store, page: Page): HTMLElement {
   );
   let played = false;
   store.on("state", (state) => {
-    if (played && !state.playing && wanted !== false) tellWhyItStopped(state, page);
+    if ((wanted ?? played) && !state.playing) tellWhyItStopped(state, page);
     played = state.playing;
   });
   store.on("state", ({ playing }) => {

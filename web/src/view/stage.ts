@@ -11,11 +11,13 @@ import { roundStep } from "./ranges";
 import { kGroundRadius, makeGroundMaterial } from "./shading";
 
 const kFarthest = 1e4; // of a body that bursts, else depths lose their digits
+const kBlownUp = 30; // radii of the scene, and heights of the view
 const kGap = 0.12; // between the box and the ground below it
 
 export class Stage {
   readonly renderer: THREE.WebGLRenderer; // the constructor throws when there is no WebGL
   gridStep = 0; // [m]
+  isBlownUp = false; // the body, so far that it is not drawn
   radius = 1; // of the scene's box [m]
   private centre: Vec3 = [0, 0, 0];
   private up: Vec3 = [0, 0, 1];
@@ -169,6 +171,10 @@ export class Stage {
     const half = lens.extent > 0 ? lens.extent : lens.slope * depth;
     const pixels = lens.height / 2 / half; // per metre
     const lift = (lens.extent > 0 ? lens.extent / this.radius : lens.slope) / (lens.height / 2);
+    // Each triangle would fill the view: nothing to be seen in it, and minutes for a renderer without a GPU.
+    const height = lens.extent > 0 ? lens.extent : lens.slope * length(minus(this.centre, lens.eye));
+    this.isBlownUp = this.reach() > kBlownUp && this.reach() * this.radius > kBlownUp * height;
+    body.root.visible = !this.isBlownUp;
     body.adapt(body.edge * pixels, this.renderer.getPixelRatio(), lift, pinColour);
   }
 

@@ -280,6 +280,9 @@ export class View implements Touched {
 
   // The value under the cursor, while it reads.
   private tip(): Marks["tip"] {
+    if (this.stage?.isBlownUp) {
+      return { at: [0, this.size()[1] / 2], words: "The body has blown up, far out of the view: . shows it." };
+    }
     const { hover, cursor } = this.touch;
     const [shown, values] = [this.figure.coloured(), this.figure.side?.picture?.values];
     const triangles = this.figure.body?.geometry.triangles;
