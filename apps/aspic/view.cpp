@@ -10,9 +10,12 @@
 #include "aspic/browser.h"
 #include "aspic/commands.h"
 #include "aspic/interrupt.h"
+#include "aspic/lecture/lessons.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "scene/run_directory.h"
 #include "viewer/page.h"
+#include "viewer/report.h"
 #include "viewer/server.h"
 #include "viewer/session.h"
 
@@ -31,6 +34,7 @@ struct Arguments {
   bool no_browser = false, play = false;
 };
 
+constexpr size_t kLargestRun = size_t{200} << 20;  // as a page [bytes]; frames of a larger one are left out
 constexpr std::chrono::milliseconds kSignalPeriod(20);
 constexpr std::chrono::seconds kPatience(2);  // with a step under way, at the end
 
@@ -67,18 +71,28 @@ int serve_until_interrupted(Server& server) {
   return exit_done;
 }
 
-int view(const Arguments& arguments) {
-  if (arguments.threads > 0) set_thread_count(arguments.threads);
-  if (fs::is_directory(arguments.input))
-    throw InvalidInput(fmt::format("{}: is a directory; give a scene or a mesh", arguments.input.string()));
+int view_run(const Arguments& arguments) {
+  if (!arguments.overrides.empty() || arguments.play)
+    throw InvalidInput("--set and --play are for what is simulated; a run has been already");
+  const viewer::Report report =
+      viewer::make_report(arguments.input, load_scene(scene_of_run(arguments.input)), {.max_bytes = kLargestRun});
+  if (!report.note.empty()) fmt::print("note: {}\n", report.note);
+  fmt::print("{}: {} frames of a run\n", arguments.input.string(), report.frames);
+  Server server({.port = arguments.port, .page = report.html, .log = log_line});
+  catch_interrupts();
+  print_address(server, arguments.no_browser);
+  return serve_until_interrupted(server);
+}
 
+int view_scene(const Arguments& arguments) {
   std::atomic<Server*> listener = nullptr;
   const auto announce = [&](const std::string& what) {
     if (Server* server = listener) return server->announce(what);
     if (!what.empty()) fmt::print("{} ...\n", what);
     std::fflush(stdout);
   };
-  Session session(arguments.input, arguments.overrides, {.announce = announce});
+  Session session(arguments.input, arguments.overrides,
+                  {.lessons = lecture::lessons(fs::path("out") / "lecture" / "meshes"), .announce = announce});
   print_scene(session);
   if (arguments.play) session.handle(R"({"do":"play"})", Role::steers);
 
@@ -87,6 +101,11 @@ int view(const Arguments& arguments) {
   catch_interrupts();
   print_address(server, arguments.no_browser);
   return serve_until_interrupted(server);
+}
+
+int view(const Arguments& arguments) {
+  if (arguments.threads > 0) set_thread_count(arguments.threads);
+  return fs::is_directory(arguments.input) ? view_run(arguments) : view_scene(arguments);
 }
 
 }  // namespace
@@ -99,10 +118,11 @@ Examples:
   aspic view scenes/bunny.toml                    prints an address, and opens it where there is a display
   aspic view bunny.obj --play                     a closed surface, filled with tets; starts at once
   aspic view beam.toml --set material.young=2e5   with other values; the page changes them live, too
+  aspic view out/bunny                            a run that is done, as it was recorded
   aspic view beam.toml --port 8080 --no-browser   on another machine; on yours: ssh -L 8080:127.0.0.1:8080 THERE
 
 The address works on this machine only, with the token in it. Several pages may watch, one steers. Ctrl-C ends it.)");
-  command->add_option("INPUT", arguments->input, "Scene (.toml) or mesh")->required();
+  command->add_option("INPUT", arguments->input, "Scene (.toml), mesh, or directory of a run")->required();
   command->add_option("--set", arguments->overrides, "Override a value: material.young=2e5; can be repeated")
       ->allow_extra_args(false);
   command->add_option("--port", arguments->port, "Port to listen at; any free one by default")

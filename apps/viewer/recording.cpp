@@ -105,7 +105,7 @@ class Recorder {
     body_ = positions_->are_of_model() ? body_with_interior(scene) : body_of_skins(scene);
   }
 
-  Recording record() {
+  RecordedRun record() {
     const std::vector<Frame> frames = read(evenly(frame_count(), most_in_memory()));
     for (int wanted = static_cast<int>(frames.size());;) {
       const std::vector<int> chosen = evenly(static_cast<int>(frames.size()), wanted);
@@ -260,7 +260,7 @@ class Recorder {
 
 }  // namespace
 
-Recording record(const fs::path& run, const Scene& scene, const RecordingOptions& options) {
+RecordedRun record(const fs::path& run, const Scene& scene, const RecordingOptions& options) {
   return Recorder(run, scene, options).record();
 }
 

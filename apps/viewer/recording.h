@@ -13,7 +13,7 @@ struct RecordingOptions {
   size_t max_bytes = 10'000'000;  // of the text; frames are left out, evenly, until it fits
 };
 
-struct Recording {
+struct RecordedRun {
   std::string text;  // base64 of gzip: letters, digits, +, / and =
   int frames_of_run = 0, frames = 0;
   std::string note;  // what was left out; empty: nothing
@@ -22,6 +22,6 @@ struct Recording {
 // `scene` is that of the run. Holds a bounded number of frames in memory, however long the run is, and no wall times:
 // the same results give the same text. Throws InvalidInput for a directory without a run, for damaged files, and when
 // not even two frames fit.
-Recording record(const std::filesystem::path& run, const Scene& scene, const RecordingOptions& options = {});
+RecordedRun record(const std::filesystem::path& run, const Scene& scene, const RecordingOptions& options = {});
 
 }  // namespace aspic::viewer

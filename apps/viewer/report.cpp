@@ -17,7 +17,7 @@ Report make_report(const std::filesystem::path& run, const Scene& scene, const R
   const size_t page_alone = page_with("").size() + kBegin.size() + kEnd.size();
   if (page_alone >= options.max_bytes)
     throw InvalidInput(fmt::format("--max-size: the page alone takes {:.1f} MB; allow more", page_alone / 1e6));
-  const Recording recording = record(run, scene, {.max_bytes = options.max_bytes - page_alone});
+  const RecordedRun recording = record(run, scene, {.max_bytes = options.max_bytes - page_alone});
   std::string html = page_with(fmt::format("{}{}{}", kBegin, recording.text, kEnd));
   return {std::move(html), recording.frames_of_run, recording.frames, recording.note};
 }

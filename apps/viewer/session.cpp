@@ -106,7 +106,10 @@ void Session::Impl::install(std::unique_ptr<ShownSide> first, std::unique_ptr<Sh
 }
 
 ShownSide& Session::Impl::next() {
-  if (!b || a->side.iteration() >= 0) return *a;
+  // One that blew up stays where it is, and the other goes on.
+  if (!b || b->side.is_blown_up()) return *a;
+  if (a->side.is_blown_up()) return *b;
+  if (a->side.iteration() >= 0) return *a;
   if (b->side.iteration() >= 0) return *b;
   const double h = std::min(a->side.simulation().options().h, b->side.simulation().options().h);
   return b->side.time() < a->side.time() - kSameTime * h ? *b : *a;
@@ -121,7 +124,7 @@ Consent Session::Impl::go_on() {
 void Session::Impl::note_progress(Progress progress) {
   if (progress == Progress::interrupted) return;
   ++version;
-  if (progress == Progress::blown_up) playing = false;
+  if (progress == Progress::blown_up && next().side.is_blown_up()) playing = false;
 }
 
 void Session::Impl::take_turn() {

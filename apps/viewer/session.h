@@ -33,8 +33,8 @@ struct Lesson {
     std::vector<std::string> overrides;
     std::string label;
   };
-  std::vector<Comparison> comparison;  // none or one
-  std::string recording;               // JSON of a Recording, whose events are repeated; empty: none
+  std::vector<Comparison> comparison;      // none or one
+  std::function<std::string()> recording;  // JSON of a recorded session, made when it is needed; empty: none
 };
 
 struct SessionOptions {

@@ -263,7 +263,7 @@ void Session::Impl::lesson(Arguments& arguments) {
   if (!lesson->missing.empty()) throw InvalidInput(lesson->missing);
   if (lesson->scene.empty()) return;  // its panel needs none
   std::optional<Recording> recording;
-  if (!lesson->recording.empty()) recording = read_recording(parse_json(lesson->recording, size_t{32} << 20));
+  if (lesson->recording) recording = read_recording(parse_json(lesson->recording(), size_t{32} << 20));
   auto first = loaded("a", lesson->scene, lesson->overrides);
   std::unique_ptr<ShownSide> second;
   std::optional<Recording::Comparison> compared;
@@ -444,7 +444,7 @@ void Session::Impl::repeat_due_events() {
 
 // What is left to do are neither steps nor events that were carried out after the last one.
 bool Session::Impl::is_replay_done() {
-  if (a->side.steps_taken() < replaying->recording.steps) return false;
+  if (a->side.steps_taken() < replaying->recording.steps && !a->side.is_blown_up()) return false;
   if (b && &next() == b.get()) return false;
   repeat_due_events();
   return true;

@@ -26,6 +26,9 @@ class Stage {
   // The same with a mesh of at least `tets` tets.
   Scene on_fine_mesh(const std::string& name, int tets, Sheet& sheet) const;
 
+  std::filesystem::path path_of(const std::string& name) const;  // the file of a scene of scenes/lecture
+  std::vector<std::string> real_mesh() const;                    // the overrides that on_real_mesh() adds
+
   const std::string& mesh_note() const { return note_; }  // which mesh it is, and why
 
  private:

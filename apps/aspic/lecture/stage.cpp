@@ -72,6 +72,12 @@ fs::path filled(const fs::path& surface, double size, const fs::path& cache) {
   return kept;
 }
 
+// The mesh in the place of the bodies' own ones, one metre large.
+std::vector<std::string> overrides_for(const fs::path& mesh) {
+  if (mesh.empty()) return {};
+  return {"mesh=" + toml_string(mesh.string()), fmt::format("scale={}", 1 / extent_of(mesh))};
+}
+
 }  // namespace
 
 Stage::Stage(const fs::path& mesh, fs::path cache) : scenes_(found("scenes/lecture")), cache_(std::move(cache)) {
@@ -142,11 +148,13 @@ fs::path Stage::finer(int tets) const {
 }
 
 Scene Stage::load(const std::string& name, const fs::path& mesh, std::vector<std::string> overrides) const {
-  if (!mesh.empty()) {
-    overrides.insert(overrides.begin(), fmt::format("scale={}", 1 / extent_of(mesh)));
-    overrides.insert(overrides.begin(), "mesh=" + toml_string(mesh.string()));
-  }
-  return load_scene(scenes_ / (name + ".toml"), {.overrides = overrides, .allow_outside = true});
+  const std::vector<std::string> first = overrides_for(mesh);
+  overrides.insert(overrides.begin(), first.begin(), first.end());
+  return load_scene(path_of(name), {.overrides = overrides, .allow_outside = true});
 }
+
+fs::path Stage::path_of(const std::string& name) const { return scenes_ / (name + ".toml"); }
+
+std::vector<std::string> Stage::real_mesh() const { return overrides_for(mesh_); }
 
 }  // namespace aspic::cli::lecture

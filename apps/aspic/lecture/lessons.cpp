@@ -1,0 +1,340 @@
+#include "aspic/lecture/lessons.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "aspic/lecture/course.h"
+#include "aspic/lecture/results.h"
+#include "base/error.h"
+#include "viewer/surface.h"
+
+namespace aspic::cli::lecture {
+namespace {
+
+using nlohmann::json;
+using viewer::Lesson;
+
+// Where the cursor is at which time, from where it grabbed the highest point of the body.
+struct Drag {
+  struct Key {
+    double time;   // [s]
+    Vec3d offset;  // [m]
+  };
+  std::vector<Key> keys;
+  double until = 0;      // [s] the end of the recording
+  double stiffness = 0;  // [N/m]; 0: the usual one
+};
+
+enum class Shape { of_the_scene, real_mesh };
+
+// What the viewer adds to a demonstration.
+struct Staging {
+  const char* demonstration;  // its key
+  const char* part;           // added to the title where a demonstration has several lessons
+  const char* look;
+  const char* panel;
+  const char* scene = "";  // of scenes/lecture; empty: none
+  Shape shape = Shape::real_mesh;
+  std::vector<std::string> overrides = {};
+  std::vector<Lesson::Comparison> comparison = {};
+  std::optional<Drag> drag = {};
+  json function = nullptr;
+};
+
+json question(const char* name, double x, double y, json settings) {
+  return {{"name", name}, {"start", {x, y}}, {"settings", std::move(settings)}, {"iteration", 0}, {"samples", 61}};
+}
+
+// The cursor's way of pages 33 and 34, as in scenes/lecture/33_mouse.toml.
+Drag wild_drag() {
+  return {.keys = {{0, {{0, 0, 0}}},
+                   {0.07, {{0.5, -0.1, 0}}},
+                   {0.14, {{-0.5, 0.1, 0.3}}},
+                   {0.21, {{0.5, -0.4, -0.3}}},
+                   {0.28, {{-0.5, 0.2, 0.2}}},
+                   {0.35, {{0.5, -0.4, -0.2}}},
+                   {0.42, {{0, 0, 0}}}},
+          .until = 0.6};
+}
+
+// The cursor's way of page 25, as in scenes/lecture/25_drag.toml.
+Drag slow_drag() {
+  return {.keys = {{0, {{0, 0, 0}}}, {0.3, {{0.25, 0, 0}}}, {0.5, {{0.25, 0.1, 0.1}}}, {0.8, {{0, 0, 0.1}}}},
+          .until = 1.5};
+}
+
+const std::vector<Staging>& stagings() {
+  static const std::vector<Staging> list = {
+      {.demonstration = "02_fine_mesh",
+       .part = "",
+       .look = "Come closer and switch the wires on: every triangle is the side of a tet. Play, and watch how the "
+               "time per step tells what the number of tets costs.",
+       .panel = "microscope",
+       .scene = "02_fine_mesh"},
+      {.demonstration = "03_tissue",
+       .part = "",
+       .look = "Colour the slab by its stiffness, then by stress, and play: the pin sinks in and the force that it "
+               "needs grows faster than its depth. The soft layer of fat takes most of the deformation.",
+       .panel = "energy",
+       .scene = "03_tissue",
+       .shape = Shape::of_the_scene},
+      {.demonstration = "05-09_equation_of_motion",
+       .part = "",
+       .look = "Play: while V falls T rises, and back again, as M q'' = -dV/dq trades one for the other. Pick a vertex "
+               "to read where its three entries stand in q.",
+       .panel = "energy",
+       .scene = "05_swing"},
+      {.demonstration = "08-10_springs_beside_elements",
+       .part = "",
+       .look = "The same mesh twice, elements on the left and springs along the edges on the right: both obey the same "
+               "equation with another V. The springs know nothing of volumes and sag differently.",
+       .panel = "energy",
+       .scene = "08_springs_beside_elements"},
+      {.demonstration = "10-18_differences",
+       .part = "",
+       .look = "The same motion in steps of h and of h/2: differences of q stand for its derivatives, the better the "
+               "shorter the step. See how the two bodies drift apart, and how much more T the shorter steps keep.",
+       .panel = "energy",
+       .scene = "05_swing",
+       .comparison = {{{"time.step=0.005"}, "h / 2"}}},
+      {.demonstration = "19-22_explicit_or_implicit",
+       .part = "",
+       .look =
+           "With steps this short both schemes give the same motion; where dV/dq is evaluated hardly matters. Make h "
+           "ten times as long and play again: only one of them survives it.",
+       .panel = "energy",
+       .scene = "05_swing",
+       .shape = Shape::of_the_scene,
+       .overrides = {"time.step=5e-4", "solver.mass=lumped"},
+       .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}}},
+      {.demonstration = "23_printed_forward_euler",
+       .part = "",
+       .look = "Left the printed formula, which is symplectic Euler, right the classical forward Euler, both with the "
+               "same h. T + V of the printed one stays in a band, that of the classical one grows until it explodes.",
+       .panel = "energy",
+       .scene = "05_swing",
+       .shape = Shape::of_the_scene,
+       .overrides = {"time.step=5e-4", "solver.mass=lumped", "time.integrator=symplectic_euler", "gravity=[0, 0, 0]"},
+       .comparison = {{{"time.integrator=forward_euler"}, "classical"}}},
+      {.demonstration = "24_backward_euler",
+       .part = "",
+       .look =
+           "Left backward Euler, right the explicit scheme with the same h = 0.01 s. The explicit one explodes within "
+           "a few steps; backward Euler pays with a minimisation per step, and with some energy.",
+       .panel = "energy",
+       .scene = "05_swing",
+       .overrides = {"gravity=[0, 0, 0]"},
+       .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}}},
+      {.demonstration = "25_drag",
+       .part = "",
+       .look = "A recorded mouse pulls the highest point by a spring: the line shows the spring, the number its force. "
+               "Take over at any time and pull yourself; what the mouse put in is its work in the energy plot.",
+       .panel = "energy",
+       .scene = "25_drag",
+       .overrides = {"spring=[]"},
+       .drag = slow_drag()},
+      {.demonstration = "26-31_optimisation",
+       .part = "",
+       .look =
+           "Take single steps and choose an iteration: the gradient of E is what the equation leaves over. Where it "
+           "is zero E is at its minimum, and the equation holds.",
+       .panel = "microscope",
+       .scene = "05_swing"},
+      {.demonstration = "32_one_minimisation_per_step",
+       .part = "",
+       .look =
+           "Take one iteration at a time: the body moves a little, E falls, and the time stands still. Only when the "
+           "minimisation has converged the step is complete.",
+       .panel = "microscope",
+       .scene = "05_swing"},
+      {.demonstration = "33-34_explosion",
+       .part = "explicit",
+       .look = "The same mouse drags both: left implicit, right explicit. The explicit scheme explodes at once and its "
+               "energy leaves the plot; the implicit one stays stable whatever you do with the mouse.",
+       .panel = "energy",
+       .scene = "33_mouse",
+       .overrides = {"spring=[]"},
+       .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}},
+       .drag = wild_drag()},
+      {.demonstration = "33-34_explosion",
+       .part = "linearised",
+       .look = "The same mouse drags both: left one minimisation per step, right one linear system per step. Where the "
+               "body bends far the linear system is wrong, and energy comes out of nothing.",
+       .panel = "energy",
+       .scene = "33_mouse",
+       .overrides = {"spring=[]"},
+       .comparison = {{{"time.integrator=linearly_implicit_euler"}, "linearised"}},
+       .drag = wild_drag()},
+      {.demonstration = "36-40_velocity_form",
+       .part = "",
+       .look =
+           "Choose an iteration: with q = q_i + h v the same E is a function of the velocities, its minimum the same "
+           "motion. Nothing of what you see would change but the labels of the axes.",
+       .panel = "microscope",
+       .scene = "05_swing"},
+      {.demonstration = "38-42_gradient_descent",
+       .part = "Rosenbrock's valley",
+       .look = "Each step goes straight downhill and meets the other side of the valley: the path zig-zags. Drag the "
+               "start elsewhere, or choose Newton's method for the same start.",
+       .panel = "functions",
+       .function = question("rosenbrock", -1, -0.5, {{"method", "gradient_descent"}})},
+      {.demonstration = "38-42_gradient_descent",
+       .part = "two bumps",
+       .look = "Where the level lines are nearly circles the gradient points at the minimum and few steps do. Drag the "
+               "start to the other side of the bump and see which way it goes.",
+       .panel = "functions",
+       .function = question("two_bump", -0.3, 0.9, {{"method", "gradient_descent"}})},
+      {.demonstration = "38-42_gradient_descent",
+       .part = "a step of a body",
+       .look = "Left Newton's method, right gradient descent on the same steps, to the same tolerance. Compare the "
+               "number of iterations and the time that each step takes.",
+       .panel = "microscope",
+       .scene = "05_swing",
+       .shape = Shape::of_the_scene,
+       .overrides = {"solver.tolerance=1e-3", "solver.max_iterations=20000"},
+       .comparison = {{{"solver.method=gradient_descent"}, "gradient descent"}}},
+      {.demonstration = "43-51_quadratic_model",
+       .part = "",
+       .look = "The second surface is the quadratic model: it touches E at the iterate and has the same slope and "
+               "curvature there. Newton's step goes to the model's lowest point; step through the iterations.",
+       .panel = "functions",
+       .function = question("rosenbrock", -0.8, 0.3, {{"method", "newton"}})},
+      {.demonstration = "53+62_pure_newton",
+       .part = "",
+       .look =
+           "Take one step: left Newton's method with a line search, right without. Left E falls in every iteration; "
+           "right it jumps up and down and the step ends without having converged.",
+       .panel = "microscope",
+       .scene = "53_hard_step",
+       .comparison = {{{"solver.line_search.test=none"}, "without line search"}}},
+      {.demonstration = "54-59_overshoot",
+       .part = "",
+       .look =
+           "The model promises E = 0 at its minimum, but there the true E is a hundred times as high as at the start. "
+           "A quarter of the same step lies lower: the line search finds it.",
+       .panel = "functions",
+       .function = question("rosenbrock", 0, 0, {{"method", "newton"}})},
+      {.demonstration = "60-61_backtracking",
+       .part = "",
+       .look = "Take one step and choose an iteration with several trials: those above the line are rejected, alpha "
+               "shrinks by p until one lies below. Change alpha_max, c and p and step again.",
+       .panel = "microscope",
+       .scene = "53_hard_step"},
+  };
+  return list;
+}
+
+Vec3d offset_at(const Drag& drag, double time) {
+  const auto next = std::find_if(drag.keys.begin(), drag.keys.end(), [&](const Drag::Key& k) { return k.time > time; });
+  if (next == drag.keys.end()) return drag.keys.back().offset;
+  const Drag::Key& last = *(next - 1);
+  const double part = (time - last.time) / (next->time - last.time);
+  return (1 - part) * last.offset + part * next->offset;
+}
+
+json to_json(const Vec3d& x) { return {x[0], x[1], x[2]}; }
+
+// The recorded mouse: it grabs the highest point, moves once in every step and lets go.
+std::string recording_of(const Drag& drag, const std::filesystem::path& path,
+                         const std::vector<std::string>& overrides) {
+  const Scene scene = load_scene(path, {.overrides = overrides});
+  const viewer::Surface surface = viewer::boundary_of(scene.simulation.model());
+  const Vec3d top = *std::max_element(surface.rest.begin(), surface.rest.end(),
+                                      [](const Vec3d& a, const Vec3d& b) { return a[1] < b[1]; });
+  const viewer::SurfacePoint point = viewer::nearest_surface_point(surface, top);
+  const double h = scene.simulation.options().h;
+  const auto step_at = [&](double time) { return 1 + static_cast<int>(std::lround(time / h)); };
+
+  json events = json::array();
+  const auto add = [&](int step, json command) { events.push_back({{"step", step}, {"command", std::move(command)}}); };
+  if (drag.stiffness > 0) add(1, {{"do", "stiffness"}, {"value", drag.stiffness}});
+  add(1, {{"do", "grab"},
+          {"side", "a"},
+          {"triangle", point.triangle},
+          {"weights", to_json(point.weights)},
+          {"target", to_json(top)}});
+  const int released = step_at(drag.keys.back().time);
+  for (int step = 2; step <= released; ++step)
+    add(step, {{"do", "move"}, {"target", to_json(top + offset_at(drag, step * h))}});
+  add(released + 1, {{"do", "release"}});
+  return json{{"scene", path.string()},
+              {"overrides", overrides},
+              {"compare", nullptr},
+              {"events", std::move(events)},
+              {"steps", step_at(drag.until) - 1}}
+      .dump();
+}
+
+// Where the scenes are; `why_not` where they are not found.
+struct Place {
+  std::optional<Stage> stage;
+  std::vector<std::string> real_mesh;
+  std::string why_not;
+};
+
+Place find_place(const std::filesystem::path& cache) {
+  Place place;
+  try {
+    place.stage.emplace("", cache);
+    place.real_mesh = place.stage->real_mesh();
+  } catch (const InvalidInput& error) {
+    place.why_not = error.what();
+    place.stage.reset();
+  }
+  return place;
+}
+
+void set_scene(const Staging& staging, const Place& place, Lesson& lesson) {
+  if (!place.stage) {
+    lesson.missing = place.why_not;
+    return;
+  }
+  lesson.scene = place.stage->path_of(staging.scene);
+  if (staging.shape == Shape::real_mesh) lesson.overrides = place.real_mesh;
+  lesson.overrides.insert(lesson.overrides.end(), staging.overrides.begin(), staging.overrides.end());
+  lesson.comparison = staging.comparison;
+  if (staging.drag)
+    lesson.recording = [drag = *staging.drag, path = lesson.scene, overrides = lesson.overrides] {
+      return recording_of(drag, path, overrides);
+    };
+}
+
+Lesson lesson_of(const Demonstration& demonstration, const Staging& staging, const Place& place) {
+  const std::string part = staging.part;
+  Lesson lesson{.id = demonstration.key + (part.empty() ? "" : "_" + part),
+                .pages = pages_text(demonstration.pages),
+                .title = demonstration.title + (part.empty() ? "" : ": " + part),
+                .claim = demonstration.claim,
+                .look = staging.look,
+                .panel = staging.panel};
+  if (!staging.function.is_null()) lesson.function = staging.function.dump();
+  if (*staging.scene) set_scene(staging, place, lesson);
+  return lesson;
+}
+
+Lesson missing_page(int page) {
+  return {.id = fmt::format("{:02}", page),
+          .pages = std::to_string(page),
+          .title = fmt::format("page {}", page),
+          .missing = reason_for_none(page)};
+}
+
+}  // namespace
+
+std::vector<Lesson> lessons(const std::filesystem::path& cache) {
+  const Place place = find_place(cache);
+  std::vector<Lesson> list;
+  int page = 1;  // to be looked at next for what cannot be shown
+  for (const Demonstration& demonstration : demonstrations()) {
+    for (; page < demonstration.pages.front(); ++page)
+      if (is_unavailable(page)) list.push_back(missing_page(page));
+    for (const Staging& staging : stagings())
+      if (staging.demonstration == demonstration.key) list.push_back(lesson_of(demonstration, staging, place));
+  }
+  return list;
+}
+
+}  // namespace aspic::cli::lecture
