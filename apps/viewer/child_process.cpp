@@ -2,7 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,8 +13,6 @@
 
 #include "base/error.h"
 #include "io/atomic_file.h"
-
-extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves it to the program
 
 namespace aspic::viewer {
 namespace {
@@ -37,6 +35,16 @@ class NoBrokenPipe {
   struct sigaction before_ {};
 };
 
+// In the child, where only what is safe in a signal handler may be called: runs the program on these files.
+[[noreturn]] void become(char* const* argv, std::array<int, 3> files, pid_t parent) {
+  ::setpgid(0, 0);                     // ctrl-C in the terminal is for the parent, which ends the whole group
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // however the parent ends
+  bool is_ready = ::getppid() == parent;
+  for (int i = 0; i < 3; ++i) is_ready = is_ready && ::dup2(files[i], i) >= 0;
+  if (is_ready) ::execv(argv[0], argv);
+  ::_exit(127);
+}
+
 }  // namespace
 
 ChildProcess::ChildProcess(const std::vector<std::string>& command, const std::filesystem::path& messages, Input input)
@@ -47,26 +55,18 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, const std::f
   std::vector<char*> argv;
   for (const std::string& argument : command) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
-  posix_spawn_file_actions_t files;
-  ::posix_spawn_file_actions_init(&files);
-  if (input == Input::pipe) {
-    ::posix_spawn_file_actions_adddup2(&files, ends[0], STDIN_FILENO);
-  } else {
-    ::posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  }
-  ::posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  ::posix_spawn_file_actions_addopen(&files, STDERR_FILENO, messages.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  // A group of its own: ctrl-C in the terminal is for this program, which ends the whole group.
-  posix_spawnattr_t attributes;
-  ::posix_spawnattr_init(&attributes);
-  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  ::posix_spawnattr_setpgroup(&attributes, 0);
-  const int error = ::posix_spawn(&process_, argv[0], &files, &attributes, argv.data(), environ);
-  ::posix_spawnattr_destroy(&attributes);
-  ::posix_spawn_file_actions_destroy(&files);
-  if (ends[0] >= 0) ::close(ends[0]);
+  const int in = input == Input::pipe ? ends[0] : ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const int out = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  const int said = ::open(messages.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  const pid_t parent = ::getpid();
+  process_ = ::fork();
+  if (process_ == 0) become(argv.data(), {in, out, said}, parent);
+  const int error = errno;
+  if (process_ > 0) ::setpgid(process_, process_);  // whoever of the two comes first
+  for (const int end : {in, out, said})
+    if (end >= 0) ::close(end);
   input_ = ends[1];
-  if (!error) return;
+  if (process_ > 0) return;
   close_input();
   throw InvalidInput(command[0] + ": cannot be run: " + std::generic_category().message(error));
 }

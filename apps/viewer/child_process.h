@@ -1,4 +1,5 @@
-// Another program that runs beside this one. It and what it started are ended with the object, at the latest.
+// Another program that runs beside this one. It and what it started are ended with the object, at the latest, and by
+// the system when this program is killed.
 #pragma once
 #include <sys/types.h>
 

@@ -109,7 +109,7 @@ class Decoded {
   size_t start_ = 0;
 };
 
-class RecordedRun : public FolderTest {
+class RunRecording : public FolderTest {
  protected:
   // Takes the steps of a scene into a directory; the rest of the scene's text comes after the beam's.
   fs::path run(const std::string& name, const std::string& more = "", int steps = 0, bool is_traced = false) {
@@ -133,7 +133,7 @@ class RecordedRun : public FolderTest {
     }
     directory.finish(scene.simulation);
   }
-  static Recording recording(const fs::path& run, size_t max_bytes = RecordingOptions().max_bytes) {
+  static RecordedRun recording(const fs::path& run, size_t max_bytes = RecordingOptions().max_bytes) {
     return record(run, load_scene(scene_of_run(run)), {.max_bytes = max_bytes});
   }
   static std::string refusal(const fs::path& run, size_t max_bytes = RecordingOptions().max_bytes) {
@@ -145,7 +145,7 @@ class RecordedRun : public FolderTest {
   }
 };
 
-TEST_F(RecordedRun, HoldsPositionsToHalfAStepOfTheirCode) {
+TEST_F(RunRecording, HoldsPositionsToHalfAStepOfTheirCode) {
   const fs::path directory = run("run");
   const Decoded decoded(recording(directory).text);
   ASSERT_EQ(decoded.frame_count(), 13);
@@ -162,7 +162,7 @@ TEST_F(RecordedRun, HoldsPositionsToHalfAStepOfTheirCode) {
   }
 }
 
-TEST_F(RecordedRun, HoldsTheFieldsOfALiveSession) {
+TEST_F(RunRecording, HoldsTheFieldsOfALiveSession) {
   const fs::path directory = run("run");
   const Decoded decoded(recording(directory).text);
   const Scene scene = load_scene(scene_of_run(directory));
@@ -185,7 +185,7 @@ TEST_F(RecordedRun, HoldsTheFieldsOfALiveSession) {
   EXPECT_EQ(fields[1]["name"], "von_mises");
 }
 
-TEST_F(RecordedRun, TellsWhatALiveSessionTells) {
+TEST_F(RunRecording, TellsWhatALiveSessionTells) {
   const Decoded decoded(recording(run("run")).text);
   const Json& scene = decoded.head["scenes"][0];
   EXPECT_EQ(decoded.head["hello"]["live"], false);
@@ -204,7 +204,7 @@ TEST_F(RecordedRun, TellsWhatALiveSessionTells) {
   EXPECT_EQ(decoded.head["frames"]["step"][12], 12);
 }
 
-TEST_F(RecordedRun, HoldsNoWallTimes) {
+TEST_F(RunRecording, HoldsNoWallTimes) {
   const Decoded decoded(recording(run("run", "", 0, true)).text);
   for (const Json& step : decoded.head["steps"]) {
     EXPECT_EQ(step["seconds"], 0);
@@ -213,7 +213,7 @@ TEST_F(RecordedRun, HoldsNoWallTimes) {
   }
 }
 
-TEST_F(RecordedRun, IsTheSameForTheSameResults) {
+TEST_F(RunRecording, IsTheSameForTheSameResults) {
   const fs::path whole = run("whole"), again = run("again", "", 5);
   Scene scene = load_scene(scene_of_run(again));
   RunDirectory directory = RunDirectory::resume(again, scene);
@@ -221,7 +221,7 @@ TEST_F(RecordedRun, IsTheSameForTheSameResults) {
   EXPECT_TRUE(recording(whole).text == recording(again).text);
 }
 
-TEST_F(RecordedRun, HoldsTheTrialsOfATrace) {
+TEST_F(RunRecording, HoldsTheTrialsOfATrace) {
   const fs::path directory = run("run", "", 6, true);
   Scene scene = load_scene(scene_of_run(directory));
   RunDirectory resumed = RunDirectory::resume(directory, scene);
@@ -237,13 +237,13 @@ TEST_F(RecordedRun, HoldsTheTrialsOfATrace) {
   EXPECT_THAT(refusal(directory), HasSubstr("trials.csv: step 7 has no such iteration"));
 }
 
-TEST_F(RecordedRun, LeavesOutFramesEvenlyToStayBelowItsLimit) {
+TEST_F(RunRecording, LeavesOutFramesEvenlyToStayBelowItsLimit) {
   const fs::path directory = run("run", "", 120);
-  const Recording whole = recording(directory);
+  const RecordedRun whole = recording(directory);
   EXPECT_EQ(whole.frames, 121);
   EXPECT_EQ(whole.note, "");
   const size_t limit = whole.text.size() * 7 / 10;
-  const Recording thin = recording(directory, limit);
+  const RecordedRun thin = recording(directory, limit);
   EXPECT_LE(thin.text.size(), limit);
   EXPECT_LT(thin.frames, 121);
   EXPECT_EQ(thin.frames_of_run, 121);
@@ -260,7 +260,7 @@ TEST_F(RecordedRun, LeavesOutFramesEvenlyToStayBelowItsLimit) {
   EXPECT_THAT(refusal(directory, 3000), HasSubstr("raise --max-size"));
 }
 
-TEST_F(RecordedRun, OfAFineSkinHasBothSurfaces) {
+TEST_F(RunRecording, OfAFineSkinHasBothSurfaces) {
   write_file(path("skin.obj"),
              "v 0.1 0.02 0.02\nv 0.9 0.02 0.02\nv 0.5 0.18 0.02\nv 0.5 0.1 0.18\n"
              "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
@@ -286,7 +286,7 @@ TEST_F(RecordedRun, OfAFineSkinHasBothSurfaces) {
   }
 }
 
-TEST_F(RecordedRun, WithoutFramesShowsTheSkins) {
+TEST_F(RunRecording, WithoutFramesShowsTheSkins) {
   const Decoded decoded(recording(run("run", "[output]\nvtu = false\n")).text);
   EXPECT_EQ(decoded.frame_count(), 13);
   EXPECT_EQ(decoded.head["scenes"][0]["fields"].size(), 1u);
@@ -295,7 +295,7 @@ TEST_F(RecordedRun, WithoutFramesShowsTheSkins) {
               HasSubstr("run it again with output.vtu = true"));
 }
 
-TEST_F(RecordedRun, ThatWasKilledIsShownUpToItsCheckpoint) {
+TEST_F(RunRecording, ThatWasKilledIsShownUpToItsCheckpoint) {
   write_file(path("beam.toml"), kBeam + "[output]\ncheckpoint_every = 0\n");
   Scene scene = load_scene(path("beam.toml"));
   {
@@ -306,7 +306,7 @@ TEST_F(RecordedRun, ThatWasKilledIsShownUpToItsCheckpoint) {
   EXPECT_EQ(recording(path("run")).frames, 6);
 }
 
-TEST_F(RecordedRun, RefusesWhatIsDamagedNamingTheFile) {
+TEST_F(RunRecording, RefusesWhatIsDamagedNamingTheFile) {
   int count = 0;
   const auto after = [&](auto damage) {
     const fs::path directory = run("run" + std::to_string(++count));
@@ -333,7 +333,7 @@ TEST_F(RecordedRun, RefusesWhatIsDamagedNamingTheFile) {
 }
 
 // Every byte of a table and of a frame: refused or shown, never a crash.
-TEST_F(RecordedRun, SurvivesEveryChangedByteOfItsTable) {
+TEST_F(RunRecording, SurvivesEveryChangedByteOfItsTable) {
   const fs::path directory = run("run", "", 2);
   const std::string text = read_file(directory / "steps.csv");
   for (size_t i = 0; i < text.size(); i += 7) {
@@ -347,7 +347,7 @@ TEST_F(RecordedRun, SurvivesEveryChangedByteOfItsTable) {
   }
 }
 
-TEST_F(RecordedRun, ReportIsBelowItsLimitWithAMargin) {
+TEST_F(RunRecording, ReportIsBelowItsLimitWithAMargin) {
   // As many vertices and steps as the default scene has.
   write_file(path("block.toml"), R"(
 [time]

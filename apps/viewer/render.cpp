@@ -191,7 +191,7 @@ struct VideoFile::Impl {
                                        "30",   "-row-mt",    "1",    "-cpu-used", "4"}
             : std::vector<std::string>{"-c:v", "libx264", "-crf", "18", "-preset", "medium", "-movflags", "+faststart"};
     words.insert(words.end(), coder.begin(), coder.end());
-    words.insert(words.end(), {"-pix_fmt", "yuv420p", unfinished.string()});
+    words.insert(words.end(), {"-pix_fmt", "yuv420p", "file:" + unfinished.string()});
     return words;
   }
 

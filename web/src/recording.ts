@@ -74,7 +74,10 @@ export class Recording {
     const { lower, size } = this.head;
     const n = 3 * this.pointCount;
     const x = new Float32Array(n);
-    for (let i = 0; i < n; ++i) x[i] = lower[i % 3] + (size[i % 3] * this.codes[frame * n + i]) / 65535;
+    for (let axis = 0; axis < 3; ++axis) {
+      const scale = size[axis] / 65535;
+      for (let i = axis; i < n; i += 3) x[i] = lower[axis] + scale * this.codes[frame * n + i];
+    }
     return x;
   }
 
@@ -177,31 +180,45 @@ function edgesOf(triangles: Uint32Array): Uint32Array {
   return Uint32Array.from(edges);
 }
 
-// The positions of the surface's vertices.
+// The positions of the surface's vertices. Here and below no array is made per vertex: this runs for every picture.
 export function carried(surface: RecordedSurface, points: Float32Array): Float32Array {
   const { corners, weights, geometry } = surface;
   const positions = new Float32Array(geometry.rest.length);
-  for (let i = 0; i < positions.length; ++i) {
-    const [vertex, axis] = [Math.floor(i / 3), i % 3];
-    if (weights) for (let c = 4 * vertex; c < 4 * vertex + 4; ++c) positions[i] += weights[c] * points[3 * corners[c] + axis];
-    else positions[i] = points[3 * corners[vertex] + axis];
+  const perVertex = weights ? 4 : 1;
+  for (let c = 0; c < corners.length; ++c) {
+    const to = 3 * Math.floor(c / perVertex);
+    const from = 3 * corners[c];
+    const weight = weights ? weights[c] : 1;
+    positions[to] += weight * points[from];
+    positions[to + 1] += weight * points[from + 1];
+    positions[to + 2] += weight * points[from + 2];
   }
   return positions;
 }
 
 // Unit normals times 127, four numbers per vertex, weighted by the triangles' areas.
-export function normalsOf(positions: Float32Array, triangles: Uint32Array): Int8Array {
-  const sums = new Float64Array(positions.length);
+export function normalsOf(x: Float32Array, triangles: Uint32Array): Int8Array {
+  const sums = new Float64Array(x.length);
   for (let t = 0; t < triangles.length; t += 3) {
-    const [a, b, c] = [3 * triangles[t], 3 * triangles[t + 1], 3 * triangles[t + 2]];
-    const [ux, uy, uz] = [0, 1, 2].map((k) => positions[b + k] - positions[a + k]);
-    const [vx, vy, vz] = [0, 1, 2].map((k) => positions[c + k] - positions[a + k]);
-    const normal = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
-    for (const corner of [a, b, c]) for (let k = 0; k < 3; ++k) sums[corner + k] += normal[k];
+    const a = 3 * triangles[t];
+    const b = 3 * triangles[t + 1];
+    const c = 3 * triangles[t + 2];
+    const ux = x[b] - x[a];
+    const uy = x[b + 1] - x[a + 1];
+    const uz = x[b + 2] - x[a + 2];
+    const vx = x[c] - x[a];
+    const vy = x[c + 1] - x[a + 1];
+    const vz = x[c + 2] - x[a + 2];
+    for (let k = 0; k < 3; ++k) {
+      const corner = k === 0 ? a : k === 1 ? b : c;
+      sums[corner] += uy * vz - uz * vy;
+      sums[corner + 1] += uz * vx - ux * vz;
+      sums[corner + 2] += ux * vy - uy * vx;
+    }
   }
-  const normals = new Int8Array((positions.length / 3) * 4);
+  const normals = new Int8Array((x.length / 3) * 4);
   for (let i = 0; 3 * i < sums.length; ++i) {
-    const length = Math.hypot(sums[3 * i], sums[3 * i + 1], sums[3 * i + 2]) || 1;
+    const length = Math.sqrt(sums[3 * i] ** 2 + sums[3 * i + 1] ** 2 + sums[3 * i + 2] ** 2) || 1;
     for (let k = 0; k < 3; ++k) normals[4 * i + k] = Math.round((127 * sums[3 * i + k]) / length);
   }
   return normals;
