@@ -108,7 +108,7 @@ class MicroscopePanel implements Panel {
         meaning: "norm of the forces that are left over, in parts of the threshold that it must be below",
         text: of(residualText),
       },
-      { title: "took", meaning: "wall time", text: of((s) => withUnit(s.seconds, "s", 3)) },
+      { title: "took", meaning: "wall time", class: "spare", text: of((s) => withUnit(s.seconds, "s", 3)) },
     ];
   }
 
@@ -141,8 +141,13 @@ class MicroscopePanel implements Panel {
         meaning: "elements whose Hessian was made definite",
         text: of((it) => String(it.projected_elements)),
       },
-      { title: "inner", meaning: "iterations of the linear solver", text: of((it) => String(it.linear_iterations)) },
-      { title: "took", meaning: "wall time", text: of((it) => withUnit(totalSeconds(it), "s", 3)) },
+      {
+        title: "inner",
+        meaning: "iterations of the linear solver",
+        class: "spare",
+        text: of((it) => String(it.linear_iterations)),
+      },
+      { title: "took", meaning: "wall time", class: "spare", text: of((it) => withUnit(totalSeconds(it), "s", 3)) },
     ];
   }
 

@@ -7,9 +7,11 @@ import { assertSameBits, contrast, downloaded, findBody, openSession, pressAndWa
 const program = await startProgram("scenes/cantilever.toml");
 const read = async (file) => readFileSync(await file.path());
 
-async function loadFile({ page }, name, buffer) {
-  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.keyboard.press("Shift+L")]);
-  await chooser.setFiles({ name, mimeType: "application/json", buffer });
+async function loadFile({ page, until, choosers }, name, buffer) {
+  const known = choosers.length;
+  await page.keyboard.press("Shift+L");
+  await until("a question for a file", () => choosers.length > known);
+  await choosers.at(-1).setFiles({ name, mimeType: "application/json", buffer });
 }
 
 test("a workspace brings back settings, comparison, camera and panels", async () => {
