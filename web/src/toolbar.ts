@@ -1,7 +1,7 @@
 // What is always at hand: the simulation's time, and the doors to everything else.
 import { button, element, icon, messageOf } from "./dom";
 import type { Page } from "./page";
-import type { SideState, State } from "./protocol";
+import type { SideName, SideState, State } from "./protocol";
 import { openShortcutList, shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
 import type { Theme } from "./theme";
@@ -118,7 +118,7 @@ function makeChip(): HTMLButtonElement {
 // Whether the step that is shown did not converge.
 function failed(store: Store, name: SideName): boolean {
   const step = store.state?.[name]?.step;
-  return store.side(name)?.steps.findLast((row) => row.step === step)?.success === false;
+  return store.side(name)?.steps.some((row) => row.step === step && !row.success) ?? false;
 }
 
 function showChip(chip: HTMLButtonElement, side: SideState | null, bad: boolean, before: string): void {
