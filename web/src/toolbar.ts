@@ -117,8 +117,9 @@ function makeChip(): HTMLButtonElement {
 
 // Whether the step that is shown did not converge.
 function failed(store: Store, name: SideName): boolean {
-  const step = store.state?.[name]?.step;
-  return store.side(name)?.steps.some((row) => row.step === step && !row.success) ?? false;
+  const rows = store.side(name)?.steps ?? [];
+  const row = rows[(store.state?.[name]?.step ?? 0) - (rows[0]?.step ?? 1)];
+  return row?.success === false;
 }
 
 function showChip(chip: HTMLButtonElement, side: SideState | null, bad: boolean, before: string): void {

@@ -30,7 +30,7 @@ class MicroscopePanel implements Panel {
   private readonly steps = new Rows({
     label: "Steps",
     columns: this.stepColumns(),
-    rowClass: (row) => (this.stepAt(row)?.success === false ? "failed" : "success"),
+    rowClass: (row) => this.stepClass(row),
     choose: (row) => this.chooseStep(row),
   });
   private readonly iterations = new Rows({
@@ -86,6 +86,11 @@ class MicroscopePanel implements Panel {
 
   private iterationAt(row: number): IterationRow | undefined {
     return this.chosen.row()?.iterations[row];
+  }
+
+  private stepClass(row: number): string {
+    const step = this.stepAt(row);
+    return !step || step.status === "under way" ? "" : step.success ? "success" : "failed";
   }
 
   private stepColumns(): ConstructorParameters<typeof Rows>[0]["columns"] {
