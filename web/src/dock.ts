@@ -11,7 +11,7 @@ const kShare = 0.62; // of the window, at most: the mesh keeps the rest
 export class Dock {
   private open: Panel | null = null;
   private last: Panel | null = null; // opened again by the key
-  private height: number;
+  private height: number | null = null; // null: what the style gives it
   private readonly tabs = new Map<Panel, HTMLButtonElement>();
   private readonly body = element("div", { class: "dock-body" });
   private readonly close: HTMLButtonElement;
@@ -21,14 +21,13 @@ export class Dock {
     private readonly page: Page,
     private readonly panels: Panel[],
   ) {
-    this.height = Math.round(innerHeight * 0.4);
     const list = element("div", { role: "tablist", "aria-label": "Plots" });
     for (const panel of panels) list.append(this.makeTab(panel));
     this.close = button({ icon: "close", label: "Close the plots", title: "Close the plots (D)" }, () => this.show(null));
     const divider = makeDivider({
       label: "Height of the plots",
       orientation: "horizontal",
-      size: () => this.height,
+      size: () => root.offsetHeight,
       limits: () => [kSmallest, Math.max(kSmallest, innerHeight * kShare)],
       resize: (height) => this.resize(height),
     });
@@ -68,10 +67,11 @@ export class Dock {
     this.show(this.open ? null : (this.last ?? this.panels[0]));
   }
 
-  private resize(height: number): void {
-    this.height = Math.max(kSmallest, Math.min(height, Math.round(innerHeight * kShare)));
+  private resize(height: number | null): void {
+    const largest = Math.round(innerHeight * kShare);
+    this.height = height === null ? null : Math.max(kSmallest, Math.min(height, largest));
     this.root.classList.toggle("closed", this.open === null);
-    this.root.style.height = this.open === null ? "auto" : `${this.height}px`;
+    this.root.style.height = this.open === null ? "auto" : this.height === null ? "" : `${this.height}px`;
     this.page.emit("layout", undefined);
   }
 

@@ -98,8 +98,14 @@ export function ring(ink: Ink, [x, y]: Point, radius: number, words: string): vo
   text(ink, words, x + radius + 0.4 * ink.em, y - radius);
 }
 
-// A vertex, or the edges of a tet, with a label.
-export function highlight(ink: Ink, lens: Lens, positions: Vec3[], words: string): void {
+export interface Box {
+  x: number;
+  y: number;
+  width: number;
+}
+
+// A vertex, or the edges of a tet, with a label; below labels that are there already.
+export function highlight(ink: Ink, lens: Lens, positions: Vec3[], words: string, taken: Box[]): void {
   const points = positions.map((p) => onScreen(lens, p));
   if (points.length === 0 || points.some((p) => p === null)) return;
   const corners = points as Point[];
@@ -107,7 +113,14 @@ export function highlight(ink: Ink, lens: Lens, positions: Vec3[], words: string
     for (let j = i + 1; j < corners.length; ++j) stroke(ink, [corners[i], corners[j]], 2.5, ink.accent);
   for (const corner of corners) dot(ink, corner, 3.5, ink.accent);
   const top = corners.reduce((best, p) => (p[1] < best[1] ? p : best));
-  if (words !== "") text(ink, words, top[0] + 0.6 * ink.em, top[1] - 0.8 * ink.em);
+  if (words === "") return;
+  const box = { x: top[0] + 0.6 * ink.em, y: top[1] - 0.8 * ink.em, width: ink.context.measureText(words).width };
+  const height = 1.25 * ink.em;
+  const covers = (b: Box): boolean =>
+    box.x < b.x + b.width && b.x < box.x + box.width && Math.abs(box.y - b.y) < height;
+  for (let other = taken.find(covers); other; other = taken.find(covers)) box.y = other.y + height;
+  taken.push(box);
+  text(ink, words, box.x, box.y);
 }
 
 // Directions of the scene's axes, in the lower left corner.

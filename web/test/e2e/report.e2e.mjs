@@ -49,6 +49,7 @@ test("it plays, pauses and rewinds, without a request", async () => {
   await page.getByLabel("Timeline: rewinds to a step").press("End");
   await page.locator(".place").filter({ hasText: new RegExp(`^step ${kSteps},`) }).waitFor();
   assert.ok(!(await views.screenshot()).equals(first));
+  await page.locator(".chip.bad").filter({ hasText: "iteration limit" }).waitFor();
   assert.notEqual(start, "");
   await page.screenshot({ path: join(out, "report.png") });
   await close();
@@ -64,7 +65,7 @@ test("it has the certificate of every step, the energies and the scene", async (
   await page.getByLabel("only steps that did not converge").check();
   const failed = await panel.locator("tbody tr").count();
   assert.ok(failed > 0 && failed <= kSteps, `${failed} rows`);
-  await panel.getByText(`${kSteps - failed} of ${kSteps}`).waitFor();
+  await panel.getByText(`${kSteps - failed} of ${kSteps}`, { exact: true }).waitFor();
   await page.getByLabel("only steps that did not converge").uncheck();
   await panel.locator("summary").first().click();
   await panel.locator("pre").filter({ hasText: /\[solver\]/ }).waitFor();
