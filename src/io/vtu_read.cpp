@@ -82,7 +82,8 @@ void read_cells(const VtkFile& file, Piece& piece) {
 std::vector<double> read_points(const VtkFile& file, const XmlElement& piece, size_t count) {
   if (count == 0) return {};
   const XmlElement& array = section(file, section(file, piece, "Points"), "DataArray");
-  if (count_attribute(file, array, "NumberOfComponents", 1, 1024) != 3) fail_at(file, array, "points need 3 components");
+  if (count_attribute(file, array, "NumberOfComponents", 1, 1024) != 3)
+    fail_at(file, array, "points need 3 components");
   std::vector<double> positions = read_reals(file, array, 3 * count);
   const auto wrong = std::find_if(positions.begin(), positions.end(), [](double x) { return !std::isfinite(x); });
   if (wrong != positions.end())
