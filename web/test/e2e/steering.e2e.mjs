@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { assertSameBits, contrast, findBody, openSession, pageModule, pressAndWait, sameBits, startProgram } from "./harness.mjs";
 
-const { withUnit } = await pageModule("view/ranges.ts");
+const { withUnit } = await pageModule("plots/numbers.ts");
 const program = await startProgram("scenes/cantilever.toml");
 const length = (v) => Math.hypot(...v);
 const minus = (a, b) => a.map((x, i) => x - b[i]);
