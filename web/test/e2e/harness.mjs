@@ -114,6 +114,12 @@ function noteDrawnTexts() {
   };
 }
 
+// The last that was said, for a test that fails.
+function story({ state, sent, messages, pictures }) {
+  const told = messages.slice(-8).map(({ kind, why, a }) => [kind, why ?? a?.step].join(" "));
+  return `${JSON.stringify(state)}; sent: ${sent.slice(-5).join(" ").slice(-800)}; told: ${told.join(", ")}; picture of step ${pictures.a?.step}`;
+}
+
 // A page of its own. `close` fails on every error of its scripts, refusal of its content policy and foreign request,
 // but for errors that are `expected`.
 export async function openPage(address, { size = [1280, 720], watchRequests = true, expected = /^$/, prepare, ...context } = {}) {
@@ -144,7 +150,7 @@ export async function openPage(address, { size = [1280, 720], watchRequests = tr
     heard,
     errors,
     choosers, // of files that the page asked for
-    until: (what, condition) => until(what, () => condition(heard), () => JSON.stringify(heard.state)),
+    until: (what, condition) => until(what, () => condition(heard), () => story(heard)),
     close: async () => {
       assert.deepEqual(errors.filter((error) => !expected.test(error)), []);
       contexts.delete(inside);
