@@ -659,6 +659,16 @@ class Lecture(CommandLine):
             self.assertIn(f"'{page}' is no page", self.aspic("lecture", page, code=2).stderr)
         self.aspic("lecture", "5", "--mesh", "missing.mesh", code=2)
 
+    def test_without_browser_and_gnuplot_the_numbers_are_judged_all_the_same(self):
+        without = dict(os.environ, PATH=str(self.folder))
+        done = subprocess.run([ASPIC, "lecture", "25", "--mesh", self.mesh(4)], cwd=self.folder, env=without,
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, "note: no pictures of meshes: .*(apt-get install chromium|built without)")
+        self.assertIn("note: no charts: gnuplot is not installed", done.stdout)
+        self.assertIn("PASS", done.stdout)
+        self.assertEqual([f.suffix for f in (self.folder / "out/lecture/25_drag").iterdir() if f.suffix in (".png", ".svg")], [])
+
     def test_all_pages_are_summed_up(self):
         self.lecture("all", "--mesh", self.mesh(6))
         with open(self.folder / "out/lecture/lecture.json") as file:
@@ -671,6 +681,12 @@ class Lecture(CommandLine):
             self.assertTrue(any("bound" in m for m in demonstration["measures"]), demonstration["key"])
             folder = self.folder / "out/lecture" / demonstration["key"]
             self.assertTrue(list(folder.glob("*.csv")), demonstration["key"])
+            for picture in demonstration["pictures"]:
+                self.assertTrue((self.folder / "out/lecture" / picture["file"]).exists(), picture["file"])
+        pictures = [picture["file"] for d in summary["demonstrations"] for picture in d["pictures"]]
+        if "25_drag/drag.png" not in pictures:
+            why = "apt-get install chromium|built without" if shutil.which("chromium") is None else "built without"
+            self.assertRegex(str([d["remarks"] for d in summary["demonstrations"]]), why)
         page = (self.folder / "out/lecture/index.html").read_text()
         for demonstration in summary["demonstrations"]:
             self.assertIn(demonstration["title"], page)

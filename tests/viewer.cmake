@@ -17,6 +17,9 @@ if(TARGET aspic_viewer)
   add_test(NAME page_units COMMAND ${NODE} ${web}/test/run.mjs)
   add_test(NAME page_guide COMMAND ${NODE} ${web}/test/guide.mjs ${CMAKE_BINARY_DIR}/web/page.html)
   set_tests_properties(page_guide PROPERTIES SKIP_RETURN_CODE 77)
+  find_package(ZLIB REQUIRED)
+  add_aspic_tests(test_mesh_pictures ${CMAKE_SOURCE_DIR}/apps/aspic/mesh_picture_test.cpp)
+  target_link_libraries(test_mesh_pictures PRIVATE aspic_commands ZLIB::ZLIB)
 
   # The page with its program, in Chromium; pictures of its panels go to the build's folder pictures/.
   file(GLOB page_themes CONFIGURE_DEPENDS ${web}/test/e2e/*.e2e.mjs)

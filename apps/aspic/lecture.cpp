@@ -4,8 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <filesystem>
+#include <optional>
 
 #include "aspic/commands.h"
+#include "aspic/interrupt.h"
 #include "aspic/lecture/course.h"
 #include "aspic/lecture/results.h"
 #include "base/error.h"
@@ -42,6 +44,15 @@ int parse_page(const std::string& text) {
   return page;
 }
 
+// The exit code where they are not drawn because of ctrl-C.
+std::optional<int> draw_meshes(std::vector<Result>& results) {
+  std::vector<Sheet*> sheets;
+  for (Result& result : results) sheets.push_back(&result.sheet);
+  catch_interrupts();
+  if (Sheet::draw_meshes(sheets, [] { return interrupt_signal() == 0; })) return std::nullopt;
+  return exit_signal + interrupt_signal();
+}
+
 Result run_one(const Demonstration& demonstration, const Stage& stage, const fs::path& out) {
   Stopwatch stopwatch;
   Sheet sheet(out / demonstration.key);
@@ -56,10 +67,13 @@ int run_page(int page, const Arguments& arguments) {
   }
   const Stage stage(arguments.mesh, arguments.out / "meshes");
   fmt::print("{}\n", stage.mesh_note());
+  std::fflush(stdout);
+  std::vector<Result> results;
+  for (const Demonstration* demonstration : demonstrations_of(page))
+    results.push_back(run_one(*demonstration, stage, arguments.out));
+  if (const auto stopped = draw_meshes(results)) return *stopped;
   bool passes = true;
-  for (const Demonstration* demonstration : demonstrations_of(page)) {
-    std::fflush(stdout);
-    const Result result = run_one(*demonstration, stage, arguments.out);
+  for (const Result& result : results) {
     print(result);
     passes = passes && result.sheet.passes();
   }
@@ -80,6 +94,11 @@ int run_all(const Arguments& arguments) {
     passes = passes && result.sheet.passes();
     fmt::print(" {} ({:.1f} s)\n", result.sheet.passes() ? "pass" : "FAIL", result.seconds);
   }
+  fmt::print("pictures of meshes             ...");
+  std::fflush(stdout);
+  Stopwatch stopwatch;
+  if (const auto stopped = draw_meshes(results)) return *stopped;
+  fmt::print(" done ({:.1f} s)\n", stopwatch.lap());
   for (const Result& result : results)
     if (!result.sheet.passes()) print(result);
   write_summary(arguments.out, stage.mesh_note(), results);

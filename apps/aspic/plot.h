@@ -1,7 +1,7 @@
-// Pictures: curves, contour maps, surfaces over the plane, shaded meshes. The program gnuplot draws them. The file
-// name decides: .svg for what is read in a page, .png for what has thousands of faces. The file appears whole or not
-// at all. Every function throws InvalidInput: when gnuplot is missing (naming its package), for another extension,
-// when the file cannot be written.
+// Pictures: curves, contour maps, surfaces over the plane; for meshes see mesh_picture.h. The program gnuplot draws
+// them. The file name decides: .svg for what is read in a page, .png for what has thousands of faces. The file appears
+// whole or not at all. Every function throws InvalidInput: when gnuplot is missing (naming its package), for another
+// extension, when the file cannot be written.
 //
 // Any text may stand in titles and labels: nothing in it is taken as a command or as markup. Values that are not
 // finite, or not positive on a logarithmic axis, are gaps.
@@ -11,8 +11,6 @@
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "mesh/tet_mesh.h"
 
 namespace aspic::cli {
 
@@ -86,26 +84,5 @@ struct SurfacePlot {
   PictureSize size = {700, 560};
 };
 void draw(const std::filesystem::path& path, const SurfacePlot& plot);
-
-enum class Wires { none, thin };
-
-// One panel of a picture of meshes.
-struct ShadedSurface {
-  std::string caption;
-  TriMesh surface;
-  std::vector<double> values = {};  // one per triangle or one per vertex; empty: one colour
-};
-
-struct MeshPicture {
-  std::string title;
-  std::vector<ShadedSurface> panels;  // side by side, in one scale and from one direction
-  Vec3d eye = {{0.6, -1, 0.45}};      // direction from the surfaces to the eye
-  Vec3d up = {{0, 0, 1}};
-  Wires wires = Wires::thin;
-  std::string value_label = {};                          // of the colour bar, with the unit
-  std::optional<double> value_min = {}, value_max = {};  // found from the values where not given
-  PictureSize size = {800, 480};
-};
-void draw(const std::filesystem::path& path, const MeshPicture& picture);
 
 }  // namespace aspic::cli

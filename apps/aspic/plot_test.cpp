@@ -12,8 +12,6 @@
 #include "base/error.h"
 #include "io/atomic_file.h"
 #include "io/folder_test.h"
-#include "mesh/generators.h"
-#include "mesh/surface.h"
 
 namespace aspic::cli {
 namespace {
@@ -202,25 +200,6 @@ TEST_F(Pictures, ASurfaceHasItsModelOverIt) {
   draw(folder / "surface.png", plot);
   EXPECT_EQ(png_size(folder / "surface.png"), std::pair(1400u, 1120u));
   draw(folder / "bump_surface.png", SurfacePlot{.title = "two bumps", .function = sampled(-2, 2, 61, two_bump)});
-}
-
-TEST_F(Pictures, MeshesStandSideBySideColouredByValue) {
-  const TriMesh box = boundary_surface(make_box({}, {{2, 0.5, 0.5}}, {16, 4, 4})).surface;
-  MeshPicture picture{.title = "A beam & its stress", .panels = {{"at rest", box}, {"bent", box}}};
-  for (Vec3d& x : picture.panels[1].surface.vertices) x[2] -= 0.15 * x[0] * x[0];
-  draw(folder / "beams.png", picture);
-  EXPECT_EQ(png_size(folder / "beams.png").first, 1600u);
-  for (ShadedSurface& panel : picture.panels)
-    for (const Vec3d& x : panel.surface.vertices) panel.values.push_back((2 - x[0]) * (2 - x[0]) * 1000);
-  picture.panels[1].values[0] = NAN;
-  picture.value_label = "von Mises stress [Pa]";
-  draw(folder / "stress.png", picture);
-  EXPECT_EQ(png_size(folder / "stress.png").first, 1600u);
-}
-
-TEST_F(Pictures, AMeshWithoutTrianglesIsRefused) {
-  EXPECT_THROW(draw(folder / "none.png", MeshPicture{.title = "", .panels = {{"", {}}}}), InvalidInput);
-  EXPECT_THROW(draw(folder / "none.png", MeshPicture{}), InvalidInput);
 }
 
 TEST_F(Pictures, AnotherExtensionIsRefusedByName) {

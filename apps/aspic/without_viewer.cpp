@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "aspic/commands.h"
+#include "aspic/mesh_picture.h"
 #include "aspic/run_report.h"
 #include "base/error.h"
 
@@ -25,6 +26,10 @@ void add_viewer_commands(CLI::App& app, Action& action) {
 
 void write_run_report(const std::filesystem::path&, const Scene& scene, std::FILE* stream) {
   if (scene.output.report && stream) fmt::print(stream, "no report.html: this aspic was built without its viewer\n");
+}
+
+bool draw(const std::vector<MeshDrawing>&, const std::function<bool()>&) {
+  throw InvalidInput("this aspic was built without its viewer, which draws them");
 }
 
 }  // namespace aspic::cli

@@ -3,11 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <charconv>
-#include <chrono>
-#include <condition_variable>
-#include <exception>
-#include <mutex>
 #include <optional>
 #include <system_error>
 #include <vector>
@@ -15,54 +10,11 @@
 #include "base/error.h"
 #include "io/external_program.h"
 #include "viewer/child_process.h"
-#include "viewer/server.h"
 
 namespace aspic::viewer {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
-
-constexpr std::chrono::seconds kLongestSilence(60);
-constexpr std::chrono::milliseconds kPeriod(50);  // of looking at the browser and at who may stop it
-
-fs::path find_browser() {
-  for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {
-    try {
-      return find_program(name, {}, "");
-    } catch (const InvalidInput&) {
-    }
-  }
-  throw InvalidInput(
-      "neither chromium, chromium-browser nor google-chrome is on the PATH; the pictures are drawn by one of them "
-      "(Debian: apt-get install chromium)");
-}
-
-// Without a graphics card, a window, or a word to anyone.
-std::vector<std::string> browser_command(const fs::path& profile, const std::string& address) {
-  std::vector<std::string> command = {find_browser().string(),
-                                      "--headless=new",
-                                      "--user-data-dir=" + profile.string(),
-                                      "--use-gl=angle",
-                                      "--use-angle=swiftshader",
-                                      "--enable-unsafe-swiftshader",
-                                      "--force-device-scale-factor=1",
-                                      "--hide-scrollbars",
-                                      "--mute-audio",
-                                      "--disable-background-networking",
-                                      "--disable-background-timer-throttling",
-                                      "--disable-renderer-backgrounding",
-                                      "--disable-component-update",
-                                      "--disable-default-apps",
-                                      "--disable-dev-shm-usage",
-                                      "--disable-extensions",
-                                      "--disable-sync",
-                                      "--no-default-browser-check",
-                                      "--no-first-run"};
-  if (::geteuid() == 0) command.emplace_back("--no-sandbox");  // the sandbox refuses to serve root
-  command.push_back(address);
-  return command;
-}
 
 std::string percent_coded(std::string_view text) {
   std::string coded;
@@ -81,81 +33,11 @@ std::string query(const RenderOptions& options) {
   return text;
 }
 
-// What the page has sent so far, told from the server's thread to the one that waits.
-class Arrivals {
- public:
-  explicit Arrivals(const Pictures& pictures) : pictures_(pictures) {}
-
-  std::string receive(const std::string& path, std::string_view body) {
-    const std::lock_guard lock(mutex_);
-    last_ = Clock::now();
-    if (path == "/count") {
-      std::from_chars(body.data(), body.data() + body.size(), count_);
-    } else if (path == "/frame") {
-      add(body);
-    } else if (path == "/end") {
-      is_whole_ = true;
-    } else {
-      failure_ = path == "/failed" ? std::string(body) : "the page sent something unknown";
-    }
-    changed_.notify_all();
-    return "";
-  }
-
-  // False: not yet. Throws what went wrong.
-  bool wait(std::chrono::milliseconds period) {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, period);
-    if (thrown_) std::rethrow_exception(thrown_);
-    if (!failure_.empty()) throw InvalidInput(failure_);
-    return is_whole_;
-  }
-
-  bool is_silent() {
-    const std::lock_guard lock(mutex_);
-    return Clock::now() - last_ > kLongestSilence;
-  }
-
- private:
-  void add(std::string_view png) {
-    if (thrown_) return;
-    try {
-      pictures_(frames_++, count_, png);
-    } catch (...) {
-      thrown_ = std::current_exception();
-    }
-  }
-
-  const Pictures& pictures_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  Clock::time_point last_ = Clock::now();
-  int frames_ = 0, count_ = 0;
-  bool is_whole_ = false;
-  std::string failure_;
-  std::exception_ptr thrown_;
-};
-
 }  // namespace
 
 RenderEnd render(const std::string& page, const RenderOptions& options, const Pictures& pictures,
                  const std::function<bool()>& go_on) {
-  Arrivals arrivals(pictures);
-  const TemporaryFolder profile;
-  const fs::path messages = profile.path() / "messages";
-  Server server({.page = page,
-                 .post = [&](const std::string& path, std::string_view body) { return arrivals.receive(path, body); }});
-  ChildProcess browser(browser_command(profile.path() / "profile", server.address() + query(options)), messages,
-                       Input::none);
-  while (!arrivals.wait(kPeriod)) {
-    if (!go_on()) return RenderEnd::interrupted;
-    if (!browser.is_running())
-      throw InvalidInput("the browser ended before the pictures were drawn: " + browser.said());
-    if (arrivals.is_silent())
-      throw InvalidInput(fmt::format("the browser sent nothing for {} s; on a slow machine try a smaller --size: {}",
-                                     kLongestSilence.count(), browser.said()));
-  }
-  return RenderEnd::done;
+  return draw_in_browser({.page = page, .query = query(options)}, pictures, go_on);
 }
 
 struct VideoFile::Impl {

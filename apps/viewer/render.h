@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "viewer/browser_pictures.h"
+
 namespace aspic::viewer {
 
 struct RenderOptions {
@@ -17,13 +19,7 @@ struct RenderOptions {
   double every = 0;  // simulated time from picture to picture [s]; 0: one of each frame
 };
 
-using Pictures = std::function<void(int index, int count, std::string_view png)>;  // in order
-
-enum class RenderEnd { done, interrupted };
-
-// `page` is the viewer's page with the recording. Called with every picture, from another thread, while this waits;
-// what it throws ends the rendering and is thrown here. Stops when `go_on` says false. The browser is always ended.
-// Throws InvalidInput: there is no browser, it ends or says nothing for a minute, or the page cannot do what is asked.
+// `page` is the viewer's page with the recording. Does and throws what draw_in_browser() does.
 RenderEnd render(const std::string& page, const RenderOptions& options, const Pictures& pictures,
                  const std::function<bool()>& go_on);
 

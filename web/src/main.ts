@@ -7,6 +7,7 @@ import { Dock } from "./dock";
 import { Files } from "./files";
 import { Lecture } from "./lecture";
 import { LiveSource, sessionAddress } from "./live";
+import { drawMeshPictures } from "./meshPicture";
 import { showNotices, showOwnErrors } from "./notices";
 import { Page } from "./page";
 import type { Panel } from "./page";
@@ -17,8 +18,9 @@ import { makeLandscapePanel } from "./panels/landscape";
 import { makeMicroscopePanel } from "./panels/microscope";
 import { makeReportPanel } from "./panels/report";
 import { Settings } from "./panels/settings";
+import { drawForProgram } from "./program";
 import { findRecording, RecordedSource } from "./recorded";
-import { isRendering, renderPictures } from "./render";
+import { renderPictures } from "./render";
 import { makeRole } from "./role";
 import { listenToKeys } from "./shortcuts";
 import { Sidebar } from "./sidebar";
@@ -66,7 +68,9 @@ function openPage(source: Source): void {
   store.start();
 }
 
+const query = new URL(location.href).searchParams;
 const recording = findRecording();
-if (recording === null) openPage(new LiveSource(sessionAddress()));
-else if (isRendering()) void renderPictures(new RecordedSource(recording));
+if (query.has("meshes")) void drawForProgram(drawMeshPictures);
+else if (recording === null) openPage(new LiveSource(sessionAddress()));
+else if (query.has("render")) void drawForProgram(renderPictures(new RecordedSource(recording)));
 else openPage(new RecordedSource(recording));

@@ -1,6 +1,6 @@
-// What a recorded run holds and how it is packed: apps/viewer/recording.h writes it. The text of the page's element
-// "recording" is base64 of gzip of: u32 length of the JSON, the JSON, zeros up to a multiple of 4, the arrays it lists.
-// All numbers little-endian.
+// What a recorded run holds: apps/viewer/recording.h writes it. The text of the page's element "recording" is base64 of
+// gzip of a pack of arrays.
+import { Pack } from "./pack";
 import type { Geometry, Hello, Scene, StepRow, Vec3 } from "./protocol";
 
 export interface RecordingHead {
@@ -12,11 +12,7 @@ export interface RecordingHead {
   frames: { step: number[]; time: number[] };
   lower: Vec3; // box of all positions of all frames
   size: Vec3;
-  arrays: { name: string; type: keyof typeof kTypes; at: number; count: number }[];
 }
-
-const kTypes = { u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, f32: Float32Array };
-type Numbers = Uint8Array | Uint16Array | Uint32Array | Float32Array;
 
 // A surface over the recorded points: each of its vertices is one of them, or a weighted mean of four. Values belong to
 // places, which vertices share.
@@ -37,20 +33,14 @@ export async function unpack(text: string): Promise<Recording> {
 // Values of one moment lie between 0 and 254, of a range that belongs to it; 255 is no number.
 const kNoNumber = 255;
 
-export class Recording {
-  readonly head: RecordingHead;
+export class Recording extends Pack<RecordingHead> {
   readonly surfaces: RecordedSurface[];
   readonly pointCount: number;
-  private readonly arrays = new Map<string, Numbers>();
   private readonly codes: Uint16Array; // 3 per point and frame
 
   constructor(bytes: ArrayBuffer) {
-    const length = new DataView(bytes).getUint32(0, true);
-    this.head = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length))) as RecordingHead;
+    super(bytes);
     if (this.head.format !== 1) throw new Error(`the recording has format ${String(this.head.format)}; this page reads 1`);
-    const start = Math.ceil((4 + length) / 4) * 4;
-    for (const { name, type, at, count } of this.head.arrays)
-      this.arrays.set(name, new kTypes[type](bytes, start + at, count));
     this.pointCount = this.floats("point.rest").length / 3;
     this.codes = unpredicted(this.array("positions") as Uint8Array, 3 * this.pointCount);
     for (const [name, stored] of this.arrays) if (name.startsWith("field.") && stored instanceof Uint8Array) this.add(stored);
@@ -92,24 +82,6 @@ export class Recording {
       const code = stored[first + place];
       return code === kNoNumber ? NaN : min + ((max - min) * code) / 254;
     });
-  }
-
-  floats(name: string): Float32Array {
-    return this.array(name) as Float32Array;
-  }
-
-  indices(name: string): Uint32Array {
-    return this.array(name) as Uint32Array;
-  }
-
-  bytes(name: string): Uint8Array {
-    return this.array(name) as Uint8Array;
-  }
-
-  private array(name: string): Numbers {
-    const found = this.arrays.get(name);
-    if (!found) throw new Error(`the recording has no '${name}'`);
-    return found;
   }
 
   // Each frame is stored as its difference to the one before, modulo 256.
@@ -165,7 +137,7 @@ function distances(a: Float32Array, b: Float32Array): Float32Array {
 }
 
 // Every edge of the triangles once.
-function edgesOf(triangles: Uint32Array): Uint32Array {
+export function edgesOf(triangles: Uint32Array): Uint32Array {
   const seen = new Set<number>();
   const edges: number[] = [];
   for (let t = 0; t < triangles.length; t += 3) {

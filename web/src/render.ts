@@ -1,8 +1,9 @@
 // Pictures of a recorded run for a program: frame after frame is drawn and sent to the server of this page, which makes
 // files of them (apps/viewer/render.h). What is wanted stands in the address.
 import { Vector3 } from "three";
-import { element, messageOf } from "./dom";
+import { element } from "./dom";
 import { Page } from "./page";
+import type { Tell } from "./program";
 import type { Field } from "./protocol";
 import type { RecordedSource } from "./recorded";
 import { Store } from "./store";
@@ -59,11 +60,6 @@ export function stepsToShow(frames: { step: number[]; time: number[] }, request:
   });
 }
 
-async function send(path: string, token: string, body: Blob | string): Promise<void> {
-  const answer = await fetch(`${path}?token=${encodeURIComponent(token)}`, { method: "POST", body });
-  if (!answer.ok) throw new Error(await answer.text());
-}
-
 function aim(rig: CameraRig, request: RenderRequest, source: RecordedSource, up: [number, number, number]): void {
   if (typeof request.view === "string") {
     rig.look(request.view);
@@ -95,7 +91,7 @@ async function colour(request: RenderRequest, source: RecordedSource, display: D
   display.change({ fixedRange: true, low, high });
 }
 
-async function draw(request: RenderRequest, source: RecordedSource, token: string): Promise<void> {
+async function draw(request: RenderRequest, source: RecordedSource, tell: Tell): Promise<void> {
   document.documentElement.dataset.theme = request.dark ? "dark" : "light";
   const store = new Store(source);
   const display = new Display();
@@ -112,26 +108,14 @@ async function draw(request: RenderRequest, source: RecordedSource, token: strin
   if (request.colour !== "") await colour(request, source, display, scene.fields);
   aim(display.camera("a"), request, source, scene.up);
   const steps = stepsToShow(source.frames, request);
-  await send("/count", token, String(steps.length));
+  await tell("/count", String(steps.length));
   for (const step of steps) {
     view.drawNow(); // the source waits until the picture before is drawn
     await source.request({ do: "rewind", step });
-    await send("/frame", token, await view.screenshot());
+    await tell("/frame", await view.screenshot());
   }
 }
 
-// False: the page is for a reader.
-export function isRendering(): boolean {
-  return new URL(location.href).searchParams.has("render");
-}
-
-export async function renderPictures(source: RecordedSource): Promise<void> {
-  const query = new URL(location.href).searchParams;
-  const token = query.get("token") ?? "";
-  try {
-    await draw(renderRequest(query), source, token);
-    await send("/end", token, "");
-  } catch (error) {
-    await send("/failed", token, messageOf(error));
-  }
+export function renderPictures(source: RecordedSource): (query: URLSearchParams, tell: Tell) => Promise<void> {
+  return (query, tell) => draw(renderRequest(query), source, tell);
 }

@@ -145,7 +145,8 @@ void show_explosion(const Stage& stage, Sheet& sheet) {
     picture.panels.push_back({d.integrator, surface_at(scene.simulation.model(), d.shape)});
   }
   sheet.draw("energy.svg", "Kinetic and potential energy; a curve ends where numbers do", chart);
-  sheet.draw("side_by_side.png", "Each scheme when it was last within 3 m of the origin", picture);
+  sheet.draw("side_by_side.png", "Each scheme when it was last within 3 m of the origin; orange is turned inside out",
+             picture);
 }
 
 }  // namespace aspic::cli::lecture

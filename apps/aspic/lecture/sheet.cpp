@@ -88,6 +88,29 @@ void Sheet::draw_by(const std::string& name, const std::string& caption,
   figures_.push_back({folder_ / name, caption});
 }
 
+void Sheet::draw(const std::string& name, const std::string& caption, MeshPicture picture) {
+  meshes_.push_back({{folder_ / name, caption}, std::move(picture)});
+}
+
+bool Sheet::draw_meshes(const std::vector<Sheet*>& sheets, const std::function<bool()>& go_on) {
+  std::vector<MeshDrawing> drawings;
+  for (const Sheet* sheet : sheets)
+    for (const MeshFigure& mesh : sheet->meshes_) drawings.push_back({mesh.figure.picture, mesh.picture});
+  std::string missing;
+  try {
+    if (!drawings.empty() && !cli::draw(drawings, go_on)) return false;
+  } catch (const InvalidInput& error) {
+    missing = error.what();
+  }
+  for (Sheet* sheet : sheets) {
+    if (!sheet->meshes_.empty() && !missing.empty()) sheet->remark("no pictures of meshes: " + missing);
+    for (MeshFigure& mesh : sheet->meshes_)
+      if (missing.empty()) sheet->figures_.push_back(std::move(mesh.figure));
+    sheet->meshes_.clear();
+  }
+  return true;
+}
+
 bool Sheet::passes() const {
   const auto is_judged = [](const Measure& m) { return m.relation != Relation::shown; };
   return std::any_of(measures_.begin(), measures_.end(), is_judged) &&
@@ -95,7 +118,7 @@ bool Sheet::passes() const {
 }
 
 bool Sheet::can_draw() {
-  if (!has_gnuplot() && !told_missing_) remark("no pictures: gnuplot is not installed (Debian package gnuplot-nox)");
+  if (!has_gnuplot() && !told_missing_) remark("no charts: gnuplot is not installed (Debian package gnuplot-nox)");
   told_missing_ = !has_gnuplot();
   return has_gnuplot();
 }

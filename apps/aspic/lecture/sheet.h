@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "aspic/mesh_picture.h"
 #include "aspic/plot.h"
 #include "aspic/report_page.h"
 #include "io/csv.h"
@@ -43,6 +44,7 @@ class Sheet {
   void draw(const std::string& name, const std::string& caption, const Picture& picture) {
     draw_by(name, caption, [&](const std::filesystem::path& path) { cli::draw(path, picture); });
   }
+  void draw(const std::string& name, const std::string& caption, MeshPicture picture);  // by draw_meshes()
   void draw_by(const std::string& name, const std::string& caption,
                const std::function<void(const std::filesystem::path&)>& write);
 
@@ -52,13 +54,22 @@ class Sheet {
   const std::vector<Figure>& figures() const { return figures_; }
   bool passes() const;  // something was judged, and all of it holds
 
+  // Draws the meshes of all sheets at once; what cannot be drawn becomes a remark. False: `go_on` said so.
+  static bool draw_meshes(const std::vector<Sheet*>& sheets, const std::function<bool()>& go_on);
+
  private:
+  struct MeshFigure {
+    Figure figure;
+    MeshPicture picture;
+  };
+
   bool can_draw();  // says once that gnuplot is missing
 
   std::filesystem::path folder_;
   std::vector<Measure> measures_;
   std::vector<std::string> remarks_;
   std::vector<Figure> figures_;
+  std::vector<MeshFigure> meshes_;  // to be drawn
   bool told_missing_ = false;
 };
 

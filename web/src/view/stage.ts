@@ -53,7 +53,7 @@ export class Stage {
   }
 
   // Places ground and lights around the box of a scene.
-  place(scene: Scene): void {
+  place(scene: Pick<Scene, "lower" | "upper" | "up">): void {
     this.centre = [0, 1, 2].map((c) => (scene.lower[c] + scene.upper[c]) / 2) as Vec3;
     this.radius = Math.max(length(minus(scene.upper, scene.lower)) / 2, 1e-12);
     const { right, front, up } = sceneAxes(scene.up);

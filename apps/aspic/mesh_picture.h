@@ -1,0 +1,43 @@
+// Pictures of shaded meshes as PNG, drawn by the viewer's page in a browser without a window.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "aspic/plot.h"
+#include "mesh/tet_mesh.h"
+
+namespace aspic::cli {
+
+enum class Wires { none, thin };
+
+// One panel of a picture of meshes. What is not finite of it is left out.
+struct ShadedSurface {
+  std::string caption;
+  TriMesh surface;
+  std::vector<double> values = {};  // one per triangle or one per vertex; grey where not finite; empty: one colour
+};
+
+struct MeshPicture {
+  std::string title;
+  std::vector<ShadedSurface> panels;  // side by side, in one scale and from one direction
+  Vec3d eye = {{0.6, -1, 0.45}};      // direction from the surfaces to the eye
+  Vec3d up = {{0, 0, 1}};
+  Wires wires = Wires::thin;
+  std::string value_label = {};                          // of the colour bar, with the unit
+  std::optional<double> value_min = {}, value_max = {};  // found from the values where not given
+  PictureSize size = {800, 480};                         // twice as many pixels; no higher than the panels need
+};
+
+struct MeshDrawing {
+  std::filesystem::path path;  // .png
+  MeshPicture picture;
+};
+
+// One start of the browser draws them all; each file appears whole or not at all. False: stopped because `go_on` said
+// so. Throws InvalidInput: there is nothing to draw, no browser (naming its package), a file cannot be written.
+bool draw(const std::vector<MeshDrawing>& drawings, const std::function<bool()>& go_on);
+
+}  // namespace aspic::cli
