@@ -6,12 +6,13 @@ import { keyName } from "./shortcuts";
 
 const kKeys: Record<string, string> = { energy: "e", microscope: "m", landscape: "a", functions: "f", certificate: "q" };
 const kSmallest = 120; // [px]
+const kUsualShare = 0.4; // of the window
 const kShare = 0.62; // of the window, at most: the mesh keeps the rest
 
 export class Dock {
   private open: Panel | null = null;
   private last: Panel | null = null; // opened again by the key
-  private height: number;
+  private wanted: number | null = null; // chosen by the reader [px]; null: what the panel would like
   private readonly tabs = new Map<Panel, HTMLButtonElement>();
   private readonly body = element("div", { class: "dock-body" });
   private readonly close: HTMLButtonElement;
@@ -21,24 +22,26 @@ export class Dock {
     private readonly page: Page,
     private readonly panels: Panel[],
   ) {
-    this.height = Math.round(innerHeight * 0.4);
     const list = element("div", { role: "tablist", "aria-label": "Plots" });
     for (const panel of panels) list.append(this.makeTab(panel));
     this.close = button({ icon: "close", label: "Close the plots", title: "Close the plots (D)" }, () => this.show(null));
     const divider = makeDivider({
       label: "Height of the plots",
       orientation: "horizontal",
-      size: () => this.height,
+      size: () => this.height(),
       limits: () => [kSmallest, Math.max(kSmallest, innerHeight * kShare)],
-      resize: (height) => this.resize(height),
+      resize: (height) => {
+        this.wanted = height;
+        this.resize();
+      },
     });
     root.append(divider, element("div", { class: "dock-tabs" }, list, this.close), this.body);
     list.addEventListener("keydown", (event) => this.moveBetweenTabs(event));
-    addEventListener("resize", () => this.resize(this.height));
+    addEventListener("resize", () => this.resize());
     page.on("panel", (name) => this.show(this.named(name)));
     page.shortcut({ key: "d", does: "Open or close the plots", group: "Panels", run: () => this.toggle() });
     page.keep("dock", {
-      save: () => ({ panel: this.open?.name ?? null, height: this.height }),
+      save: () => ({ panel: this.open?.name ?? null, height: this.wanted }),
       restore: (saved) => this.restore(saved),
     });
     this.show(panels[0] ?? null);
@@ -56,7 +59,7 @@ export class Dock {
       tab.tabIndex = other === (panel ?? this.panels[0]) ? 0 : -1;
     }
     this.close.hidden = panel === null;
-    this.resize(this.height);
+    this.resize();
     panel?.show(true);
   }
 
@@ -68,10 +71,14 @@ export class Dock {
     this.show(this.open ? null : (this.last ?? this.panels[0]));
   }
 
-  private resize(height: number): void {
-    this.height = Math.max(kSmallest, Math.min(height, Math.round(innerHeight * kShare)));
+  private height(): number {
+    const wanted = this.wanted ?? innerHeight * (this.open?.share ?? kUsualShare);
+    return Math.round(Math.max(kSmallest, Math.min(wanted, innerHeight * kShare)));
+  }
+
+  private resize(): void {
     this.root.classList.toggle("closed", this.open === null);
-    this.root.style.height = this.open === null ? "auto" : `${this.height}px`;
+    this.root.style.height = this.open === null ? "auto" : `${this.height()}px`;
     this.page.emit("layout", undefined);
   }
 
@@ -104,7 +111,8 @@ export class Dock {
 
   private restore(saved: unknown): void {
     const { panel, height } = (saved ?? {}) as { panel?: unknown; height?: unknown };
-    if (typeof height === "number" && Number.isFinite(height)) this.height = height;
+    if (typeof height === "number" && Number.isFinite(height)) this.wanted = height;
+    else if (height === null) this.wanted = null;
     if (panel === null) this.show(null);
     else if (typeof panel === "string") this.show(this.named(panel));
   }

@@ -59,5 +59,6 @@ export interface Panel {
   readonly name: PanelName | "certificate";
   readonly title: string;
   readonly element: HTMLElement;
+  readonly share?: number; // of the window's height that it would like to have; 0.4 without
   show(visible: boolean): void; // draws only while it is visible
 }

@@ -93,7 +93,7 @@ class EnergyPanel implements Panel {
     const side = this.store.side(name);
     const known = this.ledgers[name];
     if (side && known && known.potentials.join() === side.scene.potentials.join()) {
-      known.update(side.steps, Math.min(known.step.length, side.steps.length));
+      known.update(side.steps, side.steps[side.steps.length - 1]?.step ?? 0);
       return this.configure(); // its label may be another
     }
     this.ledgers[name] = side ? new Ledger(side.scene.potentials) : null;

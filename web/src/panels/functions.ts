@@ -27,6 +27,7 @@ export function makeFunctionsPanel(store: Store, page: Page): FunctionsPanel {
 class PlanarPanel implements FunctionsPanel {
   readonly name = "functions";
   readonly title = "Functions";
+  readonly share = 0.58; // a surface needs room
   readonly element = element("div", {
     class: "plot-panel",
     role: "group",

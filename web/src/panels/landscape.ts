@@ -17,6 +17,7 @@ export function makeLandscapePanel(store: Store, page: Page): Panel {
 class LandscapePanel implements Panel {
   readonly name = "landscape";
   readonly title = "Landscape";
+  readonly share = 0.58; // a surface needs room
   readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Energy landscape" });
   private readonly chosen: Chosen;
   private readonly view = new SurfaceView();
