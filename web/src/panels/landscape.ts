@@ -60,7 +60,7 @@ class LandscapePanel implements Panel {
     );
     const side = element(
       "div",
-      { class: "surface-side", style: "flex: 0 1 min(32em, 45%)" },
+      { class: "surface-side", style: "flex: 0 1 min(19em, 34%)" },
       element("div", { class: "surface-texts" }, this.legend, this.text),
     );
     const fill = element("div", { class: "plot-fill" }, this.view.element);
