@@ -53,13 +53,15 @@ Vector samples_along(const LiveIteration& at, int samples) {
 
 }  // namespace
 
-std::vector<CurvePoint> curve_along(const LiveIteration& at, double c, int samples) {
+std::vector<CurvePoint> curve_along(const LiveIteration& at, double c, int samples,
+                                    const std::function<bool()>& goes_on) {
   ASPIC_CHECK(samples >= 2);
   const double slope = at.E.dot(at.g, at.d), curvature = at.E.dot(at.d, hessian_times(at, at.d));
   const Vector alphas = samples_along(at, samples);
   std::vector<CurvePoint> curve(samples);
   Vector x(at.x.size());
   for (int i = 0; i < samples; ++i) {
+    if (goes_on && !goes_on()) return {};
     CurvePoint& point = curve[i];
     const double alpha = point.alpha = alphas[i];
     for (size_t k = 0; k < x.size(); ++k) x[k] = at.x[k] + alpha * at.d[k];
@@ -71,7 +73,7 @@ std::vector<CurvePoint> curve_along(const LiveIteration& at, double c, int sampl
   return curve;
 }
 
-Slice slice_through(const LiveIteration& at, int samples) {
+Slice slice_through(const LiveIteration& at, int samples, const std::function<bool()>& goes_on) {
   ASPIC_CHECK(samples >= 2);
   Objective& E = at.E;
   Vector v = across_direction(at);
@@ -82,6 +84,7 @@ Slice slice_through(const LiveIteration& at, int samples) {
   Vector x(at.x.size());
   for (int row = 0; row < samples; ++row)
     for (int column = 0; column < samples; ++column) {
+      if (goes_on && !goes_on()) return {};
       const double s = between(-0.5, 1.5, column, samples), t = between(-1, 1, row, samples);
       for (size_t k = 0; k < x.size(); ++k) x[k] = at.x[k] + s * at.d[k] + t * v[k];
       slice.point.push_back(

@@ -121,6 +121,7 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
 
   forget(side: SideName): void {
     this.running.forget(side);
+    this.emit("range", undefined);
   }
 
   range(field: Field): ColourRange | null {
