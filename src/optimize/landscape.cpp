@@ -12,11 +12,12 @@ using Vector = std::vector<double>;
 
 double between(double first, double last, int i, int samples) { return first + (last - first) * i / (samples - 1); }
 
-// u times the exact Hessian at the iterate.
-Vector hessian_times(const LiveIteration& at, std::span<const double> u) {
-  Vector product(u.size());
-  at.E.hessian(at.x, {Definiteness::exact}).multiply(u, product);
-  return product;
+const BlockSparse& exact_hessian(const LiveIteration& at) { return at.E.hessian(at.x, {Definiteness::exact}); }
+
+Vector product(const BlockSparse& H, std::span<const double> u) {
+  Vector Hu(u.size());
+  H.multiply(u, Hu);
+  return Hu;
 }
 
 // What is left of u across d, with the length of d; empty when u is along d.
@@ -30,11 +31,11 @@ Vector across(Objective& E, std::span<const double> u, std::span<const double> d
   return v;
 }
 
-Vector across_direction(const LiveIteration& at) {
+Vector across_direction(const LiveIteration& at, const BlockSparse& H) {
   Vector downhill(at.g.begin(), at.g.end());
   for (double& gi : downhill) gi = -gi;
   Vector v = across(at.E, downhill, at.d);
-  if (v.empty()) v = across(at.E, hessian_times(at, at.g), at.d);
+  if (v.empty()) v = across(at.E, product(H, at.g), at.d);
   if (v.empty()) v.assign(at.d.size(), 0.0);  // E is isotropic here: every plane through d is alike
   return v;
 }
@@ -56,7 +57,7 @@ Vector samples_along(const LiveIteration& at, int samples) {
 std::vector<CurvePoint> curve_along(const LiveIteration& at, double c, int samples,
                                     const std::function<bool()>& goes_on) {
   ASPIC_CHECK(samples >= 2);
-  const double slope = at.E.dot(at.g, at.d), curvature = at.E.dot(at.d, hessian_times(at, at.d));
+  const double slope = at.E.dot(at.g, at.d), curvature = at.E.dot(at.d, product(exact_hessian(at), at.d));
   const Vector alphas = samples_along(at, samples);
   std::vector<CurvePoint> curve(samples);
   Vector x(at.x.size());
@@ -76,8 +77,9 @@ std::vector<CurvePoint> curve_along(const LiveIteration& at, double c, int sampl
 Slice slice_through(const LiveIteration& at, int samples, const std::function<bool()>& goes_on) {
   ASPIC_CHECK(samples >= 2);
   Objective& E = at.E;
-  Vector v = across_direction(at);
-  const Vector Hd = hessian_times(at, at.d), Hv = hessian_times(at, v);
+  const BlockSparse& H = exact_hessian(at);
+  Vector v = across_direction(at, H);
+  const Vector Hd = product(H, at.d), Hv = product(H, v);
   const double gd = E.dot(at.g, at.d), gv = E.dot(at.g, v);
   const double dHd = E.dot(at.d, Hd), dHv = E.dot(v, Hd), vHv = E.dot(v, Hv);
   Slice slice{samples, samples, {}, {}};
