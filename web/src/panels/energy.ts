@@ -14,7 +14,7 @@ import {
   numberField,
   oncePerFrame,
 } from "../plots/dom";
-import { balanceText, Ledger, ledgerColumns } from "../plots/ledger";
+import { balanceText, calmRange, Ledger, ledgerColumns } from "../plots/ledger";
 import { csv, short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
 import { paintVerticalLine } from "../plots/verticalLine";
@@ -127,6 +127,7 @@ class EnergyPanel implements Panel {
       read: (key, x) => this.shown().map(({ ledger }) => withUnit(this.valueAt(ledger, key, x), "J")),
       caption: (x) => this.captionAt(x),
       xRange: () => this.xRange(),
+      yRange: () => (log ? null : this.calmRange()),
       paint: (u, colours) => this.paintNow(u, colours),
       zoomed: (range) => {
         this.range = range;
@@ -134,6 +135,11 @@ class EnergyPanel implements Panel {
       },
     });
     this.redraw();
+  }
+
+  private calmRange(): [number, number] | null {
+    const { a, b } = this.ledgers;
+    return a && b ? calmRange(a, b) : null;
   }
 
   private xOf(ledger: Ledger): number[] {
@@ -217,7 +223,8 @@ class EnergyPanel implements Panel {
     });
     const dashes = this.ledgers.b ? [`${this.store.side("b")?.scene.label || "b"} is dashed`] : [];
     const logText = this.logSwitch.input.checked ? ["absolute values; zeros are left out"] : [];
-    const text = [...texts.filter((t) => t !== ""), ...dashes, ...logText].join(" · ");
+    const wild = !this.logSwitch.input.checked && this.calmRange() ? ["one side leaves the plot; log shows it"] : [];
+    const text = [...texts.filter((t) => t !== ""), ...dashes, ...wild, ...logText].join(" · ");
     if (this.note.textContent !== text) this.note.textContent = text;
   }
 

@@ -124,6 +124,22 @@ export class Ledger {
   }
 }
 
+const kDwarfs = 1e3; // times as much: the other could not be told from zero
+
+// The energies to be shown of two sides of which one has blown up: about those of the calmer one. Null: both can be shown.
+export function calmRange(one: Ledger, other: Ledger): [number, number] | null {
+  const [calm, wild] = one.drift().scale <= other.drift().scale ? [one, other] : [other, one];
+  const scale = calm.drift().scale;
+  if (!(scale > 0) || wild.drift().scale <= kDwarfs * scale) return null;
+  let [low, high] = [0, 0];
+  for (const column of calm.columns)
+    for (const value of column) {
+      low = Math.min(low, value ?? 0);
+      high = Math.max(high, value ?? 0);
+    }
+  return [2 * low, 2 * high];
+}
+
 // Unknown if a part is unknown.
 function sum(parts: readonly MaybeNumber[]): MaybeNumber {
   let total = 0;
