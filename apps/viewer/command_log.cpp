@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <ranges>
 
 #include "base/error.h"
 
@@ -95,7 +96,7 @@ void CommandLog::rewind(int step, int b) {
     again.push_back({step + 1, b, event->command});
   }
   events_.erase(undone, events_.end());
-  for (auto event = again.rbegin(); event != again.rend(); ++event) add(*event);
+  for (const Event& event : std::views::reverse(again)) add(event);
 }
 
 void CommandLog::forget_side_b() {

@@ -9,7 +9,7 @@
 
 namespace aspic::viewer {
 
-struct Event {
+struct Event {   // NOLINT(bugprone-exception-escape): to move JSON throws nothing
   int step = 1;  // carried out before this step of side a
   int b = -1;    // and when side b had taken so many steps; -1: there was none
   Json command;

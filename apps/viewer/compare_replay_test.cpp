@@ -35,6 +35,7 @@ TEST(Comparison, IsGrabbedPinnedAndSetOnBothSides) {
              {"target", {1, 0.5, 0}}});
   EXPECT_FALSE(page.side("a")["grab"].is_null());
   EXPECT_EQ(page.side("a")["grab"]["point"], page.side("b")["grab"]["point"]);
+  EXPECT_EQ(page.side("a")["grab"]["force"], page.side("b")["grab"]["force"]);  // one spring
   page.send({{"do", "pin"}, {"side", "b"}, {"vertices", {30}}, {"pinned", true}});
   EXPECT_EQ(page.pins("a"), page.pins("b"));
   page.send({{"do", "set"}, {"key", "material.density"}, {"value", 900}});

@@ -68,6 +68,16 @@ Vec3d stretches(const Mat3d& F) {
   return {{root(squared[2]), root(squared[1]), root(squared[0])}};
 }
 
+double largest_stretch(const Mat3d& F) {
+  Mat3d C = transpose(F) * F;
+  const double mean = trace(C) / 3;
+  for (int i = 0; i < 3; ++i) C(i, i) -= mean;
+  const double p = std::sqrt(squared_norm(C) / 6);
+  if (p == 0) return std::sqrt(mean);
+  const double r = std::clamp(determinant(C) / (2 * p * p * p), -1.0, 1.0);
+  return std::sqrt(std::max(mean + 2 * p * std::cos(std::acos(r) / 3), 0.0));
+}
+
 std::span<const double> FieldValues::tet_values(const std::string& field, const View& view) {
   const Model& model = view.simulation.model();
   if (field == "density") return model.density;
@@ -78,7 +88,7 @@ std::span<const double> FieldValues::tet_values(const std::string& field, const 
     tet_.resize(tets);
     parallel_for(tets, [&](int t) {
       tet_[t] = field == "quality" ? mean_ratio(corners(model.mesh, t))
-                                   : stretches(deformation_gradient(model.mesh, t, view.x))[0];
+                                   : largest_stretch(deformation_gradient(model.mesh, t, view.x));
     });
     return tet_;
   }

@@ -11,7 +11,7 @@
 #include "scene/expression_function.h"
 #include "scene/scene_document.h"
 #include "scene/solver_options.h"
-#include "viewer/microscope.h"
+#include "viewer/iteration_query.h"
 #include "viewer/settings.h"
 
 namespace aspic::viewer {

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
 #include "scene/scene.h"
+#include "viewer/iteration_query.h"
 #include "viewer/session_test.h"
 
 namespace aspic::viewer {
@@ -208,6 +210,24 @@ TEST(Questions, AboutTheStepUnderWay) {
   EXPECT_EQ(reply["value"], page.rows()[1]["iterations"][0]["value"]);
 }
 
+TEST(Questions, AboutAnIterationAreGivenUpWhenSomethingElseIsToBeDone) {
+  Side side(load_steered(Page::scene_file(kBeam), {}, {}), size_t{1} << 20);
+  side.step([] { return true; });
+  const std::vector<double> q = side.simulation().state().q;
+  for (const int patience : {0, 1, 50, 500}) {  // before, within the curve, and within the slice
+    int asked = 0;
+    try {
+      iteration_reply(side, 1, 1, [&] { return asked++ < patience; });
+      FAIL() << "was answered";
+    } catch (const InvalidInput& e) {
+      EXPECT_EQ(std::string(e.what()).find("interrupted"), 0u) << e.what();
+    }
+    EXPECT_EQ(asked, patience + 2) << "went on after it was told to stop";
+  }
+  EXPECT_EQ(side.simulation().state().q, q);
+  EXPECT_EQ(iteration_reply(side, 1, 1, [] { return true; })["step"], 1);
+}
+
 TEST(Questions, AnExplicitStepHasNoIterations) {
   Page page(kBeam, {"time.integrator=symplectic_euler", "time.step=1e-4"});
   page.steps(2);
@@ -231,7 +251,7 @@ TEST(Questions, ForAMeshAndTheScene) {
 
 TEST(Questions, AboutAFunction) {
   Page page;
-  const auto ask = [&](Json changes) {
+  const auto ask = [&](const Json& changes) {
     Json question = {{"ask", "function"},          {"name", "rosenbrock"}, {"start", {-1.2, 1}},
                      {"settings", Json::object()}, {"iteration", 2},       {"samples", 21}};
     question.update(changes);

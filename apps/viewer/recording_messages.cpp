@@ -25,7 +25,8 @@ std::string solver_words(const Table& document) {
 }  // namespace
 
 Json hello_message(const RecordedScene& recorded) {
-  const Value* version = document_of(recorded.scene).find("version");
+  const Table document = document_of(recorded.scene);
+  const Value* version = document.find("version");
   return {{"kind", "hello"}, {"protocol", 1}, {"version", version ? version->text() : ""},
           {"steers", true},  {"live", false}, {"lessons", Json::array()}};
 }

@@ -19,10 +19,13 @@ constexpr size_t kLongestCommand = size_t{1} << 20;  // except a recorded sessio
 constexpr int kComplaints = 5;                       // in one second
 
 // Commands that do not wait for the end of a slow step.
-bool is_urgent(std::string_view command) {
+// Whoever steers does not wait for the answer to a question.
+Urgency urgency_of(std::string_view command) {
   constexpr std::array<std::string_view, 9> kUrgent = {"pause",  "reset",  "load",    "set",        "rewind",
                                                        "lesson", "replay", "compare", "end_compare"};
-  return std::find(kUrgent.begin(), kUrgent.end(), command) != kUrgent.end();
+  if (command.empty()) return Urgency::none;
+  const bool is_urgent = std::find(kUrgent.begin(), kUrgent.end(), command) != kUrgent.end();
+  return is_urgent ? Urgency::before_steps : Urgency::before_questions;
 }
 
 std::string refusal(const std::string& id, const std::string& why) {
@@ -100,14 +103,15 @@ void Room::receive(PageId id, std::string text) {
   if (text.empty()) text = " ";  // refused like any other text that is no message
   const bool steers = steers_ == id;
   if (steers && (head.does == "grab" || head.does == "release")) is_holding_ = head.does == "grab";
-  const bool urgent = steers && is_urgent(head.does);
+  const Urgency urgency = steers ? urgency_of(head.does) : Urgency::none;
   const bool is_added = simulation_->add({.page = id,
                                           .role = steers ? Role::steers : Role::watches,
                                           .text = std::move(text),
-                                          .is_urgent = urgent,
+                                          .urgency = urgency,
+                                          .is_question = head.does.empty(),
                                           .is_superseded = head.does == "move" && head.id == "null"});
   if (!is_added) return send(*page, refusal(head.id, "too many messages wait for the step under way"));
-  if (urgent && !is_watching_urgency_) watch_urgency();
+  if (urgency != Urgency::none && !is_watching_urgency_) watch_urgency();
 }
 
 void Room::take(Page& page, const std::string& id) {

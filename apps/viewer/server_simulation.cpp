@@ -6,7 +6,7 @@ namespace aspic::viewer {
 namespace {
 
 constexpr size_t kInboxRequests = 1000, kInboxBytes = size_t{64} << 20;
-constexpr std::chrono::milliseconds kSlow(300);  // a step that an urgent request does not wait for
+constexpr std::chrono::milliseconds kSlow(300);  // what an urgent request does not wait for
 constexpr std::chrono::microseconds kBetweenPictures(16'600);
 
 }  // namespace
@@ -43,7 +43,6 @@ bool SimulationThread::add(Request request) {
   }
   if (inbox_.size() >= kInboxRequests || inbox_bytes_ + size > kInboxBytes) return false;
   inbox_bytes_ += size;
-  urgent_ += request.is_urgent;
   inbox_.push_back(std::move(request));
   woken_ = true;
   changed_.notify_one();
@@ -58,8 +57,10 @@ void SimulationThread::want_pictures() {
 
 bool SimulationThread::interrupt_if_slow() {
   const std::lock_guard lock(mutex_);
-  if (urgent_ == 0) return false;
-  if (busy_since_ && Clock::now() - *busy_since_ > kSlow) session_.interrupt();
+  Urgency most = Urgency::none;
+  for (const Request& request : inbox_) most = std::max(most, request.urgency);
+  if (most == Urgency::none) return false;
+  if (busy_since_ && most >= gives_way_to_ && Clock::now() - *busy_since_ > kSlow) session_.interrupt();
   return true;
 }
 
@@ -112,7 +113,6 @@ std::optional<Request> SimulationThread::next() {
   Request request = std::move(inbox_.front());
   inbox_.pop_front();
   inbox_bytes_ -= request.text.size();
-  urgent_ -= request.is_urgent;
   return request;
 }
 
@@ -121,12 +121,13 @@ bool SimulationThread::is_woken() const {
   return woken_;
 }
 
-// Lets interrupt() reach this work, and nothing that comes after it.
+// Lets interrupt() reach this work, for what is at least that urgent, and nothing that comes after it.
 template <class Work>
-auto SimulationThread::interruptibly(Work work) {
+auto SimulationThread::interruptibly(Urgency for_what, Work work) {
   {
     const std::lock_guard lock(mutex_);
     busy_since_ = Clock::now();
+    gives_way_to_ = for_what;
   }
   auto result = work();
   const std::lock_guard lock(mutex_);
@@ -136,7 +137,8 @@ auto SimulationThread::interruptibly(Work work) {
 
 void SimulationThread::carry_out(const Request& request) {
   if (request.text.empty()) return audience_.greet(request.page, session_.greeting(request.role));
-  Answer answer = interruptibly([&] { return session_.handle(request.text, request.role); });
+  const Urgency gives_way_to = request.is_question ? Urgency::before_questions : Urgency::before_steps;
+  Answer answer = interruptibly(gives_way_to, [&] { return session_.handle(request.text, request.role); });
   if (!answer.to_all.empty()) audience_.tell_all(std::move(answer.to_all));
   if (!answer.to_sender.empty() && request.page != kNoPage) audience_.tell(request.page, std::move(answer.to_sender));
 }
@@ -157,7 +159,7 @@ void SimulationThread::play() {
     const Clock::time_point then = Clock::now();
     return then < together && !is_woken() && pacing_.due(session_.time(), session_.speed(), then) <= then;
   };
-  audience_.tell_all(interruptibly([&] { return session_.advance(goes_on); }));
+  audience_.tell_all(interruptibly(Urgency::before_steps, [&] { return session_.advance(goes_on); }));
   if (rate_.update(session_.time(), Clock::now())) session_.note_rate(rate_.value());
   next_step_ = pacing_.due(session_.time(), session_.speed(), Clock::now());
 }

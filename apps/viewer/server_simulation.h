@@ -28,11 +28,15 @@ class Audience {
   virtual void show(Messages pictures, long version) = 0;
 };
 
+// What a request does not wait for when that takes long: it is interrupted.
+enum class Urgency { none, before_questions, before_steps };
+
 struct Request {
   PageId page = kNoPage;
   Role role = Role::watches;
-  std::string text;            // empty: the page has just come, and is to be greeted
-  bool is_urgent = false;      // a step that takes long is not waited for
+  std::string text;  // empty: the page has just come, and is to be greeted
+  Urgency urgency = Urgency::none;
+  bool is_question = false;
   bool is_superseded = false;  // by one of its kind that directly follows
 };
 
@@ -44,7 +48,7 @@ class SimulationThread {
   bool add(Request request);  // false: too many wait already
   void want_pictures();       // newer ones than those that were shown last, as soon as there are any
 
-  // Interrupts the step under way if something urgent waits and it takes long. False: nothing urgent waits.
+  // Interrupts what is under way if something more urgent waits and it takes long. False: nothing urgent waits.
   bool interrupt_if_slow();
 
   bool stop(std::chrono::milliseconds patience);  // false: the step under way has not ended
@@ -61,7 +65,7 @@ class SimulationThread {
   void play();
   void show_pictures();
   template <class Work>
-  auto interruptibly(Work work);
+  auto interruptibly(Urgency for_what, Work work);
 
   Session& session_;
   Audience& audience_;
@@ -77,9 +81,9 @@ class SimulationThread {
   std::condition_variable changed_, ended_;
   std::deque<Request> inbox_;
   size_t inbox_bytes_ = 0;
-  int urgent_ = 0;  // in the inbox
   bool woken_ = false, stopping_ = false, has_ended_ = false, pictures_wanted_ = false;
-  std::optional<Clock::time_point> busy_since_;  // the session works, and may be interrupted
+  std::optional<Clock::time_point> busy_since_;   // the session works, and may be interrupted
+  Urgency gives_way_to_ = Urgency::before_steps;  // then: by what is at least as urgent
   std::exception_ptr failure_;
 
   std::thread thread_;

@@ -86,6 +86,7 @@ void Session::Impl::install(std::unique_ptr<ShownSide> first, std::unique_ptr<Sh
   const bool had_b = b != nullptr;
   a = std::move(first);
   b = std::move(second);
+  if (b) b->side.set_stiffness(a->side.stiffness());  // one mouse, one spring, however stiff the bodies
   comparison = std::move(compared);
   base_overrides = a->side.steered().overrides;
   log.clear();

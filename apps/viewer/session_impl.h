@@ -54,7 +54,10 @@ struct Session::Impl {
   void note_progress(Progress progress);
 
   // ---- session_commands.cpp
-  struct Command;
+  struct Command {
+    void (Impl::*carry_out)(Arguments&);
+    bool takes_over = true;  // changes the physics, which ends a replay
+  };
   static const std::map<std::string, Command>& commands();
   void command(const Json& message, Role role);
   void play(Arguments&);
@@ -64,22 +67,27 @@ struct Session::Impl {
   void reset(Arguments&);
   void rewind(Arguments&);
   void set_speed(Arguments&);
+  void colour(Arguments&);
+  void surface(Arguments&);
+  void take(Arguments& arguments) { arguments.finish(); }  // roles are given by who knows the pages
+  void rewind_to(int step);
+
+  // ---- session_scenes.cpp
   void set(Arguments&);
   void load(Arguments&);
   void lesson(Arguments&);
+  void compare(Arguments&);
+  void end_compare(Arguments&);
+
+  // ---- session_hand.cpp
   void grab(Arguments&);
   void move(Arguments&);
   void release(Arguments&);
   void stiffness(Arguments&);
   void pin(Arguments&);
-  void compare(Arguments&);
-  void end_compare(Arguments&);
-  void colour(Arguments&);
-  void surface(Arguments&);
-  void replay(Arguments&);
-  void take(Arguments& arguments) { arguments.finish(); }  // roles are given by who knows the pages
 
-  void rewind_to(int step);
+  // ---- session_replay.cpp
+  void replay(Arguments&);
   void note(Json command);  // that it was carried out now
   void start_replay(Recording recording);
   void repeat_due_events();

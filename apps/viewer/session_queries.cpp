@@ -9,7 +9,8 @@
 #include "io/atomic_file.h"
 #include "io/mesh_file.h"
 #include "viewer/function_query.h"
-#include "viewer/microscope.h"
+#include "viewer/iteration_query.h"
+#include "viewer/place_query.h"
 #include "viewer/session_impl.h"
 
 namespace aspic::viewer {

@@ -116,7 +116,7 @@ class Page {
     EXPECT_EQ(answer["kind"], "reply") << answer;
     return answer["reply"];
   }
-  std::string refused(Json message) {  // in these words
+  std::string refused(const Json& message) {  // in these words
     const Json answer = ask(message);
     EXPECT_EQ(answer["kind"], "refused") << message << " was not refused";
     return answer.value("why", "");

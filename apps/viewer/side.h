@@ -73,7 +73,7 @@ class Side {
 
   // ---- a step again, as it was taken
   // Repeats the step with an observer, and returns to now. Throws InvalidInput when that cannot be done any more.
-  StepReport repeat(int step, const IterationObserver& observe);
+  StepReport repeat(int step, const IterationObserver& observe, const Consent& go_on);
 
  private:
   Simulation& simulated() { return steered_.scene.simulation; }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "linalg/free_memory.h"
 #include "scene/scene_document.h"
 
 namespace aspic::viewer {
@@ -13,12 +14,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kBytesPerTet = 3000;  // with matrices, skin and what is kept for rewinding; multigrid takes a third
+
 // Anything else might never end when it is read.
 void require_file(const fs::path& path) {
   std::error_code error;
   if (fs::is_regular_file(path, error)) return;
   throw InvalidInput(fmt::format("{}: {}; a scene (.toml) or a mesh is expected", path.string(),
                                  fs::exists(path, error) ? "is no file" : "no such file"));
+}
+
+// What is simulated now stays until the other scene is there, and both sides of a comparison have tets.
+TetLimit tets_that_fit() {
+  const double share = 0.25 * static_cast<double>(free_memory());
+  return {.tets = std::floor(share / kBytesPerTet),
+          .why = fmt::format("fit into the {:.1f} GB that a session may take here, a quarter of the free memory",
+                             share / 1e9),
+          .counts_files = true};
 }
 
 }  // namespace
@@ -33,7 +45,8 @@ SteeredScene load_steered(const fs::path& path, const std::vector<std::string>& 
     mouse_load = model.loads.size();
     model.loads.push_back(std::move(spring));
   };
-  Scene scene = load_scene(path, {.overrides = overrides, .announce = announce, .amend = amend});
+  Scene scene =
+      load_scene(path, {.overrides = overrides, .announce = announce, .limit = tets_that_fit(), .amend = amend});
   Table document = read_scene_document(scene.resolved, path.string());
   return {std::move(scene), mouse, mouse_load, std::move(document), path, overrides};
 }

@@ -12,11 +12,12 @@ using Vector = std::vector<double>;
 
 double between(double first, double last, int i, int samples) { return first + (last - first) * i / (samples - 1); }
 
-// u times the exact Hessian at the iterate.
-Vector hessian_times(const LiveIteration& at, std::span<const double> u) {
-  Vector product(u.size());
-  at.E.hessian(at.x, {Definiteness::exact}).multiply(u, product);
-  return product;
+const BlockSparse& exact_hessian(const LiveIteration& at) { return at.E.hessian(at.x, {Definiteness::exact}); }
+
+Vector product(const BlockSparse& H, std::span<const double> u) {
+  Vector Hu(u.size());
+  H.multiply(u, Hu);
+  return Hu;
 }
 
 // What is left of u across d, with the length of d; empty when u is along d.
@@ -30,11 +31,11 @@ Vector across(Objective& E, std::span<const double> u, std::span<const double> d
   return v;
 }
 
-Vector across_direction(const LiveIteration& at) {
+Vector across_direction(const LiveIteration& at, const BlockSparse& H) {
   Vector downhill(at.g.begin(), at.g.end());
   for (double& gi : downhill) gi = -gi;
   Vector v = across(at.E, downhill, at.d);
-  if (v.empty()) v = across(at.E, hessian_times(at, at.g), at.d);
+  if (v.empty()) v = across(at.E, product(H, at.g), at.d);
   if (v.empty()) v.assign(at.d.size(), 0.0);  // E is isotropic here: every plane through d is alike
   return v;
 }
@@ -53,13 +54,15 @@ Vector samples_along(const LiveIteration& at, int samples) {
 
 }  // namespace
 
-std::vector<CurvePoint> curve_along(const LiveIteration& at, double c, int samples) {
+std::vector<CurvePoint> curve_along(const LiveIteration& at, double c, int samples,
+                                    const std::function<bool()>& goes_on) {
   ASPIC_CHECK(samples >= 2);
-  const double slope = at.E.dot(at.g, at.d), curvature = at.E.dot(at.d, hessian_times(at, at.d));
+  const double slope = at.E.dot(at.g, at.d), curvature = at.E.dot(at.d, product(exact_hessian(at), at.d));
   const Vector alphas = samples_along(at, samples);
   std::vector<CurvePoint> curve(samples);
   Vector x(at.x.size());
   for (int i = 0; i < samples; ++i) {
+    if (goes_on && !goes_on()) return {};
     CurvePoint& point = curve[i];
     const double alpha = point.alpha = alphas[i];
     for (size_t k = 0; k < x.size(); ++k) x[k] = at.x[k] + alpha * at.d[k];
@@ -71,17 +74,19 @@ std::vector<CurvePoint> curve_along(const LiveIteration& at, double c, int sampl
   return curve;
 }
 
-Slice slice_through(const LiveIteration& at, int samples) {
+Slice slice_through(const LiveIteration& at, int samples, const std::function<bool()>& goes_on) {
   ASPIC_CHECK(samples >= 2);
   Objective& E = at.E;
-  Vector v = across_direction(at);
-  const Vector Hd = hessian_times(at, at.d), Hv = hessian_times(at, v);
+  const BlockSparse& H = exact_hessian(at);
+  Vector v = across_direction(at, H);
+  const Vector Hd = product(H, at.d), Hv = product(H, v);
   const double gd = E.dot(at.g, at.d), gv = E.dot(at.g, v);
   const double dHd = E.dot(at.d, Hd), dHv = E.dot(v, Hd), vHv = E.dot(v, Hv);
   Slice slice{samples, samples, {}, {}};
   Vector x(at.x.size());
   for (int row = 0; row < samples; ++row)
     for (int column = 0; column < samples; ++column) {
+      if (goes_on && !goes_on()) return {};
       const double s = between(-0.5, 1.5, column, samples), t = between(-1, 1, row, samples);
       for (size_t k = 0; k < x.size(); ++k) x[k] = at.x[k] + s * at.d[k] + t * v[k];
       slice.point.push_back(

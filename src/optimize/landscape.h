@@ -1,5 +1,6 @@
 // E around an iterate, to be looked at: along the direction of a step, and over a plane through it.
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "optimize/minimize.h"
@@ -15,8 +16,10 @@ struct CurvePoint {
 };
 
 // E along d, from a little behind x to a little beyond the longest trial, closer around an accepted step that is much
-// shorter; alpha ascends. `c` is the sufficient decrease. At least two samples.
-std::vector<CurvePoint> curve_along(const LiveIteration& iteration, double c, int samples = 101);
+// shorter; alpha ascends. `c` is the sufficient decrease. At least two samples. Empty when `goes_on`, asked before
+// every sample, says no.
+std::vector<CurvePoint> curve_along(const LiveIteration& iteration, double c, int samples = 101,
+                                    const std::function<bool()>& goes_on = {});
 
 // The plane x + s d + t v: v has the length of d and lies across it, in the direction of -g; where d is along g, in
 // that of H g.
@@ -32,7 +35,7 @@ struct Slice {
   std::vector<double> across;     // v
 };
 
-// s in [-0.5, 1.5], t in [-1, 1].
-Slice slice_through(const LiveIteration& iteration, int samples = 41);
+// s in [-0.5, 1.5], t in [-1, 1]. Without points when `goes_on`, asked before every sample, says no.
+Slice slice_through(const LiveIteration& iteration, int samples = 41, const std::function<bool()>& goes_on = {});
 
 }  // namespace aspic

@@ -85,6 +85,17 @@ TEST(Landscape, TheSliceOfGradientDescentIsAPlane) {
   });
 }
 
+TEST(Landscape, LookingCanBeGivenUp) {
+  look_at_first_iteration(newton(), [](const LiveIteration& iteration) {
+    int asked = 0;
+    const auto goes_on = [&] { return ++asked < 10; };
+    EXPECT_TRUE(slice_through(iteration, 41, goes_on).point.empty());
+    EXPECT_EQ(asked, 10);
+    EXPECT_TRUE(curve_along(iteration, 1e-4, 101, goes_on).empty());
+    EXPECT_EQ(asked, 11);
+  });
+}
+
 TEST(Landscape, LookingChangesNoBitOfTheMinimisation) {
   const auto minimum = [](bool look) {
     Rosenbrock f;

@@ -12,6 +12,7 @@
 #include "mesh/doctor.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
+#include "mesh/surface_orientation.h"
 #include "scene/placement.h"
 
 namespace aspic {
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr int kManyTets = 300'000;                 // about a second of work
 constexpr std::uintmax_t kManyBytes = 30'000'000;  // of a file
-constexpr double kMaxTets = 2e7;                   // of a generated shape: about what fits into a large machine
+constexpr double kBytesPerTet = 1000;              // more than any file takes for one
 
 // The remedy names an option of another command than the one that fails here.
 std::string sentence(const Finding& finding) {
@@ -44,13 +45,12 @@ std::string rounded_text(double count) {  // "3.56e+10"
   return text.str();
 }
 
-void check_count(double tets, const Value& shape) {
-  if (tets > kMaxTets)
-    throw error_at(shape.place, "about " + rounded_text(tets) + " tets; at most " + number_text(kMaxTets) +
-                                    " are generated (choose a larger size, or fewer cells)");
+void check_count(double tets, const Value& shape, const MeshLoader& loader) {
+  const std::string why = loader.why_not(tets);
+  if (!why.empty()) throw error_at(shape.place, why + " (choose a larger size, or fewer cells)");
 }
 
-TetMesh box_mesh(const Value& box) {
+TetMesh box_mesh(const Value& box, const MeshLoader& loader) {
   const Vec3d lower = box["lower"].vector(), upper = box["upper"].vector();
   double count[3];
   for (int i = 0; i < 3; ++i) {
@@ -59,7 +59,7 @@ TetMesh box_mesh(const Value& box) {
         size ? std::max(1.0, std::round((upper[i] - lower[i]) / size->number())) : box["cells"].array()[i].number();
   }
   const bool five = box["cut"].text() == "five";
-  check_count((five ? 5 : 6) * count[0] * count[1] * count[2], box);
+  check_count((five ? 5 : 6) * count[0] * count[1] * count[2], box, loader);
   const std::array<int, 3> cells = {int(count[0]), int(count[1]), int(count[2])};
   return make_box(lower, upper, cells, five ? BoxCut::five : BoxCut::kuhn);
 }
@@ -67,17 +67,17 @@ TetMesh box_mesh(const Value& box) {
 // A tet of edge length s has the volume s^3 / (6 sqrt 2).
 double tets_in(double volume, double size) { return volume * 6 * std::sqrt(2.0) / (size * size * size); }
 
-TetMesh shape_mesh(const Value& shape) {
+TetMesh shape_mesh(const Value& shape, const MeshLoader& loader) {
   const auto number = [](const Value& table, const char* key) { return table[key].number(); };
-  if (const Value* box = shape.find("box")) return box_mesh(*box);
+  if (const Value* box = shape.find("box")) return box_mesh(*box, loader);
   if (const Value* c = shape.find("cylinder")) {
     const double r = number(*c, "radius"), h = number(*c, "height"), size = number(*c, "size");
-    check_count(tets_in(3.15 * r * r * h, size), *c);
+    check_count(tets_in(3.15 * r * r * h, size), *c, loader);
     return make_cylinder(r, h, size);
   }
   if (const Value* s = shape.find("sphere")) {
     const double r = number(*s, "radius"), size = number(*s, "size");
-    check_count(tets_in(4.19 * r * r * r, size), *s);
+    check_count(tets_in(4.19 * r * r * r, size), *s, loader);
     return make_sphere(r, size);
   }
   const Value& t = shape["torus"];
@@ -85,7 +85,7 @@ TetMesh shape_mesh(const Value& shape) {
   if (!(minor < major))
     throw error_at(t["minor_radius"].place,
                    "minor_radius = " + number_text(minor) + "; must be below major_radius = " + number_text(major));
-  check_count(tets_in(19.8 * major * minor * minor, size), t);
+  check_count(tets_in(19.8 * major * minor * minor, size), t, loader);
   return make_torus(major, minor, size);
 }
 
@@ -106,7 +106,7 @@ double mesh_size_of(const Value& body) {
 // Reads or generates the tets and leaves in `body` what gives the same tets again.
 LoadedMesh resolve_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMesh> loaded) {
   const std::string name = body["name"].text();
-  if (const Value* shape = body.find("shape")) return {shape_mesh(*shape), {}};
+  if (const Value* shape = body.find("shape")) return {shape_mesh(*shape, loader), {}};
   const Value mesh = body["mesh"];
   const fs::path path = loader.files.find(mesh);
   if (!loaded) {
@@ -155,6 +155,18 @@ void note_outside(const BodyMesh& body, const std::string& name, std::vector<std
                     " skin vertices lie outside the tets and follow the nearest one");
 }
 
+// One that cannot be within the limit is not read; of one that takes a while this is told.
+void check_size(const fs::path& path, const MeshLoader& loader) {
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(path, error);
+  if (error || bytes < kManyBytes) return;
+  const std::string size = std::to_string(bytes / 1'000'000) + " MB";
+  if (loader.limit.counts_files && static_cast<double>(bytes) > kBytesPerTet * loader.limit.tets)
+    throw InvalidInput(path.string() + ": " + size + "; at most " + number_text(loader.limit.tets) + " tets " +
+                       loader.limit.why + " (choose a coarser mesh)");
+  loader.tell("reading " + path.filename().string() + " (" + size + ")");
+}
+
 }  // namespace
 
 void MeshLoader::tell(const std::string& what) const {
@@ -165,13 +177,25 @@ void MeshLoader::tell_if_many(int tet_count, const std::string& what) const {
   if (tet_count >= kManyTets) tell(what);
 }
 
+std::string MeshLoader::why_not(double more_tets) const {
+  if (tets + more_tets <= limit.tets) return "";
+  return "about " + rounded_text(tets + more_tets) + " tets; at most " + number_text(limit.tets) + " " + limit.why;
+}
+
 LoadedMesh load_mesh(const fs::path& path, double size, MeshLoader& loader) {
-  std::error_code error;
-  if (const std::uintmax_t bytes = fs::file_size(path, error); !error && bytes >= kManyBytes)
-    loader.tell("reading " + path.filename().string() + " (" + std::to_string(bytes / 1'000'000) + " MB)");
+  check_size(path, loader);
   std::variant<TetMesh, TriMesh> mesh = read_mesh(path);
-  if (TetMesh* tets = std::get_if<TetMesh>(&mesh)) return {std::move(*tets), {}};
-  heed(diagnose(std::get<TriMesh>(mesh)), path.string(), loader.notes);
+  if (TetMesh* tets = std::get_if<TetMesh>(&mesh)) {
+    const std::string why = loader.limit.counts_files ? loader.why_not(tets->tet_count()) : "";
+    if (!why.empty()) throw InvalidInput(path.string() + ": " + why + " (choose a coarser mesh)");
+    return {std::move(*tets), {}};
+  }
+  const TriMesh& surface = std::get<TriMesh>(mesh);
+  heed(diagnose(surface), path.string(), loader.notes);
+  if (size > 0)
+    if (const std::string why = loader.why_not(tets_in(std::abs(enclosed_volume(surface)), size)); !why.empty())
+      throw InvalidInput(path.string() + ", filled with edges of length " + number_text(size) + ": " + why +
+                         " (choose a larger mesh_size)");
   loader.tell("filling " + path.filename().string() + " with tets");
   TetMesh tets = tetrahedralise(path, {.size = size, .program = loader.mesher});
   const std::string length = size > 0 ? number_text(size) : "the diagonal of the bounding box / 25";
@@ -183,6 +207,7 @@ LoadedMesh load_mesh(const fs::path& path, double size, MeshLoader& loader) {
 BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMesh> loaded) {
   const std::string name = body["name"].text();
   LoadedMesh mesh = resolve_mesh(body, loader, std::move(loaded));
+  loader.tets += mesh.tets.tet_count();
   check_fingerprint(body.table(), "mesh_hash", fingerprint_of(mesh.tets), "the mesh of body '" + name + "'");
   const AffineMap place = placement_of(body);
   for (Vec3d& X : mesh.tets.rest) X = place(X);

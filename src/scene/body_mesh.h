@@ -24,9 +24,12 @@ struct MeshLoader {
   std::filesystem::path mesher;
   std::vector<std::string>& notes;
   Announce announce;
+  TetLimit limit = {};
+  double tets = 0;  // so far
 
   void tell(const std::string& what) const;
   void tell_if_many(int tets, const std::string& what) const;  // so many that it takes more than a moment
+  std::string why_not(double more_tets) const;                 // empty: they are within the limit
 };
 
 // Reads a mesh; fills a surface with tets of edge length `size` (0: the mesher's choice). Errors that the doctor finds

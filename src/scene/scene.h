@@ -44,12 +44,20 @@ void write_inputs(const Scene& scene, const std::filesystem::path& folder);
 // Told what is about to be done when that takes more than a moment: "checking 5821794 tets of body 'liver'".
 using Announce = std::function<void(const std::string& what)>;
 
+// How many tets all bodies together may have.
+struct TetLimit {
+  double tets = 2e7;
+  std::string why = "are generated";  // after "at most 2e+07"
+  bool counts_files = false;          // meshes that are read, too, not only those that are generated
+};
+
 struct SceneOptions {
   std::vector<std::string> overrides = {};  // "material.young=2e5", "time.step=0.005", "body.bunny.scale=2"
   std::filesystem::path mesher = {};        // aspic-mesh; empty: found by itself
   bool allow_outside = false;               // read files from outside the scene's folder and the folder above it
   Announce announce = {};                   // empty: nobody listens
-  std::function<void(Model&)> amend = {};   // adds to the model what no scene can name; called before it is simulated
+  TetLimit limit = {};
+  std::function<void(Model&)> amend = {};  // adds to the model what no scene can name; called before it is simulated
 };
 
 // A .toml file is a scene; any mesh file becomes one with sensible defaults. Throws InvalidInput with file, line,

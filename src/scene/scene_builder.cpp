@@ -161,7 +161,7 @@ class SceneBuilder {
     source_.document.members.insert(source_.document.members.begin(), Member{"version", {}, {current, {}}});
   }
 
-  MeshLoader mesh_loader() { return {files_, options_.mesher, source_.notes, options_.announce}; }
+  MeshLoader mesh_loader() { return {files_, options_.mesher, source_.notes, options_.announce, options_.limit}; }
 
   void add_bodies() {
     MeshLoader loader = mesh_loader();

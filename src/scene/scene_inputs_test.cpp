@@ -126,6 +126,29 @@ TEST(Scene, WhatTakesLongIsAnnounced) {
               testing::ElementsAre("checking 300000 tets of body 'box'", HasSubstr("setting up")));
 }
 
+TEST(Scene, MoreTetsThanTheLimitAreRefusedBeforeTheyAreMade) {
+  const TestFolder folder;
+  const auto refused = [&](const std::string& text, bool counts_files) -> std::string {
+    const TetLimit limit{.tets = 1000, .why = "fit here", .counts_files = counts_files};
+    try {
+      load_scene(folder.write("s.toml", text), {.limit = limit});
+      return "";
+    } catch (const InvalidInput& e) {
+      return e.what();
+    }
+  };
+  const auto body = [](const std::string& name, const std::string& what) {
+    return "[[body]]\nname = \"" + name + "\"\n" + what + "\n";
+  };
+  const std::string box = "shape = { box = { upper = [1, 1, 1], cells = [5, 5, 5] } }";  // 750 tets
+  EXPECT_EQ(refused(body("a", box), false), "");
+  EXPECT_THAT(refused(body("a", box) + body("b", box), false),
+              AllOf(HasSubstr("about 1.5e+03 tets"), HasSubstr("at most 1000 fit here"), HasSubstr("fewer cells")));
+  write_mesh(folder / "box.msh", make_box({{0, 0, 0}}, {{1, 1, 1}}, {6, 6, 6}));
+  EXPECT_EQ(refused(body("a", "mesh = \"box.msh\""), false), "");
+  EXPECT_THAT(refused(body("a", "mesh = \"box.msh\""), true), AllOf(HasSubstr("box.msh"), HasSubstr("coarser")));
+}
+
 TEST(Scene, MissingOrUnreadableFilesAreNamed) {
   const TestFolder folder;
   EXPECT_THAT(refusal_of(folder / "none.toml"), HasSubstr("none.toml"));

@@ -11,7 +11,7 @@ const kShare = 0.62; // of the window, at most: the mesh keeps the rest
 export class Dock {
   private open: Panel | null = null;
   private last: Panel | null = null; // opened again by the key
-  private height: number;
+  private height: number | null = null; // chosen by the reader [px]; null: what the style gives the panel
   private readonly tabs = new Map<Panel, HTMLButtonElement>();
   private readonly body = element("div", { class: "dock-body" });
   private readonly close: HTMLButtonElement;
@@ -21,20 +21,22 @@ export class Dock {
     private readonly page: Page,
     private readonly panels: Panel[],
   ) {
-    this.height = Math.round(innerHeight * 0.4);
     const list = element("div", { role: "tablist", "aria-label": "Plots" });
     for (const panel of panels) list.append(this.makeTab(panel));
     this.close = button({ icon: "close", label: "Close the plots", title: "Close the plots (D)" }, () => this.show(null));
     const divider = makeDivider({
       label: "Height of the plots",
       orientation: "horizontal",
-      size: () => this.height,
+      size: () => root.offsetHeight,
       limits: () => [kSmallest, Math.max(kSmallest, innerHeight * kShare)],
-      resize: (height) => this.resize(height),
+      resize: (height) => {
+        this.height = height;
+        this.resize();
+      },
     });
     root.append(divider, element("div", { class: "dock-tabs" }, list, this.close), this.body);
     list.addEventListener("keydown", (event) => this.moveBetweenTabs(event));
-    addEventListener("resize", () => this.resize(this.height));
+    addEventListener("resize", () => this.resize());
     page.on("panel", (name) => this.show(this.named(name)));
     page.shortcut({ key: "d", does: "Open or close the plots", group: "Panels", run: () => this.toggle() });
     page.keep("dock", {
@@ -56,7 +58,7 @@ export class Dock {
       tab.tabIndex = other === (panel ?? this.panels[0]) ? 0 : -1;
     }
     this.close.hidden = panel === null;
-    this.resize(this.height);
+    this.resize();
     panel?.show(true);
   }
 
@@ -68,10 +70,12 @@ export class Dock {
     this.show(this.open ? null : (this.last ?? this.panels[0]));
   }
 
-  private resize(height: number): void {
-    this.height = Math.max(kSmallest, Math.min(height, Math.round(innerHeight * kShare)));
+  private resize(): void {
+    const largest = Math.round(innerHeight * kShare);
+    const chosen = this.height === null ? "" : `${Math.max(kSmallest, Math.min(this.height, largest))}px`;
     this.root.classList.toggle("closed", this.open === null);
-    this.root.style.height = this.open === null ? "auto" : `${this.height}px`;
+    this.root.classList.toggle("tall", this.open?.isTall ?? false);
+    this.root.style.height = this.open === null ? "auto" : chosen;
     this.page.emit("layout", undefined);
   }
 
@@ -105,6 +109,7 @@ export class Dock {
   private restore(saved: unknown): void {
     const { panel, height } = (saved ?? {}) as { panel?: unknown; height?: unknown };
     if (typeof height === "number" && Number.isFinite(height)) this.height = height;
+    else if (height === null) this.height = null;
     if (panel === null) this.show(null);
     else if (typeof panel === "string") this.show(this.named(panel));
   }

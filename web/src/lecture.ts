@@ -23,6 +23,10 @@ export function neighbour(lessons: Lesson[], from: Lesson | null, by: 1 | -1): L
   return shown[shown.indexOf(from) + by] ?? null;
 }
 
+function pagesText({ pages }: Lesson): string {
+  return /[-,]/.test(pages) ? `Pages ${pages}` : `Page ${pages}`;
+}
+
 export class Lecture {
   private lessons: Lesson[] = [];
   private current: Lesson | null = null;
@@ -83,7 +87,7 @@ export class Lecture {
   private entry(lesson: Lesson): HTMLElement {
     const title = lesson.missing ? `Not shown: ${lesson.missing}` : lesson.claim;
     const entry = button({ title, steers: !lesson.missing }, () => {
-      if (lesson.missing) this.page.notice(`Page ${lesson.pages}, ${lesson.title}: ${lesson.missing}`);
+      if (lesson.missing) this.page.notice(`${pagesText(lesson)}, ${lesson.title}: ${lesson.missing}`);
       else void this.open(lesson);
     });
     entry.append(element("span", { class: "pages" }, lesson.pages), element("span", {}, lesson.title));
@@ -107,8 +111,9 @@ export class Lecture {
       return this.page.notice(messageOf(reason), "error");
     }
     this.current = lesson;
+    this.replay.hidden = !this.replaying; // what an earlier lesson's mouse did
     this.card.replaceChildren(
-      element("h2", {}, `Page ${lesson.pages}: ${lesson.title}`),
+      element("h2", {}, `${pagesText(lesson)}: ${lesson.title}`),
       element("p", { class: "claim" }, lesson.claim),
       element("p", {}, lesson.look),
     );

@@ -59,5 +59,6 @@ export interface Panel {
   readonly name: PanelName | "certificate";
   readonly title: string;
   readonly element: HTMLElement;
+  readonly isTall?: boolean; // takes more than the usual height
   show(visible: boolean): void; // draws only while it is visible
 }

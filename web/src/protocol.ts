@@ -246,7 +246,7 @@ export interface IterationReply {
   trials: TrialRow[];
   curve: { alpha: number[]; value: MaybeNumber[]; model: MaybeNumber[]; textbook: MaybeNumber[]; slide: MaybeNumber[] };
   slice: { columns: number; rows: number; s: number[]; t: number[]; value: MaybeNumber[]; model: MaybeNumber[] };
-  path: { s: number; t: number; value: MaybeNumber }[]; // the step's iterates, projected onto the plane
+  path: { s: number; t: number; value: MaybeNumber }[]; // the step's iterates, projected onto the plane; at most 1000
   text: string; // how the step ended, in words
 }
 

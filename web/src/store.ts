@@ -3,6 +3,9 @@ import { Emitter } from "./emitter";
 import type { Geometry, Hello, Picture, Scene, SideName, State, StepRow } from "./protocol";
 import type { Incoming, Source } from "./source";
 
+const kMostRows = 20_000; // that the program, too, remembers
+const kRowsTooMany = 1000; // before the first ones are forgotten: not at every step
+
 export interface Side {
   scene: Scene;
   geometry: Geometry | null;
@@ -73,6 +76,8 @@ export class Store extends Emitter<Events> {
         if (!side) return;
         while (side.steps.length > 0 && side.steps[side.steps.length - 1].step > message.from) side.steps.pop();
         side.steps.push(...message.steps);
+        if (this.source.live && side.steps.length > kMostRows + kRowsTooMany)
+          side.steps.splice(0, side.steps.length - kMostRows);
         return this.emit("steps", { side: message.side, from: message.from });
       }
       case "pins": {

@@ -1,7 +1,7 @@
 // What is always at hand: the simulation's time, and the doors to everything else.
 import { button, element, icon, messageOf } from "./dom";
 import type { Page } from "./page";
-import type { SideState, State } from "./protocol";
+import type { SideName, SideState, State } from "./protocol";
 import { openShortcutList, shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
 import type { Theme } from "./theme";
@@ -105,8 +105,8 @@ function makeStatus(store: Store): HTMLElement {
   const chips = { a: makeChip(), b: makeChip() };
   store.on("state", (state) => {
     rate.textContent = state.rate > 0 ? `${Number(state.rate.toPrecision(2))}x real time` : "";
-    showChip(chips.a, state.a, state.b ? "A: " : "");
-    showChip(chips.b, state.b, "B: ");
+    showChip(chips.a, state.a, failed(store, "a"), state.b ? "A: " : "");
+    showChip(chips.b, state.b, failed(store, "b"), "B: ");
   });
   return element("div", { class: "group status" }, chips.a, chips.b, rate);
 }
@@ -115,17 +115,25 @@ function makeChip(): HTMLButtonElement {
   return element("button", { type: "button", class: "chip", hidden: true });
 }
 
-function showChip(chip: HTMLButtonElement, side: SideState | null, before: string): void {
+// Whether the step that is shown did not converge.
+function failed(store: Store, name: SideName): boolean {
+  const rows = store.side(name)?.steps ?? [];
+  const row = rows[(store.state?.[name]?.step ?? 0) - (rows[0]?.step ?? 1)];
+  return row?.success === false;
+}
+
+function showChip(chip: HTMLButtonElement, side: SideState | null, bad: boolean, before: string): void {
   chip.hidden = !side || side.status === "";
   if (!side) return;
   const words = side.words;
-  const text = `${before}${side.status}`;
-  const tip = words ? `${words.cause}\n${words.place}\n${words.remedy}` : "The last step converged.";
+  const text = `${before}${side.status.replaceAll("_", " ")}`;
+  const plain = bad ? "The last step did not converge." : "The last step converged.";
+  const tip = words ? `${words.cause}\n${words.place}\n${words.remedy}` : plain;
   if (chip.dataset.tip === tip && chip.textContent === text) return;
   chip.textContent = text;
   chip.dataset.tip = tip;
   chip.setAttribute("aria-label", `Last step: ${text}. ${tip}`);
-  chip.classList.toggle("bad", words !== null);
+  chip.classList.toggle("bad", bad || words !== null);
 }
 
 function makeReader(page: Page, theme: Theme): HTMLElement[] {

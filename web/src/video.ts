@@ -103,6 +103,7 @@ export class Video {
     recorder.ondataavailable = (event) => chunks.push(event.data);
     recorder.onstop = () => {
       stream.getTracks().forEach((track) => track.stop());
+      if (chunks.every((chunk) => chunk.size === 0)) return this.page.notice("The video has no picture: it was too short.", "error");
       const extension = type.startsWith("video/mp4") ? "mp4" : "webm";
       saveFile(fileName(this.store.side("a")?.scene.name ?? "", extension), new Blob(chunks, { type }));
     };

@@ -99,6 +99,35 @@ test("one question is under way, and of those that come meanwhile the newest is 
   assert.ok(chosen.isSeen());
 });
 
+const playing = { kind: "state", playing: true, a: { step: 5, time: 0.05, iteration: -1 }, b: null };
+
+test("while steps fly by, the program is left alone for a while after each answer; a reader's choice is asked at once", async () => {
+  const { source, chosen } = opened();
+  source.say(playing as unknown as ServerMessage);
+  chosen.look();
+  await new Promise((resolve) => setTimeout(resolve, 30));
+  source.asked[0]!.answer();
+  await settled();
+  source.say({ kind: "steps", side: "a", from: 5, steps: rows(5, 1) });
+  chosen.follow(true);
+  chosen.look();
+  assert.equal(source.asked.length, 1);
+  chosen.choose("a", 3, 1);
+  chosen.look();
+  assert.equal(source.asked.length, 2);
+});
+
+test("what was interrupted is asked again", async () => {
+  const { source, chosen } = opened();
+  chosen.choose("a", 2, 0);
+  chosen.look();
+  source.asked[0]!.answer("interrupted: something else is to be done");
+  await settled();
+  assert.equal(chosen.seen, null);
+  chosen.look();
+  assert.equal(source.asked.length, 2);
+});
+
 test("an answer is remembered, but not after a rewind; a refusal is told", async () => {
   const { source, chosen } = opened();
   const look = async (step: number, why?: string): Promise<void> => {

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { balanceText, Ledger, ledgerColumns } from "../src/plots/ledger";
+import { balanceText, calmRange, Ledger, ledgerColumns } from "../src/plots/ledger";
 import { stepRow } from "./rowsOfSteps";
 
 const potentials = ["elasticity", "gravity"];
@@ -63,4 +63,38 @@ test("what is not known stays unknown, also in sums", () => {
     at(ledger, "balance").map((v) => v === null),
     [false, true, true],
   );
+});
+
+test("a ledger goes on when the first rows are forgotten", () => {
+  const rows = steps(40);
+  const [whole, late] = [new Ledger(potentials), new Ledger(potentials)];
+  whole.update(rows, 0);
+  late.update(rows.slice(0, 30), 0);
+  late.update(rows.slice(20), 30);
+  late.update(rows.slice(20), 40);
+  assert.deepEqual(late.step, whole.step);
+  assert.deepEqual(late.columns, whole.columns);
+});
+
+test("of very many steps the older ones are thinned out; the sums stay", () => {
+  const ledger = new Ledger(potentials);
+  const row = stepRow({ mouse_work: 1, potential: [0, 0] });
+  for (let from = 0; from < 300_000; from += 10_000)
+    ledger.update(Array.from({ length: 10_000 }, (_, i) => ({ ...row, step: from + i + 1 })), from);
+  assert.ok(ledger.step.length <= 100_000);
+  assert.deepEqual([ledger.step[0], ledger.step.at(-1), ledger.step.at(-2)], [1, 300_000, 299_999]);
+  assert.equal(at(ledger, "mouse_work").at(-1), 300_000);
+  assert.ok(ledger.step.every((step, i) => i === 0 || step > ledger.step[i - 1]!));
+});
+
+test("a side that blew up does not flatten the other one", () => {
+  const [calm, wild, alike] = [new Ledger(potentials), new Ledger(potentials), new Ledger(potentials)];
+  calm.update(steps(20), 0);
+  alike.update(steps(10), 0);
+  wild.update([...steps(5), stepRow({ step: 6, time: 0.6, kinetic: 1e60, potential: [1e64, 0] })], 0);
+  assert.equal(calmRange(calm, alike), null);
+  const range = calmRange(calm, wild)!;
+  assert.deepEqual(range, calmRange(wild, calm));
+  const values = calm.columns.flat().map((value) => value ?? 0);
+  assert.ok(range[0] <= Math.min(...values) && range[1] >= Math.max(...values) && range[1] < 1e3);
 });

@@ -8,6 +8,16 @@ const luminance = ([r, g, b]: number[]): number => {
   return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
 };
 
+test("a side that says nothing any more leaves the range to the other one", () => {
+  const range = new RunningRange();
+  range.feed("a", 0, 5);
+  range.feed("b", -1e30, 1e30);
+  range.forget("b");
+  assert.deepEqual(range.get(), { low: 0, high: 5 });
+  range.forget("a");
+  assert.deepEqual(range.get(), { low: 0, high: 5 });
+});
+
 test("ticks are round, inside the range, and about as many as asked", () => {
   assert.deepEqual(ticks(0, 10, 5), [0, 2, 4, 6, 8, 10]);
   assert.deepEqual(ticks(-0.13, 0.31, 4), [0, 0.2]);

@@ -1,12 +1,15 @@
 // The folders "Mouse", "Display" and "Camera" of the settings, and their shortcuts.
 import type { Controller, GUI } from "lil-gui";
 import type { Page } from "../page";
+import type { SettingValue } from "../protocol";
 import { kCameraModes, kViewNames, type CameraMode, type ViewName } from "../view/cameras";
 import { kDefaults, kTools, type Display, type DisplaySettings } from "../view/display";
 import type { View } from "../view/view";
+import { NumberRow } from "./rows";
 
 type Key = keyof DisplaySettings;
 type Switch = { [K in Key]: DisplaySettings[K] extends boolean ? K : never }[Key];
+type Amount = { [K in Key]: DisplaySettings[K] extends number ? K : never }[Key];
 type Choices = Record<string, string>;
 
 // A folder whose controls change the display, and follow when something else does.
@@ -25,8 +28,15 @@ class Folder {
     this.follow(choices ? this.gui.add(held, key, choices) : this.gui.add(held, key), key, label);
   }
 
-  slider(key: Key, label: string, least: number, most: number, step: number): void {
-    this.follow(this.gui.add({ ...this.display.settings }, key, least, most, step), key, label);
+  slider(key: Amount, label: string, least: number, most: number, step: number): void {
+    const model = { value: this.display.settings[key] as number };
+    const kind = Number.isInteger(step) ? "integer" : "number";
+    const row = new NumberRow(this.gui, label, model, { min: least, max: most, log: false, kind });
+    row.name(label).onChange((value: SettingValue) => {
+      if (typeof value === "number") this.display.change({ [key]: value });
+      row.display(this.display.settings[key] as number);
+    });
+    this.display.on("changed", () => row.display(this.display.settings[key] as number));
   }
 
   // To type a number changes `also`, too.

@@ -14,9 +14,10 @@ import {
   numberField,
   oncePerFrame,
 } from "../plots/dom";
-import { balanceText, Ledger, ledgerColumns } from "../plots/ledger";
+import { balanceText, calmRange, Ledger, ledgerColumns } from "../plots/ledger";
 import { csv, short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
+import { paintVerticalLine } from "../plots/verticalLine";
 import { lowerBound, magnitude, merged, nearest, thinned, type Table } from "../plots/table";
 import type uPlot from "uplot";
 
@@ -93,7 +94,7 @@ class EnergyPanel implements Panel {
     const side = this.store.side(name);
     const known = this.ledgers[name];
     if (side && known && known.potentials.join() === side.scene.potentials.join()) {
-      known.update(side.steps, Math.min(known.step.length, side.steps.length));
+      known.update(side.steps, side.steps[side.steps.length - 1]?.step ?? 0);
       return this.configure(); // its label may be another
     }
     this.ledgers[name] = side ? new Ledger(side.scene.potentials) : null;
@@ -126,6 +127,7 @@ class EnergyPanel implements Panel {
       read: (key, x) => this.shown().map(({ ledger }) => withUnit(this.valueAt(ledger, key, x), "J")),
       caption: (x) => this.captionAt(x),
       xRange: () => this.xRange(),
+      yRange: () => (log ? null : this.calmRange()),
       paint: (u, colours) => this.paintNow(u, colours),
       zoomed: (range) => {
         this.range = range;
@@ -133,6 +135,11 @@ class EnergyPanel implements Panel {
       },
     });
     this.redraw();
+  }
+
+  private calmRange(): [number, number] | null {
+    const { a, b } = this.ledgers;
+    return a && b ? calmRange(a, b) : null;
   }
 
   private xOf(ledger: Ledger): number[] {
@@ -216,7 +223,8 @@ class EnergyPanel implements Panel {
     });
     const dashes = this.ledgers.b ? [`${this.store.side("b")?.scene.label || "b"} is dashed`] : [];
     const logText = this.logSwitch.input.checked ? ["absolute values; zeros are left out"] : [];
-    const text = [...texts.filter((t) => t !== ""), ...dashes, ...logText].join(" · ");
+    const wild = !this.logSwitch.input.checked && this.calmRange() ? ["one side leaves the plot; log shows it"] : [];
+    const text = [...texts.filter((t) => t !== ""), ...dashes, ...wild, ...logText].join(" · ");
     if (this.note.textContent !== text) this.note.textContent = text;
   }
 
@@ -225,17 +233,7 @@ class EnergyPanel implements Panel {
     const state = this.store.state?.a;
     const ledger = this.ledgers.a;
     if (!state || !ledger || ledger.step.length === 0 || state.step >= ledger.step[ledger.step.length - 1]!) return;
-    const x = Math.round(u.valToPos(this.byStep ? state.step : state.time, "x", true));
-    if (x < u.bbox.left || x > u.bbox.left + u.bbox.width) return;
-    u.ctx.save();
-    u.ctx.setLineDash([]);
-    u.ctx.strokeStyle = colours.accent;
-    u.ctx.lineWidth = 2;
-    u.ctx.beginPath();
-    u.ctx.moveTo(x, u.bbox.top);
-    u.ctx.lineTo(x, u.bbox.top + u.bbox.height);
-    u.ctx.stroke();
-    u.ctx.restore();
+    paintVerticalLine(u, this.byStep ? state.step : state.time, colours.accent);
   }
 
   private sceneName(): string {

@@ -4,14 +4,13 @@ import type { Page, Panel } from "../page";
 import type { FunctionQuestion, FunctionReply } from "../protocol";
 import type { Store } from "../store";
 import { button, checkbox, downloadCanvas, element, fileName } from "../plots/dom";
-import { isInside, minimizerOf, quadraticAt, uniform, type Grid } from "../plots/grid";
-import { legendOf, type Sign } from "../plots/legend";
-import { plural, short } from "../plots/numbers";
+import { legendOf } from "../plots/legend";
+import { short } from "../plots/numbers";
 import { sentence } from "../plots/words";
 import { SearchChart } from "../plots/search";
 import { SurfaceView } from "../plots/surface";
-import type { Mark, SurfaceContent } from "../plots/surfaceBody";
 import { FunctionForm, kPresets, type Preset } from "./functionForm";
+import { pictureOf, type FunctionPicture } from "./functionPicture";
 
 const kSamples = 81;
 const kPlayEvery = 700; // [ms]
@@ -27,6 +26,7 @@ export function makeFunctionsPanel(store: Store, page: Page): FunctionsPanel {
 class PlanarPanel implements FunctionsPanel {
   readonly name = "functions";
   readonly title = "Functions";
+  readonly isTall = true; // a surface needs room
   readonly element = element("div", {
     class: "plot-panel",
     role: "group",
@@ -57,7 +57,7 @@ class PlanarPanel implements FunctionsPanel {
   private readonly about = element("div", { class: "plot-note" });
   private readonly legend = element("div");
   private reply: FunctionReply | null = null;
-  private signs: Sign[] = [];
+  private shown: FunctionPicture | null = null;
   private iteration = 0;
   private shows = ""; // of the preset
   private readonly questions = new Newest<FunctionQuestion>(
@@ -218,9 +218,9 @@ class PlanarPanel implements FunctionsPanel {
   private draw(): void {
     const reply = this.reply;
     if (!reply) return;
-    const content = this.content(reply);
-    this.view.show(content);
-    this.legend.replaceChildren(legendOf(this.signs));
+    this.shown = this.picture(reply);
+    this.view.show(this.shown.content);
+    this.legend.replaceChildren(legendOf(this.shown.signs));
     const row = reply.iterations[this.iteration];
     this.where.textContent = row ? `iteration ${this.iteration} of ${reply.iterations.length}` : "no iteration";
     const test = this.form.question(0, 2).settings["line_search.test"];
@@ -235,92 +235,15 @@ class PlanarPanel implements FunctionsPanel {
     return cut === null ? "" : `Walls above f = ${short(cut, 3)} are cut off.`;
   }
 
-  private content(reply: FunctionReply): SurfaceContent {
-    const grid: Grid = {
-      x: uniform(reply.lower[0], reply.upper[0], reply.samples),
-      y: uniform(reply.lower[1], reply.upper[1], reply.samples),
-      value: reply.value,
-    };
-    const showModel = this.model.input.checked && reply.iterations.length > 0;
-    const from = reply.path[this.iteration];
-    const to = reply.path[this.iteration + 1];
-    const marks: Mark[] = [];
-    this.signs = [{ sign: "▇", colour: "series3", text: `f = ${reply.formula}` }];
-    this.addTrials(reply, marks);
-    if (showModel) this.addModel(reply, grid, marks);
-    if (reply.minimizer) {
-      marks.push({
-        x: reply.minimizer[0],
-        y: reply.minimizer[1],
-        value: null,
-        shape: "cross",
-        colour: "good",
-        size: 11,
-        label: "minimum",
-      });
-      this.signs.push({ sign: "✕", colour: "good", text: "the minimum of f" });
-    }
-    if (from) marks.push({ x: from.x, y: from.y, value: from.value, shape: "dot", colour: "accent", size: 12 });
-    if (to) marks.push({ x: to.x, y: to.y, value: to.value, shape: "dot", colour: "good", size: 12 });
-    const [x, y] = this.form.start;
-    marks.push({ x, y, value: null, shape: "ring", colour: "bad", size: 13, label: "start: drag me" });
-    this.signs.push(
-      { sign: "●", colour: "accent", text: "this iteration begins here" },
-      { sign: "●", colour: "good", text: "and ends here" },
-    );
-    this.signs.push({ sign: "•─", colour: "text", text: "iterates so far" });
-    return {
-      label: `f = ${reply.formula}, with the path of ${plural(reply.iterations.length, "iteration")}`,
-      grid,
-      axes: { x: "x", y: "y", value: "f" },
-      model: showModel
-        ? grid.value.map((_, k) =>
-            quadraticAt(reply.model, grid.x[k % reply.samples]!, grid.y[Math.floor(k / reply.samples)]!),
-          )
-        : null,
-      path: reply.path.slice(0, this.timer === null && this.iteration === 0 ? undefined : this.iteration + 2),
-      draped: true,
-      direction: null,
-      marks,
-      keep: [from?.value ?? null],
+  private picture(reply: FunctionReply): FunctionPicture {
+    const { iteration } = this;
+    return pictureOf(reply, {
+      iteration,
+      wholePath: this.timer === null && iteration === 0,
+      start: this.form.start,
+      model: this.model.input.checked,
       log: this.log.input.checked,
-    };
-  }
-
-  private addTrials(reply: FunctionReply, marks: Mark[]): void {
-    const from = reply.path[this.iteration];
-    const to = reply.path[this.iteration + 1];
-    const alpha = reply.iterations[this.iteration]?.alpha ?? 0;
-    if (!from || !to || !(alpha > 0)) return;
-    const rejected = reply.trials.filter((trial) => !trial.accepted);
-    for (const trial of rejected) {
-      const f = trial.alpha / alpha;
-      marks.push({
-        x: from.x + f * (to.x - from.x),
-        y: from.y + f * (to.y - from.y),
-        value: trial.value,
-        shape: "cross",
-        colour: "bad",
-        size: 10,
-      });
-    }
-    if (rejected.length > 0)
-      this.signs.push({ sign: "✕", colour: "bad", text: plural(rejected.length, "rejected trial") });
-  }
-
-  private addModel(reply: FunctionReply, grid: Grid, marks: Mark[]): void {
-    this.signs.push({ sign: "▇", colour: "series2", text: "this iteration's quadratic model" });
-    const lowest = minimizerOf(reply.model);
-    if (!lowest) return void this.signs.push({ sign: "◆", colour: "series2", text: "the model has no minimum" });
-    marks.push({
-      ...lowest,
-      value: quadraticAt(reply.model, lowest.x, lowest.y),
-      shape: "diamond",
-      colour: "series2",
-      size: 12,
     });
-    const place = isInside(grid, lowest) ? "" : `, outside at (${short(lowest.x, 3)}, ${short(lowest.y, 3)})`;
-    this.signs.push({ sign: "◆", colour: "series2", text: `the model's minimum${place}` });
   }
 
   private savePng(): void {
@@ -329,7 +252,7 @@ class PlanarPanel implements FunctionsPanel {
       this.reply &&
       this.view.picture(
         `f = ${this.reply.formula}: iteration ${this.iteration} of ${this.reply.iterations.length}`,
-        this.signs,
+        this.shown?.signs ?? [],
       );
     if (picture) downloadCanvas(fileName(name, this.iteration) + ".png", picture);
   }

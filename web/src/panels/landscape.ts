@@ -17,6 +17,7 @@ export function makeLandscapePanel(store: Store, page: Page): Panel {
 class LandscapePanel implements Panel {
   readonly name = "landscape";
   readonly title = "Landscape";
+  readonly isTall = true; // a surface needs room
   readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Energy landscape" });
   private readonly chosen: Chosen;
   private readonly view = new SurfaceView();
@@ -59,7 +60,7 @@ class LandscapePanel implements Panel {
     );
     const side = element(
       "div",
-      { class: "surface-side", style: "flex: 0 1 min(32em, 45%)" },
+      { class: "surface-side", style: "flex: 0 1 min(19em, 34%)" },
       element("div", { class: "surface-texts" }, this.legend, this.text),
     );
     const fill = element("div", { class: "plot-fill" }, this.view.element);

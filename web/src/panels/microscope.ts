@@ -30,7 +30,7 @@ class MicroscopePanel implements Panel {
   private readonly steps = new Rows({
     label: "Steps",
     columns: this.stepColumns(),
-    rowClass: (row) => (this.stepAt(row)?.success === false ? "failed" : "success"),
+    rowClass: (row) => this.stepClass(row),
     choose: (row) => this.chooseStep(row),
   });
   private readonly iterations = new Rows({
@@ -88,6 +88,11 @@ class MicroscopePanel implements Panel {
     return this.chosen.row()?.iterations[row];
   }
 
+  private stepClass(row: number): string {
+    const step = this.stepAt(row);
+    return !step || step.status === "under way" ? "" : step.success ? "success" : "failed";
+  }
+
   private stepColumns(): ConstructorParameters<typeof Rows>[0]["columns"] {
     const of = (text: (step: StepRow) => string) => (row: number) => {
       const step = this.stepAt(row);
@@ -108,7 +113,7 @@ class MicroscopePanel implements Panel {
         meaning: "norm of the forces that are left over, in parts of the threshold that it must be below",
         text: of(residualText),
       },
-      { title: "took", meaning: "wall time", text: of((s) => withUnit(s.seconds, "s", 3)) },
+      { title: "took", meaning: "wall time", class: "spare", text: of((s) => withUnit(s.seconds, "s", 3)) },
     ];
   }
 
@@ -141,8 +146,13 @@ class MicroscopePanel implements Panel {
         meaning: "elements whose Hessian was made definite",
         text: of((it) => String(it.projected_elements)),
       },
-      { title: "inner", meaning: "iterations of the linear solver", text: of((it) => String(it.linear_iterations)) },
-      { title: "took", meaning: "wall time", text: of((it) => withUnit(totalSeconds(it), "s", 3)) },
+      {
+        title: "inner",
+        meaning: "iterations of the linear solver",
+        class: "spare",
+        text: of((it) => String(it.linear_iterations)),
+      },
+      { title: "took", meaning: "wall time", class: "spare", text: of((it) => withUnit(totalSeconds(it), "s", 3)) },
     ];
   }
 

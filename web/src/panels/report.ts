@@ -8,6 +8,7 @@ import type { Store } from "../store";
 import { excess, kColumns, listed, totals } from "./certificate";
 
 const kRowsPerPage = 100;
+const kPause = 500; // between two drawings [ms]: steps may come faster than anybody reads
 
 function text(value: MaybeNumber | string): string {
   return typeof value === "string" ? value : short(value);
@@ -126,18 +127,19 @@ export function makeReportPanel(store: Store, page: Page): Panel {
   const panel = element("div", { class: "report" }, list, notes, makeScene(store, page), table.element);
   let visible = false;
   let due = false;
+  let drawn = -kPause; // when
   const draw = (): void => {
     due = false;
+    drawn = performance.now();
     const side = store.side("a");
     drawTotals(list, side?.steps ?? []);
     notes.replaceChildren(...(side?.scene.notes ?? []).map((note) => element("li", {}, note)));
     table.draw();
   };
-  // Steps may come faster than pictures of the screen.
   const drawSoon = (): void => {
     if (!visible || due) return;
     due = true;
-    requestAnimationFrame(draw);
+    setTimeout(draw, Math.max(0, drawn + kPause - performance.now()));
   };
   for (const event of ["steps", "scene"] as const) store.on(event, drawSoon);
   return {

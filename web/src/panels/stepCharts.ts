@@ -6,6 +6,7 @@ import { short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
 import { SearchChart, type Search } from "../plots/search";
 import { nearest, thinned } from "../plots/table";
+import { paintVerticalLine } from "../plots/verticalLine";
 import { aboveLowest } from "../plots/words";
 import type { IterationRow, MaybeNumber, StepRow } from "../protocol";
 import type uPlot from "uplot";
@@ -251,16 +252,6 @@ export class StepChart {
 
   // A line at the chosen iteration, or step.
   private paintChosen(u: uPlot, colours: Palette): void {
-    const x = Math.round(u.valToPos(this.name === "steps" ? this.chosen.step : this.chosen.iteration, "x", true));
-    u.ctx.save();
-    u.ctx.setLineDash([]);
-    u.ctx.strokeStyle = colours.accent;
-    u.ctx.globalAlpha = 0.6;
-    u.ctx.lineWidth = 2;
-    u.ctx.beginPath();
-    u.ctx.moveTo(x, u.bbox.top);
-    u.ctx.lineTo(x, u.bbox.top + u.bbox.height);
-    u.ctx.stroke();
-    u.ctx.restore();
+    paintVerticalLine(u, this.name === "steps" ? this.chosen.step : this.chosen.iteration, colours.accent, 0.6);
   }
 }

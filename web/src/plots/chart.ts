@@ -163,7 +163,7 @@ export class Chart {
       width,
       height,
       legend: { show: false },
-      padding: [colours.fontSize * 0.6, colours.fontSize, 0, 0],
+      padding: [colours.fontSize * 0.6, colours.fontSize * 1.6, 0, 0],
       cursor: {
         y: false,
         points: { size: 6 },

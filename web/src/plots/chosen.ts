@@ -3,9 +3,11 @@ import { Newest } from "../newest";
 import type { ChosenIteration, Page } from "../page";
 import type { IterationReply, IterationRow, SideName, StepRow } from "../protocol";
 import type { Store } from "../store";
+import { messageOf } from "../dom";
 import { Emitter } from "../emitter";
 
 const kFollowEvery = 500; // [ms]
+const kRest = 4; // times as long as an answer took, the program goes on undisturbed before it is asked about the next
 const kRemembered = 12;
 
 interface Events {
@@ -32,6 +34,7 @@ export class Chosen extends Emitter<Events> {
   private timer: ReturnType<typeof setTimeout> | null = null;
   seen: Seen | null = null; // the newest answer
   private asked = "";
+  private restsUntil = 0; // as performance.now() tells [ms]
   private underWay: StepRow | null = null;
   private withUnderWay: StepRow[] = [];
   private readonly replies = new Map<string, IterationReply>();
@@ -123,11 +126,11 @@ export class Chosen extends Emitter<Events> {
   }
 
   // Asks the program about the chosen iteration, once; `looked` tells when an answer is there. While steps fly by, the
-  // answer may be about one that was chosen before.
+  // answer may be about one that was chosen before: for each question the program leaves its steps.
   look(): void {
     const at = { side: this.side, step: this.step, iteration: this.iteration };
     const key = keyOf(at);
-    if (key === this.asked || !this.iterationRow()) return;
+    if (key === this.asked || !this.iterationRow() || this.isResting()) return;
     this.asked = key;
     const known = this.replies.get(key);
     if (known) this.take({ at, reply: known, why: "" });
@@ -139,7 +142,13 @@ export class Chosen extends Emitter<Events> {
     return this.seen !== null && keyOf(this.seen.at) === keyOf(this);
   }
 
+  private isResting(): boolean {
+    const flies = this.following && this.store.state?.playing === true;
+    return flies && (this.questions.busy || performance.now() < this.restsUntil);
+  }
+
   private async ask(at: ChosenIteration): Promise<void> {
+    const begun = performance.now();
     try {
       const reply = await this.store.source.ask<IterationReply>({ ask: "iteration", ...at });
       this.replies.set(keyOf(at), reply);
@@ -149,8 +158,17 @@ export class Chosen extends Emitter<Events> {
       }
       this.take({ at, reply, why: "" });
     } catch (reason) {
-      this.take({ at, reply: null, why: reason instanceof Error ? reason.message : String(reason) });
+      this.failed(at, messageOf(reason));
+    } finally {
+      const now = performance.now();
+      this.restsUntil = now + kRest * (now - begun);
     }
+  }
+
+  // What was interrupted is asked again when the program has told what it did instead.
+  private failed(at: ChosenIteration, why: string): void {
+    if (!why.startsWith("interrupted")) this.take({ at, reply: null, why });
+    else if (this.asked === keyOf(at)) this.asked = "";
   }
 
   private take(seen: Seen): void {

@@ -1,5 +1,6 @@
 // Where the energy of one side is and where it went, step by step: states as they are, works and losses summed up.
 import type { MaybeNumber, StepRow } from "../protocol";
+import { lowerBound } from "./table";
 import { short, withUnit } from "./numbers";
 import type { Colour } from "./palette";
 
@@ -52,6 +53,9 @@ export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
   ];
 }
 
+// All steps since the start; where they are very many, every other one of the older half goes.
+const kMostSteps = 100_000;
+
 export class Ledger {
   readonly step: number[] = [];
   readonly time: number[] = [];
@@ -66,13 +70,28 @@ export class Ledger {
     this.columns = ledgerColumns(potentials).map(() => []);
   }
 
-  // Steps from `from` on are as in `rows`; earlier ones are known.
+  // Steps after number `from` are as in `rows`, of consecutive steps; earlier ones are known.
   update(rows: readonly StepRow[], from: number): void {
-    const keep = Math.min(from, this.step.length, rows.length);
+    const keep = lowerBound(this.step, from + 0.5);
+    for (const column of this.all()) column.length = keep;
+    const known = this.step[keep - 1] ?? -Infinity;
+    const first = rows[0]?.step ?? 0;
+    for (let i = Math.max(0, known + 1 - first); i < rows.length; ++i) this.append(rows[i]!);
+    if (this.step.length > kMostSteps) this.thinOut();
+  }
+
+  private all(): MaybeNumber[][] {
     const running = [this.lowest, this.highest, this.largest];
-    for (const column of [this.step, this.time, this.residualWork, this.ledgerError, ...running, ...this.columns])
-      column.length = keep;
-    for (let i = keep; i < rows.length; ++i) this.append(rows[i]!);
+    return [this.step, this.time, this.residualWork, this.ledgerError, ...running, ...this.columns];
+  }
+
+  private thinOut(): void {
+    const old = this.step.length / 2;
+    for (const column of this.all()) {
+      const kept = column.filter((_, i) => i >= old || i % 2 === 0);
+      column.length = kept.length;
+      kept.forEach((value, i) => (column[i] = value));
+    }
   }
 
   // The range that the balance has covered since the first step, and the largest energy so far.
@@ -103,6 +122,22 @@ export class Ledger {
     this.residualWork.push(row.residual_work);
     this.ledgerError.push(row.ledger_error);
   }
+}
+
+const kDwarfs = 1e3; // times as much: the other could not be told from zero
+
+// The energies to be shown of two sides of which one has blown up: about those of the calmer one. Null: both can be shown.
+export function calmRange(one: Ledger, other: Ledger): [number, number] | null {
+  const [calm, wild] = one.drift().scale <= other.drift().scale ? [one, other] : [other, one];
+  const scale = calm.drift().scale;
+  if (!(scale > 0) || wild.drift().scale <= kDwarfs * scale) return null;
+  let [low, high] = [0, 0];
+  for (const column of calm.columns)
+    for (const value of column) {
+      low = Math.min(low, value ?? 0);
+      high = Math.max(high, value ?? 0);
+    }
+  return [2 * low, 2 * high];
 }
 
 // Unknown if a part is unknown.

@@ -29,7 +29,7 @@ export class Rows {
     const head = element(
       "tr",
       {},
-      ...options.columns.map((c) => element("th", { title: c.meaning, class: c.left ? "left" : "" }, c.title)),
+      ...options.columns.map((c) => element("th", { title: c.meaning, class: `${c.left ? "left" : ""} ${c.class ?? ""}` }, c.title)),
     );
     this.element.append(element("table", {}, element("thead", {}, head), this.body));
     this.element.addEventListener("scroll", this.redraw);

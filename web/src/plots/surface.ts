@@ -28,6 +28,7 @@ export class SurfaceView {
   private controls: OrbitControls | null = null;
   private shown: SurfaceContent | null = null;
   private body: SurfaceBody | null = null;
+  private readonly left: SurfaceBody[] = []; // until the next one is drawn, which then finds its shaders compiled
   private colours: Palette | null = null;
   private visible = false;
   private stretch = 1; // of the width: flat panels show flat boxes
@@ -192,14 +193,17 @@ export class SurfaceView {
   }
 
   private clear(): void {
-    if (this.body) this.scene.remove(this.body.group);
-    this.body?.dispose();
+    if (!this.body) return;
+    this.scene.remove(this.body.group);
+    if (this.visible && this.renderer) this.left.push(this.body);
+    else this.body.dispose();
     this.body = null;
   }
 
   private draw(): void {
     if (!this.visible || !this.renderer) return;
     this.renderer.render(this.scene, this.camera);
+    for (const body of this.left.splice(0)) body.dispose();
     const made = this.placedLabels().map(({ label, x, y }) => {
       const span = element("span", { class: "surface-label" }, label.text);
       span.style.transform = `translate(${x.toFixed(1)}px, calc(${y.toFixed(1)}px - 50%))`;

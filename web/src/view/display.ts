@@ -7,7 +7,7 @@ import { kMapNames, type MapName } from "./colourMaps";
 import type { Clip } from "./picking";
 import { about, logRange, RunningRange, type ColourRange } from "./ranges";
 
-export const kTools = { drag: "Drag with a spring", pin: "Pin with a brush", read: "Read values" } as const;
+export const kTools = { drag: "drag the body", pin: "pin by brush", read: "read values" } as const;
 export type Tool = keyof typeof kTools;
 
 export const kDefaults = {
@@ -121,6 +121,7 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
 
   forget(side: SideName): void {
     this.running.forget(side);
+    this.emit("range", undefined);
   }
 
   range(field: Field): ColourRange | null {

@@ -11,6 +11,7 @@ import type { Stage } from "./stage";
 export class Figure {
   body: Body | null = null; // none without a stage
   private valuesOf = ""; // field of the values that the body has
+  private lost = false;
 
   constructor(
     private readonly store: Store,
@@ -51,9 +52,20 @@ export class Figure {
     body.show(side.picture);
     this.valuesOf = side.picture.values ? side.scene.field : "";
     const field = this.field();
-    if (field) this.display.feed(this.name, field, side.picture.min, side.picture.max);
+    if (field && !this.isLost()) this.display.feed(this.name, field, side.picture.min, side.picture.max);
     this.colour();
     this.stage?.moved();
+  }
+
+  // What a side is like after it blew up says nothing about the other one: the colours are the other one's.
+  takeState(): void {
+    const wasLost = this.lost;
+    this.lost = this.isLost();
+    if (this.lost && !wasLost) this.display.forget(this.name);
+  }
+
+  private isLost(): boolean {
+    return this.store.state?.[this.name]?.status === "undefined";
   }
 
   apply(style: Style): void {

@@ -44,6 +44,40 @@ export function chooseLabels(
   return chosen.labels(cursor ?? [lens.width / 2, lens.height / 2]);
 }
 
+// A text: x is its left end, y the middle of its height.
+export interface Box {
+  x: number;
+  y: number;
+  width: number;
+  height: number;
+}
+
+// Those that would cover an earlier one move down as far as they must, or up where there is no room below.
+export function apart<Text extends Box>(boxes: readonly Text[], top: number, bottom: number): Text[] {
+  const placed: Text[] = [];
+  for (const box of [...boxes].sort((p, q) => p.y - q.y)) {
+    const first = Math.max(top, Math.min(bottom, box.y));
+    placed.push({ ...box, y: free(box, first, 1, placed, bottom) ?? free(box, first, -1, placed, top) ?? first });
+  }
+  return placed;
+}
+
+function free(box: Box, from: number, direction: 1 | -1, placed: readonly Box[], end: number): number | null {
+  let y = from;
+  for (let tries = 0; tries <= placed.length; ++tries) {
+    if (direction * (end - y) < 0) return null;
+    const hit = placed.find((other) => overlap({ ...box, y }, other));
+    if (!hit) return y;
+    y = hit.y + direction * (1.001 * (box.height + hit.height)) / 2;
+  }
+  return null;
+}
+
+function overlap(p: Box, q: Box): boolean {
+  const apartAcross = p.x >= q.x + q.width || q.x >= p.x + p.width;
+  return !apartAcross && Math.abs(p.y - q.y) < (p.height + q.height) / 2;
+}
+
 interface Candidate {
   x: number;
   y: number;

@@ -1,7 +1,9 @@
 // What is drawn over a view with a 2-D canvas: text and thin shapes that stay readable over anything.
 import { short, ticks as tickTexts } from "../plots/numbers";
+import type { Highlight } from "../page";
 import type { Field, Vec3 } from "../protocol";
 import { colourAt, type MapName } from "./colourMaps";
+import { apart, type Box } from "./labels";
 import { isBehind, project, type Lens } from "./lens";
 import { fraction, logTicks, ticks, type ColourRange } from "./ranges";
 import { unitText, valueText } from "./values";
@@ -98,16 +100,32 @@ export function ring(ink: Ink, [x, y]: Point, radius: number, words: string): vo
   text(ink, words, x + radius + 0.4 * ink.em, y - radius);
 }
 
-// A vertex, or the edges of a tet, with a label.
-export function highlight(ink: Ink, lens: Lens, positions: Vec3[], words: string): void {
+// Vertices, and edges of tets, with labels that do not cover each other.
+export function highlights(ink: Ink, lens: Lens, marked: readonly Highlight[]): void {
+  const { em } = ink;
+  const labels: (Box & { words: string; top: Point })[] = [];
+  for (const { positions, text: words } of marked) {
+    const top = outline(ink, lens, positions);
+    if (!top || words === "") continue;
+    const width = ink.context.measureText(words).width;
+    const x = Math.max(0.3 * em, Math.min(top[0] + 0.6 * em, lens.width - width - 0.3 * em));
+    labels.push({ words, top, x, y: top[1] - 0.8 * em, width, height: 1.4 * em });
+  }
+  for (const { words, top, x, y } of apart(labels, 0.7 * em, lens.height - 0.7 * em)) {
+    if (Math.abs(y - top[1]) > 1.2 * em) stroke(ink, [top, [x, y]], 1, ink.accent);
+    text(ink, words, x, y);
+  }
+}
+
+// Draws it; its highest corner.
+function outline(ink: Ink, lens: Lens, positions: Vec3[]): Point | null {
   const points = positions.map((p) => onScreen(lens, p));
-  if (points.length === 0 || points.some((p) => p === null)) return;
+  if (points.length === 0 || points.some((p) => p === null)) return null;
   const corners = points as Point[];
   for (let i = 0; i < corners.length; ++i)
     for (let j = i + 1; j < corners.length; ++j) stroke(ink, [corners[i], corners[j]], 2.5, ink.accent);
   for (const corner of corners) dot(ink, corner, 3.5, ink.accent);
-  const top = corners.reduce((best, p) => (p[1] < best[1] ? p : best));
-  if (words !== "") text(ink, words, top[0] + 0.6 * ink.em, top[1] - 0.8 * ink.em);
+  return corners.reduce((best, p) => (p[1] < best[1] ? p : best));
 }
 
 // Directions of the scene's axes, in the lower left corner.

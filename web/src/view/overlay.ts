@@ -66,7 +66,7 @@ export class Overlay {
     context.font = `${style.em}px ${style.font}`;
     const ink: marks.Ink = { context, em: style.em, text: style.text, halo: style.background, accent: style.accent };
     for (const { x, y, text } of what.labels) marks.label(ink, text, x, y);
-    for (const { positions, text } of what.highlights) marks.highlight(ink, lens, positions, text);
+    marks.highlights(ink, lens, what.highlights);
     if (what.axes) marks.axes(ink, lens);
     if (what.gridStep > 0) marks.gridNote(ink, lens, what.gridStep);
     if (what.bar) marks.colourBar(ink, lens, what.bar.field, what.bar.range, what.bar.map);

@@ -19,8 +19,12 @@ export class RunningRange {
     [this.low, this.high] = [Infinity, -Infinity];
   }
 
+  // A side is gone, or its values mean nothing any more: the range is that of the other one, if there is one.
   forget(side: string): void {
-    this.latest.delete(side);
+    const others = [...this.latest].filter(([name]) => name !== side);
+    if (!this.latest.has(side) || others.length === 0) return;
+    this.reset();
+    for (const [name, { min, max }] of others) this.feed(name, min, max);
   }
 
   feed(side: string, min: number, max: number): void {

@@ -171,7 +171,7 @@ export class View implements Touched {
     stop.push(store.on("geometry", mine(() => this.takeGeometry())));
     stop.push(store.on("picture", mine(() => this.takePicture())));
     stop.push(store.on("pins", mine(() => this.showPins(this.figure.side?.pins ?? []))));
-    stop.push(store.on("state", () => this.redraw()));
+    stop.push(store.on("state", () => this.takeState()));
     stop.push(display.on("changed", () => this.applyDisplay()));
     stop.push(display.on("range", () => this.recolour()));
     stop.push(page.on("theme", () => this.applyDisplay()));
@@ -181,6 +181,11 @@ export class View implements Touched {
     sizes.observe(this.host);
     stop.push(() => sizes.disconnect());
     document.addEventListener("visibilitychange", () => this.pace.go(), { signal: this.listeners.signal });
+  }
+
+  private takeState(): void {
+    this.figure.takeState();
+    this.redraw();
   }
 
   private highlight(highlights: Highlight[]): void {

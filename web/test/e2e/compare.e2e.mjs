@@ -37,7 +37,13 @@ test("each offered comparison opens two sides, which advance together", async ()
     for (let i = 0; i < 3; ++i) {
       const { a, b } = heard.state;
       await page.keyboard.press("s");
-      await until(`both sides of '${title}' step`, () => heard.state.a.step > a.step && heard.state.b.step > b.step);
+      // An explicit side that blew up has ended, and says so.
+      const ended = () => [heard.state.a, heard.state.b].find(({ status }) => status === "undefined");
+      await until(`both sides of '${title}' step`, () => ended() || (heard.state.a.step > a.step && heard.state.b.step > b.step));
+      if (ended()) {
+        assert.match(ended().words.cause, /blew up/);
+        break;
+      }
       const h = Math.max(heard.scenes.a.h, heard.scenes.b.h);
       assert.ok(Math.abs(heard.state.a.time - heard.state.b.time) < 0.51 * h, `${heard.state.a.time} and ${heard.state.b.time} s`);
     }

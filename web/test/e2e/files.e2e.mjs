@@ -7,9 +7,11 @@ import { assertSameBits, contrast, downloaded, findBody, openSession, pressAndWa
 const program = await startProgram("scenes/cantilever.toml");
 const read = async (file) => readFileSync(await file.path());
 
-async function loadFile({ page }, name, buffer) {
-  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.keyboard.press("Shift+L")]);
-  await chooser.setFiles({ name, mimeType: "application/json", buffer });
+async function loadFile({ page, until, choosers }, name, buffer) {
+  const known = choosers.length;
+  await page.keyboard.press("Shift+L");
+  await until("a question for a file", () => choosers.length > known);
+  await choosers.at(-1).setFiles({ name, mimeType: "application/json", buffer });
 }
 
 test("a workspace brings back settings, comparison, camera and panels", async () => {
@@ -78,7 +80,7 @@ test("the deformed mesh is saved in each format", async () => {
   };
   const points = (await save("obj")).split("\n").filter((line) => line.startsWith("v ")).map((line) => line.split(/\s+/).slice(1, 4).map(Number));
   assert.ok(points.length > 0 && points.flat().every(Number.isFinite));
-  assert.ok(Math.min(...points.map(([, , z]) => z)) < -1e-3, "it sags");
+  assert.ok(Math.min(...points.map(([, y, z]) => Math.min(y, z))) < -1e-4, "it sags");
   assert.match(await save("ply"), /^ply\n[^]*element vertex \d+/);
   const vtu = await save("vtu");
   assert.match(vtu, new RegExp(`NumberOfPoints="${vertices}"`));
@@ -110,12 +112,12 @@ test("a video of the view is recorded", async () => {
   const opened = await openSession(program);
   const { page, close } = opened;
   await page.keyboard.press("Shift+V");
-  await page.getByRole("button", { name: "End the video" }).first().waitFor();
+  await page.locator("button.recording").waitFor();
   for (let i = 0; i < 5; ++i) {
     const { step } = opened.heard.state.a;
     await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === step + 1);
   }
-  await page.waitForTimeout(1200); // of video
+  await page.locator("button.recording").filter({ hasText: /0:0[4-9]|0:[1-5]/ }).waitFor(); // a slow encoder has begun
   const file = await downloaded(page, () => page.keyboard.press("Shift+V"));
   assert.match(file.suggestedFilename(), /\.(webm|mp4)$/);
   const bytes = await read(file);

@@ -114,6 +114,12 @@ function noteDrawnTexts() {
   };
 }
 
+// The last that was said, for a test that fails.
+function story({ state, sent, messages, pictures }) {
+  const told = messages.slice(-8).map(({ kind, why, a }) => [kind, why ?? a?.step].join(" "));
+  return `${JSON.stringify(state)}; sent: ${sent.slice(-5).join(" ").slice(-800)}; told: ${told.join(", ")}; picture of step ${pictures.a?.step}`;
+}
+
 // A page of its own. `close` fails on every error of its scripts, refusal of its content policy and foreign request,
 // but for errors that are `expected`.
 export async function openPage(address, { size = [1280, 720], watchRequests = true, expected = /^$/, prepare, ...context } = {}) {
@@ -123,6 +129,8 @@ export async function openPage(address, { size = [1280, 720], watchRequests = tr
   page.setDefaultTimeout(kPatience);
   const errors = [];
   const heard = listener();
+  const choosers = [];
+  page.on("filechooser", (chooser) => choosers.push(chooser));
   page.on("pageerror", (error) => errors.push(error.stack ?? error.message));
   page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
   const origin = new URL(address).origin;
@@ -141,7 +149,8 @@ export async function openPage(address, { size = [1280, 720], watchRequests = tr
     page,
     heard,
     errors,
-    until: (what, condition) => until(what, () => condition(heard), () => JSON.stringify(heard.state)),
+    choosers, // of files that the page asked for
+    until: (what, condition) => until(what, () => condition(heard), () => story(heard)),
     close: async () => {
       assert.deepEqual(errors.filter((error) => !expected.test(error)), []);
       contexts.delete(inside);
@@ -155,7 +164,16 @@ export async function openSession(program, options) {
   const opened = await openPage(program.address, options);
   await opened.until("a picture", ({ state, pictures }) => state && pictures.a);
   await opened.page.locator("#views canvas").first().waitFor();
+  if (opened.heard.messages.find(({ kind }) => kind === "hello").steers) await tidy(opened);
   return opened;
+}
+
+// What an earlier test left: a comparison, a simulation that plays, steps.
+async function tidy(opened) {
+  if (opened.heard.state.playing) await pressAndWait(opened, " ", "a pause", ({ state }) => !state.playing);
+  if (opened.heard.state.b) await pressAndWait(opened, "c", "one side", ({ state, scenes }) => !state.b && !scenes.b);
+  const { step, iteration } = opened.heard.state.a;
+  if (step > 0 || iteration >= 0) await pressAndWait(opened, "r", "the start", ({ state }) => state.a.step === 0);
 }
 
 export const settingOf = (heard, key, side = "a") => heard.scenes[side].settings.find((setting) => setting.key === key);

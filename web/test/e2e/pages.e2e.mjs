@@ -18,6 +18,7 @@ test("a second page watches, takes the steering, and hands it over when it close
   await two.page.keyboard.press("s"); // does nothing: it watches
   await two.page.getByRole("button", { name: "Steer" }).click();
   await one.page.getByText("Watching").waitFor();
+  await two.page.getByText("Watching").waitFor({ state: "hidden" });
   assert.equal(one.heard.state.a.step, before + 1);
   await pressAndWait(two, "s", "a step of the other", () => one.heard.state.a.step === before + 2);
   await two.close();
@@ -108,12 +109,12 @@ test("nonsense is refused, and the pages go on", async () => {
     assert.ok(two.heard.messages.findLast(({ kind }) => kind === "refused").why.length > 10);
   }
   await two.page.evaluate(() => window.socket.send(new Uint8Array([1, 2, 3, 4])));
-  await one.page.getByRole("button", { name: "Steer" }).click();
+  assert.deepEqual(two.errors.filter((error) => !kLostSocket.test(error)), []);
+  await two.page.context().close();
   await one.page.getByText("Watching").waitFor({ state: "hidden" });
   const { step } = one.heard.state.a;
   await pressAndWait(one, "s", "a step", () => one.heard.state.a.step === step + 1);
   assert.match(program.complained, /refused/);
-  assert.deepEqual(two.errors.filter((error) => !kLostSocket.test(error)), []);
   await one.close();
 });
 

@@ -11,6 +11,9 @@ const frames = (page, count = 3) =>
     for (let i = 0; i < n; ++i) await new Promise((done) => requestAnimationFrame(done));
   }, count);
 
+const openFolders = (page) =>
+  page.locator("#right .lil-closed > .lil-title").evaluateAll((titles) => titles.forEach((title) => title.click()));
+
 async function withSteps(options) {
   const opened = await openSession(program, options);
   await pressAndWait(opened, "r", "the start", ({ state }) => state.a.step === 0);
@@ -62,7 +65,7 @@ async function nameless(page, context) {
 test("every control has a name, in every panel and dialog", async () => {
   const opened = await withSteps();
   const { page, close } = opened;
-  for (const title of await page.locator("#right .lil-closed > .lil-title").all()) await title.evaluate((element) => element.click());
+  await openFolders(page);
   const found = [];
   for (const panel of kPanels) {
     await page.getByRole("tab", { name: panel }).click();
@@ -105,7 +108,7 @@ test("the Tab key reaches every control that is shown", async () => {
 test("every control of the view's display can be used, and nothing breaks", async () => {
   const opened = await withSteps();
   const { page, errors, until, close } = opened;
-  for (const title of await page.locator("#right .lil-closed > .lil-title").all()) await title.evaluate((element) => element.click());
+  await openFolders(page);
   const view = page.locator("#right .lil-gui.lil-root").nth(1);
   for (const select of await view.locator("select").all()) {
     const values = await select.locator("option").evaluateAll((options) => options.map((option) => option.value));
@@ -161,6 +164,7 @@ async function layoutFaults(page) {
     for (const element of document.querySelectorAll("#toolbar, #right *, #left *, #dock *, #right, #left, #dock")) {
       if (!element.checkVisibility() || element.closest("svg")) continue;
       const { overflowX } = getComputedStyle(element);
+      if (element.closest(".report")) continue; // a table of nine columns may scroll
       if (/auto|scroll/.test(overflowX) && element.scrollWidth > element.clientWidth + 1 && element.tagName !== "PRE" && element.tagName !== "TEXTAREA")
         faults.push(`scrolls sideways: ${element.tagName} ${element.className} in ${element.closest("[id]")?.id} (${element.scrollWidth} > ${element.clientWidth})`);
       const box = element.getBoundingClientRect();

@@ -40,13 +40,13 @@ test("iterations are taken one by one, and each has its row", async () => {
     }
     assert.equal(step, 0);
     rows = iteration + 1;
-    await page.waitForFunction((n) => Number(document.querySelector('[aria-label^="Iterations"]').getAttribute("aria-rowcount")) === n, rows);
+    await until("its row", async () => (await countOf(page, "Iterations of the chosen step")) === rows);
     if (iteration === 1) await page.screenshot({ path: join(out, "microscope_mid_step.png") });
     await until("the picture of this iteration", () => heard.pictures.a.iteration === iteration);
   }
   assert.ok(rows > 1, `${rows} iterations`);
   const { steps } = heard.messages.findLast(({ kind }) => kind === "steps");
-  assert.equal(await countOf(page, "Iterations of the chosen step"), steps.at(-1).iterations.length);
+  await until("a row of the last one", async () => (await countOf(page, "Iterations of the chosen step")) === steps.at(-1).iterations.length);
   assert.equal(await countOf(page, "Steps"), 1);
   await page.getByText(/^Step 1\./).waitFor();
   await close();

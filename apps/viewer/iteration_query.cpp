@@ -1,0 +1,169 @@
+#include "viewer/iteration_query.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+
+namespace aspic::viewer {
+namespace {
+
+constexpr size_t kMostOfPath = 1000;                      // iterates
+constexpr size_t kMostPathBytes = size_t{128} << 20;      // that are held until the plane is known
+constexpr double kTetsOfSlice = 2e7, kTetsOfCurve = 1e7;  // to evaluate: together half a second of one processor
+
+int slice_samples(int tets) {
+  const int samples = static_cast<int>(std::sqrt(kTetsOfSlice / std::max(tets, 1)));
+  return std::clamp(samples | 1, 9, 41);  // odd: one of them is the iterate
+}
+
+int curve_samples(int tets) { return std::clamp(static_cast<int>(kTetsOfCurve / std::max(tets, 1)), 31, 101); }
+
+double scalar_product(std::span<const double> a, std::span<const double> b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+// Follows a step while it is repeated, and looks around one of its iterations while that is there. A step of several
+// stages is several minimisations: iterations are counted over all of them, and the path is that of the one meant.
+class Look {
+ public:
+  Look(int iteration, double sufficient_decrease, int tets, const Consent& go_on)
+      : iteration_(iteration), sufficient_decrease_(sufficient_decrease), tets_(tets), go_on_(go_on) {}
+
+  bool follow(const LiveIteration& live);
+  bool is_met() const { return !x_.empty(); }
+  int iterations() const { return count_; }  // so far
+  Json reply() &&;
+
+ private:
+  struct Iterate {
+    std::vector<double> x;
+    double value = 0;
+  };
+
+  void take(const LiveIteration& live);
+  Json on_plane(std::span<const double> x, double value) const;
+
+  const int iteration_;
+  const double sufficient_decrease_;
+  const int tets_;
+  const Consent& go_on_;
+
+  int count_ = 0;
+  std::vector<Iterate> before_;  // of this minimisation, until the plane is known
+  bool is_of_path_ = true;       // no later minimisation has begun
+  double value_ = 0, alpha_ = 0;
+  std::vector<Trial> tried_;
+  std::vector<CurvePoint> curve_;
+  Slice slice_;
+  std::vector<double> x_, d_;
+  Json path_ = Json::array(), end_;
+};
+
+bool Look::follow(const LiveIteration& live) {
+  const bool is_looked_at = count_++ == iteration_;
+  if (live.index == 0) {
+    if (is_met()) is_of_path_ = false;
+    before_.clear();
+  }
+  if (is_looked_at) {
+    take(live);
+    for (const Iterate& iterate : before_) path_.push_back(on_plane(iterate.x, iterate.value));
+    before_.clear();
+  }
+  if (!is_met()) {
+    if (before_.size() < std::min(kMostOfPath, kMostPathBytes / live.x.size_bytes()))
+      before_.push_back({{live.x.begin(), live.x.end()}, live.value});
+  } else if (is_of_path_ && path_.size() < kMostOfPath) {
+    path_.push_back(on_plane(live.x, live.value));
+    end_ = on_plane(live.x_next, std::numeric_limits<double>::quiet_NaN());
+  }
+  return go_on_();
+}
+
+void Look::take(const LiveIteration& live) {
+  value_ = live.value;
+  alpha_ = live.alpha;
+  tried_.assign(live.tried.begin(), live.tried.end());
+  x_.assign(live.x.begin(), live.x.end());
+  d_.assign(live.d.begin(), live.d.end());
+  curve_ = curve_along(live, sufficient_decrease_, curve_samples(tets_), go_on_);
+  slice_ = slice_through(live, slice_samples(tets_), go_on_);
+}
+
+Json Look::on_plane(std::span<const double> x, double value) const {
+  if (slice_.across.empty()) return nullptr;  // given up
+  std::vector<double> away(x.begin(), x.end());
+  for (size_t i = 0; i < away.size(); ++i) away[i] -= x_[i];
+  const auto along = [&](const std::vector<double>& u) {
+    const double uu = scalar_product(u, u);
+    return uu > 0 ? scalar_product(away, u) / uu : 0;
+  };
+  return {{"s", along(d_)}, {"t", along(slice_.across)}, {"value", value}};
+}
+
+Json slice_json(const Slice& slice) {
+  Json s = Json::array(), t = Json::array(), value = Json::array(), model = Json::array();
+  for (int column = 0; column < slice.columns; ++column) s.push_back(slice.point[column].s);
+  for (int row = 0; row < slice.rows; ++row) t.push_back(slice.point[static_cast<size_t>(row) * slice.columns].t);
+  for (const SlicePoint& point : slice.point) {
+    value.push_back(point.value);
+    model.push_back(point.model);
+  }
+  return {{"columns", slice.columns}, {"rows", slice.rows}, {"s", s}, {"t", t}, {"value", value}, {"model", model}};
+}
+
+Json Look::reply() && {
+  path_.push_back(std::move(end_));
+  return {{"value", value_},
+          {"alpha", alpha_},
+          {"trials", viewer::to_json(tried_)},
+          {"curve", viewer::to_json(curve_)},
+          {"slice", slice_json(slice_)},
+          {"path", std::move(path_)}};
+}
+
+std::string in_words(const StepReport& report, const StepRow* row) {
+  std::string text = fmt::format("{} after {} iterations", to_string(report.status), report.iterations);
+  if (row && !row->why.cause.empty()) text += fmt::format(": {}; {}", row->why.cause, row->why.remedy);
+  return text;
+}
+
+}  // namespace
+
+Json to_json(const std::vector<CurvePoint>& curve) {
+  Json alpha = Json::array(), value = Json::array(), model = Json::array(), textbook = Json::array(),
+       slide = Json::array();
+  for (const CurvePoint& point : curve) {
+    alpha.push_back(point.alpha);
+    value.push_back(point.value);
+    model.push_back(point.model);
+    textbook.push_back(point.textbook_bound);
+    slide.push_back(point.slide_bound);
+  }
+  return {{"alpha", alpha}, {"value", value}, {"model", model}, {"textbook", textbook}, {"slide", slide}};
+}
+
+Json iteration_reply(Side& side, int step, int iteration, const Consent& go_on) {
+  const double c = side.simulation().options().solver.minimize.line_search.sufficient_decrease;
+  Look look(iteration, c, side.model().mesh.tet_count(), go_on);
+  const StepReport report = side.repeat(
+      step, [&](const LiveIteration& live) { return look.follow(live); }, go_on);
+  if (!go_on()) throw InvalidInput("interrupted: the program was told to do something else; ask again");
+  if (!look.is_met())
+    throw InvalidInput(look.iterations() == 0 ? fmt::format("step {} minimises nothing", step)
+                                              : fmt::format("iteration {}: step {} has iterations 0 to {}", iteration,
+                                                            step, look.iterations() - 1));
+  Json reply = std::move(look).reply();
+  reply["step"] = step;
+  reply["iteration"] = iteration;
+  reply["text"] = in_words(report, side.rows().find(step));
+  return reply;
+}
+
+}  // namespace aspic::viewer

@@ -1,0 +1,115 @@
+#include "viewer/place_query.h"
+
+#include "mesh/tet_shape.h"
+
+namespace aspic::viewer {
+namespace {
+
+Json json_of(const Vec3d& x) { return {x[0], x[1], x[2]}; }
+Json rows_of(const Mat3d& A) {
+  Json rows = Json::array();
+  for (int r = 0; r < 3; ++r) rows.push_back({A(r, 0), A(r, 1), A(r, 2)});
+  return rows;
+}
+Vec3d at(std::span<const double> x, int vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
+
+Json corner_positions(const Side& side, int tet) {
+  Json list = Json::array();
+  for (const int v : side.model().mesh.tets[tet]) list.push_back(json_of(at(side.view().x, v)));
+  return list;
+}
+
+Mat3d cauchy_of(const TetFields& fields, int tet) {
+  const double* s = &fields.cauchy[6 * static_cast<size_t>(tet)];  // xx yy zz xy yz zx
+  return {{s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]}};
+}
+
+Json tet_field(const Model& model, const std::string& name, int tet) {
+  for (const auto& [field, values] : model.tet_fields)
+    if (field == name) return values[tet];
+  return nullptr;
+}
+
+}  // namespace
+
+Json vertex_reply(const Side& side, const Surface& surface, int vertex) {
+  const Model& model = side.model();
+  const View view = side.view();
+  Json values = Json::object();
+  FieldValues evaluate;
+  std::vector<float> all(surface.rest.size());
+  for (const Field& field : fields_of(model)) {
+    evaluate.evaluate(field.name, view, surface, all);
+    values[field.name] = all[vertex];
+  }
+  double mass = 0;
+  for (int i = 0; i < 4; ++i)
+    mass += surface.weights[vertex][i] * model.mass->vertex_mass()[surface.carrier[vertex][i]];
+  const int user = surface.is_fine ? -1 : model.numbering.vertex.to_user(surface.anchor(vertex));
+  return {{"vertex", user},
+          {"first_entry", surface.is_fine ? -1 : 3 * user},
+          {"rest", json_of(surface.rest[vertex])},
+          {"position", json_of(surface.position(vertex, view.x))},
+          {"velocity", json_of(surface.position(vertex, side.simulation().state().qdot))},
+          {"mass", mass},
+          {"pinned", side.is_pinned(surface.anchor(vertex))},
+          {"values", std::move(values)}};
+}
+
+Json tet_reply(const Side& side, const Surface& surface, int triangle) {
+  const Model& model = side.model();
+  const int t = surface.tet[triangle];
+  const TetFields fields = tet_fields_at(side.view());
+  const Mat3d F = deformation_gradient(model.mesh, t, side.view().x);
+  Json vertices = Json::array();
+  for (const int v : model.mesh.tets[t]) vertices.push_back(model.numbering.vertex.to_user(v));
+  const double size = volume(model.mesh, t);
+  return {{"tet", model.numbering.tet.to_user(t)},
+          {"corners", std::move(vertices)},
+          {"positions", corner_positions(side, t)},
+          {"F", rows_of(F)},
+          {"J", determinant(F)},
+          {"stretches", json_of(stretches(F))},
+          {"cauchy", rows_of(cauchy_of(fields, t))},
+          {"von_mises", fields.von_mises[t]},
+          {"energy_density", fields.energy_density[t]},
+          {"energy", size * fields.energy_density[t]},
+          {"volume", size},
+          {"quality", mean_ratio(corners(model.mesh, t))},
+          {"young", tet_field(model, "young", t)},
+          {"poisson", tet_field(model, "poisson", t)},
+          {"density", model.density[t]}};
+}
+
+Json worst_reply(const Side& side) {
+  const Model& model = side.model();
+  const TetFields fields = tet_fields_at(side.view());
+  Json items = Json::array();
+  const auto add_tet = [&](const char* what, const char* unit, const std::vector<double>& values, double sign) {
+    int worst = 0;
+    for (int t = 1; t < model.mesh.tet_count(); ++t)
+      if (sign * values[t] > sign * values[worst]) worst = t;
+    items.push_back({{"what", what},
+                     {"value", values[worst]},
+                     {"unit", unit},
+                     {"tet", model.numbering.tet.to_user(worst)},
+                     {"vertex", -1},
+                     {"positions", corner_positions(side, worst)}});
+  };
+  std::vector<double> quality;
+  for (int t = 0; t < model.mesh.tet_count(); ++t) quality.push_back(mean_ratio(corners(model.mesh, t)));
+  add_tet("smallest det F", "", fields.det_F, -1);
+  add_tet("largest energy density", "J/m^3", fields.energy_density, 1);
+  add_tet("largest von Mises stress", "Pa", fields.von_mises, 1);
+  add_tet("worst shape at rest", "", quality, -1);
+  if (const StepRow* last = side.rows().last(); last && last->report.worst_vertex >= 0)
+    items.push_back({{"what", "largest residual of the last step"},
+                     {"value", last->report.worst_residual},
+                     {"unit", "N"},
+                     {"tet", -1},
+                     {"vertex", model.numbering.vertex.to_user(last->report.worst_vertex)},
+                     {"positions", Json::array({json_of(at(side.view().x, last->report.worst_vertex))})}});
+  return {{"items", std::move(items)}};
+}
+
+}  // namespace aspic::viewer
