@@ -16,8 +16,8 @@ struct CurvePoint {
 };
 
 // E along d, from a little behind x to a little beyond the longest trial, closer around an accepted step that is much
-// shorter; alpha ascends. `c` is the sufficient decrease. At least two samples. Empty when `goes_on`, asked before every
-// sample, says no.
+// shorter; alpha ascends. `c` is the sufficient decrease. At least two samples. Empty when `goes_on`, asked before
+// every sample, says no.
 std::vector<CurvePoint> curve_along(const LiveIteration& iteration, double c, int samples = 101,
                                     const std::function<bool()>& goes_on = {});
 
