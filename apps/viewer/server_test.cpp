@@ -16,7 +16,6 @@ namespace {
 using namespace test;
 using testing::Contains;
 using testing::HasSubstr;
-using testing::IsEmpty;
 
 constexpr char kScene[] = R"(
 [time]

@@ -67,7 +67,7 @@ Json to_json(const StepRow& row) {
 
 void IterationRows::add(const LiveIteration& live) {
   size_ += 1 + live.tried.size();
-  if (size_ <= kMost) rows_.push_back({live, {live.tried.begin(), live.tried.end()}});
+  if (size_ <= kMost) rows_.push_back({static_cast<const Iteration&>(live), {live.tried.begin(), live.tried.end()}});
 }
 
 void StepRows::add(StepRow row) {
