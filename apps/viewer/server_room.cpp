@@ -137,9 +137,10 @@ void Room::offer(Page& page) {
   for (const auto& picture : pictures_) page.client->send(picture);
 }
 
+// At once, so that nothing which the page answers to its greeting finds it half greeted.
 void Room::greet(PageId id, Messages messages) {
-  tell(id, std::move(messages));
-  post([this, id] {
+  post([this, id, sent = std::move(messages)]() mutable {
+    send_all(id, std::move(sent));
     Page* page = find(id);
     if (!page) return;
     page->is_greeted = true;
@@ -149,10 +150,12 @@ void Room::greet(PageId id, Messages messages) {
 }
 
 void Room::tell(PageId id, Messages messages) {
-  post([this, id, sent = std::move(messages)]() mutable {
-    for (Message& message : sent)
-      if (Page* page = find(id)) page->client->send(std::make_shared<const Message>(std::move(message)));
-  });
+  post([this, id, sent = std::move(messages)]() mutable { send_all(id, std::move(sent)); });
+}
+
+void Room::send_all(PageId id, Messages messages) {
+  for (Message& message : messages)
+    if (Page* page = find(id)) page->client->send(std::make_shared<const Message>(std::move(message)));
 }
 
 void Room::tell_all(Messages messages) {

@@ -54,6 +54,7 @@ class Room : public Audience {
   void watch_urgency();
   void complain(const std::string& line);
   static void send(const Page& page, std::string text);
+  void send_all(PageId id, Messages messages);
   void post(std::function<void()> work);
 
   boost::asio::io_context& network_;

@@ -32,6 +32,8 @@ test("short numbers keep few digits and no zeros at the end", () => {
 test("ticks tell their neighbours apart", () => {
   assert.deepEqual(ticks([-0.5, 0, 0.5, 1]), ["−0.5", "0", "0.5", "1.0"]);
   assert.deepEqual(ticks([1000, 1500, 2000], 1000), ["1.0", "1.5", "2.0"]);
+  assert.deepEqual(ticks([0, 2500, 5000, 7500], 1000), ["0", "2.5", "5.0", "7.5"]);
+  assert.deepEqual(ticks([0, 0.025, 0.05]), ["0", "0.025", "0.050"]);
   const fine = ticks([391.1960001, 391.1960002, 391.1960003]);
   assert.equal(new Set(fine).size, 3);
   assert.deepEqual(ticks([]), []);

@@ -2,7 +2,7 @@
 import "./report.css";
 import { button, element, messageOf, saveFile } from "../dom";
 import type { Page, Panel } from "../page";
-import { short } from "../plots/numbers";
+import { plural, short } from "../plots/numbers";
 import type { MaybeNumber, StepRow, TextReply } from "../protocol";
 import type { Store } from "../store";
 import { excess, kColumns, listed, totals } from "./certificate";
@@ -123,8 +123,10 @@ function makeScene(store: Store, page: Page): HTMLElement {
 export function makeReportPanel(store: Store, page: Page): Panel {
   const list = element("dl", { class: "totals" });
   const notes = element("ul", { class: "notes" });
+  const notesTitle = element("summary");
+  const aboutScene = element("details", {}, notesTitle, notes);
   const table = new StepTable(store);
-  const panel = element("div", { class: "report" }, list, notes, makeScene(store, page), table.element);
+  const panel = element("div", { class: "report" }, list, aboutScene, makeScene(store, page), table.element);
   let visible = false;
   let due = false;
   let drawn = -kPause; // when
@@ -133,7 +135,10 @@ export function makeReportPanel(store: Store, page: Page): Panel {
     drawn = performance.now();
     const side = store.side("a");
     drawTotals(list, side?.steps ?? []);
-    notes.replaceChildren(...(side?.scene.notes ?? []).map((note) => element("li", {}, note)));
+    const told = side?.scene.notes ?? [];
+    aboutScene.hidden = told.length === 0;
+    notesTitle.textContent = `What was chosen for this scene: ${plural(told.length, "note")}`;
+    notes.replaceChildren(...told.map((note) => element("li", {}, note)));
     table.draw();
   };
   const drawSoon = (): void => {

@@ -53,12 +53,20 @@ export function withUnit(value: MaybeNumber | undefined, unit: string, digits = 
   return `${short(value / factor, digits)} ${letter}${unit}`;
 }
 
+// As many as show a gap whole: 0 of 5, 1 of 2.5, 3 of 0.025. A gap of many digits gets three of them.
+function decimalsOf(gap: number): number {
+  const first = Math.max(0, -Math.floor(Math.log10(gap) + 1e-9));
+  const isWhole = (decimals: number): boolean => Math.abs(gap * 10 ** decimals - Math.round(gap * 10 ** decimals)) < 1e-6 * gap * 10 ** decimals;
+  const enough = [first, first + 1, first + 2].find(isWhole) ?? first + 2;
+  return Math.min(12, enough);
+}
+
 // Texts of an axis' ticks, with as many decimals as tell neighbours apart.
 export function ticks(values: readonly (number | null)[], factor = 1): string[] {
   const known = values.filter((v): v is number => v !== null).map((v) => v / factor);
   const gap = known.length > 1 ? Math.abs(known[1]! - known[0]!) : 1;
   const largest = Math.max(...known.map(Math.abs), 0);
-  const decimals = Math.min(12, Math.max(0, -Math.floor(Math.log10(gap) + 1e-9)));
+  const decimals = decimalsOf(gap);
   const plain = largest < 1e6 && (largest === 0 || decimals <= 4);
   return values.map((value) => {
     if (value === null) return "";

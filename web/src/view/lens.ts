@@ -67,3 +67,8 @@ export function onFacingPlane(lens: Lens, ray: Ray, point: Vec3): Vec3 | null {
   if (!(Math.abs(slant) > 1e-9)) return null;
   return along(ray.origin, dot(minus(point, ray.origin), lens.forward) / slant, ray.direction);
 }
+
+export function isInside(lens: Lens, point: Vec3): boolean {
+  const [x, y, depth] = project(lens, point);
+  return !isBehind(lens, depth) && x >= 0 && x <= lens.width && y >= 0 && y <= lens.height;
+}

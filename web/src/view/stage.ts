@@ -5,7 +5,7 @@ import type { Scene, Vec3 } from "../protocol";
 import type { Body, Box } from "./body";
 import { sceneAxes } from "./cameras";
 import type { DisplaySettings } from "./display";
-import { dot, length, minus, type Lens } from "./lens";
+import { dot, isInside, length, minus, type Lens } from "./lens";
 import type { Clip } from "./picking";
 import { roundStep } from "./ranges";
 import { kGroundRadius, makeGroundMaterial } from "./shading";
@@ -18,6 +18,7 @@ export class Stage {
   readonly renderer: THREE.WebGLRenderer; // the constructor throws when there is no WebGL
   gridStep = 0; // [m]
   isBlownUp = false; // the body, so far that it is not drawn
+  hasLeft = false; // the middle of a body that is not larger than the view
   radius = 1; // of the scene's box [m]
   private centre: Vec3 = [0, 0, 0];
   private up: Vec3 = [0, 0, 1];
@@ -175,6 +176,7 @@ export class Stage {
     const height = lens.extent > 0 ? lens.extent : lens.slope * length(minus(this.centre, lens.eye));
     this.isBlownUp = this.reach() > kBlownUp && this.reach() * this.radius > kBlownUp * height;
     body.root.visible = !this.isBlownUp;
+    this.hasLeft = body.box !== null && this.reach() * this.radius < 2 * half && !isInside(lens, middle);
     body.adapt(body.edge * pixels, this.renderer.getPixelRatio(), lift, pinColour);
   }
 

@@ -285,9 +285,8 @@ export class View implements Touched {
 
   // The value under the cursor, while it reads.
   private tip(): Marks["tip"] {
-    if (this.stage?.isBlownUp) {
-      return { at: [0, this.size()[1] / 2], words: "The body has blown up, far out of the view: . shows it." };
-    }
+    const lost = this.stage?.isBlownUp ? "The body has blown up, far out of the view." : "The body has left the view.";
+    if (this.stage?.isBlownUp || this.stage?.hasLeft) return { at: [0, this.size()[1] / 2], words: `${lost} Press 0 to see it.` };
     const { hover, cursor } = this.touch;
     const [shown, values] = [this.figure.coloured(), this.figure.side?.picture?.values];
     const triangles = this.figure.body?.geometry.triangles;
