@@ -138,7 +138,7 @@ make_bunny() {
 }
 
 fetch_bunny() {
-  need "" "$viewer_programs"
+  need "" "nodejs:node npm"
   say "Fetching the surface of the bunny: npm package $bunny_package ..."
   folder=$(mktemp -d)
   if ! (cd "$folder" && logged npm npm pack "$bunny_package"); then
