@@ -57,7 +57,8 @@ Drag wild_drag() {
                    {0.28, {{-0.5, 0.2, 0.2}}},
                    {0.35, {{0.5, -0.4, -0.2}}},
                    {0.42, {{0, 0, 0}}}},
-          .until = 0.6};
+          .until = 0.6,
+          .stiffness = 1e6};
 }
 
 // The cursor's way of page 25, as in scenes/lecture/25_drag.toml.
