@@ -138,7 +138,7 @@ Json function_reply(Arguments& question) {
   Seen seen;
   seen.model = f.model(start);
   const auto observe = [&](const LiveIteration& live) {
-    seen.rows.push_back({live, {live.tried.begin(), live.tried.end()}});
+    seen.rows.push_back({static_cast<const Iteration&>(live), {live.tried.begin(), live.tried.end()}});
     seen.path.push_back(point(live.x[0], live.x[1], live.value));
     if (live.index == iteration) {
       seen.model = f.model({live.x[0], live.x[1]});
