@@ -67,7 +67,7 @@ test("it has the certificate of every step, the energies and the scene", async (
   assert.ok(failed > 0 && failed <= kSteps, `${failed} rows`);
   await panel.getByText(`${kSteps - failed} of ${kSteps}`, { exact: true }).waitFor();
   await page.getByLabel("only steps that did not converge").uncheck();
-  await panel.locator("summary").first().click();
+  await panel.locator("summary").filter({ hasText: "Scene, with every default" }).click();
   await panel.locator("pre").filter({ hasText: /\[solver\]/ }).waitFor();
   await panel.locator("tbody tr").nth(4).getByRole("button").click();
   await page.locator(".place").filter({ hasText: /^step 5,/ }).waitFor();
