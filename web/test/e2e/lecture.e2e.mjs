@@ -37,7 +37,7 @@ test("each page of the lecture opens its scene and its panel, and says what to l
     await page.locator(`[role=tab][aria-selected="true"]`, { hasText: { energy: "Energy", microscope: "Microscope", landscape: "Landscape", functions: "Functions" }[lesson.panel] }).waitFor();
     if (lesson.function) await until(`the function of ${tell}`, () => heard.messages.slice(told).some(({ reply }) => reply?.formula !== undefined));
     await until(`a picture of ${tell}`, ({ pictures, geometries }) => pictures.a && pictures.a.generation === geometries.a.generation);
-    if (i % 6 === 0) await page.screenshot({ path: join(out, `lecture_${lesson.id}.png`) });
+    if (i % 6 === 1) await page.screenshot({ path: join(out, `lecture_${lesson.id}.png`) });
   }
   await close();
 });
