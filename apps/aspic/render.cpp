@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <system_error>
@@ -33,6 +34,8 @@ struct Arguments {
 constexpr size_t kMostBytes = 100'000'000;  // of the page: what a browser bears
 
 viewer::RenderOptions render_options(const Arguments& arguments) {
+  if (!std::isfinite(arguments.fps) || !std::isfinite(arguments.speed))
+    throw InvalidInput("--fps and --speed: finite numbers are needed");
   viewer::RenderOptions options{.view = arguments.view,
                                 .colour = arguments.colour,
                                 .wires = arguments.wires,

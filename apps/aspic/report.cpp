@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <exception>
 #include <filesystem>
 
@@ -36,6 +37,7 @@ int report(const Arguments& arguments) {
   if (!fs::is_directory(arguments.run))
     throw InvalidInput(
         fmt::format("{}: is no directory of a run; aspic run writes one, out/NAME by default", arguments.run.string()));
+  if (!std::isfinite(arguments.max_size)) throw InvalidInput("--max-size: a finite number of megabytes is needed");
   const Scene scene = load_scene(scene_of_run(arguments.run));
   const auto max_bytes = static_cast<size_t>(arguments.max_size * kMegabyte);
   const viewer::Report report = viewer::make_report(arguments.run, scene, {.max_bytes = max_bytes});

@@ -30,7 +30,7 @@ export function renderRequest(query: URLSearchParams): RenderRequest {
   return {
     width: number("width", 1280),
     height: number("height", 720),
-    view: direction.length === 3 ? [direction[0], direction[1], direction[2]] : named(view),
+    view: direction.length === 3 && direction.every(Number.isFinite) && Math.hypot(...direction) > 0 ? [direction[0], direction[1], direction[2]] : named(view),
     colour: query.get("colour") ?? "",
     wires: query.get("wires") !== "0",
     dark: query.get("dark") === "1",
