@@ -14,7 +14,9 @@ MODULES = {  # module: the modules it may include
     "energy": "base math mesh linalg material",
     "optimize": "base math linalg",
     "dynamics": "base math mesh linalg material energy optimize",
+    "fit": "base math mesh linalg material energy optimize dynamics",
     "scene": "base math mesh io linalg material energy optimize dynamics",
+    "capture": "base math mesh io linalg material energy optimize dynamics fit scene",
 }
 LIBRARIES = {  # first part of a third-party header: the files that may include it
     "Eigen": r"src/linalg/.*\.cpp|bench/naive.*|.*_test\.cpp",

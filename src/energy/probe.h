@@ -1,0 +1,55 @@
+// A rigid tip that touches the surface of a body: V(x) = sum over points of the surface of area k phi, an elastic layer
+// that is stiff beside the body, so that poses of the tip are known and its force is measured.
+//   sliding: phi grows with the depth of the point below the surface of the tip, without friction
+//   bonded:  phi = |x - target|^2 / 2 for the points that the tip touches at rest, which follow it as if glued to it
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "energy/energy.h"
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+enum class TipShape { sphere, disc };  // disc: the flat end of a cylinder with a rounded rim
+enum class TipContact { sliding, bonded };
+
+struct Tip {
+  TipShape shape = TipShape::sphere;
+  TipContact contact = TipContact::bonded;
+  double radius = 0;     // [m]
+  double stiffness = 0;  // k of the layer [Pa/m]
+};
+
+// Where the tip is: the centre of the sphere or of the flat end, the way it points, and how it has turned since it
+// touched the body at rest.
+struct TipPose {
+  Vec3d center{};          // [m]
+  Vec3d axis{{0, 0, -1}};  // of length 1, out of the tip
+  Vec3d rotation{};        // vector of the rotation about the centre since the touch [rad]
+};
+
+struct Wrench {
+  Vec3d force{};   // of the tip on the body [N]
+  Vec3d torque{};  // about the centre of the tip [N m]
+};
+
+class Probe : public Energy {
+ public:
+  virtual void set_pose(const TipPose& pose) = 0;
+  virtual const TipPose& pose() const = 0;
+  virtual Wrench wrench(Positions x) const = 0;
+  // d(wrench)/dx . dx, and its transpose: xbar += scale (d(wrench)/dx)' wbar. 3 numbers per vertex.
+  virtual Wrench wrench_product(Positions x, std::span<const double> dx) const = 0;
+  virtual void add_wrench_transposed(Positions x, const Wrench& wbar, double scale, std::span<double> xbar) const = 0;
+  virtual int touched_points(Positions x) const = 0;  // of the surface; 0: the tip is in the air
+};
+
+// `touch`: the pose in which the tip touches the body at rest; where it is to begin with. Throws InvalidInput when a
+// bonded tip touches nothing there.
+std::unique_ptr<Probe> make_probe(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip,
+                                  const TipPose& touch);
+
+}  // namespace aspic

@@ -1,0 +1,20 @@
+// Residuals r(p) of any model, with products of their Jacobian: what fits and their uncertainty need to know of it.
+#pragma once
+#include <span>
+
+namespace aspic {
+
+class LeastSquares {
+ public:
+  virtual ~LeastSquares() = default;
+  virtual int unknowns() const = 0;
+  virtual int residual_count() const = 0;
+  // r(p); false where it is not defined (an equilibrium was not found): another p must be tried.
+  virtual bool evaluate(std::span<const double> p, std::span<double> r) = 0;
+  // Makes the Jacobian J = dr/dp at the p of the last successful evaluate(); false: it does not exist there.
+  virtual bool linearize() = 0;
+  virtual void multiply(std::span<const double> dp, std::span<double> dr) = 0;              // dr = J dp
+  virtual void multiply_transposed(std::span<const double> w, std::span<double> pbar) = 0;  // pbar = J' w
+};
+
+}  // namespace aspic

@@ -1,0 +1,58 @@
+// From the few or many unknowns p of a fit to the material of every tet.
+//   p -> value of each unknown quantity in each tet, in the space where it is fitted (log E, log b, ...) -> mu, lambda,
+//   ...
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "material/registry.h"
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+enum class Spread { uniform, regions, handles, tets };  // one value; per region; radial basis functions; per tet
+
+// A quantity that is fitted: "young", "poisson" or one of the material's own (MaterialInfo::extra). Positive quantities
+// are fitted as logarithms, bounded ones by a smooth map of the line onto their range.
+struct Unknown {
+  std::string quantity = "young";
+  Spread spread = Spread::tets;
+  int handles = 0;     // how many radial basis functions, for Spread::handles
+  double guess = 1e5;  // where the fit starts, in SI units
+};
+
+class ParameterMap {
+ public:
+  // `known`: what every tet has where nothing is fitted. Throws InvalidInput.
+  ParameterMap(const TetMesh& mesh, std::string material, std::vector<MaterialParameters> known,
+               std::vector<Unknown> unknowns);
+  ~ParameterMap();
+  ParameterMap(ParameterMap&&) noexcept;
+
+  int size() const;                // number of unknowns
+  int parameters_per_tet() const;  // mu, lambda and the material's own
+  const std::vector<Unknown>& unknowns() const;
+  const std::string& material() const;
+  std::span<const double> guess() const;         // size() numbers
+  std::pair<int, int> range(int unknown) const;  // of its entries in p: first, count
+
+  std::vector<MaterialParameters> parameters(std::span<const double> p) const;  // one per tet
+  // dtheta = dtheta/dp dp at p, parameters_per_tet() numbers per tet; and pbar += (dtheta/dp)' thetabar.
+  void multiply(std::span<const double> p, std::span<const double> dp, std::span<double> dtheta) const;
+  void add_transposed(std::span<const double> p, std::span<const double> thetabar, std::span<double> pbar) const;
+
+  // The values in each tet of one unknown, as it is fitted (log E) and in SI units (E).
+  std::vector<double> fitted_values(int unknown, std::span<const double> p) const;
+  std::vector<double> values(int unknown, std::span<const double> p) const;
+  // fitted_values is linear in p: values' rows as a sparse matrix, tet by tet. For uncertainty.
+  void multiply_fitted(int unknown, std::span<const double> dp, std::span<double> values) const;
+  void add_fitted_transposed(int unknown, std::span<const double> values, std::span<double> pbar) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace aspic

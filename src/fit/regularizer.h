@@ -1,0 +1,34 @@
+// What is believed of p before anything is measured: R(p), whose weight tells how much.
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fit/parameter_map.h"
+
+namespace aspic {
+
+enum class Smoothness { none, h1, total_variation };
+
+struct RegularizerOptions {
+  Smoothness smoothness = Smoothness::h1;  // of quantities that differ from tet to tet, over what is fitted (log E)
+  double prior_deviation = 2;              // of what is fitted about its guess: log E +- 2; infinity: no prior
+};
+
+class Regularizer {
+ public:
+  virtual ~Regularizer() = default;
+  virtual double value(std::span<const double> p) const = 0;
+  virtual void add_gradient(std::span<const double> p, double scale, std::span<double> g) const = 0;
+  // y += scale R'' v, with total variation's curvature lagged so that it is positive semidefinite.
+  virtual void add_hessian_product(std::span<const double> p, std::span<const double> v, double scale,
+                                   std::span<double> y) const = 0;
+  // z = (R''(p) + shift I)^-1 v: a preconditioner, and the prior covariance.
+  virtual void solve(std::span<const double> p, std::span<const double> v, double shift, std::span<double> z) = 0;
+};
+
+std::unique_ptr<Regularizer> make_regularizer(const TetMesh& mesh, const ParameterMap& map,
+                                              const RegularizerOptions& options);
+
+}  // namespace aspic
