@@ -4,7 +4,7 @@ import type { Geometry, Vec3 } from "../src/protocol";
 import { CameraRig } from "../src/view/cameras";
 import { chooseLabels } from "../src/view/labels";
 import { length, minus, project, rayThrough } from "../src/view/lens";
-import { interpolated, nearestVertex, pick, screenPositions, verticesInDisc } from "../src/view/picking";
+import { interpolated, nearestVertex, pick, screenPositions, strokePlaces, verticesInDisc } from "../src/view/picking";
 
 // A unit sphere of rings; its poles are vertices 0 and 1.
 function sphere(rings: number, around: number): { positions: Float32Array; triangles: Uint32Array } {
@@ -97,6 +97,15 @@ test("the brush takes the vertices in its disc that face the camera, and none be
     const facing = kBall.positions[3 * v + 2] > 0;
     assert.equal(found.includes(v), facing && inDisc(v), `vertex ${v}`);
   }
+});
+
+test("a fast stroke of the brush leaves out nothing of its way", () => {
+  const path: [number, number][] = [[10, 20], [10, 20], [310, 420], [313, 416]];
+  const places = strokePlaces(path, 24);
+  assert.deepEqual(strokePlaces(path.slice(0, 1), 24), [[10, 20]]);
+  for (const [x, y] of path) assert(places.some(([u, v]) => u === x && v === y));
+  for (let i = 1; i < places.length; ++i)
+    assert(Math.hypot(places[i][0] - places[i - 1][0], places[i][1] - places[i - 1][1]) <= 12 + 1e-9);
 });
 
 test("the brush reaches through a cut", () => {

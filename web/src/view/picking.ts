@@ -144,6 +144,17 @@ export interface Surface {
 
 export const kSteepest = 8; // slope of a surface whose own vertices do not count as hidden by it
 
+// Places on a way across the screen, both its ends among them, that are at most half a radius apart.
+export function strokePlaces(path: [number, number][], radius: number): [number, number][] {
+  const places = path.slice(0, 1);
+  for (let i = 1; i < path.length; ++i) {
+    const [[x0, y0], [x, y]] = [path[i - 1], path[i]];
+    const count = Math.max(1, Math.ceil(Math.hypot(x - x0, y - y0) / (radius / 2)));
+    for (let k = 1; k <= count; ++k) places.push([x0 + ((x - x0) * k) / count, y0 + ((y - y0) * k) / count]);
+  }
+  return places;
+}
+
 // Vertices in a disc on the screen that nothing hides.
 export function verticesInDisc(lens: Lens, surface: Surface, x: number, y: number, radius: number): number[] {
   const screen = screenPositions(lens, surface.positions, surface.clip);
