@@ -5,7 +5,7 @@ import type { Store } from "../store";
 import type { CameraRig } from "./cameras";
 import type { Display } from "./display";
 import { isFinite3, onFacingPlane, rayThrough, type Lens } from "./lens";
-import { pick, strokePlaces, verticesInDisc, type Hit, type Surface } from "./picking";
+import { pick, verticesInStroke, type Hit, type Surface } from "./picking";
 
 export interface Touched {
   readonly host: HTMLElement;
@@ -190,16 +190,11 @@ export class Touch {
     if (this.gesture?.kind !== "brush" || !surface) return;
     const { pinned, known, path } = this.gesture;
     const { brush } = this.view.display.settings;
-    const vertices: number[] = [];
-    // All of the way, however few the frames are.
-    for (const [x, y] of strokePlaces(path, brush))
-      for (const vertex of verticesInDisc(this.view.lens(), surface, x, y, brush)) {
-        if (known.has(vertex) === pinned) continue;
-        pinned ? known.add(vertex) : known.delete(vertex);
-        vertices.push(vertex);
-      }
+    const covered = verticesInStroke(this.view.lens(), surface, path, brush); // however few the frames are
     path.splice(0, path.length - 1);
+    const vertices = covered.filter((vertex) => known.has(vertex) !== pinned);
     if (vertices.length === 0) return;
+    for (const vertex of vertices) pinned ? known.add(vertex) : known.delete(vertex);
     store.source.send({ do: "pin", side, vertices, pinned });
     this.view.showPins([...known]); // until the program tells
   }

@@ -208,7 +208,7 @@ export const steering = ({ until }) =>
 
 // What an earlier test left: a comparison, a simulation that plays, steps.
 async function tidy(opened) {
-  if (opened.heard.state.playing) await pressAndWait(opened, " ", "a pause", ({ state }) => !state.playing);
+  await setPlaying(opened, false);
   if (opened.heard.state.b) await pressAndWait(opened, "c", "one side", ({ state, scenes }) => !state.b && !scenes.b);
   await toTheStart(opened);
 }
@@ -245,6 +245,16 @@ export async function pressAndWait({ page, heard, until }, key, what, condition)
   await page.keyboard.press(key);
   await until(what, () => heard.states > told && condition(heard));
 }
+
+// The key that plays and pauses, until that is so: what plays may end by itself before the key is pressed.
+export const setPlaying = (opened, wanted) =>
+  opened.until(wanted ? "play" : "a pause", async () => {
+    const { page, heard } = opened;
+    const told = heard.messages.length;
+    if (heard.state.playing === wanted) return true;
+    await answered(opened, "play or pause", ({ do: what }) => ["play", "pause"].includes(what), () => page.keyboard.press(" "));
+    return heard.messages.slice(told).some(({ kind, playing }) => kind === "state" && playing === wanted);
+  });
 
 // What the page does once per frame is done, also what that asks of the next frame.
 export const frames = (page, count = 2) =>

@@ -1,7 +1,7 @@
 // The lecture's pages: each opens what it shows, the recorded mouse plays, and the reader takes over.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { answered, findBody, frames, keepPicture, openSession, pressAndWait, startProgram, until as eventually } from "./harness.mjs";
+import { answered, findBody, frames, keepPicture, openSession, setPlaying, startProgram, until as eventually } from "./harness.mjs";
 
 const program = await startProgram("scenes/cantilever.toml");
 
@@ -57,16 +57,16 @@ test("the recorded mouse plays until the reader takes over", async (t) => {
   t.diagnostic(`page ${found.pages}: ${found.title}`);
   await page.getByText("A recorded mouse plays").waitFor();
   await until("steps of the recorded mouse", ({ state, pictures }) => state.replaying && state.a.step > 1 && pictures.a.step > 1);
-  await pressAndWait(opened, " ", "a pause", ({ state }) => !state.playing);
+  await setPlaying(opened, false);
   assert.ok(heard.state.replaying, "a pause does not end the recorded mouse");
   // A body that pauses is found however slow the page is; it is taken while it plays, and may be missed.
   await eventually("the reader's grab", async () => {
     const [x, y] = await findBody(opened);
-    await pressAndWait(opened, " ", "play", ({ state }) => state.playing);
+    await setPlaying(opened, true);
     await page.mouse.down();
     await frames(page);
     await page.mouse.move(x + 4, y - 4);
-    await pressAndWait(opened, " ", "a pause", ({ state }) => !state.playing);
+    await setPlaying(opened, false);
     if (!heard.state.replaying && heard.state.a.grab) return true;
     await page.mouse.up();
   });

@@ -1,7 +1,7 @@
 // For every reader: keys, names for screen readers, light and dark, large letters on a small screen.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { findBody, frames, keepPicture, openSession, pressAndWait, settled, startProgram } from "./harness.mjs";
+import { findBody, frames, keepPicture, openSession, pressAndWait, setPlaying, settled, startProgram } from "./harness.mjs";
 
 const program = await startProgram("scenes/cantilever.toml");
 // What a panel says when it has all that it shows after kSteps steps.
@@ -49,7 +49,7 @@ test("every shortcut of the list does something that goes well", async () => {
   }
   await until("an end of what was begun", ({ state }) => !state.replaying);
   if (opened.heard.state.b) await pressAndWait(opened, "c", "no comparison", ({ state }) => !state.b);
-  if (opened.heard.state.playing) await pressAndWait(opened, " ", "a pause", ({ state }) => !state.playing);
+  await setPlaying(opened, false);
   await close();
 });
 

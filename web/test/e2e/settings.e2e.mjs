@@ -1,7 +1,7 @@
 // Every control of the settings: a valid value is taken, any other refused in words and put back; nothing breaks.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { answered, openSession, pressAndWait, settingOf, startProgram, toTheStart } from "./harness.mjs";
+import { answered, openSession, pressAndWait, setPlaying, settingOf, startProgram, toTheStart } from "./harness.mjs";
 
 const program = await startProgram("scenes/cantilever.toml");
 const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
@@ -153,7 +153,7 @@ test("what is typed wrongly is refused in words, put back, and the simulation go
 test("extremes while it plays: it goes on, and says what failed", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
-  await pressAndWait(opened, " ", "play", () => heard.state.playing);
+  await setPlaying(opened, true);
   for (const setting of heard.scenes.a.settings.filter(({ kind, value }) => kind === "number" && typeof value === "number")) {
     for (const value of [setting.min, setting.max, setting.value]) {
       if (settingOf(heard, setting.key).value === value) continue;
@@ -161,7 +161,7 @@ test("extremes while it plays: it goes on, and says what failed", async () => {
     }
   }
   const { step } = heard.state.a;
-  if (!heard.state.playing) await pressAndWait(opened, " ", "play", () => heard.state.playing);
+  await setPlaying(opened, true);
   await until("further steps", () => heard.state.a.step > step || heard.state.a.status !== "");
   await toTheStart(opened);
   await pressAndWait(opened, "s", "a step", () => heard.state.a.step === 1 && heard.state.a.words === null);

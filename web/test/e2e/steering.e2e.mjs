@@ -1,7 +1,7 @@
 // Time and touch: play, step, rewind, drag, pin.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { assertSameBits, boxOf, contrast, findBody, frames, openSession, pageModule, pressAndWait, sameBits, screenOf, shownBy, startProgram, toTheStart } from "./harness.mjs";
+import { assertSameBits, boxOf, contrast, findBody, frames, openSession, pageModule, pressAndWait, sameBits, screenOf, setPlaying, shownBy, startProgram, toTheStart } from "./harness.mjs";
 
 const { valueText } = await pageModule("view/values.ts");
 const program = await startProgram("scenes/cantilever.toml");
@@ -33,8 +33,8 @@ test("it plays and pauses, steps, and goes back to the start", async () => {
   const start = heard.pictures.a.positions;
   await pressAndWait(opened, "s", "one step", () => heard.state.a.step === 1 && heard.pictures.a.step === 1);
   assert.ok(!sameBits(heard.pictures.a.positions, start));
-  await pressAndWait(opened, " ", "play", () => heard.state.playing);
-  await pressAndWait(opened, " ", "a pause", () => !heard.state.playing);
+  await setPlaying(opened, true);
+  await setPlaying(opened, false);
   await close();
 });
 
@@ -146,6 +146,7 @@ test("the brush pins and unpins what it covers", async () => {
   const start = places(heard.pictures.a);
   await pressAndWait(opened, "s", "a step", () => heard.pictures.a.step === 1);
   assert.deepEqual(places(heard.pictures.a), start, "pinned vertices stay");
+  await page.keyboard.press("]"); // larger: the body has moved
   await page.keyboard.down("Alt");
   await stroke();
   await page.keyboard.up("Alt");
