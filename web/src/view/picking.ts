@@ -160,10 +160,12 @@ function distanceToWay(way: readonly [number, number][], x: number, y: number): 
 export function verticesInStroke(lens: Lens, surface: Surface, way: readonly [number, number][], radius: number): number[] {
   const screen = screenPositions(lens, surface.positions, surface.clip);
   const [lower, upper] = [Math.min, Math.max].map((end) => [0, 1].map((c) => end(...way.map((place) => place[c]))));
-  const extent = [0, 1].map((c) => upper[c] - lower[c] + 2 * radius);
-  const cell = Math.max((2 * radius) / 64, Math.max(...extent) / 1024);
-  const [columns, rows] = extent.map((length) => Math.ceil(length / cell));
-  const grid = new DepthGrid(lower[0] - radius, lower[1] - radius, cell, columns, rows);
+  const longest = Math.max(upper[0] - lower[0], upper[1] - lower[1]) + 2 * radius;
+  const cell = Math.max((2 * radius) / 64, longest / 1024);
+  // Cells of the screen: whether a vertex is seen does not depend on where the way begins.
+  const [left, top] = lower.map((least) => Math.floor((least - radius) / cell));
+  const [right, bottom] = upper.map((most) => Math.ceil((most + radius) / cell));
+  const grid = new DepthGrid(left * cell, top * cell, cell, right - left, bottom - top);
   grid.add(screen, surface.triangles);
   const found: number[] = [];
   for (let i = 0; i < screen.length; i += 3) {
