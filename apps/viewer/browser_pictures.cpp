@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::seconds kLongestSilence(60);
+constexpr std::chrono::seconds kLongestSilence(180);
 constexpr std::chrono::milliseconds kPeriod(50);  // of looking at the browser and at who may stop it
 
 fs::path find_browser() {
