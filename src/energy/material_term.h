@@ -1,10 +1,11 @@
-// The tets of a registered material: the density as a term of V, what there is to see in each tet, and derivatives with
+// The tets of a material: the density as a term of V, what there is to see in each tet, and derivatives with
 // respect to the parameters. Included only where it is instantiated.
 #pragma once
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "energy/make_tet_term.h"
@@ -20,10 +21,12 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
   using Term::batch_count, Term::batches_, Term::F, Term::for_each_batch, Term::params_, Term::reduce;
 
  public:
-  MaterialTerm(const TetMesh& mesh, int first, std::span<const MaterialParameters> parameters)
-      : Term("elasticity", mesh, first, own_params(parameters)),
+  // Tets [first, first + parameters.size()) of the mesh. Of MaterialParameters::extra, the material has `extra`.
+  MaterialTerm(std::string name, const TetMesh& mesh, int first, std::span<const MaterialParameters> parameters,
+               int extra)
+      : Term(std::move(name), mesh, first, own_params(parameters)),
         first_(first),
-        parameter_count_(2 + static_cast<int>(M::info().extra.size())),
+        parameter_count_(2 + extra),
         parameters_(parameters.begin(), parameters.end()) {}
 
   double min_det_F(Positions x) const override {
@@ -124,7 +127,8 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
 template <class M>
 std::unique_ptr<TetElasticity> make_tet_term(const TetMesh& mesh, int first,
                                              std::span<const MaterialParameters> parameters) {
-  return std::make_unique<MaterialTerm<M>>(mesh, first, parameters);
+  const int extra = static_cast<int>(M::info().extra.size());
+  return std::make_unique<MaterialTerm<M>>("elasticity", mesh, first, parameters, extra);
 }
 
 }  // namespace aspic
