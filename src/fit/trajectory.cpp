@@ -12,6 +12,7 @@
 #include "dynamics/simulation_checks.h"
 #include "fit/checkpointing.h"
 #include "fit/elastic_parameters.h"
+#include "fit/sequence_solver.h"
 #include "optimize/newton.h"
 
 namespace aspic {
@@ -68,7 +69,7 @@ struct Trajectory::Impl {
         pins(model.pins, start.q),
         E(model, pins),
         newton(make_linear_solver(o.linear)),
-        solver(make_linear_solver(o.adjoint)),
+        solver(o.adjoint, o.adjoint_tolerance),
         integrator(make_integrator(o.integrator)),
         theta(model) {
     require_mass(model, pins);
@@ -88,6 +89,7 @@ struct Trajectory::Impl {
     now = start;
     point = 0;
     newton.begin();
+    solver.begin();
   }
 
   bool fail(int step, const std::string& words) {
@@ -205,11 +207,7 @@ struct Trajectory::Impl {
 
   bool solve() {
     const BlockSparse& H = E.hessian(after.q, {Definiteness::exact});
-    if (!is_analyzed) solver->analyze(E.pattern());
-    is_analyzed = true;
-    ++report.adjoint_factorizations;
-    if (!solver->factorize(H)) return fail(point, "the matrix of the step is not positive definite");
-    const SolveReport solved = solver->solve(rhs, mu, options.adjoint_tolerance);
+    const SolveReport solved = solver.solve(H, rhs, mu);
     ++report.adjoint_solves;
     report.adjoint_products += solved.products;
     if (solved.ok || (!solved.indefinite && solved.relative_residual <= kUsable)) return true;
@@ -253,7 +251,7 @@ struct Trajectory::Impl {
   Pins pins;
   IncrementalPotential E;
   Newton newton;
-  std::unique_ptr<LinearSolver> solver;  // of H
+  SequenceSolver solver;  // of H, backwards
   std::unique_ptr<Integrator> integrator;
   ElasticParameters theta;
   Minimizer minimizer;
@@ -265,7 +263,6 @@ struct Trajectory::Impl {
   State now, after;  // where the walker stands; what follows it, backwards
   int point = 0;
   std::vector<Stored> slots;
-  bool is_analyzed = false;
   std::vector<double> qbar, vbar;
   // Scratch. moved: the flight q0 + h v0.
   State before, next;
