@@ -142,12 +142,8 @@ Vec3d VectorField::at(const Vec3d& X) const {
 }
 
 Box bounding_box(const std::vector<Vec3d>& X) {
-  Box box{{{INFINITY, INFINITY, INFINITY}}, {{-INFINITY, -INFINITY, -INFINITY}}};
-  for (const Vec3d& P : X)
-    for (int i = 0; i < 3; ++i) {
-      box.lower[i] = std::min(box.lower[i], P[i]);
-      box.upper[i] = std::max(box.upper[i], P[i]);
-    }
+  Box box;
+  for (const Vec3d& P : X) box.add(P);
   return box;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "math/small.h"
+#include "mesh/box_tree.h"
 #include "scene/expression.h"
 #include "scene/scene_files.h"
 #include "scene/value.h"
@@ -38,9 +39,6 @@ class VectorField {
   std::vector<Expression> formula_;
 };
 
-struct Box {
-  Vec3d lower{}, upper{};
-};
 Box bounding_box(const std::vector<Vec3d>& X);
 
 }  // namespace aspic
