@@ -21,7 +21,7 @@ class CaseReader {
       : settings_(settings),
         scope_(scope),
         data_(data),
-        table_(settings.folder() / settings["cases"].text(), settings.columns("cases"), errors, data.notes) {}
+        table_(settings.file("cases"), settings.columns("cases"), errors, data.notes) {}
 
   void read() {
     std::vector<LoadCase>& cases = data_.experiment.cases;

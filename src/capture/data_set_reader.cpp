@@ -67,7 +67,7 @@ class DataSetReader {
   }
 
   void read_rest() {
-    const fs::path path = settings_.files().find(settings_["mesh"]);
+    const fs::path path = settings_.file("mesh");
     user_mesh_ = read_tet_mesh(path);
     const double unit = settings_.unit("mesh");
     if (unit != 1)
@@ -104,10 +104,8 @@ class DataSetReader {
     std::sort(data_.experiment.fixed.begin(), data_.experiment.fixed.end());
   }
 
-  fs::path table_file(const char* key) { return settings_.files().find(settings_[key]); }
-
   void read_markers(const SurfaceProjection& surface) {
-    MeasuredTable table(table_file("markers"), settings_.columns("markers"), errors_, data_.notes);
+    MeasuredTable table(settings_.file("markers"), settings_.columns("markers"), errors_, data_.notes);
     const bool has_corners = table.has("corner_1"), has_points = table.has("x");
     if (!has_corners && !has_points && !table.has("vertex"))
       throw InvalidInput(data_.source.markers +
@@ -264,11 +262,11 @@ class DataSetReader {
     data_.source.position_line.resize(data_.experiment.cases.size());
     const Value& name = settings_["positions"];
     std::error_code error;
-    if (!name.place.source && !fs::exists(settings_.folder() / name.text(), error)) {
+    if (!settings_.is_given("positions") && !fs::exists(settings_.folder() / name.text(), error)) {
       data_.notes.push_back("there is no " + name.text() + ": only forces are fitted");
       return;
     }
-    MeasuredTable table(table_file("positions"), settings_.columns("positions"), errors_, data_.notes);
+    MeasuredTable table(settings_.file("positions"), settings_.columns("positions"), errors_, data_.notes);
     for (const char* column : {"x", "y", "z"})
       if (!table.has(column))
         throw InvalidInput(data_.source.positions + ":1: has no column " + column + " (columns in " +

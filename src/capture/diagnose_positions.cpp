@@ -9,10 +9,10 @@
 namespace aspic {
 namespace {
 
-constexpr int kNeighbours = 8;
+constexpr int kNeighbours = 12;
 constexpr size_t kMostListed = 5;     // of one kind; the rest is counted
 constexpr double kOffSurface = 0.02;  // of the body's size
-constexpr double kSuspicious = 8;     // times what neighbours differ by
+constexpr double kSuspicious = 6;     // times what neighbours differ by
 constexpr double kNoticeable = 0.05;  // of the largest motion of the case
 constexpr double kFar = 1;            // of the body's size: a motion that is none
 
@@ -37,14 +37,63 @@ std::vector<std::vector<int>> neighbours(const std::vector<Vec3d>& X) {
   return nearest;
 }
 
-Vec3d median_of(const std::vector<Vec3d>& u, const std::vector<int>& of) {
-  Vec3d m{};
-  for (int i = 0; i < 3; ++i) {
-    std::vector<double> values;
-    for (const int j : of) values.push_back(u[j][i]);
-    m[i] = median(std::move(values));
+using Row4 = std::array<double, 4>;
+
+// Solves the symmetric positive definite A c = b for three right-hand sides.
+std::array<Vec3d, 4> solve(std::array<Row4, 4> A, std::array<Vec3d, 4> b) {
+  for (int k = 0; k < 4; ++k)
+    for (int i = k + 1; i < 4; ++i) {
+      const double l = A[i][k] / A[k][k];
+      for (int j = k; j < 4; ++j) A[i][j] -= l * A[k][j];
+      b[i] = b[i] - l * b[k];
+    }
+  for (int k = 3; k >= 0; --k) {
+    for (int j = k + 1; j < 4; ++j) b[k] = b[k] - A[k][j] * b[j];
+    b[k] = (1 / A[k][k]) * b[k];
   }
-  return m;
+  return b;
+}
+
+struct Expected {
+  Vec3d u{};          // of the marker, by its neighbours
+  double spread = 0;  // median of what the neighbours differ by from such a field
+  double range = 0;   // median of what the neighbours differ by from the marker's expected motion
+};
+
+// The field u = c + B (X - X_i) / reach that has the least sum of differences |u_j - u| over the neighbours, by
+// reweighted least squares: a neighbour that is an outlier itself hardly counts.
+Expected expected(const std::vector<Vec3d>& X, const std::vector<Vec3d>& u, int i, const std::vector<int>& near) {
+  constexpr int kSweeps = 8;
+  constexpr double kRidge = 1e-3;  // neighbours in a plane leave the slope across it open
+  const double reach = norm(X[near.back()] - X[i]);
+  const auto terms = [&](int j) {
+    const Vec3d r = (reach > 0 ? 1 / reach : 0) * (X[j] - X[i]);
+    return Row4{1, r[0], r[1], r[2]};
+  };
+  std::vector<double> weight(near.size(), 1), difference(near.size());
+  std::array<Vec3d, 4> c{};
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    std::array<Row4, 4> A{};
+    std::array<Vec3d, 4> b{};
+    for (int k = 1; k < 4; ++k) A[k][k] = kRidge;
+    for (size_t n = 0; n < near.size(); ++n) {
+      const Row4 t = terms(near[n]);
+      for (int k = 0; k < 4; ++k) {
+        for (int l = 0; l < 4; ++l) A[k][l] += weight[n] * t[k] * t[l];
+        b[k] = b[k] + (weight[n] * t[k]) * u[near[n]];
+      }
+    }
+    c = solve(A, b);
+    for (size_t n = 0; n < near.size(); ++n) {
+      const Row4 t = terms(near[n]);
+      difference[n] = norm(u[near[n]] - (t[0] * c[0] + t[1] * c[1] + t[2] * c[2] + t[3] * c[3]));
+    }
+    const double usual = median(difference);
+    for (size_t n = 0; n < near.size(); ++n) weight[n] = usual > 0 ? usual / std::max(difference[n], usual) : 1;
+  }
+  std::vector<double> range;
+  for (const int j : near) range.push_back(norm(u[j] - c[0]));
+  return {c[0], median(difference), median(range)};
 }
 
 class PositionDiagnosis {
@@ -112,18 +161,18 @@ class PositionDiagnosis {
       u.push_back(displacement(experiment_, r));
     }
     const std::vector<std::vector<int>> near = neighbours(X);
-    std::vector<double> excess(u.size()), spread(u.size()), motion;
+    std::vector<double> excess(u.size()), spread(u.size()), range(u.size());
     for (size_t i = 0; i < u.size(); ++i) {
-      const Vec3d usual = median_of(u, near[i]);
-      std::vector<double> differences;
-      for (const int j : near[i]) differences.push_back(norm(u[j] - usual));
-      spread[i] = median(differences);
-      excess[i] = norm(u[i] - usual);
-      largest = std::max(largest, norm(usual));
+      const Expected usual = expected(X, u, static_cast<int>(i), near[i]);
+      spread[i] = usual.spread;
+      range[i] = usual.range;
+      excess[i] = norm(u[i] - usual.u);
+      largest = std::max(largest, norm(usual.u));
     }
     for (size_t i = 0; i < u.size(); ++i) {
       const double tolerated = kSuspicious * (spread[i] + norm(readings[i].deviation));
-      if (excess[i] > std::max(tolerated, kNoticeable * largest) && ++outliers_ <= kMostListed)
+      // The top of a sharp dent differs from its neighbours, but no more than they among themselves.
+      if (excess[i] > std::max({tolerated, kNoticeable * largest, range[i]}) && ++outliers_ <= kMostListed)
         findings_.warning(data_.source.position(c, static_cast<int>(i)),
                           name(readings[i].marker) + " in '" + experiment_.cases[c].name + "' is " +
                               three_digits(excess[i]) + " m away from where its neighbours go, which differ by " +

@@ -35,6 +35,14 @@ CaptureSettings::CaptureSettings(const fs::path& path)
   check_and_complete(document_, file_.string(), capture_schema(), "capture");
 }
 
+bool CaptureSettings::is_given(std::string_view key) const { return (*this)[key].place.line > 0; }
+
+fs::path CaptureSettings::file(std::string_view key) const {
+  Value name = (*this)[key];
+  if (!is_given(key)) name.place = {std::make_shared<const std::string>(file_.string()), 1, 1};
+  return files_.find(name);
+}
+
 double CaptureSettings::unit(const std::string& quantity) const {
   const Value& units = (*this)["units"];
   if (const Value* name = units.find(quantity)) return unit_in_si(quantity, name->text());

@@ -17,6 +17,8 @@ class CaptureSettings {
   const Value* find(std::string_view key) const { return document_.find(key); }
   Table& document() { return document_; }
   SceneFiles& files() { return files_; }
+  bool is_given(std::string_view key) const;               // no default
+  std::filesystem::path file(std::string_view key) const;  // that a key names; throws InvalidInput when it is missing
   const std::filesystem::path& folder() const { return folder_; }
   std::string file_name() const { return file_.filename().string(); }
 
