@@ -1,6 +1,7 @@
 // What is believed of p before anything is measured: R(p), whose weight tells how much.
 #pragma once
 #include <memory>
+#include <random>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,8 @@ class Regularizer {
                                    std::span<double> y) const = 0;
   // z = (R''(p) + shift I)^-1 v: a preconditioner, and the prior covariance.
   virtual void solve(std::span<const double> p, std::span<const double> v, double shift, std::span<double> z) = 0;
+  // g += a normal random vector of covariance R''(p): R''^-1 g is a sample of the prior.
+  virtual void add_noise(std::span<const double> p, std::mt19937_64& random, std::span<double> g) const = 0;
 };
 
 std::unique_ptr<Regularizer> make_regularizer(const TetMesh& mesh, const ParameterMap& map,
