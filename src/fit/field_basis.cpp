@@ -56,6 +56,7 @@ FieldBasis FieldBasis::uniform(int tets) { return regions(std::vector<int>(stati
 FieldBasis FieldBasis::tets(int tets) {
   FieldBasis basis;
   basis.size_ = tets;
+  basis.is_identity_ = true;
   for (int t = 0; t < tets; ++t) {
     basis.index_.push_back(t);
     basis.weight_.push_back(1);

@@ -17,6 +17,7 @@ class FieldBasis {
   static FieldBasis radial(const TetMesh& mesh, int count);
 
   int size() const { return size_; }  // numbers
+  bool is_identity() const { return is_identity_; }
   int tet_count() const { return static_cast<int>(row_start_.size()) - 1; }
   void multiply(std::span<const double> p, std::span<double> z) const;        // z = W p
   void add_transposed(std::span<const double> z, std::span<double> p) const;  // p += W' z
@@ -31,6 +32,7 @@ class FieldBasis {
   void close_row() { row_start_.push_back(static_cast<int>(index_.size())); }
 
   int size_ = 0;
+  bool is_identity_ = false;
   std::vector<int> row_start_{0}, index_;
   std::vector<double> weight_;
 };
