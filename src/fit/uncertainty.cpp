@@ -62,7 +62,8 @@ void judge_noise(double misfit, int residuals, Posterior& result, Spectrum& s) {
     for (double& d : s.d) d /= result.noise_factor * result.noise_factor;
     result.warnings.push_back(
         text("the fit misses the measurements %.3g times further than their standard deviations allow: these are too "
-             "small, or the model cannot do what the body does; all deviations are raised by that factor",
+             "small, the weight of the regulariser is too large, or the model cannot do what the body does; all "
+             "deviations are raised by that factor",
              result.noise_factor));
   } else if (misfit < lower) {
     result.warnings.push_back(text(
@@ -72,16 +73,37 @@ void judge_noise(double misfit, int residuals, Posterior& result, Spectrum& s) {
   }
 }
 
-// At the weight that the data support, 2 weight R = sum of d / (1 + d) [MacKay 1992].
-void judge_weight(double weight, double roughness, Posterior& result) {
-  if (!(weight > 0 && roughness > 0)) return;
-  result.suggested_weight = result.informed / (2 * roughness);
-  const double ratio = weight / result.suggested_weight;
-  if (result.informed > 1 && ratio > 5)
-    result.warnings.push_back(
-        text("the weight of the regulariser, %.3g, holds the fit %.3g times more firmly than what it found supports "
-             "(%.3g): details are lost and the deviations too small",
-             weight, ratio, result.suggested_weight));
+// -2 log of the probability of the data under `factor` times the weight of the fit [MacKay 1992], up to a constant:
+// along direction k they found the amplitude a = c (1 + d) / d, c being that of the fit, which scatters as
+// N(0, 1 / factor + 1 / d).
+double surprise(double factor, const Spectrum& s, std::span<const double> amplitudes) {
+  double sum = 0;
+  for (size_t k = 0; k < s.d.size(); ++k) {
+    if (!(s.d[k] > 1e-6)) continue;
+    const double a = amplitudes[k] * (1 + s.d[k]) / s.d[k], variance = 1 / factor + 1 / s.d[k];
+    sum += a * a / variance + std::log(variance * s.d[k]);
+  }
+  return sum;
+}
+
+void judge_weight(Regularizer& prior, double weight, std::span<const double> p, const Spectrum& s, Posterior& result) {
+  if (!(weight > 0) || s.d.empty()) return;
+  std::vector<double> g(p.size(), 0.0);
+  prior.add_gradient(p, weight, g);
+  const std::vector<double> amplitudes = product_transposed(s.W, g);
+  constexpr double kRange = 14, kStep = 0.1;  // from e^-14 to e^14
+  double best = 1;
+  for (double x = -kRange; x <= kRange; x += kStep)
+    if (surprise(std::exp(x), s, amplitudes) < surprise(best, s, amplitudes)) best = std::exp(x);
+  result.suggested_weight = weight * best;
+  constexpr double kClear = 8;  // by chance it is exceeded once in 200 times (chi^2 of one degree)
+  if (surprise(1, s, amplitudes) - surprise(best, s, amplitudes) < kClear) return;
+  result.warnings.push_back(text(
+      best < 1 ? "the weight of the regulariser, %.3g, is %.2g times larger than what the data support (%.3g): details "
+                 "are lost and the deviations too small"
+               : "the weight of the regulariser, %.3g, is %.2g times smaller than what the data support (%.3g): noise "
+                 "may have been fitted",
+      weight, std::max(best, 1 / best), result.suggested_weight));
 }
 
 void warn_of_rank(const SpectrumOptions& options, Posterior& result) {
@@ -154,9 +176,9 @@ Posterior posterior(LeastSquares& misfit, Regularizer& prior, double weight, con
   Spectrum s = spectrum(data, before, options.spectrum);
   const double roughness = prior.value(p), squares = dot(r, r);
   result.log_evidence = log_evidence(squares, weight, roughness, s);
+  judge_weight(prior, weight, p, s, result);
   judge_noise(squares, misfit.residual_count() - data.dropped(), result, s);
   result.informed = informed(s);
-  judge_weight(weight, roughness, result);
   result.belief = std::make_shared<PosteriorGaussian>(std::move(before), std::move(s));
   warn_of_rank(options.spectrum, result);
   set_fields(marginals(*result.belief, map, options.marginals), result);
