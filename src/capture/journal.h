@@ -40,6 +40,8 @@ class Journal : public LeastSquares {
   bool is_replaying() const { return position_ < end_; }
   // From here on nothing is written: what follows an interruption is no part of the fit.
   void stop_writing();
+  // Brings the model to where the last linearisation was, had that been answered from the file.
+  void catch_up();
 
   static void remove(const std::filesystem::path& stem);
 
@@ -51,7 +53,6 @@ class Journal : public LeastSquares {
   bool replayed(const Head& asked, std::span<double> answer);
   void write(Head head, std::span<const double> answer);
   void save_state();
-  void catch_up();
 
   LeastSquares& model_;
   ModelState state_;
