@@ -21,6 +21,10 @@ Mat3d rotation(const Vec3d& axis, double angle /* [rad] */);  // the axis has an
 
 AffineMap placement_of(const Value& body);  // scale, then rotate, then translate
 
+// Which coordinates of a body are meant: those of its mesh file, after `scale`, or after all of its placement.
+enum class Frame { mesh, scaled, placed };
+AffineMap from_placed(const Value& body, Frame frame);  // placed points to that frame
+
 // The shape at time 0 of the placed rest shape X. Files are remembered under `stem`.
 std::vector<Vec3d> deformed(Value& body, const std::vector<Vec3d>& X, SceneFiles& files, const std::string& stem);
 
