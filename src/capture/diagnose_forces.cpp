@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kSoftest = 50, kStiffest = 3e7;  // [Pa] Young's moduli of bodies that one pokes
+constexpr double kSoftest = 50, kStiffest = 1.5e7;  // [Pa] Young's moduli of bodies that one pokes
 constexpr double kUnlike = 30;                    // ratio of apparent moduli within one body that is no tissue's
 constexpr double kFalling = 0.8;                  // a force that falls below this share of the last, going deeper
 constexpr int kEnough = 6;                        // forces that tell how a gauge rounds
