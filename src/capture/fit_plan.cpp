@@ -187,7 +187,8 @@ std::string fingerprint_of(const Experiment& e) {
     hash.add(&c.pressure, sizeof c.pressure);
     for (const MarkerReading& r : c.positions)
       hash.add(&r.marker, sizeof r.marker), add_vector(r.position), add_vector(r.deviation);
-    for (const std::optional<Vec3d>* reading : {&c.force, &c.torque}) add_vector(reading->value_or(Vec3d{{1e300, 0, 0}}));
+    for (const std::optional<Vec3d>* reading : {&c.force, &c.torque})
+      add_vector(reading->value_or(Vec3d{{1e300, 0, 0}}));
     add_vector(c.force_deviation), add_vector(c.torque_deviation);
   }
   return hash.text();

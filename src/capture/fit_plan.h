@@ -14,8 +14,8 @@ namespace aspic {
 
 struct FitPlan {
   std::string model = "neo_hookean";
-  std::vector<Unknown> unknowns;                       // empty: young per tet, everything else one value; guess 0: found
-  std::vector<std::pair<std::string, double>> known;   // the same in every tet, not fitted: {"poisson", 0.45}
+  std::vector<Unknown> unknowns;                      // empty: young per tet, everything else one value; guess 0: found
+  std::vector<std::pair<std::string, double>> known;  // the same in every tet, not fitted: {"poisson", 0.45}
   RegularizerOptions belief;
   FitOptions fit;
   EquilibriumOptions equilibrium;

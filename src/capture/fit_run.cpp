@@ -134,8 +134,8 @@ class MaterialFit {
   void learn_uncertainty(Stage& stage) {
     if (!plan_.uncertainty || !may_go_on()) return;
     begin(FitStage::uncertainty, "what the data do not say");
-    outcome_.posterior = posterior(stage.model(), *stage.prior, outcome_.report.weight, stage.map, fitted_.mesh,
-                                   outcome_.report.p);
+    outcome_.posterior =
+        posterior(stage.model(), *stage.prior, outcome_.report.weight, stage.map, fitted_.mesh, outcome_.report.p);
     add_warnings(outcome_.posterior->warnings);
   }
 
@@ -190,9 +190,7 @@ class MaterialFit {
   void cross_validate_groups(Stage& stage) {
     if (!plan_.cross_validation || !may_go_on()) return;
     // A fit stops at its deadline: that comes when the witness wants no more.
-    const WallClock clock = [&] {
-      return may_go_on() ? 0.0 : std::numeric_limits<double>::infinity();
-    };
+    const WallClock clock = [&] { return may_go_on() ? 0.0 : std::numeric_limits<double>::infinity(); };
     FitOptions options = plan_.fit;
     options.deadline = Deadline(clock, 1);
     const auto observe = [&](int group, int groups, const std::string& name) {
@@ -215,8 +213,8 @@ class MaterialFit {
   }
 
   void find_next_poke(Stage& stage) {
-    const bool has_tip = std::any_of(fitted_.cases.begin(), fitted_.cases.end(),
-                                     [](const LoadCase& c) { return c.tip.has_value(); });
+    const bool has_tip =
+        std::any_of(fitted_.cases.begin(), fitted_.cases.end(), [](const LoadCase& c) { return c.tip.has_value(); });
     if (!outcome_.posterior || !outcome_.posterior->ok || !has_tip || !may_go_on()) return;
     begin(FitStage::next_poke, "where a poke would tell most");
     NextPoke next = next_poke(fitted_, stage.map, *outcome_.posterior, outcome_.report.p, {}, plan_.equilibrium);

@@ -44,9 +44,9 @@ struct CaseOutcome {
 };
 
 struct FitOutcome {
-  FitPlan plan;                         // completed
-  FitReport report;                     // of the last stage that was begun
-  std::optional<FitReport> uniform;     // of the first, where there are two: one value per quantity
+  FitPlan plan;                      // completed
+  FitReport report;                  // of the last stage that was begun
+  std::optional<FitReport> uniform;  // of the first, where there are two: one value per quantity
   std::vector<FittedQuantity> quantities;
   FittedMaterial material;         // by the user's numbers
   std::vector<CaseOutcome> cases;  // one per case of the data
@@ -54,7 +54,7 @@ struct FitOutcome {
   std::optional<CrossValidation> held_out;
   std::optional<PokeCandidate> next_poke;
   std::vector<std::string> warnings;
-  std::string failure;      // why there is no material; empty: there is one
+  std::string failure;       // why there is no material; empty: there is one
   bool interrupted = false;  // the material is what was reached until then
   int unknowns = 0, residuals = 0;
   Misfit::Counts counts;
