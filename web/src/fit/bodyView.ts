@@ -98,7 +98,7 @@ export class BodyView {
     this.stage = this.makeStage();
     this.stage?.place({ lower: fitted.lower, upper: fitted.upper, up: fitted.up });
     rig.on("changed", () => this.redraw());
-    new ResizeObserver(() => this.redraw()).observe(this.element);
+    new ResizeObserver(() => this.applyDisplay()).observe(this.element); // also once it is in the page, whose colours it takes
     this.listen();
     this.rebuild();
   }

@@ -4,7 +4,7 @@ import { Chart, type Curve } from "../plots/chart";
 import { short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
 import type { MaybeNumber } from "../protocol";
-import { histogram, type FitHead, type GroupCurve } from "./data";
+import { closeness, histogram, type FitHead, type GroupCurve } from "./data";
 
 // The value at x, or the last one.
 function valueAt(x: readonly number[], column: readonly MaybeNumber[], at: number | null): MaybeNumber {
@@ -52,12 +52,13 @@ export function loadChart(name: string, curve: GroupCurve): Chart {
   const chart = new Chart();
   const hasHeldOut = curve.heldOut.some((v) => v !== null);
   const hasFitted = curve.fitted.some((v) => v !== null);
+  const shape = curve.x.length > 2 ? "line" : "both";
   const curves: Curve[] = [
-    { key: "measured", label: "measured", meaning: "as measured, ± one standard deviation", colour: "text", shape: "points" },
-    ...(hasFitted ? [{ key: "fitted", label: "fitted", meaning: "by the fitted material", colour: "series1", width: 2, shape: "both" } as Curve] : []),
+    ...(hasFitted ? [{ key: "fitted", label: "fitted", meaning: "by the fitted material", colour: "series1", width: 2, shape } as Curve] : []),
     ...(hasHeldOut
-      ? [{ key: "heldOut", label: curve.leftOut ? "predicted" : "held out", meaning: "predicted by a material that was fitted without this group", colour: "series2", width: 2, dash: [6, 4], shape: "both" } as Curve]
+      ? [{ key: "heldOut", label: curve.leftOut ? "predicted" : "held out", meaning: "predicted by a material that was fitted without this group", colour: "series2", width: 2, dash: [6, 4], shape } as Curve]
       : []),
+    { key: "measured", label: "measured", meaning: "as measured, ± one standard deviation", colour: "text", shape: "points" },
   ];
   const columns: Record<string, MaybeNumber[]> = { measured: curve.measured, fitted: curve.fitted, heldOut: curve.heldOut };
   const spread = curve.measured.flatMap((m, i) => (m === null ? [] : [m - curve.deviation[i], m + curve.deviation[i]]));
@@ -110,7 +111,7 @@ export function caseChart(names: readonly string[], ofCase: readonly MaybeNumber
   chart.configure({
     label: "Root mean square of the residuals of each case",
     x: { label: "case", integer: true },
-    y: { label: "rms residual [standard deviations]" },
+    y: { label: "rms, in deviations" },
     curves: [
       { key: "rms", label: "of a case", colour: "series1", shape: "bars" },
       { key: "one", label: "as expected", meaning: "1: as close as the standard deviations say", colour: "series2", dash: [6, 4] },
@@ -135,20 +136,22 @@ export function weightChart(head: FitHead): Chart | null {
   if (trials.length < 2) return null;
   const chart = new Chart();
   const x = trials.map((t) => t.x);
-  const misfit = trials.map((t) => t.misfit);
-  const target = trials.map(() => head.counts.residuals / 2);
+  const misfit = trials.map((t) => closeness(t.misfit, head.counts.residuals) ?? 0);
+  const log = Math.max(...misfit) > 30 * Math.min(...misfit);
+  const target = trials.map(() => 1);
   chart.configure({
     label: "Misfit against roughness for every weight that was tried",
     x: { label: "roughness R, as a power of ten" },
-    y: { label: "misfit |r|²/2", log: true },
+    y: { label: "|r|² per reading", log },
     curves: [
       { key: "trials", label: "weights tried", colour: "series1", width: 2, shape: "both" },
-      { key: "target", label: "noise", meaning: "the misfit that the standard deviations leave: |r|² is the number of readings", colour: "series7", dash: [6, 4] },
+      { key: "target", label: "noise", meaning: "1: what the standard deviations leave", colour: "series7", dash: [6, 4] },
     ],
     legend: "top",
     read: (key, at) => (key === "trials" && at !== null ? [`weight ${short(valueAt(x, trials.map((t) => t.weight), at), 3)}`] : []),
     xRange: () => around(x, false),
-    paint: (u, colours) => paintChosen(u, colours, log10(head.fit.roughness), head.fit.misfit, `chosen: ${short(head.fit.weight, 3)}`),
+    yRange: () => (log ? null : around([...misfit, 1], true)),
+    paint: (u, colours) => paintChosen(u, colours, log10(head.fit.roughness), closeness(head.fit.misfit, head.counts.residuals), `chosen: ${short(head.fit.weight, 3)}`),
   });
   chart.show(x, [misfit, target]);
   return chart;
@@ -168,7 +171,7 @@ function paintChosen(u: uPlot, colours: Palette, x: MaybeNumber, y: MaybeNumber,
   ctx.font = `600 ${colours.fontSize * 0.86 * scale}px sans-serif`;
   const leftwards = column > u.bbox.left + 0.6 * u.bbox.width;
   ctx.textAlign = leftwards ? "right" : "left";
-  ctx.fillText(words, column + (leftwards ? -12 : 12) * scale, row - 8 * scale);
+  ctx.fillText(words, column + (leftwards ? -4 : 4) * scale, row - 16 * scale);
   ctx.restore();
 }
 

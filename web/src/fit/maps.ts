@@ -2,7 +2,7 @@
 import { element } from "../dom";
 import { checkbox, choice } from "../plots/dom";
 import type { Vec3 } from "../protocol";
-import type { CameraRig } from "../view/cameras";
+import { sceneAxes, type CameraRig } from "../view/cameras";
 import type { MapName } from "../view/colourMaps";
 import { makeArrows, makeBalls } from "./arrows";
 import { BodyView, type Cut, type FittedBody, type Note, type Shown } from "./bodyView";
@@ -36,10 +36,10 @@ function fieldsOf(fit: Fit): { values: Field[]; doubts: Field[] } {
     if (fit.arrays.has(deviation)) {
       const sigma = fit.floats(deviation);
       const numbers = q.isLog ? sigma.map((s) => Math.exp(kDeviations95 * s)) : sigma;
-      const label = q.isLog ? "known within a factor" : "standard deviation, as fitted";
-      add(doubts, `${q.name}.deviation`, `${name}: ${q.isLog ? "factor of uncertainty" : "uncertainty"}`, label, "", numbers, "cividis", q.isLog);
+      const label = q.isLog ? "factor" : "deviation";
+      add(doubts, `${q.name}.deviation`, `${name}: ${q.isLog ? "known within a factor" : "deviation, as fitted"}`, label, "", numbers, "cividis", false);
     }
-    if (fit.arrays.has(reduction)) add(doubts, `${q.name}.reduction`, `${name}: what was learnt`, "learnt: 0 nothing, 1 all", "", fit.floats(reduction), "blue_orange", false, [0, 1]);
+    if (fit.arrays.has(reduction)) add(doubts, `${q.name}.reduction`, `${name}: learnt, from 0 nothing to 1 all`, "learnt", "", fit.floats(reduction), "blue_orange", false, [0, 1]);
   }
   return { values, doubts };
 }
@@ -47,8 +47,8 @@ function fieldsOf(fit: Fit): { values: Field[]; doubts: Field[] } {
 export class Maps {
   readonly element = element("div", { class: "maps" });
   private readonly views: BodyView[] = [];
-  private cut: Cut = { axis: 2, at: 0.5, other: false };
-  private isCut = false;
+  private cut: Cut;
+  private isCut = true;
   private showsMarkers = false;
   private showsNext = true;
 
@@ -58,6 +58,7 @@ export class Maps {
     rig: CameraRig,
   ) {
     const { values, doubts } = fieldsOf(fit);
+    this.cut = cutInFront(body.up);
     const row = element("div", { class: "map-row" });
     if (values.length > 0) row.append(this.column("Quantity", values, rig));
     if (doubts.length > 0) row.append(this.column("Uncertainty", doubts, rig));
@@ -73,6 +74,7 @@ export class Maps {
     const view = new BodyView(this.body, rig, `${label} on the body`);
     this.views.push(view);
     view.show(fields[0].shown);
+    view.slice(this.cut);
     const pick = choice("", label, fields.map(({ key, title }) => [key, title] as const), fields[0].key, (key) => {
       const field = fields.find((f) => f.key === key);
       if (field) view.show(field.shown);
@@ -86,18 +88,17 @@ export class Maps {
       for (const view of this.views) view.slice(this.isCut ? this.cut : null);
     };
     const position = element("input", { type: "range", min: "0", max: "1", step: "0.01", value: "0.5", "aria-label": "Where the cut is" });
-    position.disabled = true;
     position.addEventListener("input", () => {
       this.cut = { ...this.cut, at: position.valueAsNumber };
       slice();
     });
-    const axis = choice("cut", "Looks inside the body", [["off", "off"], ["0", "across x"], ["1", "across y"], ["2", "across z"]], "off", (value) => {
+    const axis = choice("cut", "Looks inside the body", [["off", "off"], ["0", "across x"], ["1", "across y"], ["2", "across z"]], String(this.cut.axis), (value) => {
       this.isCut = value !== "off";
       if (this.isCut) this.cut = { ...this.cut, axis: Number(value) as 0 | 1 | 2 };
       slice();
     });
     axis.select.dataset.control = "cut";
-    const other = checkbox("other half", "Shows what the cut hides", false, (on) => {
+    const other = checkbox("other half", "Shows what the cut hides", this.cut.other, (on) => {
       this.cut = { ...this.cut, other: on };
       slice();
     });
@@ -130,6 +131,13 @@ export class Maps {
       view.mark(objects, notes);
     }
   }
+}
+
+// Through the middle, so that the camera looks onto it.
+function cutInFront(up: Vec3): Cut {
+  const front = sceneAxes(up).front.toArray();
+  const axis = [0, 1, 2].reduce((best, k) => (Math.abs(front[k]) > Math.abs(front[best]) ? k : best)) as 0 | 1 | 2;
+  return { axis, at: 0.5, other: front[axis] < 0 };
 }
 
 function vectors(list: Float32Array): Vec3[] {

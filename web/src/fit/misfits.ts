@@ -12,7 +12,7 @@ import { length, vectorAt, worstMarkers, type Fit, type WorstMarker } from "./da
 
 const kArrows = 60;
 const kRows = 10;
-const kLongest = 0.12; // of the body's size
+const kLongest = 0.25; // of the body's size
 
 export class Misfits {
   readonly element: HTMLElement;
@@ -59,7 +59,7 @@ export class Misfits {
     });
     const size = this.body.size;
     const notes: Note[] = worst.slice(0, 1).map((w) => ({ at: vectorAt(rest, w.marker), words: `marker ${w.marker + 1}: ${withUnit(length(w.error), "m", 3)}` }));
-    this.view.mark([makeArrows(arrows, 0.004 * size, "#d55e00"), makeBalls(arrows.map((a) => a.from), 0.006 * size, "#1b1f27")], notes);
+    this.view.mark([makeArrows(arrows, 0.005 * size, "#d55e00"), makeBalls(arrows.map((a) => a.from), 0.006 * size, "#1b1f27")], notes);
     this.note.textContent = worst.length > 0 ? `Arrows are drawn ${short(scale, 3)} times as long as the errors, at the markers' places at rest.` : "No positions were read in this case.";
     this.table.replaceChildren(...worst.slice(0, kRows).map((w) => this.row(w)));
   }
