@@ -193,8 +193,10 @@ bool LoadedBody::predict(std::span<const double> dtheta, std::span<double> x) {
 
 bool LoadedBody::solved(const SolveReport& report) {
   if (report.ok) return true;
-  failure_ = load_.name + (report.indefinite ? ": the equilibrium is unstable" : ": a system with the stiffness matrix was solved to a relative residual of " +
-                                                std::to_string(report.relative_residual) + " only");
+  failure_ =
+      load_.name + (report.indefinite ? ": the equilibrium is unstable"
+                                      : ": a system with the stiffness matrix was solved to a relative residual of " +
+                                            std::to_string(report.relative_residual) + " only");
   return false;
 }
 

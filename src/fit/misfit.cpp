@@ -13,8 +13,8 @@ namespace aspic {
 struct Misfit::Impl {
   struct Case {
     std::unique_ptr<LoadedBody> body;
-    int first = 0;                          // of its residuals
-    std::vector<double> start, thetabar;    // scratch
+    int first = 0;                        // of its residuals
+    std::vector<double> start, thetabar;  // scratch
     bool ok = false;
   };
 
