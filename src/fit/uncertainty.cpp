@@ -174,6 +174,10 @@ Posterior posterior(LeastSquares& misfit, Regularizer& prior, double weight, con
   warn_of_scale(data, map, result);
   PriorGaussian before(prior, weight, p);
   Spectrum s = spectrum(data, before, options.spectrum);
+  if (!s.ok) {
+    result.warnings.push_back("nothing is known of the uncertainty: a derivative at the fit could not be computed");
+    return result;
+  }
   const double roughness = prior.value(p), squares = dot(r, r);
   result.log_evidence = log_evidence(squares, weight, roughness, s);
   judge_weight(prior, weight, p, s, result);
