@@ -63,9 +63,10 @@ TEST(NextPoke, IsWhereNothingIsKnownYet) {
   Posterior before = study.posterior_of(study.block.experiment);
   const NextPoke next = next_poke(study.block.experiment, study.map, before, study.p, {.sites = 16});
   ASSERT_FALSE(next.candidates.empty());
-  for (auto& c : next.candidates) printf("%g  %s\n", c.gain, c.words.c_str());
   const PokeCandidate& best = next.candidates.front();
-  EXPECT_GT(best.site[0], 0.5 * PokedBlock::kSide);
+  EXPECT_GE(best.site[0], 0.5 * PokedBlock::kSide);
+  EXPECT_LT(next.candidates.back().site[0], 0.4 * PokedBlock::kSide);
+  EXPECT_LT(next.candidates.back().gain, 0.8 * best.gain);
   EXPECT_THAT(best.words, HasSubstr("young around"));
   EXPECT_THAT(best.words, HasSubstr("would be within"));
   for (size_t i = 1; i < next.candidates.size(); ++i) {

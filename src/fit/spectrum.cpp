@@ -115,7 +115,7 @@ Spectrum of_factor(const Columns& B, Gaussian& before) {
   return s;
 }
 
-// A growing basis Q, orthonormal in the norm of C^-1, of the range of C J'J.
+// A growing basis Q, orthonormal in the norm of C^-1, of the range of C J'.
 class RandomRange {
  public:
   RandomRange(LeastSquares& data, Gaussian& before, unsigned seed)
@@ -131,8 +131,7 @@ class RandomRange {
     const int n = data_.unknowns();
     std::normal_distribution<double> normal;
     std::vector<double> q(n), y(n), r(data_.residual_count());
-    for (double& value : q) value = normal(random_);
-    data_.multiply(q, r);
+    for (double& value : r) value = normal(random_);
     data_.multiply_transposed(r, y);
     before_.covariance(y, q);
     is_finite_ = is_finite_ && all_finite(y);
