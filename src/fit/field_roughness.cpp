@@ -81,6 +81,16 @@ void FieldRoughness::add_product(std::span<const double> z, std::span<const doub
   }
 }
 
+void FieldRoughness::add_noise(std::span<const double> z, std::mt19937_64& random, std::span<double> g) const {
+  const std::vector<double> w = conductivity(z);
+  std::normal_distribution<double> normal;
+  for (size_t k = 0; k < pairs_.size(); ++k) {
+    const double flux = std::sqrt(w[k]) * normal(random);
+    g[pairs_[k].a] += flux;
+    g[pairs_[k].b] -= flux;
+  }
+}
+
 std::vector<MatrixPlace> FieldRoughness::places() const {
   std::vector<MatrixPlace> places;
   places.reserve(3 * pairs_.size());

@@ -6,6 +6,7 @@
 // on the average over the directions of the gradient, and what two-point fluxes are made of.
 #pragma once
 #include <limits>
+#include <random>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,9 @@ class FieldRoughness {
   // y += scale A v, where the gradient is A(z) z: the Hessian of H1, an upper bound of that of total variation
   // (lagged diffusivity [Vogel and Oman 1996]).
   void add_product(std::span<const double> z, std::span<const double> v, double scale, std::span<double> y) const;
+
+  // g += a normal random vector of covariance A(z).
+  void add_noise(std::span<const double> z, std::mt19937_64& random, std::span<double> g) const;
 
   // A(z) as a matrix: three entries for each pair of neighbours.
   std::vector<MatrixPlace> places() const;

@@ -30,11 +30,15 @@ class LoadedBody {
   // Remembers x(): linearize() returns there.
   void accept() { accepted_.assign(x().begin(), x().end()); }
   bool linearize(std::span<const MaterialParameters> parameters);
+  std::span<const double> accepted() const { return accepted_; }
+  void restore(std::span<const double> x);  // as if x had been found and accepted
   bool is_linearized() const { return !equilibrium_.linearized_x().empty(); }
   // x where it is linearised + dx/dtheta dtheta; false: that could not be solved.
   bool predict(std::span<const double> dtheta, std::span<double> x);
   bool multiply(std::span<const double> dtheta, std::span<double> dr);
   bool add_transposed(std::span<const double> w, std::span<double> thetabar);
+  bool has_layer() const { return probe_ != nullptr; }
+  bool multiply_by_layer(std::span<double> dr);  // dr/dlog k, k the stiffness of the tip's layer
 
   const Misfit::Counts& counts() const { return counts_; }
 
@@ -47,6 +51,7 @@ class LoadedBody {
   bool try_from(std::span<const double> start);
   bool load_in_parts();
   bool solved(const SolveReport& report);
+  void put_change(const Wrench& change, std::span<double> dr) const;  // with dx_
   void predict_readings();
 
   const Experiment& experiment_;

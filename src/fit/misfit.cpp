@@ -127,6 +127,20 @@ struct Misfit::Impl {
     mark_unless_ok(pbar);
   }
 
+  bool has_layers() const {
+    return std::any_of(cases.begin(), cases.end(), [](const Case& c) { return c.body->has_layer(); });
+  }
+
+  void multiply_by_layers(std::span<double> dr) {
+    ASPIC_CHECK(is_linearized);
+    for_each_case([&](Case& c) {
+      const std::span<double> part = dr.subspan(c.first, c.body->residual_count());
+      std::fill(part.begin(), part.end(), 0.0);
+      c.ok = !c.body->has_layer() || c.body->multiply_by_layer(part);
+    });
+    mark_unless_ok(dr);
+  }
+
   // What could not be solved must not look like a result.
   void mark_unless_ok(std::span<double> result) {
     if (!all_ok()) std::fill(result.begin(), result.end(), std::numeric_limits<double>::quiet_NaN());
@@ -156,6 +170,23 @@ void Misfit::multiply(std::span<const double> dp, std::span<double> dr) { impl_-
 void Misfit::multiply_transposed(std::span<const double> w, std::span<double> pbar) {
   impl_->multiply_transposed(w, pbar);
 }
+
+std::vector<double> Misfit::state() const {
+  std::vector<double> x;
+  for (const Impl::Case& c : impl_->cases) x.insert(x.end(), c.body->accepted().begin(), c.body->accepted().end());
+  return x;
+}
+
+void Misfit::set_state(std::span<const double> x) {
+  const size_t size = 3 * impl_->experiment.mesh.rest.size();
+  ASPIC_CHECK(x.size() == size * impl_->cases.size());
+  for (size_t c = 0; c < impl_->cases.size(); ++c) impl_->cases[c].body->restore(x.subspan(c * size, size));
+  impl_->has_solved = true;
+  impl_->is_linearized = false;
+}
+
+int Misfit::nuisance_count() const { return impl_->has_layers() ? 1 : 0; }
+void Misfit::nuisance(int, std::span<double> dr) { impl_->multiply_by_layers(dr); }
 
 const CasePrediction& Misfit::prediction(int c) const { return impl_->cases[c].body->prediction(); }
 std::pair<int, int> Misfit::residuals_of(int c) const {

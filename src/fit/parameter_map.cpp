@@ -275,6 +275,8 @@ std::vector<double> ParameterMap::values(int unknown, std::span<const double> p)
   return q;
 }
 
+double ParameterMap::value(int unknown, double fitted) const { return impl_->fitted[unknown].scale.value(fitted); }
+
 void ParameterMap::multiply_fitted(int unknown, std::span<const double> dp, std::span<double> values) const {
   const Fitted& f = impl_->fitted[unknown];
   f.basis.multiply(f.part(dp), values);

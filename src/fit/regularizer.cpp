@@ -26,9 +26,12 @@ class Belief {
   virtual void add_product(std::span<const double> p, std::span<const double> v, double scale,
                            std::span<double> y) const = 0;
   virtual void solve(std::span<const double> p, std::span<const double> v, double shift, std::span<double> z) = 0;
+  virtual void add_noise(std::span<const double> p, std::mt19937_64& random, std::span<double> g) const = 0;
 
  protected:
-  double invertible_precision() const { return precision_ > 0 ? precision_ : inverse_square(kDeviationOfNoPrior); }
+  double invertible_precision(double shift) const {
+    return precision_ > 0 || shift > 0 ? precision_ : inverse_square(kDeviationOfNoPrior);
+  }
 
   double guess_, precision_;
 };
@@ -50,7 +53,11 @@ class ValueBelief : public Belief {
     for (size_t i = 0; i < v.size(); ++i) y[i] += scale * precision_ * v[i];
   }
   void solve(std::span<const double>, std::span<const double> v, double shift, std::span<double> z) override {
-    for (size_t i = 0; i < v.size(); ++i) z[i] = v[i] / (invertible_precision() + shift);
+    for (size_t i = 0; i < v.size(); ++i) z[i] = v[i] / (invertible_precision(shift) + shift);
+  }
+  void add_noise(std::span<const double>, std::mt19937_64& random, std::span<double> g) const override {
+    std::normal_distribution<double> normal;
+    for (double& gi : g) gi += std::sqrt(precision_) * normal(random);
   }
 };
 
@@ -91,6 +98,13 @@ class FieldBelief : public Belief {
       factorize(p, shift);
     inverse_.solve(v, z);
   }
+  void add_noise(std::span<const double> p, std::mt19937_64& random, std::span<double> g) const override {
+    std::normal_distribution<double> normal;
+    std::vector<double> zbar(static_cast<size_t>(basis_.tet_count()));
+    for (size_t t = 0; t < zbar.size(); ++t) zbar[t] = std::sqrt(precision_ * mass(t)) * normal(random);
+    if (is_smooth_) roughness_.add_noise(field(p), random, zbar);
+    add_transposed(zbar, 1, g);
+  }
 
  private:
   double mass(size_t t) const { return roughness_.volume_share()[t]; }
@@ -110,15 +124,15 @@ class FieldBelief : public Belief {
     for (int t = 0; t < basis_.tet_count(); ++t) places.push_back({t, t});
     return places;
   }
-  std::vector<double> field_entries(std::span<const double> p) const {
+  std::vector<double> field_entries(std::span<const double> p, double shift) const {
     std::vector<double> entries = is_smooth_ ? roughness_.entries(field(p)) : std::vector<double>{};
-    for (double share : roughness_.volume_share()) entries.push_back(invertible_precision() * share);
+    for (double share : roughness_.volume_share()) entries.push_back(invertible_precision(shift) * share);
     return entries;
   }
 
   void factorize(std::span<const double> p, double shift) {
     std::vector<MatrixPlace> places = field_places();
-    std::vector<double> entries = field_entries(p);
+    std::vector<double> entries = field_entries(p, shift);
     if (!basis_.is_identity()) reduce(places, entries);
     for (int i = 0; i < basis_.size(); ++i) {
       places.push_back({i, i});
@@ -193,6 +207,9 @@ class SumOfBeliefs : public Regularizer {
   }
   void solve(std::span<const double> p, std::span<const double> v, double shift, std::span<double> z) override {
     for (const Part& part : parts_) part.belief->solve(part.of(p), part.of(v), shift, part.of(z));
+  }
+  void add_noise(std::span<const double> p, std::mt19937_64& random, std::span<double> g) const override {
+    for (const Part& part : parts_) part.belief->add_noise(part.of(p), random, part.of(g));
   }
 
  private:

@@ -6,6 +6,7 @@
 // standard deviation `deviation`.
 #pragma once
 #include <memory>
+#include <random>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,9 +32,11 @@ class Regularizer {
   // y += scale R'' v, with total variation's curvature lagged so that it is positive semidefinite.
   virtual void add_hessian_product(std::span<const double> p, std::span<const double> v, double scale,
                                    std::span<double> y) const = 0;
-  // z = (R''(p) + shift I)^-1 v: a preconditioner, and the prior covariance. Where there is no prior, one of deviation
-  // 100 takes its place, so that there is an inverse.
+  // z = (R''(p) + shift I)^-1 v: a preconditioner, and the prior covariance. Where there is neither prior nor shift, a
+  // prior of deviation 100 takes its place, so that there is an inverse.
   virtual void solve(std::span<const double> p, std::span<const double> v, double shift, std::span<double> z) = 0;
+  // g += a normal random vector of covariance R''(p): R''^-1 g is a sample of the prior.
+  virtual void add_noise(std::span<const double> p, std::mt19937_64& random, std::span<double> g) const = 0;
 };
 
 // Throws InvalidInput for deviations and sharpnesses that are not positive.

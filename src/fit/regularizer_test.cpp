@@ -142,6 +142,26 @@ TEST_P(Regularizers, SolveInvertsTheHessian) {
   }
 }
 
+// Var(v'g) = v' R'' v.
+TEST_P(Regularizers, NoiseHasTheHessianAsCovariance) {
+  const std::vector<double> p = somewhere();
+  std::mt19937_64 random(5);
+  for (unsigned seed : {10, 11, 12}) {
+    const std::vector<double> v = noise(p.size(), seed);
+    std::vector<double> Hv(p.size(), 0.0);
+    R_->add_hessian_product(p, v, 1, Hv);
+    const double variance = std::inner_product(v.begin(), v.end(), Hv.begin(), 0.0);
+    constexpr int kSamples = 4000;
+    double mean = 0;
+    for (int s = 0; s < kSamples; ++s) {
+      std::vector<double> g(p.size(), 0.0);
+      R_->add_noise(p, random, g);
+      mean += std::pow(std::inner_product(v.begin(), v.end(), g.begin(), 0.0), 2) / kSamples;
+    }
+    EXPECT_NEAR(mean, variance, 4 * variance * std::sqrt(2.0 / kSamples));  // four standard errors
+  }
+}
+
 TEST_P(Regularizers, IsLeastAtTheGuess) {
   std::vector<double> g(map_.guess().size(), 0.0);
   EXPECT_NEAR(R_->value(map_.guess()), 0, 1e-20);
