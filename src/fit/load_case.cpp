@@ -174,8 +174,15 @@ void LoadedBody::residuals(std::span<double> r) const {
   if (has_torque()) put(prediction_.wrench.torque, *load_.torque, load_.torque_deviation);
 }
 
+void LoadedBody::restore(std::span<const double> x) {
+  accepted_.assign(x.begin(), x.end());
+  prediction_.x = accepted_;
+}
+
+// What comes next depends on nothing but the point of the linearisation, whatever was tried since.
 bool LoadedBody::linearize(std::span<const MaterialParameters> parameters) {
   equilibrium_.set_x(accepted_);
+  prediction_.x = accepted_;
   equilibrium_.set_parameters(parameters);
   ++counts_.factorizations;
   if (equilibrium_.factorize()) return true;

@@ -30,6 +30,8 @@ class LoadedBody {
   // Remembers x(): linearize() returns there.
   void accept() { accepted_.assign(x().begin(), x().end()); }
   bool linearize(std::span<const MaterialParameters> parameters);
+  std::span<const double> accepted() const { return accepted_; }
+  void restore(std::span<const double> x);  // as if x had been found and accepted
   bool is_linearized() const { return !equilibrium_.linearized_x().empty(); }
   // x where it is linearised + dx/dtheta dtheta; false: that could not be solved.
   bool predict(std::span<const double> dtheta, std::span<double> x);

@@ -174,6 +174,20 @@ void Misfit::multiply_transposed(std::span<const double> w, std::span<double> pb
 int Misfit::nuisance_count() const { return impl_->has_layers() ? 1 : 0; }
 void Misfit::nuisance(int, std::span<double> dr) { impl_->multiply_by_layers(dr); }
 
+std::vector<double> Misfit::state() const {
+  std::vector<double> x;
+  for (const Impl::Case& c : impl_->cases) x.insert(x.end(), c.body->accepted().begin(), c.body->accepted().end());
+  return x;
+}
+
+void Misfit::set_state(std::span<const double> x) {
+  const size_t size = 3 * impl_->experiment.mesh.rest.size();
+  ASPIC_CHECK(x.size() == size * impl_->cases.size());
+  for (size_t c = 0; c < impl_->cases.size(); ++c) impl_->cases[c].body->restore(x.subspan(c * size, size));
+  impl_->has_solved = true;
+  impl_->is_linearized = false;
+}
+
 const CasePrediction& Misfit::prediction(int c) const { return impl_->cases[c].body->prediction(); }
 std::pair<int, int> Misfit::residuals_of(int c) const {
   return {impl_->cases[c].first, impl_->cases[c].body->residual_count()};

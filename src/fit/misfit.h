@@ -79,6 +79,11 @@ class Misfit : public LeastSquares {
   int nuisance_count() const override;
   void nuisance(int k, std::span<double> dr) override;
 
+  // The equilibria of the last successful evaluate(), one case after another; empty before. A misfit that is given
+  // them, evaluated and linearised at the same p goes on to the same bits.
+  std::vector<double> state() const;
+  void set_state(std::span<const double> x);
+
   const CasePrediction& prediction(int c) const;  // by the last evaluate()
   std::pair<int, int> residuals_of(int c) const;  // first, count
   std::string what(int residual) const;           // "poke 3, depth 2: marker 17, y"
