@@ -32,7 +32,7 @@ std::optional<double> balanced_weight(FitRun& run, const FitPoint& at) {
 // For which |r|^2 is known within its own scatter.
 FitGoal loosened(const FitGoal& goal, const FitRun& run) {
   FitGoal loose = goal;
-  loose.absolute = std::sqrt(0.5 * std::sqrt(2.0 * run.residuals()));
+  loose.enough = std::max(goal.enough, std::sqrt(0.5 * std::sqrt(2.0 * run.residuals())));
   return loose;
 }
 
@@ -122,6 +122,7 @@ Status fit_by_discrepancy(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod me
   std::vector<WeightTrial>& trials = run.report.weights;
   auto verdict = Discrepancy::Verdict::try_on;
   for (int i = 0; i < kTrials && verdict == Discrepancy::Verdict::try_on; ++i) {
+    loose.is_new = true;
     const Status status = method(run, at, loose);
     if (!is_success(status)) return status;
     trials.push_back(trial_at(run, at));
@@ -154,6 +155,7 @@ Status fit_by_l_curve(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method
   FitGoal loose = loosened(goal, run);
   std::vector<WeightTrial>& trials = run.report.weights;
   for (int i = 0; i < kTrials; ++i, run.weight /= std::sqrt(10.0)) {
+    loose.is_new = true;
     const Status status = method(run, at, loose);
     if (status == Status::stuck && trials.size() >= 3) break;  // the weight is too small to go on
     if (!is_success(status)) return status;
