@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "dynamics/simulation.h"
-#include "energy/tet_term.h"
+#include "energy/material_term.h"
 #include "material/barrier.h"
 #include "material/from_energy.h"
 #include "mesh/generators.h"
@@ -26,6 +26,11 @@ struct TissueEnergy {
     const T growth = exp(p.b * (squared_norm(F) - T(3.0) - T(2.0) * log_J)) - T(1.0);
     return infinite_unless_positive(J, T(0.5) * p.mu / p.b * growth + T(0.5) * p.lambda * log_J * log_J);
   }
+
+  template <class T>  // from small-strain constants and up to three numbers of your own
+  static Params<T> params(const MaterialParametersOver<T>& m) {
+    return {m.lame.mu, m.lame.lambda, m.extra[0]};
+  }
 };
 using Tissue = FromEnergy<TissueEnergy>;
 
@@ -33,7 +38,7 @@ int main() {
   const double density = 1000;                     // [kg/m^3]
   const double length = 0.1, width = 0.02;         // [m]
   const double pull = 0.06, seconds = 1;           // how far the end is pulled [m], how long it takes [s]
-  const Tissue::Params<double> skin{2e4, 8e4, 3};  // the same in every tet; it need not be
+  const MaterialParameters skin{{2e4, 8e4}, {3}};  // the same in every tet; it need not be
 
   Model model;
   model.mesh = make_box({0, 0, 0}, {length, width, width}, {10, 2, 2});
@@ -41,8 +46,8 @@ int main() {
   model.bodies = {{"bar", 0, mesh.vertex_count(), 0, mesh.tet_count()}};
   model.density.assign(mesh.tet_count(), density);
   model.mass = std::make_unique<MassMatrix>(mesh, model.density, MassKind::consistent);
-  const std::vector<Tissue::Params<double>> parameters(mesh.tet_count(), skin);
-  model.elasticity.push_back(std::make_unique<TetTerm<Tissue>>("tissue", mesh, 0, parameters));
+  const std::vector<MaterialParameters> parameters(mesh.tet_count(), skin);
+  model.elasticity.push_back(std::make_unique<MaterialTerm<Tissue>>("tissue", mesh, 0, parameters, 1));
 
   Pin fixed{.name = "fixed", .vertices = {}, .motion = {}};
   Pin pulled{.name = "pulled", .vertices = {}, .motion = [&](const Vec3d& X, double t) {

@@ -1,7 +1,10 @@
 // A rigid tip that touches the surface of a body: V(x) = sum over points of the surface of area k phi, an elastic layer
 // that is stiff beside the body, so that poses of the tip are known and its force is measured.
-//   sliding: phi grows with the depth of the point below the surface of the tip, without friction
+//   sliding: phi grows with the depth d of the point below the surface of the tip, without friction:
+//            phi' = d^2 / (2 e) up to d = e, then d - e / 2, where e = radius / 50
 //   bonded:  phi = |x - target|^2 / 2 for the points that the tip touches at rest, which follow it as if glued to it
+// The points are the centroids of equal parts of the boundary triangles, closer together than an eighth (bonded) or a
+// quarter (sliding) of the radius.
 #pragma once
 #include <memory>
 #include <span>
@@ -27,7 +30,7 @@ struct Tip {
 // touched the body at rest.
 struct TipPose {
   Vec3d center{};          // [m]
-  Vec3d axis{{0, 0, -1}};  // of length 1, out of the tip
+  Vec3d axis{{0, 0, -1}};  // out of the tip; of any length but 0
   Vec3d rotation{};        // vector of the rotation about the centre since the touch [rad]
 };
 
@@ -47,8 +50,13 @@ class Probe : public Energy {
   virtual int touched_points(Positions x) const = 0;  // of the surface; 0: the tip is in the air
 };
 
-// `touch`: the pose in which the tip touches the body at rest; where it is to begin with. Throws InvalidInput when a
-// bonded tip touches nothing there.
+// How far from the surface of a bonded tip the glue reaches, relative to the radius. It thins out over the second half
+// of that distance, and at a disc's edge over an eighth of the radius on either side of it.
+inline constexpr double kGlue = 0.125;
+
+// `surface`: boundary triangles of the mesh, outward oriented. `touch`: the pose in which the tip touches the body at
+// rest; where it is to begin with. Throws InvalidInput when a bonded tip touches nothing there, and when a triangle
+// that it touches is more than 32 times as long as the tip is wide.
 std::unique_ptr<Probe> make_probe(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip,
                                   const TipPose& touch);
 

@@ -1,3 +1,4 @@
+#include "energy/tet_elasticity.h"
 #include "energy/tet_term.h"
 
 namespace aspic {
@@ -52,7 +53,7 @@ struct GreenStrainRate {
   }
 };
 
-class StrainRateDamping : public TetTerm<GreenStrainRate> {
+class StrainRateDamping : public TetTerm<GreenStrainRate, Energy> {
  public:
   using TetTerm::TetTerm;
 

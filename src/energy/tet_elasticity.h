@@ -22,6 +22,16 @@ class TetElasticity : public Energy {
  public:
   virtual double min_det_F(Positions x) const = 0;
   virtual void evaluate(Positions x, TetFields& fields) const = 0;  // writes the entries of this term's tets
+
+  // theta: per tet mu, lambda and what MaterialInfo::extra names. Below, this term's tets one after another.
+  virtual int parameter_count() const = 0;                                          // of one tet
+  virtual void set_parameters(std::span<const MaterialParameters> parameters) = 0;  // one per tet
+  // g += scale d(dV/dx)/dtheta change, and its transpose: gradient += scale d(w . dV/dx)/dtheta. `change` and
+  // `gradient` hold parameter_count() numbers per tet, g and w 3 per vertex.
+  virtual void add_parameter_force(Positions x, std::span<const double> change, double scale,
+                                   std::span<double> g) const = 0;
+  virtual void add_parameter_gradient(Positions x, std::span<const double> w, double scale,
+                                      std::span<double> gradient) const = 0;
 };
 
 // Tets [first, first + parameters.size()) of the mesh. The mesh is only read here.

@@ -1,4 +1,5 @@
-// The sum over tets of volume * psi(F) for one material M. Included only where it is instantiated.
+// The sum over tets of volume * psi(F) for one density M, as a term of V (Base: Energy or an interface derived from
+// it). Included only where it is instantiated.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -12,10 +13,9 @@
 
 #include "base/parallel.h"
 #include "energy/coloring.h"
+#include "energy/energy.h"
 #include "energy/law_hessian.h"
-#include "energy/make_tet_term.h"
 #include "energy/tet_batch.h"
-#include "energy/tet_elasticity.h"
 #include "energy/vertex_tets.h"
 #include "material/law_eigen.h"
 #include "material/material.h"
@@ -24,8 +24,8 @@
 
 namespace aspic {
 
-template <class M>
-class TetTerm : public TetElasticity {
+template <class M, class Base>
+class TetTerm : public Base {
  public:
   template <class T>
   using Params = typename M::template Params<T>;
@@ -96,22 +96,30 @@ class TetTerm : public TetElasticity {
     }
   }
 
-  double min_det_F(Positions x) const override {
-    return reduce([&](int i) { return min(determinant(F(i, x))); }, [](double a, double b) { return std::min(a, b); },
-                  INFINITY);
-  }
-
-  void evaluate(Positions x, TetFields& fields) const override {
-    parallel_for(batch_count(), [&](int i) {
-      const Mat3<Pack> Fi = F(i, x);
-      const Pack psi = M::psi(Fi, params_[i]), J = determinant(Fi);
-      const Mat3<Pack> cauchy = (Pack(1.0) / J) * (M::pk1(Fi, params_[i]) * transpose(Fi));
-      for (int l = 0; l < batches_[i].count; ++l) write(batches_[i].tet[l], l, psi, J, cauchy, fields);
-    });
-  }
-
  protected:
   Mat3<Pack> F(int batch, Positions x) const { return batches_[batch].deformation_gradient(x); }
+  int batch_count() const { return static_cast<int>(batches_.size()); }
+
+  // Batches that scatter: colour after colour, the groups of a colour in parallel.
+  template <class Body>
+  void for_each_batch(const Body& body) const {
+    for (const std::vector<int>& groups : colors_)
+      parallel_for(static_cast<int>(groups.size()), [&](int k) { for_group(groups[k], body); });
+  }
+
+  // One number per batch, combined in the order of the batches.
+  template <class Body, class Combine>
+  double reduce(const Body& body, const Combine& combine, double start) const {
+    partial_.resize(group_count());
+    parallel_for(group_count(), [&](int group) {
+      double result = start;
+      for_group(group, [&](int i) { result = combine(result, body(i)); });
+      partial_[group] = result;
+    });
+    double result = start;
+    for (const double p : partial_) result = combine(result, p);
+    return result;
+  }
 
   std::vector<TetBatch> batches_;
   std::vector<Params<Pack>> params_;
@@ -181,18 +189,6 @@ class TetTerm : public TetElasticity {
     }
   }
 
-  static void write(int tet, int lane, Pack psi, Pack J, const Mat3<Pack>& s, TetFields& fields) {
-    fields.energy_density[tet] = psi[lane];
-    fields.det_F[tet] = J[lane];
-    const double xx = s(0, 0)[lane], yy = s(1, 1)[lane], zz = s(2, 2)[lane];
-    const double xy = s(0, 1)[lane], yz = s(1, 2)[lane], zx = s(2, 0)[lane];
-    const double components[6] = {xx, yy, zz, xy, yz, zx};
-    std::copy(components, components + 6, &fields.cauchy[6 * tet]);
-    fields.von_mises[tet] = std::sqrt(0.5 * ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) +
-                                      3 * (xy * xy + yz * yz + zx * zx));
-  }
-
-  int batch_count() const { return static_cast<int>(batches_.size()); }
   int batches_per_group() const { return static_cast<int>(tets_per_group_) / kPackWidth; }
   int group_count() const { return (batch_count() + batches_per_group() - 1) / batches_per_group(); }
 
@@ -207,27 +203,6 @@ class TetTerm : public TetElasticity {
       }
       body(i);
     }
-  }
-
-  // Batches that scatter: colour after colour, the groups of a colour in parallel.
-  template <class Body>
-  void for_each_batch(const Body& body) const {
-    for (const std::vector<int>& groups : colors_)
-      parallel_for(static_cast<int>(groups.size()), [&](int k) { for_group(groups[k], body); });
-  }
-
-  // One number per batch, combined in the order of the batches.
-  template <class Body, class Combine>
-  double reduce(const Body& body, const Combine& combine, double start) const {
-    partial_.resize(group_count());
-    parallel_for(group_count(), [&](int group) {
-      double result = start;
-      for_group(group, [&](int i) { result = combine(result, body(i)); });
-      partial_[group] = result;
-    });
-    double result = start;
-    for (const double p : partial_) result = combine(result, p);
-    return result;
   }
 
   void color(int vertex_count) {
@@ -249,14 +224,5 @@ class TetTerm : public TetElasticity {
   mutable std::vector<double> partial_;  // scratch of reduce
   mutable std::vector<char> projected_;  // per batch: lanes projected by the last Hessian
 };
-
-template <class M>
-std::unique_ptr<TetElasticity> make_tet_term(const TetMesh& mesh, int first,
-                                             std::span<const MaterialParameters> parameters) {
-  std::vector<typename M::template Params<double>> own;
-  own.reserve(parameters.size());
-  for (const MaterialParameters& p : parameters) own.push_back(M::params(p));
-  return std::make_unique<TetTerm<M>>("elasticity", mesh, first, own);
-}
 
 }  // namespace aspic

@@ -18,7 +18,7 @@ struct Arap {
   }
   template <class T>
   static Mat3<T> pk1(const Mat3<T>& F, const Params<T>& p) {
-    return T(2.0) * p.mu * (F - rotation(svd3(F)));
+    return T(2.0) * p.mu * (F - closest_rotation(F));
   }
   template <class T>
   static Mat9<T> hessian(const Mat3<T>& F, const Params<T>& p) {
@@ -29,7 +29,10 @@ struct Arap {
     return H;
   }
 
-  static Params<double> params(const MaterialParameters& m) { return {m.lame.mu}; }
+  template <class T>
+  static Params<T> params(const MaterialParametersOver<T>& m) {
+    return {m.lame.mu};
+  }
 
   static MaterialInfo info() {
     return {.name = "arap",

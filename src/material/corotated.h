@@ -22,7 +22,7 @@ struct Corotated {
   template <class T>
   static Mat3<T> pk1(const Mat3<T>& F, const Params<T>& p) {
     const T tension = p.lambda * (determinant(F) - T(1.0));
-    return T(2.0) * p.mu * (F - rotation(svd3(F))) + tension * cofactor(F);
+    return T(2.0) * p.mu * (F - closest_rotation(F)) + tension * cofactor(F);
   }
   template <class T>
   static Mat9<T> hessian(const Mat3<T>& F, const Params<T>& p) {
@@ -32,7 +32,10 @@ struct Corotated {
     return H;
   }
 
-  static Params<double> params(const MaterialParameters& m) { return {m.lame.mu, m.lame.lambda}; }
+  template <class T>
+  static Params<T> params(const MaterialParametersOver<T>& m) {
+    return {m.lame.mu, m.lame.lambda};
+  }
 
   static MaterialInfo info() {
     return {.name = "corotated",

@@ -24,7 +24,10 @@ struct FungLaw {
     return isochoric_derivatives(I1, J, slope, p.b * slope, p.bulk);
   }
 
-  static Params<double> params(const MaterialParameters& m) { return {m.lame.mu, bulk_modulus(m.lame), m.extra[0]}; }
+  template <class T>
+  static Params<T> params(const MaterialParametersOver<T>& m) {
+    return {m.lame.mu, bulk_modulus(m.lame), m.extra[0]};
+  }
 
   static MaterialInfo info() {
     return {.name = "fung",

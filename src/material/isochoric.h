@@ -7,7 +7,10 @@
 
 namespace aspic {
 
-inline double bulk_modulus(Lame l) { return l.lambda + 2.0 / 3.0 * l.mu; }
+template <class T>
+T bulk_modulus(const LameOver<T>& l) {
+  return l.lambda + T(2.0 / 3.0) * l.mu;
+}
 
 // J^(-2/3).
 template <class T>

@@ -3,9 +3,11 @@
 
 namespace aspic {
 
-struct Lame {
-  double mu = 0, lambda = 0;  // [Pa]
+template <class T>
+struct LameOver {
+  T mu{}, lambda{};  // [Pa]
 };
+using Lame = LameOver<double>;
 
 inline Lame lame_from_young_poisson(double young, double poisson) {
   return {young / (2 * (1 + poisson)), young * poisson / ((1 + poisson) * (1 - 2 * poisson))};

@@ -37,7 +37,10 @@ struct Linear {
     return H;
   }
 
-  static Params<double> params(const MaterialParameters& m) { return {m.lame.mu, m.lame.lambda}; }
+  template <class T>
+  static Params<T> params(const MaterialParametersOver<T>& m) {
+    return {m.lame.mu, m.lame.lambda};
+  }
 
   static MaterialInfo info() {
     return {.name = "linear",

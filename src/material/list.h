@@ -40,8 +40,9 @@ using MaterialList = std::tuple<  //
 
 // A material that scenes can name: params() turns small-strain constants into its own, info() describes it.
 template <class M>
-concept RegisteredMaterial = Material<M> && requires(const MaterialParameters m) {
+concept RegisteredMaterial = Material<M> && requires(const MaterialParameters m, const MaterialParametersOver<Pack> p) {
   { M::params(m) } -> std::same_as<typename M::template Params<double>>;
+  { M::params(p) } -> std::same_as<typename M::template Params<Pack>>;
   { M::info() } -> std::same_as<MaterialInfo>;
 };
 

@@ -39,9 +39,10 @@ struct MooneyRivlin {
   }
 
   // At rest mu_L = 2 (c10 + c01).
-  static Params<double> params(const MaterialParameters& m) {
-    const double share = m.extra[0];
-    return {0.5 * m.lame.mu * (1 - share), 0.5 * m.lame.mu * share, bulk_modulus(m.lame)};
+  template <class T>
+  static Params<T> params(const MaterialParametersOver<T>& m) {
+    const T& share = m.extra[0];
+    return {T(0.5) * m.lame.mu * (T(1.0) - share), T(0.5) * m.lame.mu * share, bulk_modulus(m.lame)};
   }
 
   static MaterialInfo info() {

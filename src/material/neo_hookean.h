@@ -23,7 +23,10 @@ struct NeoHookeanLaw {
     return {T(0.5) * p.mu, p.lambda * (J - T(1.0)) - p.mu, p.lambda};
   }
 
-  static Params<double> params(const MaterialParameters& m) { return {m.lame.mu, m.lame.lambda + m.lame.mu}; }
+  template <class T>
+  static Params<T> params(const MaterialParametersOver<T>& m) {
+    return {m.lame.mu, m.lame.lambda + m.lame.mu};
+  }
 
   static MaterialInfo info() {
     return {.name = "neo_hookean",

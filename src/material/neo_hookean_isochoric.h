@@ -21,7 +21,10 @@ struct NeoHookeanIsochoricLaw {
     return isochoric_derivatives(I1, J, T(0.5) * p.mu, T(0.0), p.bulk);
   }
 
-  static Params<double> params(const MaterialParameters& m) { return {m.lame.mu, bulk_modulus(m.lame)}; }
+  template <class T>
+  static Params<T> params(const MaterialParametersOver<T>& m) {
+    return {m.lame.mu, bulk_modulus(m.lame)};
+  }
 
   static MaterialInfo info() {
     return {.name = "neo_hookean_isochoric",

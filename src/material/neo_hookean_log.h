@@ -25,7 +25,10 @@ struct NeoHookeanLogLaw {
     return {T(0.5) * p.mu, tension * inverse_J, (p.lambda - tension) * inverse_J * inverse_J};
   }
 
-  static Params<double> params(const MaterialParameters& m) { return {m.lame.mu, m.lame.lambda}; }
+  template <class T>
+  static Params<T> params(const MaterialParametersOver<T>& m) {
+    return {m.lame.mu, m.lame.lambda};
+  }
 
   static MaterialInfo info() {
     return {

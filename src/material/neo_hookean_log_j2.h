@@ -25,7 +25,10 @@ struct NeoHookeanLogJ2Law {
     return {T(0.5) * p.mu, p.lambda * (J - T(1.0)) - p.mu * r, p.lambda + p.mu * r * r};
   }
 
-  static Params<double> params(const MaterialParameters& m) { return {m.lame.mu, m.lame.lambda}; }
+  template <class T>
+  static Params<T> params(const MaterialParametersOver<T>& m) {
+    return {m.lame.mu, m.lame.lambda};
+  }
 
   static MaterialInfo info() {
     return {.name = "neo_hookean_log_j2",

@@ -12,10 +12,12 @@ namespace aspic {
 inline constexpr int kMaxExtraParameters = 12;
 
 // The parameters of one tet: small-strain constants, and what only some materials have (MaterialInfo::extra).
-struct MaterialParameters {
-  Lame lame;
-  std::array<double, kMaxExtraParameters> extra{};
+template <class T>
+struct MaterialParametersOver {
+  LameOver<T> lame;
+  std::array<T, kMaxExtraParameters> extra{};
 };
+using MaterialParameters = MaterialParametersOver<double>;
 
 struct ExtraParameter {
   std::string name, unit, meaning;

@@ -31,8 +31,9 @@ struct StableNeoHookeanLaw {
   }
 
   // At rest: mu_L = 3/4 mu, lambda_L = lambda - 5/8 mu.
-  static Params<double> params(const MaterialParameters& m) {
-    return {4.0 / 3.0 * m.lame.mu, m.lame.lambda + 5.0 / 6.0 * m.lame.mu};
+  template <class T>
+  static Params<T> params(const MaterialParametersOver<T>& m) {
+    return {T(4.0 / 3.0) * m.lame.mu, m.lame.lambda + T(5.0 / 6.0) * m.lame.mu};
   }
 
   static MaterialInfo info() {

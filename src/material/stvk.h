@@ -31,7 +31,10 @@ struct Stvk {
     return H;
   }
 
-  static Params<double> params(const MaterialParameters& m) { return {m.lame.mu, m.lame.lambda}; }
+  template <class T>
+  static Params<T> params(const MaterialParametersOver<T>& m) {
+    return {m.lame.mu, m.lame.lambda};
+  }
 
   static MaterialInfo info() {
     return {.name = "stvk",

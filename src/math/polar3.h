@@ -1,5 +1,8 @@
 // The polar decomposition F = R S: R the closest rotation, tr S the sum of the (signed) singular values.
 #pragma once
+#include <limits>
+
+#include "math/dual.h"
 #include "math/jet.h"
 #include "math/svd3.h"
 
@@ -8,6 +11,23 @@ namespace aspic {
 template <class T>
 Mat3<T> rotation(const Svd3<T>& f) {
   return f.U * transpose(f.V);
+}
+
+template <class T>
+Mat3<T> closest_rotation(const Mat3<T>& F) {
+  return rotation(svd3(F));
+}
+// With its rate: R' dR is the cross product with w, (tr S I - S) w = the axis of R' dF - dF' R.
+template <class T>
+Mat3<Dual<T>> closest_rotation(const Mat3<Dual<T>>& F) {
+  const Mat3<T> R = closest_rotation(values(F));
+  const Mat3<T> S = transpose(R) * values(F), A = transpose(R) * rates(F);
+  const Mat3<T> G = trace(S) * identity3<T>() - S;
+  const T det = determinant(G), least = T(std::numeric_limits<double>::min());  // 0 where R jumps
+  const Vec3<T> axis = {{A(2, 1) - A(1, 2), A(0, 2) - A(2, 0), A(1, 0) - A(0, 1)}};
+  const Vec3<T> w = (T(1.0) / where_positive(det - least, det, least)) * (transpose(cofactor(G)) * axis);
+  const T o = T(0.0);
+  return dual_matrix(R, R * Mat3<T>{{o, w[2], -w[1], -w[2], o, w[0], w[1], -w[0], o}});
 }
 
 // H += scale dR/dF, where dR/dF = sum over i < j of w w' / (s_i + s_j), w = vec(u_i v_j' - u_j v_i').

@@ -1,0 +1,134 @@
+// The tets of a material: the density as a term of V, what there is to see in each tet, and derivatives with
+// respect to the parameters. Included only where it is instantiated.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "energy/make_tet_term.h"
+#include "energy/tet_elasticity.h"
+#include "energy/tet_term.h"
+#include "math/dual.h"
+
+namespace aspic {
+
+template <class M>
+class MaterialTerm : public TetTerm<M, TetElasticity> {
+  using Term = TetTerm<M, TetElasticity>;
+  using Term::batch_count, Term::batches_, Term::F, Term::for_each_batch, Term::params_, Term::reduce;
+
+ public:
+  // Tets [first, first + parameters.size()) of the mesh. Of MaterialParameters::extra, the material has `extra`.
+  MaterialTerm(std::string name, const TetMesh& mesh, int first, std::span<const MaterialParameters> parameters,
+               int extra)
+      : Term(std::move(name), mesh, first, own_params(parameters)),
+        first_(first),
+        parameter_count_(2 + extra),
+        parameters_(parameters.begin(), parameters.end()) {}
+
+  double min_det_F(Positions x) const override {
+    return reduce([&](int i) { return min(determinant(F(i, x))); }, [](double a, double b) { return std::min(a, b); },
+                  INFINITY);
+  }
+
+  void evaluate(Positions x, TetFields& fields) const override {
+    parallel_for(batch_count(), [&](int i) {
+      const Mat3<Pack> Fi = F(i, x);
+      const Pack psi = M::psi(Fi, params_[i]), J = determinant(Fi);
+      const Mat3<Pack> cauchy = (Pack(1.0) / J) * (M::pk1(Fi, params_[i]) * transpose(Fi));
+      for (int l = 0; l < batches_[i].count; ++l) write(batches_[i].tet[l], l, psi, J, cauchy, fields);
+    });
+  }
+
+  int parameter_count() const override { return parameter_count_; }
+
+  void set_parameters(std::span<const MaterialParameters> parameters) override {
+    ASPIC_CHECK(parameters.size() == parameters_.size());
+    std::copy(parameters.begin(), parameters.end(), parameters_.begin());
+    parallel_for(batch_count(), [&](int i) {
+      std::array<typename Term::template Params<double>, kPackWidth> lanes;
+      for (int l = 0; l < kPackWidth; ++l) lanes[l] = M::params(parameters_[tet(i, l)]);
+      params_[i] = pack_params<M>(lanes);
+    });
+  }
+
+  void add_parameter_force(Positions x, std::span<const double> change, double scale,
+                           std::span<double> g) const override {
+    for_each_batch([&](int i) {
+      const auto rate = [&](int k) { return lanes_of([&](int l) { return change[entry(i, l, k)]; }); };
+      batches_[i].scatter_gradient(stress_rate(i, x, rate), Pack(scale) * batches_[i].volume, g);
+    });
+  }
+
+  void add_parameter_gradient(Positions x, std::span<const double> w, double scale,
+                              std::span<double> gradient) const override {
+    parallel_for(batch_count(), [&](int i) {
+      const Mat3<Pack> W = F(i, w);
+      const Pack weight = Pack(scale) * batches_[i].volume;
+      for (int k = 0; k < parameter_count_; ++k) {
+        const Mat3<Pack> dP = stress_rate(i, x, [&](int j) { return Pack(j == k ? 1.0 : 0.0); });
+        const Pack sum = weight * inner(dP, W);
+        for (int l = 0; l < batches_[i].count; ++l) gradient[entry(i, l, k)] += sum[l];
+      }
+    });
+  }
+
+ private:
+  static std::vector<typename Term::template Params<double>> own_params(
+      std::span<const MaterialParameters> parameters) {
+    std::vector<typename Term::template Params<double>> own;
+    own.reserve(parameters.size());
+    for (const MaterialParameters& p : parameters) own.push_back(M::params(p));
+    return own;
+  }
+
+  static void write(int tet, int lane, Pack psi, Pack J, const Mat3<Pack>& s, TetFields& fields) {
+    fields.energy_density[tet] = psi[lane];
+    fields.det_F[tet] = J[lane];
+    const double xx = s(0, 0)[lane], yy = s(1, 1)[lane], zz = s(2, 2)[lane];
+    const double xy = s(0, 1)[lane], yz = s(1, 2)[lane], zx = s(2, 0)[lane];
+    const double components[6] = {xx, yy, zz, xy, yz, zx};
+    std::copy(components, components + 6, &fields.cauchy[6 * tet]);
+    fields.von_mises[tet] = std::sqrt(0.5 * ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) +
+                                      3 * (xy * xy + yz * yz + zx * zx));
+  }
+
+  int tet(int batch, int lane) const { return batches_[batch].tet[lane] - first_; }
+  int entry(int batch, int lane, int k) const { return parameter_count_ * tet(batch, lane) + k; }
+
+  template <class OfLane>
+  static Pack lanes_of(const OfLane& of_lane) {
+    Pack a;
+    for (int l = 0; l < kPackWidth; ++l) a.set(l, of_lane(l));
+    return a;
+  }
+
+  // dP where parameter k changes at rate(k) and F stays.
+  template <class Rate>
+  Mat3<Pack> stress_rate(int i, Positions x, const Rate& rate) const {
+    MaterialParametersOver<Dual<Pack>> p;
+    const auto moving = [&](int k, auto member) {
+      return Dual<Pack>(lanes_of([&](int l) { return member(parameters_[tet(i, l)]); }), rate(k));
+    };
+    p.lame.mu = moving(0, [](const MaterialParameters& m) { return m.lame.mu; });
+    p.lame.lambda = moving(1, [](const MaterialParameters& m) { return m.lame.lambda; });
+    for (int k = 2; k < parameter_count_; ++k)
+      p.extra[k - 2] = moving(k, [k](const MaterialParameters& m) { return m.extra[k - 2]; });
+    return rates(M::pk1(constant_matrix(F(i, x)), M::params(p)));
+  }
+
+  int first_, parameter_count_;
+  std::vector<MaterialParameters> parameters_;  // in the order of the mesh
+};
+
+template <class M>
+std::unique_ptr<TetElasticity> make_tet_term(const TetMesh& mesh, int first,
+                                             std::span<const MaterialParameters> parameters) {
+  const int extra = static_cast<int>(M::info().extra.size());
+  return std::make_unique<MaterialTerm<M>>("elasticity", mesh, first, parameters, extra);
+}
+
+}  // namespace aspic

@@ -1,0 +1,144 @@
+// Derivatives of elastic forces with respect to the parameters of every material.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "energy/tet_elasticity.h"
+#include "material/list.h"
+#include "mesh/generators.h"
+
+namespace aspic {
+namespace {
+
+class Numbers {
+ public:
+  std::vector<double> operator()(size_t count) {
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    std::vector<double> numbers(count);
+    for (double& x : numbers) x = uniform(random_);
+    return numbers;
+  }
+
+ private:
+  std::mt19937 random_{5};
+};
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+double largest(const std::vector<double>& a) {
+  double size = 0;
+  for (const double x : a) size = std::isnan(x) ? x : std::max(size, std::abs(x));
+  return size;
+}
+
+// Two bodies in one mesh, of which the second is the term: 60 tets from number 30 on.
+struct TwoBodies {
+  TetMesh mesh = make_box({{0, 0, 0}}, {{1, 0.7, 1.3}}, {5, 3, 1});
+  static constexpr int kFirst = 30;
+  std::string material;
+  int extra;
+  std::vector<MaterialParameters> parameters;
+  std::vector<double> x;
+
+  explicit TwoBodies(const MaterialInfo& info) : material(info.name), extra(static_cast<int>(info.extra.size())) {
+    for (int t = kFirst; t < mesh.tet_count(); ++t) {
+      MaterialParameters p{lame_from_young_poisson(1 + 0.1 * t, 0.1 + 0.003 * t), {}};
+      for (int k = 0; k < extra; ++k) p.extra[k] = info.extra[k].fallback * (0.8 + 0.003 * t);
+      parameters.push_back(p);
+    }
+    const std::vector<double> noise = Numbers()(3 * mesh.rest.size());
+    for (size_t v = 0; v < mesh.rest.size(); ++v) {
+      const Vec3d& X = mesh.rest[v];
+      for (int r = 0; r < 3; ++r) x.push_back((1 + 0.1 * r) * X[r] + 0.2 * X[(r + 1) % 3] + 0.03 * noise[3 * v + r]);
+    }
+  }
+
+  int count() const { return 2 + extra; }
+  std::vector<MaterialParameters> changed(const std::vector<double>& change, double amount) const {
+    std::vector<MaterialParameters> result = parameters;
+    for (size_t t = 0; t < result.size(); ++t) {
+      const double* d = &change[t * count()];
+      result[t].lame.mu += amount * d[0], result[t].lame.lambda += amount * d[1];
+      for (int k = 0; k < extra; ++k) result[t].extra[k] += amount * d[2 + k];
+    }
+    return result;
+  }
+  std::vector<double> force(TetElasticity& V) const {
+    std::vector<double> g(x.size());
+    V.add_gradient(x, 1, g);
+    return g;
+  }
+};
+
+TEST(ParameterDerivatives, AreThoseOfTheForces) {
+  for (const MaterialInfo& info : materials()) {
+    const TwoBodies bodies(info);
+    const auto V = make_tet_elasticity(bodies.material, bodies.mesh, TwoBodies::kFirst, bodies.parameters);
+    ASSERT_EQ(V->parameter_count(), bodies.count());
+    for (int k = 0; k < bodies.count(); ++k) {
+      std::vector<double> change(bodies.parameters.size() * bodies.count());
+      const std::vector<double> numbers = Numbers()(bodies.parameters.size());
+      for (size_t t = 0; t < numbers.size(); ++t) change[t * bodies.count() + k] = numbers[t];
+      std::vector<double> dg(bodies.x.size());
+      V->add_parameter_force(bodies.x, change, 0.5, dg);
+      V->add_parameter_force(bodies.x, change, 0.5, dg);
+      // Fourth order, so that a step far above round-off has an error far below the derivative.
+      constexpr double kStep = 1e-3;
+      const auto at = [&](double amount) {
+        V->set_parameters(bodies.changed(change, amount));
+        return bodies.force(*V);
+      };
+      const auto p1 = at(kStep), m1 = at(-kStep), p2 = at(2 * kStep), m2 = at(-2 * kStep);
+      V->set_parameters(bodies.parameters);
+      std::vector<double> error(dg.size());
+      for (size_t i = 0; i < dg.size(); ++i) error[i] = dg[i] - (8 * (p1[i] - m1[i]) - (p2[i] - m2[i])) / (12 * kStep);
+      if (!(info.name == "arap" && k == 1)) {
+        EXPECT_GT(largest(dg), 1e-3) << info.name << " " << k;
+      }
+      EXPECT_LE(largest(error), 1e-9 * std::max(1.0, largest(dg))) << info.name << " " << k;
+    }
+  }
+}
+
+TEST(ParameterDerivatives, HaveTheirTranspose) {
+  for (const MaterialInfo& info : materials()) {
+    const TwoBodies bodies(info);
+    const auto V = make_tet_elasticity(bodies.material, bodies.mesh, TwoBodies::kFirst, bodies.parameters);
+    Numbers numbers;
+    const std::vector<double> change = numbers(bodies.parameters.size() * bodies.count());
+    const std::vector<double> w = numbers(bodies.x.size());
+    std::vector<double> dg(bodies.x.size()), gradient(change.size());
+    V->add_parameter_force(bodies.x, change, 3, dg);
+    V->add_parameter_gradient(bodies.x, w, 1, gradient);
+    V->add_parameter_gradient(bodies.x, w, 2, gradient);
+    double size = 0;
+    for (size_t i = 0; i < dg.size(); ++i) size += std::abs(w[i] * dg[i]);
+    EXPECT_NEAR(dot(w, dg), dot(change, gradient), 1e-12 * size) << info.name;
+  }
+}
+
+TEST(ParameterDerivatives, BelongToTheParametersThatWereSet) {
+  for (const MaterialInfo& info : materials()) {
+    const TwoBodies bodies(info);
+    Numbers numbers;
+    const std::vector<double> change = numbers(bodies.parameters.size() * bodies.count());
+    const std::vector<MaterialParameters> others = bodies.changed(change, 0.05);
+    const auto set = make_tet_elasticity(bodies.material, bodies.mesh, TwoBodies::kFirst, bodies.parameters);
+    const auto made = make_tet_elasticity(bodies.material, bodies.mesh, TwoBodies::kFirst, others);
+    EXPECT_NE(bodies.force(*set), bodies.force(*made)) << info.name;
+    set->set_parameters(others);
+    EXPECT_EQ(bodies.force(*set), bodies.force(*made)) << info.name;
+    std::vector<double> a(bodies.x.size()), b(bodies.x.size());
+    set->add_parameter_force(bodies.x, change, 1, a);
+    made->add_parameter_force(bodies.x, change, 1, b);
+    EXPECT_EQ(a, b) << info.name;
+  }
+}
+
+}  // namespace
+}  // namespace aspic

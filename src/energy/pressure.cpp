@@ -1,0 +1,160 @@
+#include "energy/pressure.h"
+
+#include <algorithm>
+#include <array>
+
+#include "energy/incidence.h"
+#include "math/definite.h"
+
+namespace aspic {
+namespace {
+
+Vec3d point(Positions x, int vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
+
+// The matrix of a -> q x a, added to a 3x3 part of K.
+void add_cross(Mat9d& K, int i, int j, const Vec3d& q) {
+  for (int r = 0; r < 3; ++r) {
+    const int s = (r + 1) % 3, t = (r + 2) % 3;
+    K(3 * i + s, 3 * j + r) += q[t];
+    K(3 * i + t, 3 * j + r) -= q[s];
+  }
+}
+
+// Of one triangle: m the mean displacement, d_k the displacement of corner k from that of corner 0, E_k its edge.
+//   swept = m . A,   A = (E1 x E2 + (E1 x d2 + d1 x E2) / 2 + d1 x d2 / 3) / 2
+struct Sweep {
+  Vec3d m, A, w1, w2;  // w_k = E_k / 2 + d_k / 3, so that dA = (w1 x delta2 + delta1 x w2) / 2
+
+  double volume() const { return dot(m, A); }
+
+  std::array<Vec3d, 3> gradient() const {
+    const Vec3d by_d1 = 0.5 * cross(w2, m), by_d2 = 0.5 * cross(m, w1), by_m = (1.0 / 3) * A;
+    return {by_m - by_d1 - by_d2, by_m + by_d1, by_m + by_d2};
+  }
+
+  // d2(swept) / du_i du_j = [q_ij]x, antisymmetric in i and j.
+  Vec3d twist(int i, int j) const {
+    constexpr double kM = 1.0 / 3, kD1[3] = {-1, 1, 0}, kD2[3] = {-1, 0, 1};
+    return (0.5 * kM * (kD1[i] - kD1[j])) * w2 + (0.5 * kM * (kD2[j] - kD2[i])) * w1 +
+           ((kD2[i] * kD1[j] - kD1[i] * kD2[j]) / 6) * m;
+  }
+};
+
+class PatchPressure : public Pressure {
+ public:
+  PatchPressure(const TetMesh& mesh, std::vector<Triangle> patch, double pressure)
+      : patch_(std::move(patch)), pressure_(pressure) {
+    for (const Triangle& t : patch_) rest_.push_back({mesh.rest[t[0]], mesh.rest[t[1]], mesh.rest[t[2]]});
+  }
+
+  std::string_view name() const override { return "pressure"; }
+  void set_pressure(double pressure) override { pressure_ = pressure; }
+  double pressure() const override { return pressure_; }
+
+  double swept_volume(Positions x) const override {
+    double sum = 0;
+    for (size_t t = 0; t < patch_.size(); ++t) sum += sweep(x, t).volume();
+    return sum;
+  }
+
+  double value(Positions x) const override { return pressure_ * swept_volume(x); }
+
+  void add_gradient(Positions x, double scale, std::span<double> g) const override {
+    for (size_t t = 0; t < patch_.size(); ++t) {
+      const std::array<Vec3d, 3> forces = sweep(x, t).gradient();
+      for (int i = 0; i < 3; ++i)
+        for (int r = 0; r < 3; ++r) g[3 * patch_[t][i] + r] += scale * pressure_ * forces[i][r];
+    }
+  }
+
+  void add_couplings(Couplings& couplings) const override {
+    for (const Triangle& t : patch_)
+      for (int i = 0; i < 3; ++i) couplings.emplace_back(t[i], t[(i + 1) % 3]);
+  }
+
+  void bind(const BlockPattern& pattern) override {
+    slot_.resize(patch_.size());
+    for (size_t t = 0; t < patch_.size(); ++t)
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+          const auto [low, high] = std::minmax(patch_[t][i], patch_[t][j]);
+          slot_[t][3 * i + j] = pattern.slot(high, low);
+        }
+  }
+
+  int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override {
+    int projected = 0;
+    for (size_t t = 0; t < patch_.size(); ++t) {
+      Mat9d K = hessian(sweep(x, t));
+      const auto covers = [&](int v) { return projection.covers(v); };
+      if (projection.kind != Definiteness::exact && std::ranges::any_of(patch_[t], covers)) {
+        const bool is_clamped = projection.kind == Definiteness::clamped;
+        projected += make_definite(K, is_clamped ? EigenvalueFilter::clamp : EigenvalueFilter::absolute, 1) != 0;
+      }
+      add_blocks(t, scale, K, H);
+    }
+    return projected;
+  }
+
+  bool prepare_vertex_systems(int vertex_count) override {
+    if (around_.is_made()) return true;
+    std::vector<std::pair<int, int>> ends;
+    for (size_t t = 0; t < patch_.size(); ++t)
+      for (const int v : patch_[t]) ends.emplace_back(v, static_cast<int>(t));
+    around_ = {vertex_count, ends};
+    return true;
+  }
+
+  // The swept volume is linear in the position of one corner, so blocks on the diagonal are zero.
+  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
+                          std::span<Mat3d>) const override {
+    for (size_t k = 0; k < vertices.size(); ++k)
+      for (const int t : around_.around(vertices[k])) {
+        const auto corner = std::ranges::find(patch_[t], vertices[k]) - patch_[t].begin();
+        g[k] = g[k] + (scale * pressure_) * sweep(x, t).gradient()[corner];
+      }
+  }
+
+ private:
+  Sweep sweep(Positions x, size_t t) const {
+    const auto& X = rest_[t];
+    const Vec3d u0 = point(x, patch_[t][0]) - X[0], u1 = point(x, patch_[t][1]) - X[1];
+    const Vec3d u2 = point(x, patch_[t][2]) - X[2];
+    const Vec3d E1 = X[1] - X[0], E2 = X[2] - X[0], d1 = u1 - u0, d2 = u2 - u0;
+    const Vec3d w1 = 0.5 * E1 + (1.0 / 3) * d1, w2 = 0.5 * E2 + (1.0 / 3) * d2;
+    const Vec3d A = 0.5 * (cross(E1, E2) + 0.5 * (cross(E1, d2) + cross(d1, E2)) + (1.0 / 3) * cross(d1, d2));
+    return {(1.0 / 3) * (u0 + u1 + u2), A, w1, w2};
+  }
+
+  Mat9d hessian(const Sweep& s) const {
+    Mat9d K{};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        if (i != j) add_cross(K, i, j, pressure_ * s.twist(i, j));
+    return K;
+  }
+
+  void add_blocks(size_t t, double scale, const Mat9d& K, BlockSparse& H) const {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        if (patch_[t][j] > patch_[t][i]) continue;
+        Mat3d& block = H.block[slot_[t][3 * i + j]];
+        for (int c = 0; c < 3; ++c)
+          for (int r = 0; r < 3; ++r) block(r, c) += scale * K(3 * i + r, 3 * j + c);
+      }
+  }
+
+  std::vector<Triangle> patch_;
+  std::vector<std::array<Vec3d, 3>> rest_;  // X of the corners of each triangle
+  double pressure_;
+  std::vector<std::array<int64_t, 9>> slot_;  // blocks (i, j), of the larger vertex and the smaller
+  Incidence around_;
+};
+
+}  // namespace
+
+std::unique_ptr<Pressure> make_pressure(const TetMesh& mesh, std::vector<Triangle> patch, double pressure) {
+  return std::make_unique<PatchPressure>(mesh, std::move(patch), pressure);
+}
+
+}  // namespace aspic

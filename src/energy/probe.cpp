@@ -1,0 +1,315 @@
+#include "energy/probe.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "base/error.h"
+#include "energy/incidence.h"
+#include "energy/surface_parts.h"
+#include "energy/tip_depth.h"
+#include "math/symmetric_eigen.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kSoftening = 0.02;  // e / radius
+constexpr double kLongestEdge = 64;  // of a triangle near the tip, relative to the radius
+constexpr int kMostCutsAfar = 64;    // of an edge of a triangle that only a tip on the way might touch
+
+using Corners = std::array<Vec3d, 3>;
+
+Vec3d point(Positions x, int vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
+std::string text(double value) { return (std::ostringstream() << value).str(); }
+double norm(const Vec3d& v) { return std::sqrt(dot(v, v)); }
+Corners corners_of(Positions x, const Triangle& t) { return {point(x, t[0]), point(x, t[1]), point(x, t[2])}; }
+Vec3d combine(const Corners& x, const Barycentric& b) { return b[0] * x[0] + b[1] * x[1] + b[2] * x[2]; }
+Vec3d area_vector(const Corners& x) { return 0.5 * cross(x[1] - x[0], x[2] - x[0]); }
+double longest_edge(const Corners& x) { return std::max({norm(x[1] - x[0]), norm(x[2] - x[1]), norm(x[0] - x[2])}); }
+
+void add_at(std::span<double> g, int vertex, double scale, const Vec3d& v) {
+  for (int r = 0; r < 3; ++r) g[3 * vertex + r] += scale * v[r];
+}
+
+// R = cos I + sin [a] + (1 - cos) a a'   [Rodrigues]
+Mat3d rotation_matrix(const Vec3d& vector) {
+  const double angle = norm(vector);
+  if (angle == 0) return identity3<double>();
+  const Vec3d a = (1 / angle) * vector;
+  const double cosine = std::cos(angle), sine = std::sin(angle);
+  const Mat3d turn = {0, a[2], -a[1], -a[2], 0, a[0], a[1], -a[0], 0};
+  const Mat3d along = from_columns(a[0] * a, a[1] * a, a[2] * a);
+  return cosine * identity3<double>() + sine * turn + (1 - cosine) * along;
+}
+
+// 1 below a, 0 above b.
+double fade(double t, double a, double b) {
+  const double s = std::clamp((t - a) / (b - a), 0.0, 1.0);
+  return 1 - s * s * (3 - 2 * s);
+}
+
+// How much glue a bonded tip has at point X of the surface with that normal, 0 to 1.
+double glue(const Tip& tip, const TipPose& touch, const Vec3d& X, const Vec3d& normal) {
+  const double R = tip.radius;
+  const Vec3d u = X - touch.center;
+  if (tip.shape == TipShape::sphere) return dot(normal, u) < 0 ? fade(norm(u) - R, kGlue / 2 * R, kGlue * R) : 0;
+  const double s = dot(u, touch.axis);
+  if (dot(normal, touch.axis) >= 0 || s < -R) return 0;
+  return fade(s, kGlue / 2 * R, kGlue * R) * fade(norm(u - s * touch.axis), (1 - kGlue) * R, (1 + kGlue) * R);
+}
+
+TipPose with_unit_axis(TipPose pose) {
+  const double length = norm(pose.axis);
+  if (!(length > 0)) throw InvalidInput("the axis of a tip is 0 0 0; it needs a direction, out of the tip");
+  pose.axis = (1 / length) * pose.axis;
+  return pose;
+}
+
+// The energy of a point, its derivatives by the position of the point.
+struct Response {
+  double value = 0;
+  Vec3d gradient{};
+  Mat3d hessian{};
+};
+
+// A triangle whose parts the tip may act on.
+struct Patch {
+  Triangle vertices;
+  const std::vector<Barycentric>* points;
+  double area = 0;   // of each part, at rest [m^2]
+  size_t first = 0;  // of its points, among all
+};
+
+class ProbeTerm : public Probe {
+ public:
+  ProbeTerm(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip, const TipPose& touch)
+      : tip_(tip), touch_(with_unit_axis(touch)) {
+    for (const Triangle& triangle : surface) add_patch(mesh, triangle);
+    set_pose(touch);
+  }
+
+  std::string_view name() const override { return "probe"; }
+  bool touches_something() const { return !patches_.empty(); }
+
+  void set_pose(const TipPose& pose) override {
+    pose_ = with_unit_axis(pose);
+    const Mat3d R = rotation_matrix(pose_.rotation);
+    target_.resize(offset_.size());
+    for (size_t i = 0; i < offset_.size(); ++i) target_[i] = pose_.center + R * offset_[i];
+  }
+  const TipPose& pose() const override { return pose_; }
+
+  double value(Positions x) const override {
+    double V = 0;
+    for_each_touched(x, [&](const Patch&, const Barycentric&, const Vec3d&, const Response& r) { V += r.value; });
+    return V;
+  }
+
+  void add_gradient(Positions x, double scale, std::span<double> g) const override {
+    for_each_touched(x, [&](const Patch& patch, const Barycentric& b, const Vec3d&, const Response& r) {
+      for (int i = 0; i < 3; ++i) add_at(g, patch.vertices[i], scale * b[i], r.gradient);
+    });
+  }
+
+  void add_couplings(Couplings& couplings) const override {
+    for (const Patch& patch : patches_)
+      for (int i = 0; i < 3; ++i) couplings.emplace_back(patch.vertices[i], patch.vertices[(i + 1) % 3]);
+  }
+
+  void bind(const BlockPattern& pattern) override {
+    slot_.resize(patches_.size());
+    for (size_t k = 0; k < patches_.size(); ++k)
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+          const auto [low, high] = std::minmax(patches_[k].vertices[i], patches_[k].vertices[j]);
+          slot_[k][3 * i + j] = pattern.slot(high, low);
+        }
+  }
+
+  int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override {
+    int projected = 0;
+    for_each_touched(x, [&](const Patch& patch, const Barycentric& b, const Vec3d&, const Response& r) {
+      Mat3d K = r.hessian;
+      const auto covers = [&](int v) { return projection.covers(v); };
+      if (is_sliding() && projection.kind != Definiteness::exact && std::ranges::any_of(patch.vertices, covers))
+        projected += make_definite(K, projection.kind);
+      const auto& slot = slot_[&patch - patches_.data()];
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+          if (patch.vertices[j] <= patch.vertices[i]) add_block(H.block[slot[3 * i + j]], scale * b[i] * b[j], K);
+    });
+    return projected;
+  }
+
+  bool prepare_vertex_systems(int vertex_count) override {
+    if (around_.is_made()) return true;
+    std::vector<std::pair<int, int>> ends;
+    for (size_t k = 0; k < patches_.size(); ++k)
+      for (const int v : patches_[k].vertices) ends.emplace_back(v, static_cast<int>(k));
+    around_ = {vertex_count, ends};
+    return true;
+  }
+
+  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
+                          std::span<Mat3d> H) const override {
+    for (size_t k = 0; k < vertices.size(); ++k)
+      for (const int p : around_.around(vertices[k]))
+        for_each_touched_of(patches_[p], x, [&](const Patch& patch, const Barycentric& b, const Vec3d&, const auto& r) {
+          const auto corner = std::ranges::find(patch.vertices, vertices[k]) - patch.vertices.begin();
+          g[k] = g[k] + (scale * b[corner]) * r.gradient;
+          add_block(H[k], scale * b[corner] * b[corner], r.hessian);
+        });
+  }
+
+  Wrench wrench(Positions x) const override {
+    Wrench sum;
+    for_each_touched(x, [&](const Patch&, const Barycentric&, const Vec3d& p, const Response& r) {
+      sum.force = sum.force - r.gradient;
+      sum.torque = sum.torque - cross(p - pose_.center, r.gradient);
+    });
+    return sum;
+  }
+
+  Wrench wrench_product(Positions x, std::span<const double> dx) const override {
+    Wrench sum;
+    for_each_touched(x, [&](const Patch& patch, const Barycentric& b, const Vec3d& p, const Response& r) {
+      const Vec3d dp = combine(corners_of(dx, patch.vertices), b), dg = r.hessian * dp;
+      sum.force = sum.force - dg;
+      sum.torque = sum.torque - cross(dp, r.gradient) - cross(p - pose_.center, dg);
+    });
+    return sum;
+  }
+
+  void add_wrench_transposed(Positions x, const Wrench& wbar, double scale, std::span<double> xbar) const override {
+    for_each_touched(x, [&](const Patch& patch, const Barycentric& b, const Vec3d& p, const Response& r) {
+      // w . (dp x g) = dp . (g x w),  w . (u x dg) = dg . (w x u)
+      const Vec3d gbar = wbar.force + cross(wbar.torque, p - pose_.center);
+      const Vec3d pbar = cross(r.gradient, wbar.torque) + r.hessian * gbar;
+      for (int i = 0; i < 3; ++i) add_at(xbar, patch.vertices[i], -scale * b[i], pbar);
+    });
+  }
+
+  int touched_points(Positions x) const override {
+    int count = 0;
+    for_each_touched(x, [&](const Patch&, const Barycentric&, const Vec3d&, const Response&) { ++count; });
+    return count;
+  }
+
+ private:
+  bool is_sliding() const { return tip_.contact == TipContact::sliding; }
+
+  void add_patch(const TetMesh& mesh, const Triangle& triangle) {
+    const Corners X = {mesh.rest[triangle[0]], mesh.rest[triangle[1]], mesh.rest[triangle[2]]};
+    const double edge = longest_edge(X), wanted = std::ceil((is_sliding() ? 4 : 8) * edge / tip_.radius);
+    const bool is_near = depth(tip_, touch_, X[0]).value > -edge - tip_.radius;
+    if (!is_near && !is_sliding()) return;
+    if (is_near && edge > kLongestEdge * tip_.radius) throw_tip_too_small(edge);
+    const int cuts = static_cast<int>(is_near ? std::max(wanted, 1.0) : std::clamp(wanted, 1.0, 1.0 * kMostCutsAfar));
+    const Vec3d a = area_vector(X);
+    Patch patch{triangle, &centroids_.of(cuts), norm(a) / (static_cast<double>(cuts) * cuts), weight_.size()};
+    if (is_sliding() || add_glue(patch, X, a)) patches_.push_back(patch);
+  }
+
+  void throw_tip_too_small(double edge) const {
+    throw InvalidInput("a tip of radius " + text(tip_.radius) + " m beside a triangle whose edge is " + text(edge) +
+                       " m long; refine the mesh there, or check the units of the tip");
+  }
+
+  // The weights and offsets of the points of a bonded tip. False, and nothing is added, when it touches none.
+  bool add_glue(const Patch& patch, const Corners& X, const Vec3d& normal) {
+    bool touches = false;
+    for (const Barycentric& b : *patch.points) {
+      const Vec3d p = combine(X, b);
+      weight_.push_back(glue(tip_, touch_, p, normal));
+      offset_.push_back(p - touch_.center);
+      touches |= weight_.back() > 0;
+    }
+    if (!touches) weight_.resize(patch.first), offset_.resize(patch.first);
+    return touches;
+  }
+
+  // Calls visit(patch, barycentric, p, response) for the points that the tip acts on.
+  template <class Visit>
+  void for_each_touched(Positions x, Visit visit) const {
+    for (const Patch& patch : patches_) for_each_touched_of(patch, x, visit);
+  }
+
+  template <class Visit>
+  void for_each_touched_of(const Patch& patch, Positions x, Visit visit) const {
+    const Corners c = corners_of(x, patch.vertices);
+    if (is_sliding() && depth(tip_, pose_, c[0]).value < -longest_edge(c)) return;
+    for (size_t i = 0; i < patch.points->size(); ++i) {
+      const Barycentric& b = (*patch.points)[i];
+      const Vec3d p = combine(c, b);
+      if (is_sliding()) {
+        const Depth d = depth(tip_, pose_, p);
+        if (d.value > 0) visit(patch, b, p, pushed(d, tip_.stiffness * patch.area));
+      } else if (const double w = weight_[patch.first + i]; w > 0) {
+        visit(patch, b, p, pulled(p - target_[patch.first + i], w * tip_.stiffness * patch.area));
+      }
+    }
+  }
+
+  Response pushed(const Depth& d, double k) const {
+    const double e = kSoftening * tip_.radius, t = d.value;
+    const bool is_soft = t < e;
+    const double phi = is_soft ? t * t * t / (6 * e) : t * (t - e) / 2 + e * e / 6;
+    const double slope = is_soft ? t * t / (2 * e) : t - e / 2, curvature = is_soft ? t / e : 1;
+    const Vec3d n = d.gradient;
+    const Mat3d across = from_columns(n[0] * n, n[1] * n, n[2] * n);
+    return {k * phi, (k * slope) * n, (k * curvature) * across + (k * slope) * d.hessian};
+  }
+
+  static Response pulled(const Vec3d& u, double k) { return {k / 2 * dot(u, u), k * u, k * identity3<double>()}; }
+
+  static void add_block(Mat3d& block, double scale, const Mat3d& K) {
+    for (int m = 0; m < 9; ++m) block.a[m] += scale * K.a[m];
+  }
+
+  // Returns whether an eigenvalue was changed.
+  static bool make_definite(Mat3d& K, Definiteness kind) {
+    std::array<double, 9> entries;
+    std::copy(K.a, K.a + 9, entries.begin());
+    const SymmetricEigen<3> e = symmetric_eigen<3, double>(entries);
+    bool changed = false;
+    for (int k = 0; k < 3; ++k) {
+      if (e.values[k] >= 0) continue;
+      changed = true;
+      const double raise = kind == Definiteness::clamped ? -e.values[k] : -2 * e.values[k];
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) K(r, c) += raise * e.vectors[3 * k + r] * e.vectors[3 * k + c];
+    }
+    return changed;
+  }
+
+  Tip tip_;
+  TipPose touch_, pose_;
+  PartCentroids centroids_;
+  std::vector<Patch> patches_;
+  std::vector<double> weight_;          // of the points of a bonded tip
+  std::vector<Vec3d> offset_, target_;  // X - c_touch, and where it wants to be
+  std::vector<std::array<int64_t, 9>> slot_;
+  Incidence around_;
+};
+
+}  // namespace
+
+std::unique_ptr<Probe> make_probe(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip,
+                                  const TipPose& touch) {
+  if (!(tip.radius > 0) || !std::isfinite(tip.radius))
+    throw InvalidInput("the radius of a tip is " + text(tip.radius) + " m; it must be positive");
+  if (!(tip.stiffness > 0) || !std::isfinite(tip.stiffness))
+    throw InvalidInput("the layer of a tip has the stiffness " + text(tip.stiffness) +
+                       " Pa/m; it must be positive (try 1000 times Young's modulus over the radius)");
+  auto probe = std::make_unique<ProbeTerm>(mesh, surface, tip, touch);
+  if (probe->touches_something()) return probe;
+  double gap = INFINITY;
+  for (const Triangle& triangle : surface)
+    for (const int v : triangle) gap = std::min(gap, -depth(tip, with_unit_axis(touch), mesh.rest[v]).value);
+  throw InvalidInput("a bonded tip touches nothing at rest: the nearest vertex is " + text(gap) +
+                     " m away from it; check its pose at the touch, its axis and the units");
+}
+
+}  // namespace aspic

@@ -1,0 +1,381 @@
+// Terms that act on the surface of a body: the probe and the pressure.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "base/error.h"
+#include "dynamics/step_derivatives.h"
+#include "energy/pressure.h"
+#include "energy/probe.h"
+#include "energy/tet_elasticity.h"
+#include "energy/tip_depth.h"
+#include "mesh/generators.h"
+#include "mesh/surface.h"
+
+namespace aspic {
+namespace {
+
+const TetMesh& mesh() {
+  static const TetMesh box = make_box({{0, 0, 0}}, {{1, 0.8, 0.6}}, {4, 3, 3});
+  return box;
+}
+
+const std::vector<Triangle>& surface() {
+  static const std::vector<Triangle> triangles = boundary_triangles(mesh(), 0, mesh().tet_count());
+  return triangles;
+}
+
+const BlockPattern& pattern() {  // that of tets
+  static const BlockPattern of_tets = [] {
+    const MaterialInfo& info = material_info("neo_hookean");
+    const std::vector<MaterialParameters> parameters(mesh().tet_count(), {lame_from_young_poisson(1, 0.3), {}});
+    Couplings couplings;
+    make_tet_elasticity(info.name, mesh(), 0, parameters)->add_couplings(couplings);
+    return make_pattern(mesh().vertex_count(), couplings);
+  }();
+  return of_tets;
+}
+
+std::vector<double> rest() {
+  std::vector<double> x;
+  for (const Vec3d& X : mesh().rest) x.insert(x.end(), {X[0], X[1], X[2]});
+  return x;
+}
+
+std::vector<double> deformed(double amount, unsigned seed = 3) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-amount, amount);
+  std::vector<double> x = rest();
+  for (double& xi : x) xi += uniform(random);
+  return x;
+}
+
+double norm(const Vec3d& v) { return std::sqrt(dot(v, v)); }
+
+// Points up at the top face z = 0.6, from inside the rest shape: 0.05 deep.
+const TipPose kTouch = {.center = {{0.45, 0.35, 0.6 + 0.2}}, .axis = {{0, 0, -1}}, .rotation = {}};
+const TipPose kFlatTouch = {.center = {{0.45, 0.35, 0.6}}, .axis = {{0, 0, -2}}, .rotation = {}};
+const TipPose kPose = {.center = {{0.47, 0.34, 0.74}}, .axis = {{0.1, -0.2, -1}}, .rotation = {{0.2, -0.1, 0.3}}};
+const TipPose kFlatPose = {.center = {{0.47, 0.34, 0.57}}, .axis = {{0.1, -0.05, -1}}, .rotation = {{0.2, -0.1, 0.3}}};
+
+struct Case {
+  const char* name;
+  Tip tip;
+  TipPose touch, pose;
+};
+const Case kCases[] = {
+    {"bonded sphere", {TipShape::sphere, TipContact::bonded, 0.2, 50}, kTouch, kPose},
+    {"bonded disc", {TipShape::disc, TipContact::bonded, 0.2, 50}, kFlatTouch, kFlatPose},
+    {"sliding sphere", {TipShape::sphere, TipContact::sliding, 0.2, 50}, kTouch, kPose},
+    {"sliding disc", {TipShape::disc, TipContact::sliding, 0.2, 50}, kFlatTouch, kFlatPose},
+};
+std::unique_ptr<Probe> probe(const Case& c) {
+  auto V = make_probe(mesh(), surface(), c.tip, c.touch);
+  V->set_pose(c.pose);
+  V->bind(pattern());
+  return V;
+}
+
+void expect_vertex_systems_to_be_parts(Energy& V, const std::vector<double>& x, const std::string& what) {
+  const int n = mesh().vertex_count();
+  ASSERT_TRUE(V.prepare_vertex_systems(n)) << what;
+  std::vector<double> whole(x.size());
+  V.add_gradient(x, 2, whole);
+  BlockSparse H(pattern());
+  V.add_hessian(x, 2, {Definiteness::exact}, H);
+  std::vector<int> all(n);
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<Vec3d> g(n, Vec3d{});
+  std::vector<Mat3d> blocks(n, Mat3d{});
+  V.add_vertex_systems(x, 2, all, g, blocks);
+  double force = 0, entry = 0;
+  for (const double gi : whole) force = std::max(force, std::abs(gi));
+  for (const Mat3d& block : H.block) entry = std::max(entry, std::sqrt(squared_norm(block)));
+  for (int v = 0; v < n; ++v) {
+    for (int r = 0; r < 3; ++r) EXPECT_NEAR(g[v][r], whole[3 * v + r], 1e-13 * force) << what;
+    EXPECT_LE(std::sqrt(squared_norm(blocks[v] - H.block[pattern().diagonal(v)])), 1e-13 * entry) << what;
+  }
+}
+
+TEST(Probe, DerivativesAreThoseOfTheEnergy) {
+  for (const Case& c : kCases) {
+    const auto V = probe(c);
+    const std::vector<double> x = deformed(0.02);
+    ASSERT_GT(V->touched_points(x), 10) << c.name;
+    const DerivativeReport report = check_derivatives(differentiable(*V, pattern()), x, {.length = 0.02});
+    EXPECT_TRUE(report.gradient.passed) << c.name << ": " << report.gradient.smallest_error;
+    EXPECT_TRUE(report.hessian.passed) << c.name << ": " << report.hessian.smallest_error;
+    expect_vertex_systems_to_be_parts(*V, x, c.name);
+  }
+}
+
+TEST(Probe, ItsForceIsTheOppositeOfWhatTheBodyFeelsAndItsTorqueTheMoment) {
+  for (const Case& c : kCases) {
+    const auto V = probe(c);
+    const std::vector<double> x = deformed(0.02);
+    std::vector<double> g(x.size());
+    V->add_gradient(x, 1, g);
+    Vec3d force{}, torque{};
+    for (int v = 0; v < mesh().vertex_count(); ++v) {
+      const Vec3d f = {{-g[3 * v], -g[3 * v + 1], -g[3 * v + 2]}};
+      const Vec3d arm = Vec3d{{x[3 * v], x[3 * v + 1], x[3 * v + 2]}} - c.pose.center;
+      force = force + f;
+      torque = torque + cross(arm, f);
+    }
+    const Wrench w = V->wrench(x);
+    EXPECT_GT(norm(w.force), 1e-3) << c.name;
+    EXPECT_LT(norm(w.force - force), 1e-13 * norm(w.force)) << c.name;
+    EXPECT_LT(norm(w.torque - torque), 1e-13 * norm(w.force)) << c.name;
+  }
+}
+
+TEST(Probe, ProductsOfTheWrenchAreItsDerivativesAndTransposesOfEachOther) {
+  for (const Case& c : kCases) {
+    const auto V = probe(c);
+    const std::vector<double> x = deformed(0.02), dx = deformed(0.1, 5);
+    const Wrench product = V->wrench_product(x, dx);
+    const double h = 1e-6;
+    std::vector<double> forth = x, back = x;
+    for (size_t i = 0; i < x.size(); ++i) forth[i] += h * dx[i], back[i] -= h * dx[i];
+    const Wrench a = V->wrench(forth), b = V->wrench(back);
+    EXPECT_LT(norm(product.force - (0.5 / h) * (a.force - b.force)), 1e-6 * norm(product.force)) << c.name;
+    EXPECT_LT(norm(product.torque - (0.5 / h) * (a.torque - b.torque)), 1e-6 * norm(product.force)) << c.name;
+
+    const Wrench wbar = {{{0.3, -0.7, 0.2}}, {{1.1, 0.4, -0.9}}};
+    std::vector<double> xbar(x.size());
+    V->add_wrench_transposed(x, wbar, 3, xbar);
+    const double forward = dot(wbar.force, product.force) + dot(wbar.torque, product.torque);
+    const double backward = std::inner_product(xbar.begin(), xbar.end(), dx.begin(), 0.0);
+    EXPECT_NEAR(backward, 3 * forward, 1e-12 * norm(product.force)) << c.name;
+  }
+}
+
+TEST(Probe, ABondedTipThatMovesWithTheBodyPullsNothing) {
+  const Mat3d quarter_turn = {0, 1, 0, -1, 0, 0, 0, 0, 1};  // about z
+  for (const Case& c : {kCases[0], kCases[1]}) {
+    const auto V = probe(c);
+    TipPose moved = c.touch;
+    moved.center = quarter_turn * c.touch.center + Vec3d{{3, -2, 1}};
+    moved.rotation = {{0, 0, std::acos(0.0)}};
+    V->set_pose(moved);
+    std::vector<double> x;
+    for (const Vec3d& X : mesh().rest) {
+      const Vec3d y = quarter_turn * X + Vec3d{{3, -2, 1}};
+      x.insert(x.end(), {y[0], y[1], y[2]});
+    }
+    EXPECT_LT(V->value(x), 1e-25) << c.name;
+    EXPECT_LT(norm(V->wrench(x).force), 1e-12) << c.name;
+  }
+}
+
+TEST(Probe, MovedAndTurnedWithTheBodyItsEnergyStaysAndItsForceTurns) {
+  const Mat3d quarter_turn = {0, 1, 0, -1, 0, 0, 0, 0, 1};
+  for (const Case& c : {kCases[2], kCases[3]}) {
+    const auto V = probe(c);
+    const std::vector<double> x = deformed(0.02);
+    std::vector<double> turned(x.size());
+    for (size_t i = 0; i < x.size(); i += 3)
+      turned[i] = 4 - x[i + 1], turned[i + 1] = x[i], turned[i + 2] = x[i + 2] - 1;
+    const double energy = V->value(x);
+    const Wrench before = V->wrench(x);
+    TipPose moved = c.pose;
+    moved.center = quarter_turn * c.pose.center + Vec3d{{4, 0, -1}};
+    moved.axis = quarter_turn * c.pose.axis;
+    V->set_pose(moved);
+    EXPECT_NEAR(V->value(turned), energy, 1e-12 * energy) << c.name;
+    EXPECT_LT(norm(V->wrench(turned).force - quarter_turn * before.force), 1e-12 * norm(before.force)) << c.name;
+  }
+}
+
+// On a flat face the resultant of a small translation t is k t times the area of the footprint: of a disc pi R^2, of a
+// sphere pi a^2 with R^2 + a^2 = (R + g)^2, g halfway through the glue's thin part.
+TEST(Probe, AFootprintHasTheAreaOfTheTip) {
+  constexpr double kR = 0.2, kGap = 0.75 * kGlue * kR, kPi = 3.14159265358979;
+  const double areas[] = {kPi * (2 * kR * kGap + kGap * kGap), kPi * kR * kR};
+  for (int i = 0; i < 2; ++i) {
+    const auto V = probe(kCases[i]);
+    TipPose moved = kCases[i].touch;
+    moved.center[0] += 0.01;
+    V->set_pose(moved);
+    EXPECT_NEAR(V->wrench(rest()).force[0], 50 * 0.01 * areas[i], 0.02 * 50 * 0.01 * areas[i]) << kCases[i].name;
+  }
+}
+
+// On a flat face: the integral over rings of k phi'(d) dd/dz, with phi' = d - e / 2 where d > e.
+TEST(Probe, ASlidingDiscPressesWithItsDepth) {
+  const Case& c = kCases[3];
+  const auto V = probe(c);
+  TipPose pressed = {kFlatTouch.center - Vec3d{{0, 0, 0.03}}, {{0, 0, -1}}, {}};
+  V->set_pose(pressed);
+  double expected = 0;
+  constexpr int kRings = 2000;
+  for (int i = 0; i < kRings; ++i) {
+    const double r = 0.25 * (i + 0.5) / kRings, e = 0.02 * c.tip.radius;
+    const auto [d, slope, unused] = depth(c.tip, pressed, kFlatTouch.center + Vec3d{{r, 0, 0}});
+    const double stress = c.tip.stiffness * (d < 0 ? 0 : d < e ? d * d / (2 * e) : d - e / 2);
+    expected -= 2 * 3.14159265358979 * r * 0.25 / kRings * stress * slope[2];
+  }
+  const Wrench w = V->wrench(rest());
+  EXPECT_NEAR(w.force[2], expected, 0.03 * std::abs(expected));  // points are a quarter of the radius apart
+  EXPECT_NEAR(w.force[0], 0, 0.03 * std::abs(expected));
+  EXPECT_GT(expected, -50 * 0.03 * 3.14159265358979 * 0.04);  // a rounded rim presses less
+}
+
+TEST(Probe, ProjectedHessiansArePositiveSemidefiniteWhereTheExactOneIsNot) {
+  const std::vector<double> x = deformed(0.02);
+  for (const Case& c : {kCases[2], kCases[3]}) {
+    const auto V = probe(c);
+    for (const Definiteness kind : {Definiteness::exact, Definiteness::clamped, Definiteness::absolute}) {
+      BlockSparse H(pattern());
+      const int projected = V->add_hessian(x, 1, {kind}, H);
+      EXPECT_EQ(projected > 0, kind != Definiteness::exact) << c.name;
+      double least = 0;
+      std::mt19937 random(1);
+      std::normal_distribution<double> normal;
+      for (int trial = 0; trial < 200; ++trial) {
+        std::vector<double> d(x.size()), Hd(x.size());
+        for (size_t i = 0; i < d.size(); ++i) d[i] = i % 3 == 2 ? 0 : normal(random);  // along the surface
+        H.multiply(d, Hd);
+        least = std::min(least, std::inner_product(d.begin(), d.end(), Hd.begin(), 0.0));
+      }
+      if (kind == Definiteness::exact) {
+        EXPECT_LT(least, -1e-6) << c.name;
+      } else {
+        EXPECT_GT(least, -1e-12) << c.name;
+      }
+    }
+  }
+}
+
+TEST(Probe, ATipInTheAirDoesNothing) {
+  for (const Case& c : {kCases[2], kCases[3]}) {
+    const auto V = probe(c);
+    TipPose away = c.pose;
+    away.center[2] += 0.5;
+    V->set_pose(away);
+    EXPECT_EQ(V->touched_points(rest()), 0);
+    EXPECT_EQ(V->value(rest()), 0);
+  }
+}
+
+TEST(Probe, RefusesATipThatTouchesNothingAndOneWithoutSizeOrLayer) {
+  Case c = kCases[0];
+  c.touch.center[2] += 1;
+  EXPECT_THROW(probe(c), InvalidInput);
+  for (Tip bad : {Tip{.radius = 0, .stiffness = 1}, Tip{.radius = 0.1, .stiffness = 0},
+                  Tip{.radius = NAN, .stiffness = 1}, Tip{.radius = 1e-3, .stiffness = 1}})
+    EXPECT_THROW(make_probe(mesh(), surface(), bad, kTouch), InvalidInput);
+  TipPose without_axis = kTouch;
+  without_axis.axis = {};
+  EXPECT_THROW(make_probe(mesh(), surface(), kCases[0].tip, without_axis), InvalidInput);
+}
+
+TEST(TipDepth, OfADiscIsTwiceDifferentiableAcrossItsRim) {
+  const Tip tip = {TipShape::disc, TipContact::sliding, 0.2, 1};
+  const TipPose pose = {.center = {}, .axis = {{0, 0, -1}}, .rotation = {}};
+  Mat3d last{};
+  for (int i = 0; i <= 2000; ++i) {  // along an arc through the flat, the rim and the side
+    const double angle = -0.3 + 2.0 * i / 2000;
+    const Vec3d x = {{0.18 + 0.03 * std::sin(angle), 0, 0.02 - 0.03 * std::cos(angle)}};
+    const Depth d = depth(tip, pose, x);
+    EXPECT_LE(norm(d.gradient), 1 + 1e-14);
+    const double jump = i > 0 ? std::sqrt(squared_norm(d.hessian - last)) : 0;
+    EXPECT_LT(jump, 0.5);  // of up to 75
+    last = d.hessian;
+  }
+}
+
+std::vector<Triangle> top() {
+  std::vector<Triangle> triangles;
+  for (const Triangle& t : surface())
+    if (std::ranges::all_of(t, [](int v) { return mesh().rest[v][2] > 0.6 - 1e-9; })) triangles.push_back(t);
+  return triangles;
+}
+
+TEST(Pressure, DerivativesAreThoseOfTheEnergy) {
+  for (const double p : {3.0, -3.0}) {
+    const auto V = make_pressure(mesh(), top(), p);
+    V->bind(pattern());
+    const std::vector<double> x = deformed(0.05);
+    const DerivativeReport report = check_derivatives(differentiable(*V, pattern()), x, {.length = 0.3});
+    EXPECT_TRUE(report.gradient.passed) << report.gradient.smallest_error;
+    EXPECT_TRUE(report.hessian.passed) << report.hessian.smallest_error;
+    expect_vertex_systems_to_be_parts(*V, x, "pressure");
+  }
+}
+
+TEST(Pressure, OnAClosedSurfaceIsPressureTimesVolumeAndHasNoResultant) {
+  const auto V = make_pressure(mesh(), surface(), 3);
+  const std::vector<double> x = deformed(0.05);
+  double volume = 0;  // of the deformed body
+  for (const Tet& tet : mesh().tets) {
+    const auto at = [&](int k) { return Vec3d{{x[3 * tet[k]], x[3 * tet[k] + 1], x[3 * tet[k] + 2]}}; };
+    volume += determinant(from_columns(at(1) - at(0), at(2) - at(0), at(3) - at(0))) / 6;
+  }
+  EXPECT_NEAR(V->value(x), 3 * (volume - 0.48), 1e-14);
+  std::vector<double> g(x.size());
+  V->add_gradient(x, 1, g);
+  Vec3d force{}, torque{};
+  for (size_t i = 0; i < x.size(); i += 3) {
+    const Vec3d f = {{g[i], g[i + 1], g[i + 2]}};
+    force = force + f;
+    torque = torque + cross(Vec3d{{x[i], x[i + 1], x[i + 2]}}, f);
+  }
+  EXPECT_LT(norm(force), 1e-14);
+  EXPECT_LT(norm(torque), 1e-14);
+}
+
+TEST(Pressure, OnAPatchThatMovesAlongItsNormalIsTheForceOnItsArea) {
+  const auto V = make_pressure(mesh(), top(), 3);
+  std::vector<double> x = rest();
+  for (size_t i = 2; i < x.size(); i += 3) x[i] *= 0.9;
+  EXPECT_NEAR(V->swept_volume(x), -0.06 * 0.8, 1e-15);
+  std::vector<double> g(x.size());
+  V->add_gradient(x, -1, g);
+  Vec3d force{};
+  for (size_t i = 0; i < x.size(); ++i) force[i % 3] += g[i];
+  EXPECT_NEAR(force[2], -3 * 0.8, 1e-14);
+}
+
+TEST(Pressure, InsideAPatchItFollowsTheSurface) {
+  const auto V = make_pressure(mesh(), top(), 3);
+  const std::vector<double> x = deformed(0.05);
+  const auto at = [&](int v) { return Vec3d{{x[3 * v], x[3 * v + 1], x[3 * v + 2]}}; };
+  std::vector<double> g(x.size());
+  V->add_gradient(x, -1, g);
+  int inner = 0;
+  for (int v = 0; v < mesh().vertex_count(); ++v) {
+    const Vec3d& X = mesh().rest[v];
+    if (X[2] < 0.6 - 1e-9 || X[0] < 1e-9 || X[0] > 1 - 1e-9 || X[1] < 1e-9 || X[1] > 0.8 - 1e-9) continue;
+    ++inner;
+    Vec3d force{};  // -p dA / 3 of each triangle around
+    for (const Triangle& t : top())
+      if (std::ranges::find(t, v) != t.end())
+        force = force + (-3.0 / 6) * cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
+    for (int r = 0; r < 3; ++r) EXPECT_NEAR(g[3 * v + r], force[r], 1e-14);
+  }
+  EXPECT_EQ(inner, 6);
+}
+
+TEST(Pressure, ItsProjectedHessianIsPositiveSemidefinite) {
+  const auto V = make_pressure(mesh(), top(), 3);
+  V->bind(pattern());
+  const std::vector<double> x = deformed(0.05);
+  for (const Definiteness kind : {Definiteness::exact, Definiteness::clamped, Definiteness::absolute}) {
+    BlockSparse H(pattern());
+    V->add_hessian(x, 1, {kind}, H);
+    double least = 0;
+    for (unsigned seed = 0; seed < 100; ++seed) {
+      std::vector<double> d = deformed(1, seed), Hd(x.size());
+      H.multiply(d, Hd);
+      least = std::min(least, std::inner_product(d.begin(), d.end(), Hd.begin(), 0.0));
+    }
+    EXPECT_EQ(least < -1e-6, kind == Definiteness::exact) << least;
+  }
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,54 @@
+#include "energy/tip_depth.h"
+
+#include <cmath>
+
+namespace aspic {
+namespace {
+
+Mat3d outer(const Vec3d& a, const Vec3d& b) { return from_columns(b[0] * a, b[1] * a, b[2] * a); }
+
+// Length and direction; no direction at zero, where that of a point inside a tip does not matter.
+struct Polar {
+  double length;
+  Vec3d direction;
+};
+Polar polar(const Vec3d& v) {
+  const double length = std::sqrt(dot(v, v));
+  return {length, length > 0 ? (1 / length) * v : Vec3d{}};
+}
+
+Depth depth_in_sphere(double radius, const Vec3d& u) {
+  const auto [length, n] = polar(u);
+  const double curvature = length > 0 ? 1 / length : 0;
+  return {radius - length, -1.0 * n, curvature * (outer(n, n) - identity3<double>())};
+}
+
+// h(t) = 0 for t < -1, t for t > 1, with h'' = 3/4 (1 - t^2) in between.
+struct Rounding {
+  double value, slope, curvature;
+};
+Rounding rounding(double t) {
+  if (t <= -1) return {0, 0, 0};
+  if (t >= 1) return {t, 1, 0};
+  const double tt = t * t;
+  return {t / 2 + 3.0 / 8 * tt - tt * tt / 16 + 3.0 / 16, 0.5 + 0.75 * t * (1 - tt / 3), 0.75 * (1 - tt)};
+}
+
+Depth depth_in_disc(double radius, const Vec3d& axis, const Vec3d& x) {
+  const double width = kRim * radius, s = dot(x, axis);
+  const auto [r, e] = polar(x - s * axis);
+  const Rounding h = rounding((r - radius - s) / width);
+  const Vec3d across = e - axis;
+  const Mat3d turning = r > 0 ? (1 / r) * (identity3<double>() - outer(axis, axis) - outer(e, e)) : Mat3d{};
+  return {-(s + width * h.value), (h.slope - 1) * axis - h.slope * e,
+          (-h.curvature / width) * outer(across, across) - h.slope * turning};
+}
+
+}  // namespace
+
+Depth depth(const Tip& tip, const TipPose& pose, const Vec3d& x) {
+  return tip.shape == TipShape::sphere ? depth_in_sphere(tip.radius, x - pose.center)
+                                       : depth_in_disc(tip.radius, pose.axis, x - pose.center);
+}
+
+}  // namespace aspic
