@@ -92,6 +92,7 @@ int run_program(int argc, char** argv) {
   add_convert(app, action);
   add_compare(app, action);
   add_materials(app, action);
+  add_fit_curves(app, action);
   add_minimize(app, action);
   add_lecture(app, action);
   add_viewer_commands(app, action);

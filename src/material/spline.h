@@ -1,72 +1,88 @@
-// Data-driven solid, polyconvex by construction: psi = W1(I1bar) + W2(I2bar) + K/2 (J - 1)^2; +inf for J <= 0,
-//   W1 = mu/2 (1 - share) [(1 - softening) (I1bar - 3) + softening S(I1bar)] + mu/2 g1(I1bar - 3)
-//   W2 = mu/(3 sqrt 3) [share y + g2(y)],   y = I2bar^(3/2) - 3 sqrt 3,   S = 4/3 (3^(1/4) I1bar^(3/4) - 3)
+// Data-driven solid, polyconvex by construction; +inf for J <= 0:
+//   psi = mu (1 - share) [(1 - softening) (I1bar - 3)/2 + softening S(|F|, J^(1/3))] + mu/2 g1(I1bar - 3)
+//       + mu share S(|cof F|, J^(2/3)) + mu/(3 sqrt 3) g2(y) + K/2 (J - 1)^2
+//   S(x, s) = sqrt 3 x - 3 s,   y = I2bar^(3/2) - 3 sqrt 3
 // g1 and g2 are convex splines (convex_spline.h) whose coefficients, the growths, say by how much the slope of a term
 // grows about each knot, relative to what it would be at rest if it carried the whole shear modulus.
 //
-// Polyconvex [Ball 1977]: |F|^p / J^q is convex in (F, J), J > 0, if p >= q + 1 >= 1, therefore so are
-// I1bar^(3/4) = |F|^(3/2) / J^(1/2) and I1bar, and I2bar^(3/2) = |cof F|^3 / J^2 in (cof F, J) (I2bar itself is not)
-// [Hartmann 2003]. A convex nondecreasing function of a convex function is convex, and with growths >= 0 and
-// 0 <= share, softening <= 1 all of psi is a sum of such and of a convex function of J. W1 is the reason for S: it is
-// the term of least growth in I1bar that is still polyconvex, and rubber softens before it stiffens.
+// Polyconvex [Ball 1977]: |F|^p / J^q is convex in (F, J), J > 0, if p >= q + 1 >= 1; so are I1bar = |F|^2 / J^(2/3)
+// and, in (cof F, J), I2bar^(3/2) = |cof F|^3 / J^2, but not I2bar itself [Hartmann 2003]. |F|, |cof F|, -J^(1/3) and
+// -J^(2/3) are convex. A convex nondecreasing function of a convex function is convex, and with growths >= 0 and
+// 0 <= share, softening <= 1 all of psi is a sum of such. S grows least: rubber softens before it stiffens.
 //
-// At rest, g1, g2 and their slopes are 0 and S = I1bar - 3 to second order, so the small-strain moduli are exact
-// whatever the coefficients. psi has continuous second derivatives.
+// At rest, g1, g2 and their slopes are 0, and S is (I1bar - 3)/2 or (I2bar - 3)/2 to second order and 0 for every
+// change of size: the small-strain moduli are exact whatever the coefficients. psi has continuous second derivatives.
 #pragma once
 #include <numbers>
 #include <string>
 
-#include "material/from_isochoric_invariants.h"
+#include "material/from_two_invariants.h"
 #include "material/material.h"
 #include "material/registry.h"
 
 namespace aspic {
 
 struct SplineLaw {
-  static constexpr ConvexSpline<7> kStretchSpline{{0, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100}};  // over I1bar - 3
-  static constexpr ConvexSpline<3> kAreaSpline{{0, 1, 10, 100, 1000}};                      // over y
+  static constexpr int kGrowths = 8, kAreaGrowths = 3;
+  static constexpr ConvexSpline<kGrowths> kStretchSpline{{0, 0.03, 0.1, 0.3, 1, 3, 10, 30, 60, 100}};  // over I1bar - 3
+  static constexpr ConvexSpline<kAreaGrowths> kAreaSpline{{0, 1, 10, 100, 1000}};                      // over y
 
   template <class T>
   struct Params {
-    T straight, soft, area, bulk;  // weights of I1bar - 3, S and y, and K [Pa]
-    T growth[7], area_growth[3];   // of g1 and g2 [Pa]
+    T straight, soft, area, bulk;                   // weights of I1bar - 3 and of both S, and K [Pa]
+    T growth[kGrowths], area_growth[kAreaGrowths];  // of g1 and g2 [Pa]
   };
 
   template <class T>
   static Curve<T> W1(const T& I1bar, const Params<T>& p) {
-    const Curve<T> g = kStretchSpline(I1bar - T(3.0), p.growth);
-    const T slope = sqrt(sqrt(T(3.0) / I1bar));  // S'
-    return {p.straight * (I1bar - T(3.0)) + p.soft * T(4.0 / 3.0) * (I1bar * slope - T(3.0)) + g.value,
-            p.straight + p.soft * slope + g.slope, g.curvature - T(0.25) * p.soft * slope / I1bar};
+    Curve<T> g = kStretchSpline(I1bar - T(3.0), p.growth);
+    g.value = g.value + p.straight * (I1bar - T(3.0));
+    g.slope = g.slope + p.straight;
+    return g;
   }
   template <class T>
   static Curve<T> W2(const T& I2bar, const Params<T>& p) {
-    const T root = sqrt(I2bar), y = I2bar * root - T(3.0 * std::numbers::sqrt3);
-    const Curve<T> g = kAreaSpline(y, p.area_growth);
-    const T dy = T(1.5) * root, ddy = T(0.75) / root, slope = p.area + g.slope;
-    return {p.area * y + g.value, slope * dy, g.curvature * dy * dy + slope * ddy};
+    const T root = sqrt(I2bar), dy = T(1.5) * root, ddy = T(0.75) / root;
+    const Curve<T> g = kAreaSpline(I2bar * root - T(3.0 * std::numbers::sqrt3), p.area_growth);
+    return {g.value, g.slope * dy, g.curvature * dy * dy + g.slope * ddy};
+  }
+  template <class T>
+  static Curve<T> U1(const T& I1, const Params<T>& p) {
+    return square_root(I1, p.soft);
+  }
+  template <class T>
+  static Curve<T> U2(const T& I2, const Params<T>& p) {
+    return square_root(I2, p.area);
+  }
+  template <class T>
+  static Curve<T> V(const T& J, const Params<T>& p) {
+    const T dJ = J - T(1.0), root = cbrt(J), r = T(1.0) / J;
+    const T a = p.soft * root, b = p.area * root * root;  // of -3 a - 3 b
+    return {T(0.5) * p.bulk * dJ * dJ - T(3.0) * (a + b), p.bulk * dJ - (a + T(2.0) * b) * r,
+            p.bulk + T(2.0 / 3.0) * (a + b) * r * r};
   }
 
-  static Params<double> params(const MaterialParameters& m) {
-    const double share = m.extra[0], softening = m.extra[1];
-    const double stretch = 0.5 * m.lame.mu, area = m.lame.mu / (3 * std::numbers::sqrt3);
-    Params<double> p{stretch * (1 - share) * (1 - softening),
-                     stretch * (1 - share) * softening,
-                     area * share,
-                     bulk_modulus(m.lame),
-                     {},
-                     {}};
-    for (int i = 0; i < 7; ++i) p.growth[i] = stretch * m.extra[2 + i];
-    for (int i = 0; i < 3; ++i) p.area_growth[i] = area * m.extra[9 + i];
+  template <class T>
+  static Params<T> params(const MaterialParametersOver<T>& m) {
+    const T share = m.extra[0], softening = m.extra[1], one = T(1.0), mu = m.lame.mu;
+    Params<T> p{.straight = T(0.5) * mu * (one - share) * (one - softening),
+                .soft = mu * (one - share) * softening,
+                .area = mu * share,
+                .bulk = bulk_modulus(m.lame),
+                .growth = {},
+                .area_growth = {}};
+    for (int i = 0; i < kGrowths; ++i) p.growth[i] = T(0.5) * mu * m.extra[2 + i];
+    for (int i = 0; i < kAreaGrowths; ++i)
+      p.area_growth[i] = T(1 / (3 * std::numbers::sqrt3)) * mu * m.extra[2 + kGrowths + i];
     return p;
   }
 
   static MaterialInfo info() {
     return {.name = "spline",
             .formula =
-                "mu/2 ((1 - share) ((1 - softening) (I1bar - 3) + softening S) + g1(I1bar - 3)) + mu/(3 sqrt 3) "
-                "(share y + g2(y)) + K/2 (J - 1)^2 with S = 4/3 (3^(1/4) I1bar^(3/4) - 3), "
-                "y = I2bar^(3/2) - 3 sqrt 3, convex splines g1 and g2, mu = mu_L, K = la_L + 2/3 mu_L",
+                "mu (1 - share) ((1 - softening) (I1bar - 3)/2 + softening (sqrt 3 |F| - 3 J^(1/3))) + mu share "
+                "(sqrt 3 |cof F| - 3 J^(2/3)) + mu/2 g1(I1bar - 3) + mu/(3 sqrt 3) g2(I2bar^(3/2) - 3 sqrt 3) + "
+                "K/2 (J - 1)^2 with convex splines g1 and g2, mu = mu_L, K = la_L + 2/3 mu_L",
             .remarks =
                 "Polyconvex whatever the coefficients; without growth, share and softening it is "
                 "neo_hookean_isochoric. +inf for J <= 0, so every start must be free of inversion. The only state "
@@ -77,38 +93,47 @@ struct SplineLaw {
   }
 
  private:
+  // c sqrt 3 sqrt(I); at I = 3, where V compensates it, 3 c.
+  template <class T>
+  static Curve<T> square_root(const T& I, const T& c) {
+    const T value = T(std::numbers::sqrt3) * c * sqrt(I), slope = T(0.5) * value / I;
+    return {value, slope, T(-0.5) * slope / I};
+  }
+
   static std::vector<ExtraParameter> coefficients() {
     std::vector<ExtraParameter> list = {{.name = "share",
                                          .unit = "1",
-                                         .meaning = "share of the shear modulus that I2bar carries",
+                                         .meaning = "share of the shear modulus that |cof F| carries",
                                          .fallback = 0,
                                          .min = 0,
                                          .max = 1},
                                         {.name = "softening",
                                          .unit = "1",
-                                         .meaning = "share of I1bar^(3/4) in the rest, which softens with stretch",
+                                         .meaning = "share of |F| in the rest, which softens with stretch",
                                          .fallback = 0,
                                          .min = 0,
                                          .max = 1}};
-    const char* const stretches[] = {"0.03", "0.1", "0.3", "1", "3", "10", "30"};
-    const char* const areas[] = {"1", "10", "100"};
-    for (int i = 0; i < 7; ++i)
-      list.push_back(growth("growth_" + std::to_string(i + 1), std::string("I1bar - 3 = ") + stretches[i]));
-    for (int i = 0; i < 3; ++i)
-      list.push_back(
-          growth("area_growth_" + std::to_string(i + 1), std::string("I2bar^(3/2) - 3 sqrt 3 = ") + areas[i]));
+    add_growths("growth_", "I1bar - 3", kStretchSpline, list);
+    add_growths("area_growth_", "I2bar^(3/2) - 3 sqrt 3", kAreaSpline, list);
     return list;
   }
-  static ExtraParameter growth(std::string name, std::string place) {
-    return {.name = std::move(name),
-            .unit = "1",
-            .meaning = "growth of the slope about " + std::move(place),
-            .fallback = 0,
-            .min = 0,
-            .max = 1e3};
+  template <std::size_t N>
+  static void add_growths(const std::string& name, const std::string& of, const ConvexSpline<N>& spline,
+                          std::vector<ExtraParameter>& list) {
+    for (std::size_t i = 1; i <= N; ++i) {
+      std::string knot = std::to_string(spline.knots[i]);
+      knot.erase(knot.find_last_not_of('0') + 1);
+      if (knot.back() == '.') knot.pop_back();
+      list.push_back({.name = name + std::to_string(i),
+                      .unit = "1",
+                      .meaning = "growth of the slope in " + of + " about " + knot,
+                      .fallback = 0,
+                      .min = 0,
+                      .max = 1e3});
+    }
   }
 };
 
-using Spline = FromIsochoricInvariants<SplineLaw>;
+using Spline = FromTwoInvariants<SplineLaw>;
 
 }  // namespace aspic

@@ -1,26 +1,33 @@
-// A material from its law psi = W1(I1bar) + W2(I2bar) + K/2 (J - 1)^2; +inf for J <= 0.
-//   I1bar = J^(-2/3) I1, I2bar = J^(-4/3) I2, I2 = |cof F|^2 = (I1^2 - |F'F|^2) / 2
+// A material from its law psi = W1(I1bar) + W2(I2bar) + U1(I1) + U2(I2) + V(J); +inf for J <= 0.
+//   I1 = |F|^2, I2 = |cof F|^2 = (I1^2 - |F'F|^2) / 2, I1bar = J^(-2/3) I1, I2bar = J^(-4/3) I2
 //   P = 2 psi_1 F + psi_2 G + psi_J g,   G = dI2/dF = 2 F (I1 Id - F'F),   g = cof F
 //   H = 2 psi_1 Id + psi_2 d2I2/dF2 + psi_J d2J/dF2 + 4 psi_11 f f' + psi_22 G G' + psi_JJ g g'
 //       + 2 psi_1J (f g' + g f') + psi_2J (G g' + g G')
 #pragma once
+#include "material/barrier.h"
 #include "material/convex_spline.h"
 #include "material/isochoric.h"
 #include "material/second_piola.h"
 
 namespace aspic {
 
-// L has Params<T> with a member `bulk`, and W1(I1bar, p) and W2(I2bar, p) as curves.
+// L has Params<T> and the five functions as curves, W1(I1bar, p) and so on.
 template <class L>
-struct FromIsochoricInvariants : L {
+struct FromTwoInvariants : L {
+  using TwoInvariantLaw = L;
   template <class T>
   using Params = typename L::template Params<T>;
 
   template <class T>
   static T psi(const Mat3<T>& F, const Params<T>& p) {
-    const T J = determinant(F), s = isochoric_scale(J);
-    const T W = L::W1(s * squared_norm(F), p).value + L::W2(s * s * squared_norm(cofactor(F)), p).value;
-    return isochoric_energy(J, W, p.bulk);
+    return infinite_unless_positive(determinant(F), of_minors(F, cofactor(F), determinant(F), p));
+  }
+  // psi as a function of F, cof F and det F: convex if they are taken as independent, psi is polyconvex.
+  template <class T>
+  static T of_minors(const Mat3<T>& F, const Mat3<T>& cof, const T& J, const Params<T>& p) {
+    const T s = isochoric_scale(J), I1 = squared_norm(F), I2 = squared_norm(cof);
+    return L::W1(s * I1, p).value + L::W2(s * s * I2, p).value + L::U1(I1, p).value + L::U2(I2, p).value +
+           L::V(J, p).value;
   }
   template <class T>
   static Mat3<T> pk1(const Mat3<T>& F, const Params<T>& p) {
@@ -54,13 +61,17 @@ struct FromIsochoricInvariants : L {
     Derivatives(const Mat3<T>& F, const Params<T>& p)
         : g(cofactor(F)), S(T(2.0) * (squared_norm(F) * identity3<T>() - transpose(F) * F)) {
       const T J = determinant(F), r = T(1.0) / J, s = isochoric_scale(J), s2 = s * s;
-      const T I1 = squared_norm(F), I2bar = s2 * squared_norm(g);
-      const Curve<T> W1 = L::W1(s * I1, p), W2 = L::W2(I2bar, p);
-      first = isochoric_derivatives(I1, J, W1.slope, W1.curvature, p.bulk);
-      const T dI2bar_dJ = T(-4.0 / 3.0) * I2bar * r;
-      first.dJ = first.dJ + W2.slope * dI2bar_dJ;
-      first.dJJ = first.dJJ + W2.curvature * dI2bar_dJ * dI2bar_dJ - T(7.0 / 3.0) * W2.slope * dI2bar_dJ * r;
-      second = {W2.slope * s2, W2.curvature * s2 * s2,
+      const T I1 = squared_norm(F), I2 = squared_norm(g);
+      const Curve<T> W1 = L::W1(s * I1, p), W2 = L::W2(s2 * I2, p);
+      const Curve<T> U1 = L::U1(I1, p), U2 = L::U2(I2, p), V = L::V(J, p);
+      const T dI2bar_dJ = T(-4.0 / 3.0) * s2 * I2 * r;
+      first = isochoric_derivatives(I1, J, W1.slope, W1.curvature, T(0.0));
+      first.dI = first.dI + U1.slope;
+      first.dII = first.dII + U1.curvature;
+      first.dJ = first.dJ + V.slope + W2.slope * dI2bar_dJ;
+      first.dJJ =
+          first.dJJ + V.curvature + W2.curvature * dI2bar_dJ * dI2bar_dJ - T(7.0 / 3.0) * W2.slope * dI2bar_dJ * r;
+      second = {W2.slope * s2 + U2.slope, W2.curvature * s2 * s2 + U2.curvature,
                 W2.curvature * s2 * dI2bar_dJ - T(4.0 / 3.0) * W2.slope * s2 * r};
     }
   };
