@@ -23,6 +23,7 @@ void add_run(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
 void add_mesh(CLI::App& app, Action& action);
 void add_convert(CLI::App& app, Action& action);
+void add_fit(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
 void add_fit_curves(CLI::App& app, Action& action);

@@ -90,6 +90,7 @@ int run_program(int argc, char** argv) {
   add_check(app, action);
   add_mesh(app, action);
   add_convert(app, action);
+  add_fit(app, action);
   add_compare(app, action);
   add_materials(app, action);
   add_fit_curves(app, action);
