@@ -1,16 +1,20 @@
 #include "aspic/fit_curves.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "aspic/commands.h"
 #include "aspic/plot.h"
 #include "base/error.h"
 #include "capture/test_curves.h"
+#include "io/csv_reader.h"
 
 namespace aspic::cli {
 namespace {
@@ -142,9 +146,68 @@ void draw_fits(const CurveFitRequest& request, const std::vector<Fitted>& all) {
   draw(request.picture, chart);
 }
 
+// Leaves the points of at least this stretch.
+void cut(std::vector<TestCurve>& curves, double least) {
+  for (TestCurve& curve : curves) {
+    TestCurve kept{curve.name, curve.deformation, {}, {}};
+    for (size_t i = 0; i < curve.stretch.size(); ++i)
+      if (curve.stretch[i] >= least) {
+        kept.stretch.push_back(curve.stretch[i]);
+        kept.stress.push_back(curve.stress[i]);
+      }
+    curve = std::move(kept);
+  }
+}
+
+std::vector<std::string> words(const std::string& text) {
+  std::istringstream in(text);
+  return {std::istream_iterator<std::string>(in), {}};
+}
+
+double rms(const CurveFit& fit) {
+  double sum = 0, count = 0;
+  for (const CurveErrors& c : fit.curves) {
+    const auto n = static_cast<double>(c.predicted.size());
+    sum += n * c.rms * c.rms;
+    count += n;
+  }
+  return std::sqrt(sum / count);
+}
+
+// As a Markdown table: the error that others state, and that of our fit to the same points.
+int compare_with_published(const CurveFitRequest& request) {
+  CsvReader csv(request.published);
+  const size_t data = csv.column("data"), tests = csv.column("tests"), least = csv.column("least_stretch"),
+               model = csv.column("model"), measure = csv.column("measure"), value = csv.column("value");
+  bool converged = true;
+  fmt::print("| data | tests | measure | published | of | {} |\n|---|---|---|---:|---|---:|\n",
+             fmt::join(request.materials, " | "));
+  while (csv.next()) {
+    std::string row = fmt::format("| {} | {} | {} | {:.5g} | {} |", csv.text(data), csv.text(tests), csv.text(measure),
+                                  csv.number(value), csv.text(model));
+    std::vector<TestCurve> curves =
+        chosen(request.published.parent_path() / (csv.text(data) + ".csv"), words(csv.text(tests)));
+    cut(curves, csv.number(least));
+    for (const std::string& material : request.materials) {
+      CurveFitOptions options = request.options;
+      options.material = material;
+      const CurveFit fit = aspic::fit_curves(curves, options);
+      converged &= fit.is_converged;
+      const std::string& unit = csv.text(measure);
+      row += fmt::format(" {:.5g} |", unit == "rms_MPa"   ? 1e-6 * rms(fit)
+                                      : unit == "rms_kPa" ? 1e-3 * rms(fit)
+                                                          : fit.r_squared);
+    }
+    fmt::print("{}\n", row);
+  }
+  return converged ? exit_done : exit_unconverged;
+}
+
 }  // namespace
 
 int fit_curves(const CurveFitRequest& request) {
+  if (!request.published.empty()) return compare_with_published(request);
+  if (request.files.empty()) throw InvalidInput("give at least one FILE with curves, or --published TABLE");
   if (!request.picture.empty()) {
     require_drawable(request.picture);
     if (request.files.size() > 1) throw InvalidInput("--plot draws one table; give one FILE");
@@ -185,7 +248,7 @@ void add_fit_curves(CLI::App& app, Action& action) {
       "  aspic fit-curves data/rubber/treloar_1944.csv\n"
       "  aspic fit-curves data/rubber/treloar_1944.csv --material fung spline --plot treloar.svg\n"
       "  aspic fit-curves data/rubber/*.csv --material mooney_rivlin spline --table");
-  command->add_option("FILE", request->files, "Tables of curves")->required();
+  command->add_option("FILE", request->files, "Tables of curves");
   command->add_option("--material", request->materials, "Which materials, each fitted for itself")
       ->capture_default_str();
   command->add_option("--test", request->tests, "Only these tests of the tables");
@@ -206,6 +269,8 @@ void add_fit_curves(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option("--plot", request->picture, "Draws measured against fitted curves: FILE.svg or FILE.png");
   command->add_flag("--table", request->table, "A Markdown table of relative errors");
+  command->add_option("--published", request->published,
+                      "Compares with the errors that this table lists, of the tables beside it");
   command->add_flag("--json", request->json, "As JSON");
   command->callback([request, compressible, &action] {
     request->options.volume = *compressible ? Volume::compressible : Volume::incompressible;

@@ -16,6 +16,7 @@ struct CurveFitRequest {
   std::filesystem::path picture;  // measured against fitted; empty: none
   bool table = false;             // Markdown instead of a report per fit
   bool json = false;
+  std::filesystem::path published;  // a table of errors that others published, to be compared with; empty: none
 };
 
 // The exit code. Throws InvalidInput.

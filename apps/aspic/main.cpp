@@ -94,6 +94,7 @@ int run_program(int argc, char** argv) {
   add_compare(app, action);
   add_materials(app, action);
   add_fit_curves(app, action);
+  add_closed_loop(app, action);
   add_minimize(app, action);
   add_lecture(app, action);
   add_viewer_commands(app, action);
