@@ -93,6 +93,8 @@ int run_program(int argc, char** argv) {
   add_fit(app, action);
   add_compare(app, action);
   add_materials(app, action);
+  add_fit_curves(app, action);
+  add_closed_loop(app, action);
   add_minimize(app, action);
   add_capture(app, action);
   add_lecture(app, action);

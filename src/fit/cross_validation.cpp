@@ -76,6 +76,13 @@ Experiment subset(const Experiment& experiment, const std::function<bool(const L
   return part;
 }
 
+HeldOut compare(const Experiment& left_out, std::span<const CasePrediction> predicted) {
+  HeldOut h{.group = left_out.cases.empty() ? "" : left_out.cases.front().group};
+  for (size_t c = 0; c < left_out.cases.size(); ++c) add_case(left_out, left_out.cases[c], predicted[c], h);
+  finish(h);
+  return h;
+}
+
 CrossValidation cross_validate(const Experiment& experiment, const ParameterMap& map, Regularizer& regularizer,
                                const FitReport& fitted, FitOptions options, const EquilibriumOptions& equilibrium,
                                const CrossValidationObserver& observe) {

@@ -39,6 +39,9 @@ struct CrossValidation {
 // The cases for which `wanted` is true, of the same body.
 Experiment subset(const Experiment& experiment, const std::function<bool(const LoadCase&)>& wanted);
 
+// What was predicted for the cases of `left_out`, one after another, against what was measured.
+HeldOut compare(const Experiment& left_out, std::span<const CasePrediction> predicted);
+
 // Called before each group is left out; false: stop here.
 using CrossValidationObserver = std::function<bool(int group, int groups, const std::string& name)>;
 

@@ -17,6 +17,7 @@
 #include "material/neo_hookean_log.h"
 #include "material/neo_hookean_log_j2.h"
 #include "material/registry.h"
+#include "material/spline.h"
 #include "material/stable_neo_hookean.h"
 #include "material/stvk.h"
 
@@ -34,7 +35,8 @@ using MaterialList = std::tuple<  //
     Arap,                         //
     Linear,                       //
     MooneyRivlin,                 //
-    Fung>;
+    Fung,                         //
+    Spline>;
 
 // A material that scenes can name: params() turns small-strain constants into its own, info() describes it.
 template <class M>

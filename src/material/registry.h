@@ -9,7 +9,7 @@
 
 namespace aspic {
 
-inline constexpr int kMaxExtraParameters = 3;
+inline constexpr int kMaxExtraParameters = 13;
 
 // The parameters of one tet: small-strain constants, and what only some materials have (MaterialInfo::extra).
 template <class T>

@@ -69,7 +69,8 @@ template <class M>
 typename M::template Params<double> ordinary_params(double young = 2.5, double poisson = 0.4) {
   MaterialParameters m{lame_from_young_poisson(young, poisson), {}};
   const auto extra = M::info().extra;
-  for (std::size_t k = 0; k < extra.size(); ++k) m.extra[k] = 0.7 * extra[k].fallback;
+  for (std::size_t k = 0; k < extra.size(); ++k)
+    m.extra[k] = extra[k].fallback == 0 ? 0.1 * static_cast<double>(k + 1) : 0.7 * extra[k].fallback;
   return M::params(m);
 }
 
