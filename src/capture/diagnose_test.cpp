@@ -99,7 +99,7 @@ TEST(Diagnosis, LengthsInMillimetresAreNoticed) {
 
 TEST(Diagnosis, AMarkerThatLeavesItsNeighboursIsNamedAndOthersAreNot) {
   DataSet data = data_in_lines();
-  data.experiment.cases[3].positions[17].position[0] += 0.004;
+  data.experiment.cases[3].positions[17].position[0] += 0.006;
   const auto findings = diagnose(data);
   EXPECT_THAT(findings,
               Contains(finding(Severity::warning, data.source.position(3, 17), "away from where its neighbours")));
