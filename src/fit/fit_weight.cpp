@@ -94,6 +94,7 @@ class Discrepancy {
                                   now.y);
     return Verdict::try_on;
   }
+  bool is_met(double misfit) const { return std::abs(std::log(std::max(2 * misfit / count_, 1e-300))) <= slack_; }
   double next() const { return std::exp(next_); }
 
  private:
@@ -160,6 +161,7 @@ Status fit_by_discrepancy(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod me
   }
   if (verdict == Discrepancy::Verdict::unexplained && !go_to(run, at, most_cautious(trials))) return Status::undefined;
   const Status status = method(run, at, goal);
+  if (rule.is_met(at.misfit)) verdict = Discrepancy::Verdict::fits;
   run.report.words = words_of(verdict, 2 * at.misfit, run.residuals());
   return status;
 }
