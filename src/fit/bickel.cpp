@@ -73,7 +73,7 @@ class IncrementalBody {
  public:
   IncrementalBody(const Experiment& experiment, const LoadCase& load, const StrainSpaceModuli& moduli,
                   const BickelOptions& options)
-      : experiment_(experiment), load_(load), options_(options), body_(experiment.mesh, moduli) {
+      : experiment_(experiment), load_(load), options_(options), body_(experiment.mesh, moduli, options.rule) {
     for (const Vec3d& X : experiment.mesh.rest) x_.insert(x_.end(), {X[0], X[1], X[2]});
     held_.assign(experiment.mesh.rest.size(), false);
     for (const int v : experiment.fixed) held_[v] = true;
@@ -139,14 +139,14 @@ class IncrementalBody {
     }
   }
 
-  // Forces that do not balance; `size`: of those that act.
+  // Forces that do not balance; `size`: the largest that have acted so far.
   std::vector<double> residual(std::span<const double> x, double& size) const {
     std::vector<double> load(x.size(), 0.0), inner(x.size(), 0.0);
     for (const auto& energy : energies_) energy->add_gradient(x, 1, load);
     body_.add_gradient(x, inner);
     clear_held(load);
     clear_held(inner);
-    size = std::fmax(norm(load), norm(inner));
+    size = std::fmax(size, std::fmax(norm(load), norm(inner)));
     for (size_t i = 0; i < x.size(); ++i) inner[i] += load[i];
     return inner;
   }
@@ -156,7 +156,7 @@ class IncrementalBody {
   }
 
   bool balance() {
-    double size = 0;
+    double& size = force_size_;
     std::vector<double> g = residual(x_, size), d(x_.size()), trial(x_.size());
     for (int i = 0; i < options_.max_iterations; ++i, ++iterations_) {
       const double before = norm(g);
@@ -201,6 +201,7 @@ class IncrementalBody {
   std::vector<bool> held_;
   std::string failure_;
   int iterations_ = 0;
+  double force_size_ = 0;
 };
 
 // How far two pokes are apart: where they touch, and by how much they go in.
@@ -254,7 +255,7 @@ bool predict_linear(const Experiment& experiment, const LoadCase& load, const st
 }  // namespace
 
 std::string_view name(Baseline baseline) {
-  constexpr std::array<std::string_view, 3> kNames = {"one modulus", "per-example linear", "bickel"};
+  constexpr std::array<std::string_view, 4> kNames = {"one modulus", "per-example linear", "bickel", "bickel, total"};
   return kNames[static_cast<size_t>(baseline)];
 }
 
@@ -304,10 +305,12 @@ HeldOut predict(Baseline baseline, const Experiment& training, const Experiment&
   }
   const Examples examples = explain_all(training, options);
   if (examples.list.empty()) return fails(examples.failure);
-  if (baseline == Baseline::bickel) {
+  if (baseline == Baseline::bickel || baseline == Baseline::bickel_total) {
+    BickelOptions simulated = options;
+    simulated.rule = baseline == Baseline::bickel ? StressRule::incremental : StressRule::total;
     const StrainSpaceModuli moduli(training.mesh, examples.list);
     for (size_t c = 0; c < predictions.size(); ++c) {
-      BickelPrediction result = simulate(left_out, left_out.cases[c], moduli, options);
+      BickelPrediction result = simulate(left_out, left_out.cases[c], moduli, simulated);
       if (!result.ok) return fails(result.failure);
       predictions[c] = std::move(result.prediction);
     }

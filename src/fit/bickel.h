@@ -22,6 +22,7 @@ struct BickelOptions {
   FitOptions fit = {.weight = 1};
   EquilibriumOptions equilibrium;
   // Of the simulation.
+  StressRule rule = StressRule::incremental;
   int increments = 16;
   double tolerance = 1e-6;   // of the forces that do not balance, relative to those of the tip or load
   int max_iterations = 200;  // per increment
@@ -54,6 +55,7 @@ enum class Baseline {
   homogeneous,         // one E and nu for all cases of the training
   per_example_linear,  // the linear material of the case whose tip stood nearest
   bickel,
+  bickel_total,  // the same with StressRule::total: moduli taken for what they were fitted as
 };
 std::string_view name(Baseline baseline);
 

@@ -68,11 +68,17 @@ TEST(StrainSpaceModuli, ReturnThoseOfTheExamplesAtTheirStrains) {
 
 TEST(StrainSpaceModuli, StayWithinTheWidenedRangeOfTheExamples) {
   const TetMesh mesh = cube();
-  const StrainSpaceModuli moduli(
-      mesh, std::vector{example(mesh, diagonal(1.1, 1, 1), 1e5), example(mesh, diagonal(1.2, 1, 1), 3e5)});
-  const double far = young_modulus(moduli.at(0, diagonal(5, 0, 0)));
-  EXPECT_NEAR(far, 3e5 * std::exp(0.5), 1);
-  EXPECT_NEAR(young_modulus(moduli.at(0, diagonal(0.15, 0, 0))), std::sqrt(3.0) * 1e5, 1e3);
+  const std::vector<StrainExample> examples = {example(mesh, diagonal(1.1, 1, 1), 1e5),
+                                               example(mesh, diagonal(1.2, 1, 1), 3e5),
+                                               example(mesh, diagonal(1.21, 1, 1), 1e5)};
+  const StrainSpaceModuli two(mesh, std::span(examples).first(2)), three(mesh, examples);
+  EXPECT_NEAR(young_modulus(two.at(0, diagonal(5, 0, 0))), 3e5, 1e3);
+  EXPECT_NEAR(young_modulus(two.at(0, diagonal(0.15, 0, 0))), std::sqrt(3.0) * 1e5, 1e3);
+  for (double e = -1; e < 3; e += 0.01) {
+    const double E = young_modulus(three.at(0, diagonal(e, 0.1, 0)));
+    EXPECT_GE(E, 0.999e5 * std::exp(-0.5));
+    EXPECT_LE(E, 3.001e5 * std::exp(0.5));
+  }
 }
 
 TEST(StrainSpaceModuli, OfExamplesWithTheSameStrainAreTheirMean) {
@@ -185,9 +191,9 @@ TEST(IncrementalElasticity, LeavesWorkAndStressBehindAfterAClosedLoop) {
   }
   const double stored = 0.5 * 2e5 * 0.2 * 0.2 * kSide * kSide * kSide;  // of the order of what the loop stores
   EXPECT_GT(std::abs(finest), 0.05 * stored);
-  // No matter of the increments: the work has a limit, at first order.
-  EXPECT_NEAR((coarse - fine) / (fine - finest), 2, 0.3);
-  EXPECT_LT(std::abs(fine - finest), 0.1 * std::abs(finest));
+  // It is no matter of the increments: the work has a limit.
+  EXPECT_LT(std::abs(coarse - finest), 0.01 * std::abs(finest));
+  EXPECT_LT(std::abs(fine - finest), std::abs(coarse - finest));
 }
 
 TEST(IncrementalElasticity, TakesNoWorkAroundALoopWithConstantModuli) {
@@ -261,6 +267,9 @@ Experiment with_group(const Experiment& e, const std::string& group, bool is_it)
   return subset(e, [&](const LoadCase& c) { return (c.group == group) == is_it; });
 }
 
+constexpr Baseline kBaselines[] = {Baseline::homogeneous, Baseline::per_example_linear, Baseline::bickel,
+                                   Baseline::bickel_total};
+
 const BickelOptions kGel{.spread = Spread::uniform, .young = 1.5e4, .poisson = 0.38};
 
 TEST(Simulate, IsTheLinearBodyWhereAllExamplesAgree) {
@@ -296,30 +305,32 @@ TEST(Predict, EveryBaselineFindsAHomogeneousLinearBody) {
   const MaterialParameters linear{lame_from_young_poisson(2e4, 0.3), {}};
   const Experiment e = poked_gel("corotated", linear);
   const std::string left = e.cases[2].group;
-  for (const Baseline b : {Baseline::homogeneous, Baseline::per_example_linear, Baseline::bickel}) {
+  for (const Baseline b : kBaselines) {
     const HeldOut h = predict(b, with_group(e, left, false), with_group(e, left, true), kGel);
     ASSERT_TRUE(h.ok) << name(b) << ": " << h.failure;
     EXPECT_LT(h.relative_position_error(), 0.02) << name(b);
-    EXPECT_LT(h.relative_force_error(), b == Baseline::bickel ? 0.1 : 0.02) << name(b);
+    EXPECT_LT(h.relative_force_error(), b == Baseline::bickel || b == Baseline::bickel_total ? 0.1 : 0.02) << name(b);
   }
 }
 
-// Of a strongly stiffening body all of them miss the forces; those that know examples of several depths miss them less.
+// One modulus misses the forces of a strongly stiffening body; examples of two depths miss them less, if their moduli
+// are taken for what they were fitted as, of the whole way from rest. Increments with these moduli are too soft.
 TEST(Predict, OneModulusMissesAStiffeningBody) {
   const MaterialParameters tissue{lame_from_young_poisson(1e4, 0.35), {8}};
   const Experiment e = poked_gel("fung", tissue);
   const std::string left = e.cases[2].group;
   std::vector<double> force;
-  for (const Baseline b : {Baseline::homogeneous, Baseline::per_example_linear, Baseline::bickel}) {
+  for (const Baseline b : kBaselines) {
     const HeldOut h = predict(b, with_group(e, left, false), with_group(e, left, true), kGel);
     ASSERT_TRUE(h.ok) << name(b) << ": " << h.failure;
     force.push_back(h.relative_force_error());
-    RecordProperty(std::string(name(b)), std::to_string(h.relative_force_error()));
-    std::printf("%s: positions %.4f, forces %.4f\n", std::string(name(b)).c_str(), h.relative_position_error(),
-                h.relative_force_error());
+    RecordProperty(std::string(name(b)) + ", positions", std::to_string(h.relative_position_error()));
+    RecordProperty(std::string(name(b)) + ", forces", std::to_string(h.relative_force_error()));
   }
   EXPECT_GT(force[0], 0.05);
   EXPECT_LT(force[1], force[0]);
+  EXPECT_GT(force[2], force[1]);
+  EXPECT_LT(force[3], force[2]);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@ namespace aspic {
 namespace {
 
 constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-12, kLargestDamping = 1e16;
+constexpr double kNegligible = 1e-24;    // part of the |r|^2 of the guess: exact data are met to round-off
 constexpr double kUndetermined = 1e-13;  // a pivot below this part of its diagonal entry
 
 using Vector = std::vector<double>;
@@ -144,9 +145,11 @@ class Run {
     for (int i = 0; i < n_; ++i) p[i] = clipped(i, p[i]);
     Vector r(static_cast<size_t>(m_));
     if (!evaluate(p, r, fit)) return fit;
+    const double negligible = kNegligible * squared_norm(r);
     double damping = kFirstDamping;
     while (fit.iterations < options_.max_iterations && !fit.is_converged) {
-      if (!linearize(r)) break;
+      if (squared_norm(r) <= negligible) fit.is_converged = true;
+      if (fit.is_converged || !linearize(r)) break;
       ++fit.iterations;
       if (!step(p, r, damping, fit)) break;
     }

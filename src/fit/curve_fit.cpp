@@ -38,7 +38,6 @@ void check(const TestCurve& curve) {
   if (curve.stretch.empty() || curve.stretch.size() != curve.stress.size())
     throw InvalidInput(where + "has " + std::to_string(curve.stretch.size()) + " stretches and " +
                        std::to_string(curve.stress.size()) + " stresses; give as many of each");
-  if (!(largest(curve.stress) > 0)) throw InvalidInput(where + "all stresses are 0; there is nothing to fit");
   for (size_t i = 0; i < curve.stretch.size(); ++i) {
     const bool positive = curve.deformation == Deformation::simple_shear || curve.stretch[i] > 0;
     if (!std::isfinite(curve.stretch[i]) || !positive || std::abs(curve.stretch[i]) > 1e3)
@@ -47,6 +46,7 @@ void check(const TestCurve& curve) {
     if (!std::isfinite(curve.stress[i]))
       throw InvalidInput(where + "point " + std::to_string(i + 1) + " has no finite stress");
   }
+  if (!(largest(curve.stress) > 0)) throw InvalidInput(where + "all stresses are 0; there is nothing to fit");
 }
 
 double lambda_of(double mu, double poisson) { return 2 * mu * poisson / (1 - 2 * poisson); }

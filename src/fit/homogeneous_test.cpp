@@ -64,7 +64,7 @@ TEST(HomogeneousState, LeavesTheFreeFacesWithoutTraction) {
         if (d == Deformation::uniaxial || d == Deformation::equibiaxial || d == Deformation::planar) {
           EXPECT_NEAR(P(2, 2), 0, 1e-7);
         }
-        EXPECT_EQ(s.stress, d == Deformation::simple_shear ? P(0, 1) : P(0, 0));
+        EXPECT_NEAR(s.stress, d == Deformation::simple_shear ? P(0, 1) : P(0, 0), 1e-12 * std::abs(s.stress));
       }
   });
 }
@@ -80,7 +80,7 @@ TEST(HomogeneousState, GrowsIncompressibleAsThePoissonRatioNearsOneHalf) {
         return homogeneous_state(material, m, d, 1.6, volume).stress;
       };
       const double limit = stress(0.49, Volume::incompressible);
-      EXPECT_NEAR(stress(0.49999, Volume::compressible), limit, 1e-3 * limit) << material << ' ' << name(d);
+      EXPECT_NEAR(stress(0.4999999, Volume::compressible), limit, 1e-4 * limit) << material << ' ' << name(d);
     }
   }
 }

@@ -18,15 +18,17 @@ std::array<Vec3d, 4> shape_gradients(const Mat3d& rest_inverse) {
 
 }  // namespace
 
-IncrementalElasticity::IncrementalElasticity(const TetMesh& mesh, const StrainSpaceModuli& moduli)
-    : mesh_(mesh), moduli_(moduli) {
+IncrementalElasticity::IncrementalElasticity(const TetMesh& mesh, const StrainSpaceModuli& moduli, StressRule rule)
+    : mesh_(mesh), moduli_(moduli), rule_(rule) {
   for (int t = 0; t < mesh.tet_count(); ++t)
     tets_.push_back({inverse(edge_matrix(mesh, t)), volume(mesh, t), moduli.at(t, Mat3d{})});
 }
 
 Mat3d IncrementalElasticity::stress_at(const State& tet, const Mat3d& strain) const {
-  const Mat3d change = strain - tet.strain;
-  return tet.stress + 2 * tet.moduli.mu * change + tet.moduli.lambda * trace(change) * identity3<double>();
+  const bool total = rule_ == StressRule::total;
+  const Mat3d change = total ? strain : strain - tet.strain;
+  return (total ? Mat3d{} : tet.stress) + 2 * tet.moduli.mu * change +
+         tet.moduli.lambda * trace(change) * identity3<double>();
 }
 
 void IncrementalElasticity::add_gradient(std::span<const double> x, std::span<double> g) const {

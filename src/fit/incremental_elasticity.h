@@ -1,6 +1,7 @@
 // Incremental loading with moduli that follow the strain [Bickel 2009]: f += K(E(e)) du. Each tet carries a stress in
 // its co-rotated frame, and in an increment from x_0 to x
 //   stress = stress_0 + C(E(e_0), nu(e_0)) (e - e_0),   forces = -volume R stress b,   e = R'F - I
+// or, with StressRule::total, stress = C(E(e_0), nu(e_0)) e: the moduli are those of the whole way from rest.
 // NOT the gradient of an energy: what the stress is depends on the path, a closed loop leaves work and stress behind,
 // and there is no value to minimise (docs/bickel.md).
 #pragma once
@@ -12,10 +13,13 @@
 
 namespace aspic {
 
+enum class StressRule { incremental, total };
+
 class IncrementalElasticity {
  public:
   // Refers to both. At rest, without stress.
-  IncrementalElasticity(const TetMesh& mesh, const StrainSpaceModuli& moduli);
+  IncrementalElasticity(const TetMesh& mesh, const StrainSpaceModuli& moduli,
+                        StressRule rule = StressRule::incremental);
 
   void add_gradient(std::span<const double> x,
                     std::span<double> g) const;  // of the present increment; minus the forces
@@ -37,6 +41,7 @@ class IncrementalElasticity {
 
   const TetMesh& mesh_;
   const StrainSpaceModuli& moduli_;
+  StressRule rule_;
   std::vector<State> tets_;
   double work_ = 0;
 };

@@ -22,7 +22,7 @@ struct Sagging {
     for (int t = 0; t < model.mesh.tet_count(); ++t) {
       MaterialParameters p{lame_from_young_poisson(young * (1 + 0.5 * std::sin(t)), 0.3 + 0.05 * std::cos(t)), {}};
       for (size_t k = 0; k < info.extra.size(); ++k)
-        p.extra[k] = info.extra[k].fallback * (1 + 0.2 * std::sin(3.0 * t));
+        p.extra[k] = (info.extra[k].fallback == 0 ? 0.3 : info.extra[k].fallback) * (1 + 0.2 * std::sin(3.0 * t));
       parameters.push_back(p);
     }
     model.elasticity[0] = make_tet_elasticity(name, model.mesh, 0, parameters);
