@@ -108,23 +108,23 @@ int run(const Request& request) {
   const auto peak = [](const Course& c) { return *std::max_element(c.work.begin(), c.work.end()); };
   fmt::print("A cube of {} m, {} loops of {} increments per side, stretched by {}:\n", kSide, request.loops,
              request.increments, request.stretch);
-  fmt::print("  {:<34} {:>16} {:>16} {:>18} {:>16}\n", "", "first loop [mJ]", "all loops [mJ]", "largest ever [mJ]",
+  fmt::print("  {:<34} {:>16} {:>16} {:>18} {:>16}\n", "", "first loop [J]", "all loops [J]", "largest ever [J]",
              "stress left [Pa]");
   const auto row = [&](const char* what, const Course& c) {
-    fmt::print("  {:<34} {:>16.5f} {:>16.5f} {:>18.5f} {:>16.4g}\n", what, 1e3 * c.after_first, 1e3 * c.work.back(),
-               1e3 * peak(c), c.stress);
+    fmt::print("  {:<34} {:>16.5f} {:>16.5f} {:>18.5f} {:>16.4g}\n", what, c.after_first, c.work.back(), peak(c),
+               c.stress);
   };
   row("moduli interpolated in strain space", bickel);
   row("an energy (corotated)", energy);
   if (request.picture.empty()) return exit_done;
   Chart chart{.title = "Work done on a cube in closed loops of strain",
               .x = {.label = "loops"},
-              .y = {.label = "work [mJ]"},
+              .y = {.label = "work [J]"},
               .series = {}};
   for (const auto& [label, course] :
        {std::pair{"moduli interpolated in strain space", &bickel}, {"an energy", &energy}}) {
     Series series{.label = label, .x = course->loops, .y = {}};
-    for (const double w : course->work) series.y.push_back(1e3 * w);
+    for (const double w : course->work) series.y.push_back(w);
     chart.series.push_back(std::move(series));
   }
   draw(request.picture, chart);

@@ -97,7 +97,8 @@ TEST(ParameterDerivatives, AreThoseOfTheForces) {
       V->set_parameters(bodies.parameters);
       std::vector<double> error(dg.size());
       for (size_t i = 0; i < dg.size(); ++i) error[i] = dg[i] - (8 * (p1[i] - m1[i]) - (p2[i] - m2[i])) / (12 * kStep);
-      if (!(info.name == "arap" && k == 1)) {
+      const bool is_beyond_reach = info.name == "spline" && k > 6;  // acts at larger strains
+      if (!(info.name == "arap" && k == 1) && !is_beyond_reach) {
         EXPECT_GT(largest(dg), 1e-3) << info.name << " " << k;
       }
       EXPECT_LE(largest(error), 1e-9 * std::max(1.0, largest(dg))) << info.name << " " << k;
