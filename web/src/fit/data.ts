@@ -303,7 +303,7 @@ export function verdict(head: FitHead): { text: string; kind: "good" | "bad" | "
   if (!fit.success) return { text: `Not converged: ${fit.words}. Do not rely on it.`, kind: "bad" };
   const size = closeness(fit.misfit, counts.residuals);
   if (size === null) return { text: fit.words, kind: "plain" };
-  if (size > 4)
+  if (size > 2.25)
     return { text: "Converged, but it explains the readings worse than their standard deviations allow: the model is too simple, or the deviations are too small.", kind: "bad" };
   const { position, force } = head.heldOut ?? { position: null, force: null };
   if ((position ?? 0) > kPoorPosition || (force ?? 0) > kPoorForce)
