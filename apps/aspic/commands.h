@@ -29,6 +29,7 @@ void add_materials(CLI::App& app, Action& action);
 void add_fit_curves(CLI::App& app, Action& action);
 void add_closed_loop(CLI::App& app, Action& action);
 void add_minimize(CLI::App& app, Action& action);
+void add_capture(CLI::App& app, Action& action);
 void add_lecture(CLI::App& app, Action& action);
 void add_viewer_commands(CLI::App& app, Action& action);  // view, report, render
 void add_view(CLI::App& app, Action& action);

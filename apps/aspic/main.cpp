@@ -96,6 +96,7 @@ int run_program(int argc, char** argv) {
   add_fit_curves(app, action);
   add_closed_loop(app, action);
   add_minimize(app, action);
+  add_capture(app, action);
   add_lecture(app, action);
   add_viewer_commands(app, action);
   if (argc == 1) {

@@ -207,23 +207,41 @@ bool LoadedBody::solved(const SolveReport& report) {
   return false;
 }
 
-bool LoadedBody::multiply(std::span<const double> dtheta, std::span<double> dr) {
-  ++counts_.solves;
-  if (!solved(equilibrium_.tangent(dtheta, dx_))) return false;
+void LoadedBody::put_change(const Wrench& change, std::span<double> dr) const {
   size_t i = 0;
-  const auto put = [&](const Vec3d& change, const Vec3d& deviation) {
-    for (int k = 0; k < 3; ++k) dr[i++] = change[k] / deviation[k];
+  const auto put = [&](const Vec3d& d, const Vec3d& deviation) {
+    for (int k = 0; k < 3; ++k) dr[i++] = d[k] / deviation[k];
   };
   for (const MarkerReading& reading : load_.positions)
     put(at(experiment_.markers[reading.marker], dx_), reading.deviation);
-  if (!probe_ || !(has_force() || has_torque())) return true;
-  const Wrench change = probe_->wrench_product(equilibrium_.linearized_x(), dx_);
   if (has_force()) put(change.force, load_.force_deviation);
   if (has_torque()) put(change.torque, load_.torque_deviation);
+}
+
+bool LoadedBody::multiply(std::span<const double> dtheta, std::span<double> dr) {
+  ++counts_.solves;
+  if (!solved(equilibrium_.tangent(dtheta, dx_))) return false;
+  const bool has_wrench = has_force() || has_torque();
+  put_change(has_wrench ? probe_->wrench_product(equilibrium_.linearized_x(), dx_) : Wrench{}, dr);
+  return true;
+}
+
+// V_probe and its wrench are proportional to k: K dx = -grad V_probe.
+bool LoadedBody::multiply_by_layer(std::span<double> dr) {
+  const std::span<const double> x = equilibrium_.linearized_x();
+  std::fill(xbar_.begin(), xbar_.end(), 0.0);
+  probe_->add_gradient(x, -1, xbar_);
+  ++counts_.solves;
+  if (!solved(equilibrium_.solve_stiffness(xbar_, dx_))) return false;
+  Wrench change = probe_->wrench_product(x, dx_);
+  const Wrench own = probe_->wrench(x);
+  change.force = change.force + own.force, change.torque = change.torque + own.torque;
+  put_change(change, dr);
   return true;
 }
 
 bool LoadedBody::add_transposed(std::span<const double> w, std::span<double> thetabar) {
+  if (std::all_of(w.begin(), w.end(), [](double x) { return x == 0; })) return true;
   std::fill(xbar_.begin(), xbar_.end(), 0.0);
   size_t i = 0;
   const auto take = [&](const Vec3d& deviation) {

@@ -37,6 +37,8 @@ class LoadedBody {
   bool predict(std::span<const double> dtheta, std::span<double> x);
   bool multiply(std::span<const double> dtheta, std::span<double> dr);
   bool add_transposed(std::span<const double> w, std::span<double> thetabar);
+  bool has_layer() const { return probe_ != nullptr; }
+  bool multiply_by_layer(std::span<double> dr);  // dr/dlog k, k the stiffness of the tip's layer
 
   const Misfit::Counts& counts() const { return counts_; }
 
@@ -49,6 +51,7 @@ class LoadedBody {
   bool try_from(std::span<const double> start);
   bool load_in_parts();
   bool solved(const SolveReport& report);
+  void put_change(const Wrench& change, std::span<double> dr) const;  // with dx_
   void predict_readings();
 
   const Experiment& experiment_;

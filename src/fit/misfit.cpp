@@ -127,6 +127,20 @@ struct Misfit::Impl {
     mark_unless_ok(pbar);
   }
 
+  bool has_layers() const {
+    return std::any_of(cases.begin(), cases.end(), [](const Case& c) { return c.body->has_layer(); });
+  }
+
+  void multiply_by_layers(std::span<double> dr) {
+    ASPIC_CHECK(is_linearized);
+    for_each_case([&](Case& c) {
+      const std::span<double> part = dr.subspan(c.first, c.body->residual_count());
+      std::fill(part.begin(), part.end(), 0.0);
+      c.ok = !c.body->has_layer() || c.body->multiply_by_layer(part);
+    });
+    mark_unless_ok(dr);
+  }
+
   // What could not be solved must not look like a result.
   void mark_unless_ok(std::span<double> result) {
     if (!all_ok()) std::fill(result.begin(), result.end(), std::numeric_limits<double>::quiet_NaN());
@@ -170,6 +184,9 @@ void Misfit::set_state(std::span<const double> x) {
   impl_->has_solved = true;
   impl_->is_linearized = false;
 }
+
+int Misfit::nuisance_count() const { return impl_->has_layers() ? 1 : 0; }
+void Misfit::nuisance(int, std::span<double> dr) { impl_->multiply_by_layers(dr); }
 
 const CasePrediction& Misfit::prediction(int c) const { return impl_->cases[c].body->prediction(); }
 std::pair<int, int> Misfit::residuals_of(int c) const {

@@ -74,6 +74,10 @@ class Misfit : public LeastSquares {
   // A product that could not be computed is NaN, and failure() tells why.
   void multiply(std::span<const double> dp, std::span<double> dr) override;
   void multiply_transposed(std::span<const double> w, std::span<double> pbar) override;
+  // The logarithm of how stiff the layers of all tips are: stiffening them with the body moves nothing, so what the
+  // residuals say along it is no knowledge of how stiff the body is.
+  int nuisance_count() const override;
+  void nuisance(int k, std::span<double> dr) override;
 
   // The equilibria of the last successful evaluate(), one case after another; empty before. A misfit that is given
   // them, evaluated and linearised at the same p goes on to the same bits.

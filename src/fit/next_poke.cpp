@@ -130,6 +130,10 @@ void judge(const Experiment& experiment, const ParameterMap& map, Posterior& pos
       return;
     }
     const Spectrum s = spectrum(data, *posterior.belief, options.spectrum);
+    if (!s.ok) {
+      candidate.failure = "a derivative could not be computed";
+      return;
+    }
     for (const double d : s.d) candidate.gain += std::log1p(d) / 2;
     set_deviation(map, posterior, s, candidate);
   } catch (const InvalidInput& error) {  // the tip does not fit there

@@ -13,6 +13,18 @@ std::span<const double> column(const std::vector<double>& A, int rows, int j) {
   return {A.data() + static_cast<size_t>(rows) * j, static_cast<size_t>(rows)};
 }
 
+bool all_finite(std::span<const double> values) {
+  return std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
+}
+
+bool all_finite(const Columns& A) {
+  for (int j = 0; j < A.count(); ++j)
+    if (!all_finite(A[j])) return false;
+  return true;
+}
+
+Spectrum nothing(int unknowns, bool ok) { return {.ok = ok, .W = Columns(unknowns), .dual = Columns(unknowns)}; }
+
 // Columns times diag(factor).
 void scale_columns(Columns& A, std::span<const double> factor) {
   for (int j = 0; j < A.count(); ++j)
@@ -83,6 +95,7 @@ Spectrum all_eigenpairs(LeastSquares& data, Gaussian& before) {
   scale_columns(Q, powers(l.values, -0.5));
   scale_columns(dual, powers(l.values, 0.5));
   const Columns JQ = dense_products(data, Q);
+  if (!all_finite(JQ)) return nothing(n, false);
   DenseEigen e = dense_eigen(n, product_transposed(JQ, JQ));
   for (double& value : e.values) value = std::max(value, 0.0);
   return {.d = e.values, .W = product(Q, e.vectors, n), .dual = product(dual, e.vectors, n), .complete = true};
@@ -91,6 +104,7 @@ Spectrum all_eigenpairs(LeastSquares& data, Gaussian& before) {
 // Eigenpairs of B B' w = d C^-1 w from those of the small matrix B' C B.
 Spectrum of_factor(const Columns& B, Gaussian& before) {
   const int count = B.count();
+  if (!all_finite(B)) return nothing(B.rows(), false);
   Columns Z(B.rows(), count);
   for (int j = 0; j < count; ++j) before.covariance(B[j], Z[j]);
   const DenseEigen e = truncated(dense_eigen(count, product_transposed(B, Z)), count, 1e-13);
@@ -101,7 +115,7 @@ Spectrum of_factor(const Columns& B, Gaussian& before) {
   return s;
 }
 
-// A growing basis Q, orthonormal in the norm of C^-1, of the range of C J'J.
+// A growing basis Q, orthonormal in the norm of C^-1, of the range of C J'.
 class RandomRange {
  public:
   RandomRange(LeastSquares& data, Gaussian& before, unsigned seed)
@@ -117,10 +131,11 @@ class RandomRange {
     const int n = data_.unknowns();
     std::normal_distribution<double> normal;
     std::vector<double> q(n), y(n), r(data_.residual_count());
-    for (double& value : q) value = normal(random_);
-    data_.multiply(q, r);
+    for (double& value : r) value = normal(random_);
     data_.multiply_transposed(r, y);
     before_.covariance(y, q);
+    is_finite_ = is_finite_ && all_finite(y);
+    if (!is_finite_) return false;
     const double length = std::sqrt(std::max(dot(q, y), 0.0));
     for (int pass = 0; pass < 2; ++pass) add_product(Q_, product_transposed(dual_, q), -1, q);
     before_.precision(q, y);
@@ -129,11 +144,14 @@ class RandomRange {
     for (double& value : q) value /= rest;
     for (double& value : y) value /= rest;
     data_.multiply(q, r);
+    is_finite_ = is_finite_ && all_finite(r);
+    if (!is_finite_) return false;
     Q_.push_back(q), dual_.push_back(y), JQ_.push_back(r);
     return true;
   }
 
   int count() const { return Q_.count(); }
+  bool is_finite() const { return is_finite_; }
   DenseEigen ritz() const { return dense_eigen(count(), product_transposed(JQ_, JQ_)); }
 
   // J'J ~ (J'JQ) (Q'J'JQ)^-1 (J'JQ)' = B B'
@@ -151,6 +169,7 @@ class RandomRange {
   Gaussian& before_;
   std::mt19937_64 random_;
   Columns Q_, dual_, JQ_;
+  bool is_finite_ = true;
 };
 
 Spectrum leading_eigenpairs(LeastSquares& data, Gaussian& before, const SpectrumOptions& options) {
@@ -160,7 +179,7 @@ Spectrum leading_eigenpairs(LeastSquares& data, Gaussian& before, const Spectrum
   double missed = 0;
   for (bool more = true; more;) {
     for (int k = 0; k < kBatch && more; ++k) more = range.count() < limit && range.grow();
-    if (range.count() == 0) return {.W = Columns(data.unknowns()), .dual = Columns(data.unknowns())};
+    if (!range.is_finite() || range.count() == 0) return nothing(data.unknowns(), range.is_finite());
     const DenseEigen ritz = range.ritz();
     missed = more || range.count() == options.max_rank + kSpare
                  ? std::max(ritz.values[std::max(range.count() - kSpare, 0)], 0.0)

@@ -10,6 +10,7 @@
 namespace aspic {
 
 struct Spectrum {
+  bool ok = true;         // false: a product with J was not finite; there are no eigenpairs
   std::vector<double> d;  // descending, >= 0
   Columns W;              // their directions
   Columns dual;           // C^-1 W

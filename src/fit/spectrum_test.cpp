@@ -113,6 +113,19 @@ TEST(Spectrum, SaysWhatARankThatIsTooSmallMisses) {
   EXPECT_LE(many.missed, 0.1);
 }
 
+TEST(Spectrum, OfAJacobianThatIsNotFiniteIsNone) {
+  for (const int dense : {600, 40, 10}) {
+    test::LinearModel data = test::averages(80, 30, 1, 5);
+    test::QuadraticBelief belief = test::chain_belief(80, 1, 2);
+    data.J(7, 3) = std::nan("");
+    const std::vector<double> p(80);
+    PriorGaussian before(belief, 1, p);
+    const Spectrum s = spectrum(data, before, {.dense = dense});
+    EXPECT_FALSE(s.ok);
+    EXPECT_EQ(s.W.count(), 0);
+  }
+}
+
 TEST(Spectrum, OfDataThatSayNothingIsEmpty) {
   test::LinearModel data = test::averages(80, 90, 0, 5);
   test::QuadraticBelief belief = test::chain_belief(80, 1, 2);

@@ -106,9 +106,10 @@ void judge_weight(Regularizer& prior, double weight, std::span<const double> p, 
       weight, std::max(best, 1 / best), result.suggested_weight));
 }
 
-void warn_of_rank(const SpectrumOptions& options, Posterior& result) {
+void warn_of_rank(Posterior& result) {
+  constexpr double kMuch = 3;  // deviations twice too large
   const Spectrum& s = result.belief->spectrum();
-  if (s.missed > 3 * options.negligible)
+  if (s.missed > kMuch)
     result.warnings.push_back(
         text("only the %d best seen directions were looked at; each of the others may be known %.2g times better than "
              "is shown, none worse",
@@ -174,13 +175,17 @@ Posterior posterior(LeastSquares& misfit, Regularizer& prior, double weight, con
   warn_of_scale(data, map, result);
   PriorGaussian before(prior, weight, p);
   Spectrum s = spectrum(data, before, options.spectrum);
+  if (!s.ok) {
+    result.warnings.push_back("nothing is known of the uncertainty: a derivative at the fit could not be computed");
+    return result;
+  }
   const double roughness = prior.value(p), squares = dot(r, r);
   result.log_evidence = log_evidence(squares, weight, roughness, s);
   judge_weight(prior, weight, p, s, result);
   judge_noise(squares, misfit.residual_count() - data.dropped(), result, s);
   result.informed = informed(s);
   result.belief = std::make_shared<PosteriorGaussian>(std::move(before), std::move(s));
-  warn_of_rank(options.spectrum, result);
+  warn_of_rank(result);
   set_fields(marginals(*result.belief, map, options.marginals), result);
   tell_seen(map, mesh, options.directions, result);
   tell_unseen(map, mesh, options.directions, result);

@@ -5,7 +5,7 @@ import type { Store } from "../store";
 import type { CameraRig } from "./cameras";
 import type { Display } from "./display";
 import { isFinite3, onFacingPlane, rayThrough, type Lens } from "./lens";
-import { pick, verticesInDisc, type Hit, type Surface } from "./picking";
+import { pick, verticesInStroke, type Hit, type Surface } from "./picking";
 
 export interface Touched {
   readonly host: HTMLElement;
@@ -24,7 +24,7 @@ export interface Touched {
 type Gesture =
   | { kind: "turn" | "pan"; moved: number; hit: Hit | null; reads: boolean }
   | { kind: "grab"; anchor: Vec3; target: Vec3 }
-  | { kind: "brush"; pinned: boolean; known: Set<number> }
+  | { kind: "brush"; pinned: boolean; known: Set<number>; path: [number, number][] } // since the last frame, and where it then was
   | { kind: "pinch"; distance: number };
 
 const kClick = 4; // moves of fewer pixels are clicks
@@ -97,7 +97,7 @@ export class Touch {
   private touch(hit: Hit): Gesture {
     const { store, side, display } = this.view;
     if (display.settings.tool === "pin")
-      return { kind: "brush", pinned: this.pins, known: new Set(store.side(side)?.pins) };
+      return { kind: "brush", pinned: this.pins, known: new Set(store.side(side)?.pins), path: [this.cursor!] };
     store.source.send({ do: "grab", side, triangle: hit.triangle, weights: hit.weights, target: hit.point });
     return { kind: "grab", anchor: hit.point, target: hit.point };
   }
@@ -129,7 +129,7 @@ export class Touch {
     } else if (gesture.kind === "grab") {
       const target = onFacingPlane(this.view.lens(), rayThrough(this.view.lens(), ...this.cursor!), gesture.anchor);
       if (target && isFinite3(target)) gesture.target = target;
-    }
+    } else if (gesture.kind === "brush") gesture.path.push(this.cursor!);
   }
 
   private up(event: PointerEvent): void {
@@ -186,12 +186,13 @@ export class Touch {
   private flush(): void {
     const { store, side } = this.view;
     if (this.gesture?.kind === "grab") store.source.send({ do: "move", target: this.gesture.target });
-    if (this.gesture?.kind !== "brush" || !this.cursor) return;
-    const { pinned, known } = this.gesture;
     const surface = this.view.surface();
-    if (!surface) return;
-    const inside = verticesInDisc(this.view.lens(), surface, ...this.cursor, this.view.display.settings.brush);
-    const vertices = inside.filter((vertex) => known.has(vertex) !== pinned);
+    if (this.gesture?.kind !== "brush" || !surface) return;
+    const { pinned, known, path } = this.gesture;
+    const { brush } = this.view.display.settings;
+    const covered = verticesInStroke(this.view.lens(), surface, path, brush); // however few the frames are
+    path.splice(0, path.length - 1);
+    const vertices = covered.filter((vertex) => known.has(vertex) !== pinned);
     if (vertices.length === 0) return;
     for (const vertex of vertices) pinned ? known.add(vertex) : known.delete(vertex);
     store.source.send({ do: "pin", side, vertices, pinned });

@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""`aspic fit` as its users meet it: data to a material to a simulation; refusals, interruption and resumption.
+
+usage: ASPIC=path/to/aspic fit_test.py [TestCase...]
+"""
+import atexit
+import csv
+import functools
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import unittest
+
+from cli_test import ASPIC, CommandLine
+
+BODY = """
+[[body]]
+name = "layers"
+shape = { box = { upper = [0.12, 0.12, 0.06], cells = [%s] } }
+%s
+[[body.pin]]
+where = "Z < 1e-6"
+"""
+TRUTH = BODY % ("6, 6, 4", 'material = { young = "Z < 0.03 ? 4e4 : 1e4", poisson = 0.4 }')
+
+
+@functools.cache
+def measured():
+    """A small data set, made once: two pokes of two depths on two layers."""
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="aspic_fit_"))
+    atexit.register(shutil.rmtree, folder)
+    (folder / "truth.toml").write_text(TRUTH)
+    subprocess.run([ASPIC, "capture", "truth.toml", "-o", "layers", "--pokes", "2", "--depths", "2", "--markers", "30",
+                    "--noise", "0.002", "--force-noise", "0.002", "-q"], cwd=folder, check=True, timeout=120)
+    return folder / "layers"
+
+
+class FitCommand(CommandLine):
+    def setUp(self):
+        super().setUp()
+        shutil.copytree(measured(), self.folder / "layers")
+
+    def fit(self, *arguments, code=0):
+        return self.aspic("fit", "layers", *arguments, code=code, timeout=300)
+
+    def rows(self, folder="material.fit"):
+        with open(self.folder / folder / "history.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def bytes_of(self, name):
+        return (self.folder / name).read_bytes()
+
+
+QUICK = ("--unknown", "young=uniform", "--known", "poisson=0.4", "--no-uncertainty", "--no-cross-validation")
+
+
+class Fit(FitCommand):
+    def test_data_become_a_material_that_a_scene_simulates(self):
+        said = self.fit("--unknown", "young=handles:8", "--known", "poisson=0.4").stdout
+        for fact in ("fit        converged", "misfit     |r|^2 = ", "with one value for all", "softest tet", "95 %: ",
+                     "held out   each group predicted from the others: positions within", "next poke  at (",
+                     'material = { file = "material.vtu" }'):
+            self.assertIn(fact, said)
+        stages = [row["stage"] for row in self.rows()]
+        self.assertEqual(stages, sorted(stages, reverse=True))  # uniform before field
+        self.assertIn('model = "neo_hookean"', (self.folder / "material.fit/options.toml").read_text())
+        self.assertTrue((self.folder / "material.fit/weights.csv").exists())
+        left = [p.name for p in (self.folder / "material.fit").iterdir() if p.suffix in (".journal", ".state")]
+        self.assertEqual(left, [], "a complete fit needs no memory")
+        self.write("scene.toml", BODY % ("5, 5, 3", 'material = { file = "material.vtu" }'))
+        run = self.aspic("run", "scene.toml", "--steps", "2").stdout
+        self.assertIn("its 450 tets are not the", run)
+        self.assertTrue((self.folder / "out/scene/inputs/layers.material.vtu").exists())
+        self.aspic("run", "out/scene/scene.toml", "--steps", "2", "--out", "again")
+
+    def test_one_value_is_found_between_those_of_the_layers(self):
+        value = re.search(r"young +everywhere +([\d.]+) kPa", self.fit(*QUICK).stdout)
+        self.assertTrue(10 < float(value[1]) < 40)
+
+    def test_the_report_is_one_file(self):
+        said = self.fit(*QUICK).stdout
+        report = self.folder / "material.fit/report.html"
+        if "built without its viewer" in said:
+            self.assertFalse(report.exists())
+            return
+        text = report.read_text()
+        self.assertIn('<script type="application/json" id="fit">', text)
+        self.assertNotRegex(text.replace("http://www.w3.org/", ""), r'(src|href)="https?:')
+
+    def test_quiet_and_verbose(self):
+        self.assertEqual(self.fit(*QUICK, "-q").stdout, "")
+        loud = self.fit(*QUICK, "-v", "--force").stdout
+        self.assertEqual(loud.count("  iteration "), len(self.rows()))
+
+    def test_an_earlier_fit_is_not_replaced_unasked(self):
+        self.fit(*QUICK, "-q")
+        self.assertIn("--force replaces it", self.fit(*QUICK, code=2).stderr)
+        self.assertIn("this fit is complete", self.fit(*QUICK, "--resume", code=2).stderr)
+        self.fit(*QUICK, "-q", "--force")
+
+    def test_a_fit_that_does_not_converge_is_no_success(self):
+        options = ("--unknown", "young=tets", "--iterations", "2", "--no-uncertainty", "--no-cross-validation", "-q")
+        self.assertIn("warning: the fit is not converged", self.fit(*options, code=3).stderr)
+        self.assertTrue((self.folder / "material.vtu").exists())
+        self.fit(*options, "--force", "--allow-unconverged")
+
+    def test_groups_are_left_out(self):
+        groups = sorted({row["group"] for row in csv.DictReader(open(self.folder / "layers/cases.csv", newline=""))})
+        self.fit(*QUICK, "--leave-out", groups[0])
+        refused = self.fit(*QUICK, "--force", "--leave-out", "poke 99", code=2).stderr
+        self.assertIn("the data have no such group", refused)
+
+    def test_what_is_wrong_is_told_with_its_remedy(self):
+        for arguments, message in (
+                (("--unknown", "yuong=tets"), "did you mean 'young'?"),
+                (("--unknown", "young=handles:many"), "handles:40"),
+                (("--known", "poisson=0.5"), "poisson = 0.5; must be"),
+                (("--known", "poisson"), "QUANTITY=VALUE is expected"),
+                (("--unknown", "young=regions"), "no region labels"),
+                (("--weight", "heavy"), "no finite number"),
+                (("-o", "material.obj"), "a material is a .vtu file"),
+                (("--resume",), "no such fit to resume")):
+            self.assertIn(message, self.fit(*arguments, code=2).stderr, arguments)
+        self.assertIn("nothing", self.aspic("fit", "nothing", code=2).stderr)
+
+    def test_data_with_errors_are_refused_with_their_row(self):
+        table = self.folder / "layers/positions.csv"
+        lines = table.read_text().splitlines()
+        lines[3] = re.sub(r"(?<=,)-?[\d.e-]+$", "nan", lines[3])
+        table.write_text("\n".join(lines) + "\n")
+        self.assertIn("positions.csv:4", self.fit(code=2).stderr)
+        self.assertFalse((self.folder / "material.fit").exists())
+
+    def test_check_reads_and_writes_no_material(self):
+        self.fit("--check")
+        self.assertFalse((self.folder / "material.vtu").exists())
+
+
+class FitInterruption(FitCommand):
+    """A fit with much to do is stopped after a few iterations, in three ways, and continued."""
+
+    OPTIONS = ("--unknown", "young=tets", "--known", "poisson=0.4", "--tolerance", "1e-5")
+
+    def interrupt(self, with_signal):
+        process = self.start("fit", "layers", *self.OPTIONS, "-o", "part.vtu", "-v")
+        for line in process.stdout:
+            if re.match(r"fit +iteration +2 ", line):
+                break
+        else:
+            self.fail(process.stderr.read())
+        process.send_signal(with_signal)
+        said, complained = process.communicate(timeout=120)
+        return process.returncode, said + complained
+
+    def resume_and_compare(self):
+        self.assertIn("--resume goes on", self.fit(*self.OPTIONS, "-o", "part.vtu", code=2).stderr)
+        other = [*self.OPTIONS, "-o", "part.vtu", "--resume", "--smooth", "tv"]
+        self.assertIn("smooth", self.fit(*other, code=2).stderr)
+        before = self.rows("part.fit")
+        said = self.fit(*self.OPTIONS, "-o", "part.vtu", "--resume").stdout
+        self.assertIn(f"resuming after {len(before)} iterations", said)
+        self.fit(*self.OPTIONS, "-o", "whole.vtu", "-q")
+        self.assertEqual(self.rows("part.fit")[:len(before)], before, "nothing that was written is lost")
+        self.assertEqual(self.rows("part.fit"), self.rows("whole.fit"))
+        self.assertEqual(self.bytes_of("part.vtu"), self.bytes_of("whole.vtu"))
+
+    def test_ctrl_c_keeps_what_was_reached_and_resumes_to_the_same_bits(self):
+        code, said = self.interrupt(signal.SIGINT)
+        self.assertEqual(code, 130)
+        self.assertIn("the same command with --resume goes on", said)
+        self.assertTrue((self.folder / "part.vtu").exists())
+        self.resume_and_compare()
+
+    def test_kill_9_and_resume_give_the_same_bits(self):
+        code, _ = self.interrupt(signal.SIGKILL)
+        self.assertEqual(code, -signal.SIGKILL)
+        self.resume_and_compare()
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
