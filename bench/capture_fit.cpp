@@ -102,6 +102,7 @@ int main(int argc, char** argv) {
   app.add_option("--weight", c.fit.weight, "< 0: by the rule")->capture_default_str();
   app.add_option("--weight-rule", c.fit.weight_rule)->capture_default_str();
   app.add_option("--tolerance", c.fit.tolerance)->capture_default_str();
+  app.add_option("--enough", c.fit.enough)->capture_default_str();
   app.add_option("--iterations", c.fit.max_iterations)->capture_default_str();
   app.add_option("--smoothness", c.smoothness, "h1, tv or none")->capture_default_str();
   app.add_option("--deviation", c.prior.prior_deviation, "of the prior")->capture_default_str();

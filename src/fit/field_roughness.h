@@ -24,7 +24,7 @@ class FieldRoughness {
   double value(std::span<const double> z) const;
   void add_gradient(std::span<const double> z, double scale, std::span<double> g) const;
   // y += scale A v, where the gradient is A(z) z: the Hessian of H1, an upper bound of that of total variation
-  // (lagged diffusivity [Vogel and Oman 1996]).
+  // (lagged diffusivity [Vogel 1996]).
   void add_product(std::span<const double> z, std::span<const double> v, double scale, std::span<double> y) const;
 
   // g += a normal random vector of covariance A(z).

@@ -124,6 +124,7 @@ FitReport fit(LeastSquares& misfit, Regularizer& regularizer, std::span<const do
       options.method == "auto" ? kMethods[few ? 0 : 1] : named<NamedMethod>(kMethods, "method", options.method);
   const NamedRule rule = options.weight_rule == "auto" ? kRules[few ? 0 : 1]
                                                        : named<NamedRule>(kRules, "weight rule", options.weight_rule);
+  const bool is_quadratic = method.method == levenberg_marquardt;  // the last digits cost little
   FitRun run(misfit, regularizer, options, observe);
   run.weight = options.weight >= 0 ? options.weight : 1;
 
@@ -133,7 +134,7 @@ FitReport fit(LeastSquares& misfit, Regularizer& regularizer, std::span<const do
     Attempt now;
     run.start = start;
     run.report.words.clear();
-    FitGoal goal{.tolerance = options.tolerance};
+    FitGoal goal{.tolerance = options.tolerance, .enough = is_quadratic ? 0 : options.enough};
     if (run.evaluate(scattered(run, guess, start), now.point)) {
       now.status = choose(run, now.point, goal, method.method);
       now.objective = now.point.objective(run.weight);

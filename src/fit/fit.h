@@ -14,6 +14,7 @@ namespace aspic {
 struct FitOptions {
   std::string method = "auto";       // "levenberg_marquardt" (few unknowns), "gauss_newton_cg", "lbfgs" (fields)
   double tolerance = 1e-3;           // of FitIteration::decrement, relative to the first one
+  double enough = 0.3;               // and this is small enough for fields: standard deviations of what is known
   int max_iterations = 100;          // in all
   int max_inner = 100;               // of conjugate gradients, per iteration
   double max_step = 3;               // of any entry of p, per iteration: log E by 3, E by 20

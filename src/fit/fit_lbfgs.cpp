@@ -9,6 +9,9 @@
 namespace aspic {
 namespace {
 
+// Its decrements are by a rough Hessian, so that one alone may be small by chance.
+constexpr int kSuccessive = 5;
+
 class FitObjective : public Objective {
  public:
   FitObjective(FitRun& run, FitPoint& at) : run_(run), at_(at), trial_(at), origin_(at.p) {}
@@ -70,11 +73,13 @@ Status fit_by_lbfgs(FitRun& run, FitPoint& at, FitGoal& goal) {
   FitObjective f(run, at);
   LBFGS direction{Preconditioner(PreconditionerKind::own)};
   Status ended = Status::interrupted;
+  int small = 0;
   const auto observe = [&](const LiveIteration& i) {
     const double decrement = std::sqrt(std::max(0.0, 2 * i.decrement));
     const bool go_on = run.note(
         {.decrement = decrement, .step = i.alpha * largest_entry(i.d), .trials = static_cast<int>(i.tried.size())}, at);
-    if (goal.is_reached(decrement))
+    small = goal.is_reached(decrement) ? small + 1 : 0;
+    if (small == kSuccessive)
       ended = Status::converged;
     else if (is_lost_in_noise(decrement, at.objective(run.weight)))
       ended = Status::round_off;

@@ -54,16 +54,19 @@ class FitRun {
   std::vector<double> dr_;
 };
 
-// How far a method is to go: to a part of the first decrement, or to an absolute one. The first is remembered from one
-// weight to the next.
+// How far a method is to go: to a part of the first decrement, or to an absolute one, but not without a step where the
+// weight is new. The first is remembered from one weight to the next.
 struct FitGoal {
   double tolerance = 1e-3;
-  double absolute = 0;
+  double enough = 0;
+  bool is_new = false;
   double first_decrement = 0;  // 0: not known yet
 
   bool is_reached(double decrement) {
     if (first_decrement == 0) first_decrement = decrement;
-    return decrement <= std::max(absolute, tolerance * first_decrement);
+    const bool is_small = decrement <= enough && !is_new;
+    is_new = false;
+    return is_small || decrement <= tolerance * first_decrement;
   }
 };
 

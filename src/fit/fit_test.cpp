@@ -137,7 +137,7 @@ TEST_P(Methods, FindFewUnknownsFromExactData) {
   const std::vector<double> truth{0.7, -0.4, 1.2};
   model.observe(truth, 0);
   const FitReport report =
-      fit(model, *few.prior, few.map.guess(), {.method = GetParam(), .tolerance = 1e-9, .weight = 1});
+      fit(model, *few.prior, few.map.guess(), {.method = GetParam(), .tolerance = 1e-9, .enough = 0, .weight = 1});
   EXPECT_TRUE(is_success(report.status)) << report.words;
   EXPECT_LT(largest_difference(report.p, truth), 1e-7);
   EXPECT_EQ(report.method, GetParam());
@@ -151,7 +151,8 @@ TEST_P(Methods, EndWhereTheGradientIsZero) {
   model.observe(bar.truth(), 1);
   const auto R = make_regularizer(bar.mesh, bar.map, {});
   const FitReport report =
-      fit(model, *R, bar.map.guess(), {.method = GetParam(), .tolerance = 1e-6, .max_iterations = 500, .weight = 2});
+      fit(model, *R, bar.map.guess(),
+          {.method = GetParam(), .tolerance = 1e-6, .enough = 0, .max_iterations = 500, .weight = 2});
   ASSERT_TRUE(is_success(report.status)) << report.words;
   std::vector<double> r(40), g(report.p.size()), first(report.p.size());
   const auto gradient = [&](std::span<const double> p, std::span<double> to) {
@@ -174,7 +175,7 @@ TEST_P(Methods, TakeAFailedEvaluationAsTooFar) {
   model.observe(truth, 0);
   model.bound = 1.0;
   const FitReport report =
-      fit(model, *few.prior, few.map.guess(), {.method = GetParam(), .tolerance = 1e-8, .weight = 0});
+      fit(model, *few.prior, few.map.guess(), {.method = GetParam(), .tolerance = 1e-8, .enough = 0, .weight = 0});
   EXPECT_TRUE(is_success(report.status)) << report.words;
   EXPECT_LT(largest_difference(report.p, truth), 1e-5);
 }
@@ -209,8 +210,9 @@ TEST_P(Methods, ShowEveryIterateAndStopOnDemand) {
   EXPECT_EQ(report.history.size(), 2u);
   EXPECT_EQ(report.p, seen);
   EXPECT_EQ(model.last(), seen) << "the model was last evaluated there";
-  const FitReport resumed = fit(model, *few.prior, report.p, {.method = GetParam(), .tolerance = 1e-8});
-  const FitReport whole = fit(model, *few.prior, few.map.guess(), {.method = GetParam(), .tolerance = 1e-8});
+  const FitReport resumed = fit(model, *few.prior, report.p, {.method = GetParam(), .tolerance = 1e-8, .enough = 0});
+  const FitReport whole =
+      fit(model, *few.prior, few.map.guess(), {.method = GetParam(), .tolerance = 1e-8, .enough = 0});
   EXPECT_LT(largest_difference(resumed.p, whole.p), 1e-6);
 }
 

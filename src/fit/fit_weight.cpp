@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <optional>
 
 #include "fit/fit_run.h"
@@ -29,11 +30,24 @@ std::optional<double> balanced_weight(FitRun& run, const FitPoint& at) {
   return weight;
 }
 
-// For which |r|^2 is known within its own scatter.
-FitGoal loosened(const FitGoal& goal, const FitRun& run) {
+// Far above, |r|^2 need not be known better than by one step; near the number of residuals, within its own scatter.
+constexpr double kFar = 0.5;  // of log (|r|^2 / number)
+
+double log_ratio(const FitRun& run, double misfit) { return std::log(std::max(2 * misfit / run.residuals(), 1e-300)); }
+double scatter(const FitRun& run) { return std::sqrt(0.5 * std::sqrt(2.0 * run.residuals())); }
+
+Status fit_loosely(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method) {
   FitGoal loose = goal;
-  loose.absolute = std::sqrt(0.5 * std::sqrt(2.0 * run.residuals()));
-  return loose;
+  loose.is_new = true;
+  const bool was_far = log_ratio(run, at.misfit) > kFar;
+  loose.enough = was_far ? std::numeric_limits<double>::infinity() : std::max(goal.enough, scatter(run));
+  Status status = method(run, at, loose);
+  if (was_far && is_success(status) && log_ratio(run, at.misfit) <= kFar) {
+    loose.enough = std::max(goal.enough, scatter(run));
+    status = method(run, at, loose);
+  }
+  goal.first_decrement = loose.first_decrement;
+  return status;
 }
 
 WeightTrial trial_at(const FitRun& run, const FitPoint& at) { return {run.weight, at.misfit, at.roughness, at.p}; }
@@ -80,6 +94,7 @@ class Discrepancy {
                                   now.y);
     return Verdict::try_on;
   }
+  bool is_met(double misfit) const { return std::abs(std::log(std::max(2 * misfit / count_, 1e-300))) <= slack_; }
   double next() const { return std::exp(next_); }
 
  private:
@@ -111,56 +126,58 @@ double curvature(const WeightTrial& a, const WeightTrial& b, const WeightTrial& 
   return lengths > 0 ? 2 * (vx * uy - ux * vy) / lengths : 0;
 }
 
+std::string words_of(Discrepancy::Verdict verdict, double squares, int residuals) {
+  const std::string found = "|r|^2 = " + text(squares) + " of " + std::to_string(residuals) + " residuals";
+  switch (verdict) {
+    case Discrepancy::Verdict::fits:
+      return "the weight leaves " + found;
+    case Discrepancy::Verdict::explained_by_guess:
+      return "the guess already explains the data within their standard deviations (" + found +
+             "): they may be stated too large";
+    case Discrepancy::Verdict::unexplained:
+      return "no material of this kind explains the data within their standard deviations (" + found +
+             "): they may be stated too small, or the model may be wrong";
+    case Discrepancy::Verdict::try_on:
+      break;
+  }
+  return "the search for a weight ended at " + found;
+}
+
 }  // namespace
 
 Status fit_by_discrepancy(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method) {
   const std::optional<double> balanced = balanced_weight(run, at);
   if (!balanced) return Status::undefined;
   run.weight = run.options.first_weight > 0 ? run.options.first_weight : 0.1 * *balanced;
-  FitGoal loose = loosened(goal, run);
   Discrepancy rule(run.residuals());
   std::vector<WeightTrial>& trials = run.report.weights;
   auto verdict = Discrepancy::Verdict::try_on;
   for (int i = 0; i < kTrials && verdict == Discrepancy::Verdict::try_on; ++i) {
-    const Status status = method(run, at, loose);
+    const Status status = fit_loosely(run, at, goal, method);
     if (!is_success(status)) return status;
     trials.push_back(trial_at(run, at));
     verdict = rule.judge(run.weight, at.misfit);
     if (verdict == Discrepancy::Verdict::try_on) run.weight = rule.next();
   }
-  goal.first_decrement = loose.first_decrement;
-  const std::string found =
-      "|r|^2 = " + text(2 * trials.back().misfit) + " of " + std::to_string(run.residuals()) + " residuals";
-  switch (verdict) {
-    case Discrepancy::Verdict::fits:
-      run.report.words = "the weight leaves " + found;
-      break;
-    case Discrepancy::Verdict::explained_by_guess:
-      run.report.words = "the guess already explains the data within their standard deviations (" + found +
-                         "): they may be stated too large";
-      break;
-    default:
-      if (!go_to(run, at, most_cautious(trials))) return Status::undefined;
-      run.report.words = "no material of this kind explains the data within their standard deviations (" + found +
-                         "): they may be stated too small, or the model may be wrong";
-  }
-  return method(run, at, goal);
+  if (verdict == Discrepancy::Verdict::unexplained && !go_to(run, at, most_cautious(trials))) return Status::undefined;
+  const Status status = method(run, at, goal);
+  if (rule.is_met(at.misfit)) verdict = Discrepancy::Verdict::fits;
+  run.report.words = words_of(verdict, 2 * at.misfit, run.residuals());
+  return status;
 }
 
 Status fit_by_l_curve(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method) {
   const std::optional<double> balanced = balanced_weight(run, at);
   if (!balanced) return Status::undefined;
   run.weight = run.options.first_weight > 0 ? run.options.first_weight : 0.1 * *balanced;
-  FitGoal loose = loosened(goal, run);
   std::vector<WeightTrial>& trials = run.report.weights;
   for (int i = 0; i < kTrials; ++i, run.weight /= std::sqrt(10.0)) {
-    const Status status = method(run, at, loose);
+    const Status status = fit_loosely(run, at, goal, method);
     if (status == Status::stuck && trials.size() >= 3) break;  // the weight is too small to go on
     if (!is_success(status)) return status;
     trials.push_back(trial_at(run, at));
     if (2 * at.misfit < 0.1 * run.residuals()) break;  // noise is being fitted
   }
-  goal.first_decrement = loose.first_decrement;
   size_t corner = trials.size() - 1;
   double sharpest = 0;
   for (size_t i = 1; i + 1 < trials.size(); ++i)

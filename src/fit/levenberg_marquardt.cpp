@@ -1,6 +1,6 @@
 // Levenberg-Marquardt for few unknowns: the Jacobian is made column by column (or row by row, where residuals are
 // fewer), (J'J + weight R'' + damping D) d = -g is solved directly, and the damping follows the ratio of the decrease
-// to the one predicted [Nielsen 1999; Madsen et al. 2004, alg. 3.16]. D is the diagonal, so units do not matter.
+// to the one predicted [Madsen et al. 2004, alg. 3.16]. D is the diagonal, so units do not matter.
 #include <algorithm>
 #include <cmath>
 

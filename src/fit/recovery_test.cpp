@@ -1,0 +1,152 @@
+// Fits of real bodies to what they themselves would show: with exact data the material is found again.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "fit/fit.h"
+#include "fit/load_continuation.h"
+#include "fit/misfit.h"
+#include "mesh/generators.h"
+#include "mesh/surface.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kSide = 0.1, kYoung = 2e4;  // [m], [Pa]
+
+// A cube that stands on the ground, pushed down by a tip at two places, each to two depths.
+Experiment poked_cube() {
+  Experiment e;
+  TetMesh& mesh = e.mesh = make_box({{0, 0, 0}}, {{kSide, kSide, kSide}}, {3, 3, 4});
+  e.density.assign(mesh.tets.size(), 1000);
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (mesh.rest[v][2] == 0) e.fixed.push_back(v);
+  for (const auto& [a, b, c, d] : mesh.tets)
+    mesh.region.push_back(mesh.rest[a][2] + mesh.rest[b][2] + mesh.rest[c][2] + mesh.rest[d][2] < 2 * kSide);
+  for (const Triangle& t : boundary_triangles(mesh, 0, mesh.tet_count()))
+    if (mesh.rest[t[0]][2] + mesh.rest[t[1]][2] + mesh.rest[t[2]][2] > 0) e.markers.push_back({t, {0.3, 0.3, 0.4}});
+  for (const double x : {0.03, 0.06})
+    for (const double depth : {0.004, 0.008}) {
+      LoadCase load{.name = "poke", .group = "at " + std::to_string(x)};
+      load.tip = Tip{TipShape::disc, TipContact::bonded, 0.02, 1e8};
+      load.touch.center = {{x, 0.05, kSide}};
+      load.pose = load.touch;
+      load.pose.center = {{x + depth / 4, 0.05, kSide - depth}};
+      load.force = Vec3d{};
+      load.force_deviation = {{0.01, 0.01, 0.01}};
+      for (size_t m = 0; m < e.markers.size(); ++m)
+        load.positions.push_back({static_cast<int>(m), {}, {{1e-5, 1e-5, 1e-5}}});
+      e.cases.push_back(std::move(load));
+    }
+  return e;
+}
+
+ParameterMap map_of(const Experiment& e, std::vector<Unknown> unknowns, const std::string& material = "neo_hookean") {
+  return ParameterMap(e.mesh, material,
+                      std::vector<MaterialParameters>(e.mesh.tets.size(), {lame_from_young_poisson(kYoung, 0.4), {4}}),
+                      std::move(unknowns));
+}
+
+const EquilibriumOptions kExact{.tolerance = 1e-13};
+
+// Readings as a body with these unknowns would give them, with noise of so many standard deviations.
+void measure(Experiment& e, const ParameterMap& map, const std::vector<double>& p, double noise = 0) {
+  Misfit body(e, map, kExact);
+  std::vector<double> r(body.residual_count());
+  ASSERT_TRUE(body.evaluate(p, r)) << body.failure();
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  const auto reading = [&](Vec3d exact, const Vec3d& deviation) {
+    for (int k = 0; k < 3; ++k) exact[k] += noise * deviation[k] * normal(random);
+    return exact;
+  };
+  for (size_t c = 0; c < e.cases.size(); ++c) {
+    const CasePrediction& exact = body.prediction(static_cast<int>(c));
+    for (size_t m = 0; m < exact.markers.size(); ++m)
+      e.cases[c].positions[m].position = reading(exact.markers[m], e.cases[c].positions[m].deviation);
+    e.cases[c].force = reading(exact.wrench.force, e.cases[c].force_deviation);
+  }
+}
+
+FitReport fitted(const Experiment& e, const ParameterMap& map, FitOptions options) {
+  Misfit misfit(e, map, kExact);
+  const auto prior = make_regularizer(e.mesh, map, {});
+  return fit(misfit, *prior, map.guess(), options);
+}
+
+TEST(Recovery, FindsOneModulusAgainFromExactData) {
+  Experiment e = poked_cube();
+  const ParameterMap map = map_of(e, {{"young", Spread::uniform, 0, 3 * kYoung}});
+  measure(e, map, {std::log(kYoung)});
+  const FitReport report = fitted(e, map, {.tolerance = 1e-10, .weight = 0});
+  EXPECT_TRUE(is_success(report.status)) << report.words;
+  EXPECT_NEAR(map.values(0, report.p)[0], kYoung, 1e-6 * kYoung);
+}
+
+TEST(Recovery, FindsModulusRatioAndStiffeningAgainFromExactData) {
+  Experiment e = poked_cube();
+  const ParameterMap map = map_of(
+      e,
+      {{"young", Spread::uniform, 0, 0.5 * kYoung}, {"poisson", Spread::uniform, 0, 0.3}, {"b", Spread::uniform, 0, 1}},
+      "fung");
+  std::vector<double> truth(map.guess().begin(), map.guess().end());
+  truth[0] += 0.8, truth[1] += 0.5, truth[2] += 1;
+  measure(e, map, truth);
+  const FitReport report = fitted(e, map, {.tolerance = 1e-10, .weight = 0});
+  EXPECT_TRUE(is_success(report.status)) << report.words;
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(report.p[i], truth[i], 1e-5);
+}
+
+TEST(Recovery, FindsTwoLayersAgainFromExactData) {
+  Experiment e = poked_cube();
+  const ParameterMap map = map_of(e, {{"young", Spread::regions, 0, kYoung}});
+  const std::vector<double> truth{std::log(0.4 * kYoung), std::log(4 * kYoung)};
+  measure(e, map, truth);
+  const FitReport report = fitted(e, map, {.tolerance = 1e-10, .weight = 0});
+  EXPECT_TRUE(is_success(report.status)) << report.words;
+  for (int i = 0; i < 2; ++i) EXPECT_NEAR(report.p[i], truth[i], 1e-6);
+}
+
+TEST(Recovery, OfAFieldLeavesTheNoiseAndTellsTheStiffLayer) {
+  Experiment e = poked_cube();
+  const ParameterMap map = map_of(e, {{"young", Spread::tets, 0, kYoung}});
+  std::vector<double> truth;
+  for (int region : e.mesh.region) truth.push_back(std::log(region == 1 ? 4 * kYoung : 0.7 * kYoung));
+  measure(e, map, truth, 1);
+  const FitReport report = fitted(e, map, {});
+  ASSERT_TRUE(is_success(report.status)) << report.words;
+  const double residuals = 3.0 * static_cast<double>(e.cases.size()) * static_cast<double>(e.markers.size() + 1);
+  EXPECT_NEAR(2 * report.misfit / residuals, 1, 0.1);
+  double mean[2] = {}, count[2] = {};
+  for (size_t t = 0; t < truth.size(); ++t) mean[e.mesh.region[t]] += report.p[t], ++count[e.mesh.region[t]];
+  EXPECT_NEAR(mean[0] / count[0], std::log(0.7 * kYoung), 0.3);
+  EXPECT_NEAR(mean[1] / count[1], std::log(4 * kYoung), 0.4);
+}
+
+TEST(LoadContinuation, KeepsTheSmallestLoadsOfEachGroup) {
+  const Experiment e = poked_cube();
+  const Experiment first = smallest_loads(e, 1);
+  ASSERT_EQ(first.cases.size(), 2u);
+  EXPECT_EQ(first.cases[0].pose.center[2], e.cases[0].pose.center[2]);
+  EXPECT_EQ(first.cases[1].group, e.cases[2].group);
+  EXPECT_EQ(smallest_loads(e, 2).cases.size(), 4u);
+}
+
+TEST(LoadContinuation, EndsWhereAFitToAllLoadsDoes) {
+  Experiment e = poked_cube();
+  const ParameterMap map =
+      map_of(e, {{"young", Spread::uniform, 0, 0.2 * kYoung}, {"b", Spread::uniform, 0, 1}}, "fung");
+  measure(e, map, {std::log(kYoung), std::log(5)}, 1);
+  const auto prior = make_regularizer(e.mesh, map, {});
+  std::vector<size_t> cases;
+  const FitReport by_loads = fit_by_loads(e, map, *prior, map.guess(), {.tolerance = 1e-8}, kExact, {},
+                                          [&](const Experiment& part) { cases.push_back(part.cases.size()); });
+  EXPECT_EQ(cases, (std::vector<size_t>{2, 4}));
+  ASSERT_TRUE(is_success(by_loads.status)) << by_loads.words;
+  const FitReport at_once = fitted(e, map, {.tolerance = 1e-8});
+  for (int i = 0; i < 2; ++i) EXPECT_NEAR(by_loads.p[i], at_once.p[i], 1e-5);
+}
+
+}  // namespace
+}  // namespace aspic
