@@ -19,7 +19,7 @@ MODULES = {  # module: the modules it may include
     "capture": "base math mesh io linalg material energy optimize dynamics fit scene",
 }
 LIBRARIES = {  # first part of a third-party header: the files that may include it
-    "Eigen": r"src/linalg/.*\.cpp|bench/naive.*|.*_test\.cpp",
+    "Eigen": r"src/linalg/.*\.cpp|bench/naive.*|.*_test\.(cpp|h)",
     "metis.h": r"src/linalg/.*\.cpp",
     "muParser.h": r"src/scene/expression\.cpp",
     "toml++": r"src/scene/.*\.cpp",

@@ -143,4 +143,21 @@ void MassMatrix::assign_to(double scale, BlockSparse& H) const {
   });
 }
 
+void add_density_gradient(const TetMesh& mesh, MassKind kind, std::span<const double> w, std::span<const double> y,
+                          double scale, std::span<double> gradient) {
+  parallel_chunks(mesh.tet_count(), [&](int first, int last) {
+    for (int t = first; t < last; ++t) {
+      Vec3d w_sum{}, y_sum{};
+      double own = 0;  // of each vertex with itself
+      for (const int v : mesh.tets[t])
+        for (int r = 0; r < 3; ++r) {
+          w_sum[r] += w[3 * v + r], y_sum[r] += y[3 * v + r];
+          own += w[3 * v + r] * y[3 * v + r];
+        }
+      const double product = kind == MassKind::lumped ? own / 4 : (dot(w_sum, y_sum) + own) / 20;
+      gradient[t] += scale * volume(mesh, t) * product;
+    }
+  });
+}
+
 }  // namespace aspic

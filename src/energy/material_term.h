@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "energy/make_tet_term.h"
+#include "energy/projection_derivative.h"
 #include "energy/tet_elasticity.h"
 #include "energy/tet_term.h"
 #include "math/dual.h"
@@ -78,6 +79,36 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
     });
   }
 
+  void add_hessian_derivatives(Positions x, std::span<const double> u, std::span<const double> w,
+                               Definiteness definiteness, double scale, std::span<double> dx,
+                               std::span<double> gradient) const override {
+    for_each_batch([&](int i) {
+      const TetBatch& tets = batches_[i];
+      const Pack weight = Pack(scale) * tets.volume;
+      const Mat3<Pack> F_i = F(i, x);
+      // As a sum of products along one direction each: H itself has one, which stands on both sides.
+      const auto add = [&](const Pack& factor, const Mat3<Pack>& U, const Mat3<Pack>& W) {
+        if (!dx.empty()) tets.scatter_gradient(second_stress_rate(i, F_i, U, W), factor * weight, dx);
+        for (int k = 0; k < (gradient.empty() ? 0 : parameter_count_); ++k) {
+          const Pack sum = factor * weight * inner(U, second_parameter_rate(i, F_i, W, k));
+          for (int l = 0; l < tets.count; ++l) gradient[entry(i, l, k)] += sum[l];
+        }
+      };
+      const Mat3<Pack> U = F(i, u), W = F(i, w);
+      const unsigned all = (1U << kPackWidth) - 1;
+      const Mat9<Pack> A = definiteness == Definiteness::exact ? Mat9<Pack>{} : M::hessian(F_i, params_[i]);
+      const unsigned raised = definiteness == Definiteness::exact ? 0 : indefinite_lanes(A) & all;
+      if (raised != all) add(lanes_from_bits<Pack>(all & ~raised), U, W);
+      if (raised == 0) return;
+      const SymmetricEigen<9, Pack> S = raised_product_derivative(A, U, W, definiteness);
+      for (int k = 0; k < 9; ++k) {
+        Mat3<Pack> direction;
+        std::copy(&S.vectors[9 * k], &S.vectors[9 * k] + 9, direction.a);
+        add(lanes_from_bits<Pack>(raised) * S.values[k], direction, direction);
+      }
+    });
+  }
+
  private:
   static std::vector<typename Term::template Params<double>> own_params(
       std::span<const MaterialParameters> parameters) {
@@ -111,15 +142,33 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
   // dP where parameter k changes at rate(k) and F stays.
   template <class Rate>
   Mat3<Pack> stress_rate(int i, Positions x, const Rate& rate) const {
-    MaterialParametersOver<Dual<Pack>> p;
+    return rates(M::pk1(constant_matrix(F(i, x)), M::params(moving_parameters<Pack>(i, rate))));
+  }
+
+  // The derivative of U : A W with respect to F, A = dP/dF: by symmetry the mixed second derivative of P along U and W.
+  Mat3<Pack> second_stress_rate(int i, const Mat3<Pack>& F_i, const Mat3<Pack>& U, const Mat3<Pack>& W) const {
+    const auto p = broadcast_params<M, Dual<Dual<Pack>>, Dual<Pack>>(broadcast_params<M, Dual<Pack>, Pack>(params_[i]));
+    return rates(rates(M::pk1(dual_matrix(dual_matrix(F_i, U), constant_matrix(W)), p)));
+  }
+
+  // d(A W)/dtheta_k
+  Mat3<Pack> second_parameter_rate(int i, const Mat3<Pack>& F_i, const Mat3<Pack>& W, int k) const {
+    const auto p = moving_parameters<Dual<Pack>>(i, [k](int j) { return Dual<Pack>(j == k ? 1.0 : 0.0); });
+    return rates(rates(M::pk1(constant_matrix(dual_matrix(F_i, W)), M::params(p))));
+  }
+
+  // Where parameter k changes at rate(k).
+  template <class T, class Rate>
+  MaterialParametersOver<Dual<T>> moving_parameters(int i, const Rate& rate) const {
+    MaterialParametersOver<Dual<T>> p;
     const auto moving = [&](int k, auto member) {
-      return Dual<Pack>(lanes_of([&](int l) { return member(parameters_[tet(i, l)]); }), rate(k));
+      return Dual<T>(T(lanes_of([&](int l) { return member(parameters_[tet(i, l)]); })), rate(k));
     };
     p.lame.mu = moving(0, [](const MaterialParameters& m) { return m.lame.mu; });
     p.lame.lambda = moving(1, [](const MaterialParameters& m) { return m.lame.lambda; });
     for (int k = 2; k < parameter_count_; ++k)
       p.extra[k - 2] = moving(k, [k](const MaterialParameters& m) { return m.extra[k - 2]; });
-    return rates(M::pk1(constant_matrix(F(i, x)), M::params(p)));
+    return p;
   }
 
   int first_, parameter_count_;

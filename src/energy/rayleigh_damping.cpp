@@ -7,9 +7,9 @@
 namespace aspic {
 namespace {
 
-class RayleighDamping : public Energy {
+class RayleighDamping : public Damping {
  public:
-  RayleighDamping(MassMatrix mass, double mass_factor, const Energy* elasticity, double stiffness_factor)
+  RayleighDamping(MassMatrix mass, double mass_factor, const TetElasticity* elasticity, double stiffness_factor)
       : mass_(std::move(mass)),
         elasticity_(elasticity),
         mass_factor_(mass_factor),
@@ -20,7 +20,7 @@ class RayleighDamping : public Energy {
   void bind(const BlockPattern& pattern) override {
     mass_.bind(pattern);
     C_.emplace(pattern);
-    for (auto* v : {&u_, &Cu_}) v->resize(3 * pattern.rows());
+    for (auto* v : {&u_, &Cu_, &Mu_}) v->resize(3 * pattern.rows());
     start_.resize(3 * pattern.rows());
   }
 
@@ -29,7 +29,8 @@ class RayleighDamping : public Energy {
     start_.assign(step.start.begin(), step.start.end());
     mass_.assign_to(mass_factor_, *C_);
     const Positions x = step.shape.empty() ? step.start : step.shape;
-    if (stiffness_factor_ > 0) elasticity_->add_hessian(x, stiffness_factor_, {Definiteness::clamped}, *C_);
+    shape_.assign(x.begin(), x.end());
+    if (stiffness_factor_ > 0) elasticity_->add_hessian(x, stiffness_factor_, {kDefiniteness}, *C_);
   }
 
   double value(Positions x) const override {
@@ -63,6 +64,33 @@ class RayleighDamping : public Energy {
     return 0;
   }
 
+  int coefficient_count() const override { return stiffness_factor_ > 0 ? 2 : 1; }
+  const TetElasticity* elasticity() const override { return stiffness_factor_ > 0 ? elasticity_ : nullptr; }
+  double mass_factor(int vertex) const override { return mass_.vertex_mass()[vertex] > 0 ? mass_factor_ : 0; }
+
+  // h w . dD/dx = w' (a M + b K(x_start)) u
+  void add_derivatives(Positions x, std::span<const double> w, double scale,
+                       const DampingGradients& gradients) const override {
+    if (h_ == 0) return;
+    const double s = scale / h_;
+    if (!gradients.coefficients.empty()) {
+      multiply(x);
+      mass_.multiply(u_, Mu_);
+      const double wMu = dot(w, Mu_);
+      gradients.coefficients[0] += s * wMu;
+      if (stiffness_factor_ > 0)
+        gradients.coefficients[1] += s * (dot(w, Cu_) - mass_factor_ * wMu) / stiffness_factor_;
+    }
+    if (!gradients.start.empty()) {
+      C_->multiply(w, Cu_);
+      for (size_t i = 0; i < x.size(); ++i) gradients.start[i] -= s * Cu_[i];
+    }
+    if (stiffness_factor_ == 0) return;
+    for (size_t i = 0; i < x.size(); ++i) u_[i] = x[i] - start_[i];
+    elasticity_->add_hessian_derivatives(shape_, w, u_, kDefiniteness, s * stiffness_factor_, gradients.start,
+                                         gradients.elastic);
+  }
+
   bool prepare_vertex_systems(int) override { return true; }
   void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
                           std::span<Mat3d> H) const override {
@@ -83,6 +111,16 @@ class RayleighDamping : public Energy {
   }
 
  private:
+  static constexpr Definiteness kDefiniteness = Definiteness::clamped;  // of K
+
+  static double dot(std::span<const double> a, std::span<const double> b) {
+    return parallel_sum(static_cast<int>(a.size()), [&](int first, int last) {
+      double sum = 0;
+      for (int i = first; i < last; ++i) sum += a[i] * b[i];
+      return sum;
+    });
+  }
+
   void multiply(Positions x) const {
     parallel_chunks(static_cast<int>(x.size()), [&](int first, int last) {
       for (int i = first; i < last; ++i) u_[i] = x[i] - start_[i];
@@ -91,18 +129,18 @@ class RayleighDamping : public Energy {
   }
 
   MassMatrix mass_;
-  const Energy* elasticity_;
+  const TetElasticity* elasticity_;
   double mass_factor_, stiffness_factor_;
-  double h_ = 0;  // [s]
-  std::vector<double> start_;
-  std::optional<BlockSparse> C_;        // a M + b K(x_start) [kg/s]
-  mutable std::vector<double> u_, Cu_;  // scratch
+  double h_ = 0;                             // [s]
+  std::vector<double> start_, shape_;        // x at the start of the step, and where K is taken
+  std::optional<BlockSparse> C_;             // a M + b K(x_start) [kg/s]
+  mutable std::vector<double> u_, Cu_, Mu_;  // scratch; u = x - x_start
 };
 
 }  // namespace
 
-std::unique_ptr<Energy> make_rayleigh_damping(const MassMatrix& mass, double mass_factor, const Energy* elasticity,
-                                              double stiffness_factor) {
+std::unique_ptr<Damping> make_rayleigh_damping(const MassMatrix& mass, double mass_factor,
+                                               const TetElasticity* elasticity, double stiffness_factor) {
   return std::make_unique<RayleighDamping>(mass, mass_factor, elasticity, stiffness_factor);
 }
 

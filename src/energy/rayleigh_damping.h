@@ -3,12 +3,14 @@
 #pragma once
 #include <memory>
 
-#include "energy/energy.h"
+#include "energy/damping.h"
 #include "energy/mass.h"
+#include "energy/tet_elasticity.h"
 
 namespace aspic {
 
-std::unique_ptr<Energy> make_rayleigh_damping(const MassMatrix& mass, double mass_factor /* a [1/s] */,
-                                              const Energy* elasticity, double stiffness_factor /* b [s] */);
+// Its coefficients are a and, where it is not 0, b.
+std::unique_ptr<Damping> make_rayleigh_damping(const MassMatrix& mass, double mass_factor /* a [1/s] */,
+                                               const TetElasticity* elasticity, double stiffness_factor /* b [s] */);
 
 }  // namespace aspic

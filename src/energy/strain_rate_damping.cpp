@@ -53,12 +53,16 @@ struct GreenStrainRate {
   }
 };
 
-class StrainRateDamping : public TetTerm<GreenStrainRate, Energy> {
+class StrainRateDamping : public TetTerm<GreenStrainRate, Damping> {
  public:
-  using TetTerm::TetTerm;
+  StrainRateDamping(const TetMesh& mesh, int first, std::span<const Params<double>> parameters)
+      : TetTerm("strain_rate_damping", mesh, first, parameters),
+        first_(first),
+        count_(static_cast<int>(parameters.size())) {}
 
   void begin_step(const StepContext& step) override {
-    parallel_for(static_cast<int>(batches_.size()), [&](int i) {
+    start_.assign(step.start.begin(), step.start.end());
+    parallel_for(batch_count(), [&](int i) {
       const Mat3<Pack> E = GreenStrainRate::green_strain(F(i, step.start));
       auto& p = params_[i];
       p.per_step = Pack(step.h > 0 ? 1 / step.h : 0.0);
@@ -66,14 +70,38 @@ class StrainRateDamping : public TetTerm<GreenStrainRate, Energy> {
       p.xy = E(0, 1), p.yz = E(1, 2), p.zx = E(2, 0);
     });
   }
+
+  int coefficient_count() const override { return count_; }
+
+  // w . dD/dx = k W : F (E - E_start), k = eta / h, and dE_start = sym(F_start' dF_start).
+  void add_derivatives(Positions x, std::span<const double> w, double scale,
+                       const DampingGradients& gradients) const override {
+    for_each_batch([&](int i) {
+      const TetBatch& tets = batches_[i];
+      const auto& p = params_[i];
+      const Mat3<Pack> F_i = F(i, x), W = F(i, w), FtW = transpose(F_i) * W;
+      const Pack weight = Pack(scale) * tets.volume * p.per_step;
+      if (!gradients.start.empty()) {
+        const Mat3<Pack> symmetric = Pack(0.5) * (FtW + transpose(FtW));
+        tets.scatter_gradient(F(i, start_) * symmetric, -weight * p.viscosity, gradients.start);
+      }
+      if (gradients.coefficients.empty()) return;
+      const Pack rate = weight * inner(FtW, GreenStrainRate::increment(F_i, p));
+      for (int l = 0; l < tets.count; ++l) gradients.coefficients[tets.tet[l] - first_] += rate[l];
+    });
+  }
+
+ private:
+  int first_, count_;
+  std::vector<double> start_;  // of the step
 };
 
 }  // namespace
 
-std::unique_ptr<Energy> make_strain_rate_damping(const TetMesh& mesh, int first, std::span<const double> viscosity) {
+std::unique_ptr<Damping> make_strain_rate_damping(const TetMesh& mesh, int first, std::span<const double> viscosity) {
   std::vector<GreenStrainRate::Params<double>> parameters;
   for (const double eta : viscosity) parameters.push_back({eta, 0, 0, 0, 0, 0, 0, 0});
-  return std::make_unique<StrainRateDamping>("strain_rate_damping", mesh, first, parameters);
+  return std::make_unique<StrainRateDamping>(mesh, first, parameters);
 }
 
 }  // namespace aspic

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "energy/damping.h"
 #include "energy/energy.h"
 #include "material/registry.h"
 #include "mesh/tet_mesh.h"
@@ -33,6 +34,11 @@ class TetElasticity : public Energy {
                                    std::span<double> g) const = 0;
   virtual void add_parameter_gradient(Positions x, std::span<const double> w, double scale,
                                       std::span<double> gradient) const = 0;
+  // Of u . H(x) w, H the Hessian as add_hessian makes it: dx += scale d/dx, gradient += scale d/dtheta. Either may be
+  // empty: not wanted.
+  virtual void add_hessian_derivatives(Positions x, std::span<const double> u, std::span<const double> w,
+                                       Definiteness definiteness, double scale, std::span<double> dx,
+                                       std::span<double> gradient) const = 0;
 };
 
 // Tets [first, first + parameters.size()) of the mesh. The mesh is only read here.
@@ -40,7 +46,7 @@ std::unique_ptr<TetElasticity> make_tet_elasticity(std::string_view material, co
                                                    std::span<const MaterialParameters> parameters);
 
 // Kelvin-Voigt damping, rotation invariant: D(x) = h sum volume eta/2 |Edot|^2 with Edot = (E - E_start) / h and
-// E = (F'F - I) / 2. `viscosity` is eta of each tet [Pa s].
-std::unique_ptr<Energy> make_strain_rate_damping(const TetMesh& mesh, int first, std::span<const double> viscosity);
+// E = (F'F - I) / 2. `viscosity` is eta of each tet [Pa s]; they are the term's coefficients.
+std::unique_ptr<Damping> make_strain_rate_damping(const TetMesh& mesh, int first, std::span<const double> viscosity);
 
 }  // namespace aspic

@@ -171,6 +171,9 @@ void Misfit::multiply_transposed(std::span<const double> w, std::span<double> pb
   impl_->multiply_transposed(w, pbar);
 }
 
+int Misfit::nuisance_count() const { return impl_->has_layers() ? 1 : 0; }
+void Misfit::nuisance(int, std::span<double> dr) { impl_->multiply_by_layers(dr); }
+
 std::vector<double> Misfit::state() const {
   std::vector<double> x;
   for (const Impl::Case& c : impl_->cases) x.insert(x.end(), c.body->accepted().begin(), c.body->accepted().end());
@@ -184,9 +187,6 @@ void Misfit::set_state(std::span<const double> x) {
   impl_->has_solved = true;
   impl_->is_linearized = false;
 }
-
-int Misfit::nuisance_count() const { return impl_->has_layers() ? 1 : 0; }
-void Misfit::nuisance(int, std::span<double> dr) { impl_->multiply_by_layers(dr); }
 
 const CasePrediction& Misfit::prediction(int c) const { return impl_->cases[c].body->prediction(); }
 std::pair<int, int> Misfit::residuals_of(int c) const {

@@ -199,4 +199,14 @@ Interval interval(const Posterior& posterior, const ParameterMap& map, std::span
   return {map.value(unknown, z - s), map.value(unknown, z + s)};
 }
 
+std::string words_of_interval(const Unknown& unknown, const Interval& interval) {
+  const bool is_pressure = unknown.quantity == "young";
+  double unit = 1;
+  const char* name = is_pressure ? " Pa" : "";
+  for (const auto& [size, prefixed] : {std::pair{1e3, " kPa"}, {1e6, " MPa"}, {1e9, " GPa"}})
+    if (is_pressure && interval.upper >= size) unit = size, name = prefixed;
+  return text("%s between %.3g and %.3g%s", unknown.quantity.c_str(), interval.lower / unit, interval.upper / unit,
+              name);
+}
+
 }  // namespace aspic

@@ -35,6 +35,9 @@ unsigned indefinite_lanes(const Mat9<T>& H, double tolerance = 1e-12) {
   return failed;
 }
 
+// The smallest eigenvalue that a filter leaves, relative to the largest |eigenvalue|.
+inline constexpr double kEigenvalueFloor = 1e-9;
+
 // What becomes of an eigenvalue l: max(l, floor) or max(|l|, floor).
 enum class EigenvalueFilter { clamp, absolute };
 
@@ -43,7 +46,7 @@ enum class EigenvalueFilter { clamp, absolute };
 // H. Returns the lanes that were filtered.
 template <class T, class Eigen>
 unsigned filter_eigenvalues(Mat9<T>& H, EigenvalueFilter filter, unsigned lanes, const Eigen& eigen,
-                            double relative_floor = 1e-9) {
+                            double relative_floor = kEigenvalueFloor) {
   const unsigned failed = indefinite_lanes(H) & lanes;
   if (failed == 0) return failed;
   const SymmetricEigen<9, T> e = eigen();
@@ -64,7 +67,8 @@ unsigned filter_eigenvalues(Mat9<T>& H, EigenvalueFilter filter, unsigned lanes,
   return failed;
 }
 template <class T>
-unsigned make_definite(Mat9<T>& H, EigenvalueFilter filter, unsigned lanes = ~0U, double relative_floor = 1e-9) {
+unsigned make_definite(Mat9<T>& H, EigenvalueFilter filter, unsigned lanes = ~0U,
+                       double relative_floor = kEigenvalueFloor) {
   const auto eigen = [&H] {
     std::array<T, 81> entries;
     std::copy(H.a, H.a + 81, entries.begin());

@@ -1,0 +1,168 @@
+// bench_adjoint: what a gradient costs beside the solve that it belongs to, in statics (a beam that sags from rest) and
+// in motion (the same beam, let go). Processor time, the least of some runs.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "base/parallel.h"
+#include "bench/machine.h"
+#include "bench/program.h"
+#include "bench/stopwatch.h"
+#include "energy/linear_load.h"
+#include "energy/rayleigh_damping.h"
+#include "fit/equilibrium.h"
+#include "fit/trajectory.h"
+#include "mesh/generators.h"
+
+namespace aspic::bench {
+namespace {
+
+struct Arguments {
+  std::vector<int> sizes = {4, 8};
+  std::vector<std::string> linear = {"auto"};
+  std::string material = "stable_neo_hookean";
+  double young = 5e5, h = 1.0 / 60, tolerance = 1e-9, stiffness_damping = 0;
+  int steps = 20, runs = 3, threads = 1;
+};
+
+Model make_beam(int n, const Arguments& arguments) {
+  Model model;
+  model.mesh = make_box({{0, 0, 0}}, {{4, 1, 1}}, {4 * n, n, n});
+  const TetMesh& mesh = model.mesh;
+  model.bodies = {{"beam", 0, mesh.vertex_count(), 0, mesh.tet_count()}};
+  model.density.assign(mesh.tet_count(), 1000.0);
+  model.mass = std::make_unique<MassMatrix>(mesh, model.density, MassKind::consistent);
+  const MaterialParameters p{lame_from_young_poisson(arguments.young, 0.4), {}};
+  model.elasticity.push_back(
+      make_tet_elasticity(arguments.material, mesh, 0, std::vector<MaterialParameters>(mesh.tet_count(), p)));
+  std::vector<double> weight(3 * mesh.rest.size());
+  for (int t = 0; t < mesh.tet_count(); ++t) add_body_force(mesh, t, 1000.0 * Vec3d{{0, -9.81, 0}}, weight);
+  model.loads.push_back(make_linear_load("gravity", weight));
+  if (arguments.stiffness_damping > 0)
+    model.damping.push_back(
+        make_rayleigh_damping(*model.mass, 0.1, model.elasticity[0].get(), arguments.stiffness_damping));
+  Pin wall{.name = "wall", .vertices = {}, .motion = {}};
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (mesh.rest[v][0] < 1e-9) wall.vertices.push_back(v);
+  model.pins.push_back(wall);
+  return model;
+}
+
+State at_rest(const TetMesh& mesh) {
+  State state;
+  for (const Vec3d& X : mesh.rest) state.q.insert(state.q.end(), {X[0], X[1], X[2]});
+  state.qdot.assign(state.q.size(), 0.0);
+  return state;
+}
+
+struct Cost {
+  double forward = 1e300, backward = 1e300;  // [s] of processor time
+  long newton = 0, factorizations = 0;
+};
+
+void print(const char* what, int n, const std::string& linear, int vertices, const Cost& cost) {
+  std::printf("%-8s %3d %-10s %8d %8ld %8ld %10.4f %10.4f %7.1f %%\n", what, n, linear.c_str(), vertices, cost.newton,
+              cost.factorizations, cost.forward, cost.backward, 100 * cost.backward / cost.forward);
+  std::fflush(stdout);
+}
+
+bool bench_statics(int n, const std::string& linear, const Arguments& arguments) {
+  Cost cost;
+  Model first = make_beam(n, arguments);
+  const std::vector<double> rest = at_rest(first.mesh).q;
+  const int vertices = first.mesh.vertex_count(), tets = first.mesh.tet_count();
+  Equilibrium body(std::move(first), rest, {.tolerance = arguments.tolerance, .linear = linear, .adjoint = linear});
+  std::vector<double> thetabar(static_cast<size_t>(body.parameters_per_tet()) * tets);
+  for (int run = 0; run <= arguments.runs; ++run) {  // the first one analyses
+    body.set_x(rest);
+    Stopwatch stopwatch;
+    const MinimizeReport report = body.solve();
+    const double forward = stopwatch.lap().processor;
+    if (!is_success(report.status) || !body.factorize() || !body.add_adjoint(body.x(), thetabar).ok) {
+      std::printf("statics, n = %d: %s\n", n, body.failure().c_str());
+      return false;
+    }
+    if (run == 0) continue;
+    cost.backward = std::min(cost.backward, stopwatch.lap().processor);
+    cost.forward = std::min(cost.forward, forward);
+    cost.newton = report.iterations;
+    cost.factorizations = report.factorizations;
+  }
+  print("statics", n, linear, vertices, cost);
+  return true;
+}
+
+bool bench_motion(int n, const std::string& linear, const Arguments& arguments) {
+  Cost cost;
+  Model model = make_beam(n, arguments);
+  const State start = at_rest(model.mesh);
+  const int vertices = model.mesh.vertex_count();
+  Trajectory trajectory(std::move(model), start,
+                        {.h = arguments.h,
+                         .steps = arguments.steps,
+                         .tolerance = arguments.tolerance,
+                         .linear = linear,
+                         .adjoint = linear,
+                         .stored_states = arguments.steps});
+  const TrajectoryObjective end = [&](int point, const State& state, std::span<double> qbar, std::span<double>) {
+    if (point < arguments.steps) return 0.0;
+    double value = 0;
+    for (size_t i = 0; i < state.q.size(); ++i) value += state.q[i] * state.q[i] / 2;
+    for (size_t i = 0; i < qbar.size(); ++i) qbar[i] += state.q[i];
+    return value;
+  };
+  TrajectoryGradient gradient;
+  for (int run = 0; run <= arguments.runs; ++run) {
+    Stopwatch stopwatch;
+    if (const TrajectoryReport report = trajectory.simulate(end); !report.ok) {
+      std::printf("motion, n = %d: %s\n", n, report.failure.c_str());
+      return false;
+    }
+    const double forward = stopwatch.lap().processor;
+    const TrajectoryReport report = trajectory.differentiate(end, gradient);
+    const double both = stopwatch.lap().processor;
+    if (!report.ok) {
+      std::printf("motion, n = %d: %s\n", n, report.failure.c_str());
+      return false;
+    }
+    if (run == 0) continue;
+    cost.backward = std::min(cost.backward, both - forward);
+    cost.forward = std::min(cost.forward, forward);
+    cost.newton = report.newton_iterations;
+    cost.factorizations = report.factorizations;
+  }
+  print("motion", n, linear, vertices, cost);
+  return true;
+}
+
+}  // namespace
+}  // namespace aspic::bench
+
+int main(int argc, char** argv) {
+  using namespace aspic::bench;
+  CLI::App app("What a gradient costs beside its forward solve.");
+  Arguments arguments;
+  app.add_option("n", arguments.sizes, "cells through the thickness; 4n along the beam")->capture_default_str();
+  app.add_option("--linear", arguments.linear, "one or several linear solvers")->delimiter(',')->capture_default_str();
+  app.add_option("--material", arguments.material)->capture_default_str();
+  app.add_option("--young", arguments.young, "[Pa]")->capture_default_str();
+  app.add_option("--step", arguments.h, "[s]")->capture_default_str();
+  app.add_option("--steps", arguments.steps)->capture_default_str();
+  app.add_option("--tolerance", arguments.tolerance, "of the forward solves")->capture_default_str();
+  app.add_option("--stiffness-damping", arguments.stiffness_damping, "[s]")->capture_default_str();
+  app.add_option("--threads", arguments.threads)->capture_default_str();
+  app.add_option("--runs", arguments.runs, "the least of so many")->check(CLI::PositiveNumber);
+  return run_program(app, argc, argv, [&] {
+    aspic::set_thread_count(arguments.threads);
+    print_facts(machine_facts());
+    std::printf("%-8s %3s %-10s %8s %8s %8s %10s %10s %9s\n", "", "n", "solver", "vertices", "Newton", "factors",
+                "forward [s]", "back [s]", "back");
+    bool ok = true;
+    for (const int n : arguments.sizes)
+      for (const std::string& linear : arguments.linear)
+        ok = bench_statics(n, linear, arguments) && bench_motion(n, linear, arguments) && ok;
+    return ok ? 0 : 1;
+  });
+}

@@ -1,0 +1,293 @@
+#include "fit/trajectory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "base/stopwatch.h"
+#include "dynamics/integrator.h"
+#include "dynamics/simulation_checks.h"
+#include "fit/checkpointing.h"
+#include "fit/elastic_parameters.h"
+#include "fit/sequence_solver.h"
+#include "optimize/newton.h"
+
+namespace aspic {
+namespace {
+
+constexpr char kIntegrator[] = "backward_euler";
+constexpr double kUsable = 1e-9;  // residual of a solve that stagnates in round-off
+
+void require_gradient(const Model& model, const TrajectoryOptions& options) {
+  if (options.integrator != kIntegrator)
+    throw InvalidInput("the gradient of a trajectory is there for integrator = 'backward_euler', not for '" +
+                       options.integrator + "'");
+  if (!(options.h > 0) || !std::isfinite(options.h))
+    throw InvalidInput("the time step is " + std::to_string(options.h) + " s; it must be positive");
+  if (options.steps < 0) throw InvalidInput("the number of steps is negative");
+  if (options.stored_states < 1) throw InvalidInput("stored_states must be at least 1");
+  for (const auto& D : model.damping)
+    if (!dynamic_cast<const Damping*>(D.get()))
+      throw InvalidInput("the damping '" + std::string(D->name()) + "' tells no derivatives, so a trajectory with it " +
+                         "has no gradient");
+}
+
+// The acceleration [m/s^2] whose weight the load 'gravity' is; zero where there is no such load. Empty: it is not that
+// of the densities.
+std::optional<Vec3d> acceleration_of_weight(const Model& model, std::span<const double> q) {
+  const Energy* load = nullptr;
+  for (const auto& V : model.loads)
+    if (V->name() == "gravity") {
+      if (load) return std::nullopt;
+      load = V.get();
+    }
+  if (!load) return Vec3d{};
+  std::vector<double> force(q.size()), weight(q.size());
+  load->add_gradient(q, -1, force);
+  Vec3d total{};
+  for (size_t i = 0; i < force.size(); ++i) total[i % 3] += force[i];
+  const Vec3d acceleration = (1 / model.mass->total()) * total;
+  double error = 0, size = 0;
+  for (size_t i = 0; i < force.size(); ++i) {
+    const double expected = model.mass->vertex_mass()[i / 3] * acceleration[i % 3];
+    error = std::max(error, std::abs(force[i] - expected));
+    size = std::max(size, std::abs(expected));
+  }
+  return error <= 1e-9 * size ? std::optional(acceleration) : std::nullopt;
+}
+
+}  // namespace
+
+struct Trajectory::Impl {
+  Impl(Model m, State s, const TrajectoryOptions& o)
+      : options((require_gradient(m, o), o)),
+        model(std::move(m)),
+        start(std::move(s)),
+        pins(model.pins, start.q),
+        E(model, pins),
+        newton(make_linear_solver(o.linear)),
+        solver(o.adjoint, o.adjoint_tolerance),
+        integrator(make_integrator(o.integrator)),
+        theta(model) {
+    require_mass(model, pins);
+    minimize.tolerance = o.tolerance;
+    minimize.max_iterations = o.max_iterations;
+    minimize.h = o.h;
+    pins.place(start.time, start.q);
+    weight = acceleration_of_weight(model, start.q);
+    for (auto* v : {&qbar, &vbar, &rhs, &mu, &moved, &Mmu}) v->resize(start.q.size());
+    slots.resize(std::min(o.stored_states, std::max(1, o.steps)));
+  }
+
+  double time_of(int number) const { return start.time + number * options.h; }
+
+  void begin() {
+    report = {};
+    now = start;
+    point = 0;
+    newton.begin();
+    solver.begin();
+  }
+
+  bool fail(int step, const std::string& words) {
+    char time[32];
+    std::snprintf(time, sizeof time, "%.4g", time_of(step));
+    report.failure = "the step from " + std::string(time) + " s (step " + std::to_string(step) + "): " + words;
+    return false;
+  }
+
+  // From `now` to `end`, which may be the same.
+  bool step(State& end) {
+    Stopwatch stopwatch;
+    const SolveTools solve{model, pins, E, minimizer, newton, minimize, observe, go_on, InitialGuess::best};
+    before = now;
+    const StepSolve solved = integrator->advance({solve, before, nullptr, options.h, time_of(point + 1)}, next, forces);
+    ++report.steps;
+    report.newton_iterations += solved.work.iterations;
+    report.factorizations += solved.work.factorizations;
+    report.forward_seconds += stopwatch.lap();
+    if (!is_success(solved.work.status))
+      return fail(point, "Newton's method did not converge: " + std::string(to_string(solved.work.status)) + " after " +
+                             std::to_string(solved.work.iterations) + " iterations");
+    std::swap(end, next);
+    return true;
+  }
+
+  bool advance() {
+    if (!step(now)) return false;
+    ++point;
+    return true;
+  }
+
+  TrajectoryReport simulate(const TrajectoryObjective& objective) {
+    begin();
+    report.ok = true;
+    for (;;) {
+      report.value += objective(point, now, {}, {});
+      if (point == options.steps) break;
+      report.ok = advance();
+      if (!report.ok) break;
+    }
+    return report;
+  }
+
+  TrajectoryReport differentiate(const TrajectoryObjective& objective, TrajectoryGradient& gradient) {
+    begin();
+    reset(gradient);
+    for (auto* v : {&qbar, &vbar}) std::fill(v->begin(), v->end(), 0.0);
+    const ChainWalk walk{.advance = [this] { return advance(); },
+                         .store =
+                             [this](int slot) {
+                               slots[slot] = {now, point};
+                             },
+                         .restore = [this](int slot) { now = slots[slot].state, point = slots[slot].point; },
+                         .reverse =
+                             [&](int step_number) {
+                               ASPIC_CHECK(point == step_number);
+                               if (step_number == options.steps - 1) {
+                                 if (!step(after)) return false;
+                                 report.value += objective(options.steps, after, qbar, vbar);
+                               }
+                               if (!reverse_step(gradient)) return false;
+                               report.value += objective(point, now, qbar, vbar);
+                               std::swap(after.q, now.q), std::swap(after.qdot, now.qdot);
+                               return true;
+                             }};
+    if (options.steps == 0) report.value += objective(0, now, qbar, vbar);
+    report.ok = walk_backwards(options.steps, static_cast<int>(slots.size()), walk);
+    pins.set_zero(qbar);
+    gradient.q.assign(qbar.begin(), qbar.end());
+    gradient.qdot.assign(vbar.begin(), vbar.end());
+    return report;
+  }
+
+  void reset(TrajectoryGradient& gradient) const {
+    gradient.elastic.assign(theta.size(), 0.0);
+    gradient.density.assign(weight ? model.mesh.tet_count() : 0, 0.0);
+    gradient.density_words =
+        weight ? "" : "the load 'gravity' is not the weight of the bodies, so how it changes with density is not known";
+    gradient.damping.resize(model.damping.size());
+    for (size_t k = 0; k < model.damping.size(); ++k) gradient.damping[k].assign(damping(k).coefficient_count(), 0.0);
+  }
+
+  const Damping& damping(size_t k) const { return static_cast<const Damping&>(*model.damping[k]); }
+
+  // From the cotangents at `after` to those at `now`.
+  bool reverse_step(TrajectoryGradient& gradient) {
+    Stopwatch stopwatch;
+    const double h = options.h, f = h * h;
+    tell_step();
+    pins.set_zero(qbar);  // pinned vertices are where they are
+    for (size_t i = 0; i < rhs.size(); ++i) rhs[i] = qbar[i] + vbar[i] / h;
+    pins.set_zero(rhs);
+    if (!solve()) return false;
+
+    model.mass->multiply(mu, Mmu);
+    for (size_t i = 0; i < mu.size(); ++i) qbar[i] = Mmu[i] - vbar[i] / h;
+    for (size_t i = 0; i < mu.size(); ++i) vbar[i] = h * Mmu[i];
+    theta.add_gradient(after.q, mu, -f, gradient.elastic);
+    for (size_t k = 0; k < model.damping.size(); ++k) add_damping(damping(k), f, gradient.damping[k], gradient);
+    if (weight) add_density(f, gradient.density);
+    pins.set_zero(qbar);
+    report.adjoint_seconds += stopwatch.lap();
+    return true;
+  }
+
+  // As the integrator does.
+  void tell_step() {
+    const StepContext context{now.q, options.h, time_of(point + 1), now.q};
+    tell_potential(E, context);
+    tell_damping(E, context);
+    for (size_t i = 0; i < moved.size(); ++i) moved[i] = now.q[i] + options.h * now.qdot[i];
+    E.begin_step(moved, 1, options.h * options.h);
+  }
+
+  bool solve() {
+    const BlockSparse& H = E.hessian(after.q, {Definiteness::exact});
+    const SolveReport solved = solver.solve(H, rhs, mu);
+    ++report.adjoint_solves;
+    report.adjoint_products += solved.products;
+    if (solved.ok || (!solved.indefinite && solved.relative_residual <= kUsable)) return true;
+    return fail(point, solved.indefinite ? "the matrix of the step is not positive definite"
+                                         : "the adjoint system was not solved");
+  }
+
+  void add_damping(const Damping& D, double f, std::span<double> coefficients, TrajectoryGradient& gradient) {
+    std::span<double> elastic;
+    for (size_t k = 0; k < model.elasticity.size(); ++k)
+      if (model.elasticity[k].get() == D.elasticity())
+        elastic = std::span(gradient.elastic).subspan(theta.of_term(k), theta.of_term(k + 1) - theta.of_term(k));
+    D.add_derivatives(after.q, mu, -f, {.start = qbar, .coefficients = coefficients, .elastic = elastic});
+  }
+
+  // mu' dg/drho: of the inertia, the weight, and damping proportional to mass.
+  void add_density(double f, std::span<double> density) {
+    const TetMesh& mesh = model.mesh;
+    for (size_t i = 0; i < moved.size(); ++i) moved[i] = after.q[i] - moved[i];  // q1 - q0 - h v0
+    for (size_t k = 0; k < model.damping.size(); ++k)
+      for (size_t i = 0; i < moved.size(); ++i)
+        if (const double a = damping(k).mass_factor(static_cast<int>(i / 3)); a != 0)
+          moved[i] += options.h * a * (after.q[i] - now.q[i]);
+    add_density_gradient(mesh, model.mass->kind(), mu, moved, -1, density);
+    for (int t = 0; t < mesh.tet_count(); ++t) {
+      double work = 0;
+      for (const int v : mesh.tets[t])
+        for (int r = 0; r < 3; ++r) work += mu[3 * v + r] * (*weight)[r];
+      density[t] += f * volume(mesh, t) / 4 * work;
+    }
+  }
+
+  struct Stored {
+    State state;
+    int point = 0;
+  };
+
+  TrajectoryOptions options;
+  Model model;
+  State start;
+  Pins pins;
+  IncrementalPotential E;
+  Newton newton;
+  SequenceSolver solver;  // of H, backwards
+  std::unique_ptr<Integrator> integrator;
+  ElasticParameters theta;
+  Minimizer minimizer;
+  MinimizeOptions minimize;
+  IterationObserver observe;
+  Consent go_on;
+  std::optional<Vec3d> weight;  // acceleration of the load 'gravity'
+  TrajectoryReport report;
+  State now, after;  // where the walker stands; what follows it, backwards
+  int point = 0;
+  std::vector<Stored> slots;
+  std::vector<double> qbar, vbar;
+  // Scratch. moved: the flight q0 + h v0.
+  State before, next;
+  StepForces forces;
+  std::vector<double> rhs, mu, moved, Mmu;
+};
+
+Trajectory::Trajectory(Model model, State start, const TrajectoryOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(model), std::move(start), options)) {}
+Trajectory::~Trajectory() = default;
+Trajectory::Trajectory(Trajectory&&) noexcept = default;
+
+const Model& Trajectory::model() const { return impl_->model; }
+void Trajectory::set_parameters(std::span<const MaterialParameters> parameters) { impl_->theta.set(parameters); }
+
+void Trajectory::set_start(const State& start) {
+  ASPIC_CHECK(start.q.size() == impl_->start.q.size() && start.qdot.size() == start.q.size());
+  impl_->start = start;
+  impl_->pins = Pins(impl_->model.pins, start.q);
+  impl_->pins.place(start.time, impl_->start.q);
+}
+
+TrajectoryReport Trajectory::simulate(const TrajectoryObjective& objective) { return impl_->simulate(objective); }
+TrajectoryReport Trajectory::differentiate(const TrajectoryObjective& objective, TrajectoryGradient& gradient) {
+  return impl_->differentiate(objective, gradient);
+}
+
+}  // namespace aspic
