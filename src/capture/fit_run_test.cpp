@@ -105,14 +105,14 @@ TEST(FitRun, PredictsWhatWasLeftOut) {
 class FitMemoryTest : public FolderTest {
  protected:
   // Stops after so many iterations of both stages together; counts them.
-  FitOutcome fitted(const fs::path& folder, JournalStart start, int limit) {
+  FitOutcome fitted(const fs::path& memory, JournalStart start, int limit) {
     iterations = 0;
-    fs::create_directories(folder);
+    fs::create_directories(memory);
     const FitWitness witness{
         .begin = {},
         .iterate = [&](FitStage, const FitIteration&, std::span<const double>) { return ++iterations < limit; },
         .go_on = {}};
-    return fit_material(block(), quick_plan({"young=handles:6"}), {folder, start}, witness);
+    return fit_material(block(), quick_plan({"young=handles:6"}), {memory, start}, witness);
   }
   int iterations = 0;
 };
@@ -122,11 +122,11 @@ TEST_F(FitMemoryTest, AnInterruptedFitGoesOnToTheSameBits) {
   const int all = iterations;
   ASSERT_GT(all, 4);
   for (const int limit : {1, 3, all - 1}) {
-    const fs::path folder = path("part" + std::to_string(limit));
-    const FitOutcome part = fitted(folder, JournalStart::anew, limit);
+    const fs::path memory = path("part" + std::to_string(limit));
+    const FitOutcome part = fitted(memory, JournalStart::anew, limit);
     EXPECT_TRUE(part.interrupted);
     EXPECT_TRUE(part.has_material()) << "what was reached is kept";
-    const FitOutcome resumed = fitted(folder, JournalStart::resume, 1000);
+    const FitOutcome resumed = fitted(memory, JournalStart::resume, 1000);
     EXPECT_EQ(iterations, all);
     EXPECT_EQ(resumed.report.p, whole.report.p) << "interrupted after " << limit;
     EXPECT_EQ(*resumed.material.find("young"), *whole.material.find("young"));
@@ -137,11 +137,11 @@ TEST_F(FitMemoryTest, AnInterruptedFitGoesOnToTheSameBits) {
 TEST_F(FitMemoryTest, AFolderKnowsWhatItsFitWasBegunWith) {
   const fs::path material = path("block.vtu");
   const std::string options = text_of(completed(quick_plan(), block().experiment));
-  FitFolder folder = FitFolder::open(material, options, ExistingFit::refuse);
-  EXPECT_EQ(folder.path().filename(), "block.fit");
-  folder.add(FitStage::field, {.index = 1});
-  folder.add(FitStage::field, {.index = 2});
-  write_file(folder.path() / "fit.journal", "");
+  FitFolder begun = FitFolder::open(material, options, ExistingFit::refuse);
+  EXPECT_EQ(begun.path().filename(), "block.fit");
+  begun.add(FitStage::field, {.index = 1});
+  begun.add(FitStage::field, {.index = 2});
+  write_file(begun.path() / "fit.journal", "");
   const auto opened = [&](ExistingFit existing, const std::string& with) {
     return message_of([&] { FitFolder::open(material, with, existing); });
   };
