@@ -46,7 +46,7 @@ inline DataSet test_data(int pokes = 3, int depths = 2) {
         const double far = std::hypot(X[0] - load.touch.center[0], X[1] - load.touch.center[1]) / 0.03;
         load.positions.push_back({m, X - Vec3d{{0, 0, depth * std::exp(-far * far)}}, {{1e-5, 1e-5, 2e-5}}});
       }
-      load.force = Vec3d{{0.01, 0, -0.5 * d}};  // E is about 1.6e4 Pa
+      load.force = Vec3d{{0.01, 0, -0.5 * d}};  // E seems to be about 7.4e3 Pa
       load.force_deviation = {{0.01, 0.01, 0.02}};
       e.cases.push_back(std::move(load));
     }

@@ -10,10 +10,10 @@
 namespace aspic {
 namespace {
 
-constexpr double kSoftest = 50, kStiffest = 3e7;  // [Pa] Young's moduli of bodies that one pokes
-constexpr double kUnlike = 30;                    // ratio of apparent moduli within one body that is no tissue's
-constexpr double kFalling = 0.8;                  // a force that falls below this share of the last, going deeper
-constexpr int kEnough = 6;                        // forces that tell how a gauge rounds
+constexpr double kSoftest = 50, kStiffest = 1.5e7;  // [Pa] Young's moduli of bodies that one pokes
+constexpr double kUnlike = 30;                      // ratio of apparent moduli within one body that is no tissue's
+constexpr double kFalling = 0.8;                    // a force that falls below this share of the last, going deeper
+constexpr int kEnough = 6;                          // forces that tell how a gauge rounds
 
 class ForceDiagnosis {
  public:
@@ -64,7 +64,8 @@ class ForceDiagnosis {
       const Vec3d way = cases_[c].pose.center - cases_[c].touch.center;
       const double along = dot(way, *cases_[c].force);
       ++measured;
-      if (along < -0.1 * norm(way) * norm(*cases_[c].force)) against.push_back(c);
+      const double noise = 3 * norm(cases_[c].force_deviation);
+      if (along < -norm(way) * std::max(0.1 * norm(*cases_[c].force), noise)) against.push_back(c);
     }
     if (against.empty()) return;
     if (2 * static_cast<int>(against.size()) > measured)

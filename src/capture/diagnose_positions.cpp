@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "capture/apparent_stiffness.h"
+#include "capture/case_table.h"
 #include "capture/data_findings.h"
 #include "capture/surface_projection.h"
 
@@ -14,6 +15,7 @@ constexpr size_t kMostListed = 5;     // of one kind; the rest is counted
 constexpr double kOffSurface = 0.02;  // of the body's size
 constexpr double kSuspicious = 6;     // times what neighbours differ by
 constexpr double kNoticeable = 0.05;  // of the largest motion of the case
+constexpr double kReach = 2;          // of a tip, in radii, within which the surface goes its way
 constexpr double kFar = 1;            // of the body's size: a motion that is none
 
 // The markers nearest to each at rest, of those given.
@@ -151,6 +153,13 @@ class PositionDiagnosis {
     return false;
   }
 
+  // About how far the tip of a case moves a point of the surface: its way, falling like its radius over the distance.
+  static double by_tip(const LoadCase& load, const Vec3d& X) {
+    if (!load.tip) return 0;
+    const double distance = norm(X - load.touch.center);
+    return load_size(load) * std::min(1.0, kReach * load.tip->radius / distance);
+  }
+
   void examine_outliers(int c) {
     const std::vector<MarkerReading>& readings = experiment_.cases[c].positions;
     if (readings.size() <= kNeighbours) return;
@@ -171,8 +180,10 @@ class PositionDiagnosis {
     }
     for (size_t i = 0; i < u.size(); ++i) {
       const double tolerated = kSuspicious * (spread[i] + norm(readings[i].deviation));
-      // The top of a sharp dent differs from its neighbours, but no more than they among themselves.
-      if (excess[i] > std::max({tolerated, kNoticeable * largest, range[i]}) && ++outliers_ <= kMostListed)
+      // The top of a sharp dent differs from its neighbours, but no more than they among themselves, nor than a tip
+      // that goes so far moves a point so near.
+      if (excess[i] > std::max({tolerated, kNoticeable * largest, range[i], by_tip(experiment_.cases[c], X[i])}) &&
+          ++outliers_ <= kMostListed)
         findings_.warning(data_.source.position(c, static_cast<int>(i)),
                           name(readings[i].marker) + " in '" + experiment_.cases[c].name + "' is " +
                               three_digits(excess[i]) + " m away from where its neighbours go, which differ by " +

@@ -38,7 +38,7 @@ DataSet data_in_lines(int pokes = 3, int depths = 2) {
 TEST(Diagnosis, OfGoodDataIsOnlyWhatTheySayOfTheStiffness) {
   const auto findings = diagnose(data_in_lines());
   ASSERT_EQ(findings.size(), 1u);
-  EXPECT_THAT(findings[0], finding(Severity::note, "cases.csv", "Young's modulus is about 1.5"));
+  EXPECT_THAT(findings[0], finding(Severity::note, "cases.csv", "Young's modulus is about 7.4"));
 }
 
 TEST(Diagnosis, ForcesInGramsOrMillinewtonsAreNoticed) {
@@ -48,7 +48,7 @@ TEST(Diagnosis, ForcesInGramsOrMillinewtonsAreNoticed) {
     load.force = Vec3d{{0, 0, grams}};
   }
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv", "whole numbers", "force = \"g\"")));
-  for (LoadCase& load : data.experiment.cases) load.force = Vec3d{{0, 0, -3000.5}};
+  for (LoadCase& load : data.experiment.cases) load.force = Vec3d{{0, 0, -9000.5}};
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv", "which nothing soft has", "mN")));
 }
 
@@ -99,7 +99,7 @@ TEST(Diagnosis, LengthsInMillimetresAreNoticed) {
 
 TEST(Diagnosis, AMarkerThatLeavesItsNeighboursIsNamedAndOthersAreNot) {
   DataSet data = data_in_lines();
-  data.experiment.cases[3].positions[17].position[0] += 0.004;
+  data.experiment.cases[3].positions[17].position[0] += 0.006;
   const auto findings = diagnose(data);
   EXPECT_THAT(findings,
               Contains(finding(Severity::warning, data.source.position(3, 17), "away from where its neighbours")));

@@ -16,6 +16,7 @@ namespace aspic {
 namespace {
 
 constexpr double kSoftening = 0.02;  // e / radius
+constexpr double kEdge = 0.125;      // of the glue of a disc, relative to the radius
 constexpr double kLongestEdge = 64;  // of a triangle near the tip, relative to the radius
 constexpr int kMostCutsAfar = 64;    // of an edge of a triangle that only a tip on the way might touch
 
@@ -57,7 +58,7 @@ double glue(const Tip& tip, const TipPose& touch, const Vec3d& X, const Vec3d& n
   if (tip.shape == TipShape::sphere) return dot(normal, u) < 0 ? fade(norm(u) - R, kGlue / 2 * R, kGlue * R) : 0;
   const double s = dot(u, touch.axis);
   if (dot(normal, touch.axis) >= 0 || s < -R) return 0;
-  return fade(s, kGlue / 2 * R, kGlue * R) * fade(norm(u - s * touch.axis), (1 - kGlue) * R, (1 + kGlue) * R);
+  return fade(s, kGlue / 2 * R, kGlue * R) * fade(norm(u - s * touch.axis), (1 - kEdge) * R, (1 + kEdge) * R);
 }
 
 TipPose with_unit_axis(TipPose pose) {

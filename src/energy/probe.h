@@ -51,8 +51,9 @@ class Probe : public Energy {
 };
 
 // How far from the surface of a bonded tip the glue reaches, relative to the radius. It thins out over the second half
-// of that distance, and at a disc's edge over an eighth of the radius on either side of it.
-inline constexpr double kGlue = 0.125;
+// of that distance. On a flat face the footprint of a sphere is thus about as wide as the sphere; that of a disc is the
+// disc, whose glue thins out over an eighth of the radius on either side of its edge.
+inline constexpr double kGlue = 0.5;
 
 // `surface`: boundary triangles of the mesh, outward oriented. `touch`: the pose in which the tip touches the body at
 // rest; where it is to begin with. Throws InvalidInput when a bonded tip touches nothing there, and when a triangle
