@@ -17,6 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kTooFine = 20'000;  // tets, for a mesh of eight times as many
+constexpr int kPasses = 8;
+constexpr double kSettled = 3e-4;  // relative change of a value
 // Guesses that are tried when the first one is so soft that the loads crush the body.
 constexpr double kStiffer[] = {1, 10, 100, 0.1};
 
@@ -72,9 +74,7 @@ class MaterialFit {
     const bool is_field = !are_single_values(plan_.unknowns);
     if (is_field || plan_.mesh_errors) {
       if (!fit_single_values("uniform")) return std::move(outcome_);
-      // The second time for the stiffness that the first correction led to.
-      for (const char* name : {"uniform_once_corrected", "uniform_corrected"})
-        if (plan_.mesh_errors && take_off_mesh_errors() && !fit_single_values(name)) return std::move(outcome_);
+      if (!settle_mesh_errors()) return std::move(outcome_);
       if (!is_field) outcome_.uniform.reset();
     }
     fit_fields();
@@ -105,6 +105,26 @@ class MaterialFit {
     }
     outcome_.failure = outcome_.report.words;
     return false;
+  }
+
+  // The errors depend on the values, which depend on them. False: nothing comes after it.
+  bool settle_mesh_errors() {
+    for (int pass = 1; plan_.mesh_errors; ++pass) {
+      if (pass > kPasses) {
+        outcome_.warnings.push_back(
+            "what the mesh gets wrong is so much that it could not be taken off reliably: take a finer mesh, or a larger "
+            "tip");
+        break;
+      }
+      const std::vector<Unknown> before = plan_.unknowns;
+      if (!take_off_mesh_errors()) break;
+      if (!fit_single_values("uniform_corrected" + std::to_string(pass))) return false;
+      double change = 0;
+      for (size_t u = 0; u < before.size(); ++u)
+        change = std::max(change, std::abs(plan_.unknowns[u].guess / before[u].guess - 1));
+      if (change < kSettled) break;
+    }
+    return !outcome_.interrupted;
   }
 
   // False: they are not known, and the data remain as they are.
