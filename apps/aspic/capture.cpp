@@ -130,6 +130,8 @@ void add_capture(CLI::App& app, Action& action) {
   command->add_option("--force-noise", b.force_noise, "Of forces, relative to the largest")->capture_default_str();
   command->add_flag("--no-force", a->no_force, "Leaves forces out");
   command->add_flag("--torque", b.torques, "Measures torques, too");
+  command->add_flag("--regions", b.regions,
+                    "Labels the tets by where the truth has one stiffness, for --unknown young=regions");
   command->add_option("--gravity", a->gravity, "X,Y,Z: a case that hangs in this direction of gravity")
       ->allow_extra_args(false);
   command->add_option("--mesh", a->mesh, "The mesh of the data set; default: a coarser one of the same body");

@@ -9,6 +9,7 @@
 #include "capture/bench_sites.h"
 #include "capture/case_table.h"
 #include "capture/data_findings.h"
+#include "capture/judge.h"
 #include "fit/load_case.h"
 #include "fit/next_poke.h"
 #include "mesh/surface.h"
@@ -20,7 +21,7 @@ namespace {
 
 constexpr double kTipRadius = 0.08;    // relative to the size of the body
 constexpr double kGravity = 9.81;      // [m/s^2]
-constexpr double kBondedLayer = 1000;  // stiffness of a tip's layer times its radius, over Young's modulus
+constexpr double kBondedLayer = 1e5;  // stiffness of a tip's layer times its radius, over Young's modulus
 constexpr double kSlidingLayer = 200;
 constexpr double kLeastArm = 0.01;        // of a force about the centre of the tip, relative to its radius
 constexpr double kLeastDeviation = 1e-4;  // of exact data, relative to the largest motion or force
@@ -110,12 +111,25 @@ class Bench {
     set.numbering = locality_numbering(*mesh);
     data().mesh = from_user(set.numbering, *mesh);
     data().density = sample(result_.truth, *result_.truth.find("density"), data().mesh);
+    if (options_.regions) label_regions();
     data().fixed = held_vertices(truth_.mesh, truth_.fixed, data().mesh);
     if (data().fixed.size() < 3)
       throw InvalidInput("only " + std::to_string(data().fixed.size()) +
                          " vertices of the data's mesh lie where the body is held; it is too coarse, or elsewhere");
     on_truth_ = std::make_unique<SurfaceProjection>(truth_.mesh);
     on_data_ = std::make_unique<SurfaceProjection>(data().mesh);
+  }
+
+  void label_regions() {
+    const std::vector<double>& young = *result_.truth.find("young");
+    const std::vector<double> levels = levels_of(young);
+    if (levels.empty())
+      throw InvalidInput("the stiffness varies from tet to tet; there are no regions that could be labelled");
+    data().mesh.region.clear();
+    for (const double E : sample(result_.truth, young, data().mesh)) {
+      const auto next = std::ranges::lower_bound(levels, E * (1 - 1e-6));
+      data().mesh.region.push_back(static_cast<int>(next - levels.begin()) + 1);
+    }
   }
 
   // Material points of the data's surface; where the surfaces differ, they move as the nearest of the truth.
