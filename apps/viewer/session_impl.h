@@ -86,6 +86,12 @@ struct Session::Impl {
   void stiffness(Arguments&);
   void pin(Arguments&);
 
+  // ---- session_tip.cpp
+  void touch(Arguments&);
+  void touch(const SurfacePoint& point, const Tip& tip);  // of the surface of side a
+  void press(Arguments&);
+  void lift(Arguments&);
+
   // ---- session_replay.cpp
   void replay(Arguments&);
   void note(Json command);  // that it was carried out now
