@@ -26,6 +26,10 @@ export type Command = { id?: number } & (
   | { do: "release" }
   | { do: "stiffness"; value: number } // of the mouse's spring [N/m]
   | { do: "pin"; side: SideName; vertices: number[]; pinned: boolean } // vertices of the surface that is shown
+  // A rigid tip touches the body at that point along the inward normal; what is left out is chosen by the program.
+  | ({ do: "touch"; side: SideName; triangle: number; weights: Vec3; stiffness?: number } & Partial<TipChoice>)
+  | { do: "press"; depth: number; shift?: Vec3 } // to so far along the tip's axis from where it touched [m]
+  | { do: "lift" } // the tip is taken away
   | { do: "compare"; overrides: string[]; label: string } // opens side b: the scene of side a with these overrides
   | { do: "end_compare" }
   | { do: "colour"; field: string } // name in Scene.fields; "" for none
@@ -33,6 +37,12 @@ export type Command = { id?: number } & (
   | { do: "replay"; recording: Recording } // resets, then repeats what the mouse did, and the settings
   | { do: "take" } // this page wants to steer; any page may send it
 );
+
+export interface TipChoice {
+  shape: "sphere" | "disc";
+  contact: "bonded" | "sliding";
+  radius: number; // [m]
+}
 
 // Asks; changes nothing; any page may send it. Always carries an id; answered by `reply` or `refused`.
 export type Query =
@@ -149,6 +159,7 @@ export interface StepRow {
   kinetic: MaybeNumber; // [J], also below
   potential: MaybeNumber[];
   mouse_work: MaybeNumber; // in this step, also below
+  probe_work: MaybeNumber;
   pin_work: MaybeNumber;
   damping_loss: MaybeNumber;
   numerical_loss: MaybeNumber;
@@ -195,6 +206,20 @@ export interface SideState {
   status: string; // of the last step; "" at the start
   words: { cause: string; place: string; remedy: string } | null;
   grab: { point: Vec3; target: Vec3; force: Vec3 } | null; // force on the body [N]
+  probe: ProbeState | null;
+}
+
+// The tip that touches the body.
+export interface ProbeState extends TipChoice {
+  stiffness: number; // of the layer between tip and body [Pa/m]
+  begun: Vec3; // its centre when it touched [m]: of the sphere, or of the flat end
+  center: Vec3; // now
+  axis: Vec3; // out of the tip, into the body
+  depth: number; // now [m]
+  wanted: number; // by the end of the next step [m]
+  force: Vec3; // of the tip on the body [N]
+  torque: Vec3; // about its centre [N m]
+  points: number; // of the surface that it touches
 }
 
 // What was done, by step: enough to repeat a session to the same bits.

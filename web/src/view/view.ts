@@ -185,6 +185,7 @@ export class View implements Touched {
 
   private takeState(): void {
     this.figure.takeState();
+    this.stage?.showTip(this.store.state?.[this.side]?.probe ?? null, this.style.accent);
     this.redraw();
   }
 
