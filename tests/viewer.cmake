@@ -16,17 +16,16 @@ if(TARGET aspic_viewer)
   add_test(NAME page_types COMMAND ${NODE} ${web}/node_modules/typescript/bin/tsc --noEmit --project ${web})
   add_test(NAME page_units COMMAND ${NODE} ${web}/test/run.mjs)
   add_test(NAME page_guide COMMAND ${NODE} ${web}/test/guide.mjs ${CMAKE_BINARY_DIR}/web/page.html)
-  set_tests_properties(page_guide PROPERTIES SKIP_RETURN_CODE 77)
+  set_tests_properties(page_guide PROPERTIES SKIP_RETURN_CODE 77 PROCESSORS 2)
   find_package(ZLIB REQUIRED)
   add_aspic_tests(test_mesh_pictures ${CMAKE_SOURCE_DIR}/apps/aspic/mesh_picture_test.cpp)
   target_link_libraries(test_mesh_pictures PRIVATE aspic_commands ZLIB::ZLIB)
 
-  # The page with its program, in Chromium; pictures of its panels go to the build's folder pictures/.
+  # The page with its program, in Chromium, each with two processors of its own: the browser draws with them, too.
   file(GLOB page_themes CONFIGURE_DEPENDS ${web}/test/e2e/*.e2e.mjs)
   foreach(file ${page_themes})
     get_filename_component(theme ${file} NAME_WE)
-    add_test(NAME page.${theme} COMMAND ${NODE} ${web}/test/e2e/run.mjs $<TARGET_FILE:aspic_cli>
-                                        ${CMAKE_BINARY_DIR}/pictures ${theme})
-    set_tests_properties(page.${theme} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 900)
+    add_test(NAME page.${theme} COMMAND ${NODE} ${web}/test/e2e/run.mjs $<TARGET_FILE:aspic_cli> ${theme})
+    set_tests_properties(page.${theme} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 1800 PROCESSORS 2)
   endforeach()
 endif()

@@ -23,9 +23,11 @@ void add_run(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
 void add_mesh(CLI::App& app, Action& action);
 void add_convert(CLI::App& app, Action& action);
+void add_fit(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_materials(CLI::App& app, Action& action);
 void add_minimize(CLI::App& app, Action& action);
+void add_capture(CLI::App& app, Action& action);
 void add_lecture(CLI::App& app, Action& action);
 void add_viewer_commands(CLI::App& app, Action& action);  // view, report, render
 void add_view(CLI::App& app, Action& action);

@@ -90,9 +90,11 @@ int run_program(int argc, char** argv) {
   add_check(app, action);
   add_mesh(app, action);
   add_convert(app, action);
+  add_fit(app, action);
   add_compare(app, action);
   add_materials(app, action);
   add_minimize(app, action);
+  add_capture(app, action);
   add_lecture(app, action);
   add_viewer_commands(app, action);
   if (argc == 1) {

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "aspic/commands.h"
+#include "aspic/fit_report.h"
 #include "aspic/mesh_picture.h"
 #include "aspic/run_report.h"
 #include "base/error.h"
@@ -26,6 +27,11 @@ void add_viewer_commands(CLI::App& app, Action& action) {
 
 void write_run_report(const std::filesystem::path&, const Scene& scene, std::FILE* stream) {
   if (scene.output.report && stream) fmt::print(stream, "no report.html: this aspic was built without its viewer\n");
+}
+
+void write_fit_report(const std::filesystem::path&, const DataSet&, const FitOutcome&,
+                      const std::vector<FitIteration>&, std::FILE* stream) {
+  if (stream) fmt::print(stream, "no report.html: this aspic was built without its viewer\n");
 }
 
 bool draw(const std::vector<MeshDrawing>&, const std::function<bool()>&) {

@@ -45,6 +45,8 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
 
   int parameter_count() const override { return parameter_count_; }
 
+  std::span<const MaterialParameters> parameters() const override { return parameters_; }
+
   void set_parameters(std::span<const MaterialParameters> parameters) override {
     ASPIC_CHECK(parameters.size() == parameters_.size());
     std::copy(parameters.begin(), parameters.end(), parameters_.begin());

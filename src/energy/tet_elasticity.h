@@ -25,6 +25,7 @@ class TetElasticity : public Energy {
 
   // theta: per tet mu, lambda and what MaterialInfo::extra names. Below, this term's tets one after another.
   virtual int parameter_count() const = 0;                                          // of one tet
+  virtual std::span<const MaterialParameters> parameters() const = 0;               // one per tet
   virtual void set_parameters(std::span<const MaterialParameters> parameters) = 0;  // one per tet
   // g += scale d(dV/dx)/dtheta change, and its transpose: gradient += scale d(w . dV/dx)/dtheta. `change` and
   // `gradient` hold parameter_count() numbers per tet, g and w 3 per vertex.

@@ -18,6 +18,7 @@ struct EquilibriumOptions {
   int max_iterations = 200;          // of Newton's method
   std::string linear = "auto";       // solver of Newton's steps
   std::string adjoint = "auto";      // solver of tangents and adjoints, see linear_solver_names()
+  int solves = 20;                   // of those per linearisation, roughly; for "auto"
   double adjoint_tolerance = 1e-12;  // relative residual of those
 };
 
@@ -38,13 +39,19 @@ class Equilibrium {
   std::span<const double> x() const;
   void set_x(std::span<const double> x);
 
-  // K at x(); false: it is not positive definite, x() is no stable equilibrium.
+  // Linearises: makes K at x(), for the parameters in force. False: it is not positive definite, so x() is no stable
+  // equilibrium, or it cannot be factorised; there are no derivatives then. What follows belongs to this point until
+  // the next linearisation, whatever is solved between.
   bool factorize();
+  std::span<const double> linearized_x() const;                                 // empty: there are no derivatives
   SolveReport solve_stiffness(std::span<const double> b, std::span<double> u);  // K u = b, u = 0 on pinned vertices
   // dx = dx/dtheta dtheta; `dtheta` holds parameters_per_tet() numbers per tet.
-  void tangent(std::span<const double> dtheta, std::span<double> dx);
+  SolveReport tangent(std::span<const double> dtheta, std::span<double> dx);
   // thetabar += (dx/dtheta)' xbar
-  void add_adjoint(std::span<const double> xbar, std::span<double> thetabar);
+  SolveReport add_adjoint(std::span<const double> xbar, std::span<double> thetabar);
+
+  const std::string& failure() const;      // of the last solve() or factorize() that failed, in words
+  std::string solver_description() const;  // of tangents and adjoints: what was chosen, and why
 
  private:
   struct Impl;

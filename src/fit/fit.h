@@ -12,19 +12,29 @@
 namespace aspic {
 
 struct FitOptions {
-  std::string method = "auto";  // "levenberg_marquardt" (few unknowns), "gauss_newton_cg", "lbfgs" (fields)
-  double tolerance = 1e-4;      // of the gradient in the norm of the preconditioner, relative to the first one
-  int max_iterations = 100;
-  double weight = -1;                       // of the regulariser; < 0: chosen by `weight_rule`
-  std::string weight_rule = "discrepancy";  // or "l_curve"
-  int starts = 1;                           // from how many guesses; the best is kept
+  std::string method = "auto";       // "levenberg_marquardt" (few unknowns), "gauss_newton_cg", "lbfgs" (fields)
+  double tolerance = 1e-3;           // of FitIteration::decrement, relative to the first one
+  int max_iterations = 100;          // in all
+  int max_inner = 100;               // of conjugate gradients, per iteration
+  double max_step = 3;               // of any entry of p, per iteration: log E by 3, E by 20
+  double weight = -1;                // of the regulariser; < 0: chosen by `weight_rule`
+  std::string weight_rule = "auto";  // "prior" (1), "discrepancy", "l_curve"; auto: prior for few unknowns
+  double first_weight = 0;           // where a rule begins; 0: where the prior and the data are about as strong
+  int starts = 1;                    // from how many guesses; the best is kept
+  double scatter = 1.5;              // the largest change of p from the first guess to another
+  Deadline deadline = {};            // the best p by then is the result
 };
+std::vector<std::string> fit_method_names();
+std::vector<std::string> weight_rule_names();
 
 struct FitIteration {
-  int index = 0;
-  double weight = 0, misfit = 0 /* |r|^2 / 2 */, roughness = 0 /* R */, objective = 0, gradient_norm = 0;
-  double step = 0;  // |dp|
+  int index = 0, start = 0;
+  double weight = 0, misfit = 0 /* |r|^2 / 2 */, roughness = 0 /* R */, objective = 0;  // where the step ends
+  double decrement =
+      0;            // sqrt(g' H^-1 g) where it began, H = J'J + weight R'': in standard deviations of what is known
+  double step = 0;  // largest entry of dp
   int inner = 0;    // of the linear solve
+  int trials = 0;   // evaluations
 };
 using FitObserver = std::function<bool(const FitIteration&, std::span<const double> p)>;  // false: stop here
 
@@ -37,13 +47,16 @@ struct FitReport {
   Status status = Status::iteration_limit;
   std::vector<double> p;
   double weight = 0, misfit = 0, roughness = 0;
-  int iterations = 0, evaluations = 0;
+  int iterations = 0, evaluations = 0, products = 0;  // products: with J or its transpose
+  std::string method;
   std::vector<FitIteration> history;
   std::vector<WeightTrial> weights;  // all that were tried, ascending
-  std::vector<double> starts;        // the objective reached from each start
+  std::vector<double> starts;        // the objective reached from each start; NaN: none could be computed
   std::string words;                 // why it ended, for people
 };
 
+// From `guess`, or on from the p of a fit that was stopped (with its weight as `first_weight`). Throws InvalidInput for
+// options that are no good. After it, `misfit` was last evaluated at p.
 FitReport fit(LeastSquares& misfit, Regularizer& regularizer, std::span<const double> guess, const FitOptions& options,
               const FitObserver& observe = {});
 

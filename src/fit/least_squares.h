@@ -15,6 +15,11 @@ class LeastSquares {
   virtual bool linearize() = 0;
   virtual void multiply(std::span<const double> dp, std::span<double> dr) = 0;              // dr = J dp
   virtual void multiply_transposed(std::span<const double> w, std::span<double> pbar) = 0;  // pbar = J' w
+
+  // Ways in which r changes with what the model assumes for convenience, say how stiff a contact is: what the residuals
+  // say along those tells nothing of p. Valid as J is.
+  virtual int nuisance_count() const { return 0; }
+  virtual void nuisance(int /*k*/, std::span<double> /*dr*/) {}
 };
 
 }  // namespace aspic

@@ -1,5 +1,6 @@
 // What was measured against what a material predicts: r(p) = (predicted - measured) / standard deviation, over all load
-// cases, with exact derivatives by tangents and adjoints of each equilibrium.
+// cases, with exact derivatives by tangents and adjoints of each equilibrium. The cases are solved in parallel; the
+// bits do not depend on the number of threads.
 #pragma once
 #include <array>
 #include <memory>
@@ -65,23 +66,34 @@ class Misfit : public LeastSquares {
 
   int unknowns() const override;
   int residual_count() const override;
-  // Each case starts from its last equilibrium, corrected by the tangent; when that fails, the load is applied in
-  // parts.
+  // Each case starts from the equilibrium of the last linearisation, corrected by the tangent, or else from its last
+  // one; when that fails, the load is applied in parts. The first time, each starts from the case before it in its
+  // group.
   bool evaluate(std::span<const double> p, std::span<double> r) override;
   bool linearize() override;
+  // A product that could not be computed is NaN, and failure() tells why.
   void multiply(std::span<const double> dp, std::span<double> dr) override;
   void multiply_transposed(std::span<const double> w, std::span<double> pbar) override;
+  // The logarithm of how stiff the layers of all tips are: stiffening them with the body moves nothing, so what the
+  // residuals say along it is no knowledge of how stiff the body is.
+  int nuisance_count() const override;
+  void nuisance(int k, std::span<double> dr) override;
+
+  // The equilibria of the last successful evaluate(), one case after another; empty before. A misfit that is given
+  // them, evaluated and linearised at the same p goes on to the same bits.
+  std::vector<double> state() const;
+  void set_state(std::span<const double> x);
 
   const CasePrediction& prediction(int c) const;  // by the last evaluate()
   std::pair<int, int> residuals_of(int c) const;  // first, count
   std::string what(int residual) const;           // "poke 3, depth 2: marker 17, y"
-  // Why the last evaluate() failed, in words.
+  // Why the last evaluate(), linearize() or product failed, in words.
   const std::string& failure() const;
 
   struct Counts {
     long equilibria = 0, newton_iterations = 0, factorizations = 0, solves = 0;
   };
-  const Counts& counts() const;
+  Counts counts() const;  // since the beginning
 
  private:
   struct Impl;

@@ -1,12 +1,13 @@
 // From the few or many unknowns p of a fit to the material of every tet.
-//   p -> value of each unknown quantity in each tet, in the space where it is fitted (log E, log b, ...) -> mu, lambda,
-//   ...
+//   p -> z = W p: each unknown quantity in each tet on the line where it is fitted (log E, ...), see quantity_scale.h
+//     -> E, nu, extra -> mu, lambda, extra
 #pragma once
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "fit/field_basis.h"
 #include "material/registry.h"
 #include "mesh/tet_mesh.h"
 
@@ -37,6 +38,7 @@ class ParameterMap {
   const std::string& material() const;
   std::span<const double> guess() const;         // size() numbers
   std::pair<int, int> range(int unknown) const;  // of its entries in p: first, count
+  const FieldBasis& basis(int unknown) const;
 
   std::vector<MaterialParameters> parameters(std::span<const double> p) const;  // one per tet
   // dtheta = dtheta/dp dp at p, parameters_per_tet() numbers per tet; and pbar += (dtheta/dp)' thetabar.
@@ -46,6 +48,7 @@ class ParameterMap {
   // The values in each tet of one unknown, as it is fitted (log E) and in SI units (E).
   std::vector<double> fitted_values(int unknown, std::span<const double> p) const;
   std::vector<double> values(int unknown, std::span<const double> p) const;
+  double value(int unknown, double fitted) const;  // in SI units, increasing in `fitted`
   // fitted_values is linear in p: values' rows as a sparse matrix, tet by tet. For uncertainty.
   void multiply_fitted(int unknown, std::span<const double> dp, std::span<double> values) const;
   void add_fitted_transposed(int unknown, std::span<const double> values, std::span<double> pbar) const;

@@ -11,7 +11,7 @@ namespace {
 constexpr size_t kLongestLine = size_t{1} << 20;  // longer ones are of no table that Aspic writes
 
 // A line break inside quotes is not taken for one of the cell: no table here has any.
-std::vector<std::string> split(std::string_view line) {
+std::vector<std::string> split(std::string_view line, char separator) {
   std::vector<std::string> cells(1);
   bool quoted = false;
   for (size_t i = 0; i < line.size(); ++i) {
@@ -21,13 +21,20 @@ std::vector<std::string> split(std::string_view line) {
       } else {
         quoted = !quoted;
       }
-    } else if (line[i] == ',' && !quoted) {
+    } else if (line[i] == separator && !quoted) {
       cells.emplace_back();
     } else if (line[i] != '\r' || quoted) {
       cells.back() += line[i];
     }
   }
   return cells;
+}
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+std::string trimmed(const std::string& text) {
+  const size_t first = text.find_first_not_of(" \t\r");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
 }
 
 template <class Number>
@@ -38,26 +45,57 @@ bool parse(const std::string& text, Number& value) {
 
 }  // namespace
 
-CsvReader::CsvReader(const std::filesystem::path& path) : path_(path), in_(path, std::ios::binary) {
-  if (!in_) throw InvalidInput(path.string() + ": cannot be read; check the name and the permissions");
+CsvReader::CsvReader(const std::filesystem::path& path, CsvOrigin origin)
+    : path_(path), in_(path, std::ios::binary), origin_(origin) {
+  std::error_code error;
+  if (!in_ || std::filesystem::is_directory(path, error))
+    throw InvalidInput(path.string() + ": cannot be read; check the name and the permissions");
   if (!read_line()) throw InvalidInput(path.string() + ": is empty; a table begins with the names of its columns");
   columns_ = cells_;
 }
 
-// A line as cells_; false at the end, also when the last line is torn.
-bool CsvReader::read_line() {
-  std::string line;
+// The next line, without its break; false at the end. A last line without a break counts as one of a foreign table.
+bool CsvReader::read_text(std::string& line) {
+  line.clear();
   for (int c; (c = in_.get()) != std::char_traits<char>::eof();) {
     if (c == '\n') {
       ++line_;
-      cells_ = split(line);
       return true;
     }
     line += static_cast<char>(c);
     if (line.size() > kLongestLine)
       throw InvalidInput(path_.string() + ":" + std::to_string(line_ + 1) + ": is no line of a table: it is too long");
   }
-  return false;
+  if (origin_ == CsvOrigin::aspic || line.empty()) return false;
+  ++line_;
+  return true;
+}
+
+// A line as cells_; false at the end.
+bool CsvReader::read_line() {
+  std::string line;
+  if (origin_ == CsvOrigin::aspic) {
+    if (!read_text(line)) return false;
+    cells_ = split(line, separator_);
+    return true;
+  }
+  do {
+    if (!read_text(line)) return false;
+    if (line_ == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
+  } while (trimmed(line).empty() || line.starts_with('#'));
+  if (columns_.empty()) choose_separator(line);
+  cells_ = split(line, separator_);
+  for (std::string& cell : cells_) cell = trimmed(cell);
+  while (!columns_.empty() && cells_.size() > columns_.size() && cells_.back().empty()) cells_.pop_back();
+  return true;
+}
+
+void CsvReader::choose_separator(const std::string& head) {
+  for (const char candidate : {',', ';', '\t'})
+    if (head.find(candidate) != std::string::npos) {
+      separator_ = candidate;
+      return;
+    }
 }
 
 bool CsvReader::has(std::string_view column) const {
@@ -80,10 +118,20 @@ bool CsvReader::next() {
   return true;
 }
 
-double CsvReader::number(size_t column) const {
+std::string CsvReader::where() const { return path_.string() + ":" + std::to_string(line_); }
+
+std::optional<double> CsvReader::try_number(size_t column) const {
+  std::string text = cells_[column];
+  if (origin_ == CsvOrigin::foreign && text.starts_with('+')) text.erase(0, 1);
+  if (separator_ != ',') std::replace(text.begin(), text.end(), ',', '.');
   double value = 0;
-  if (!parse(cells_[column], value)) fail(column, "a number");
-  return value;
+  return parse(text, value) ? std::optional(value) : std::nullopt;
+}
+
+double CsvReader::number(size_t column) const {
+  const std::optional<double> value = try_number(column);
+  if (!value) fail(column, "a number");
+  return *value;
 }
 
 int CsvReader::integer(size_t column) const {

@@ -73,5 +73,29 @@ TEST_F(CsvReading, DamageIsRefusedWithFileAndLine) {
   EXPECT_EQ(refusal("step,energy\r\n1,2\r\n"), "");
 }
 
+TEST_F(CsvReading, ATableOfASpreadsheetMayHaveSemicolonsAndDecimalCommas) {
+  write_file(path("foreign.csv"), "\xEF\xBB\xBF x [mm] ;force\r\n\r\n# taken on Monday\r\n 1,5 ; +2\r\n;-3,25e1;;");
+  CsvReader table(path("foreign.csv"), CsvOrigin::foreign);
+  EXPECT_THAT(table.columns(), testing::ElementsAre("x [mm]", "force"));
+  ASSERT_TRUE(table.next());
+  EXPECT_EQ(table.line(), 4);
+  EXPECT_EQ(table.number(0), 1.5);
+  EXPECT_EQ(table.number(1), 2);
+  ASSERT_TRUE(table.next());  // the last line has no break
+  EXPECT_TRUE(table.is_blank(0));
+  EXPECT_FALSE(table.try_number(0).has_value());
+  EXPECT_EQ(table.number(1), -32.5);
+  EXPECT_THAT(table.where(), testing::EndsWith("foreign.csv:5"));
+  EXPECT_FALSE(table.next());
+}
+
+TEST_F(CsvReading, TabsSeparateAndAFolderIsNoTable) {
+  write_file(path("tabs.csv"), "a\tb\n1\t2\n");
+  CsvReader table(path("tabs.csv"), CsvOrigin::foreign);
+  ASSERT_TRUE(table.next());
+  EXPECT_EQ(table.number(1), 2);
+  EXPECT_THROW(CsvReader(path("tabs.csv").parent_path(), CsvOrigin::foreign), InvalidInput);
+}
+
 }  // namespace
 }  // namespace aspic

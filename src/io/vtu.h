@@ -25,6 +25,7 @@ struct Vtu {
   TetMesh mesh;       // points are the positions written; region when the file has a "region" cell field
   TriMesh triangles;  // triangle cells, when there are no tets
   std::vector<Field> point_fields, cell_fields;
+  std::vector<Field> file_fields;  // <FieldData>: numbers of the whole file, of any length; text is passed over
 };
 
 // Ascii, inline base64 and appended, raw or zlib-compressed. Quads are split; lines and points are passed over; any
@@ -36,7 +37,8 @@ std::vector<double> read_vtu_points(const std::filesystem::path& path);
 
 // Inline base64, zlib-compressed; positions in double precision. The same input gives the same bytes.
 void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,
-               const std::vector<Field>& point_fields, const std::vector<Field>& cell_fields);
+               const std::vector<Field>& point_fields, const std::vector<Field>& cell_fields,
+               const std::vector<Field>& file_fields = {});
 
 // A time series: (time [s], file name relative to the index).
 void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames);

@@ -138,19 +138,37 @@ FieldType field_type(const XmlElement& array) {
   return *type == "Float32" ? FieldType::float32 : FieldType::int32;
 }
 
+bool is_text(const XmlElement& array) {
+  const std::string* type = array.attribute("type");
+  return type && *type == "String";
+}
+
+Field read_field(const VtkFile& file, const XmlElement& array, size_t count) {
+  const auto components = static_cast<size_t>(count_attribute(file, array, "NumberOfComponents", 1, 1024));
+  const std::string* name = array.attribute("Name");
+  if (components == 0) fail_at(file, array, "NumberOfComponents is 0");
+  return {name ? *name : "", static_cast<int>(components), read_reals(file, array, components * count),
+          field_type(array)};
+}
+
 // The arrays of <PointData> or <CellData>; text is passed over.
 std::vector<Field> read_fields(const VtkFile& file, const XmlElement* section, size_t count) {
   std::vector<Field> fields;
   if (!section) return fields;
+  for (const XmlElement& array : section->children)
+    if (array.name == "DataArray" && !is_text(array)) fields.push_back(read_field(file, array, count));
+  return fields;
+}
+
+// The arrays of <FieldData>, each of a length of its own.
+std::vector<Field> read_file_fields(const VtkFile& file, const XmlElement& grid) {
+  std::vector<Field> fields;
+  const XmlElement* section = grid.child("FieldData");
+  if (!section) return fields;
   for (const XmlElement& array : section->children) {
-    if (array.name != "DataArray") continue;
-    const std::string* type = array.attribute("type");
-    if (type && *type == "String") continue;
-    const auto components = static_cast<size_t>(count_attribute(file, array, "NumberOfComponents", 1, 1024));
-    const std::string* name = array.attribute("Name");
-    if (components == 0) fail_at(file, array, "NumberOfComponents is 0");
-    fields.push_back({name ? *name : "", static_cast<int>(components), read_reals(file, array, components * count),
-                      field_type(array)});
+    if (array.name != "DataArray" || is_text(array) || !array.attribute("NumberOfTuples")) continue;
+    const auto tuples = static_cast<size_t>(count_attribute(file, array, "NumberOfTuples", 0, kMaxCount));
+    fields.push_back(read_field(file, array, tuples));
   }
   return fields;
 }
@@ -229,6 +247,7 @@ Vtu parse_vtu(std::string_view contents, const std::string& name) {
   }
 
   Vtu vtu;
+  vtu.file_fields = read_file_fields(file, grid);
   std::vector<Vec3d>& vertices = has_tets ? vtu.mesh.rest : vtu.triangles.vertices;
   for (const Piece& piece : pieces) {
     const Kept kept = kept_cells(piece, static_cast<int>(vertices.size()));

@@ -124,6 +124,30 @@ TEST_F(VtuFile, WhatIsWrittenReadsBackToTheSameBits) {
   EXPECT_EQ(read_file(path("a.vtu")), read_file(path("b.vtu")));
 }
 
+TEST_F(VtuFile, FieldsOfTheWholeFileHaveLengthsOfTheirOwn) {
+  const std::vector<double> points = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  write_vtu(path("a.vtu"), points, {{0, 1, 2, 3}}, {}, {{"young", 1, {1e5}}},
+            {{"model <neo>", 1, {1}, FieldType::int32}, {"lines", 2, {1, 2, 3, 4, 5, 6}}});
+  const Vtu vtu = read_vtu(path("a.vtu"));
+  ASSERT_EQ(vtu.file_fields.size(), 2u);
+  EXPECT_EQ(vtu.file_fields[0].name, "model <neo>");
+  EXPECT_EQ(vtu.file_fields[0].values, std::vector<double>{1});
+  EXPECT_EQ(vtu.file_fields[1].components, 2);
+  EXPECT_EQ(vtu.file_fields[1].values, (std::vector<double>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(vtu.cell_fields[0].values, std::vector<double>{1e5});
+
+  std::string text = grid("", ascii);
+  text.insert(text.find("<Piece"),
+              "<FieldData><DataArray type=\"String\" Name=\"note\" NumberOfTuples=\"1\" format=\"ascii\">104 105 0"
+              "</DataArray><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">0.5"
+              "</DataArray></FieldData>");
+  ASSERT_EQ(message(text), "");
+  ASSERT_EQ(read_text(text).file_fields.size(), 1u);
+  EXPECT_EQ(read_text(text).file_fields[0].values, std::vector<double>{0.5});
+  text.replace(text.find("NumberOfTuples=\"1\" format=\"ascii\">0.5"), 18, "NumberOfTuples=\"2\"");
+  EXPECT_THAT(message(text), HasSubstr("TimeValue"));
+}
+
 TEST_F(VtuFile, ThePointsAloneAreThoseOfTheWhole) {
   const std::vector<double> points = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1.0 / 3};
   write_vtu(path("tet.vtu"), points, {{0, 1, 2, 3}}, {}, {});

@@ -59,31 +59,42 @@ void append_compressed(std::string_view bytes, std::string& text) {
 }
 
 void append_array(std::string_view type, std::string_view name, int components, std::string_view bytes,
-                  std::string& text) {
+                  std::string& text, const std::string& attributes = "") {
   text += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_escaped(name) + "\"";
   // Left out for scalars, which meshio would otherwise give as a column.
   if (components != 1) text += " NumberOfComponents=\"" + std::to_string(components) + "\"";
-  text += " format=\"binary\">\n";
+  text += attributes + " format=\"binary\">\n";
   append_compressed(bytes, text);
   text += "\n</DataArray>\n";
+}
+
+void append_field(const Field& field, const std::string& attributes, std::string& text) {
+  const std::span<const double> values = field.values;
+  switch (field.type) {
+    case FieldType::float64:
+      return append_array("Float64", field.name, field.components, bytes_of<double>(values), text, attributes);
+    case FieldType::float32:
+      return append_array("Float32", field.name, field.components, bytes_of<float>(values), text, attributes);
+    case FieldType::int32:
+      return append_array("Int32", field.name, field.components, bytes_of<int32_t>(values), text, attributes);
+  }
 }
 
 void append_fields(const std::vector<Field>& fields, [[maybe_unused]] size_t count, std::string& text) {
   for (const Field& field : fields) {
     ASPIC_CHECK(field.values.size() == count * static_cast<size_t>(field.components));
-    const std::span<const double> values = field.values;
-    switch (field.type) {
-      case FieldType::float64:
-        append_array("Float64", field.name, field.components, bytes_of<double>(values), text);
-        break;
-      case FieldType::float32:
-        append_array("Float32", field.name, field.components, bytes_of<float>(values), text);
-        break;
-      case FieldType::int32:
-        append_array("Int32", field.name, field.components, bytes_of<int32_t>(values), text);
-        break;
-    }
+    append_field(field, "", text);
   }
+}
+
+void append_file_fields(const std::vector<Field>& fields, std::string& text) {
+  if (fields.empty()) return;
+  text += "<FieldData>\n";
+  for (const Field& field : fields) {
+    const size_t tuples = field.values.size() / static_cast<size_t>(field.components);
+    append_field(field, " NumberOfTuples=\"" + std::to_string(tuples) + "\"", text);
+  }
+  text += "</FieldData>\n";
 }
 
 void append_cells(const std::vector<Tet>& tets, std::string& text) {
@@ -99,13 +110,16 @@ void append_cells(const std::vector<Tet>& tets, std::string& text) {
 }  // namespace
 
 void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,
-               const std::vector<Field>& point_fields, const std::vector<Field>& cell_fields) {
+               const std::vector<Field>& point_fields, const std::vector<Field>& cell_fields,
+               const std::vector<Field>& file_fields) {
   const size_t point_count = points.size() / 3;
   std::string text =
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt32\" "
-      "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
-      std::to_string(point_count) + "\" NumberOfCells=\"" + std::to_string(tets.size()) + "\">\n<Points>\n";
+      "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
+  append_file_fields(file_fields, text);
+  text += "<Piece NumberOfPoints=\"" + std::to_string(point_count) + "\" NumberOfCells=\"" +
+          std::to_string(tets.size()) + "\">\n<Points>\n";
   append_array("Float64", "Points", 3, bytes_of<double>(points), text);
   text += "</Points>\n<Cells>\n";
   append_cells(tets, text);

@@ -6,6 +6,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <limits>
+#include <mutex>
 #include <numeric>
 
 namespace aspic {
@@ -37,6 +38,8 @@ std::vector<int> nested_dissection_order(const BlockPattern& pattern) {
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_NUMBERING] = 0;
   options[METIS_OPTION_SEED] = 1;  // the same order in every run
+  static std::mutex metis;  // its random numbers come from rand(), which all threads share
+  const std::lock_guard lock(metis);
   const int status =
       METIS_NodeND(&rows, start.data(), neighbour.data(), nullptr, options, order.data(), position.data());
   if (status != METIS_OK) return {};

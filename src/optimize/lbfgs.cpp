@@ -71,11 +71,12 @@ bool LBFGS::compute(Objective& E, std::span<const double> x, std::span<const dou
   return true;
 }
 
-// A Hessian has the right size. What else B is, it is scaled by the last change [Nocedal and Wright 2006, eq. 7.20],
-// and the first direction by the quadratic model along it.
+// A Hessian has the right size, and so has at first what the objective itself gives. What else B is, it is scaled by
+// the last change [Nocedal and Wright 2006, eq. 7.20], and the first direction by the quadratic model along it.
 bool LBFGS::scale(Objective& E, std::span<const double> x, std::span<const double> g, std::span<double> d,
                   DirectionReport& report) {
   if (B_.kind() == PreconditionerKind::hessian) return true;
+  if (B_.kind() == PreconditionerKind::own && count_ == 0) return true;
   double factor = 0;
   if (count_ == 0) {
     factor = length_.along(E, x, g, d, report);

@@ -29,6 +29,10 @@ class Objective {
   // A constant positive definite matrix in which steps may be measured, such as the mass; null: the identity.
   virtual const BlockSparse* metric() { return nullptr; }
 
+  // z = B^-1 r for a positive definite B of the objective's own, the same throughout a minimisation. False: it has
+  // none.
+  virtual bool precondition(std::span<const double> /*r*/, std::span<double> /*z*/) { return false; }
+
   // Which vertices interact, for methods that move one vertex at a time; null: ask the Hessian.
   virtual const BlockPattern* coupling() { return nullptr; }
   // g[k] = dE/dx_v and H[k] = d2E/dx_v^2 (3 x 3, perhaps indefinite) for v = vertices[k], no two of which interact.

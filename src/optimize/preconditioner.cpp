@@ -30,6 +30,8 @@ std::string_view to_string(PreconditionerKind kind) {
       return "diagonal";
     case PreconditionerKind::hessian:
       return "hessian";
+    case PreconditionerKind::own:
+      return "own";
   }
   return "unknown";
 }
@@ -49,6 +51,7 @@ std::string Preconditioner::description() const {
 
 bool Preconditioner::apply(Objective& E, std::span<const double> x, std::span<const double> r, std::span<double> z,
                            DirectionReport& report) {
+  if (kind_ == PreconditionerKind::own) return E.precondition(r, z);
   if (!is_made_) is_definite_ = make(E, x, report);
   is_made_ = true;
   if (!is_definite_) return false;

@@ -18,9 +18,10 @@ enum class PreconditionerKind {
   mass,      // Objective::metric()
   diagonal,  // the 3x3 diagonal blocks of the Hessian, each made definite
   hessian,   // the Hessian with clamped elements
+  own,       // Objective::precondition()
 };
 std::string_view to_string(PreconditionerKind kind);
-std::vector<PreconditionerKind> all_preconditioners();
+std::vector<PreconditionerKind> all_preconditioners();  // that any objective can have: all but `own`
 
 class Preconditioner {
  public:

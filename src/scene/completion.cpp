@@ -41,7 +41,19 @@ void name_tables(Array& tables, const NameOf& name_of) {
   }
 }
 
+// A fitted material is whole: of its quantities only the density may be chosen anew.
+void check_beside_file(const Value& material) {
+  const std::string file = toml_string(material["file"].text());
+  for (const Member& m : material.table().members) {
+    if (m.key == "model" || m.key == "density" || m.key == "file" || m.key == "frame" || m.key == "hash") continue;
+    throw error_at(m.place, m.key + " = " + shortened(inline_toml(m.value)) + "; file = " + file +
+                                " has the elastic quantities of every tet (remove " + m.key +
+                                "; only density may be given beside a file)");
+  }
+}
+
 void complete_material(Value& material) {
+  if (material.find("file")) return check_beside_file(material);
   const MaterialInfo& info = material_info(material["model"].text());
   const std::vector<std::string> plain = {"model", "density", "young", "poisson", "lambda", "mu", "shear", "bulk"};
   std::vector<std::string> accepted = plain;

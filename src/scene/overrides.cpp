@@ -35,11 +35,11 @@ Value value_of(const std::string& text, const std::string& source) {
   }
 }
 
-// Where one of several keys must be given, the one from the command line takes the place of the document's: a mesh that
-// of a generated shape, a sphere that of a box.
+// Where one of several keys is given, the one from the command line takes the place of the document's: a mesh that of a
+// generated shape, a sphere that of a box, a material's file that of its numbers.
 void drop_alternatives(Table& table, const std::string& section, const std::string& chosen) {
   const Alternatives* alternatives = scene_schema().alternatives_of(section);
-  if (!alternatives || !alternatives->required) return;
+  if (!alternatives) return;
   const auto has = [&](const std::vector<std::string>& group, const std::string& key) {
     return std::find(group.begin(), group.end(), key) != group.end();
   };

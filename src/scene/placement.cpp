@@ -37,6 +37,13 @@ Mat3d euler(const Vec3d& degrees) {
   return R;
 }
 
+Mat3d rotation_of(const Value& body) {
+  const Value* rotate = body.find("rotate");
+  if (!rotate) return identity3<double>();
+  if (const Value* angles = rotate->find("euler_deg")) return euler(angles->vector());
+  return rotation((*rotate)["axis"].vector(), kRadians * (*rotate)["angle_deg"].number());
+}
+
 std::vector<Vec3d> twisted(const Value& twist, const std::vector<Vec3d>& X, const Vec3d& center) {
   const Vec3d axis = twist["axis"].vector();
   const Vec3d a = (1 / std::sqrt(dot(axis, axis))) * axis;
@@ -81,16 +88,15 @@ Mat3d rotation(const Vec3d& axis, double angle) {
 }
 
 AffineMap placement_of(const Value& body) {
-  AffineMap map;
-  map.A = diagonal(body["scale"]);
-  if (const Value* rotate = body.find("rotate")) {
-    const Value* angles = rotate->find("euler_deg");
-    const Mat3d R = angles ? euler(angles->vector())
-                           : rotation((*rotate)["axis"].vector(), kRadians * (*rotate)["angle_deg"].number());
-    map.A = R * map.A;
-  }
-  map.b = body["translate"].vector();
-  return map;
+  return {rotation_of(body) * diagonal(body["scale"]), body["translate"].vector()};
+}
+
+AffineMap from_placed(const Value& body, Frame frame) {
+  if (frame == Frame::placed) return {};
+  const AffineMap place = placement_of(body);
+  // X_mesh = A^-1 (x - b), X_scaled = R' (x - b)
+  const Mat3d back = frame == Frame::mesh ? inverse(place.A) : transpose(rotation_of(body));
+  return {back, -1.0 * (back * place.b)};
 }
 
 std::vector<Vec3d> deformed(Value& body, const std::vector<Vec3d>& X, SceneFiles& files, const std::string& stem) {
@@ -142,12 +148,8 @@ Vec3d VectorField::at(const Vec3d& X) const {
 }
 
 Box bounding_box(const std::vector<Vec3d>& X) {
-  Box box{{{INFINITY, INFINITY, INFINITY}}, {{-INFINITY, -INFINITY, -INFINITY}}};
-  for (const Vec3d& P : X)
-    for (int i = 0; i < 3; ++i) {
-      box.lower[i] = std::min(box.lower[i], P[i]);
-      box.upper[i] = std::max(box.upper[i], P[i]);
-    }
+  Box box;
+  for (const Vec3d& P : X) box.add(P);
   return box;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "math/small.h"
+#include "mesh/box_tree.h"
 #include "scene/expression.h"
 #include "scene/scene_files.h"
 #include "scene/value.h"
@@ -19,6 +20,10 @@ struct AffineMap {
 Mat3d rotation(const Vec3d& axis, double angle /* [rad] */);  // the axis has any length but 0
 
 AffineMap placement_of(const Value& body);  // scale, then rotate, then translate
+
+// Which coordinates of a body are meant: those of its mesh file, after `scale`, or after all of its placement.
+enum class Frame { mesh, scaled, placed };
+AffineMap from_placed(const Value& body, Frame frame);  // placed points to that frame
 
 // The shape at time 0 of the placed rest shape X. Files are remembered under `stem`.
 std::vector<Vec3d> deformed(Value& body, const std::vector<Vec3d>& X, SceneFiles& files, const std::string& stem);
@@ -38,9 +43,6 @@ class VectorField {
   std::vector<Expression> formula_;
 };
 
-struct Box {
-  Vec3d lower{}, upper{};
-};
 Box bounding_box(const std::vector<Vec3d>& X);
 
 }  // namespace aspic

@@ -5,67 +5,22 @@
 
 #include "base/error.h"
 #include "dynamics/integrator.h"
-#include "material/registry.h"
 #include "scene/body_actions.h"
+#include "scene/body_material.h"
 #include "scene/placement.h"
 #include "scene/schema.h"
 #include "scene/solver_options.h"
-#include "scene/tables.h"
 
 namespace aspic {
 namespace {
 
-constexpr double kLockingPoisson = 0.45;  // linear tets are too stiff above
-constexpr double kFarFromOrigin = 1e8;    // in sizes of the body; half of the 16 digits of a position are lost there
-
-// The parameters of each tet of a body, in the user's order; density apart.
-std::vector<MaterialParameters> parameters_of(PlacedBody& body, SceneFiles& files, std::vector<std::string>& notes) {
-  Table& material = body.scene.table().find("material")->table();
-  const auto values = [&](const char* name) {
-    return tet_values(material, scene_schema().key("material", name), body.mesh, files, body.name());
-  };
-  const size_t count = body.mesh.tets.size();
-  std::vector<MaterialParameters> parameters(count);
-  if (!body.scene["elastic"].boolean()) return parameters;  // all stiffness is zero
-  if (material.find("young")) {
-    const std::vector<double> E = values("young"), nu = values("poisson");
-    for (size_t t = 0; t < count; ++t) parameters[t].lame = lame_from_young_poisson(E[t], nu[t]);
-  } else if (material.find("lambda")) {
-    const std::vector<double> lambda = values("lambda"), mu = values("mu");
-    for (size_t t = 0; t < count; ++t) {
-      parameters[t].lame = {mu[t], lambda[t]};
-      if (!(lambda[t] > -2.0 / 3 * mu[t]))
-        throw error_at(material.find("lambda")->place, "lambda = " + number_text(lambda[t]) + " in tet " +
-                                                           std::to_string(t) +
-                                                           "; must be > -2/3 mu = " + number_text(-2.0 / 3 * mu[t]));
-    }
-  } else {
-    const std::vector<double> shear = values("shear"), bulk = values("bulk");
-    for (size_t t = 0; t < count; ++t) parameters[t].lame = lame_from_shear_bulk(shear[t], bulk[t]);
-  }
-  const MaterialInfo& info = material_info(material.find("model")->text());
-  for (size_t e = 0; e < info.extra.size(); ++e) {
-    const std::vector<double> extra = values(info.extra[e].name.c_str());
-    for (size_t t = 0; t < count; ++t) parameters[t].extra[e] = extra[t];
-  }
-  double highest = -1;
-  for (const MaterialParameters& p : parameters) highest = std::max(highest, poisson_ratio(p.lame));
-  if (highest > kLockingPoisson + 1e-9)
-    notes.push_back("body '" + body.name() + "': Poisson's ratio reaches " + number_text(highest) +
-                    "; linear tets lock above 0.45 and deform too little (0.45 is safe)");
-  return parameters;
-}
+constexpr double kFarFromOrigin = 1e8;  // in sizes of the body; half of the 16 digits of a position are lost there
 
 std::vector<MaterialParameters> from_user(const Renumbering& tet, const std::vector<MaterialParameters>& user) {
   std::vector<MaterialParameters> stored;
   stored.reserve(user.size());
   for (size_t t = 0; t < user.size(); ++t) stored.push_back(user[tet.to_user(static_cast<int>(t))]);
   return stored;
-}
-
-// Without elasticity a body still has its term, of zero stiffness, so that det F is watched.
-std::string model_of(const PlacedBody& body) {
-  return body.scene["elastic"].boolean() ? body.scene["material"]["model"].text() : "neo_hookean";
 }
 
 void append(const TetMesh& mesh, TetMesh& all) {
@@ -226,13 +181,12 @@ class SceneBuilder {
     const Value& solver = *source_.document.find("solver");
     const MassKind kind = solver["mass"].text() == "lumped" ? MassKind::lumped : MassKind::consistent;
     for (PlacedBody& body : bodies_) {
-      Table& material = body.scene.table().find("material")->table();
       const Renumbering& tet = body.numbering.tet;
-      const std::vector<double> density = tet.from_user(
-          tet_values(material, scene_schema().key("material", "density"), body.mesh, files_, body.name()));
+      const BodyMaterial material = body_material(body, files_, source_.notes);
+      const std::vector<double> density = tet.from_user(material.density);
       model_.density.insert(model_.density.end(), density.begin(), density.end());
-      const std::vector<MaterialParameters> parameters = from_user(tet, parameters_of(body, files_, source_.notes));
-      model_.elasticity.push_back(make_tet_elasticity(model_of(body), model_.mesh, body.first_tet, parameters));
+      const std::vector<MaterialParameters> parameters = from_user(tet, material.parameters);
+      model_.elasticity.push_back(make_tet_elasticity(material.model, model_.mesh, body.first_tet, parameters));
       export_moduli(parameters);
     }
     model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind);

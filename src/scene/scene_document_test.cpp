@@ -102,6 +102,10 @@ TEST(SceneDocument, AlternativesExcludeEachOther) {
   EXPECT_THAT(refusal(kBox + "material = { mu = 3 }\n"), HasSubstr("needs the key 'lambda'"));
   EXPECT_THAT(refusal(kBox + "material = { mu = 3, lambda = -2 }\n"), HasSubstr("lambda = -2; must be > -2/3 mu = -2"));
   EXPECT_THAT(refusal(kBox + "mesh = \"a.msh\"\n"), HasSubstr("excludes"));
+  EXPECT_THAT(refusal("[[body]]\nmesh_size = 1\n"), HasSubstr("needs the key 'mesh'"));
+  EXPECT_THAT(refusal(kBox + "deform = { hash = \"x\" }\n"), HasSubstr("needs the key 'file'"));
+  EXPECT_THAT(refusal(kBox + "material = { young = { name = \"E\" } }\n"), HasSubstr("needs the key 'file'"));
+  EXPECT_THAT(refusal(kBox + "material = { hash = \"x\" }\n"), HasSubstr("needs the key 'file'"));
   EXPECT_THAT(refusal("[[body]]\nname = \"a\"\n"), HasSubstr("body needs one of: mesh, mesh_size | shape"));
   EXPECT_THAT(refusal(kBox + "[[body.pin]]\nwhere = { lowest = 0.1, highest = 0.1 }\n"), HasSubstr("excludes lowest"));
 }

@@ -15,6 +15,7 @@ class Fingerprint {
  public:
   void add(const void* bytes, size_t count);
   std::string text() const;  // "fnv1a:0123456789abcdef"
+  std::uint64_t value() const { return hash_; }
 
  private:
   std::uint64_t hash_ = 14695981039346656037u;

@@ -80,6 +80,8 @@ const Schema& scene_schema();
 // Checks a document against the schema and fills in the defaults, in the order of the schema; whole numbers become
 // floats where a float is expected. Throws InvalidInput with the first few errors, one per line.
 void check_and_complete(Table& document, const std::string& source);
+// The same for a document of another kind, whose keys are those of `section`.
+void check_and_complete(Table& document, const std::string& source, const Schema& schema, const std::string& section);
 
 // Sorts the members of a checked document, at every level, as the schema has them.
 void put_in_order(Table& table, std::string_view section = "scene");

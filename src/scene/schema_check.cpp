@@ -275,8 +275,12 @@ class Checker {
 }  // namespace
 
 void check_and_complete(Table& document, const std::string& source) {
-  Checker checker(scene_schema());
-  checker.check_section(document, "scene", {std::make_shared<const std::string>(source), 1, 1});
+  check_and_complete(document, source, scene_schema(), "scene");
+}
+
+void check_and_complete(Table& document, const std::string& source, const Schema& schema, const std::string& section) {
+  Checker checker(schema);
+  checker.check_section(document, section, {std::make_shared<const std::string>(source), 1, 1});
   checker.finish();
 }
 

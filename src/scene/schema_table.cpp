@@ -279,7 +279,9 @@ void add_material(Schema& s) {
   for (const MaterialInfo& m : materials()) models.push_back(m.name);
   s.sections.push_back({"material", "material = { ... } in a [[body]]",
                         "Elastic constants at small strain, whatever the model does at large strain. Each value is a "
-                        "number, a formula of the centroid (X, Y, Z) of a tet at rest, or a `field` table."});
+                        "number, a formula of the centroid (X, Y, Z) of a tet at rest, or a `field` table. Or all "
+                        "of them come from a material that was fitted: `material = { file = \"material.vtu\" }`, see "
+                        "[fitting](fitting.md)."});
   add_key(s, "material",
           {.name = "model",
            .accepts = kText,
@@ -295,6 +297,28 @@ void add_material(Schema& s) {
   field("mu", "Pa", "", kPositive, "second Lame constant, the shear modulus", "", true);
   field("shear", "Pa", "", kPositive, "shear modulus", "", true);
   field("bulk", "Pa", "", kPositive, "bulk modulus", "", true);
+  add_key(
+      s, "material",
+      {.name = "file",
+       .accepts = kText,
+       .required = true,
+       .meaning = "a material as `aspic fit` writes it: a VTU with tets, the field of the file `model NAME` and the "
+                  "cell fields `young`, `poisson`, the model's own and, where it is known, `density`. Each tet "
+                  "takes the values of the tet of the file in which its centroid lies, or of the nearest; the "
+                  "meshes need not be the same. A `density` given beside it replaces the file's"});
+  add_key(s, "material",
+          {.name = "frame",
+           .accepts = kText,
+           .fallback = "\"mesh\"",
+           .choices = {"mesh", "scaled", "placed"},
+           .meaning = "coordinates of the body in which the file's mesh lies: `mesh` those of its own mesh file, so "
+                      "that the material follows the body however it is placed; `scaled` after `scale`, for a mesh "
+                      "in millimetres and a material in metres; `placed` after rotate and translate, too",
+           .reason = "the material was fitted on the mesh of the body"});
+  add_key(s, "material",
+          {.name = "hash",
+           .accepts = kText,
+           .meaning = "of the material's file; written into resolved scenes and then checked"});
   std::set<std::string> known;
   for (const MaterialInfo& m : materials())
     for (const ExtraParameter& e : m.extra)
@@ -306,7 +330,8 @@ void add_material(Schema& s) {
                  .range = {.min = e.min, .max = e.max},
                  .table = "field",
                  .meaning = e.meaning + " (only " + m.name + "; default " + number_text(e.fallback) + ")"});
-  s.alternatives.push_back({"material", {{"young", "poisson"}, {"lambda", "mu"}, {"shear", "bulk"}}, false});
+  s.alternatives.push_back(
+      {"material", {{"young", "poisson"}, {"lambda", "mu"}, {"shear", "bulk"}, {"file", "frame", "hash"}}, false});
 
   s.sections.push_back({"field", "in place of a number of a material", "A value per tet from a table or a file."});
   add_key(s, "field",
@@ -314,7 +339,10 @@ void add_material(Schema& s) {
            .accepts = kAnyTable,
            .meaning = "a number for each region label of the mesh: { 1 = 1e5, 2 = 3e5 }"});
   add_key(s, "field",
-          {.name = "file", .accepts = kText, .meaning = "a CSV file with one number per tet, or a VTU file"});
+          {.name = "file",
+           .accepts = kText,
+           .required = true,
+           .meaning = "a CSV file with one number per tet, or a VTU file"});
   add_key(s, "field", {.name = "name", .accepts = kText, .meaning = "the cell field of a VTU file"});
   add_key(s, "field",
           {.name = "hash",

@@ -5,6 +5,8 @@ import "./shell.css";
 import { makeCompareButton } from "./compare";
 import { Dock } from "./dock";
 import { Files } from "./files";
+import { findFit } from "./fit/data";
+import { openFit } from "./fit/fitPage";
 import { Lecture } from "./lecture";
 import { LiveSource, sessionAddress } from "./live";
 import { drawMeshPictures } from "./meshPicture";
@@ -69,9 +71,11 @@ function openPage(source: Source): void {
   store.start();
 }
 
+const fit = findFit();
 const query = new URL(location.href).searchParams;
 const recording = findRecording();
 if (query.has("meshes")) void drawForProgram(drawMeshPictures);
+else if (fit !== null) void openFit(fit);
 else if (recording === null) openPage(new LiveSource(sessionAddress()));
 else if (query.has("render")) void drawForProgram(renderPictures(new RecordedSource(recording)));
 else openPage(new RecordedSource(recording));

@@ -28,7 +28,8 @@ export function showNotices(root: HTMLElement, store: Store, page: Page): void {
     item.append(button({ icon: "close", label: "Dismiss" }, () => item.remove()));
     list.append(item);
     while (list.children.length > kShown) list.firstElementChild?.remove();
-    setTimeout(() => item.remove(), kind === "info" ? kInfoLasts : kErrorLasts);
+    // From when it is drawn: a page that is slow, or hidden, shows it as long as any other.
+    requestAnimationFrame(() => setTimeout(() => item.remove(), kind === "info" ? kInfoLasts : kErrorLasts));
   };
   page.on("notice", ({ text, kind }) => say(text, kind));
   store.on("refused", (why) => say(why, "error"));

@@ -4,7 +4,7 @@ import type { Geometry, Vec3 } from "../src/protocol";
 import { CameraRig } from "../src/view/cameras";
 import { chooseLabels } from "../src/view/labels";
 import { length, minus, project, rayThrough } from "../src/view/lens";
-import { interpolated, nearestVertex, pick, screenPositions, verticesInDisc } from "../src/view/picking";
+import { interpolated, nearestVertex, pick, screenPositions, verticesInStroke } from "../src/view/picking";
 
 // A unit sphere of rings; its poles are vertices 0 and 1.
 function sphere(rings: number, around: number): { positions: Float32Array; triangles: Uint32Array } {
@@ -87,7 +87,7 @@ test("the nearest corner has the largest weight", () => {
 test("the brush takes the vertices in its disc that face the camera, and none behind them", () => {
   const lens = frontCamera().lens(400, 400);
   const surface = { ...kBall, clip: null };
-  const found = verticesInDisc(lens, surface, 200, 200, 60);
+  const found = verticesInStroke(lens, surface, [[200, 200]], 60);
   assert(found.length > 20);
   const inDisc = (v: number): boolean => {
     const [x, y] = project(lens, [kBall.positions[3 * v], kBall.positions[3 * v + 1], kBall.positions[3 * v + 2]]);
@@ -99,10 +99,22 @@ test("the brush takes the vertices in its disc that face the camera, and none be
   }
 });
 
+test("a stroke of the brush covers all of its way, however few its places are", () => {
+  const lens = frontCamera().lens(400, 400);
+  const surface = { ...kBall, clip: null };
+  const line = (count: number): [number, number][] =>
+    Array.from({ length: count + 1 }, (_, i) => [120 + (160 * i) / count, 170 + (60 * i) / count]);
+  const found = verticesInStroke(lens, surface, line(1), 30);
+  assert.deepEqual(verticesInStroke(lens, surface, line(64), 30), found);
+  const discs = new Set(line(640).flatMap((place) => verticesInStroke(lens, surface, [place], 30)));
+  assert(found.length > 20);
+  assert.deepEqual([...discs].sort((a, b) => a - b), found);
+});
+
 test("the brush reaches through a cut", () => {
   const lens = frontCamera().lens(400, 400);
   const clip = { normal: [0, 0, -1] as Vec3, offset: 0 };
-  const found = verticesInDisc(lens, { ...kBall, clip }, 200, 200, 60);
+  const found = verticesInStroke(lens, { ...kBall, clip }, [[200, 200]], 60);
   assert(found.length > 20);
   for (const v of found) assert(kBall.positions[3 * v + 2] < 0);
 });

@@ -137,8 +137,10 @@ export class Settings {
   }
 
   private showSides(): void {
+    const two = this.store.side("b") !== null;
+    if (two === this.top.hasChildNodes()) return; // the choice that has the focus keeps it
     this.top.replaceChildren();
-    if (!this.store.side("b")) return;
+    if (!two) return;
     const names: Record<Target, string> = { a: "A", b: "B", both: "both" };
     for (const target of ["a", "b", "both"] as const) {
       const choice = element("input", { type: "radio", name: "side", value: target });

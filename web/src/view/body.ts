@@ -87,6 +87,10 @@ export class Body {
     return this.positions.array as Float32Array;
   }
 
+  get shading(): Int8Array {
+    return this.normals.array as Int8Array;
+  }
+
   show(picture: Picture): void {
     this.positions.array = picture.positions;
     this.normals.array = picture.normals;

@@ -144,17 +144,33 @@ export interface Surface {
 
 export const kSteepest = 8; // slope of a surface whose own vertices do not count as hidden by it
 
-// Vertices in a disc on the screen that nothing hides.
-export function verticesInDisc(lens: Lens, surface: Surface, x: number, y: number, radius: number): number[] {
+// From a way across the screen, of straight pieces.
+function distanceToWay(way: readonly [number, number][], x: number, y: number): number {
+  let least = Math.hypot(x - way[0][0], y - way[0][1]);
+  for (let i = 1; i < way.length; ++i) {
+    const [[ax, ay], [bx, by]] = [way[i - 1], way[i]];
+    const [ux, uy] = [bx - ax, by - ay];
+    const t = Math.min(1, Math.max(0, ((x - ax) * ux + (y - ay) * uy) / Math.max(ux * ux + uy * uy, 1e-12)));
+    least = Math.min(least, Math.hypot(x - ax - t * ux, y - ay - t * uy));
+  }
+  return least;
+}
+
+// Vertices that a disc covers on its way across the screen, and that nothing hides.
+export function verticesInStroke(lens: Lens, surface: Surface, way: readonly [number, number][], radius: number): number[] {
   const screen = screenPositions(lens, surface.positions, surface.clip);
-  const cells = 64;
-  const grid = new DepthGrid(x - radius, y - radius, (2 * radius) / cells, cells, cells);
+  const [lower, upper] = [Math.min, Math.max].map((end) => [0, 1].map((c) => end(...way.map((place) => place[c]))));
+  const longest = Math.max(upper[0] - lower[0], upper[1] - lower[1]) + 2 * radius;
+  const cell = Math.max((2 * radius) / 64, longest / 1024);
+  // Cells of the screen: whether a vertex is seen does not depend on where the way begins.
+  const [left, top] = lower.map((least) => Math.floor((least - radius) / cell));
+  const [right, bottom] = upper.map((most) => Math.ceil((most + radius) / cell));
+  const grid = new DepthGrid(left * cell, top * cell, cell, right - left, bottom - top);
   grid.add(screen, surface.triangles);
   const found: number[] = [];
   for (let i = 0; i < screen.length; i += 3) {
-    const [dx, dy] = [screen[i] - x, screen[i + 1] - y];
-    if (dx * dx + dy * dy > radius * radius || Number.isNaN(dx)) continue;
-    const slack = (kSteepest * 2 * radius) / cells / pixelsPerMetre(lens, screen[i + 2]);
+    if (!(distanceToWay(way, screen[i], screen[i + 1]) <= radius)) continue;
+    const slack = (kSteepest * cell) / pixelsPerMetre(lens, screen[i + 2]);
     if (grid.sees(screen[i], screen[i + 1], screen[i + 2], slack)) found.push(i / 3);
   }
   return found;

@@ -21,6 +21,7 @@ export class Stage {
   isBlownUp = false; // the body, so far that it is not drawn
   hasLeft = false; // the middle of a body that is not larger than the view
   radius = 1; // of the scene's box [m]
+  readonly extras = new THREE.Group(); // what stands beside the body [m]
   private centre: Vec3 = [0, 0, 0];
   private up: Vec3 = [0, 0, 1];
   private body: Body | null = null;
@@ -52,7 +53,8 @@ export class Stage {
     this.sun.shadow.mapSize.set(1024, 1024);
     this.sun.shadow.radius = 6;
     this.sun.shadow.bias = -0.0008;
-    this.scene.add(this.sky, this.sun, this.sun.target, this.lamp, this.lamp.target, this.ground, this.tip.root);
+    this.extras.matrixAutoUpdate = false;
+    this.scene.add(this.extras, this.sky, this.sun, this.sun.target, this.lamp, this.lamp.target, this.ground, this.tip.root);
   }
 
   // Places ground and lights around the box of a scene.
@@ -79,6 +81,7 @@ export class Stage {
     const scale = 1 / this.radius;
     const [x, y, z] = this.centre;
     body.root.matrix.makeScale(scale, scale, scale).multiply(new THREE.Matrix4().makeTranslation(-x, -y, -z));
+    this.extras.matrix.copy(body.root.matrix);
     this.scene.add(body.root);
   }
 

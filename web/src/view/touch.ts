@@ -5,7 +5,7 @@ import type { Store } from "../store";
 import type { CameraRig } from "./cameras";
 import type { Display } from "./display";
 import { isBehind, isFinite3, onFacingPlane, pixelsPerMetre, project, rayThrough, type Lens } from "./lens";
-import { pick, verticesInDisc, type Hit, type Surface } from "./picking";
+import { pick, verticesInStroke, type Hit, type Surface } from "./picking";
 import { depthOf, inwardNormal, wayIn, type Way } from "./pressing";
 
 export interface Touched {
@@ -25,7 +25,7 @@ export interface Touched {
 type Gesture =
   | { kind: "turn" | "pan"; moved: number; hit: Hit | null; reads: boolean }
   | { kind: "grab"; anchor: Vec3; target: Vec3 }
-  | { kind: "brush"; pinned: boolean; known: Set<number> }
+  | { kind: "brush"; pinned: boolean; known: Set<number>; path: [number, number][] } // since the last frame, and where it then was
   | { kind: "pinch"; distance: number }
   | { kind: "press"; way: Way; from: number; moved: [number, number]; depth: number };
 
@@ -102,7 +102,7 @@ export class Touch {
     const { store, side, display } = this.view;
     if (display.settings.tool === "probe") return this.touchWithTip(hit);
     if (display.settings.tool === "pin")
-      return { kind: "brush", pinned: this.pins, known: new Set(store.side(side)?.pins) };
+      return { kind: "brush", pinned: this.pins, known: new Set(store.side(side)?.pins), path: [this.cursor!] };
     store.source.send({ do: "grab", side, triangle: hit.triangle, weights: hit.weights, target: hit.point });
     return { kind: "grab", anchor: hit.point, target: hit.point };
   }
@@ -161,7 +161,7 @@ export class Touch {
     } else if (gesture.kind === "grab") {
       const target = onFacingPlane(this.view.lens(), rayThrough(this.view.lens(), ...this.cursor!), gesture.anchor);
       if (target && isFinite3(target)) gesture.target = target;
-    }
+    } else if (gesture.kind === "brush") gesture.path.push(this.cursor!);
   }
 
   private up(event: PointerEvent): void {
@@ -220,12 +220,13 @@ export class Touch {
     if (this.gesture?.kind === "grab") store.source.send({ do: "move", target: this.gesture.target });
     if (this.gesture?.kind === "press" && this.gesture.depth !== store.state?.[side]?.probe?.wanted)
       store.source.send({ do: "press", depth: this.gesture.depth });
-    if (this.gesture?.kind !== "brush" || !this.cursor) return;
-    const { pinned, known } = this.gesture;
     const surface = this.view.surface();
-    if (!surface) return;
-    const inside = verticesInDisc(this.view.lens(), surface, ...this.cursor, this.view.display.settings.brush);
-    const vertices = inside.filter((vertex) => known.has(vertex) !== pinned);
+    if (this.gesture?.kind !== "brush" || !surface) return;
+    const { pinned, known, path } = this.gesture;
+    const { brush } = this.view.display.settings;
+    const covered = verticesInStroke(this.view.lens(), surface, path, brush); // however few the frames are
+    path.splice(0, path.length - 1);
+    const vertices = covered.filter((vertex) => known.has(vertex) !== pinned);
     if (vertices.length === 0) return;
     for (const vertex of vertices) pinned ? known.add(vertex) : known.delete(vertex);
     store.source.send({ do: "pin", side, vertices, pinned });

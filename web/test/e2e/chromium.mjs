@@ -16,7 +16,7 @@ export function findChromium() {
   return ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
 }
 
-export async function launchChromium() {
+export async function launchChromium(more = []) {
   const { chromium } = await import("playwright-core");
-  return chromium.launch({ executablePath: findChromium(), args: kArguments });
+  return chromium.launch({ executablePath: findChromium(), args: [...kArguments, ...more] });
 }

@@ -1,8 +1,7 @@
 // A/B: two simulations side by side under one mouse.
 import assert from "node:assert/strict";
-import { join } from "node:path";
 import { test } from "node:test";
-import { findBody, openSession, out, pageModule, pressAndWait, settingOf, startProgram } from "./harness.mjs";
+import { boxOf, findBody, keepPicture, openSession, pageModule, pressAndWait, settingOf, settled, shownBy, startProgram, toTheStart } from "./harness.mjs";
 
 const { presets } = await pageModule("presets.ts");
 const program = await startProgram("scenes/cantilever.toml");
@@ -28,9 +27,9 @@ test("each offered comparison opens two sides, which advance together", async ()
   const all = presets(heard.scenes.a);
   assert.ok(all.length >= 6);
   for (const { title, label } of all) {
-    await pressAndWait(opened, "r", "the start", () => heard.state.a.step === 0);
+    await toTheStart(opened);
     await compare(opened, title);
-    assert.equal(await page.locator(".side").count(), 2);
+    await until("two sides", async () => (await page.locator(".side").count()) === 2);
     await page.getByText(`B: ${label}`).waitFor();
     assert.equal(heard.scenes.b.label, label);
     const told = heard.messages.length;
@@ -55,21 +54,21 @@ test("each offered comparison opens two sides, which advance together", async ()
 });
 
 test("the cameras are one, and so is the mouse; the legend and the note name both sides", async () => {
-  const opened = await openSession(program);
+  const opened = await openSession(program, { keepsPixels: true });
   const { page, heard, until, close } = opened;
-  await pressAndWait(opened, "r", "the start", () => heard.state.a.step === 0);
   await compare(opened, "Ten times as stiff");
   assert.equal(settingOf(heard, "material.young", "b").value, 10 * settingOf(heard, "material.young").value);
   await page.getByRole("tab", { name: "Energy" }).click();
   const canvases = [0, 1].map((i) => page.locator(".side").nth(i).locator("canvas").first());
-  const shown = () => Promise.all(canvases.map((canvas) => canvas.screenshot()));
+  const shown = async () => (await Promise.all(canvases.map(shownBy))).map(({ print }) => print);
+  const box = await boxOf(page.locator(".side").first());
+  await settled(opened);
   const before = await shown();
-  const box = await page.locator(".side").first().boundingBox();
   await page.mouse.move(box.x + 30, box.y + 60); // beside the body
   await page.mouse.down();
   await page.mouse.move(box.x + 130, box.y + 80, { steps: 5 });
   await page.mouse.up();
-  await until("both cameras turn", async () => (await shown()).every((picture, i) => !picture.equals(before[i])));
+  await until("both cameras turn", async () => (await shown()).every((print, i) => print !== before[i]));
   const [x, y] = await findBody(opened);
   await page.mouse.down();
   await page.mouse.move(x + 10, y - 60, { steps: 5 });
@@ -84,10 +83,10 @@ test("the cameras are one, and so is the mouse; the legend and the note name bot
   await panel.getByText(/10 E is dashed/).waitFor();
   const legend = await panel.innerText();
   assert.ok(/10 E/.test(legend), legend);
-  await page.screenshot({ path: join(out, "compare.png") });
+  await keepPicture(page, "compare");
   await page.keyboard.press("m");
   await page.getByLabel("Which side of the comparison").or(page.getByTitle("Which side of the comparison")).first().waitFor();
-  await page.screenshot({ path: join(out, "compare_microscope.png") });
+  await keepPicture(page, "compare_microscope");
   await endCompare(opened);
   await close();
 });

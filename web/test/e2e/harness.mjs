@@ -10,9 +10,8 @@ import { build } from "esbuild";
 import { launchChromium } from "./chromium.mjs";
 
 export const aspic = process.env.ASPIC;
-export const out = process.env.OUT; // for pictures
 export const root = join(dirname(fileURLToPath(import.meta.url)), "../../..");
-export const kPatience = 60_000; // [ms]
+export const kPatience = 180_000; // [ms]: two weak cores that draw without a graphics card are slow, not broken
 
 // A module of the page itself.
 export async function pageModule(name) {
@@ -21,6 +20,7 @@ export async function pageModule(name) {
   return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`);
 }
 const { decode } = await pageModule("protocol.ts");
+const kSize = [1024, 640]; // [px]
 
 // Ends with the test file, the newest first.
 const endings = [];
@@ -74,20 +74,20 @@ afterEach(async () => {
 let browser = null;
 export async function theBrowser() {
   if (browser) return browser;
-  browser = await launchChromium();
+  browser = await launchChromium(["--disable-gpu-compositing"]); // a third of the work, without a graphics card
   atTheEnd(() => browser.close());
   return browser;
 }
 
 // What the program told the page, as far as a test wants to know.
 function listener() {
-  const heard = { messages: [], sent: [], state: null, scenes: {}, geometries: {}, pictures: {}, counted: 0, bytes: 0 };
+  const heard = { messages: [], sent: [], state: null, states: 0, scenes: {}, geometries: {}, pictures: {}, counted: 0, bytes: 0 };
   const forget = { end_compare: () => ["scenes", "geometries", "pictures"].forEach((kind) => delete heard[kind].b) };
   heard.take = (payload) => {
     if (typeof payload === "string") {
       const message = JSON.parse(payload);
       heard.messages.push(message);
-      if (message.kind === "state") heard.state = message;
+      if (message.kind === "state") [heard.state, heard.states] = [message, heard.states + 1];
       if (message.kind === "scene") heard.scenes[message.side] = message;
       forget[message.kind]?.();
       return;
@@ -101,6 +101,36 @@ function listener() {
     heard.bytes = bytes.byteLength;
   };
   return heard;
+}
+
+// What an image shows: how much its brightness varies (its standard deviation; 0: a single colour), and a number that
+// differs where images do.
+function lookAtImages() {
+  window.lookAt = (image) => {
+    if (!(image.width > 0 && image.height > 0)) return { contrast: 0, print: 0 };
+    const canvas = new OffscreenCanvas(image.width, image.height);
+    const context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, image.width, image.height);
+    let [sum, squares, print] = [0, 0, 2166136261];
+    for (let i = 0; i < data.length; i += 4) {
+      const y = 0.3 * data[i] + 0.6 * data[i + 1] + 0.1 * data[i + 2];
+      sum += y;
+      squares += y * y;
+      print = Math.imul(print ^ (data[i] | (data[i + 1] << 8) | (data[i + 2] << 16)), 16777619);
+    }
+    const n = data.length / 4;
+    return { contrast: Math.sqrt(Math.max(0, squares / n - (sum / n) ** 2)), print };
+  };
+}
+
+// Without smooth edges, a third of the work; and where asked for, a canvas can be read long after it was drawn.
+function drawSimply(preserveDrawingBuffer) {
+  const { getContext } = HTMLCanvasElement.prototype;
+  HTMLCanvasElement.prototype.getContext = function (kind, attributes) {
+    const simple = { ...attributes, antialias: false, preserveDrawingBuffer };
+    return getContext.call(this, kind, /webgl/.test(kind) ? simple : attributes);
+  };
 }
 
 // Notes what canvases write, since no element holds it.
@@ -122,7 +152,7 @@ function story({ state, sent, messages, pictures }) {
 
 // A page of its own. `close` fails on every error of its scripts, refusal of its content policy and foreign request,
 // but for errors that are `expected`.
-export async function openPage(address, { size = [1280, 720], watchRequests = true, expected = /^$/, prepare, ...context } = {}) {
+export async function openPage(address, { size = kSize, watchRequests = true, keepsPixels = false, expected = /^$/, prepare, ...context } = {}) {
   const inside = await (await theBrowser()).newContext({ viewport: { width: size[0], height: size[1] }, ...context });
   contexts.add(inside);
   const page = await inside.newPage();
@@ -142,7 +172,8 @@ export async function openPage(address, { size = [1280, 720], watchRequests = tr
     socket.on("framereceived", ({ payload }) => heard.take(payload));
     socket.on("framesent", ({ payload }) => typeof payload === "string" && payload !== "ready" && heard.sent.push(payload));
   });
-  await page.addInitScript(noteDrawnTexts);
+  for (const script of [lookAtImages, noteDrawnTexts]) await page.addInitScript(script);
+  await page.addInitScript(drawSimply, keepsPixels);
   await prepare?.(page);
   await page.goto(address);
   const opened = {
@@ -160,68 +191,123 @@ export async function openPage(address, { size = [1280, 720], watchRequests = tr
   return opened;
 }
 
-export async function openSession(program, options) {
+// A page that steers, at the start; or one that `watches`.
+export async function openSession(program, { watches = false, ...options } = {}) {
   const opened = await openPage(program.address, options);
   await opened.until("a picture", ({ state, pictures }) => state && pictures.a);
   await opened.page.locator("#views canvas").first().waitFor();
-  if (opened.heard.messages.find(({ kind }) => kind === "hello").steers) await tidy(opened);
+  if (watches) return opened;
+  await steering(opened);
+  await tidy(opened);
   return opened;
 }
 
+// The program may not know yet that the page which steered has gone.
+export const steering = ({ until }) =>
+  until("the steering", ({ messages }) => messages.findLast(({ kind }) => kind === "hello" || kind === "role")?.steers);
+
 // What an earlier test left: a comparison, a simulation that plays, steps.
 async function tidy(opened) {
-  if (opened.heard.state.playing) await pressAndWait(opened, " ", "a pause", ({ state }) => !state.playing);
+  await setPlaying(opened, false);
   if (opened.heard.state.b) await pressAndWait(opened, "c", "one side", ({ state, scenes }) => !state.b && !scenes.b);
-  const { step, iteration } = opened.heard.state.a;
-  if (step > 0 || iteration >= 0) await pressAndWait(opened, "r", "the start", ({ state }) => state.a.step === 0);
+  await toTheStart(opened);
 }
+
+export const toTheStart = (opened) =>
+  pressAndWait(opened, "r", "the start", ({ state, pictures, geometries }) => isAtStart(state) && pictures.a.step === 0 && pictures.a.generation === geometries.a.generation);
+const isAtStart = ({ playing, replaying, a }) => !playing && !replaying && a.step === 0 && a.iteration < 0;
 
 export const settingOf = (heard, key, side = "a") => heard.scenes[side].settings.find((setting) => setting.key === key);
 
-// Since `from` messages: the program's answer to something that a page asked.
-export const answerSince = (heard, from) =>
-  heard.messages.slice(from).find(({ kind }) => kind === "refused" || kind === "reply");
+// Acts, and waits for the program's answer to the first message that this sends and that `isIt`.
+export async function answered({ heard, until }, what, isIt, act) {
+  const [asked, told] = [heard.sent.length, heard.messages.length];
+  await act();
+  const sent = () => heard.sent.slice(asked).map((text) => JSON.parse(text)).find(isIt);
+  const { id } = await until(`${what} is sent`, sent);
+  return until(`an answer about ${what}`, () => heard.messages.slice(told).find((message) => message.id === id));
+}
 
-// A command straight to the program, past the controls of the page.
-export async function pressAndWait(opened, key, what, condition) {
-  await opened.page.keyboard.press(key);
-  await opened.until(what, condition);
+// Until the program has answered whatever the page asked, and the page has drawn that.
+export async function settled({ page, heard, until }) {
+  const answers = () => new Set(heard.messages.filter(({ kind }) => kind === "reply" || kind === "refused").map(({ id }) => id));
+  for (let asked = -1; asked !== heard.sent.length; await frames(page)) {
+    asked = heard.sent.length;
+    await frames(page); // panels ask once per frame
+    const ids = heard.sent.map((text) => JSON.parse(text).id).filter((id) => id !== undefined);
+    await until("all answers", () => ids.every((id) => answers().has(id)));
+  }
+}
+
+// What a shortcut leads to: a state that the program tells after the key was pressed.
+export async function pressAndWait({ page, heard, until }, key, what, condition) {
+  const told = heard.states;
+  await page.keyboard.press(key);
+  await until(what, () => heard.states > told && condition(heard));
+}
+
+// The key that plays and pauses, until that is so: what plays may end by itself before the key is pressed.
+export const setPlaying = (opened, wanted) =>
+  opened.until(wanted ? "play" : "a pause", async () => {
+    const { page, heard } = opened;
+    const told = heard.messages.length;
+    if (heard.state.playing === wanted) return true;
+    await answered(opened, "play or pause", ({ do: what }) => ["play", "pause"].includes(what), () => page.keyboard.press(" "));
+    return heard.messages.slice(told).some(({ kind, playing }) => kind === "state" && playing === wanted);
+  });
+
+// What the page does once per frame is done, also what that asks of the next frame.
+export const frames = (page, count = 2) =>
+  page.evaluate(async (n) => {
+    for (let i = 0; i < n; ++i) await new Promise((done) => requestAnimationFrame(done));
+  }, count);
+
+// Where an element is, once it stays there: while it is redrawn it is nowhere.
+export async function boxOf(locator) {
+  let last = null;
+  return until(`a place of ${locator}`, async () => {
+    const before = last;
+    last = await locator.boundingBox();
+    if (last && before && ["x", "y", "width", "height"].every((name) => last[name] === before[name])) return last;
+    await frames(locator.page());
+  });
 }
 
 // The middle of what of the body the mouse can hold.
 export async function findBody({ page }, view = 0) {
   const host = page.locator("#views .view").nth(view);
-  const box = await host.boundingBox();
-  const holds = () => host.evaluate((element) => ["grab", "crosshair", "help"].includes(element.style.cursor));
-  for (const round of [0, 1, 2]) {
+  return until("a body under the mouse", async () => {
+    const box = await boxOf(host);
     for (const [u, v] of [[0.5, 0.5], [0.5, 0.6], [0.5, 0.4], [0.6, 0.5], [0.4, 0.5], [0.5, 0.7], [0.5, 0.3], [0.7, 0.6]]) {
       const [x, y] = [box.x + u * box.width, box.y + v * box.height];
       await page.mouse.move(x, y);
-      await page.waitForTimeout(60 + 400 * round); // a frame looks what is under the mouse
-      if (await holds()) return [x, y];
+      await frames(page); // the first looks what is under the mouse
+      if (await host.evaluate((element) => ["grab", "crosshair", "help"].includes(element.style.cursor))) return [x, y];
     }
-  }
-  throw new Error("no body under the mouse");
+  });
 }
 
-// Standard deviation of the brightness of a PNG: 0 for one of a single colour.
-export async function contrast(page, png) {
-  return page.evaluate(async (base64) => {
-    const image = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))]));
-    const canvas = new OffscreenCanvas(image.width, image.height);
-    const context = canvas.getContext("2d");
-    context.drawImage(image, 0, 0);
-    const { data } = context.getImageData(0, 0, image.width, image.height);
-    let [sum, squares] = [0, 0];
-    for (let i = 0; i < data.length; i += 4) {
-      const y = 0.3 * data[i] + 0.6 * data[i + 1] + 0.1 * data[i + 2];
-      sum += y;
-      squares += y * y;
-    }
-    const n = data.length / 4;
-    return Math.sqrt(Math.max(0, squares / n - (sum / n) ** 2));
-  }, png.toString("base64"));
+// What a canvas shows, read by the page itself: a picture of the screen would have to wait for a screen that is still.
+// Of a WebGL canvas in a page that `keepsPixels`.
+export const shownBy = (canvas) => canvas.evaluate((element) => (element.checkVisibility() ? window.lookAt(element) : { contrast: 0, print: 0 }));
+
+// Anything but one colour.
+export const isDrawn = async (canvas) => (await shownBy(canvas)).contrast > 3;
+
+// What stands on the screen, of an element of a page that is still.
+export const screenOf = (locator) => locator.screenshot({ animations: "disabled", caret: "initial" });
+
+// For a developer who asks for it; no test needs it.
+export async function keepPicture(page, name) {
+  if (process.env.ASPIC_PICTURES) await page.screenshot({ path: join(process.env.ASPIC_PICTURES, `${name}.png`) });
 }
+
+// How much the brightness of a PNG varies: 0 for one of a single colour.
+export const contrast = (page, png) =>
+  page.evaluate(async (base64) => {
+    const image = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))]));
+    return window.lookAt(image).contrast;
+  }, png.toString("base64"));
 
 export const downloaded = async (page, act) => (await Promise.all([page.waitForEvent("download"), act()]))[0];
 

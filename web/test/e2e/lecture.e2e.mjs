@@ -1,10 +1,11 @@
 // The lecture's pages: each opens what it shows, the recorded mouse plays, and the reader takes over.
 import assert from "node:assert/strict";
-import { join } from "node:path";
 import { test } from "node:test";
-import { findBody, kPatience, openSession, out, startProgram } from "./harness.mjs";
+import { answered, findBody, frames, keepPicture, openSession, setPlaying, startProgram, until as eventually } from "./harness.mjs";
 
 const program = await startProgram("scenes/cantilever.toml");
+
+const isLesson = ({ do: what }) => what === "lesson";
 
 async function openList(opened) {
   await opened.page.keyboard.press("l");
@@ -25,19 +26,15 @@ test("each page of the lecture opens its scene and its panel, and says what to l
       assert.ok(lesson.missing.length > 10, tell);
       continue;
     }
-    const asked = heard.sent.length;
     const told = heard.messages.length;
-    await entry.click();
-    await until(`${tell} is sent`, () => heard.sent.length > asked);
-    const { id } = JSON.parse(heard.sent.find((text, k) => k >= asked && text.includes('"lesson"')));
-    const answer = await until(`an answer to ${tell}`, () => heard.messages.slice(told).find((message) => message.id === id));
+    const answer = await answered(opened, tell, isLesson, () => entry.click());
     assert.equal(answer.kind, "reply", `${tell}: ${answer.why}`);
     await page.locator("#left .lesson h2").filter({ hasText: lesson.title }).waitFor();
     assert.ok(lesson.look.length > 20 && lesson.claim.length > 5, tell);
     await page.locator(`[role=tab][aria-selected="true"]`, { hasText: { energy: "Energy", microscope: "Microscope", landscape: "Landscape", functions: "Functions" }[lesson.panel] }).waitFor();
     if (lesson.function) await until(`the function of ${tell}`, () => heard.messages.slice(told).some(({ reply }) => reply?.formula !== undefined));
     await until(`a picture of ${tell}`, ({ pictures, geometries }) => pictures.a && pictures.a.generation === geometries.a.generation);
-    if (i % 6 === 1) await page.screenshot({ path: join(out, `lecture_${lesson.id}.png`) });
+    if (i % 6 === 1) await keepPicture(page, `lecture_${lesson.id}`);
   }
   await close();
 });
@@ -52,28 +49,29 @@ test("the recorded mouse plays until the reader takes over", async (t) => {
   for (const [i, lesson] of lessons.entries()) {
     if (lesson.missing) continue;
     const told = heard.messages.length;
-    await page.locator("#left ol.lessons li button").nth(i).click();
-    await until("its answer", () => heard.messages.slice(told).some(({ kind }) => kind === "reply" || kind === "refused"));
-    await until("a state", () => heard.messages.slice(told).some(({ kind }) => kind === "state"));
+    await answered(opened, lesson.title, isLesson, () => page.locator("#left ol.lessons li button").nth(i).click());
     if (heard.messages.slice(told).some(({ kind, replaying }) => kind === "state" && replaying)) found = lesson;
     if (found) break;
   }
   assert.ok(found, "a page with a recorded mouse");
   t.diagnostic(`page ${found.pages}: ${found.title}`);
   await page.getByText("A recorded mouse plays").waitFor();
-  const end = Date.now() + kPatience;
-  const hasTakenOver = () => !heard.state.replaying && heard.state.a.grab;
-  while (!hasTakenOver() && Date.now() < end) {
-    const [x, y] = await findBody(opened); // a moving body may be missed
+  await until("steps of the recorded mouse", ({ state, pictures }) => state.replaying && state.a.step > 1 && pictures.a.step > 1);
+  await setPlaying(opened, false);
+  assert.ok(heard.state.replaying, "a pause does not end the recorded mouse");
+  // A body that pauses is found however slow the page is; it is taken while it plays, and may be missed.
+  await eventually("the reader's grab", async () => {
+    const [x, y] = await findBody(opened);
+    await setPlaying(opened, true);
     await page.mouse.down();
-    for (let k = 1; k <= 10 && !hasTakenOver(); ++k) {
-      await page.mouse.move(x + 2 * k, y - 2 * k);
-      await page.waitForTimeout(200);
-    }
-    if (!hasTakenOver()) await page.mouse.up();
-  }
-  assert.ok(hasTakenOver(), "the reader's grab");
+    await frames(page);
+    await page.mouse.move(x + 4, y - 4);
+    await setPlaying(opened, false);
+    if (!heard.state.replaying && heard.state.a.grab) return true;
+    await page.mouse.up();
+  });
   await page.mouse.up();
+  await until("a release", ({ state }) => !state.a.grab);
   await page.getByText("the body is yours").waitFor();
   await close();
 });
@@ -89,9 +87,8 @@ test("the list is searched, and turned page by page", async () => {
     return count > 0 && count < all;
   });
   await page.getByLabel("Search the lecture").fill("");
-  const told = heard.messages.length;
-  await page.locator('#left ol.lessons li button:not([aria-disabled="true"])').first().click();
-  await until("its scene", () => heard.messages.slice(told).some(({ kind }) => kind === "reply"));
+  await until("all pages", async () => (await page.locator("#left ol.lessons li button").count()) === all);
+  await answered(opened, "the first page", isLesson, () => page.locator('#left ol.lessons li button:not([aria-disabled="true"])').first().click());
   const first = await page.locator("#left .lesson h2").innerText();
   await page.getByRole("button", { name: "Next", exact: true }).click();
   await page.waitForFunction((title) => document.querySelector("#left .lesson h2").textContent !== title, first);

@@ -2,16 +2,16 @@
 import assert from "node:assert/strict";
 import { connect } from "node:net";
 import { test } from "node:test";
-import { assertSameBits, openPage, openSession, pressAndWait, startProgram, theBrowser, until } from "./harness.mjs";
+import { assertSameBits, kPatience, openPage, openSession, pressAndWait, startProgram, steering, theBrowser, until } from "./harness.mjs";
 
 const program = await startProgram("scenes/cantilever.toml");
 const kLostSocket = /WebSocket connection to .* failed/;
 
 test("a second page watches, takes the steering, and hands it over when it closes", async () => {
   const one = await openSession(program);
-  const two = await openSession(program);
+  const two = await openSession(program, { watches: true });
   await two.page.getByText("Watching").waitFor();
-  assert.ok(await two.page.getByRole("button", { name: "Play", exact: true }).isDisabled());
+  await two.until("a button that does nothing", () => two.page.getByRole("button", { name: "Play", exact: true }).isDisabled());
   const before = two.heard.state.a.step;
   await pressAndWait(one, "s", "a step", () => two.heard.state.a.step === before + 1 && two.heard.pictures.a.step === before + 1 && one.heard.pictures.a.step === before + 1);
   assertSameBits(two.heard.pictures.a.positions, one.heard.pictures.a.positions);
@@ -29,7 +29,7 @@ test("a second page watches, takes the steering, and hands it over when it close
 
 test("a steering page that is closed lets go of the body", async () => {
   const one = await openSession(program);
-  const two = await openSession(program);
+  const two = await openSession(program, { watches: true });
   const grab = { do: "grab", side: "a", triangle: 0, weights: [1, 0, 0], target: [0.5, 0.5, 0.5] };
   const three = await openPage(program.address, {
     prepare: (page) =>
@@ -56,6 +56,7 @@ test("a steering page that is closed lets go of the body", async () => {
 
 test("without the token, or with a wrong one, there is no page and no session", async () => {
   const page = await (await theBrowser()).newPage();
+  page.setDefaultTimeout(kPatience);
   const { origin } = new URL(program.address);
   for (const address of [origin, `${origin}/?token=wrong`, `${program.address}x`]) {
     const response = await page.goto(address);
@@ -114,7 +115,7 @@ test("nonsense is refused, and the pages go on", async () => {
   await one.page.getByText("Watching").waitFor({ state: "hidden" });
   const { step } = one.heard.state.a;
   await pressAndWait(one, "s", "a step", () => one.heard.state.a.step === step + 1);
-  assert.match(program.complained, /refused/);
+  await until("a word about it", () => /refused/.test(program.complained), () => program.complained);
   await one.close();
 });
 
@@ -136,25 +137,31 @@ test("what is no request is answered, and the server goes on", async () => {
 });
 
 test("a dropped connection is told and made anew, with all that was known", async () => {
+  let isCut = false;
+  const links = [];
   const opened = await openPage(program.address, { expected: kLostSocket, prepare: (page) =>
     page.routeWebSocket(/\/session/, (socket) => {
-      const server = socket.connectToServer();
-      page.links = [...(page.links ?? []), { socket, server }];
+      if (isCut) return socket.close();
+      links.push({ socket, server: socket.connectToServer() });
     }) });
   const { page, close } = opened;
   await page.locator("#views canvas").first().waitFor();
   await page.locator(".place").filter({ hasText: /^step/ }).waitFor();
   const place = () => page.locator(".place").innerText();
+  const steers = () => until("the steering", () => page.getByRole("button", { name: "Step", exact: true }).isEnabled());
+  await steers();
   await page.keyboard.press("s");
   await page.waitForFunction(() => !document.querySelector(".place").textContent.startsWith("step 0,"));
   const known = await place();
-  const { socket, server } = page.links[0];
-  await server.close();
-  await socket.close();
+  isCut = true;
+  await links[0].server.close();
+  await links[0].socket.close();
   await page.getByText("Connection lost").waitFor();
-  await until("another connection", () => page.links.length > 1);
+  isCut = false;
+  await until("another connection", () => links.length > 1);
   await page.locator(".lasting").waitFor({ state: "hidden" });
   assert.equal(await place(), known);
+  await steers();
   await page.keyboard.press("s");
   await page.waitForFunction((before) => document.querySelector(".place").textContent !== before, known);
   await close();

@@ -1,23 +1,30 @@
 // For every reader: keys, names for screen readers, light and dark, large letters on a small screen.
 import assert from "node:assert/strict";
-import { join } from "node:path";
 import { test } from "node:test";
-import { findBody, openSession, out, pressAndWait, startProgram } from "./harness.mjs";
+import { findBody, frames, keepPicture, openSession, pressAndWait, setPlaying, settled, startProgram } from "./harness.mjs";
 
 const program = await startProgram("scenes/cantilever.toml");
-const kPanels = ["Energy", "Microscope", "Landscape", "Functions", "Certificate"];
-const frames = (page, count = 3) =>
-  page.evaluate(async (n) => {
-    for (let i = 0; i < n; ++i) await new Promise((done) => requestAnimationFrame(done));
-  }, count);
+// What a panel says when it has all that it shows after kSteps steps.
+const kSteps = 4;
+const kPanels = {
+  Energy: /\w/,
+  Microscope: new RegExp(`Step ${kSteps}\\.`),
+  Landscape: new RegExp(`step ${kSteps}, iteration \\d+ of .*This is E over the plane`, "s"),
+  Functions: /iteration \d+ of/,
+  Certificate: new RegExp(`1 to ${kSteps} of ${kSteps}`),
+};
 
+async function openPanel(opened, name) {
+  await opened.page.getByRole("tab", { name }).click();
+  await opened.page.getByRole("tabpanel", { name }).filter({ hasText: kPanels[name] }).waitFor();
+  await settled(opened);
+}
 const openFolders = (page) =>
   page.locator("#right .lil-closed > .lil-title").evaluateAll((titles) => titles.forEach((title) => title.click()));
 
 async function withSteps(options) {
   const opened = await openSession(program, options);
-  await pressAndWait(opened, "r", "the start", ({ state }) => state.a.step === 0);
-  for (let step = 1; step <= 4; ++step) await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === step);
+  for (let step = 1; step <= kSteps; ++step) await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === step);
   return opened;
 }
 
@@ -29,20 +36,21 @@ test("every shortcut of the list does something that goes well", async () => {
   const keys = await dialog.locator("kbd").allInnerTexts();
   assert.ok(keys.length > 30, `${keys.length} shortcuts`);
   assert.equal(new Set(keys).size, keys.length, "no key twice");
-  await page.screenshot({ path: join(out, "shortcuts.png") });
+  await keepPicture(page, "shortcuts");
   await page.keyboard.press("Escape");
   await dialog.waitFor({ state: "detached" });
   const pressed = (key) => (key === "Space" ? " " : key.length === 1 ? key.toLowerCase() : key.replace(/^Shift\+(Left|Right|Up|Down)$/, "Shift+Arrow$1"));
   for (const key of keys.filter((key) => !["Shift+L"].includes(key))) {
     await page.keyboard.press(pressed(key));
     await frames(page, 2);
+    if (key === "Shift+V") await page.keyboard.press(key); // a video would make all that follows slow
     await page.keyboard.press("Escape"); // of a dialog that it opened
     await page.waitForFunction(() => !document.querySelector("dialog[open]"));
     assert.deepEqual(errors, [], `after ${key}`);
   }
   await until("an end of what was begun", ({ state }) => !state.replaying);
   if (opened.heard.state.b) await pressAndWait(opened, "c", "no comparison", ({ state }) => !state.b);
-  if (opened.heard.state.playing) await pressAndWait(opened, " ", "a pause", ({ state }) => !state.playing);
+  await setPlaying(opened, false);
   await close();
 });
 
@@ -67,9 +75,8 @@ test("every control has a name, in every panel and dialog", async () => {
   const { page, close } = opened;
   await openFolders(page);
   const found = [];
-  for (const panel of kPanels) {
-    await page.getByRole("tab", { name: panel }).click();
-    await frames(page);
+  for (const panel of Object.keys(kPanels)) {
+    await openPanel(opened, panel);
     found.push(...(await nameless(page, panel)));
   }
   for (const key of ["?", "c", "Shift+O", "Shift+M"]) {
@@ -186,12 +193,10 @@ for (const [name, scheme, size, larger] of [
     assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), scheme);
     for (let i = 0; i < larger; ++i) await page.keyboard.press(">");
     const found = [];
-    for (const panel of kPanels) {
-      await page.getByRole("tab", { name: panel }).click();
-      await frames(page);
-      await page.waitForTimeout(600); // questions of the panel are answered
+    for (const panel of Object.keys(kPanels)) {
+      await openPanel(opened, panel);
       found.push(...(await layoutFaults(page)).map((fault) => `${panel}: ${fault}`));
-      await page.screenshot({ path: join(out, `${name}_${panel.toLowerCase()}.png`) });
+      await keepPicture(page, `${name}_${panel.toLowerCase()}`);
     }
     assert.deepEqual(found, []);
     await close();

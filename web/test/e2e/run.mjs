@@ -1,5 +1,5 @@
-// node test/e2e/run.mjs ASPIC OUT [THEME ...]: the page with its program, in Chromium, as a reader uses it. Every theme
-// is a file THEME.e2e.mjs; OUT receives pictures. Ends with 77 where there is no Chromium.
+// node test/e2e/run.mjs ASPIC [THEME ...]: the page with its program, in Chromium, as a reader uses it. Every theme is a
+// file THEME.e2e.mjs. ASPIC_PICTURES=FOLDER keeps pictures of the panels there. Ends with 77 where there is no Chromium.
 import { spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readdirSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
@@ -7,8 +7,8 @@ import { fileURLToPath } from "node:url";
 import { findChromium } from "./chromium.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const [aspic, out, ...chosen] = process.argv.slice(2);
-if (!aspic || !out || !existsSync(aspic)) throw new Error("node test/e2e/run.mjs ASPIC OUT [THEME ...]");
+const [aspic, ...chosen] = process.argv.slice(2);
+if (!aspic || !existsSync(aspic)) throw new Error("node test/e2e/run.mjs ASPIC [THEME ...]");
 if (!findChromium()) {
   console.log("skipped: there is no Chromium (Debian: apt-get install chromium)");
   process.exit(77);
@@ -16,8 +16,8 @@ if (!findChromium()) {
 const known = readdirSync(here).flatMap((name) => name.match(/^(.*)\.e2e\.mjs$/)?.[1] ?? []);
 const unknown = chosen.filter((theme) => !known.includes(theme));
 if (unknown.length > 0) throw new Error(`no such theme: ${unknown.join(", ")}; there are ${known.join(", ")}`);
-mkdirSync(out, { recursive: true });
 const files = (chosen.length > 0 ? chosen : known).map((theme) => join(here, `${theme}.e2e.mjs`));
-const env = { ...process.env, ASPIC: resolve(aspic), OUT: resolve(out) };
+const env = { ...process.env, ASPIC: resolve(aspic) };
+if (env.ASPIC_PICTURES) mkdirSync((env.ASPIC_PICTURES = resolve(env.ASPIC_PICTURES)), { recursive: true });
 const run = spawnSync(process.execPath, ["--test", "--test-reporter=spec", "--test-concurrency=1", ...files], { stdio: "inherit", env });
 process.exit(run.status ?? 1);

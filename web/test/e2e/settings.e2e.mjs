@@ -1,7 +1,7 @@
 // Every control of the settings: a valid value is taken, any other refused in words and put back; nothing breaks.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { openSession, pressAndWait, settingOf, startProgram } from "./harness.mjs";
+import { answered, openSession, pressAndWait, setPlaying, settingOf, startProgram, toTheStart } from "./harness.mjs";
 
 const program = await startProgram("scenes/cantilever.toml");
 const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
@@ -17,16 +17,8 @@ async function backToTheScene({ page, heard, until }) {
   await until("the scene", () => heard.messages.slice(from).some(({ kind }) => kind === "scene"));
 }
 
-// Acts, waits for the program's answer, and returns what it refused, if so.
-async function answered({ heard, until }, key, act) {
-  const from = heard.messages.length;
-  const asked = heard.sent.length;
-  await act();
-  await until(`${key} is sent`, () => heard.sent.length > asked);
-  const { id } = JSON.parse(heard.sent.at(-1));
-  await until(`an answer about ${key}`, () => heard.messages.slice(from).some((message) => message.id === id));
-  return heard.messages.slice(from).find((message) => message.id === id);
-}
+const isAbout = (key) => (message) => message.do === "set" && message.key === key;
+const set = (opened, key, act) => answered(opened, key, isAbout(key), act);
 
 // Another value of the middle of the slider's range.
 function otherNumber({ kind, value, min, max, log }) {
@@ -53,25 +45,24 @@ test("every setting has a row, and takes another value", async () => {
     const row = rowOf(page, key);
     const tell = `${key} (${setting.kind})`;
     assert.equal(await row.count(), 1, tell);
-    if (await row.evaluate((element) => element.closest(".lil-gui.lil-closed") !== null))
-      await row.evaluate((element) => element.closest(".lil-gui.lil-closed").querySelector(".lil-title").click());
+    await row.evaluate((element) => element.closest(".lil-gui.lil-closed")?.querySelector(".lil-title").click());
     let [wanted, answer] = [null, null];
     if (setting.kind === "number" || setting.kind === "integer") {
       wanted = otherNumber(setting);
-      answer = await answered(opened, key, () => typeInto(row.locator("input[type=text]").first(), String(wanted)));
+      answer = await set(opened, key, () => typeInto(row.locator("input[type=text]").first(), String(wanted)));
     } else if (setting.kind === "vector") {
       wanted = setting.value.map((entry, i) => (i === 0 ? Number(entry) + 1 : entry));
-      answer = await answered(opened, key, () => typeInto(row.locator("input[type=text]").first(), String(wanted[0])));
+      answer = await set(opened, key, () => typeInto(row.locator("input[type=text]").first(), String(wanted[0])));
     } else if (setting.kind === "choice") {
       wanted = setting.choices.find((choice) => choice !== setting.value);
       assert.ok(wanted !== undefined, tell);
-      answer = await answered(opened, key, () => row.locator("select").selectOption(wanted));
+      answer = await set(opened, key, () => row.locator("select").selectOption(wanted));
     } else if (setting.kind === "switch") {
       wanted = !setting.value;
-      answer = await answered(opened, key, () => row.locator("input[type=checkbox]").click());
+      answer = await set(opened, key, () => row.locator("input[type=checkbox]").click());
     } else {
       wanted = String(setting.value);
-      answer = await answered(opened, key, () => typeInto(row.locator("input[type=text]").first(), "2 * (1 + X)"));
+      answer = await set(opened, key, () => typeInto(row.locator("input[type=text]").first(), "2 * (1 + X)"));
     }
     if (answer.kind === "refused") {
       assert.ok(answer.why.length > 15, `${tell}: refused in words, not by '${answer.why}'`);
@@ -94,7 +85,7 @@ test("every slider moves its value by the keyboard", async () => {
     if (!setting || typeof setting.value !== "number") continue;
     const slider = rowOf(page, key).locator("input[type=range]");
     const key_ = Number(await slider.inputValue()) >= 500 ? "ArrowLeft" : "ArrowRight";
-    const answer = await answered(opened, key, () => slider.press(key_));
+    const answer = await set(opened, key, () => slider.press(key_));
     const now = settingOf(heard, key)?.value;
     if (answer.kind === "reply") assert.notEqual(now, setting.value, `${key} (${kind}): ${key_} moves it`);
     else assert.ok(answer.why.length > 15, key);
@@ -109,7 +100,7 @@ test("every choice of every setting is taken or refused in words, and a step can
   for (const { key, choices, value: first } of heard.scenes.a.settings.filter(({ kind }) => kind === "choice")) {
     for (const value of [...choices.filter((choice) => choice !== first), first]) {
       if (settingOf(heard, key).value === value) continue;
-      const answer = await answered(opened, key, () => rowOf(page, key).locator("select").selectOption(value));
+      const answer = await set(opened, key, () => rowOf(page, key).locator("select").selectOption(value));
       if (answer.kind === "refused") {
         assert.ok(answer.why.length > 15, `${key} = ${value}`);
         continue;
@@ -120,7 +111,7 @@ test("every choice of every setting is taken or refused in words, and a step can
       await until(`a step with ${key} = ${value}`, () => heard.state.a.step === step + 1 && heard.state.a.status !== "");
     }
   }
-  await pressAndWait(opened, "r", "the start", () => heard.state.a.step === 0);
+  await toTheStart(opened);
   await close();
 });
 
@@ -134,17 +125,16 @@ test("what is typed wrongly is refused in words, put back, and the simulation go
     for (const typed of ["nan", "1e400", "-1e30", "", "text", "[1, 2]", "9".repeat(400)]) {
       const asked = heard.sent.length;
       const from = heard.messages.length;
+      const sent = () => heard.sent.slice(asked).map((text) => JSON.parse(text)).find(isAbout(key));
       await typeInto(field, typed);
       // A field that keeps what it cannot be sends nothing.
-      const sent = await until(`${key} = '${typed}'`, async () => heard.sent.length > asked || (await field.inputValue()) === before);
-      assert.ok(sent);
-      if (heard.sent.length === asked) continue;
-      const { id } = JSON.parse(heard.sent.at(-1));
-      const answer = await until(`an answer to ${key} = '${typed}'`, () => heard.messages.slice(from).find((message) => message.id === id));
+      await until(`${key} = '${typed}'`, async () => sent() || (await field.inputValue()) === before);
+      if (!sent()) continue;
+      const answer = await until(`an answer to ${key} = '${typed}'`, () => heard.messages.slice(from).find(({ id }) => id === sent().id));
       if (answer.kind === "refused") {
         assert.ok(answer.why.length > 15, `${key} = '${typed}': ${answer.why}`);
         await page.waitForFunction(
-          ([title, text]) => [...document.querySelectorAll("#right .lil-name")].find((name) => name.title.endsWith(title)).parentElement.querySelector("input[type=text]").value === text,
+          ([title, text]) => [...document.querySelectorAll("#right .lil-name")].find((name) => name.title.endsWith(title))?.parentElement.querySelector("input[type=text]").value === text,
           [`\n${key}`, before],
         );
         assert.ok(same(settingOf(heard, key).value, setting.value));
@@ -163,19 +153,17 @@ test("what is typed wrongly is refused in words, put back, and the simulation go
 test("extremes while it plays: it goes on, and says what failed", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
-  await pressAndWait(opened, " ", "play", () => heard.state.playing);
+  await setPlaying(opened, true);
   for (const setting of heard.scenes.a.settings.filter(({ kind, value }) => kind === "number" && typeof value === "number")) {
     for (const value of [setting.min, setting.max, setting.value]) {
       if (settingOf(heard, setting.key).value === value) continue;
-      await answered(opened, setting.key, () => typeInto(rowOf(page, setting.key).locator("input[type=text]"), String(value)));
+      await set(opened, setting.key, () => typeInto(rowOf(page, setting.key).locator("input[type=text]"), String(value)));
     }
   }
   const { step } = heard.state.a;
-  if (!heard.state.playing) await pressAndWait(opened, " ", "play", () => heard.state.playing);
+  await setPlaying(opened, true);
   await until("further steps", () => heard.state.a.step > step || heard.state.a.status !== "");
-  await pressAndWait(opened, "r", "the start", () => heard.state.a.step === 0);
-  if (heard.state.playing) await pressAndWait(opened, " ", "a pause", () => !heard.state.playing);
-  await pressAndWait(opened, "r", "the start", () => heard.state.a.step === 0);
+  await toTheStart(opened);
   await pressAndWait(opened, "s", "a step", () => heard.state.a.step === 1 && heard.state.a.words === null);
   await close();
 });

@@ -1,39 +1,35 @@
 // The minimisation under the microscope: iterations one by one, their tables, curves and landscapes; plane functions.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { join } from "node:path";
 import { test } from "node:test";
-import { assertSameBits, contrast, downloaded, openSession, out, pageModule, pressAndWait, startProgram } from "./harness.mjs";
+import { answered, assertSameBits, boxOf, contrast, downloaded, frames, isDrawn, keepPicture, openSession, pageModule, pressAndWait, settled, shownBy, startProgram, toTheStart, until as eventually } from "./harness.mjs";
 
 const { kPresets } = await pageModule("panels/functionForm.ts");
 const program = await startProgram("scenes/cantilever.toml", ["--set", "time.step=0.05"]); // several iterations
 
 async function open(panel) {
-  const opened = await openSession(program);
-  await pressAndWait(opened, "r", "the start", ({ state }) => state.a.step === 0 && state.a.iteration < 0);
-  const { page } = opened;
-  const tab = page.getByRole("tab", { name: panel });
+  const opened = await openSession(program, { keepsPixels: true });
+  const tab = opened.page.getByRole("tab", { name: panel });
   await tab.click();
   assert.equal(await tab.getAttribute("aria-selected"), "true");
   return opened;
 }
 
+const isQuestion = ({ ask }) => ask === "function";
 const rowsOf = (page, label) => page.getByRole("grid", { name: label });
 const countOf = async (page, label) => Number(await rowsOf(page, label).getAttribute("aria-rowcount"));
 
-// Anything but one colour.
-async function isDrawn(page, canvas) {
-  return (await contrast(page, await canvas.screenshot())) > 3;
+async function iterate(opened) {
+  await pressAndWait(opened, "i", "an iteration", () => true);
+  return opened.heard.state.a;
 }
 
 test("iterations are taken one by one, and each has its row", async () => {
-  const { page, heard, until, close } = await open("Microscope");
+  const opened = await open("Microscope");
+  const { page, heard, until, close } = opened;
   let rows = 0;
   for (;;) {
-    const before = JSON.stringify(heard.state.a);
-    await page.keyboard.press("i");
-    await until("an iteration", () => JSON.stringify(heard.state.a) !== before);
-    const { iteration, step } = heard.state.a;
+    const { iteration, step } = await iterate(opened);
     if (iteration < 0) {
       assert.equal(step, 1);
       break;
@@ -41,28 +37,24 @@ test("iterations are taken one by one, and each has its row", async () => {
     assert.equal(step, 0);
     rows = iteration + 1;
     await until("its row", async () => (await countOf(page, "Iterations of the chosen step")) === rows);
-    if (iteration === 1) await page.screenshot({ path: join(out, "microscope_mid_step.png") });
+    if (iteration === 1) await keepPicture(page, "microscope_mid_step");
     await until("the picture of this iteration", () => heard.pictures.a.iteration === iteration);
   }
   assert.ok(rows > 1, `${rows} iterations`);
   const { steps } = heard.messages.findLast(({ kind }) => kind === "steps");
   await until("a row of the last one", async () => (await countOf(page, "Iterations of the chosen step")) === steps.at(-1).iterations.length);
-  assert.equal(await countOf(page, "Steps"), 1);
+  await until("one step", async () => (await countOf(page, "Steps")) === 1);
   await page.getByText(/^Step 1\./).waitFor();
   await close();
 });
 
 test("a step by iterations ends where a whole step ends, to the bit", async () => {
   const opened = await open("Microscope");
-  const { page, heard, until, close } = opened;
+  const { heard, until, close } = opened;
   await pressAndWait(opened, "s", "a step", ({ state, pictures }) => state.a.step === 1 && pictures.a.step === 1);
   const whole = heard.pictures.a.positions;
-  await pressAndWait(opened, "r", "the start", ({ state }) => state.a.step === 0);
-  while (heard.state.a.step === 0) {
-    const before = JSON.stringify(heard.state.a);
-    await page.keyboard.press("i");
-    await until("an iteration", () => JSON.stringify(heard.state.a) !== before);
-  }
+  await toTheStart(opened);
+  while (heard.state.a.step === 0) await iterate(opened);
   await until("its picture", ({ pictures }) => pictures.a.step === 1 && pictures.a.iteration === -1);
   assertSameBits(heard.pictures.a.positions, whole);
   await close();
@@ -76,9 +68,10 @@ test("the chosen iteration has its line search, and the keys choose another", as
   await until("E along d", () => replies().length > 0);
   const table = rowsOf(page, "Iterations of the chosen step");
   await table.locator('tr[aria-selected="true"]').waitFor();
-  const last = (await countOf(page, "Iterations")) - 1;
+  const last = heard.messages.findLast(({ kind }) => kind === "steps").steps.at(-1).iterations.length - 1;
+  await until("a row for each", async () => (await countOf(page, "Iterations")) === last + 1);
   await table.press("Home");
-  await until("iteration 0", () => replies().at(-1).reply.iteration === 0);
+  await until("iteration 0", () => replies().some(({ reply }) => reply.iteration === 0));
   await table.press("End");
   await until("the last iteration", () => replies().some(({ reply }) => reply.iteration === last));
   await table.press("Home");
@@ -87,9 +80,9 @@ test("the chosen iteration has its line search, and the keys choose another", as
   assert.ok(trials.some(({ accepted }) => accepted));
   assert.ok(Number.isFinite(value));
   const charts = page.locator(".microscope-charts canvas");
-  assert.ok((await charts.count()) >= 2, "several charts");
-  for (const chart of await charts.all()) if (await chart.isVisible()) assert.ok(await isDrawn(page, chart), "a chart is blank");
-  await page.screenshot({ path: join(out, "microscope.png") });
+  await until("several charts", async () => (await charts.count()) >= 2);
+  for (const chart of await charts.all()) if (await chart.isVisible()) await until("a chart that is not blank", () => isDrawn(chart));
+  await keepPicture(page, "microscope");
   await close();
 });
 
@@ -100,7 +93,7 @@ test("the worst elements are listed and marked on the body", async () => {
   await page.getByRole("button", { name: "Worst elements" }).click();
   await until("the list", () => heard.messages.some(({ kind, reply }) => kind === "reply" && reply?.items?.length > 0));
   await page.locator("ol.worst li").first().waitFor();
-  await page.screenshot({ path: join(out, "worst_elements.png") });
+  await keepPicture(page, "worst_elements");
   await close();
 });
 
@@ -113,11 +106,12 @@ test("the landscape shows E, its model and the path", async () => {
   assert.equal(slice.value.length, slice.columns * slice.rows);
   const canvas = page.getByRole("tabpanel", { name: "Landscape" }).locator("canvas").first();
   await page.getByText("This is E over the plane").waitFor();
-  await until("a surface", () => isDrawn(page, canvas));
-  await page.screenshot({ path: join(out, "landscape.png") });
-  const before = await canvas.screenshot();
+  await until("a surface", () => isDrawn(canvas));
+  await keepPicture(page, "landscape");
+  await settled(opened);
+  const { print } = await shownBy(canvas);
   await page.getByRole("checkbox", { name: "quadratic model" }).uncheck();
-  await until("another picture", async () => !(await canvas.screenshot()).equals(before));
+  await until("another picture", async () => (await shownBy(canvas)).print !== print);
   await page.getByRole("button", { name: "◀" }).or(page.getByTitle("The iteration before")).first().click();
   await page.getByText(/step 1, iteration \d+ of/).waitFor();
   await close();
@@ -131,15 +125,12 @@ test("each example of the functions is minimised, from any start", async () => {
   await until("the first function", () => replies().length > 0);
   const canvas = panel.locator("canvas").first();
   for (const [i, preset] of kPresets.entries()) {
-    const known = replies().length;
-    await panel.getByRole("button", { name: preset.title }).click();
-    await until(preset.title, () => replies().length > known);
-    const { reply } = replies().at(-1);
+    const { reply } = await answered(opened, preset.title, isQuestion, () => panel.getByRole("button", { name: preset.title }).click());
     assert.deepEqual([reply.path[0].x, reply.path[0].y], preset.start);
     assert.equal(reply.value.length, reply.samples ** 2);
     assert.ok(reply.iterations.length > 0 && reply.text !== "");
-    await until("its surface", () => isDrawn(page, canvas));
-    await page.screenshot({ path: join(out, `functions_${i}.png`) });
+    await until("its surface", () => isDrawn(canvas));
+    await keepPicture(page, `functions_${i}`);
   }
   for (const typed of ["0.25", "-0.5"]) {
     const x = panel.getByLabel("start x");
@@ -163,18 +154,22 @@ test("the start of a function is moved by keys and by the mouse", async () => {
   await until("a start to the right", () => startOf().x > start.x);
   const nudged = startOf();
   const ring = panel.getByText("start: drag me");
-  await ring.waitFor();
-  const mark = await ring.boundingBox();
-  const box = await view.boundingBox();
-  // The label stands beside its ring.
-  for (const [dx, dy] of [[-10, 0], [-14, 4], [-8, 8], [-8, -8], [mark.width + 10, 0]]) {
+  const typed = async () => [await panel.getByLabel("start x").inputValue(), await panel.getByLabel("y", { exact: true }).inputValue()].join();
+  const before = await typed();
+  let tries = 0;
+  await eventually("a start that the mouse took", async () => {
+    await settled(opened);
+    const [mark, box] = [await boxOf(ring), await boxOf(view)];
+    // The label stands beside its ring. A mouse that misses it turns the picture.
+    const sides = [[-9, 9], [-10, 0], [-8, -8], [mark.width + 10, 0]];
+    const [dx, dy] = sides[tries++ % sides.length];
     await page.mouse.move(mark.x + dx, mark.y + mark.height / 2 + dy);
     await page.mouse.down();
-    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2, { steps: 8 });
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2, { steps: 3 });
     await page.mouse.up();
-    await page.waitForTimeout(300);
-    if (startOf().x !== nudged.x) break;
-  }
+    await frames(page);
+    return (await typed()) !== before;
+  });
   await until("a start elsewhere", () => startOf().x !== nudged.x || startOf().y !== nudged.y);
   await close();
 });
@@ -186,13 +181,10 @@ test("impossible functions are refused in words", async () => {
   await panel.getByLabel("f", { exact: true }).selectOption("formula");
   const formula = panel.getByLabel("Formula of x and y");
   for (const typed of ["x +", "sin(", "z^2", "1/0", "(".repeat(900), ""]) {
-    const asked = heard.sent.length;
-    const from = heard.messages.length;
-    await formula.fill(typed);
-    await formula.press("Enter");
-    await until("a question", () => heard.sent.length > asked);
-    const { id } = JSON.parse(heard.sent.at(-1));
-    const answer = await until("an answer", () => heard.messages.slice(from).find((message) => message.id === id));
+    const answer = await answered(opened, `'${typed}'`, ({ ask, name }) => ask === "function" && name === typed, async () => {
+      await formula.fill(typed);
+      await formula.press("Enter");
+    });
     if (answer.kind === "refused") await panel.locator("#function-error").filter({ hasText: /\w{3}/ }).waitFor();
   }
   await formula.fill("x^2 + 3 * y^2");
@@ -222,8 +214,10 @@ test("energies are told as they are, and saved with a row for each step", async 
   assert.ok((await contrast(page, readFileSync(await picture.path()))) > 3);
   const log = panel.getByRole("checkbox", { name: "log" });
   await log.check();
-  await page.screenshot({ path: join(out, "energy_log.png") });
+  await frames(page);
+  await keepPicture(page, "energy_log");
   await log.uncheck();
-  await page.screenshot({ path: join(out, "energy.png") });
+  await frames(page);
+  await keepPicture(page, "energy");
   await close();
 });

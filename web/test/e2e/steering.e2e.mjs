@@ -1,7 +1,7 @@
 // Time and touch: play, step, rewind, drag, pin.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { assertSameBits, contrast, findBody, openSession, pageModule, pressAndWait, sameBits, startProgram } from "./harness.mjs";
+import { assertSameBits, boxOf, contrast, findBody, frames, openSession, pageModule, pressAndWait, sameBits, screenOf, setPlaying, shownBy, startProgram, toTheStart } from "./harness.mjs";
 
 const { valueText } = await pageModule("view/values.ts");
 const program = await startProgram("scenes/cantilever.toml");
@@ -11,9 +11,9 @@ const minus = (a, b) => a.map((x, i) => x - b[i]);
 test("the first picture shows the body, and the token leaves the address", async () => {
   // A reload asks without the token; the answer finds it where the tab keeps it.
   const opened = await openSession(program, { expected: /status of 403/ });
-  const { page, heard, close } = opened;
+  const { page, heard, until, close } = opened;
   await findBody(opened);
-  assert.ok((await contrast(page, await page.locator("#views").screenshot())) > 5);
+  await until("the body on the screen", async () => (await contrast(page, await screenOf(page.locator("#views")))) > 5);
   assert.ok(!page.url().includes("token"));
   assert.match(await page.title(), /cantilever/);
   assert.equal(heard.geometries.a.rest.length, heard.pictures.a.positions.length);
@@ -29,20 +29,18 @@ test("it plays and pauses, steps, and goes back to the start", async () => {
   await until("five steps", () => heard.state.a.step >= 5 && heard.pictures.a.step >= 1);
   await page.getByRole("button", { name: "Pause" }).click();
   await until("a pause", () => !heard.state.playing);
-  await pressAndWait(opened, "r", "the start", () => heard.state.a.step === 0);
-  await until("its picture", () => heard.pictures.a.step === 0);
+  await toTheStart(opened);
   const start = heard.pictures.a.positions;
   await pressAndWait(opened, "s", "one step", () => heard.state.a.step === 1 && heard.pictures.a.step === 1);
   assert.ok(!sameBits(heard.pictures.a.positions, start));
-  await pressAndWait(opened, " ", "play", () => heard.state.playing);
-  await pressAndWait(opened, " ", "a pause", () => !heard.state.playing);
+  await setPlaying(opened, true);
+  await setPlaying(opened, false);
   await close();
 });
 
 test("the timeline rewinds, by mouse and by keys, to what was shown before", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
-  await pressAndWait(opened, "r", "the start", () => heard.state.a.step === 0);
   const seen = [];
   for (let step = 1; step <= 6; ++step) {
     await pressAndWait(opened, "s", `step ${step}`, () => heard.state.a.step === step && heard.pictures.a.step === step);
@@ -52,7 +50,7 @@ test("the timeline rewinds, by mouse and by keys, to what was shown before", asy
   await timeline.press("ArrowLeft");
   await until("step 5", () => heard.state.a.step === 5 && heard.pictures.a.step === 5);
   assertSameBits(heard.pictures.a.positions, seen[5]);
-  const box = await timeline.boundingBox();
+  const box = await boxOf(timeline);
   await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
   await until("a step halfway", () => [2, 3].includes(heard.state.a.step) && heard.pictures.a.step === heard.state.a.step);
   assertSameBits(heard.pictures.a.positions, seen[heard.state.a.step]);
@@ -62,11 +60,13 @@ test("the timeline rewinds, by mouse and by keys, to what was shown before", asy
 test("a dragged body follows the mouse, the force is written beside it, and the mouse lets go", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
-  await pressAndWait(opened, "r", "the start", () => heard.state.a.step === 0);
   const [x, y] = await findBody(opened);
   await page.mouse.down();
   await page.mouse.move(x + 30, y - 80, { steps: 6 });
-  await until("the spring's end", ({ state }) => state.a.grab && length(minus(state.a.grab.target, state.a.grab.point)) > 0.01);
+  await frames(page);
+  const isTold = (target) => target && heard.sent.findLast((text) => JSON.parse(text).do === "move") === JSON.stringify({ do: "move", target });
+  await until("the spring's end", ({ state }) => isTold(state.a.grab?.target));
+  assert.ok(length(minus(heard.state.a.grab.target, heard.state.a.grab.point)) > 0.01);
   const held = heard.state.a.grab;
   const pull = minus(held.target, held.point);
   for (let step = 1; step <= 8; ++step)
@@ -109,17 +109,17 @@ test("Escape, and leaving the window, let go, too", async () => {
 
 test("who watches turns the camera only", async () => {
   const one = await openSession(program);
-  const two = await openSession(program);
+  const two = await openSession(program, { watches: true, keepsPixels: true });
   await two.page.getByText("Watching").waitFor();
-  const box = await two.page.locator("#views").boundingBox();
+  const box = await boxOf(two.page.locator("#views"));
   const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
-  const before = await two.page.locator("#views canvas").first().screenshot();
+  const canvas = two.page.locator("#views canvas").first();
+  const before = await shownBy(canvas);
   await two.page.mouse.move(x, y);
   await two.page.mouse.down();
   await two.page.mouse.move(x + 120, y - 40, { steps: 5 });
   await two.page.mouse.up();
-  await two.page.waitForFunction(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true)))));
-  assert.notDeepEqual(await two.page.locator("#views canvas").first().screenshot(), before);
+  await two.until("another camera", async () => (await shownBy(canvas)).print !== before.print);
   assert.deepEqual(two.heard.sent, []);
   assert.equal(one.heard.state.a.grab, null);
   await two.close();
@@ -129,28 +129,33 @@ test("who watches turns the camera only", async () => {
 test("the brush pins and unpins what it covers", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
-  await pressAndWait(opened, "r", "the start", () => heard.state.a.step === 0);
   const pins = () => heard.messages.findLast(({ kind, side }) => kind === "pins" && side === "a")?.vertices ?? [];
   const clamped = pins().length;
   await page.keyboard.press("b");
   const [x, y] = await findBody(opened);
   const stroke = async () => {
+    const [sent, told] = [heard.sent.length, heard.messages.length];
     await page.mouse.move(x, y);
     await page.mouse.down();
     await page.mouse.move(x + 12, y, { steps: 3 });
     await page.mouse.up();
+    await frames(page);
+    const asked = heard.sent.slice(sent).filter((text) => JSON.parse(text).do === "pin").length;
+    await until("the pins of the stroke", () => heard.messages.slice(told).filter(({ kind }) => kind === "pins").length >= asked);
   };
   await stroke();
   await until("pins", () => pins().length > clamped);
+  await page.keyboard.down("Alt");
+  await stroke();
+  await page.keyboard.up("Alt");
+  await until("no pins but the clamp's", () => pins().length === clamped);
+  await stroke();
+  await until("pins again", () => pins().length > clamped);
   const pinned = pins();
   const places = (picture) => pinned.map((v) => [...picture.positions.subarray(3 * v, 3 * v + 3)]);
   const start = places(heard.pictures.a);
   await pressAndWait(opened, "s", "a step", () => heard.pictures.a.step === 1);
   assert.deepEqual(places(heard.pictures.a), start, "pinned vertices stay");
-  await page.keyboard.down("Alt");
-  await stroke();
-  await page.keyboard.up("Alt");
-  await until("no pins but the clamp's", () => pins().length === clamped);
   await close();
 });
 

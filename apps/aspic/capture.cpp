@@ -1,0 +1,143 @@
+// `aspic capture`: measurements of a scene's body, made by simulating them.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "aspic/commands.h"
+#include "aspic/interrupt.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "capture/synthesis.h"
+#include "io/mesh_file.h"
+#include "scene/scene.h"
+#include "scene/toml_reader.h"
+
+namespace aspic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  fs::path input, out, mesh;
+  std::vector<std::string> overrides, gravity;
+  std::string tip = "sphere", contact = "bonded";
+  SynthesisOptions bench;
+  int threads = 0;
+  bool force = false, no_force = false, quiet = false;
+};
+
+// "sphere", "disc:0.01"
+void read_tip(const std::string& text, SynthesisOptions& bench) {
+  const size_t colon = text.find(':');
+  const std::string shape = text.substr(0, colon);
+  if (shape != "sphere" && shape != "disc")
+    throw InvalidInput(fmt::format("--tip {}: the shape is sphere or disc, as in sphere:0.01", text));
+  bench.shape = shape == "disc" ? TipShape::disc : TipShape::sphere;
+  if (colon == std::string::npos) return;
+  const Value radius = read_toml_value(text.substr(colon + 1), "--tip " + text);
+  if (!radius.is_number() || !(radius.number() > 0) || !std::isfinite(radius.number()))
+    throw InvalidInput(fmt::format("--tip {}: the radius in metres must be > 0, as in sphere:0.01", text));
+  bench.tip_radius = radius.number();
+}
+
+// "0,0,-1"
+Vec3d direction(const std::string& text) {
+  const Value list = read_toml_value("[" + text + "]", "--gravity " + text);
+  if (list.array().size() != 3 ||
+      !std::all_of(list.array().begin(), list.array().end(), [](const Value& v) { return v.is_number(); }))
+    throw InvalidInput(fmt::format("--gravity {}: three numbers with commas are needed, as in 0,0,-1", text));
+  return list.vector();
+}
+
+SynthesisOptions bench_options(const Arguments& arguments) {
+  SynthesisOptions bench = arguments.bench;
+  read_tip(arguments.tip, bench);
+  if (arguments.contact != "bonded" && arguments.contact != "sliding")
+    throw InvalidInput(fmt::format("--contact {}: bonded or sliding", arguments.contact));
+  bench.contact = arguments.contact == "sliding" ? TipContact::sliding : TipContact::bonded;
+  for (const std::string& text : arguments.gravity) bench.gravity.push_back(direction(text));
+  bench.forces = !arguments.no_force;
+  bench.torques &= bench.forces;
+  if (!arguments.mesh.empty()) bench.mesh = read_tet_mesh(arguments.mesh);
+  return bench;
+}
+
+fs::path folder_of(const Arguments& arguments, const std::string& name) {
+  const fs::path folder = arguments.out.empty() ? fs::path("out") / (name + "_data") : arguments.out;
+  std::error_code error;
+  if (!arguments.force && fs::exists(folder / "capture.toml", error))
+    throw InvalidInput(
+        fmt::format("{}: holds a data set already; choose another folder, or give --force", folder.string()));
+  return folder;
+}
+
+void show(const SynthesisStep& step) {
+  const Vec3d& f = step.wrench.force;
+  fmt::print("{:>4} of {}: {}: {}\n", step.done, step.of, step.name,
+             step.failure.empty() ? fmt::format("{:.4g} N, {} iterations", std::sqrt(dot(f, f)), step.iterations)
+                                  : step.failure);
+  std::fflush(stdout);
+}
+
+int capture(const Arguments& arguments) {
+  if (arguments.threads > 0) set_thread_count(arguments.threads);
+  catch_interrupts();
+  const SynthesisOptions bench = bench_options(arguments);
+  const Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides});
+  const fs::path folder = folder_of(arguments, scene.name);
+  const Synthesis made = synthesize(scene, bench, [&](const SynthesisStep& step) {
+    if (!arguments.quiet) show(step);
+    return !interrupt_signal();
+  });
+  for (const std::string& note : made.notes) fmt::print("note: {}\n", note);
+  if (made.interrupted) {
+    fmt::print(stderr, "interrupted: nothing was written\n");
+    return exit_signal + interrupt_signal();
+  }
+  if (made.data.experiment.cases.empty()) {
+    fmt::print(stderr, "error: no case has an equilibrium; poke less deep (--depth) or with a larger tip (--tip)\n");
+    return exit_unconverged;
+  }
+  write_data_set(folder, made.data);
+  write_material(folder / "truth.vtu", made.truth);
+  const Experiment& e = made.data.experiment;
+  fmt::print("{}: {} cases, {} markers, mesh of {} tets (truth: {}); {} holds what is true\n", folder.string(),
+             e.cases.size(), e.markers.size(), e.mesh.tet_count(), made.truth.mesh.tet_count(),
+             (folder / "truth.vtu").string());
+  return made.failed > 0 ? exit_unconverged : exit_done;
+}
+
+}  // namespace
+
+void add_capture(CLI::App& app, Action& action) {
+  auto* command =
+      app.add_subcommand("capture", "Synthetic measurements of a scene's body, for fits whose truth is known");
+  auto a = std::make_shared<Arguments>();
+  SynthesisOptions& b = a->bench;
+  command->add_option("scene", a->input, "The scene or mesh to measure")->required();
+  command->add_option("-o,--out", a->out, "The folder of the data set; default: out/NAME_data");
+  command->add_option("--set", a->overrides, "KEY=VALUE: changes the scene, as for run")->allow_extra_args(false);
+  command->add_option("--pokes", b.pokes, "Sites that are poked")->capture_default_str();
+  command->add_option("--depths", b.depths, "Depths at each site")->capture_default_str();
+  command->add_option("--depth", b.deepest, "The deepest, relative to the body's size")->capture_default_str();
+  command->add_option("--tip", a->tip, "sphere[:RADIUS] or disc[:RADIUS] in m; default: 8 % of the body's size");
+  command->add_option("--contact", a->contact, "bonded or sliding")->capture_default_str();
+  command->add_option("--markers", b.markers, "Markers on the surface")->capture_default_str();
+  command->add_option("--noise", b.noise, "Of positions, relative to the largest motion")->capture_default_str();
+  command->add_option("--force-noise", b.force_noise, "Of forces, relative to the largest")->capture_default_str();
+  command->add_flag("--no-force", a->no_force, "Leaves forces out");
+  command->add_flag("--torque", b.torques, "Measures torques, too");
+  command->add_option("--gravity", a->gravity, "X,Y,Z: a case that hangs in this direction of gravity")
+      ->allow_extra_args(false);
+  command->add_option("--mesh", a->mesh, "The mesh of the data set; default: a coarser one of the same body");
+  command->add_option("--seed", b.seed, "Of the noise and the markers")->capture_default_str();
+  command->add_option("--threads", a->threads, "How many; default: all");
+  command->add_flag("--force", a->force, "Overwrites a data set");
+  command->add_flag("-q,--quiet", a->quiet, "No progress");
+  command->callback([a, &action] { action = [a] { return capture(*a); }; });
+}
+
+}  // namespace aspic::cli

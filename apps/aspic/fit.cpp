@@ -1,0 +1,259 @@
+// `aspic fit`: measurements to a material, with progress, that goes on where it was killed.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+
+#include "aspic/commands.h"
+#include "aspic/fit_check.h"
+#include "aspic/fit_progress.h"
+#include "aspic/fit_report.h"
+#include "aspic/fit_summary.h"
+#include "aspic/interrupt.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "capture/fit_folder.h"
+#include "capture/fit_run.h"
+#include "material/registry.h"
+#include "scene/value.h"
+
+namespace aspic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  fs::path data, out = "material.vtu";
+  std::string model = FitPlan().model, smooth = "h1", weight = "auto";
+  std::vector<std::string> unknowns, known, left_out;
+  FitOptions fit;
+  double prior_deviation = RegularizerOptions().prior_deviation;
+  int threads = 0;  // 0: not given
+  bool no_uncertainty = false, no_cross_validation = false, check = false;
+  bool force = false, resume = false, quiet = false, verbose = false, allow_unconverged = false;
+};
+
+Smoothness smoothness_named(const std::string& name) {
+  if (name == "none") return Smoothness::none;
+  return name == "tv" ? Smoothness::total_variation : Smoothness::h1;
+}
+
+double weight_of(const std::string& text) {
+  if (text == "auto") return -1;
+  const double weight = parse_known("weight=" + text).second;
+  if (weight < 0) throw InvalidInput("--weight " + text + ": a number >= 0 is needed, or auto");
+  return weight;
+}
+
+FitPlan plan_of(const Arguments& arguments) {
+  FitPlan plan;
+  plan.model = material_info(arguments.model).name;
+  for (const std::string& text : arguments.unknowns) plan.unknowns.push_back(parse_unknown(text));
+  for (const std::string& text : arguments.known) plan.known.push_back(parse_known(text));
+  plan.belief.smoothness = smoothness_named(arguments.smooth);
+  plan.belief.prior_deviation = arguments.prior_deviation;
+  plan.fit = arguments.fit;
+  plan.fit.weight = weight_of(arguments.weight);
+  plan.left_out = arguments.left_out;
+  plan.uncertainty = !arguments.no_uncertainty;
+  plan.cross_validation = !arguments.no_cross_validation;
+  return plan;
+}
+
+ExistingFit existing(const Arguments& arguments) {
+  if (arguments.resume) return ExistingFit::resume;
+  return arguments.force ? ExistingFit::overwrite : ExistingFit::refuse;
+}
+
+// What data would be fitted in vain.
+void refuse_errors(const DataSet& data, const fs::path& path) {
+  std::string text;
+  for (const DataFinding& finding : diagnose(data))
+    if (finding.severity == Severity::error)
+      text += fmt::format("{}{}: {}{}{}", text.empty() ? "" : "\n", finding.where, finding.what,
+                          finding.remedy.empty() ? "" : "; ", finding.remedy);
+  if (!text.empty()) throw InvalidInput(fmt::format("{}\n(aspic fit --check {} tells more)", text, path.string()));
+}
+
+// One fit, and everyone who listens to it.
+class Fitter {
+ public:
+  Fitter(const Arguments& arguments, const DataSet& data, const FitPlan& plan, FitFolder& folder)
+      : arguments_(arguments), data_(data), plan_(plan), folder_(folder), residuals_(residual_count(data, plan)) {
+    if (!arguments.quiet) progress_.emplace(stdout, arguments.verbose);
+  }
+
+  FitOutcome run() {
+    const FitWitness witness{.begin = [this](FitStage stage, const std::string& what) { begin(stage, what); },
+                             .iterate = [this](FitStage stage, const FitIteration& iteration,
+                                               std::span<const double>) { return iterate(stage, iteration); },
+                             .go_on = [this] { return go_on(); }};
+    FitOutcome outcome = fit_material(data_, plan_, folder_.memory(), witness);
+    if (progress_) progress_->finish();
+    return outcome;
+  }
+
+  const std::vector<FitIteration>& history() const { return history_; }
+
+ private:
+  static int residual_count(const DataSet& data, const FitPlan& plan) {
+    size_t count = 0;
+    for (const LoadCase& c : without_groups(data.experiment, plan.left_out).cases)
+      count += 3 * (c.positions.size() + (c.force ? 1 : 0) + (c.torque ? 1 : 0));
+    return static_cast<int>(count);
+  }
+
+  void begin(FitStage stage, const std::string& what) {
+    if (progress_) progress_->begin(stage, what);
+  }
+
+  bool iterate(FitStage stage, const FitIteration& iteration) {
+    folder_.add(stage, iteration);
+    if (stage == FitStage::field) history_.push_back(iteration);
+    if (progress_) progress_->show(stage, iteration, residuals_);
+    return go_on();
+  }
+
+  bool go_on() {
+    if (!interrupt_signal()) return true;
+    if (progress_ && !told_) progress_->message("stopping; ctrl-C again ends at once");
+    told_ = true;
+    return false;
+  }
+
+  const Arguments& arguments_;
+  const DataSet& data_;
+  const FitPlan& plan_;
+  FitFolder& folder_;
+  int residuals_;
+  bool told_ = false;
+  std::optional<FitProgress> progress_;
+  std::vector<FitIteration> history_;
+};
+
+void print_start(const Arguments& arguments, const DataSet& data, const FitPlan& plan, const FitFolder& folder) {
+  for (const std::string& note : data.notes) fmt::print("note: {}\n", note);
+  const Experiment& e = data.experiment;
+  fmt::print("{}: {} vertices, {} tets, {} markers, {} cases in {} groups; {} threads; into {}\n", data.name,
+             e.mesh.vertex_count(), e.mesh.tet_count(), e.markers.size(), e.cases.size(), groups_of(e).size(),
+             thread_count(), arguments.out.string());
+  std::string unknowns;
+  for (const Unknown& u : plan.unknowns) unknowns += (unknowns.empty() ? "" : ", ") + text_of(u);
+  fmt::print("{}: {}\n", plan.model, unknowns.empty() ? "nothing is unknown" : unknowns);
+  if (folder.is_resumed()) fmt::print("resuming after {} iterations\n", folder.iterations_before());
+  std::fflush(stdout);
+}
+
+// The way back into a scene.
+void print_use(const Arguments& arguments, bool is_whole) {
+  if (arguments.quiet) return;
+  fmt::print("material   {0}; in a scene: material = {{ file = {1} }}\n", arguments.out.string(),
+             toml_string(arguments.out.string()));
+  if (!is_whole)
+    fmt::print("           it is what was reached; the same command with --resume goes on, to the same bits\n");
+}
+
+int exit_code(const Arguments& arguments, const FitOutcome& outcome) {
+  if (interrupt_signal()) return exit_signal + interrupt_signal();
+  if (!outcome.has_material()) return exit_unconverged;
+  return is_success(outcome.report.status) || arguments.allow_unconverged ? exit_done : exit_unconverged;
+}
+
+int run(const Arguments& arguments) {
+  if (arguments.check) return check_data(arguments.data);
+  if (arguments.threads > 0) set_thread_count(arguments.threads);
+  FitPlan plan = plan_of(arguments);
+  if (arguments.out.extension() != ".vtu")
+    throw InvalidInput(arguments.out.string() + ": a material is a .vtu file; choose such a name with -o");
+  const DataSet data = read_data_set(arguments.data);
+  refuse_errors(data, arguments.data);
+  plan = completed(std::move(plan), data.experiment);
+  const std::string options = "# aspic fit\ndata = \"" + fingerprint_of(data.experiment) + "\"\n" + text_of(plan);
+  FitFolder folder = FitFolder::open(arguments.out, options, existing(arguments));
+  catch_interrupts();  // not before there is something to keep
+
+  if (!arguments.quiet) print_start(arguments, data, plan, folder);
+  Fitter fitter(arguments, data, plan, folder);
+  const FitOutcome outcome = fitter.run();
+  if (!outcome.has_material()) {
+    fmt::print(stderr, "the fit failed: {}\n", outcome.failure);
+    return exit_code(arguments, outcome);
+  }
+  write_material(arguments.out, outcome.material);
+  folder.add_weights(outcome.report);
+  if (!arguments.quiet) print_fit(stdout, data, outcome);
+  if (!is_success(outcome.report.status))
+    fmt::print(stderr, "warning: the fit is not converged: {}\n", outcome.report.words);
+  print_use(arguments, !outcome.interrupted);
+  write_fit_report(folder.report(), data, outcome, fitter.history(), arguments.quiet ? nullptr : stdout);
+  if (!outcome.interrupted) folder.finish();
+  return exit_code(arguments, outcome);
+}
+
+std::vector<std::string> model_names() {
+  std::vector<std::string> names;
+  for (const MaterialInfo& info : materials()) names.push_back(info.name);
+  return names;
+}
+
+void add_choices(CLI::App* command, Arguments& a) {
+  command->add_option("--model", a.model, "Energy density (aspic materials); neo_hookean by default")
+      ->check(CLI::IsMember(model_names()));
+  command
+      ->add_option("--unknown", a.unknowns,
+                   "QUANTITY=tets|regions|handles:N|uniform: what is fitted; by default young=tets, all else uniform; "
+                   "can be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--known", a.known, "QUANTITY=NUMBER: is not fitted, such as poisson=0.45; can be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--smooth", a.smooth, "How neighbours differ: h1 little, tv at few edges, none: as they like")
+      ->check(CLI::IsMember({"h1", "tv", "none"}));
+  command->add_option("--weight", a.weight, "Of the smoothness and the prior against the data: auto or a number");
+  command->add_option("--rule", a.fit.weight_rule, "That chooses the weight: discrepancy, l_curve or prior")
+      ->check(CLI::IsMember(weight_rule_names()));
+  command->add_option("--prior", a.prior_deviation, "How far log E may lie from its guess: a standard deviation; inf");
+  command->add_option("--method", a.fit.method, "levenberg_marquardt, gauss_newton_cg or lbfgs")
+      ->check(CLI::IsMember(fit_method_names()));
+  command->add_option("--starts", a.fit.starts, "Guesses to start from; the best is kept")->check(CLI::Range(1, 1000));
+  command->add_option("--tolerance", a.fit.tolerance, "Of the decrement, relative to the first")
+      ->check(CLI::Range(1e-12, 0.5));
+  command->add_option("--iterations", a.fit.max_iterations, "At most so many")->check(CLI::Range(1, 100000));
+  command->add_option("--leave-out", a.left_out, "GROUP of cases: predicted, not fitted; can be repeated")
+      ->allow_extra_args(false);
+  command->add_flag("--no-uncertainty", a.no_uncertainty, "No deviations, intervals and next poke");
+  command->add_flag("--no-cross-validation", a.no_cross_validation, "No group is left out to be predicted");
+}
+
+}  // namespace
+
+void add_fit(CLI::App& app, Action& action) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("fit", "Fits a material to measurements, with its uncertainty");
+  command->footer(R"(
+Examples:
+  aspic fit pillow --check                     what the data say before anything is fitted
+  aspic fit pillow                             writes material.vtu, and material.fit/report.html to be looked at
+  aspic fit pillow -o soft.vtu --known poisson=0.45 --leave-out "poke 4"
+  aspic fit pillow --model fung --unknown young=handles:40 --unknown b=uniform
+  aspic fit pillow --resume                    goes on where it was interrupted, to the same bits
+then in a scene: material = { file = "material.vtu" }
+
+Exit codes: 0 done, 2 bad input (also: data with errors), 3 the fit failed or did not converge (unless
+--allow-unconverged); 130 interrupted by ctrl-C, 143 by kill: what was reached is written, --resume goes on.)");
+  command->add_option("DATA", arguments->data, "Folder of a data set, or its capture.toml")->required();
+  command->add_option("-o,--out", arguments->out, "The material to write; material.vtu by default");
+  command->add_flag("--check", arguments->check, "Only reads and diagnoses the data");
+  add_choices(command, *arguments);
+  command->add_option("--threads", arguments->threads, "Threads; all cores by default; the result is the same")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--force", arguments->force, "Replace an earlier fit");
+  command->add_flag("--resume", arguments->resume, "Go on with an interrupted fit")->excludes("--force");
+  command->add_flag("-q,--quiet", arguments->quiet, "Only warnings and errors");
+  command->add_flag("-v,--verbose", arguments->verbose, "A line per iteration")->excludes("--quiet");
+  command->add_flag("--allow-unconverged", arguments->allow_unconverged,
+                    "Exit code 0 even when the fit did not converge");
+  command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+}
+
+}  // namespace aspic::cli

@@ -1,0 +1,132 @@
+#include "aspic/fit_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "aspic/commands.h"
+#include "aspic/plot.h"
+#include "base/error.h"
+#include "capture/data_set.h"
+#include "capture/surface_projection.h"
+
+namespace aspic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kMostSeries = 12;  // in one chart
+
+std::string_view word(Severity severity) {
+  return severity == Severity::error ? "error" : severity == Severity::warning ? "warning" : "note";
+}
+
+double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
+
+// The cases of each group, in the order of the data.
+std::vector<std::vector<const LoadCase*>> groups_of(const Experiment& experiment) {
+  std::vector<std::vector<const LoadCase*>> groups;
+  for (const LoadCase& load : experiment.cases) {
+    if (groups.empty() || groups.back().front()->group != load.group) groups.emplace_back();
+    groups.back().push_back(&load);
+  }
+  return groups;
+}
+
+Chart force_against_depth(const Experiment& experiment) {
+  Chart chart{"Force against depth", {"depth [mm]"}, {"force [N]"}, {}};
+  for (const auto& group : groups_of(experiment)) {
+    Series series{group.front()->group, {0}, {0}, SeriesStyle::line_and_points};
+    for (const LoadCase* load : group) {
+      if (!load->tip || !load->force) continue;
+      series.x.push_back(1e3 * length(load->pose.center - load->touch.center));
+      series.y.push_back(length(*load->force));
+    }
+    if (series.x.size() > 1 && chart.series.size() < kMostSeries) chart.series.push_back(std::move(series));
+  }
+  return chart;
+}
+
+// Of the case with the largest load of each group.
+Chart motion_against_distance(const Experiment& experiment) {
+  Chart chart{"Motion of the markers", {"distance from the touch at rest [mm]"}, {"motion [mm]"}, {}};
+  for (const auto& group : groups_of(experiment)) {
+    const LoadCase& load = *group.back();
+    if (load.positions.empty() || chart.series.size() == kMostSeries) continue;
+    Series series{load.name, {}, {}, SeriesStyle::points};
+    for (const MarkerReading& reading : load.positions) {
+      const Vec3d X = position(experiment.markers[reading.marker], experiment.mesh.rest);
+      series.x.push_back(1e3 * length(X - load.touch.center));
+      series.y.push_back(1e3 * length(reading.position - X));
+    }
+    chart.series.push_back(std::move(series));
+  }
+  return chart;
+}
+
+// Charts are a help, not the purpose: without gnuplot the check goes on.
+void draw_charts(const DataSet& data, const fs::path& folder, std::FILE* human) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InvalidInput(fmt::format("{}: cannot be made ({})", folder.string(), error.message()));
+  const std::pair<const char*, Chart> charts[] = {{"force_depth.svg", force_against_depth(data.experiment)},
+                                                  {"motion.svg", motion_against_distance(data.experiment)}};
+  for (const auto& [name, chart] : charts) {
+    if (chart.series.empty()) continue;
+    try {
+      draw(folder / name, chart);
+      fmt::print(human, "chart: {}\n", (folder / name).string());
+    } catch (const InvalidInput& e) {
+      fmt::print(human, "no chart {}: {}\n", name, e.what());
+    }
+  }
+}
+
+void print_content(const DataSet& data) {
+  const Experiment& e = data.experiment;
+  size_t positions = 0, forces = 0;
+  for (const LoadCase& load : e.cases) positions += load.positions.size(), forces += load.force.has_value();
+  fmt::print(
+      "{}: {} vertices, {} tets, {} vertices fixed; {} markers; {} cases in {} groups with {} positions, {} forces\n",
+      data.name, e.mesh.vertex_count(), e.mesh.tet_count(), e.fixed.size(), e.markers.size(), e.cases.size(),
+      groups_of(e).size(), positions, forces);
+  for (const std::string& note : data.notes) fmt::print("note: {}\n", note);
+}
+
+void print(const std::vector<DataFinding>& findings) {
+  for (const DataFinding& f : findings)
+    fmt::print("{}: {}: {}\n  remedy: {}\n", word(f.severity), f.where, f.what, f.remedy);
+  if (findings.empty()) fmt::print("nothing is odd about it\n");
+}
+
+void print_json(const DataSet& data, const std::vector<DataFinding>& findings) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const DataFinding& f : findings)
+    list.push_back({{"severity", word(f.severity)}, {"where", f.where}, {"what", f.what}, {"remedy", f.remedy}});
+  const auto replace = nlohmann::json::error_handler_t::replace;
+  fmt::print("{}\n", nlohmann::json{{"name", data.name}, {"notes", data.notes}, {"findings", list}}.dump(2, ' ', false,
+                                                                                                         replace));
+}
+
+}  // namespace
+
+int check_data(const fs::path& path, const CheckDataOptions& options) {
+  const DataSet data = read_data_set(path);
+  const std::vector<DataFinding> findings = diagnose(data);
+  if (options.json) {
+    print_json(data, findings);
+  } else {
+    print_content(data);
+    print(findings);
+  }
+  const fs::path folder = fs::is_directory(path) ? path : path.parent_path();
+  draw_charts(data, options.charts.empty() ? folder / "check" : options.charts, options.json ? stderr : stdout);
+  const bool has_error =
+      std::any_of(findings.begin(), findings.end(), [](const DataFinding& f) { return f.severity == Severity::error; });
+  return has_error ? exit_bad_input : exit_done;
+}
+
+}  // namespace aspic::cli

@@ -1,0 +1,89 @@
+#include "aspic/fit_progress.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "aspic/progress.h"
+
+namespace aspic::cli {
+namespace {
+
+constexpr double kLineInterval = 10;  // in a pipe [s]
+
+size_t terminal_width(std::FILE* stream) {
+  winsize size{};
+  const bool known = ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : 80;
+}
+
+std::string stage_text(FitStage stage) {
+  switch (stage) {
+    case FitStage::uniform:
+      return "one value";
+    case FitStage::field:
+      return "fit";
+    case FitStage::uncertainty:
+      return "uncertainty";
+    case FitStage::cross_validation:
+      return "held out";
+    case FitStage::next_poke:
+      break;
+  }
+  return "next poke";
+}
+
+}  // namespace
+
+FitProgress::FitProgress(std::FILE* stream, bool every_iteration)
+    : stream_(stream), terminal_(isatty(fileno(stream)) != 0), every_iteration_(every_iteration) {}
+
+double FitProgress::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+void FitProgress::begin(FitStage stage, const std::string& what) {
+  if (what.empty()) return;
+  print(fmt::format("{:<10} {}", stage_text(stage), what));
+  shown_at_ = seconds();
+}
+
+// Readings agree with the measurements as well as their deviations allow when |r|^2 is their number.
+void FitProgress::show(FitStage stage, const FitIteration& i, int residuals) {
+  const std::string line =
+      fmt::format("{:<10} iteration {:>3}  |r|^2 {:.4g} per reading  weight {:.3g}  step {:.2g}  {}", stage_text(stage),
+                  i.index, 2 * i.misfit / std::max(residuals, 1), i.weight, i.step, duration_text(seconds()));
+  if (every_iteration_) return message(line);
+  if (!terminal_ && seconds() - shown_at_ < kLineInterval) return;
+  shown_at_ = seconds();
+  print(line);
+}
+
+void FitProgress::print(std::string line) {
+  if (terminal_) {
+    line.resize(std::min(line.size(), terminal_width(stream_) - 1));
+    fmt::print(stream_, "\r{}\x1b[K", line);
+    drawn_ = true;
+  } else {
+    fmt::print(stream_, "{}\n", line);
+  }
+  std::fflush(stream_);
+}
+
+void FitProgress::erase() {
+  if (drawn_) fmt::print(stream_, "\r\x1b[K");
+  drawn_ = false;
+}
+
+void FitProgress::message(const std::string& line) {
+  erase();
+  fmt::print(stream_, "{}\n", line);
+  std::fflush(stream_);
+}
+
+void FitProgress::finish() {
+  erase();
+  std::fflush(stream_);
+}
+
+}  // namespace aspic::cli

@@ -1,0 +1,84 @@
+#include "aspic/fit_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace aspic::cli {
+namespace {
+
+std::string percent(double part) { return fmt::format("{:.2g} %", 100 * part); }
+
+std::string interval_text(const ValueRow& row, const std::string& unit) {
+  if (!row.interval) return "";
+  return fmt::format("95 %: {} to {}", value_text(row.interval->lower, unit), value_text(row.interval->upper, unit));
+}
+
+void print_values(std::FILE* stream, const FitOutcome& outcome) {
+  for (const FittedQuantity& q : outcome.quantities) {
+    std::string head = q.name;
+    for (const ValueRow& row : q.rows) {
+      fmt::print(stream, "{:<10} {:<13} {:<10} {}\n", head, row.where, value_text(row.value, q.unit),
+                 interval_text(row, q.unit));
+      head.clear();
+    }
+  }
+  for (const auto& [quantity, value] : outcome.plan.known)
+    fmt::print(stream, "{:<10} {:<13} {} (given)\n", quantity, "everywhere", value_text(value, ""));
+}
+
+// |r|^2 by the number of readings: 1 is as close as the standard deviations say.
+std::string closeness(double misfit, int residuals) { return fmt::format("{:.3g}", 2 * misfit / residuals); }
+
+void print_misfit(std::FILE* stream, const FitOutcome& outcome) {
+  fmt::print(stream, "misfit     |r|^2 = {} per reading (1: as close as the standard deviations say)",
+             closeness(outcome.report.misfit, outcome.residuals));
+  if (outcome.uniform)
+    fmt::print(stream, "; {} with one value for all", closeness(outcome.uniform->misfit, outcome.residuals));
+  fmt::print(stream, "\n");
+}
+
+void print_held_out(std::FILE* stream, const FitOutcome& outcome) {
+  if (!outcome.held_out) return;
+  const CrossValidation& all = *outcome.held_out;
+  std::string text;
+  if (all.position_error >= 0)
+    text += fmt::format("positions within {} of the peak motion", percent(all.position_error));
+  if (all.force_error >= 0)
+    text += fmt::format("{}forces within {} of the peak force", text.empty() ? "" : ", ", percent(all.force_error));
+  if (text.empty()) return;
+  fmt::print(stream, "held out   each group predicted from the others: {} (root mean square)\n", text);
+  const auto worst = std::max_element(all.groups.begin(), all.groups.end(), [](const HeldOut& a, const HeldOut& b) {
+    return a.relative_position_error() < b.relative_position_error();
+  });
+  if (all.groups.size() > 1 && worst->ok)
+    fmt::print(stream, "           worst: '{}', positions {}, forces {}\n", worst->group,
+               percent(worst->relative_position_error()), percent(worst->relative_force_error()));
+}
+
+}  // namespace
+
+std::string value_text(double value, const std::string& unit) {
+  if (unit != "Pa" || value == 0 || !std::isfinite(value))
+    return fmt::format("{:.4g}{}{}", value, unit.empty() ? "" : " ", unit);
+  for (const auto& [factor, letter] : {std::pair{1e9, "G"}, {1e6, "M"}, {1e3, "k"}})
+    if (std::abs(value) >= factor) return fmt::format("{:.4g} {}Pa", value / factor, letter);
+  return fmt::format("{:.4g} Pa", value);
+}
+
+void print_fit(std::FILE* stream, const DataSet& data, const FitOutcome& outcome) {
+  const FitReport& report = outcome.report;
+  fmt::print(stream, "fit        {}: {} iterations, {} equilibria of {} cases; {}, weight {:.3g}\n", report.words,
+             report.iterations, outcome.counts.equilibria, data.experiment.cases.size(), report.method, report.weight);
+  print_misfit(stream, outcome);
+  print_values(stream, outcome);
+  if (outcome.posterior && outcome.posterior->ok)
+    fmt::print(stream, "learnt     the data determine {:.1f} of {} directions of the material\n",
+               outcome.posterior->informed, outcome.unknowns);
+  print_held_out(stream, outcome);
+  if (outcome.next_poke) fmt::print(stream, "next poke  {}\n", outcome.next_poke->words);
+  for (const std::string& warning : outcome.warnings) fmt::print(stream, "warning: {}\n", warning);
+}
+
+}  // namespace aspic::cli

@@ -1,0 +1,252 @@
+#include "viewer/fit_page.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "io/base64.h"
+#include "io/gzip.h"
+#include "optimize/minimize.h"
+#include "viewer/page.h"
+#include "viewer/recording_code.h"
+
+namespace aspic::viewer {
+namespace {
+
+constexpr std::string_view kBegin = "<script type=\"application/json\" id=\"fit\">\"", kEnd = "\"</script>";
+constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
+
+// JSON knows no infinity and no NaN: null.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+Json vector(const Vec3d& v) { return {number(v[0]), number(v[1]), number(v[2])}; }
+
+std::vector<float> floats(const std::vector<double>& values) { return {values.begin(), values.end()}; }
+
+void append(const Vec3d& v, std::vector<float>& list) {
+  for (int i = 0; i < 3; ++i) list.push_back(static_cast<float>(v[i]));
+}
+void append_nothing(std::vector<float>& list) { list.insert(list.end(), 3, kNoNumber); }
+
+double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
+
+class FitPack {
+ public:
+  FitPack(const DataSet& data, const FitOutcome& outcome, const std::vector<FitIteration>& history)
+      : data_(data), outcome_(outcome), history_(history) {}
+
+  std::string text() {
+    add_body();
+    add_readings();
+    Json head = {{"format", 1},
+                 {"name", data_.name},
+                 {"version", ASPIC_VERSION},
+                 {"model", outcome_.plan.model},
+                 {"counts", counts()},
+                 {"fit", fit_json()},
+                 {"quantities", quantities()},
+                 {"cases", cases()},
+                 {"heldOut", held_out()},
+                 {"history", history()},
+                 {"weights", weights()},
+                 {"notes", data_.notes},
+                 {"warnings", outcome_.warnings},
+                 {"nextPoke", next_poke()}};
+    std::string text;
+    append_base64(gzipped(pack_.bytes(std::move(head))), text);
+    return text;
+  }
+
+ private:
+  void add_body() {
+    const TetMesh& mesh = outcome_.material.mesh;
+    std::vector<float> points, markers;
+    for (const Vec3d& X : mesh.rest) append(X, points);
+    std::vector<uint32_t> tets, fixed;
+    for (const Tet& tet : mesh.tets) tets.insert(tets.end(), tet.begin(), tet.end());
+    for (const SurfacePoint& marker : data_.experiment.markers) {
+      Vec3d X{};
+      for (int k = 0; k < 3; ++k) X = X + marker.weights[k] * data_.experiment.mesh.rest[marker.vertices[k]];
+      append(X, markers);
+    }
+    for (const int v : data_.experiment.fixed)
+      fixed.push_back(static_cast<uint32_t>(data_.numbering.vertex.to_user(v)));
+    pack_.add("points", points);
+    pack_.add("tets", tets);
+    pack_.add("fixed", fixed);
+    pack_.add("markers", markers);
+    for (const auto* list : {&outcome_.material.values, &outcome_.material.further})
+      for (const auto& [name, values] : *list) pack_.add("tet." + name, floats(values));
+  }
+
+  void add_readings() {
+    std::vector<uint32_t> marker;
+    std::vector<float> measured, deviation, predicted, held_out;
+    for (size_t c = 0; c < data_.experiment.cases.size(); ++c) {
+      const LoadCase& load = data_.experiment.cases[c];
+      const CaseOutcome& outcome = outcome_.cases[c];
+      for (size_t i = 0; i < load.positions.size(); ++i) {
+        marker.push_back(static_cast<uint32_t>(load.positions[i].marker));
+        append(load.positions[i].position, measured);
+        append(load.positions[i].deviation, deviation);
+        outcome.ok ? append(outcome.markers[i], predicted) : append_nothing(predicted);
+        outcome.has_held_out ? append(outcome.held_out_markers[i], held_out) : append_nothing(held_out);
+      }
+    }
+    pack_.add("reading.marker", marker);
+    pack_.add("reading.measured", measured);
+    pack_.add("reading.deviation", deviation);
+    pack_.add("reading.predicted", predicted);
+    pack_.add("reading.heldOut", held_out);
+  }
+
+  Json counts() const {
+    const Experiment& e = data_.experiment;
+    return {{"vertices", e.mesh.vertex_count()},
+            {"tets", e.mesh.tet_count()},
+            {"markers", e.markers.size()},
+            {"cases", e.cases.size()},
+            {"unknowns", outcome_.unknowns},
+            {"residuals", outcome_.residuals},
+            {"equilibria", outcome_.counts.equilibria}};
+  }
+
+  Json fit_json() const {
+    const FitReport& r = outcome_.report;
+    return {{"words", r.words},
+            {"success", is_success(r.status)},
+            {"interrupted", outcome_.interrupted},
+            {"method", r.method},
+            {"rule", outcome_.plan.fit.weight_rule},
+            {"iterations", r.iterations},
+            {"weight", number(r.weight)},
+            {"misfit", number(r.misfit)},
+            {"roughness", number(r.roughness)},
+            {"uniformMisfit", outcome_.uniform ? number(outcome_.uniform->misfit) : Json()},
+            {"informed", outcome_.posterior && outcome_.posterior->ok ? number(outcome_.posterior->informed) : Json()},
+            {"noiseFactor",
+             outcome_.posterior && outcome_.posterior->ok ? number(outcome_.posterior->noise_factor) : Json()}};
+  }
+
+  Json quantities() const {
+    Json list = Json::array();
+    for (const FittedQuantity& q : outcome_.quantities) {
+      Json rows = Json::array();
+      for (const ValueRow& row : q.rows)
+        rows.push_back({{"where", row.where},
+                        {"value", number(row.value)},
+                        {"lower", row.interval ? number(row.interval->lower) : Json()},
+                        {"upper", row.interval ? number(row.interval->upper) : Json()}});
+      list.push_back({{"name", q.name},
+                      {"unit", q.unit},
+                      {"isLog", q.name == "young"},
+                      {"varies", q.spread != Spread::uniform},
+                      {"hasDeviation", !q.deviation.empty()},
+                      {"rows", rows}});
+    }
+    for (const auto& [name, value] : outcome_.plan.known)
+      list.push_back(
+          {{"name", name},
+           {"unit", ""},
+           {"isLog", false},
+           {"varies", false},
+           {"hasDeviation", false},
+           {"rows", Json::array({{{"where", "given"}, {"value", value}, {"lower", nullptr}, {"upper", nullptr}}})}});
+    return list;
+  }
+
+  Json cases() const {
+    Json list = Json::array();
+    size_t first = 0;
+    for (size_t c = 0; c < data_.experiment.cases.size(); ++c) {
+      const LoadCase& load = data_.experiment.cases[c];
+      const CaseOutcome& outcome = outcome_.cases[c];
+      Json item = {{"name", load.name},
+                   {"group", load.group},
+                   {"first", first},
+                   {"count", load.positions.size()},
+                   {"leftOut", outcome.left_out},
+                   {"ok", outcome.ok},
+                   {"pressure", load.pressure},
+                   {"gravity", length(load.gravity)},
+                   {"tip", nullptr},
+                   {"force", nullptr}};
+      if (load.tip)
+        item["tip"] = {{"shape", load.tip->shape == TipShape::sphere ? "sphere" : "disc"},
+                       {"radius", load.tip->radius},
+                       {"touch", vector(load.touch.center)},
+                       {"center", vector(load.pose.center)},
+                       {"axis", vector(load.touch.axis)}};
+      if (load.force)
+        item["force"] = {{"measured", vector(*load.force)},
+                         {"deviation", vector(load.force_deviation)},
+                         {"predicted", outcome.ok ? vector(outcome.wrench.force) : Json()},
+                         {"heldOut", outcome.has_held_out ? vector(outcome.held_out_wrench.force) : Json()}};
+      list.push_back(std::move(item));
+      first += load.positions.size();
+    }
+    return list;
+  }
+
+  Json held_out() const {
+    if (!outcome_.held_out) return {};
+    Json groups = Json::array();
+    for (const HeldOut& g : outcome_.held_out->groups)
+      groups.push_back({{"group", g.group},
+                        {"ok", g.ok},
+                        {"failure", g.failure},
+                        {"peakMotion", number(g.peak_motion)},
+                        {"positionError", number(g.position_error)},
+                        {"positionNoise", number(g.position_noise)},
+                        {"peakForce", number(g.peak_force)},
+                        {"forceError", number(g.force_error)},
+                        {"forceNoise", number(g.force_noise)}});
+    return {{"groups", groups},
+            {"position", number(outcome_.held_out->position_error)},
+            {"force", number(outcome_.held_out->force_error)}};
+  }
+
+  Json history() const {
+    Json list = Json::array();
+    for (const FitIteration& i : history_)
+      list.push_back({{"iteration", i.index},
+                      {"start", i.start},
+                      {"weight", number(i.weight)},
+                      {"misfit", number(i.misfit)},
+                      {"roughness", number(i.roughness)},
+                      {"objective", number(i.objective)},
+                      {"decrement", number(i.decrement)}});
+    return list;
+  }
+
+  Json weights() const {
+    Json list = Json::array();
+    for (const WeightTrial& w : outcome_.report.weights)
+      list.push_back({{"weight", number(w.weight)}, {"misfit", number(w.misfit)}, {"roughness", number(w.roughness)}});
+    return list;
+  }
+
+  Json next_poke() const {
+    if (!outcome_.next_poke) return {};
+    const PokeCandidate& poke = *outcome_.next_poke;
+    return {{"site", vector(poke.site)},
+            {"inward", vector(poke.inward)},
+            {"radius", poke.load.tip ? poke.load.tip->radius : 0.0},
+            {"depth", length(poke.load.pose.center - poke.load.touch.center)},
+            {"gain", number(poke.gain)},
+            {"words", poke.words}};
+  }
+
+  const DataSet& data_;
+  const FitOutcome& outcome_;
+  const std::vector<FitIteration>& history_;
+  ArrayPack pack_;
+};
+
+}  // namespace
+
+std::string fit_page(const DataSet& data, const FitOutcome& outcome, const std::vector<FitIteration>& history) {
+  return page_with(fmt::format("{}{}{}", kBegin, FitPack(data, outcome, history).text(), kEnd));
+}
+
+}  // namespace aspic::viewer

@@ -1,0 +1,42 @@
+#include "capture/apparent_stiffness.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "capture/case_table.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kPoisson = 0.4;
+constexpr double kBondedFootprint = 0.44;  // of a sphere, relative to its radius: see kGlue
+
+double footprint(const Tip& tip, double depth) {
+  if (tip.shape == TipShape::disc) return tip.radius;
+  if (tip.contact == TipContact::bonded) return kBondedFootprint * tip.radius;
+  return std::sqrt(tip.radius * std::min(depth, tip.radius));
+}
+
+}  // namespace
+
+std::optional<double> apparent_young(const LoadCase& load) {
+  if (!load.tip || !load.force) return std::nullopt;
+  const double depth = load_size(load), force = std::sqrt(dot(*load.force, *load.force));
+  if (!(depth > 0) || !(force > 0)) return std::nullopt;
+  return force * (1 - kPoisson * kPoisson) / (2 * footprint(*load.tip, depth) * depth);
+}
+
+std::optional<double> apparent_young(const Experiment& experiment) {
+  std::vector<double> values;
+  for (const LoadCase& load : experiment.cases)
+    if (const auto E = apparent_young(load)) values.push_back(*E);
+  return values.empty() ? std::nullopt : std::optional(median(std::move(values)));
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace aspic

@@ -1,0 +1,199 @@
+#include "capture/case_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/error.h"
+#include "capture/data_findings.h"
+#include "scene/placement.h"
+
+namespace aspic {
+namespace {
+
+constexpr int kMostCases = 20'000;
+// Where only the force along the axis was measured, the force across is this uncertain, relative to the force.
+constexpr double kForceAcross = 0.3;
+
+class CaseReader {
+ public:
+  CaseReader(const CaptureSettings& settings, const CaseScope& scope, ErrorList& errors, DataSet& data)
+      : settings_(settings),
+        scope_(scope),
+        data_(data),
+        table_(settings.file("cases"), settings.columns("cases"), errors, data.notes) {}
+
+  void read() {
+    std::vector<LoadCase>& cases = data_.experiment.cases;
+    while (table_.next()) {
+      if (cases.size() == kMostCases)
+        throw InvalidInput(data_.source.cases + ": more than " + std::to_string(kMostCases) + " cases; split them");
+      LoadCase load = row();
+      const auto [first, is_new] = line_of_.try_emplace(load.name, table_.line());
+      if (!is_new)
+        table_.error("the case '" + load.name + "' is in line " + std::to_string(first->second) +
+                     " already; give each case its own name");
+      cases.push_back(std::move(load));
+      data_.source.case_line.push_back(table_.line());
+    }
+    if (cases.empty()) throw InvalidInput(data_.source.cases + ": holds no case; a fit needs at least one");
+  }
+
+ private:
+  LoadCase row() {
+    LoadCase load;
+    const std::string number = std::to_string(data_.experiment.cases.size() + 1);
+    load.name = table_.text("case").empty() ? "case " + number : table_.text("case");
+    load.group = table_.text("group").empty() ? load.name : table_.text("group");
+    load.gravity = table_.vector("gravity_", settings_.unit("gravity")).value_or(Vec3d{});
+    read_pressure(load);
+    read_tip(load);
+    read_wrench(load);
+    return load;
+  }
+
+  void read_pressure(LoadCase& load) {
+    load.pressure = table_.number("pressure", settings_.unit("pressure")).value_or(0);
+    const std::string patch = table_.text("patch");
+    if (load.pressure == 0 && patch.empty()) return;
+    const auto* found = named(scope_.patches, patch, "patch", "patch");
+    if (found) load.pressed = *found;
+  }
+
+  // The one of this name; of a blank name, the only one.
+  template <class Thing>
+  const Thing* named(const std::map<std::string, Thing>& things, const std::string& name, const char* what,
+                     const char* key) {
+    std::vector<std::string> known;
+    for (const auto& [k, thing] : things) known.push_back(k);
+    if (name.empty() && things.size() == 1) return &things.begin()->second;
+    if (const auto found = things.find(name); found != things.end()) return &found->second;
+    if (things.empty()) {
+      table_.error(std::string("there is no ") + what + "; describe it as [[" + key + "]] in capture.toml");
+    } else if (name.empty()) {
+      table_.error(std::string("the column ") + what + " is blank, and there are several (known: " + joined(known) +
+                   ")");
+    } else {
+      table_.error(std::string(what) + " = '" + name + "' is unknown" + suggestion(name, known));
+    }
+    return nullptr;
+  }
+
+  static std::string joined(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+    return text;
+  }
+
+  // The touch of a row that gives none is that of the last row of its group that did.
+  void read_tip(LoadCase& load) {
+    const double length = settings_.unit("length");
+    std::optional<Vec3d> touch = table_.vector("touch_", length), axis = table_.vector("axis_");
+    const std::optional<Vec3d> center = table_.vector("center_", length);
+    const std::optional<double> depth = table_.number("depth", length);
+    const Vec3d rotation = table_.vector("rotation_", settings_.unit("angle")).value_or(Vec3d{});
+    if (!touch && !center && !depth && table_.text("tip").empty()) return;
+    const Tip* tip = named(scope_.tips, table_.text("tip"), "tip", "tip");
+    if (!tip) return;
+    load.tip = *tip;
+    if (const auto last = touch_of_.find(load.group); last != touch_of_.end() && !touch && !(center && depth)) {
+      touch = last->second.center;
+      if (!axis) axis = last->second.axis;
+    }
+    if (!axis && (touch || center)) axis = inward_axis(touch ? *touch : *center);
+    if (axis && norm(*axis) == 0) return table_.error("the axis is 0 0 0; it points out of the tip, into the body");
+    if (!touch && center && depth) touch = *center - *depth * unit(*axis);
+    if (!touch || (!center && !depth))
+      return table_.error(
+          "the pose of the tip is incomplete; give touch_x, touch_y, touch_z, where its centre was when "
+          "it touched the body at rest, and center_x, center_y, center_z or depth");
+    load.touch = {*touch, *axis, {}};
+    load.pose = {center ? *center : *touch + *depth * unit(*axis), turned_axis(load.touch, rotation), rotation};
+    touch_of_[load.group] = load.touch;
+  }
+
+  static Vec3d unit(const Vec3d& axis) { return (1 / norm(axis)) * axis; }
+  Vec3d inward_axis(const Vec3d& p) const { return -1.0 * scope_.surface.nearest(p).normal; }
+
+  void read_wrench(LoadCase& load) {
+    const double sign = settings_["force_of"].text() == "tip" ? 1 : -1;
+    const double newton = settings_.unit("force"), newton_metre = settings_.unit("torque");
+    load.force = table_.vector("force_", newton * sign);
+    const std::optional<double> along = table_.number("force", newton * sign);
+    const std::optional<Vec3d> force_sd = table_.deviation("force_sd", newton);
+    if (load.force && along) table_.error("force and force_x, force_y, force_z are given; keep one of them");
+    load.force_deviation = force_sd ? *force_sd : default_deviation("force", newton);
+    if (along && !load.force) take_force_along_axis(load, *along);
+    load.torque = table_.vector("torque_", newton_metre * sign);
+    const std::optional<Vec3d> torque_sd = table_.deviation("torque_sd", newton_metre);
+    load.torque_deviation = torque_sd ? *torque_sd : default_deviation("torque", newton_metre);
+    if ((load.force || load.torque) && !load.tip)
+      table_.error(
+          "has a force or torque but no tip, whose force it would be; give its pose, or leave the force blank");
+  }
+
+  // A gauge that tells only the force along the axis leaves the force across open.
+  void take_force_along_axis(LoadCase& load, double force) {
+    if (!load.tip) return;
+    const Vec3d a = unit(load.pose.axis);
+    load.force = force * a;
+    for (int i = 0; i < 3; ++i)
+      load.force_deviation[i] = std::hypot(load.force_deviation[i],
+                                           kForceAcross * std::abs(force) * std::sqrt(std::max(0.0, 1 - a[i] * a[i])));
+  }
+
+  Vec3d default_deviation(const char* what, double in_si) const {
+    const Value* sd = settings_["deviation"].find(what);
+    const double value = sd ? sd->number() * in_si : 0;  // 0: chosen once all are read
+    return {{value, value, value}};
+  }
+
+  const CaptureSettings& settings_;
+  const CaseScope& scope_;
+  DataSet& data_;
+  MeasuredTable table_;
+  std::map<std::string, int> line_of_;
+  std::map<std::string, TipPose> touch_of_;  // of groups
+};
+
+template <class T>
+std::vector<T> in_order(std::vector<T>& values, const std::vector<int>& order) {
+  std::vector<T> sorted;
+  for (const int i : order) sorted.push_back(std::move(values[i]));
+  return sorted;
+}
+
+// Groups in the order in which they appear.
+void sort_cases(DataSet& data) {
+  std::vector<LoadCase>& cases = data.experiment.cases;
+  std::map<std::string, int> rank;
+  for (const LoadCase& load : cases) rank.try_emplace(load.group, static_cast<int>(rank.size()));
+  std::vector<int> order(cases.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    const int left = rank[cases[a].group], right = rank[cases[b].group];
+    return left != right ? left < right : load_size(cases[a]) < load_size(cases[b]);
+  });
+  cases = in_order(cases, order);
+  data.source.case_line = in_order(data.source.case_line, order);
+}
+
+}  // namespace
+
+void read_cases(const CaptureSettings& settings, const CaseScope& scope, ErrorList& errors, DataSet& data) {
+  CaseReader(settings, scope, errors, data).read();
+  sort_cases(data);
+}
+
+double load_size(const LoadCase& load) {
+  if (load.tip) return norm(load.pose.center - load.touch.center);
+  if (load.pressure != 0) return std::abs(load.pressure);
+  return norm(load.gravity);
+}
+
+Vec3d turned_axis(const TipPose& touch, const Vec3d& turn) {
+  const double angle = norm(turn);
+  return angle == 0 ? touch.axis : rotation(turn, angle) * touch.axis;
+}
+
+}  // namespace aspic

@@ -1,0 +1,65 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "capture/synthesis.h"
+#include "io/external_program.h"
+#include "io/mesh_file.h"
+#include "io/tetrahedralise.h"
+#include "mesh/surface.h"
+#include "scene/body_mesh.h"
+#include "scene/toml_reader.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kCoarser = 1.5;
+
+// The shape of a resolved body with longer edges.
+void coarsen(Value& shape) {
+  Member& kind = shape.table().members.front();  // box, cylinder, ...
+  Table& table = kind.value.table();
+  if (Value* size = table.find("size")) size->data = kCoarser * size->number();
+  if (Value* cells = table.find("cells"))
+    for (Value& count : cells->array()) count.data = std::max<std::int64_t>(1, std::llround(count.number() / kCoarser));
+}
+
+TetMesh generated_coarser(Value body, const std::filesystem::path& mesher, std::vector<std::string>& notes) {
+  coarsen(*body.table().find("shape"));
+  std::erase_if(body.table().members, [](const Member& m) { return m.key == "mesh_hash" || m.key == "skin"; });
+  SceneFiles files(".", true);
+  MeshLoader loader{files, mesher, notes, {}, {}, 0};
+  return make_body_mesh(body, loader, std::nullopt).tets;
+}
+
+// Of a regular tet with the mean volume.
+double edge_length(const TetMesh& mesh) {
+  double sum = 0;
+  for (int t = 0; t < mesh.tet_count(); ++t) sum += volume(mesh, t);
+  return std::cbrt(6 * std::sqrt(2.0) * sum / mesh.tet_count());
+}
+
+TetMesh filled_coarser(const TetMesh& mesh, const std::filesystem::path& mesher) {
+  const TemporaryFolder folder;
+  const std::filesystem::path surface = folder.path() / "surface.off";
+  write_mesh(surface, boundary_surface(mesh).surface);
+  return tetrahedralise(surface, {.size = kCoarser * edge_length(mesh), .program = mesher});
+}
+
+}  // namespace
+
+std::optional<TetMesh> coarser_mesh(const Scene& scene, const std::filesystem::path& mesher,
+                                    std::vector<std::string>& notes) {
+  const Model& model = scene.simulation.model();
+  const Value body = read_toml(scene.resolved, scene.name).find("body")->array().front();
+  try {
+    TetMesh mesh = body.find("shape") ? generated_coarser(body, mesher, notes) : filled_coarser(model.mesh, mesher);
+    if (mesh.tet_count() < model.mesh.tet_count()) return mesh;
+    notes.push_back("no coarser mesh could be made than that of the scene");
+  } catch (const InvalidInput& e) {
+    notes.push_back(std::string("no coarser mesh could be made: ") + e.what());
+  }
+  return std::nullopt;
+}
+
+}  // namespace aspic

@@ -1,0 +1,40 @@
+// How what is odd about a data set is gathered, and its parts.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "capture/data_set.h"
+
+namespace aspic {
+
+class DataFindings {
+ public:
+  void error(std::string where, std::string what, std::string remedy) {
+    add({Severity::error, std::move(where), std::move(what), std::move(remedy)});
+  }
+  void warning(std::string where, std::string what, std::string remedy) {
+    add({Severity::warning, std::move(where), std::move(what), std::move(remedy)});
+  }
+  void note(std::string where, std::string what, std::string remedy) {
+    add({Severity::note, std::move(where), std::move(what), std::move(remedy)});
+  }
+  std::vector<DataFinding> take();  // errors first
+
+ private:
+  void add(DataFinding finding) { list_.push_back(std::move(finding)); }
+  std::vector<DataFinding> list_;
+};
+
+void diagnose_loads(const DataSet& data, DataFindings& findings);      // poses, pressures, gravity, what holds
+void diagnose_forces(const DataSet& data, DataFindings& findings);     // units, signs, outliers, missing ones
+void diagnose_positions(const DataSet& data, DataFindings& findings);  // units, outliers, markers off the surface
+void diagnose_content(const DataSet& data, DataFindings& findings);    // rigid motion, too little, repetitions
+
+double norm(const Vec3d& v);
+double size_of(const TetMesh& mesh);                                             // diagonal of the bounding box [m]
+std::string three_digits(double value);                                          // "1.23e+04"
+std::string factor_text(double factor);                                          // "1000 times", "1/100"
+Vec3d displacement(const Experiment& experiment, const MarkerReading& reading);  // [m]
+
+}  // namespace aspic

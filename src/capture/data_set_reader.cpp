@@ -1,0 +1,385 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/error.h"
+#include "capture/apparent_stiffness.h"
+#include "capture/capture_schema.h"
+#include "capture/case_table.h"
+#include "capture/data_findings.h"
+#include "capture/data_set.h"
+#include "capture/settings.h"
+#include "capture/surface_projection.h"
+#include "io/mesh_file.h"
+#include "scene/placement.h"
+#include "scene/selection.h"
+#include "scene/tables.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kMostMarkers = 1'000'000, kMostReadings = 5'000'000;
+constexpr double kFarOff = 0.1;      // of the body's size: a marker this far off its surface is none of it
+constexpr double kDeviation = 0.01;  // of the largest motion or force, where no standard deviation is given
+constexpr double kLayer = 1000;      // stiffness of a bonded tip's layer times the radius, over Young's modulus
+constexpr double kSoftLayer = 200;   // of a sliding one
+
+void add_notes(const std::string& what, const std::vector<Finding>& findings, std::vector<std::string>& notes) {
+  for (const Finding& f : findings) {
+    const std::string sentence = what + ": " + f.message + (f.remedy.empty() ? "" : "; " + f.remedy);
+    if (f.severity == Severity::error) throw InvalidInput(sentence);
+    if (f.severity == Severity::warning) notes.push_back(sentence);
+  }
+}
+
+class DataSetReader {
+ public:
+  explicit DataSetReader(const fs::path& path) : settings_(path) {
+    data_.source.settings = settings_.file_name();
+    data_.source.markers = settings_["markers"].text();
+    data_.source.cases = settings_["cases"].text();
+    data_.source.positions = settings_["positions"].text();
+  }
+
+  DataSet read() {
+    read_name();
+    read_rest();
+    const SurfaceProjection surface(data_.experiment.mesh);
+    read_markers(surface);
+    read_tips();
+    read_patches(surface);
+    read_cases(settings_, {tips_, patches_, surface}, errors_, data_);
+    read_positions();
+    errors_.finish();
+    choose_deviations();
+    choose_layers();
+    return std::move(data_);
+  }
+
+ private:
+  void read_name() {
+    const Value* name = settings_.find("name");
+    data_.name = name ? name->text() : fs::absolute(settings_.folder()).lexically_normal().filename().string();
+    if (data_.name.empty())
+      data_.name = fs::absolute(settings_.folder()).lexically_normal().parent_path().filename().string();
+  }
+
+  void read_rest() {
+    const fs::path path = settings_.file("mesh");
+    user_mesh_ = read_tet_mesh(path);
+    const double unit = settings_.unit("mesh");
+    if (unit != 1)
+      for (Vec3d& X : user_mesh_.rest) X = unit * X;
+    add_notes(path.filename().string(), diagnose(user_mesh_), data_.notes);
+    data_.numbering = locality_numbering(user_mesh_);
+    data_.experiment.mesh = from_user(data_.numbering, user_mesh_);
+    size_ = size_of(user_mesh_);
+    const std::vector<double> density = tet_values(settings_.document(), capture_schema().key("capture", "density"),
+                                                   user_mesh_, settings_.files(), "density");
+    data_.experiment.density = data_.numbering.tet.from_user(density);
+    read_fixed();
+  }
+
+  SelectionScope scope() const {
+    const Vec3d up = settings_["up"].vector();
+    if (norm(up) == 0) throw error_at(settings_["up"].place, "up = [0, 0, 0]; it needs a direction");
+    return {user_mesh_, (1 / norm(up)) * up, data_.name};
+  }
+
+  void read_fixed() {
+    const Value* where = settings_.find("fixed");
+    if (!where) return;
+    Value selection = *where;
+    if (where->is_array()) {
+      if (where->array().empty()) return;
+      selection = {Table{}, where->place};
+      selection.table().set("vertices", *where);
+      for (const Value& v : where->array())
+        if (v.number() < 0) throw error_at(v.place, "fixed: " + inline_toml(v) + " is no vertex; they count from 0");
+    }
+    for (const int v : select_vertices(selection, scope()))
+      data_.experiment.fixed.push_back(data_.numbering.vertex.from_user(v));
+    std::sort(data_.experiment.fixed.begin(), data_.experiment.fixed.end());
+  }
+
+  void read_markers(const SurfaceProjection& surface) {
+    MeasuredTable table(settings_.file("markers"), settings_.columns("markers"), errors_, data_.notes);
+    const bool has_corners = table.has("corner_1"), has_points = table.has("x");
+    if (!has_corners && !has_points && !table.has("vertex"))
+      throw InvalidInput(data_.source.markers +
+                         ":1: has no column x, vertex or corner_1 that tells where a marker is (columns in " +
+                         data_.source.settings + " gives them other names)");
+    for (const Triangle& t : surface.triangles())
+      for (int i = 0; i < 3; ++i) corner_of_.try_emplace(t[i], t, i);
+    while (table.next()) {
+      if (data_.marker_names.size() == kMostMarkers)
+        throw InvalidInput(data_.source.markers + ": more than " + std::to_string(kMostMarkers) + " markers");
+      const std::string given = table.text("marker");
+      const std::string name = given.empty() ? std::to_string(data_.marker_names.size()) : given;
+      const int index = static_cast<int>(data_.marker_names.size());
+      if (const auto [other, is_new] = marker_of_.try_emplace(name, index); !is_new)
+        table.error("the marker '" + name + "' is in line " + std::to_string(data_.source.marker_line[other->second]) +
+                    " already; give each its own name");
+      double gap = 0;
+      data_.experiment.markers.push_back(marker(table, surface, gap));
+      data_.marker_names.push_back(name);
+      data_.marker_gap.push_back(gap);
+      data_.source.marker_line.push_back(table.line());
+    }
+  }
+
+  SurfacePoint marker(MeasuredTable& table, const SurfaceProjection& surface, double& gap) {
+    if (!table.text("corner_1").empty()) return marker_in_triangle(table);
+    if (const std::optional<int> vertex = table.integer("vertex")) return marker_at_vertex(table, *vertex);
+    const std::optional<Vec3d> p = table.vector("", settings_.unit("length"));
+    if (!p) {
+      table.error("the marker has no place; give x, y, z or vertex");
+      return {};
+    }
+    const ProjectedPoint projected = surface.nearest(*p);
+    gap = projected.distance;
+    if (gap > kFarOff * size_)
+      table.error("the marker at " + point_text(*p) + " m lies " + number_text(gap) +
+                  " m off the surface of the body, whose size is " + number_text(size_) + " m" + unit_hint(*p));
+    return projected.point;
+  }
+
+  // Whether another unit would bring the point onto the body.
+  std::string unit_hint(const Vec3d& p) const {
+    const SurfaceProjection surface(data_.experiment.mesh);
+    for (const auto& [factor, unit] : {std::pair{1e-3, "thousandth"}, {1e-2, "hundredth"}, {1e3, "thousandfold"}})
+      if (surface.nearest(factor * p).distance < kFarOff * size_ && norm(factor * p) > kFarOff * size_)
+        return std::string("; at a ") + unit + " of its coordinates it would not: check length in units";
+    return "; correct it, or move the mesh to where the markers are";
+  }
+
+  std::optional<int> stored_vertex(MeasuredTable& table, const char* column) {
+    const std::optional<int> v = table.integer(column);
+    if (v && *v >= 0 && *v < user_mesh_.vertex_count()) return data_.numbering.vertex.from_user(*v);
+    if (v)
+      table.error(std::string(column) + " = " + std::to_string(*v) + "; the mesh has the vertices 0 to " +
+                  std::to_string(user_mesh_.vertex_count() - 1));
+    return std::nullopt;
+  }
+
+  SurfacePoint marker_at_vertex(MeasuredTable& table, int) {
+    const std::optional<int> v = stored_vertex(table, "vertex");
+    if (!v) return {};
+    const auto found = corner_of_.find(*v);
+    if (found == corner_of_.end()) {
+      table.error("vertex = " + table.text("vertex") + " is inside the body; markers lie on its surface");
+      return {};
+    }
+    SurfacePoint point{found->second.first, {}};
+    point.weights[found->second.second] = 1;
+    return point;
+  }
+
+  SurfacePoint marker_in_triangle(MeasuredTable& table) {
+    SurfacePoint point;
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+      const std::string number = std::to_string(i + 1);
+      const std::optional<int> v = stored_vertex(table, ("corner_" + number).c_str());
+      const std::optional<double> w = table.number("weight_" + number);
+      if (!v || !w) {
+        table.error("corner_1 to corner_3 and weight_1 to weight_3 belong together; some are blank or wrong");
+        return {};
+      }
+      point.vertices[i] = *v;
+      sum += point.weights[i] = *w;
+    }
+    for (const int v : point.vertices)
+      if (!corner_of_.contains(v)) table.error("a corner of the marker is inside the body; markers lie on its surface");
+    if (std::abs(sum - 1) > 1e-6) table.error("the weights add up to " + number_text(sum) + "; they must to 1");
+    return point;
+  }
+
+  void read_tips() {
+    const Value* tips = settings_.find("tip");
+    if (!tips) return;
+    for (const Value& t : tips->array()) {
+      Tip tip{t["shape"].text() == "disc" ? TipShape::disc : TipShape::sphere,
+              t["contact"].text() == "bonded" ? TipContact::bonded : TipContact::sliding,
+              settings_.unit("length") * t["radius"].number(), 0};
+      if (const Value* k = t.find("stiffness")) tip.stiffness = k->number();
+      if (!tips_.try_emplace(t["name"].text(), tip).second)
+        throw error_at(t["name"].place, "name = " + toml_string(t["name"].text()) + " is that of another tip already");
+    }
+  }
+
+  void read_patches(const SurfaceProjection& surface) {
+    const Value* patches = settings_.find("patch");
+    if (!patches) return;
+    const std::vector<Triangle> boundary = to_user(surface.triangles());
+    for (const Value& p : patches->array()) {
+      const Value* where = p.find("where");
+      std::vector<Triangle> triangles =
+          where ? select_triangles(*where, scope(), boundary) : listed_triangles(p["triangles"], boundary);
+      for (Triangle& t : triangles)
+        for (int& v : t) v = data_.numbering.vertex.from_user(v);
+      if (!patches_.try_emplace(p["name"].text(), std::move(triangles)).second)
+        throw error_at(p["name"].place,
+                       "name = " + toml_string(p["name"].text()) + " is that of another patch already");
+    }
+  }
+
+  std::vector<Triangle> to_user(std::vector<Triangle> triangles) const {
+    for (Triangle& t : triangles)
+      for (int& v : t) v = data_.numbering.vertex.to_user(v);
+    return triangles;
+  }
+
+  // Of the boundary, outward oriented; the first corner may be any.
+  std::vector<Triangle> listed_triangles(const Value& name, const std::vector<Triangle>& boundary) {
+    std::set<Triangle> outward;
+    for (const Triangle& t : boundary)
+      for (int i = 0; i < 3; ++i) outward.insert({t[i], t[(i + 1) % 3], t[(i + 2) % 3]});
+    MeasuredTable table(settings_.files().find(name), {{"a", "b", "c"}, {}}, errors_, data_.notes);
+    std::vector<Triangle> triangles;
+    while (table.next()) {
+      Triangle t{};
+      bool is_whole = true;
+      for (int i = 0; i < 3; ++i) {
+        const std::optional<int> v = table.integer(std::string(1, "abc"[i]));
+        is_whole &= v.has_value();
+        t[i] = v.value_or(-1);
+      }
+      if (is_whole && !outward.contains(t) && outward.contains({t[0], t[2], t[1]})) std::swap(t[1], t[2]);
+      if (outward.contains(t)) {
+        triangles.push_back(t);
+      } else {
+        table.error("a, b, c are no triangle of the surface; they are its corners, vertices counted from 0");
+      }
+    }
+    if (triangles.empty() && errors_.is_empty()) throw error_at(name.place, "the table has no triangle");
+    return triangles;
+  }
+
+  void read_positions() {
+    data_.source.position_line.resize(data_.experiment.cases.size());
+    const Value& name = settings_["positions"];
+    std::error_code error;
+    if (!settings_.is_given("positions") && !fs::exists(settings_.folder() / name.text(), error)) {
+      data_.notes.push_back("there is no " + name.text() + ": only forces are fitted");
+      return;
+    }
+    MeasuredTable table(settings_.file("positions"), settings_.columns("positions"), errors_, data_.notes);
+    for (const char* column : {"x", "y", "z"})
+      if (!table.has(column))
+        throw InvalidInput(data_.source.positions + ":1: has no column " + column + " (columns in " +
+                           data_.source.settings + " gives it another name)");
+    std::map<std::string, int> case_of;
+    for (size_t c = 0; c < data_.experiment.cases.size(); ++c)
+      case_of[data_.experiment.cases[c].name] = static_cast<int>(c);
+    std::map<std::pair<int, int>, int> line_of;
+    for (size_t count = 0; table.next(); ++count) {
+      if (count == kMostReadings)
+        throw InvalidInput(data_.source.positions + ": more than " + std::to_string(kMostReadings) +
+                           " positions; leave out markers or cases");
+      read_position(table, case_of, line_of);
+    }
+  }
+
+  void read_position(MeasuredTable& table, const std::map<std::string, int>& case_of,
+                     std::map<std::pair<int, int>, int>& line_of) {
+    const int c = index_of(table, "case", case_of), m = index_of(table, "marker", marker_of_);
+    const double length = settings_.unit("length");
+    const std::optional<Vec3d> p = table.vector("", length);
+    const std::optional<Vec3d> sd = table.deviation("sd", length);
+    if (c < 0 || m < 0 || !p) return;  // blank: hidden from the cameras
+    if (const auto [first, is_new] = line_of.try_emplace({c, m}, table.line()); !is_new)
+      table.error("this marker was given for this case in line " + std::to_string(first->second) + " already");
+    const Value* usual = settings_["deviation"].find("position");
+    const double all = usual ? usual->number() * length : 0;
+    data_.experiment.cases[c].positions.push_back({m, *p, sd ? *sd : Vec3d{{all, all, all}}});
+    data_.source.position_line[c].push_back(table.line());
+  }
+
+  int index_of(MeasuredTable& table, const char* column, const std::map<std::string, int>& known) {
+    const std::string name = table.text(column);
+    if (name.empty() && known.size() == 1) return 0;
+    if (const auto found = known.find(name); found != known.end()) return found->second;
+    if (name.empty()) {
+      table.error(std::string("the column ") + column + " is blank or missing");
+      return -1;
+    }
+    std::vector<std::string> names;
+    for (const auto& [n, i] : known)
+      if (names.size() < 20) names.push_back(n);
+    table.error(std::string(column) + " = '" + name + "' is not in the table of " + column + "s" +
+                suggestion(name, names));
+    return -1;
+  }
+
+  // Where none is given: a share of the largest motion, force and torque.
+  void choose_deviations() {
+    Experiment& e = data_.experiment;
+    double motion = 0, force = 0, torque = 0;
+    for (const LoadCase& load : e.cases) {
+      for (const MarkerReading& r : load.positions)
+        motion = std::max(motion, norm(r.position - position(e.markers[r.marker], e.mesh.rest)));
+      if (load.force) force = std::max(force, norm(*load.force));
+      if (load.torque) torque = std::max(torque, norm(*load.torque));
+    }
+    bool chosen[3] = {};
+    const auto complete = [&](Vec3d& sd, double largest, int what) {
+      for (int i = 0; i < 3; ++i)
+        if (sd[i] == 0) sd[i] = largest > 0 ? kDeviation * largest : 1, chosen[what] = true;
+    };
+    for (LoadCase& load : e.cases) {
+      for (MarkerReading& r : load.positions) complete(r.deviation, motion, 0);
+      if (load.force) complete(load.force_deviation, force, 1);
+      if (load.torque) complete(load.torque_deviation, torque, 2);
+    }
+    const auto note = [&](int what, const char* name, double largest, const char* unit) {
+      if (chosen[what])
+        data_.notes.push_back(std::string("no standard deviation of ") + name + ": taken as 1 % of the largest, " +
+                              number_text(kDeviation * largest) + " " + unit + " (deviation in capture.toml sets it)");
+    };
+    note(0, "positions", motion, "m");
+    note(1, "forces", force, "N");
+    note(2, "torques", torque, "N m");
+  }
+
+  void choose_layers() {
+    const double E = apparent_young(data_.experiment).value_or(1e5);
+    std::set<double> chosen;
+    for (LoadCase& load : data_.experiment.cases) {
+      if (!load.tip || load.tip->stiffness > 0) continue;
+      load.tip->stiffness = (load.tip->contact == TipContact::bonded ? kLayer : kSoftLayer) * E / load.tip->radius;
+      chosen.insert(load.tip->stiffness);
+    }
+    for (const double k : chosen)
+      data_.notes.push_back("the layer of the tip has the stiffness " + number_text(k) +
+                            " Pa/m: far stiffer than the body, which seems to have E = " + number_text(E) + " Pa");
+  }
+
+  CaptureSettings settings_;
+  ErrorList errors_;
+  DataSet data_;
+  TetMesh user_mesh_;
+  double size_ = 0;  // of the body [m]
+  std::map<std::string, int> marker_of_;
+  std::map<int, std::pair<Triangle, int>> corner_of_;  // a triangle of each vertex of the surface, and which corner
+  std::map<std::string, Tip> tips_;
+  std::map<std::string, std::vector<Triangle>> patches_;
+};
+
+std::string line_in(const std::string& file, const std::vector<int>& lines, int i) {
+  return i < static_cast<int>(lines.size()) ? file + ":" + std::to_string(lines[i]) : file;
+}
+
+}  // namespace
+
+std::string DataSource::marker(int m) const { return line_in(markers, marker_line, m); }
+std::string DataSource::load_case(int c) const { return line_in(cases, case_line, c); }
+std::string DataSource::position(int c, int i) const {
+  return c < static_cast<int>(position_line.size()) ? line_in(positions, position_line[c], i) : positions;
+}
+
+DataSet read_data_set(const fs::path& path) { return DataSetReader(path).read(); }
+
+}  // namespace aspic

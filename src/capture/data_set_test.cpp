@@ -1,0 +1,281 @@
+// The format of measurements: what is written reads back, what others wrote is understood, what is wrong is named.
+#include "capture/data_set.h"
+
+#include <gmock/gmock.h>
+
+#include "capture/capture_cases_test.h"
+#include "capture/case_table.h"
+#include "mesh/surface.h"
+
+namespace aspic {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+void expect_equal(const Vec3d& a, const Vec3d& b) {
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(a[i], b[i]);
+}
+void expect_equal(const std::optional<Vec3d>& a, const std::optional<Vec3d>& b) {
+  ASSERT_EQ(a.has_value(), b.has_value());
+  if (a) expect_equal(*a, *b);
+}
+
+void expect_equal(const LoadCase& a, const LoadCase& b) {
+  EXPECT_EQ(a.name, b.name);
+  EXPECT_EQ(a.group, b.group);
+  ASSERT_EQ(a.tip.has_value(), b.tip.has_value());
+  if (a.tip) {
+    EXPECT_EQ(a.tip->shape, b.tip->shape);
+    EXPECT_EQ(a.tip->contact, b.tip->contact);
+    EXPECT_EQ(a.tip->radius, b.tip->radius);
+    EXPECT_EQ(a.tip->stiffness, b.tip->stiffness);
+    expect_equal(a.touch.center, b.touch.center);
+    expect_equal(a.touch.axis, b.touch.axis);
+    expect_equal(a.pose.center, b.pose.center);
+    expect_equal(a.pose.axis, b.pose.axis);
+    expect_equal(a.pose.rotation, b.pose.rotation);
+  }
+  expect_equal(a.gravity, b.gravity);
+  EXPECT_EQ(a.pressure, b.pressure);
+  EXPECT_EQ(a.pressed, b.pressed);
+  expect_equal(a.force, b.force);
+  expect_equal(a.torque, b.torque);
+  if (a.force) expect_equal(a.force_deviation, b.force_deviation);
+  if (a.torque) expect_equal(a.torque_deviation, b.torque_deviation);
+  ASSERT_EQ(a.positions.size(), b.positions.size());
+  for (size_t i = 0; i < a.positions.size(); ++i) {
+    EXPECT_EQ(a.positions[i].marker, b.positions[i].marker);
+    expect_equal(a.positions[i].position, b.positions[i].position);
+    expect_equal(a.positions[i].deviation, b.positions[i].deviation);
+  }
+}
+
+class DataSetFile : public FolderTest {
+ protected:
+  // A data set as a measuring program leaves it; `settings` go before [[tip]].
+  std::filesystem::path measured(const std::string& settings = "") {
+    write_mesh(path("rest.msh"), test_box());
+    folder.write("markers.csv", "marker,x,y,z\nA,0.05,0.04,0.0601\nB,0.02,0.03,0.06\n");
+    folder.write("cases.csv",
+                 "case,group,touch_x,touch_y,touch_z,depth,force_x,force_y,force_z,force_sd\n"
+                 "deep,p,0.05,0.04,0.07,0.004,0,0,-1,0.01\nshallow,p,0.05,0.04,0.07,0.002,,,,\n");
+    folder.write("positions.csv", "case,marker,x,y,z,sd\ndeep,A,0.05,0.04,0.056,1e-4\nshallow,B,0.02,0.03,0.0599,\n");
+    folder.write("capture.toml",
+                 "version = 1\nmesh = \"rest.msh\"\nfixed = \"z < 1e-9\"\n" + settings + "\n[[tip]]\nradius = 0.01\n");
+    return folder;
+  }
+  std::string refusal() {
+    return message_of([&] { read_data_set(folder); });
+  }
+};
+
+TEST_F(DataSetFile, ReadsBackToTheSameBits) {
+  DataSet data = test_data();
+  LoadCase& turned = data.experiment.cases[1];
+  turned.pose.rotation = {{0.1, -0.2, 0.3}};
+  turned.pose.axis = turned_axis(turned.touch, turned.pose.rotation);
+  turned.torque = Vec3d{{1e-3, 2e-3, -1e-3}};
+  turned.torque_deviation = {{1e-4, 2e-4, 3e-4}};
+  data.experiment.cases[2].force.reset();
+  data.experiment.cases[2].positions.pop_back();
+  LoadCase hung;
+  hung.name = hung.group = "hung, upside down";
+  hung.gravity = {{0, 0.1, 9.81}};
+  hung.positions = data.experiment.cases[0].positions;
+  LoadCase pressed = hung;
+  pressed.name = pressed.group = "say \"press\"";
+  pressed.gravity = {};
+  pressed.pressure = 123.456;
+  const std::vector<Triangle> surface = boundary_triangles(data.experiment.mesh, 0, data.experiment.mesh.tet_count());
+  pressed.pressed.assign(surface.begin(), surface.begin() + 7);
+  data.experiment.cases.push_back(hung);
+  data.experiment.cases.push_back(pressed);
+  for (size_t t = 0; t < data.experiment.density.size(); ++t) data.experiment.density[t] = 1000 + 1.0 / (1 + t);
+
+  write_data_set(folder / "data", data);
+  const DataSet again = read_data_set(folder / "data");
+  EXPECT_EQ(again.name, data.name);
+  EXPECT_EQ(again.marker_names, data.marker_names);
+  EXPECT_THAT(again.notes, ElementsAre());
+  const Experiment &a = data.experiment, &b = again.experiment;
+  EXPECT_EQ(a.mesh.tets, b.mesh.tets);
+  for (int v = 0; v < a.mesh.vertex_count(); ++v) expect_equal(a.mesh.rest[v], b.mesh.rest[v]);
+  EXPECT_EQ(a.fixed, b.fixed);
+  EXPECT_EQ(a.density, b.density);
+  ASSERT_EQ(a.markers.size(), b.markers.size());
+  for (size_t m = 0; m < a.markers.size(); ++m) {
+    EXPECT_EQ(a.markers[m].vertices, b.markers[m].vertices);
+    EXPECT_EQ(a.markers[m].weights, b.markers[m].weights);
+  }
+  ASSERT_EQ(a.cases.size(), b.cases.size());
+  for (size_t c = 0; c < a.cases.size(); ++c) expect_equal(a.cases[c], b.cases[c]);
+}
+
+TEST_F(DataSetFile, WhatIsLeftOutIsChosenAndTold) {
+  const DataSet data = read_data_set(measured());
+  const Experiment& e = data.experiment;
+  ASSERT_EQ(e.cases.size(), 2u);
+  EXPECT_EQ(e.cases[0].name, "shallow");  // from the smallest load on
+  EXPECT_EQ(data.source.load_case(0), "cases.csv:3");
+  EXPECT_EQ(data.source.position(1, 0), "positions.csv:2");
+  EXPECT_FALSE(e.cases[0].force.has_value());
+  const LoadCase& deep = e.cases[1];
+  EXPECT_NEAR(deep.pose.center[2], 0.066, 1e-15);
+  expect_equal(deep.touch.axis, {{0, 0, -1}});  // into the surface
+  EXPECT_EQ(deep.tip->contact, TipContact::sliding);
+  EXPECT_GT(deep.tip->stiffness, 0);
+  EXPECT_EQ(deep.positions[0].deviation[1], 1e-4);
+  EXPECT_GT(e.cases[0].positions[0].deviation[1], 0);
+  EXPECT_NEAR(data.marker_gap[0], 1e-4, 1e-15);
+  EXPECT_EQ(e.fixed.size(), 30u);
+  EXPECT_THAT(data.notes, testing::Contains(HasSubstr("standard deviation of positions")));
+  EXPECT_THAT(data.notes, testing::Contains(HasSubstr("layer of the tip")));
+}
+
+TEST_F(DataSetFile, UnitsAndNamesOfColumnsAreThoseOfTheMeasuringProgram) {
+  measured(
+      "units = { length = \"mm\", mesh = \"m\", force = \"g\", angle = \"deg\" }\n"
+      "columns = { x = \"X [mm]\", y = \"Y [mm]\", z = \"Z [mm]\", cases = { force_z = \"Scale\" } }\n"
+      "force_of = \"body\"");
+  folder.write("markers.csv", "marker;X [mm];Y [mm];Z [mm]\nA;50,0;40,0;60,0\n");
+  folder.write("cases.csv",
+               "case\ttouch_x\ttouch_y\ttouch_z\tdepth\trotation_x\trotation_y\trotation_z\tforce_x\tforce_y\tScale\n"
+               "1\t50\t40\t70\t4\t0\t0\t90\t0\t0\t250");
+  folder.write("positions.csv", "case,marker,X [mm],Y [mm],Z [mm]\n1,A,50,40,56\n");
+  folder.write("capture.toml",
+               "version = 1\nmesh = \"rest.msh\"\nforce_of = \"body\"\nfixed = [0, 4]\n"
+               "units = { length = \"mm\", mesh = \"m\", force = \"g\", angle = \"deg\" }\n"
+               "columns = { x = \"X [mm]\", y = \"Y [mm]\", z = \"Z [mm]\", cases = { force_z = \"Scale\" } }\n"
+               "[[tip]]\nradius = 10\n");
+  const DataSet data = read_data_set(folder);
+  const LoadCase& load = data.experiment.cases[0];
+  EXPECT_NEAR((*load.force)[2], -0.25 * 9.80665, 1e-14);
+  EXPECT_NEAR(load.pose.rotation[2], 1.5707963267948966, 1e-15);
+  EXPECT_NEAR(load.pose.center[2], 0.066, 1e-15);
+  EXPECT_NEAR(load.positions[0].position[2], 0.056, 1e-15);
+  EXPECT_EQ(data.experiment.fixed.size(), 2u);
+}
+
+TEST_F(DataSetFile, AForceAlongTheAxisLeavesTheForceAcrossOpen) {
+  measured();
+  folder.write("cases.csv", "case,touch_x,touch_y,touch_z,depth,force,force_sd\n1,0.05,0.04,0.07,0.004,2,0.01\n");
+  folder.write("positions.csv", "case,marker,x,y,z\n1,A,0.05,0.04,0.056\n");
+  const LoadCase load = read_data_set(folder).experiment.cases[0];
+  expect_equal(*load.force, {{0, 0, -2}});
+  EXPECT_NEAR(load.force_deviation[2], 0.01, 1e-12);
+  EXPECT_GT(load.force_deviation[0], 0.5);
+}
+
+TEST_F(DataSetFile, PatchesAndMarkersAtVerticesAreFound) {
+  measured("[[patch]]\nname = \"top\"\nwhere = { highest = 0.001 }");
+  folder.write("capture.toml",
+               "version = 1\nmesh = \"rest.msh\"\nup = [0, 0, 2]\nfixed = { lowest = 0.0 }\n[[patch]]\nname = \"top\"\n"
+               "where = { highest = 0.001 }\n");
+  const int top_corner = 3;  // of x = y = 0, z = 0.06
+  folder.write("markers.csv", "vertex\n" + std::to_string(top_corner) + "\n");
+  folder.write("cases.csv", "case,pressure\nblown,-500\n");
+  folder.write("positions.csv", "marker,x,y,z\n0,0,0,0.061\n");
+  const DataSet data = read_data_set(folder);
+  EXPECT_EQ(data.experiment.cases[0].pressure, -500);
+  EXPECT_EQ(data.experiment.cases[0].pressed.size(), 2u * 5 * 4);
+  expect_equal(position(data.experiment.markers[0], data.experiment.mesh.rest), {{0, 0, 0.06}});
+  EXPECT_EQ(data.experiment.fixed.size(), 30u);
+}
+
+TEST_F(DataSetFile, BadCellsAreNamedWithFileLineValueAndRemedyAllAtOnce) {
+  measured();
+  folder.write("positions.csv",
+               "case,marker,x,y,z,sd\ndeep,A,nan,0.04,0.056,1e-4\ndeep,B,0.02,0.03,0.06,-1\nshallow,A,0.05,,0.06,1e-4\n"
+               "shalow,A,0.05,0.04,0.06,1e-4\nshallow,B,0.02,0.03,six,1\nshallow,B,,,,\n");
+  const std::string text = refusal();
+  EXPECT_THAT(text, HasSubstr("positions.csv:2: x = 'nan' is no finite number"));
+  EXPECT_THAT(text, HasSubstr("positions.csv:3: sd = -1; a standard deviation must be > 0"));
+  EXPECT_THAT(text, HasSubstr("positions.csv:4: x, y, z: some are blank"));
+  EXPECT_THAT(text,
+              HasSubstr("positions.csv:5: case = 'shalow' is not in the table of cases (did you mean 'shallow'?)"));
+  EXPECT_THAT(text, HasSubstr("positions.csv:6: z = 'six'"));
+}
+
+TEST_F(DataSetFile, NamesAreGivenOnce) {
+  measured();
+  folder.write("markers.csv", "marker,x,y,z\nA,0.05,0.04,0.06\nA,0.02,0.03,0.06\n");
+  folder.write("cases.csv", "case,touch_x,touch_y,touch_z,depth\n1,0.05,0.04,0.07,0.004\n1,0.05,0.04,0.07,0.004\n");
+  folder.write("positions.csv", "case,marker,x,y,z\n1,A,0.05,0.04,0.056\n1,A,0.05,0.04,0.056\n");
+  const std::string text = refusal();
+  EXPECT_THAT(text, HasSubstr("markers.csv:3: the marker 'A' is in line 2 already"));
+  EXPECT_THAT(text, HasSubstr("cases.csv:3: the case '1' is in line 2 already"));
+  EXPECT_THAT(text, HasSubstr("positions.csv:3: this marker was given for this case in line 2 already"));
+}
+
+TEST_F(DataSetFile, AMarkerFarOffTheSurfaceIsRefusedWithAHintAtUnits) {
+  measured();
+  folder.write("markers.csv", "marker,x,y,z\nA,50,40,60\nB,0.02,0.03,0.06\n");
+  EXPECT_THAT(refusal(), HasSubstr("markers.csv:2: the marker at (50, 40, 60) m lies"));
+  EXPECT_THAT(refusal(), HasSubstr("thousandth"));
+}
+
+TEST_F(DataSetFile, MissingFilesAndColumnsAndUnknownKeysAreNamed) {
+  EXPECT_THAT(message_of([&] { read_data_set(folder / "nowhere"); }), HasSubstr("does not exist"));
+  EXPECT_THAT(refusal(), HasSubstr("has no capture.toml"));
+  measured();
+  folder.write("capture.toml", "version = 1\nmesh = \"rost.msh\"\n");
+  EXPECT_THAT(refusal(), HasSubstr("did you mean 'rest.msh'"));
+  folder.write("capture.toml", "version = 1\nmash = \"rest.msh\"\n");
+  EXPECT_THAT(refusal(), HasSubstr("did you mean 'mesh'"));
+  folder.write("capture.toml", "version = 2\nmesh = \"rest.msh\"\n");
+  EXPECT_THAT(refusal(), HasSubstr("version = 2; must be"));
+  folder.write("capture.toml", "version = 1\nmesh = \"rest.msh\"\nunits = { force = \"gram\" }\n");
+  EXPECT_THAT(refusal(), HasSubstr("force = \"gram\"; unknown name"));
+  measured("columns = { x = \"X\" }");
+  EXPECT_THAT(refusal(), HasSubstr("has no column 'X'"));
+  measured();
+  folder.write("positions.csv", "case,marker,x,y\ndeep,A,1,2\n");
+  EXPECT_THAT(refusal(), HasSubstr("positions.csv:1: has no column z"));
+  folder.write("positions.csv", "");
+  EXPECT_THAT(refusal(), HasSubstr("is empty"));
+  folder.write("positions.csv", "case,marker,x,y,z\ndeep,A,1,2\n");
+  EXPECT_THAT(refusal(), HasSubstr("has 4 cells"));
+  measured();
+  folder.write("cases.csv", "case,group\n");
+  EXPECT_THAT(refusal(), HasSubstr("holds no case"));
+  folder.write("cases.csv", "case,tip,touch_x,touch_y,touch_z\n1,tipp,0.05,0.04,0.07\n");
+  EXPECT_THAT(refusal(), HasSubstr("tip = 'tipp' is unknown"));
+  folder.write("cases.csv", "case,touch_x,touch_y,touch_z\n1,0.05,0.04,0.07\n");
+  EXPECT_THAT(refusal(), HasSubstr("the pose of the tip is incomplete"));
+  folder.write("cases.csv", "case,force_x,force_y,force_z\n1,0,0,1\n");
+  EXPECT_THAT(refusal(), HasSubstr("no tip, whose force"));
+}
+
+TEST_F(DataSetFile, AMeshOfTrianglesOrWithInvertedTetsIsRefused) {
+  measured();
+  TetMesh inverted = test_box();
+  std::swap(inverted.tets[3][0], inverted.tets[3][1]);
+  write_mesh(path("rest.msh"), inverted);
+  EXPECT_THAT(refusal(), HasSubstr("inverted"));
+  write_mesh(path("rest.msh"), boundary_surface(test_box()).surface);
+  EXPECT_THAT(refusal(), HasSubstr("tet"));
+}
+
+TEST_F(DataSetFile, AVertexInsideTheBodyAndOneThatIsNotThereAreNoMarkers) {
+  measured();
+  const TetMesh box = test_box();
+  int inside = 0;
+  while (!(box.rest[inside][0] > 0.01 && box.rest[inside][1] > 0.01 && box.rest[inside][2] > 0.01 &&
+           box.rest[inside][0] < 0.09 && box.rest[inside][1] < 0.07 && box.rest[inside][2] < 0.05))
+    ++inside;
+  folder.write("markers.csv", "marker,vertex\nA," + std::to_string(inside) + "\nB,100000\n");
+  EXPECT_THAT(refusal(), HasSubstr("markers.csv:2: vertex = " + std::to_string(inside) + " is inside the body"));
+  EXPECT_THAT(refusal(), HasSubstr("markers.csv:3: vertex = 100000; the mesh has the vertices 0 to"));
+}
+
+TEST_F(DataSetFile, ForcesAloneAreData) {
+  measured();
+  std::filesystem::remove(path("positions.csv"));
+  const DataSet data = read_data_set(folder);
+  EXPECT_TRUE(data.experiment.cases[0].positions.empty());
+  EXPECT_THAT(data.notes, testing::Contains(HasSubstr("only forces are fitted")));
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+#include "capture/case_table.h"
+#include "capture/data_set.h"
+#include "capture/surface_projection.h"
+#include "io/atomic_file.h"
+#include "io/csv.h"
+#include "io/mesh_file.h"
+#include "scene/value.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool same(const Vec3d& a, const Vec3d& b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
+bool same(const Tip& a, const Tip& b) {
+  return a.shape == b.shape && a.contact == b.contact && a.radius == b.radius && a.stiffness == b.stiffness;
+}
+
+class Csv {
+ public:
+  explicit Csv(const std::vector<std::string>& columns) {
+    CsvRow head;
+    for (const std::string& c : columns) head.add(c);
+    add(head);
+  }
+  void add(const CsvRow& row) { text_ += row.text() + "\n"; }
+  void write(const fs::path& path) const { write_file(path, text_); }
+
+ private:
+  std::string text_;
+};
+
+void add(CsvRow& row, const Vec3d& v) { row.add(v[0]).add(v[1]).add(v[2]); }
+void add(CsvRow& row, const std::optional<Vec3d>& v) {
+  if (v) return add(row, *v);
+  row.add("").add("").add("");
+}
+
+class DataSetWriter {
+ public:
+  DataSetWriter(const fs::path& folder, const DataSet& data) : folder_(folder), data_(data) {}
+
+  void write() {
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    if (error) throw InvalidInput(folder_.string() + ": cannot be made (" + error.message() + "); choose another");
+    collect();
+    write_mesh(folder_ / "rest.msh", to_user(data_.numbering, data_.experiment.mesh));
+    write_markers();
+    write_cases();
+    write_positions();
+    for (size_t p = 0; p < patches_.size(); ++p) write_patch(p);
+    write_settings();  // last: without it the folder is no data set
+  }
+
+ private:
+  int user(int vertex) const { return data_.numbering.vertex.to_user(vertex); }
+
+  void collect() {
+    for (const LoadCase& load : data_.experiment.cases) {
+      const auto is_equal = [&](const Tip& tip) { return same(tip, *load.tip); };
+      if (load.tip && std::none_of(tips_.begin(), tips_.end(), is_equal)) tips_.push_back(*load.tip);
+      if (!load.pressed.empty() && std::find(patches_.begin(), patches_.end(), load.pressed) == patches_.end())
+        patches_.push_back(load.pressed);
+      if (load.tip && !same(load.pose.axis, turned_axis(load.touch, load.pose.rotation)))
+        throw InvalidInput("case '" + load.name + "': the axis of the pose is not that of the touch, turned");
+    }
+  }
+
+  static std::string numbered(const char* name, size_t index, size_t count) {
+    return count == 1 ? name : name + ("_" + std::to_string(index + 1));
+  }
+  std::string tip_name(const Tip& tip) const {
+    const auto found = std::find_if(tips_.begin(), tips_.end(), [&](const Tip& t) { return same(t, tip); });
+    return numbered("tip", found - tips_.begin(), tips_.size());
+  }
+  std::string patch_name(size_t p) const { return numbered("patch", p, patches_.size()); }
+
+  void write_markers() const {
+    Csv csv({"marker", "x", "y", "z", "corner_1", "corner_2", "corner_3", "weight_1", "weight_2", "weight_3"});
+    for (size_t m = 0; m < data_.experiment.markers.size(); ++m) {
+      const SurfacePoint& point = data_.experiment.markers[m];
+      CsvRow row;
+      row.add(data_.marker_names[m]);
+      add(row, position(point, data_.experiment.mesh.rest));
+      for (const int v : point.vertices) row.add(user(v));
+      for (const double w : point.weights) row.add(w);
+      csv.add(row);
+    }
+    csv.write(folder_ / "markers.csv");
+  }
+
+  void write_cases() const {
+    Csv csv({"case",       "group",       "tip",         "touch_x",    "touch_y",    "touch_z",    "axis_x",
+             "axis_y",     "axis_z",      "center_x",    "center_y",   "center_z",   "rotation_x", "rotation_y",
+             "rotation_z", "gravity_x",   "gravity_y",   "gravity_z",  "pressure",   "patch",      "force_x",
+             "force_y",    "force_z",     "force_sd_x",  "force_sd_y", "force_sd_z", "torque_x",   "torque_y",
+             "torque_z",   "torque_sd_x", "torque_sd_y", "torque_sd_z"});
+    for (const LoadCase& load : data_.experiment.cases) csv.add(row_of(load));
+    csv.write(folder_ / "cases.csv");
+  }
+
+  CsvRow row_of(const LoadCase& load) const {
+    using Maybe = std::optional<Vec3d>;
+    CsvRow row;
+    row.add(load.name).add(load.group).add(load.tip ? tip_name(*load.tip) : "");
+    add(row, load.tip ? Maybe(load.touch.center) : std::nullopt);
+    add(row, load.tip ? Maybe(load.touch.axis) : std::nullopt);
+    add(row, load.tip ? Maybe(load.pose.center) : std::nullopt);
+    add(row, load.tip ? Maybe(load.pose.rotation) : std::nullopt);
+    add(row, load.gravity);
+    row.add(load.pressure);
+    const auto patch = std::find(patches_.begin(), patches_.end(), load.pressed);
+    row.add(patch == patches_.end() ? "" : patch_name(patch - patches_.begin()));
+    add(row, load.force);
+    add(row, load.force ? Maybe(load.force_deviation) : std::nullopt);
+    add(row, load.torque);
+    add(row, load.torque ? Maybe(load.torque_deviation) : std::nullopt);
+    return row;
+  }
+
+  void write_positions() const {
+    Csv csv({"case", "marker", "x", "y", "z", "sd_x", "sd_y", "sd_z"});
+    for (const LoadCase& load : data_.experiment.cases)
+      for (const MarkerReading& r : load.positions) {
+        CsvRow row;
+        row.add(load.name).add(data_.marker_names[r.marker]);
+        add(row, r.position);
+        add(row, r.deviation);
+        csv.add(row);
+      }
+    csv.write(folder_ / "positions.csv");
+  }
+
+  void write_patch(size_t p) const {
+    Csv csv({"a", "b", "c"});
+    for (const Triangle& t : patches_[p]) csv.add(CsvRow().add(user(t[0])).add(user(t[1])).add(user(t[2])));
+    csv.write(folder_ / (patch_name(p) + ".csv"));
+  }
+
+  std::string density_text() const {
+    const std::vector<double>& density = data_.experiment.density;
+    if (std::all_of(density.begin(), density.end(), [&](double d) { return d == density.front(); }))
+      return inline_toml({density.empty() ? 1000.0 : density.front(), {}});
+    std::string text = "density\n";
+    for (const double d : data_.numbering.tet.to_user(density)) text += number_text(d) + "\n";
+    write_file(folder_ / "density.csv", text);
+    return "{ file = \"density.csv\" }";
+  }
+
+  void write_settings() const {
+    std::vector<int> fixed;
+    for (const int v : data_.experiment.fixed) fixed.push_back(user(v));
+    std::sort(fixed.begin(), fixed.end());
+    std::string list;
+    for (const int v : fixed) list += (list.empty() ? "" : ", ") + std::to_string(v);
+    std::string text =
+        "# Measurements, in SI units: docs/capture_format.md\nversion = 1\nname = " + toml_string(data_.name) +
+        "\nmesh = \"rest.msh\"\ndensity = " + density_text() + "\nfixed = [" + list + "]\n";
+    for (const Tip& tip : tips_)
+      text += "\n[[tip]]\nname = " + toml_string(tip_name(tip)) +
+              "\nshape = " + (tip.shape == TipShape::disc ? "\"disc\"" : "\"sphere\"") +
+              "\ncontact = " + (tip.contact == TipContact::bonded ? "\"bonded\"" : "\"sliding\"") +
+              "\nradius = " + inline_toml({tip.radius, {}}) + "\nstiffness = " + inline_toml({tip.stiffness, {}}) +
+              "\n";
+    for (size_t p = 0; p < patches_.size(); ++p)
+      text += "\n[[patch]]\nname = " + toml_string(patch_name(p)) +
+              "\ntriangles = " + toml_string(patch_name(p) + ".csv") + "\n";
+    write_file(folder_ / "capture.toml", text);
+  }
+
+  const fs::path& folder_;
+  const DataSet& data_;
+  std::vector<Tip> tips_;
+  std::vector<std::vector<Triangle>> patches_;
+};
+
+}  // namespace
+
+void write_data_set(const fs::path& folder, const DataSet& data) { DataSetWriter(folder, data).write(); }
+
+}  // namespace aspic

@@ -1,0 +1,48 @@
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "capture/data_findings.h"
+#include "capture/surface_projection.h"
+#include "scene/placement.h"
+
+namespace aspic {
+
+std::vector<DataFinding> DataFindings::take() {
+  std::stable_sort(list_.begin(), list_.end(),
+                   [](const DataFinding& a, const DataFinding& b) { return a.severity < b.severity; });
+  return std::move(list_);
+}
+
+double norm(const Vec3d& v) { return std::sqrt(dot(v, v)); }
+
+double size_of(const TetMesh& mesh) {
+  const Box box = bounding_box(mesh.rest);
+  return norm(box.upper - box.lower);
+}
+
+std::string three_digits(double value) {
+  std::ostringstream text;
+  text.precision(3);
+  text << value;
+  return text.str();
+}
+
+std::string factor_text(double factor) {
+  return factor >= 1 ? three_digits(factor) + " times" : "1/" + three_digits(1 / factor) + " of";
+}
+
+Vec3d displacement(const Experiment& experiment, const MarkerReading& reading) {
+  return reading.position - position(experiment.markers[reading.marker], experiment.mesh.rest);
+}
+
+std::vector<DataFinding> diagnose(const DataSet& data) {
+  DataFindings findings;
+  diagnose_loads(data, findings);
+  diagnose_forces(data, findings);
+  diagnose_positions(data, findings);
+  diagnose_content(data, findings);
+  return findings.take();
+}
+
+}  // namespace aspic

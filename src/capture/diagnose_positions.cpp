@@ -1,0 +1,195 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "capture/apparent_stiffness.h"
+#include "capture/data_findings.h"
+#include "capture/surface_projection.h"
+
+namespace aspic {
+namespace {
+
+constexpr int kNeighbours = 12;
+constexpr size_t kMostListed = 5;     // of one kind; the rest is counted
+constexpr double kOffSurface = 0.02;  // of the body's size
+constexpr double kSuspicious = 6;     // times what neighbours differ by
+constexpr double kNoticeable = 0.05;  // of the largest motion of the case
+constexpr double kFar = 1;            // of the body's size: a motion that is none
+
+// The markers nearest to each at rest, of those given.
+std::vector<std::vector<int>> neighbours(const std::vector<Vec3d>& X) {
+  std::vector<Box> boxes(X.size());
+  for (size_t i = 0; i < X.size(); ++i) boxes[i].add(X[i]);
+  const BoxTree tree(boxes);
+  std::vector<std::vector<int>> nearest(X.size());
+  for (size_t i = 0; i < X.size(); ++i) {
+    std::vector<std::pair<double, int>> found;
+    double reach = Box::kInfinity;
+    tree.for_each_near(X[i], reach, [&](int j) {
+      if (j == static_cast<int>(i)) return;
+      const std::pair<double, int> candidate = {dot(X[j] - X[i], X[j] - X[i]), j};
+      found.insert(std::upper_bound(found.begin(), found.end(), candidate), candidate);
+      if (found.size() > kNeighbours) found.pop_back();
+      if (found.size() == kNeighbours) reach = found.back().first;
+    });
+    for (const auto& [distance, j] : found) nearest[i].push_back(j);
+  }
+  return nearest;
+}
+
+using Row4 = std::array<double, 4>;
+
+// Solves the symmetric positive definite A c = b for three right-hand sides.
+std::array<Vec3d, 4> solve(std::array<Row4, 4> A, std::array<Vec3d, 4> b) {
+  for (int k = 0; k < 4; ++k)
+    for (int i = k + 1; i < 4; ++i) {
+      const double l = A[i][k] / A[k][k];
+      for (int j = k; j < 4; ++j) A[i][j] -= l * A[k][j];
+      b[i] = b[i] - l * b[k];
+    }
+  for (int k = 3; k >= 0; --k) {
+    for (int j = k + 1; j < 4; ++j) b[k] = b[k] - A[k][j] * b[j];
+    b[k] = (1 / A[k][k]) * b[k];
+  }
+  return b;
+}
+
+struct Expected {
+  Vec3d u{};          // of the marker, by its neighbours
+  double spread = 0;  // median of what the neighbours differ by from such a field
+  double range = 0;   // median of what the neighbours differ by from the marker's expected motion
+};
+
+// The field u = c + B (X - X_i) / reach that has the least sum of differences |u_j - u| over the neighbours, by
+// reweighted least squares: a neighbour that is an outlier itself hardly counts.
+Expected expected(const std::vector<Vec3d>& X, const std::vector<Vec3d>& u, int i, const std::vector<int>& near) {
+  constexpr int kSweeps = 8;
+  constexpr double kRidge = 1e-3;  // neighbours in a plane leave the slope across it open
+  const double reach = norm(X[near.back()] - X[i]);
+  const auto terms = [&](int j) {
+    const Vec3d r = (reach > 0 ? 1 / reach : 0) * (X[j] - X[i]);
+    return Row4{1, r[0], r[1], r[2]};
+  };
+  std::vector<double> weight(near.size(), 1), difference(near.size());
+  std::array<Vec3d, 4> c{};
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    std::array<Row4, 4> A{};
+    std::array<Vec3d, 4> b{};
+    for (int k = 1; k < 4; ++k) A[k][k] = kRidge;
+    for (size_t n = 0; n < near.size(); ++n) {
+      const Row4 t = terms(near[n]);
+      for (int k = 0; k < 4; ++k) {
+        for (int l = 0; l < 4; ++l) A[k][l] += weight[n] * t[k] * t[l];
+        b[k] = b[k] + (weight[n] * t[k]) * u[near[n]];
+      }
+    }
+    c = solve(A, b);
+    for (size_t n = 0; n < near.size(); ++n) {
+      const Row4 t = terms(near[n]);
+      difference[n] = norm(u[near[n]] - (t[0] * c[0] + t[1] * c[1] + t[2] * c[2] + t[3] * c[3]));
+    }
+    const double usual = median(difference);
+    for (size_t n = 0; n < near.size(); ++n) weight[n] = usual > 0 ? usual / std::max(difference[n], usual) : 1;
+  }
+  std::vector<double> range;
+  for (const int j : near) range.push_back(norm(u[j] - c[0]));
+  return {c[0], median(difference), median(range)};
+}
+
+class PositionDiagnosis {
+ public:
+  PositionDiagnosis(const DataSet& data, DataFindings& findings)
+      : data_(data), experiment_(data.experiment), findings_(findings), size_(size_of(experiment_.mesh)) {}
+
+  void run() {
+    examine_gaps();
+    if (!examine_units()) return;  // everything else would be said of each marker
+    for (size_t c = 0; c < experiment_.cases.size(); ++c) examine_outliers(static_cast<int>(c));
+    if (outliers_ > kMostListed)
+      findings_.warning(data_.source.positions, std::to_string(outliers_ - kMostListed) + " more markers are outliers",
+                        "mend the tracking, or raise sd");
+  }
+
+ private:
+  std::string name(int marker) const { return "marker '" + data_.marker_names[marker] + "'"; }
+
+  void examine_gaps() {
+    std::vector<int> off;
+    for (size_t m = 0; m < data_.marker_gap.size(); ++m)
+      if (data_.marker_gap[m] > kOffSurface * size_) off.push_back(static_cast<int>(m));
+    std::stable_sort(off.begin(), off.end(), [&](int a, int b) { return data_.marker_gap[a] > data_.marker_gap[b]; });
+    for (size_t i = 0; i < std::min(off.size(), kMostListed); ++i)
+      findings_.warning(data_.source.marker(off[i]),
+                        name(off[i]) + " lies " + three_digits(data_.marker_gap[off[i]]) +
+                            " m off the surface; it was projected onto it",
+                        "correct its place, or align the mesh with the markers at rest");
+    if (off.size() > kMostListed)
+      findings_.warning(data_.source.markers,
+                        std::to_string(off.size() - kMostListed) + " more markers lie off the surface",
+                        "align the mesh with the markers at rest");
+  }
+
+  // Motions larger than the body: another unit than that of the markers at rest, or another coordinate system.
+  bool examine_units() {
+    std::vector<double> motion;
+    for (const LoadCase& load : experiment_.cases)
+      for (const MarkerReading& r : load.positions) motion.push_back(norm(displacement(experiment_, r)));
+    if (motion.empty() || median(motion) < kFar * size_) return true;
+    std::string remedy = "positions and the mesh must share one unit and one coordinate system";
+    for (const double factor : {1e-3, 1e-2}) {
+      std::vector<double> scaled;
+      for (const LoadCase& load : experiment_.cases)
+        for (const MarkerReading& r : load.positions)
+          scaled.push_back(norm(factor * r.position - position(experiment_.markers[r.marker], experiment_.mesh.rest)));
+      if (median(scaled) < 0.2 * size_)
+        remedy = std::string("in ") + (factor == 1e-3 ? "mm" : "cm") + " they would fit: units = { length = ... }";
+    }
+    findings_.error(data_.source.positions,
+                    "markers move by " + three_digits(median(motion)) + " m, more than the size of the body, " +
+                        three_digits(size_) + " m",
+                    remedy);
+    return false;
+  }
+
+  void examine_outliers(int c) {
+    const std::vector<MarkerReading>& readings = experiment_.cases[c].positions;
+    if (readings.size() <= kNeighbours) return;
+    std::vector<Vec3d> X, u;
+    double largest = 0;
+    for (const MarkerReading& r : readings) {
+      X.push_back(position(experiment_.markers[r.marker], experiment_.mesh.rest));
+      u.push_back(displacement(experiment_, r));
+    }
+    const std::vector<std::vector<int>> near = neighbours(X);
+    std::vector<double> excess(u.size()), spread(u.size()), range(u.size());
+    for (size_t i = 0; i < u.size(); ++i) {
+      const Expected usual = expected(X, u, static_cast<int>(i), near[i]);
+      spread[i] = usual.spread;
+      range[i] = usual.range;
+      excess[i] = norm(u[i] - usual.u);
+      largest = std::max(largest, norm(usual.u));
+    }
+    for (size_t i = 0; i < u.size(); ++i) {
+      const double tolerated = kSuspicious * (spread[i] + norm(readings[i].deviation));
+      // The top of a sharp dent differs from its neighbours, but no more than they among themselves.
+      if (excess[i] > std::max({tolerated, kNoticeable * largest, range[i]}) && ++outliers_ <= kMostListed)
+        findings_.warning(data_.source.position(c, static_cast<int>(i)),
+                          name(readings[i].marker) + " in '" + experiment_.cases[c].name + "' is " +
+                              three_digits(excess[i]) + " m away from where its neighbours go, which differ by " +
+                              three_digits(spread[i]) + " m",
+                          "mend the tracking, leave the row out, or raise its sd");
+    }
+  }
+
+  const DataSet& data_;
+  const Experiment& experiment_;
+  DataFindings& findings_;
+  double size_;
+  size_t outliers_ = 0;
+};
+
+}  // namespace
+
+void diagnose_positions(const DataSet& data, DataFindings& findings) { PositionDiagnosis(data, findings).run(); }
+
+}  // namespace aspic

@@ -1,0 +1,189 @@
+// What is odd about measurements is told with its row and a remedy; what is well is not.
+#include <gmock/gmock.h>
+
+#include "capture/capture_cases_test.h"
+#include "capture/data_set.h"
+
+namespace aspic {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::Each;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+auto finding(Severity severity, const std::string& where, const std::string& what, const std::string& remedy = "") {
+  return AllOf(Field(&DataFinding::severity, severity), Field(&DataFinding::where, HasSubstr(where)),
+               Field(&DataFinding::what, HasSubstr(what)), Field(&DataFinding::remedy, HasSubstr(remedy)));
+}
+
+// With lines as if it had been read.
+DataSet data_in_lines(int pokes = 3, int depths = 2) {
+  DataSet data = test_data(pokes, depths);
+  for (size_t m = 0; m < data.experiment.markers.size(); ++m)
+    data.source.marker_line.push_back(2 + static_cast<int>(m));
+  int line = 2;
+  for (size_t c = 0; c < data.experiment.cases.size(); ++c) {
+    data.source.case_line.push_back(2 + static_cast<int>(c));
+    data.source.position_line.emplace_back();
+    for (size_t i = 0; i < data.experiment.cases[c].positions.size(); ++i)
+      data.source.position_line[c].push_back(line++);
+  }
+  return data;
+}
+
+TEST(Diagnosis, OfGoodDataIsOnlyWhatTheySayOfTheStiffness) {
+  const auto findings = diagnose(data_in_lines());
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_THAT(findings[0], finding(Severity::note, "cases.csv", "Young's modulus is about 1.5"));
+}
+
+TEST(Diagnosis, ForcesInGramsOrMillinewtonsAreNoticed) {
+  DataSet data = data_in_lines(3, 3);
+  for (LoadCase& load : data.experiment.cases) {
+    const double grams = std::round((*load.force)[2] / 9.80665e-3);
+    load.force = Vec3d{{0, 0, grams}};
+  }
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv", "whole numbers", "force = \"g\"")));
+  for (LoadCase& load : data.experiment.cases) load.force = Vec3d{{0, 0, -3000.5}};
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv", "which nothing soft has", "mN")));
+}
+
+TEST(Diagnosis, OnePokeInAnotherUnitIsNoticed) {
+  DataSet data = data_in_lines(4);
+  data.experiment.cases[2].force = 1000.0 * *data.experiment.cases[2].force;
+  data.experiment.cases[3].force = 1000.0 * *data.experiment.cases[3].force;
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:4", "times as stiff here", "as mN are")));
+}
+
+TEST(Diagnosis, ForcesOfTheBodyOnTheTipAreNoticed) {
+  DataSet data = data_in_lines();
+  data.experiment.cases[1].force = -1.0 * *data.experiment.cases[1].force;
+  EXPECT_THAT(diagnose(data),
+              Contains(finding(Severity::warning, "cases.csv:3", "against the way of the tip", "sign")));
+  data = data_in_lines();
+  for (LoadCase& load : data.experiment.cases) load.force = -1.0 * *load.force;
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "against", "force_of = \"body\"")));
+}
+
+TEST(Diagnosis, WithoutAnyForceOnlyRatiosCanBeKnown) {
+  DataSet data = data_in_lines();
+  for (LoadCase& load : data.experiment.cases) load.force.reset();
+  EXPECT_THAT(diagnose(data),
+              Contains(finding(Severity::warning, "cases.csv", "only ratios of stiffness", "at least one force")));
+  data.experiment.cases[0].force = Vec3d{{0, 0, -0.5}};
+  EXPECT_THAT(diagnose(data), Not(Contains(finding(Severity::warning, "cases.csv", "only ratios"))));
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::note, "cases.csv:3", "one of 5 pokes without a force")));
+}
+
+TEST(Diagnosis, AForceThatFallsAsTheTipGoesDeeperIsNoticed) {
+  DataSet data = data_in_lines();
+  std::swap(data.experiment.cases[2].force, data.experiment.cases[3].force);
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:5", "the force falls from 1 N to 0.5 N")));
+}
+
+TEST(Diagnosis, LengthsInMillimetresAreNoticed) {
+  DataSet data = data_in_lines();
+  for (LoadCase& load : data.experiment.cases) {
+    load.touch.center = 1000.0 * load.touch.center;
+    load.pose.center = 1000.0 * load.pose.center;
+    for (MarkerReading& r : load.positions) r.position = 1000.0 * r.position;
+  }
+  const auto findings = diagnose(data);
+  EXPECT_THAT(findings, Contains(finding(Severity::error, "cases.csv:2", "away from a body", "length = \"mm\"")));
+  EXPECT_THAT(findings, Contains(finding(Severity::error, "positions.csv", "markers move by", "in mm they would fit")));
+}
+
+TEST(Diagnosis, AMarkerThatLeavesItsNeighboursIsNamedAndOthersAreNot) {
+  DataSet data = data_in_lines();
+  data.experiment.cases[3].positions[17].position[0] += 0.004;
+  const auto findings = diagnose(data);
+  EXPECT_THAT(findings,
+              Contains(finding(Severity::warning, data.source.position(3, 17), "away from where its neighbours")));
+  EXPECT_EQ(std::count_if(findings.begin(), findings.end(),
+                          [](const DataFinding& f) { return f.what.find("neighbours") != std::string::npos; }),
+            1);
+}
+
+TEST(Diagnosis, RigidMotionOfWhatIsFixedIsNoticed) {
+  DataSet data = data_in_lines();
+  Experiment& e = data.experiment;
+  const SurfaceProjection surface(e.mesh);
+  const int first = static_cast<int>(e.markers.size());
+  for (int i = 0; i < 6; ++i) {
+    e.markers.push_back(surface.nearest({{0.01 + 0.015 * i, 0.02 + 0.03 * (i % 2), -0.01}}).point);
+    data.marker_names.push_back("held " + std::to_string(i));
+    data.marker_gap.push_back(0);
+  }
+  const auto measure = [&](const Vec3d& t, double turn) {
+    for (LoadCase& load : e.cases) {
+      std::erase_if(load.positions, [&](const MarkerReading& r) { return r.marker >= first; });
+      for (int m = first; m < first + 6; ++m) {
+        const Vec3d X = position(e.markers[m], e.mesh.rest);
+        load.positions.push_back({m, X + t + cross(Vec3d{{0, 0, turn}}, X), {{1e-5, 1e-5, 1e-5}}});
+      }
+    }
+  };
+  measure({}, 0);
+  EXPECT_THAT(diagnose(data), Not(Contains(finding(Severity::warning, "", "what is fixed moved"))));
+  measure({{0.001, 0, 0}}, 0);
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:2", "what is fixed moved: by 0.001 m")));
+  measure({}, 0.02);
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:2", "0.02 rad")));
+}
+
+TEST(Diagnosis, MarkersOffTheSurfaceAreNamed) {
+  DataSet data = data_in_lines();
+  data.marker_gap[7] = 0.005;
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "markers.csv:9", "lies 0.005 m off the surface")));
+}
+
+TEST(Diagnosis, TooFewAndRankDeficientDataAreNoticed) {
+  DataSet few = data_in_lines(1, 1);
+  few.experiment.cases[0].positions.resize(2);
+  EXPECT_THAT(diagnose(few), Contains(finding(Severity::warning, "positions.csv", "only 9 numbers")));
+  few.experiment.cases[0].positions.clear();
+  few.experiment.cases[0].force.reset();
+  EXPECT_THAT(diagnose(few), Contains(finding(Severity::error, "cases.csv:2", "nothing was measured")));
+
+  DataSet same = data_in_lines();
+  for (size_t c = 2; c < same.experiment.cases.size(); ++c)
+    same.experiment.cases[c].positions = same.experiment.cases[c % 2].positions;
+  EXPECT_THAT(diagnose(same), Contains(finding(Severity::warning, "positions.csv", "rank-deficient")));
+
+  DataSet still = data_in_lines();
+  for (LoadCase& load : still.experiment.cases)
+    for (MarkerReading& r : load.positions)
+      r.position = position(still.experiment.markers[r.marker], still.experiment.mesh.rest);
+  EXPECT_THAT(diagnose(still), Contains(finding(Severity::warning, "positions.csv", "more than their noise")));
+}
+
+TEST(Diagnosis, CopiesRepetitionsAndCasesWithoutLoadAreNoticed) {
+  DataSet data = data_in_lines();
+  LoadCase copy = data.experiment.cases[5];
+  copy.name = "again";
+  data.experiment.cases.push_back(copy);
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "again", "same readings to the last digit")));
+  data.experiment.cases.back().force = Vec3d{{0, 0, -1.01}};
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::note, "again", "has the same load as 'poke 3, depth 2'")));
+  data.experiment.cases.back().tip.reset();
+  data.experiment.cases.back().force.reset();
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "again", "has no load")));
+}
+
+TEST(Diagnosis, ATipThatTouchesNothingAndABodyThatNothingHoldsAreErrors) {
+  DataSet data = data_in_lines();
+  for (LoadCase& load : data.experiment.cases) load.touch.center[2] += 0.02;
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "touches nothing")));
+  data = data_in_lines();
+  data.experiment.fixed.clear();
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "capture.toml", "only the tip holds")));
+  for (LoadCase& load : data.experiment.cases) load.tip->contact = TipContact::sliding;
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "capture.toml", "pushed away", "fixed")));
+}
+
+}  // namespace
+}  // namespace aspic

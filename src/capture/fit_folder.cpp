@@ -1,0 +1,130 @@
+#include "capture/fit_folder.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "base/error.h"
+#include "io/atomic_file.h"
+#include "io/csv.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kHistoryHead =
+    "stage,iteration,start,weight,misfit,roughness,objective,decrement,step,inner,trials\n";
+
+fs::path options_file(const fs::path& folder) { return folder / "options.toml"; }
+fs::path history_file(const fs::path& folder) { return folder / "history.csv"; }
+
+// Files that only an unfinished fit has.
+std::vector<fs::path> journals(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.ends_with(".journal") || name.ends_with(".state")) files.push_back(entry->path());
+  }
+  return files;
+}
+
+void remove_file(const fs::path& file) {
+  std::error_code error;
+  fs::remove(file, error);
+  if (error) throw InvalidInput(file.string() + ": cannot be removed: " + error.message());
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+// The first line in which two texts differ: "smooth = "h1" then, smooth = "tv" now".
+std::string difference(const std::string& then, const std::string& now) {
+  const std::vector<std::string> a = lines_of(then), b = lines_of(now);
+  for (size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
+    const std::string one = i < a.size() ? a[i] : "nothing", other = i < b.size() ? b[i] : "nothing";
+    if (one != other) return "it was begun with '" + one + "', now it says '" + other + "'";
+  }
+  return "";
+}
+
+}  // namespace
+
+const char* to_string(FitStage stage) {
+  switch (stage) {
+    case FitStage::uniform:
+      return "uniform";
+    case FitStage::field:
+      return "field";
+    case FitStage::uncertainty:
+      return "uncertainty";
+    case FitStage::cross_validation:
+      return "cross_validation";
+    case FitStage::next_poke:
+      break;
+  }
+  return "next_poke";
+}
+
+FitFolder FitFolder::open(const fs::path& material, const std::string& options, ExistingFit existing) {
+  FitFolder folder;
+  folder.path_ = fs::path(material).replace_extension(".fit");
+  const fs::path& path = folder.path_;
+  const bool is_begun = fs::exists(options_file(path)), is_unfinished = !journals(path).empty();
+  if (existing == ExistingFit::resume) {
+    if (!is_begun) throw InvalidInput(path.string() + ": no such fit to resume; start it without --resume");
+    if (!is_unfinished)
+      throw InvalidInput(path.string() + ": this fit is complete; --force makes it anew, -o writes another");
+    const std::string change = difference(read_file(options_file(path)), options);
+    if (!change.empty())
+      throw InvalidInput(path.string() + ": cannot be resumed: " + change + " (the same command, or --force)");
+    folder.start_ = JournalStart::resume;
+    if (fs::exists(history_file(path)))
+      folder.rows_on_disk_ = std::max(0, static_cast<int>(lines_of(read_file(history_file(path))).size()) - 1);
+    folder.history_ = kHistoryHead;
+    return folder;
+  }
+  if (existing == ExistingFit::refuse && is_unfinished)
+    throw InvalidInput(path.string() + ": holds a fit that was interrupted; --resume goes on, --force begins anew");
+  if (existing == ExistingFit::refuse && (is_begun || fs::exists(material)))
+    throw InvalidInput((is_begun ? path : material).string() + ": exists; --force replaces it, -o writes another");
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) throw InvalidInput(path.string() + ": cannot be created: " + error.message());
+  for (const fs::path& file : journals(path)) remove_file(file);
+  for (const char* name : {"history.csv", "weights.csv", "report.html"})
+    if (fs::exists(path / name)) remove_file(path / name);
+  write_file(options_file(path), options);
+  folder.history_ = kHistoryHead;
+  return folder;
+}
+
+void FitFolder::add(FitStage stage, const FitIteration& i) {
+  CsvRow row;
+  row.add(to_string(stage)).add(i.index).add(i.start).add(i.weight).add(i.misfit).add(i.roughness).add(i.objective);
+  row.add(i.decrement).add(i.step).add(i.inner).add(i.trials);
+  history_ += row.text() + "\n";
+  if (++rows_ <= rows_on_disk_) return;
+  write_file(history_file(path_), history_);
+}
+
+void FitFolder::add_weights(const FitReport& report) {
+  if (report.weights.empty()) return;
+  std::string text = "weight,misfit,roughness\n";
+  for (const WeightTrial& trial : report.weights) {
+    CsvRow row;
+    row.add(trial.weight).add(trial.misfit).add(trial.roughness);
+    text += row.text() + "\n";
+  }
+  write_file(path_ / "weights.csv", text);
+}
+
+void FitFolder::finish() {
+  for (const fs::path& file : journals(path_)) remove_file(file);
+}
+
+}  // namespace aspic

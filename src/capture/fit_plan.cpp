@@ -1,0 +1,225 @@
+#include "capture/fit_plan.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "base/error.h"
+#include "capture/apparent_stiffness.h"
+#include "io/number_text.h"
+#include "material/registry.h"
+#include "scene/material_file.h"
+#include "scene/scene_files.h"
+#include "scene/schema.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kUsualYoung = 1e5, kUsualPoisson = 0.4;
+
+// "young=tets" in two.
+std::pair<std::string, std::string> halves(const std::string& text, const std::string& example) {
+  const size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    throw InvalidInput("'" + text + "': QUANTITY=VALUE is expected, such as " + example);
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void check_quantity(const std::string& quantity, const FitPlan& plan) {
+  const std::vector<std::string> all = quantities_of(plan.model);
+  if (!has(all, quantity))
+    throw InvalidInput("'" + quantity + "' is no quantity of the model " + plan.model + suggestion(quantity, all));
+}
+
+bool is_unknown(const FitPlan& plan, const std::string& quantity) {
+  return std::any_of(plan.unknowns.begin(), plan.unknowns.end(),
+                     [&](const Unknown& u) { return u.quantity == quantity; });
+}
+bool is_known(const FitPlan& plan, const std::string& quantity) {
+  return std::any_of(plan.known.begin(), plan.known.end(), [&](const auto& k) { return k.first == quantity; });
+}
+
+double usual_value(const std::string& quantity, const std::string& model, const Experiment& experiment) {
+  if (quantity == "young") return apparent_young(experiment).value_or(kUsualYoung);
+  if (quantity == "poisson") return kUsualPoisson;
+  for (const ExtraParameter& extra : material_info(model).extra)
+    if (extra.name == quantity) return extra.fallback;
+  return 0;
+}
+
+void check_range(const std::string& quantity, double value) {
+  const Range& range = scene_schema().key("material", quantity).range;
+  if (!std::isfinite(value) || !range.contains(value))
+    throw InvalidInput(quantity + " = " + number_text(value) + "; must be " + range.text());
+}
+
+}  // namespace
+
+Unknown parse_unknown(const std::string& text) {
+  const std::string example = "young=tets, young=regions, young=handles:40 or poisson=uniform";
+  const auto [quantity, spread] = halves(text, example);
+  Unknown unknown{.quantity = quantity, .guess = 0};
+  if (spread == "tets") {
+    unknown.spread = Spread::tets;
+  } else if (spread == "regions") {
+    unknown.spread = Spread::regions;
+  } else if (spread == "uniform") {
+    unknown.spread = Spread::uniform;
+  } else if (spread.starts_with("handles:")) {
+    unknown.spread = Spread::handles;
+    const char *first = spread.data() + 8, *last = spread.data() + spread.size();
+    const auto [end, error] = std::from_chars(first, last, unknown.handles);
+    if (error != std::errc() || end != last || unknown.handles < 1)
+      throw InvalidInput("'" + text + "': handles:N needs a whole number above 0, such as handles:40");
+  } else {
+    throw InvalidInput("'" + text + "': unknown spread '" + spread + "'" +
+                       suggestion(spread, {"tets", "regions", "uniform", "handles:40"}));
+  }
+  return unknown;
+}
+
+std::string text_of(const Unknown& unknown) {
+  switch (unknown.spread) {
+    case Spread::uniform:
+      return unknown.quantity + "=uniform";
+    case Spread::regions:
+      return unknown.quantity + "=regions";
+    case Spread::handles:
+      return unknown.quantity + "=handles:" + std::to_string(unknown.handles);
+    case Spread::tets:
+      break;
+  }
+  return unknown.quantity + "=tets";
+}
+
+std::pair<std::string, double> parse_known(const std::string& text) {
+  const auto [quantity, word] = halves(text, "poisson=0.45");
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+    throw InvalidInput("'" + text + "': '" + word + "' is no finite number");
+  return {quantity, value};
+}
+
+FitPlan completed(FitPlan plan, const Experiment& experiment) {
+  const std::vector<std::string> quantities = quantities_of(plan.model);
+  for (const auto& [quantity, value] : plan.known) {
+    check_quantity(quantity, plan);
+    check_range(quantity, value);
+  }
+  for (size_t i = 0; i < plan.unknowns.size(); ++i) {
+    const std::string& quantity = plan.unknowns[i].quantity;
+    check_quantity(quantity, plan);
+    if (is_known(plan, quantity)) throw InvalidInput(quantity + " is both known and unknown; leave one of the two out");
+    for (size_t j = 0; j < i; ++j)
+      if (plan.unknowns[j].quantity == quantity)
+        throw InvalidInput(quantity + " is unknown twice; keep one --unknown for it");
+    if (plan.unknowns[i].spread == Spread::regions && experiment.mesh.region.empty())
+      throw InvalidInput("'" + text_of(plan.unknowns[i]) +
+                         "': the mesh of the data has no region labels (try handles:40 or tets)");
+  }
+  // Whatever was not spoken of: the stiffness in every tet, all else as one value.
+  for (const std::string& quantity : quantities)
+    if (!is_unknown(plan, quantity) && !is_known(plan, quantity))
+      plan.unknowns.push_back({.quantity = quantity,
+                               .spread = quantity == "young" ? Spread::tets : Spread::uniform,
+                               .handles = 0,
+                               .guess = 0});
+  for (Unknown& u : plan.unknowns)
+    if (u.guess == 0) u.guess = usual_value(u.quantity, plan.model, experiment);
+  const std::vector<std::string> groups = groups_of(experiment);
+  for (const std::string& group : plan.left_out)
+    if (!has(groups, group))
+      throw InvalidInput("--leave-out '" + group + "': the data have no such group" + suggestion(group, groups));
+  if (!plan.left_out.empty() && without_groups(experiment, plan.left_out).cases.empty())
+    throw InvalidInput("--leave-out leaves no case to be fitted; name fewer groups");
+  return plan;
+}
+
+std::string text_of(const FitPlan& plan) {
+  std::string text;
+  const auto add = [&](const std::string& key, const std::string& value) { text += key + " = " + value + "\n"; };
+  const auto quoted = [](const std::string& word) { return "\"" + word + "\""; };
+  add("model", quoted(plan.model));
+  for (const Unknown& u : plan.unknowns) {
+    add("unknown." + u.quantity, quoted(text_of(u)));
+    add("guess." + u.quantity, number_text(u.guess));
+  }
+  for (const auto& [quantity, value] : plan.known) add("known." + quantity, number_text(value));
+  const char* smooth[] = {"none", "h1", "tv"};
+  add("smooth", quoted(smooth[static_cast<int>(plan.belief.smoothness)]));
+  add("prior_deviation", number_text(plan.belief.prior_deviation));
+  add("method", quoted(plan.fit.method));
+  add("rule", quoted(plan.fit.weight_rule));
+  add("weight", plan.fit.weight < 0 ? quoted("auto") : number_text(plan.fit.weight));
+  add("starts", std::to_string(plan.fit.starts));
+  add("tolerance", number_text(plan.fit.tolerance));
+  add("max_iterations", std::to_string(plan.fit.max_iterations));
+  for (const std::string& group : plan.left_out) add("leave_out." + group, "true");
+  add("equilibrium.tolerance", number_text(plan.equilibrium.tolerance));
+  return text;
+}
+
+std::string fingerprint_of(const Experiment& e) {
+  Fingerprint hash;
+  const auto add = [&](const auto& list) {
+    const size_t count = list.size();
+    hash.add(&count, sizeof count);
+    hash.add(list.data(), count * sizeof(list[0]));
+  };
+  const auto add_vector = [&](const Vec3d& v) { hash.add(&v, sizeof v); };
+  add(e.mesh.rest), add(e.mesh.tets), add(e.mesh.region), add(e.fixed), add(e.density);
+  for (const SurfacePoint& m : e.markers) add(m.vertices), add(m.weights);
+  for (const LoadCase& c : e.cases) {
+    add(c.name), add(c.group), add(c.pressed);
+    if (c.tip) {
+      const double tip[] = {static_cast<double>(c.tip->shape), static_cast<double>(c.tip->contact), c.tip->radius,
+                            c.tip->stiffness};
+      hash.add(tip, sizeof tip);
+    }
+    for (const TipPose* pose : {&c.touch, &c.pose})
+      add_vector(pose->center), add_vector(pose->axis), add_vector(pose->rotation);
+    add_vector(c.gravity);
+    hash.add(&c.pressure, sizeof c.pressure);
+    for (const MarkerReading& r : c.positions)
+      hash.add(&r.marker, sizeof r.marker), add_vector(r.position), add_vector(r.deviation);
+    for (const std::optional<Vec3d>* reading : {&c.force, &c.torque})
+      add_vector(reading->value_or(Vec3d{{1e300, 0, 0}}));
+    add_vector(c.force_deviation), add_vector(c.torque_deviation);
+  }
+  return hash.text();
+}
+
+std::vector<MaterialParameters> known_parameters(const FitPlan& plan, const Experiment& experiment) {
+  const auto value = [&](const std::string& quantity) {
+    for (const auto& [known, number] : plan.known)
+      if (known == quantity) return number;
+    for (const Unknown& u : plan.unknowns)
+      if (u.quantity == quantity) return u.guess;
+    return usual_value(quantity, plan.model, experiment);
+  };
+  MaterialParameters parameters;
+  parameters.lame = lame_from_young_poisson(value("young"), value("poisson"));
+  const MaterialInfo& info = material_info(plan.model);
+  for (size_t e = 0; e < info.extra.size(); ++e) parameters.extra[e] = value(info.extra[e].name);
+  return std::vector<MaterialParameters>(experiment.mesh.tets.size(), parameters);
+}
+
+Experiment without_groups(const Experiment& experiment, const std::vector<std::string>& groups) {
+  Experiment kept = experiment;
+  std::erase_if(kept.cases, [&](const LoadCase& c) { return has(groups, c.group); });
+  return kept;
+}
+
+std::vector<std::string> groups_of(const Experiment& experiment) {
+  std::vector<std::string> groups;
+  for (const LoadCase& c : experiment.cases)
+    if (!has(groups, c.group)) groups.push_back(c.group);
+  return groups;
+}
+
+}  // namespace aspic

@@ -1,0 +1,46 @@
+// What of a body is fitted, and how: the choices of `aspic fit`, with defaults that need no option.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "capture/data_set.h"
+#include "fit/equilibrium.h"
+#include "fit/fit.h"
+#include "fit/parameter_map.h"
+#include "fit/regularizer.h"
+
+namespace aspic {
+
+struct FitPlan {
+  std::string model = "neo_hookean";
+  std::vector<Unknown> unknowns;                      // empty: young per tet, everything else one value; guess 0: found
+  std::vector<std::pair<std::string, double>> known;  // the same in every tet, not fitted: {"poisson", 0.45}
+  RegularizerOptions belief;
+  FitOptions fit;
+  EquilibriumOptions equilibrium;
+  std::vector<std::string> left_out;  // groups of cases that are predicted, not fitted
+  bool uncertainty = true, cross_validation = true;
+};
+
+// "young=tets", "poisson=uniform", "b=handles:40". Throws InvalidInput.
+Unknown parse_unknown(const std::string& text);
+std::string text_of(const Unknown& unknown);
+std::pair<std::string, double> parse_known(const std::string& text);  // "poisson=0.45"
+
+// The plan with everything filled in that the data and the model decide. Throws InvalidInput for names that the model
+// or the data do not have.
+FitPlan completed(FitPlan plan, const Experiment& experiment);
+
+// One "key = value" per line: two fits with the same text, of the same data, are the same to the bit.
+std::string text_of(const FitPlan& plan);
+std::string fingerprint_of(const Experiment& experiment);
+
+// What every tet has where nothing is fitted.
+std::vector<MaterialParameters> known_parameters(const FitPlan& plan, const Experiment& experiment);
+
+// Without the cases of some groups, or with them alone.
+Experiment without_groups(const Experiment& experiment, const std::vector<std::string>& groups);
+std::vector<std::string> groups_of(const Experiment& experiment);  // in their order
+
+}  // namespace aspic

@@ -1,0 +1,255 @@
+#include "capture/fit_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "capture/fitted_values.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Guesses that are tried when the first one is so soft that the loads crush the body.
+constexpr double kStiffer[] = {1, 10, 100, 0.1};
+
+std::vector<Unknown> as_single_values(std::vector<Unknown> unknowns) {
+  for (Unknown& u : unknowns) u.spread = Spread::uniform, u.handles = 0;
+  return unknowns;
+}
+
+bool are_single_values(const std::vector<Unknown>& unknowns) {
+  return std::all_of(unknowns.begin(), unknowns.end(), [](const Unknown& u) { return u.spread == Spread::uniform; });
+}
+
+bool is_over(const FitReport& report) { return is_success(report.status) || report.status == Status::iteration_limit; }
+
+// A model with its unknowns, its prior and its memory: what one fit takes.
+struct Stage {
+  Stage(const Experiment& experiment, const FitPlan& plan, std::vector<Unknown> unknowns, const FitMemory& memory,
+        const std::string& name, const std::string& fingerprint)
+      : map(experiment.mesh, plan.model, known_parameters(plan, experiment), std::move(unknowns)),
+        prior(make_regularizer(experiment.mesh, map, plan.belief)),
+        misfit(experiment, map, plan.equilibrium) {
+    if (memory.folder.empty()) return;
+    const ModelState state{[this] { return misfit.state(); },
+                           [this](std::span<const double> x) { misfit.set_state(x); }};
+    journal.emplace(misfit, state, memory.folder / name, fingerprint, memory.start);
+  }
+
+  LeastSquares& model() {
+    if (journal) return *journal;
+    return misfit;
+  }
+
+  ParameterMap map;
+  std::unique_ptr<Regularizer> prior;
+  Misfit misfit;
+  std::optional<Journal> journal;
+};
+
+class MaterialFit {
+ public:
+  MaterialFit(const DataSet& data, const FitPlan& plan, const FitMemory& memory, const FitWitness& witness)
+      : data_(data),
+        plan_(completed(plan, data.experiment)),
+        memory_(memory),
+        witness_(witness),
+        fitted_(without_groups(data.experiment, plan_.left_out)) {
+    if (!memory.folder.empty()) fingerprint_ = fingerprint_of(data.experiment) + "\n" + text_of(plan_);
+    outcome_.plan = plan_;
+  }
+
+  FitOutcome run() {
+    if (!are_single_values(plan_.unknowns) && !fit_single_values()) return std::move(outcome_);
+    fit_fields();
+    return std::move(outcome_);
+  }
+
+ private:
+  // One value per quantity explains most of the data, and is where the fields begin. False: nothing comes after it.
+  bool fit_single_values() {
+    begin(FitStage::uniform, "one value for the whole body");
+    FitOptions options = plan_.fit;
+    options.method = options.weight_rule = "auto";
+    options.weight = -1;
+    for (const double factor : kStiffer) {
+      std::vector<Unknown> unknowns = as_single_values(plan_.unknowns);
+      for (Unknown& u : unknowns)
+        if (u.quantity == "young") u.guess *= factor;
+      Stage stage(fitted_, plan_, std::move(unknowns), memory_, "uniform" + suffix(factor), fingerprint_);
+      const FitReport report = fit_stage(FitStage::uniform, stage, options);
+      outcome_.uniform = outcome_.report = report;
+      if (report.p.empty() || report.status == Status::undefined) continue;
+      for (size_t u = 0; u < plan_.unknowns.size(); ++u)
+        plan_.unknowns[u].guess = stage.map.values(static_cast<int>(u), report.p).front();
+      if (report.status != Status::interrupted) return true;
+      describe(stage, report.p);
+      return false;
+    }
+    outcome_.failure = outcome_.report.words;
+    return false;
+  }
+
+  static std::string suffix(double factor) {
+    if (factor == 1) return "";
+    return factor > 1 ? "_stiffer" + std::to_string(std::lround(factor)) : "_softer";
+  }
+
+  void fit_fields() {
+    begin(FitStage::field, "");
+    Stage stage(fitted_, plan_, plan_.unknowns, memory_, "fit", fingerprint_);
+    outcome_.report = fit_stage(FitStage::field, stage, plan_.fit);
+    const FitReport& report = outcome_.report;
+    if (report.p.empty() || report.status == Status::undefined || report.status == Status::no_descent) {
+      outcome_.failure = report.words.empty() ? stage.misfit.failure() : report.words;
+      return;
+    }
+    if (!is_over(report)) return describe(stage, report.p);
+    learn_uncertainty(stage);
+    describe(stage, report.p);
+    predict_left_out(stage.map, report.p);
+    if (!outcome_.interrupted) cross_validate_groups(stage);
+    if (!outcome_.interrupted) find_next_poke(stage);
+  }
+
+  FitReport fit_stage(FitStage which, Stage& stage, const FitOptions& options) {
+    outcome_.unknowns = stage.map.size();
+    outcome_.residuals = stage.misfit.residual_count();
+    const auto observe = [&](const FitIteration& iteration, std::span<const double> p) {
+      if (!witness_.iterate || witness_.iterate(which, iteration, p)) return true;
+      outcome_.interrupted = true;
+      if (stage.journal) stage.journal->stop_writing();
+      return false;
+    };
+    FitReport report = fit(stage.model(), *stage.prior, stage.map.guess(), options, observe);
+    outcome_.counts = stage.misfit.counts();
+    return report;
+  }
+
+  void learn_uncertainty(Stage& stage) {
+    if (!plan_.uncertainty || !may_go_on()) return;
+    begin(FitStage::uncertainty, "what the data do not say");
+    outcome_.posterior =
+        posterior(stage.model(), *stage.prior, outcome_.report.weight, stage.map, fitted_.mesh, outcome_.report.p);
+    add_warnings(outcome_.posterior->warnings);
+  }
+
+  // The material of p, its values for people, and what it predicts for the cases that were fitted.
+  void describe(Stage& stage, std::span<const double> p) {
+    const Posterior* belief = outcome_.posterior && outcome_.posterior->ok ? &*outcome_.posterior : nullptr;
+    outcome_.quantities = fitted_quantities(stage.map, fitted_.mesh, p, belief);
+    outcome_.material = fitted_material(data_, stage.map, p, outcome_.quantities);
+    outcome_.counts = stage.misfit.counts();
+    outcome_.cases.resize(data_.experiment.cases.size());
+    std::vector<double> r(static_cast<size_t>(stage.misfit.residual_count()));
+    if (stage.journal) stage.journal->catch_up();
+    const bool ok = stage.misfit.evaluate(p, r);
+    int fitted = 0;
+    for (size_t c = 0; c < outcome_.cases.size(); ++c) {
+      CaseOutcome& outcome = outcome_.cases[c];
+      outcome.left_out = is_left_out(data_.experiment.cases[c]);
+      if (outcome.left_out) continue;
+      const CasePrediction& prediction = stage.misfit.prediction(fitted++);
+      if (ok) outcome.ok = true, outcome.markers = prediction.markers, outcome.wrench = prediction.wrench;
+    }
+  }
+
+  bool is_left_out(const LoadCase& c) const {
+    return std::find(plan_.left_out.begin(), plan_.left_out.end(), c.group) != plan_.left_out.end();
+  }
+
+  // The cases of a group as a material predicts them; calls use(case of the data, prediction) for each.
+  template <class Use>
+  void predict_group(const std::string& group, const ParameterMap& map, std::span<const double> p, const Use& use) {
+    const Experiment part = subset(data_.experiment, [&](const LoadCase& c) { return c.group == group; });
+    Misfit misfit(part, map, plan_.equilibrium);
+    std::vector<double> r(static_cast<size_t>(misfit.residual_count()));
+    if (!misfit.evaluate(p, r)) {
+      outcome_.warnings.push_back("'" + group + "' could not be predicted: " + misfit.failure());
+      return;
+    }
+    int own = 0;
+    for (size_t c = 0; c < data_.experiment.cases.size(); ++c)
+      if (data_.experiment.cases[c].group == group) use(outcome_.cases[c], misfit.prediction(own++));
+  }
+
+  void predict_left_out(const ParameterMap& map, std::span<const double> p) {
+    for (const std::string& group : plan_.left_out)
+      predict_group(group, map, p, [](CaseOutcome& outcome, const CasePrediction& prediction) {
+        outcome.ok = outcome.has_held_out = true;
+        outcome.markers = outcome.held_out_markers = prediction.markers;
+        outcome.wrench = outcome.held_out_wrench = prediction.wrench;
+      });
+  }
+
+  void cross_validate_groups(Stage& stage) {
+    if (!plan_.cross_validation || !may_go_on()) return;
+    // A fit stops at its deadline: that comes when the witness wants no more.
+    const WallClock clock = [&] { return may_go_on() ? 0.0 : std::numeric_limits<double>::infinity(); };
+    FitOptions options = plan_.fit;
+    options.deadline = Deadline(clock, 1);
+    const auto observe = [&](int group, int groups, const std::string& name) {
+      begin(FitStage::cross_validation,
+            "'" + name + "' is left out (" + std::to_string(group + 1) + " of " + std::to_string(groups) + ")");
+      return may_go_on();
+    };
+    CrossValidation held_out =
+        cross_validate(fitted_, stage.map, *stage.prior, outcome_.report, options, plan_.equilibrium, observe);
+    if (outcome_.interrupted) return;  // the last group is not to be trusted
+    add_warnings(held_out.warnings);
+    for (const HeldOut& group : held_out.groups)
+      if (group.ok)
+        predict_group(group.group, stage.map, group.p, [](CaseOutcome& outcome, const CasePrediction& prediction) {
+          outcome.has_held_out = true;
+          outcome.held_out_markers = prediction.markers;
+          outcome.held_out_wrench = prediction.wrench;
+        });
+    outcome_.held_out = std::move(held_out);
+  }
+
+  void find_next_poke(Stage& stage) {
+    const bool has_tip =
+        std::any_of(fitted_.cases.begin(), fitted_.cases.end(), [](const LoadCase& c) { return c.tip.has_value(); });
+    if (!outcome_.posterior || !outcome_.posterior->ok || !has_tip || !may_go_on()) return;
+    begin(FitStage::next_poke, "where a poke would tell most");
+    NextPoke next = next_poke(fitted_, stage.map, *outcome_.posterior, outcome_.report.p, {}, plan_.equilibrium);
+    add_warnings(next.warnings);
+    if (!next.candidates.empty() && next.candidates.front().ok) outcome_.next_poke = next.candidates.front();
+  }
+
+  void begin(FitStage stage, const std::string& what) {
+    if (witness_.begin) witness_.begin(stage, what);
+  }
+
+  bool may_go_on() {
+    if (witness_.go_on && !witness_.go_on()) outcome_.interrupted = true;
+    return !outcome_.interrupted;
+  }
+
+  void add_warnings(const std::vector<std::string>& more) {
+    outcome_.warnings.insert(outcome_.warnings.end(), more.begin(), more.end());
+  }
+
+  const DataSet& data_;
+  FitPlan plan_;
+  const FitMemory& memory_;
+  const FitWitness& witness_;
+  Experiment fitted_;  // without what is left out
+  std::string fingerprint_;
+  FitOutcome outcome_;
+};
+
+}  // namespace
+
+FitOutcome fit_material(const DataSet& data, const FitPlan& plan, const FitMemory& memory, const FitWitness& witness) {
+  FitOutcome outcome = MaterialFit(data, plan, memory, witness).run();
+  if (outcome.posterior) outcome.posterior->belief.reset();  // refers to the prior, which is gone
+  return outcome;
+}
+
+}  // namespace aspic

@@ -1,0 +1,82 @@
+// From a data set to a material with its uncertainty: all that `aspic fit` does, without a terminal.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "capture/data_set.h"
+#include "capture/fit_plan.h"
+#include "capture/journal.h"
+#include "fit/cross_validation.h"
+#include "fit/next_poke.h"
+#include "fit/uncertainty.h"
+#include "scene/material_file.h"
+
+namespace aspic {
+
+// A number for people.
+struct ValueRow {
+  std::string where;                 // "everywhere", "region 3", "softest tet", "median tet"
+  double value = 0;                  // [SI]
+  std::optional<Interval> interval;  // of 95 %; none: not known
+};
+
+// A fitted quantity over the body.
+struct FittedQuantity {
+  std::string name, unit;
+  Spread spread = Spread::uniform;
+  std::vector<double> values;                // one per tet, in the order of the data set [SI]
+  std::vector<double> deviation, reduction;  // likewise, as it is fitted (log E); empty: not known
+  std::vector<ValueRow> rows;
+};
+
+// What is predicted for one case of the data.
+struct CaseOutcome {
+  bool left_out = false;  // of the fit
+  bool ok = false;        // there is a prediction
+  std::vector<Vec3d> markers;
+  Wrench wrench;
+  bool has_held_out = false;  // predicted by a fit without its group
+  std::vector<Vec3d> held_out_markers;
+  Wrench held_out_wrench;
+};
+
+struct FitOutcome {
+  FitPlan plan;                      // completed
+  FitReport report;                  // of the last stage that was begun
+  std::optional<FitReport> uniform;  // of the first, where there are two: one value per quantity
+  std::vector<FittedQuantity> quantities;
+  FittedMaterial material;         // by the user's numbers
+  std::vector<CaseOutcome> cases;  // one per case of the data
+  std::optional<Posterior> posterior;
+  std::optional<CrossValidation> held_out;
+  std::optional<PokeCandidate> next_poke;
+  std::vector<std::string> warnings;
+  std::string failure;       // why there is no material; empty: there is one
+  bool interrupted = false;  // the material is what was reached until then
+  int unknowns = 0, residuals = 0;
+  Misfit::Counts counts;
+
+  bool has_material() const { return failure.empty(); }
+};
+
+enum class FitStage { uniform, field, uncertainty, cross_validation, next_poke };
+
+struct FitWitness {
+  std::function<void(FitStage, const std::string& what)> begin;                           // a stage, or a part of it
+  std::function<bool(FitStage, const FitIteration&, std::span<const double> p)> iterate;  // false: stop
+  std::function<bool()> go_on;                                                            // between the parts
+};
+
+// Where the fit is remembered; without a folder it is not.
+struct FitMemory {
+  std::filesystem::path folder;
+  JournalStart start = JournalStart::anew;
+};
+
+// Throws InvalidInput for data and plans that do not fit together; a fit that fails is an outcome.
+FitOutcome fit_material(const DataSet& data, const FitPlan& plan, const FitMemory& memory, const FitWitness& witness);
+
+}  // namespace aspic

@@ -1,0 +1,199 @@
+#include "capture/fit_run.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "capture/fit_folder.h"
+#include "capture/poked_block_test.h"
+#include "io/atomic_file.h"
+#include "io/folder_test.h"
+
+namespace aspic {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+const DataSet& block() {
+  static const DataSet data = measured_block(3);
+  return data;
+}
+
+FitPlan quick_plan(const std::vector<std::string>& unknowns = {"young=regions"}) {
+  FitPlan plan;
+  for (const std::string& text : unknowns) plan.unknowns.push_back(parse_unknown(text));
+  plan.known = {{"poisson", 0.4}};
+  plan.uncertainty = plan.cross_validation = false;
+  return plan;
+}
+
+const FittedQuantity& young(const FitOutcome& outcome) { return outcome.quantities.at(0); }
+
+TEST(FitRun, FindsTheLayersOfABlock) {
+  const FitOutcome outcome = fit_material(block(), quick_plan(), {}, {});
+  ASSERT_TRUE(outcome.has_material()) << outcome.failure;
+  EXPECT_TRUE(is_success(outcome.report.status)) << outcome.report.words;
+  ASSERT_EQ(young(outcome).rows.size(), 2u);
+  EXPECT_EQ(young(outcome).rows[0].where, "region 1");
+  EXPECT_NEAR(young(outcome).rows[0].value, kSoftLayer, 0.01 * kSoftLayer);
+  EXPECT_NEAR(young(outcome).rows[1].value, kStiffLayer, 0.01 * kStiffLayer);
+  ASSERT_TRUE(outcome.uniform);
+  EXPECT_GT(outcome.uniform->misfit, 100 * outcome.report.misfit) << "one value explains the block worse";
+
+  EXPECT_EQ(outcome.material.model, "neo_hookean");
+  const std::vector<double>& E = *outcome.material.find("young");
+  for (size_t t = 0; t < E.size(); ++t)
+    EXPECT_NEAR(E[t], outcome.material.mesh.region[t] == 1 ? kSoftLayer : kStiffLayer, 0.01 * E[t]);
+  EXPECT_EQ(outcome.material.find("poisson")->front(), 0.4);
+  EXPECT_EQ(outcome.material.find("density")->front(), 1000);
+  for (size_t c = 0; c < outcome.cases.size(); ++c) {
+    ASSERT_TRUE(outcome.cases[c].ok);
+    EXPECT_NEAR(outcome.cases[c].wrench.force[1], (*block().experiment.cases[c].force)[1], 0.02);
+  }
+}
+
+TEST(FitRun, WithoutAnyChoiceTheStiffnessOfEveryTetIsFitted) {
+  FitPlan plan;
+  plan.fit.max_iterations = 4;
+  plan.cross_validation = false;
+  const FitOutcome outcome = fit_material(block(), plan, {}, {});
+  ASSERT_TRUE(outcome.has_material()) << outcome.failure;
+  ASSERT_EQ(outcome.quantities.size(), 2u);
+  EXPECT_EQ(outcome.quantities[0].name, "young");
+  EXPECT_EQ(outcome.quantities[0].rows.size(), 3u);
+  EXPECT_EQ(outcome.quantities[1].name, "poisson");
+  EXPECT_EQ(outcome.unknowns, block().experiment.mesh.tet_count() + 1);
+}
+
+TEST(FitRun, TellsWhatIsNotKnown) {
+  FitPlan plan = quick_plan();
+  plan.uncertainty = true;
+  const FitOutcome outcome = fit_material(block(), plan, {}, {});
+  ASSERT_TRUE(outcome.posterior && outcome.posterior->ok);
+  for (const ValueRow& row : young(outcome).rows) {
+    ASSERT_TRUE(row.interval);
+    EXPECT_LT(row.interval->lower, row.value);
+    EXPECT_GT(row.interval->upper, row.value);
+  }
+  EXPECT_THAT(outcome.material.further, testing::SizeIs(2));
+  ASSERT_TRUE(outcome.next_poke);
+  EXPECT_GT(outcome.next_poke->gain, 0);
+}
+
+TEST(FitRun, PredictsWhatWasLeftOut) {
+  FitPlan plan = quick_plan();
+  plan.left_out = {"poke 2"};
+  plan.cross_validation = true;
+  const FitOutcome outcome = fit_material(block(), plan, {}, {});
+  const auto& cases = block().experiment.cases;
+  for (size_t c = 0; c < cases.size(); ++c) {
+    EXPECT_EQ(outcome.cases[c].left_out, cases[c].group == "poke 2");
+    ASSERT_TRUE(outcome.cases[c].has_held_out);
+    EXPECT_NEAR(outcome.cases[c].held_out_wrench.force[1], (*cases[c].force)[1], 0.02 * std::abs((*cases[c].force)[1]));
+  }
+  ASSERT_TRUE(outcome.held_out);
+  EXPECT_EQ(outcome.held_out->groups.size(), 2u);
+  EXPECT_LT(outcome.held_out->position_error, 0.02);
+  EXPECT_LT(outcome.held_out->force_error, 0.05);
+}
+
+class FitMemoryTest : public FolderTest {
+ protected:
+  // Stops after so many iterations of both stages together; counts them.
+  FitOutcome fitted(const fs::path& folder, JournalStart start, int limit) {
+    iterations = 0;
+    fs::create_directories(folder);
+    const FitWitness witness{
+        .begin = {},
+        .iterate = [&](FitStage, const FitIteration&, std::span<const double>) { return ++iterations < limit; },
+        .go_on = {}};
+    return fit_material(block(), quick_plan({"young=handles:6"}), {folder, start}, witness);
+  }
+  int iterations = 0;
+};
+
+TEST_F(FitMemoryTest, AnInterruptedFitGoesOnToTheSameBits) {
+  const FitOutcome whole = fitted(path("whole"), JournalStart::anew, 1000);
+  const int all = iterations;
+  ASSERT_GT(all, 4);
+  for (const int limit : {1, 3, all - 1}) {
+    const fs::path folder = path("part" + std::to_string(limit));
+    const FitOutcome part = fitted(folder, JournalStart::anew, limit);
+    EXPECT_TRUE(part.interrupted);
+    EXPECT_TRUE(part.has_material()) << "what was reached is kept";
+    const FitOutcome resumed = fitted(folder, JournalStart::resume, 1000);
+    EXPECT_EQ(iterations, all);
+    EXPECT_EQ(resumed.report.p, whole.report.p) << "interrupted after " << limit;
+    EXPECT_EQ(*resumed.material.find("young"), *whole.material.find("young"));
+    EXPECT_EQ(resumed.cases[1].wrench.force[1], whole.cases[1].wrench.force[1]);
+  }
+}
+
+TEST_F(FitMemoryTest, AFolderKnowsWhatItsFitWasBegunWith) {
+  const fs::path material = path("block.vtu");
+  const std::string options = text_of(completed(quick_plan(), block().experiment));
+  FitFolder folder = FitFolder::open(material, options, ExistingFit::refuse);
+  EXPECT_EQ(folder.path().filename(), "block.fit");
+  folder.add(FitStage::field, {.index = 1});
+  folder.add(FitStage::field, {.index = 2});
+  write_file(folder.path() / "fit.journal", "");
+  const auto opened = [&](ExistingFit existing, const std::string& with) {
+    return message_of([&] { FitFolder::open(material, with, existing); });
+  };
+  EXPECT_THAT(opened(ExistingFit::refuse, options), HasSubstr("--resume goes on, --force begins anew"));
+  FitPlan other = quick_plan();
+  other.belief.smoothness = Smoothness::total_variation;
+  EXPECT_THAT(opened(ExistingFit::resume, text_of(completed(other, block().experiment))),
+              AllOf(HasSubstr("'smooth = \"h1\"'"), HasSubstr("'smooth = \"tv\"'")));
+  FitFolder again = FitFolder::open(material, options, ExistingFit::resume);
+  EXPECT_EQ(again.iterations_before(), 2);
+  const std::string before = read_file(again.path() / "history.csv");
+  for (int i = 1; i <= 3; ++i) again.add(FitStage::field, {.index = i});
+  EXPECT_TRUE(read_file(again.path() / "history.csv").starts_with(before));
+  again.finish();
+  EXPECT_THAT(opened(ExistingFit::resume, options), HasSubstr("this fit is complete"));
+  EXPECT_THAT(opened(ExistingFit::refuse, options), HasSubstr("exists; --force replaces it"));
+  EXPECT_EQ(opened(ExistingFit::overwrite, options), "");
+}
+
+TEST(FitPlan, UnknownsAreRead) {
+  EXPECT_EQ(text_of(parse_unknown("young=tets")), "young=tets");
+  EXPECT_EQ(text_of(parse_unknown("b=handles:40")), "b=handles:40");
+  EXPECT_EQ(parse_known("poisson=0.45").second, 0.45);
+  const auto refused = [](const std::string& text) { return message_of([&] { parse_unknown(text); }); };
+  EXPECT_THAT(refused("young"), HasSubstr("QUANTITY=VALUE is expected"));
+  EXPECT_THAT(refused("young=tet"), HasSubstr("did you mean 'tets'?"));
+  EXPECT_THAT(refused("young=handles:0"), HasSubstr("whole number above 0"));
+  EXPECT_THAT(message_of([] { parse_known("poisson=much"); }), HasSubstr("'much' is no finite number"));
+}
+
+TEST(FitPlan, WhatDoesNotFitTogetherIsRefused) {
+  const auto refused = [](const FitPlan& plan) { return message_of([&] { completed(plan, block().experiment); }); };
+  EXPECT_THAT(refused(quick_plan({"yuong=tets"})), HasSubstr("did you mean 'young'?"));
+  EXPECT_THAT(refused(quick_plan({"b=uniform"})), HasSubstr("'b' is no quantity of the model neo_hookean"));
+  EXPECT_THAT(refused(quick_plan({"poisson=uniform"})), HasSubstr("both known and unknown"));
+  EXPECT_THAT(refused(quick_plan({"young=tets", "young=uniform"})), HasSubstr("unknown twice"));
+  FitPlan plan = quick_plan();
+  plan.known = {{"poisson", 0.5}};
+  EXPECT_THAT(refused(plan), HasSubstr("poisson = 0.5; must be"));
+  plan = quick_plan();
+  plan.left_out = {"poke 9"};
+  EXPECT_THAT(refused(plan), HasSubstr("the data have no such group"));
+  plan.left_out = {"poke 1", "poke 2", "poke 3"};
+  EXPECT_THAT(refused(plan), HasSubstr("leaves no case"));
+  plan = quick_plan();
+  plan.model = "neo_hokean";
+  EXPECT_THAT(refused(plan), HasSubstr("did you mean 'neo_hookean'?"));
+  Experiment bare = block().experiment;
+  bare.mesh.region.clear();
+  EXPECT_THAT(message_of([&] { completed(quick_plan(), bare); }), HasSubstr("no region labels"));
+  EXPECT_THAT(groups_of(block().experiment), ElementsAre("poke 1", "poke 2", "poke 3"));
+}
+
+}  // namespace
+}  // namespace aspic

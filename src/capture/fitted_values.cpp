@@ -1,0 +1,93 @@
+#include "capture/fitted_values.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+namespace aspic {
+namespace {
+
+std::string unit_of(const std::string& quantity, const std::string& model) {
+  if (quantity == "young") return "Pa";
+  if (quantity == "poisson") return "";
+  for (const ExtraParameter& extra : material_info(model).extra)
+    if (extra.name == quantity) return extra.unit == "1" ? "" : extra.unit;
+  return "";
+}
+
+// Tets whose values tell most: the only one, one of each region, or the extremes and the middle of a field.
+std::vector<std::pair<std::string, int>> telling_tets(const FittedQuantity& quantity, const TetMesh& mesh) {
+  const std::vector<double>& v = quantity.values;
+  if (v.empty()) return {};
+  if (quantity.spread == Spread::uniform) return {{"everywhere", 0}};
+  std::vector<std::pair<std::string, int>> tets;
+  if (quantity.spread == Spread::regions) {
+    for (const int label : std::set<int>(mesh.region.begin(), mesh.region.end())) {
+      const auto first = std::find(mesh.region.begin(), mesh.region.end(), label);
+      tets.emplace_back("region " + std::to_string(label), static_cast<int>(first - mesh.region.begin()));
+    }
+    return tets;
+  }
+  std::vector<int> order(v.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return v[a] < v[b]; });
+  const bool is_young = quantity.name == "young";
+  return {{is_young ? "softest tet" : "lowest", order.front()},
+          {"median tet", order[order.size() / 2]},
+          {is_young ? "stiffest tet" : "highest", order.back()}};
+}
+
+// A quantity of every tet, fitted or known.
+double quantity_of(const MaterialParameters& m, const std::string& name, const MaterialInfo& info) {
+  if (name == "young") return young_modulus(m.lame);
+  if (name == "poisson") return poisson_ratio(m.lame);
+  for (size_t e = 0; e < info.extra.size(); ++e)
+    if (info.extra[e].name == name) return m.extra[e];
+  return 0;
+}
+
+}  // namespace
+
+std::vector<FittedQuantity> fitted_quantities(const ParameterMap& map, const TetMesh& mesh, std::span<const double> p,
+                                              const Posterior* belief) {
+  std::vector<FittedQuantity> result;
+  for (size_t u = 0; u < map.unknowns().size(); ++u) {
+    const Unknown& unknown = map.unknowns()[u];
+    const int index = static_cast<int>(u);
+    FittedQuantity& q = result.emplace_back();
+    q.name = unknown.quantity;
+    q.unit = unit_of(q.name, map.material());
+    q.spread = unknown.spread;
+    q.values = map.values(index, p);
+    if (belief) q.deviation = belief->deviation[u], q.reduction = belief->reduction[u];
+    for (const auto& [where, tet] : telling_tets(q, mesh)) {
+      ValueRow& row = q.rows.emplace_back(ValueRow{where, q.values[tet], {}});
+      if (belief) row.interval = interval(*belief, map, p, index, tet);
+    }
+  }
+  return result;
+}
+
+FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std::span<const double> p,
+                               const std::vector<FittedQuantity>& quantities) {
+  const Renumbering& tet = data.numbering.tet;
+  FittedMaterial material{.mesh = to_user(data.numbering, data.experiment.mesh), .model = map.material()};
+  const std::vector<MaterialParameters> parameters = map.parameters(p);
+  const MaterialInfo& info = material_info(map.material());
+  for (const std::string& name : quantities_of(map.material())) {
+    std::vector<double> values;
+    for (const MaterialParameters& m : parameters) values.push_back(quantity_of(m, name, info));
+    material.values.emplace_back(name, tet.to_user(values));
+  }
+  const std::vector<double>& density = data.experiment.density;
+  if (std::all_of(density.begin(), density.end(), [](double rho) { return rho > 0; }) && !density.empty())
+    material.values.emplace_back("density", tet.to_user(density));
+  for (const FittedQuantity& q : quantities) {
+    if (q.deviation.empty()) continue;
+    material.further.emplace_back(q.name + "_deviation", tet.to_user(q.deviation));
+    material.further.emplace_back(q.name + "_reduction", tet.to_user(q.reduction));
+  }
+  return material;
+}
+
+}  // namespace aspic

@@ -1,0 +1,18 @@
+// What was fitted, as numbers for people and as a material for scenes.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "capture/fit_run.h"
+
+namespace aspic {
+
+// `belief`: of the same fit; null: not known.
+std::vector<FittedQuantity> fitted_quantities(const ParameterMap& map, const TetMesh& mesh, std::span<const double> p,
+                                              const Posterior* belief);
+
+// By the user's numbers, with deviations and reductions beside the values.
+FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std::span<const double> p,
+                               const std::vector<FittedQuantity>& quantities);
+
+}  // namespace aspic

@@ -1,0 +1,69 @@
+// A fit that can be killed and goes on to the same bits. What it asks of its model and hears is written down; resumed,
+// it asks the same again and is answered from the file, without any equilibrium, until it comes to where it was.
+#pragma once
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fit/least_squares.h"
+#include "io/output_file.h"
+
+namespace aspic {
+
+// What the next evaluation of a model starts from, beside p: equilibria.
+struct ModelState {
+  std::function<std::vector<double>()> get;
+  std::function<void(std::span<const double>)> set;
+};
+
+enum class JournalStart { anew, resume };
+
+class Journal : public LeastSquares {
+ public:
+  // Writes `stem`.journal and, at every linearisation, `stem`.state; both belong to `fingerprint`. Refers to `model`.
+  // Throws InvalidInput when it cannot resume from the files.
+  Journal(LeastSquares& model, ModelState state, std::filesystem::path stem, const std::string& fingerprint,
+          JournalStart start);
+
+  int unknowns() const override { return model_.unknowns(); }
+  int residual_count() const override { return model_.residual_count(); }
+  bool evaluate(std::span<const double> p, std::span<double> r) override;
+  bool linearize() override;
+  void multiply(std::span<const double> dp, std::span<double> dr) override;
+  void multiply_transposed(std::span<const double> w, std::span<double> pbar) override;
+  int nuisance_count() const override { return model_.nuisance_count(); }
+  void nuisance(int k, std::span<double> dr) override;
+
+  bool is_replaying() const { return position_ < end_; }
+  // From here on nothing is written: what follows an interruption is no part of the fit.
+  void stop_writing();
+  // Brings the model to where the last linearisation was, had that been answered from the file.
+  void catch_up();
+
+  static void remove(const std::filesystem::path& stem);
+
+ private:
+  enum class Kind : unsigned char { evaluate, linearize, multiply, multiply_transposed, nuisance };
+  struct Head;
+
+  bool answer(Kind kind, std::span<const double> question, std::span<double> answer, const std::function<bool()>& ask);
+  bool replayed(const Head& asked, std::span<double> answer);
+  void write(Head head, std::span<const double> answer);
+  void save_state();
+
+  LeastSquares& model_;
+  ModelState state_;
+  std::filesystem::path journal_path_, state_path_;
+  std::string fingerprint_;
+  OutputFile out_;
+  std::ifstream in_;
+  std::uint64_t position_ = 0, end_ = 0;  // of what is replayed [bytes]
+  std::vector<double> p_;                 // of the last successful evaluation
+  std::vector<double> resumed_p_, resumed_state_;
+  bool is_behind_ = false;  // the model does not know yet what was replayed
+};
+
+}  // namespace aspic

@@ -1,0 +1,33 @@
+// The nearest point of the surface of a body.
+#pragma once
+#include <vector>
+
+#include "fit/misfit.h"
+#include "mesh/box_tree.h"
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+struct ProjectedPoint {
+  SurfacePoint point;
+  Vec3d position{};  // [m]
+  Vec3d normal{};    // of the triangle, outwards, of length 1
+  double distance = 0;
+};
+
+class SurfaceProjection {
+ public:
+  explicit SurfaceProjection(const TetMesh& mesh);  // refers to it
+
+  const std::vector<Triangle>& triangles() const { return triangles_; }  // of the boundary, outward oriented
+  ProjectedPoint nearest(const Vec3d& p) const;
+
+ private:
+  const TetMesh& mesh_;
+  std::vector<Triangle> triangles_;
+  BoxTree tree_;
+};
+
+Vec3d position(const SurfacePoint& point, const std::vector<Vec3d>& X);
+
+}  // namespace aspic

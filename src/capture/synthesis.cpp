@@ -1,0 +1,297 @@
+#include "capture/synthesis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include "base/error.h"
+#include "capture/bench_sites.h"
+#include "capture/case_table.h"
+#include "capture/data_findings.h"
+#include "fit/load_case.h"
+#include "fit/next_poke.h"
+#include "mesh/surface.h"
+#include "scene/tables.h"
+#include "scene/toml_reader.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kTipRadius = 0.08;    // relative to the size of the body
+constexpr double kGravity = 9.81;      // [m/s^2]
+constexpr double kBondedLayer = 1000;  // stiffness of a tip's layer times its radius, over Young's modulus
+constexpr double kSlidingLayer = 200;
+constexpr double kLeastDeviation = 1e-4;  // of exact data, relative to the largest motion or force
+
+double volume_of(const TetMesh& mesh) {
+  double sum = 0;
+  for (int t = 0; t < mesh.tet_count(); ++t) sum += volume(mesh, t);
+  return sum;
+}
+
+double distance_squared(const Vec3d& a, const Vec3d& b) { return dot(a - b, a - b); }
+
+FittedMaterial truth_of(const Scene& scene) {
+  const Model& model = scene.simulation.model();
+  const Value body = read_toml(scene.resolved, scene.name).find("body")->array().front();
+  if (!body["elastic"].boolean())
+    throw InvalidInput(scene.name + ": the body is not elastic; there is no material to measure");
+  FittedMaterial truth;
+  truth.model = body["material"]["model"].text();
+  truth.mesh = to_user(model.numbering, model.mesh);
+  const MaterialInfo& info = material_info(truth.model);
+  std::vector<double> young, poisson;
+  std::vector<std::vector<double>> extra(info.extra.size());
+  for (const MaterialParameters& p : model.elasticity.front()->parameters()) {
+    young.push_back(young_modulus(p.lame));
+    poisson.push_back(poisson_ratio(p.lame));
+    for (size_t e = 0; e < extra.size(); ++e) extra[e].push_back(p.extra[e]);
+  }
+  const Renumbering& tet = model.numbering.tet;
+  truth.values = {{"young", tet.to_user(young)}, {"poisson", tet.to_user(poisson)}};
+  for (size_t e = 0; e < extra.size(); ++e) truth.values.emplace_back(info.extra[e].name, tet.to_user(extra[e]));
+  truth.values.emplace_back("density", tet.to_user(model.density));
+  return truth;
+}
+
+class Bench {
+ public:
+  Bench(const Scene& scene, const SynthesisOptions& options)
+      : model_(scene.simulation.model()), options_(options), size_(std::cbrt(volume_of(model_.mesh))) {
+    if (model_.bodies.size() != 1)
+      throw InvalidInput(scene.name + ": has " + std::to_string(model_.bodies.size()) +
+                         " bodies; a bench holds one: take the others out");
+    result_.data.name = scene.name;
+    result_.truth = truth_of(scene);
+    set_up_truth();
+    set_up_data(scene);
+    place_markers();
+    add_pokes();
+    add_gravity();
+    if (truth_.cases.empty()) throw InvalidInput(scene.name + ": nothing is measured; ask for pokes or gravity");
+  }
+
+  Synthesis run(const SynthesisWitness& witness) {
+    measure(witness);
+    if (!data().cases.empty()) add_noise();
+    return std::move(result_);
+  }
+
+ private:
+  Experiment& data() { return result_.data.experiment; }
+
+  // The body of the scene; its springs, weights and motions are left out.
+  void set_up_truth() {
+    truth_.mesh = model_.mesh;
+    truth_.density = model_.density;
+    for (const Pin& pin : model_.pins) {
+      truth_.fixed.insert(truth_.fixed.end(), pin.vertices.begin(), pin.vertices.end());
+      if (pin.motion) result_.notes.push_back("the pin '" + pin.name + "' moves in the scene; here it holds still");
+    }
+    std::sort(truth_.fixed.begin(), truth_.fixed.end());
+    if (truth_.fixed.empty())
+      throw InvalidInput("nothing holds the body, which a poke would push away; give the scene a [[body.pin]]");
+    if (!model_.loads.empty())
+      result_.notes.push_back("loads and springs of the scene are left out: what is poked is the body at rest");
+  }
+
+  void set_up_data(const Scene& scene) {
+    std::optional<TetMesh> mesh = options_.mesh;
+    if (!mesh) mesh = coarser_mesh(scene, options_.mesher, result_.notes);
+    if (!mesh) {
+      result_.notes.push_back(
+          "the data have the mesh of the scene: an inverse crime, whose fits look better than they "
+          "are (give a coarser one with --mesh)");
+      mesh = to_user(model_.numbering, model_.mesh);
+    }
+    DataSet& set = result_.data;
+    set.numbering = locality_numbering(*mesh);
+    data().mesh = from_user(set.numbering, *mesh);
+    data().density = sample(result_.truth, *result_.truth.find("density"), data().mesh);
+    data().fixed = held_vertices(truth_.mesh, truth_.fixed, data().mesh);
+    if (data().fixed.size() < 3)
+      throw InvalidInput("only " + std::to_string(data().fixed.size()) +
+                         " vertices of the data's mesh lie where the body is held; it is too coarse, or elsewhere");
+    on_truth_ = std::make_unique<SurfaceProjection>(truth_.mesh);
+    on_data_ = std::make_unique<SurfaceProjection>(data().mesh);
+  }
+
+  // Material points of the data's surface; where the surfaces differ, they move as the nearest of the truth.
+  void place_markers() {
+    for (const ProjectedPoint& p :
+         marker_sites(data().mesh, *on_data_, data().fixed, options_.markers, options_.seed)) {
+      result_.data.marker_names.push_back(std::to_string(data().markers.size()));
+      result_.data.marker_gap.push_back(0);
+      data().markers.push_back(p.point);
+      const ProjectedPoint on_truth = on_truth_->nearest(p.position);
+      truth_.markers.push_back(on_truth.point);
+      marker_rest_.push_back(p.position);
+      truth_rest_.push_back(on_truth.position);
+    }
+  }
+
+  Tip tip() const {
+    return {options_.shape, options_.contact, options_.tip_radius > 0 ? options_.tip_radius : kTipRadius * size_, 0};
+  }
+
+  // The largest modulus of Young of the tets around the sites.
+  double young_around(const std::vector<PokeSite>& sites) const {
+    std::vector<char> is_site(truth_.mesh.rest.size(), 0);
+    for (const PokeSite& s : sites) is_site[s.vertex] = 1;
+    double young = 0;
+    for (int t = 0; t < truth_.mesh.tet_count(); ++t)
+      if (std::ranges::any_of(truth_.mesh.tets[t], [&](int v) { return is_site[v] != 0; }))
+        young = std::max(young, young_modulus(model_.elasticity.front()->parameters()[t].lame));
+    return young;
+  }
+
+  void add_pokes() {
+    if (options_.pokes == 0) return;
+    Tip with = tip();
+    const auto sites = poke_sites(truth_.mesh, truth_.fixed, 2 * with.radius, options_.pokes);
+    if (static_cast<int>(sites.size()) < options_.pokes)
+      result_.notes.push_back("only " + std::to_string(sites.size()) + " sites were found that a tip of radius " +
+                              number_text(with.radius) + " m can poke");
+    with.stiffness =
+        (with.contact == TipContact::bonded ? kBondedLayer : kSlidingLayer) * young_around(sites) / with.radius;
+    for (size_t s = 0; s < sites.size(); ++s)
+      for (int d = 1; d <= options_.depths; ++d)
+        add_poke(with, truth_.mesh.rest[sites[s].vertex], sites[s].inward, static_cast<int>(s) + 1, d);
+  }
+
+  // Touch and pose are told relative to the surface, which in the data's mesh may lie a little elsewhere.
+  void add_poke(const Tip& with, const Vec3d& site, const Vec3d& inward, int number, int d) {
+    LoadCase load;
+    load.group = "poke " + std::to_string(number);
+    load.name = load.group + ", depth " + std::to_string(d);
+    load.tip = with;
+    const double depth = options_.deepest * size_ * d / options_.depths;
+    const Vec3d back = with.shape == TipShape::sphere ? with.radius * inward : Vec3d{};
+    load.touch = {site - back, inward, {}};
+    load.pose = {site - back + depth * inward, inward, {}};
+    add_case(std::move(load), on_data_->nearest(site).position - site, site);
+  }
+
+  void add_gravity() {
+    for (size_t g = 0; g < options_.gravity.size(); ++g) {
+      LoadCase load;
+      load.name = load.group = "gravity " + std::to_string(g + 1);
+      load.gravity = (kGravity / norm(options_.gravity[g])) * options_.gravity[g];
+      add_case(std::move(load), {}, {});
+    }
+  }
+
+  // Markers below the tip are hidden.
+  void add_case(LoadCase load, const Vec3d& shift, const Vec3d& site) {
+    for (size_t m = 0; m < truth_.markers.size(); ++m)
+      if (!load.tip || distance_squared(truth_rest_[m], site) > load.tip->radius * load.tip->radius)
+        load.positions.push_back({static_cast<int>(m), {}, {{1, 1, 1}}});
+    if (load.positions.empty() && load.tip) load.force = Vec3d{}, load.force_deviation = {{1, 1, 1}};
+    truth_.cases.push_back(load);
+    load.touch.center = load.touch.center + shift;
+    load.pose.center = load.pose.center + shift;
+    asked_.push_back(std::move(load));
+  }
+
+  // Each poke from the last depth; what has no equilibrium ends its poke.
+  void measure(const SynthesisWitness& witness) {
+    const std::vector<MaterialParameters> parameters(model_.elasticity.front()->parameters().begin(),
+                                                     model_.elasticity.front()->parameters().end());
+    const int count = static_cast<int>(truth_.cases.size());
+    std::vector<double> last;
+    std::string failed_group;
+    for (int c = 0; c < count; ++c) {
+      const LoadCase& load = truth_.cases[c];
+      SynthesisStep step{c + 1, count, load.name, {}, 0, {}};
+      if (c > 0 && load.group != truth_.cases[c - 1].group) last.clear();
+      if (load.group == failed_group) {
+        step.failure = "left out: a smaller load has no equilibrium";
+      } else {
+        LoadedBody body(truth_, load, result_.truth.model, parameters, {});
+        if (body.solve(parameters, last)) {
+          last = body.prediction().x;
+          step.wrench = body.prediction().wrench;
+          step.iterations = body.prediction().solve.iterations;
+          note_readings(c, body.prediction());
+        } else {
+          failed_group = load.group;
+          step.failure = body.failure();
+        }
+      }
+      if (!step.failure.empty()) {
+        ++result_.failed;
+        result_.notes.push_back(load.name + " is left out: " + step.failure);
+      }
+      if (witness && !witness(step)) {
+        result_.interrupted = true;
+        return;
+      }
+    }
+  }
+
+  void note_readings(int c, const CasePrediction& found) {
+    LoadCase load = asked_[c];
+    for (size_t k = 0; k < load.positions.size(); ++k) {
+      const int m = load.positions[k].marker;
+      const Vec3d moved = found.markers[k] - truth_rest_[m];
+      largest_motion_ = std::max(largest_motion_, norm(moved));
+      load.positions[k].position = marker_rest_[m] + moved;
+    }
+    load.force.reset();
+    if (load.tip && options_.forces) load.force = found.wrench.force;
+    if (load.tip && options_.torques) load.torque = found.wrench.torque;
+    largest_force_ = std::max(largest_force_, norm(found.wrench.force));
+    largest_torque_ = std::max(largest_torque_, norm(found.wrench.torque));
+    data().cases.push_back(std::move(load));
+  }
+
+  void add_noise() {
+    std::mt19937_64 random(options_.seed + 1);
+    std::normal_distribution<double> normal;
+    const auto disturb = [&](Vec3d& value, Vec3d& deviation, double noise, double largest) {
+      const double sd = std::max(noise, kLeastDeviation) * (largest > 0 ? largest : 1);
+      for (int i = 0; i < 3; ++i) value[i] += noise * largest * normal(random);
+      deviation = {{sd, sd, sd}};
+    };
+    for (LoadCase& load : data().cases) {
+      for (MarkerReading& r : load.positions) disturb(r.position, r.deviation, options_.noise, largest_motion_);
+      if (load.force) disturb(*load.force, load.force_deviation, options_.force_noise, largest_force_);
+      if (load.torque) disturb(*load.torque, load.torque_deviation, options_.force_noise, largest_torque_);
+    }
+  }
+
+  const Model& model_;
+  const SynthesisOptions& options_;
+  double size_;  // of the body [m]
+  Synthesis result_;
+  Experiment truth_;             // on the mesh of the scene, with the same markers and cases
+  std::vector<LoadCase> asked_;  // as the data will have them
+  std::vector<Vec3d> marker_rest_, truth_rest_;
+  std::unique_ptr<SurfaceProjection> on_truth_, on_data_;
+  double largest_motion_ = 0, largest_force_ = 0, largest_torque_ = 0;
+};
+
+void check(const SynthesisOptions& o) {
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) throw InvalidInput(what);
+  };
+  require(o.pokes >= 0 && o.pokes <= 1000, "pokes: 0 to 1000 are possible");
+  require(o.depths >= 1 && o.depths <= 100, "depths: 1 to 100 are possible");
+  require(o.markers >= 0 && o.markers <= 100'000, "markers: 0 to 100000 are possible");
+  require(o.markers > 0 || o.forces || o.torques, "without markers, forces and torques there is nothing to measure");
+  require(o.noise >= 0 && o.force_noise >= 0 && std::isfinite(o.noise + o.force_noise), "noise must be >= 0");
+  require(o.tip_radius >= 0 && std::isfinite(o.tip_radius), "the radius of the tip must be > 0");
+  require(o.deepest > 0 && o.deepest < 1, "the depth must be > 0 and < 1, relative to the size of the body");
+  for (const Vec3d& g : o.gravity)
+    require(norm(g) > 0 && std::isfinite(norm(g)), "gravity needs a direction, not 0,0,0");
+}
+
+}  // namespace
+
+Synthesis synthesize(const Scene& scene, const SynthesisOptions& options, const SynthesisWitness& witness) {
+  check(options);
+  return Bench(scene, options).run(witness);
+}
+
+}  // namespace aspic

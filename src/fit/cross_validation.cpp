@@ -1,0 +1,114 @@
+#include "fit/cross_validation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aspic {
+namespace {
+
+std::vector<std::string> groups_of(const Experiment& experiment) {
+  std::vector<std::string> groups;
+  for (const LoadCase& c : experiment.cases)
+    if (std::ranges::find(groups, c.group) == groups.end()) groups.push_back(c.group);
+  return groups;
+}
+
+Vec3d at_rest(const Experiment& experiment, int marker) {
+  const SurfacePoint& point = experiment.markers[marker];
+  Vec3d X{};
+  for (int i = 0; i < 3; ++i) X = X + point.weights[i] * experiment.mesh.rest[point.vertices[i]];
+  return X;
+}
+
+double squared_length(const Vec3d& v) { return dot(v, v); }
+
+// Sums of squares first, see finish().
+void add_case(const Experiment& experiment, const LoadCase& measured, const CasePrediction& predicted, HeldOut& h) {
+  for (size_t i = 0; i < measured.positions.size(); ++i) {
+    const MarkerReading& reading = measured.positions[i];
+    const double error = squared_length(predicted.markers[i] - reading.position);
+    h.peak_motion =
+        std::max(h.peak_motion, std::sqrt(squared_length(reading.position - at_rest(experiment, reading.marker))));
+    h.largest_error = std::max(h.largest_error, std::sqrt(error));
+    h.position_error += error;
+    h.position_noise += squared_length(reading.deviation);
+    ++h.readings;
+  }
+  if (!measured.force) return;
+  h.peak_force = std::max(h.peak_force, std::sqrt(squared_length(*measured.force)));
+  h.force_error += squared_length(predicted.wrench.force - *measured.force);
+  h.force_noise += squared_length(measured.force_deviation);
+  ++h.forces;
+}
+
+void finish(HeldOut& h) {
+  for (double* sum : {&h.position_error, &h.position_noise}) *sum = std::sqrt(*sum / std::max(h.readings, 1));
+  for (double* sum : {&h.force_error, &h.force_noise}) *sum = std::sqrt(*sum / std::max(h.forces, 1));
+  h.ok = true;
+}
+
+void predict(const Experiment& left_out, const ParameterMap& map, const EquilibriumOptions& options, HeldOut& h) {
+  Misfit misfit(left_out, map, options);
+  std::vector<double> r(misfit.residual_count());
+  if (!misfit.evaluate(h.p, r)) {
+    h.failure = "no equilibrium was found with the material of the other cases: " + misfit.failure();
+    return;
+  }
+  for (size_t c = 0; c < left_out.cases.size(); ++c)
+    add_case(left_out, left_out.cases[c], misfit.prediction(static_cast<int>(c)), h);
+  finish(h);
+}
+
+double root_mean_square(const std::vector<HeldOut>& groups, bool (*has)(const HeldOut&),
+                        double (*error)(const HeldOut&)) {
+  double sum = 0;
+  int count = 0;
+  for (const HeldOut& h : groups)
+    if (h.ok && has(h)) sum += error(h) * error(h), ++count;
+  return count > 0 ? std::sqrt(sum / count) : -1;
+}
+
+}  // namespace
+
+Experiment subset(const Experiment& experiment, const std::function<bool(const LoadCase&)>& wanted) {
+  Experiment part = experiment;
+  std::erase_if(part.cases, [&](const LoadCase& c) { return !wanted(c); });
+  return part;
+}
+
+CrossValidation cross_validate(const Experiment& experiment, const ParameterMap& map, Regularizer& regularizer,
+                               const FitReport& fitted, FitOptions options, const EquilibriumOptions& equilibrium,
+                               const CrossValidationObserver& observe) {
+  CrossValidation result;
+  const std::vector<std::string> groups = groups_of(experiment);
+  if (groups.size() < 2) {
+    result.warnings.push_back("nothing can be left out: all cases belong to one group (give each poke its own)");
+    return result;
+  }
+  options.weight = fitted.weight;
+  options.starts = 1;
+  for (size_t g = 0; g < groups.size(); ++g) {
+    if (observe && !observe(static_cast<int>(g), static_cast<int>(groups.size()), groups[g])) break;
+    HeldOut& h = result.groups.emplace_back();
+    h.group = groups[g];
+    const Experiment seen = subset(experiment, [&](const LoadCase& c) { return c.group != h.group; });
+    const Experiment left_out = subset(experiment, [&](const LoadCase& c) { return c.group == h.group; });
+    Misfit misfit(seen, map, equilibrium);
+    const FitReport report = fit(misfit, regularizer, fitted.p, options);
+    h.p = report.p;
+    if (is_success(report.status) || report.status == Status::iteration_limit)
+      predict(left_out, map, equilibrium, h);
+    else
+      h.failure = "the fit to the other cases failed: " + report.words;
+    if (!h.ok) result.warnings.push_back(h.group + " could not be predicted: " + h.failure);
+  }
+  result.position_error = root_mean_square(
+      result.groups, [](const HeldOut& h) { return h.peak_motion > 0; },
+      [](const HeldOut& h) { return h.relative_position_error(); });
+  result.force_error = root_mean_square(
+      result.groups, [](const HeldOut& h) { return h.peak_force > 0; },
+      [](const HeldOut& h) { return h.relative_force_error(); });
+  return result;
+}
+
+}  // namespace aspic

@@ -1,0 +1,105 @@
+#include "fit/cross_validation.h"
+
+#include <gmock/gmock.h>
+
+#include "fit/poked_block_test.h"
+
+namespace aspic {
+namespace {
+
+using test::PokedBlock;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+struct Study {
+  PokedBlock block;
+  explicit Study(double noise = 0.01) {
+    for (const PokedBlock::Site& site : PokedBlock::sites())
+      for (const double depth : {0.003, 0.006}) block.add_poke(site, depth, noise);
+  }
+  CrossValidation validate(const ParameterMap& map, double weight = 1) const {
+    const auto prior = make_regularizer(block.experiment.mesh, map, {});
+    Misfit misfit(block.experiment, map);
+    const FitReport fitted = fit(misfit, *prior, map.guess(), {.weight = weight});
+    EXPECT_TRUE(is_success(fitted.status)) << fitted.words;
+    return cross_validate(block.experiment, map, *prior, fitted);
+  }
+  void measure(const std::vector<double>& log_young) {
+    std::mt19937_64 random(1);
+    block.measure(block.map(), log_young, random);
+  }
+  // Stiff on one side.
+  std::vector<double> halves(double contrast) const {
+    std::vector<double> z;
+    for (const Tet& tet : block.experiment.mesh.tets) {
+      double x = 0;
+      for (const int v : tet) x += block.experiment.mesh.rest[v][0] / 4;
+      z.push_back(std::log(PokedBlock::kYoung * (x > PokedBlock::kSide / 2 ? contrast : 1)));
+    }
+    return z;
+  }
+};
+
+TEST(CrossValidation, OfTheRightModelLeavesTheNoise) {
+  Study study;
+  study.measure(study.halves(1));
+  const CrossValidation result = study.validate(study.block.map({{.spread = Spread::uniform, .guess = 1e4}}));
+  ASSERT_EQ(result.groups.size(), 4u);
+  EXPECT_TRUE(result.warnings.empty());
+  for (const HeldOut& h : result.groups) {
+    ASSERT_TRUE(h.ok) << h.failure;
+    EXPECT_EQ(h.forces, 2);
+    EXPECT_EQ(h.readings, 2 * static_cast<int>(study.block.experiment.markers.size()));
+    EXPECT_NEAR(h.position_error, h.position_noise, 0.1 * h.position_noise);
+    EXPECT_LT(h.force_error, 2.5 * h.force_noise);
+    EXPECT_LT(h.relative_position_error(), 0.02);
+    EXPECT_GE(h.largest_error, h.position_error);
+    EXPECT_NE(h.p, result.groups[0].p == h.p ? result.groups[1].p : result.groups[0].p);
+  }
+  EXPECT_LT(result.position_error, 0.02);
+  EXPECT_LT(result.force_error, 0.05);
+}
+
+TEST(CrossValidation, TellsAModelThatIsTooSimple) {
+  Study study(0.005);
+  study.measure(study.halves(4));
+  const CrossValidation uniform = study.validate(study.block.map({{.spread = Spread::uniform, .guess = 1e4}}));
+  const CrossValidation handles =
+      study.validate(study.block.map({{.spread = Spread::handles, .handles = 8, .guess = 1e4}}), 0.01);
+  EXPECT_GT(uniform.position_error, 1.5 * handles.position_error);
+  EXPECT_GT(uniform.force_error, 3 * handles.force_error);
+}
+
+TEST(CrossValidation, ReportsAGroupThatCannotBePredicted) {
+  Study study;
+  study.measure(study.halves(1));
+  for (LoadCase& load : study.block.experiment.cases)  // through the table
+    if (load.group == "left") load.pose.center[2] = -5;
+  const ParameterMap map = study.block.map({{.spread = Spread::uniform, .guess = 2e4}});
+  const auto prior = make_regularizer(study.block.experiment.mesh, map, {});
+  const CrossValidation result =
+      cross_validate(study.block.experiment, map, *prior, {.p = {map.guess().begin(), map.guess().end()}, .weight = 1},
+                     {}, {.max_iterations = 20}, [](int group, int groups, const std::string& name) {
+                       EXPECT_EQ(groups, 4);
+                       EXPECT_EQ(name == "left", group == 0);
+                       return group == 0;
+                     });
+  ASSERT_EQ(result.groups.size(), 1u);
+  EXPECT_FALSE(result.groups[0].ok);
+  EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("left could not be predicted")));
+  EXPECT_LT(result.position_error, 0);
+}
+
+TEST(CrossValidation, NeedsTwoGroups) {
+  PokedBlock block;
+  block.add_poke(PokedBlock::sites()[0], 0.003, 0.01);
+  block.add_poke(PokedBlock::sites()[0], 0.006, 0.01);
+  const ParameterMap map = block.map({{.spread = Spread::uniform, .guess = 1e4}});
+  const auto prior = make_regularizer(block.experiment.mesh, map, {});
+  const CrossValidation result = cross_validate(block.experiment, map, *prior, {});
+  EXPECT_TRUE(result.groups.empty());
+  EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("one group")));
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,29 @@
+// The parameters theta of all elastic terms of a model, one term after another: TetElasticity::parameter_count()
+// numbers for each of its tets.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "dynamics/model.h"
+
+namespace aspic {
+
+class ElasticParameters {
+ public:
+  explicit ElasticParameters(const Model& model);  // refers to its elastic terms
+
+  int size() const { return start_.back(); }  // of theta
+  int tets() const { return tet_start_.back(); }
+  int of_term(int k) const { return start_[k]; }             // where its numbers begin
+  std::vector<MaterialParameters> get() const;               // one per tet
+  void set(std::span<const MaterialParameters> parameters);  // one per tet
+  // g += scale d(dV/dx)/dtheta change, and gradient += scale d(w . dV/dx)/dtheta.
+  void add_force(Positions x, std::span<const double> change, double scale, std::span<double> g) const;
+  void add_gradient(Positions x, std::span<const double> w, double scale, std::span<double> gradient) const;
+
+ private:
+  std::vector<TetElasticity*> terms_;
+  std::vector<int> start_, tet_start_;  // one per term, and the end
+};
+
+}  // namespace aspic

@@ -1,0 +1,199 @@
+#include "fit/equilibrium.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/check.h"
+#include "dynamics/incremental_potential.h"
+#include "dynamics/integrator.h"
+#include "fit/elastic_parameters.h"
+#include "linalg/auto_solver.h"
+#include "optimize/newton.h"
+
+namespace aspic {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+std::string words(const MinimizeReport& report) {
+  const std::string status(to_string(report.status));
+  if (report.status == Status::undefined) return "the energy is not finite where the solve starts (" + status + ")";
+  return "no equilibrium was found: " + status + " after " + std::to_string(report.iterations) +
+         " iterations, a residual force of " + number(report.reached) + " N is left and " + number(report.threshold) +
+         " N was asked for";
+}
+
+const Cholesky* as_cholesky(const LinearSolver& solver) {
+  if (const auto* choice = dynamic_cast<const AutoSolver*>(&solver)) return as_cholesky(choice->chosen());
+  return dynamic_cast<const Cholesky*>(&solver);
+}
+
+// With parts along all modes of a body, the same on every system.
+void fill_without_pattern(std::span<double> b) {
+  for (size_t i = 0; i < b.size(); ++i) b[i] = std::sin(1.0 + 12.9898 * static_cast<double>(i % 100'003));
+}
+
+}  // namespace
+
+struct Equilibrium::Impl {
+  Impl(Model m, std::vector<double> start, const EquilibriumOptions& o)
+      : options(o),
+        model(std::move(m)),
+        x(std::move(start)),
+        pins(model.pins, x),
+        E(model, pins),
+        newton(make_linear_solver(o.linear)),
+        solver(make_linear_solver(o.adjoint, o.solves)),
+        K(E.pattern()),
+        theta(model) {
+    minimize.tolerance = o.tolerance;
+    minimize.max_iterations = o.max_iterations;
+    pins.place(0, x);
+    parameters = linear_parameters = theta.get();
+    for (auto* v : {&trial, &b, &u}) v->resize(x.size());
+    linear_x.reserve(x.size());
+  }
+
+  void tell_terms(std::span<const double> at) {
+    const StepContext context{at, 0, 0};
+    tell_potential(E, context);
+    tell_damping(E, context);
+    E.begin_step(at, 0, 1);
+  }
+
+  MinimizeReport solve(const IterationObserver& observe) {
+    use(parameters);
+    std::copy(x.begin(), x.end(), trial.begin());
+    tell_terms(x);
+    const MinimizeReport report = minimizer.minimize(E, newton, trial, minimize, observe);
+    if (is_success(report.status)) {
+      std::swap(x, trial);
+    } else {
+      failure = words(report);
+    }
+    return report;
+  }
+
+  bool factorize() {
+    linear_x.clear();
+    use(parameters);
+    tell_terms(x);
+    K.block = E.hessian(x, {Definiteness::exact}).block;  // a copy: E may overwrite its own
+    if (!is_analyzed) solver->analyze(E.pattern());
+    is_analyzed = true;
+    solver->begin();
+    if (!solver->factorize(K)) return refuse();
+    linear_x.assign(x.begin(), x.end());
+    linear_parameters = parameters;
+    if (as_cholesky(*solver)) return true;
+    // Conjugate gradients tell an indefinite matrix when they meet negative curvature.
+    fill_without_pattern(b);
+    const SolveReport report = solve_stiffness(b, u);
+    if (!report.indefinite && std::isfinite(report.relative_residual)) return true;
+    linear_x.clear();
+    return refuse();
+  }
+
+  bool refuse() {
+    const Cholesky* cholesky = as_cholesky(*solver);
+    failure = cholesky && cholesky->refused()
+                  ? "the factor of the stiffness matrix does not fit into memory: " + solver->description() +
+                        " (try the solver 'multigrid')"
+                  : "the stiffness matrix is not positive definite: the equilibrium is unstable, or nothing holds "
+                    "the body";
+    return false;
+  }
+
+  SolveReport solve_stiffness(std::span<const double> rhs, std::span<double> result) {
+    ASPIC_CHECK(!linear_x.empty());
+    if (rhs.data() != b.data()) std::copy(rhs.begin(), rhs.end(), b.begin());
+    pins.set_zero(b);
+    SolveReport report = solver->solve(b, result, options.adjoint_tolerance);
+    report.ok = report.ok || (!report.indefinite && report.relative_residual <= kUsable);
+    return report;
+  }
+
+  SolveReport tangent(std::span<const double> dtheta, std::span<double> dx) {
+    use(linear_parameters);
+    std::fill(b.begin(), b.end(), 0.0);
+    theta.add_force(linear_x, dtheta, -1, b);
+    return solve_stiffness(b, dx);
+  }
+
+  SolveReport add_adjoint(std::span<const double> xbar, std::span<double> thetabar) {
+    use(linear_parameters);
+    const SolveReport report = solve_stiffness(xbar, u);
+    theta.add_gradient(linear_x, u, -1, thetabar);
+    return report;
+  }
+
+  // The elastic terms hold those of the last solve or those of the linearisation.
+  void use(const std::vector<MaterialParameters>& wanted) {
+    if (in_force == &wanted) return;
+    theta.set(wanted);
+    in_force = &wanted;
+  }
+
+  static constexpr double kUsable = 1e-9;  // residual of a solve that stagnates in round-off
+
+  EquilibriumOptions options;
+  Model model;
+  std::vector<double> x;
+  Pins pins;
+  IncrementalPotential E;
+  Newton newton;
+  Minimizer minimizer;
+  MinimizeOptions minimize;
+  std::unique_ptr<LinearSolver> solver;  // of K
+  BlockSparse K;
+  ElasticParameters theta;
+  std::vector<MaterialParameters> parameters, linear_parameters;
+  const std::vector<MaterialParameters>* in_force = &parameters;
+  std::vector<double> linear_x;  // empty: no derivatives
+  bool is_analyzed = false;
+  std::string failure;
+  std::vector<double> trial, b, u;  // scratch
+};
+
+Equilibrium::Equilibrium(Model model, std::vector<double> x, const EquilibriumOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(model), std::move(x), options)) {}
+Equilibrium::~Equilibrium() = default;
+Equilibrium::Equilibrium(Equilibrium&&) noexcept = default;
+
+const Model& Equilibrium::model() const { return impl_->model; }
+Model& Equilibrium::model() { return impl_->model; }
+int Equilibrium::parameters_per_tet() const { return impl_->model.elasticity.front()->parameter_count(); }
+
+void Equilibrium::set_parameters(std::span<const MaterialParameters> parameters) {
+  impl_->parameters.assign(parameters.begin(), parameters.end());
+  impl_->in_force = nullptr;
+}
+
+MinimizeReport Equilibrium::solve(const IterationObserver& observe) { return impl_->solve(observe); }
+std::span<const double> Equilibrium::x() const { return impl_->x; }
+
+void Equilibrium::set_x(std::span<const double> x) {
+  std::copy(x.begin(), x.end(), impl_->x.begin());
+  impl_->pins.place(0, impl_->x);
+}
+
+bool Equilibrium::factorize() { return impl_->factorize(); }
+std::span<const double> Equilibrium::linearized_x() const { return impl_->linear_x; }
+SolveReport Equilibrium::solve_stiffness(std::span<const double> b, std::span<double> u) {
+  return impl_->solve_stiffness(b, u);
+}
+SolveReport Equilibrium::tangent(std::span<const double> dtheta, std::span<double> dx) {
+  return impl_->tangent(dtheta, dx);
+}
+SolveReport Equilibrium::add_adjoint(std::span<const double> xbar, std::span<double> thetabar) {
+  return impl_->add_adjoint(xbar, thetabar);
+}
+const std::string& Equilibrium::failure() const { return impl_->failure; }
+std::string Equilibrium::solver_description() const { return impl_->solver->description(); }
+
+}  // namespace aspic

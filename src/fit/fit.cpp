@@ -1,0 +1,168 @@
+#include "fit/fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "fit/fit_run.h"
+
+namespace aspic {
+namespace {
+
+constexpr int kFew = 50;  // unknowns for which a dense Jacobian is worth it
+
+struct NamedMethod {
+  const char* name;
+  FitMethod method;
+};
+constexpr NamedMethod kMethods[] = {
+    {"levenberg_marquardt", levenberg_marquardt}, {"gauss_newton_cg", gauss_newton_cg}, {"lbfgs", fit_by_lbfgs}};
+
+using WeightRule = Status (*)(FitRun&, FitPoint&, FitGoal&, FitMethod);
+
+Status fit_with_weight(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method) { return method(run, at, goal); }
+
+struct NamedRule {
+  const char* name;
+  WeightRule rule;
+};
+constexpr NamedRule kRules[] = {
+    {"prior", fit_with_weight}, {"discrepancy", fit_by_discrepancy}, {"l_curve", fit_by_l_curve}};
+
+template <class Named>
+const Named& named(std::span<const Named> all, const std::string& what, const std::string& name) {
+  std::vector<std::string> known{"auto"};
+  for (const Named& each : all) {
+    if (name == each.name) return each;
+    known.emplace_back(each.name);
+  }
+  throw InvalidInput(what + " '" + name + "' is unknown" + suggestion(name, known));
+}
+
+void check(const FitOptions& o) {
+  const auto positive = [](double x, const char* what) {
+    if (!(x > 0)) throw InvalidInput(std::string(what) + " of a fit must be positive");
+  };
+  positive(o.tolerance, "the tolerance");
+  positive(o.max_step, "the largest step");
+  positive(o.starts, "the number of starts");
+  positive(o.max_inner, "the number of inner iterations");
+  if (std::isnan(o.weight) || std::isinf(o.weight)) throw InvalidInput("the weight of a fit must be finite");
+}
+
+// Away from the guess along a smooth random direction, such as the prior would draw.
+std::vector<double> scattered(FitRun& run, std::span<const double> guess, int start) {
+  std::vector<double> p(guess.begin(), guess.end());
+  if (start == 0) return p;
+  std::mt19937_64 random(static_cast<uint64_t>(start));
+  std::vector<double> v(p.size()), d(p.size());
+  for (double& vi : v)  // sums of uniform numbers, the same with every standard library
+    for (int k = 0; k < 4; ++k) vi += static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
+  run.solve_prior(guess, v, d);
+  const double size = largest_entry(d);
+  if (size > 0) add_multiple(run.options.scatter / size, d, p);
+  return p;
+}
+
+std::string ending(Status status) {
+  switch (status) {
+    case Status::converged:
+      return "converged";
+    case Status::round_off:
+      return "converged as far as the equilibria are exact";
+    case Status::iteration_limit:
+      return "stopped at the largest number of iterations: not converged";
+    case Status::interrupted:
+      return "stopped on demand: not converged";
+    case Status::budget:
+      return "stopped when the time was up: not converged";
+    case Status::undefined:
+      return "failed: the model or its Jacobian could not be evaluated";
+    case Status::no_descent:
+      return "failed: no direction leads to a better fit";
+    default:
+      return "stuck: no step leads to a better fit";
+  }
+}
+
+// Everything that depends on where it starts.
+struct Attempt {
+  Status status = Status::undefined;
+  FitPoint point;
+  double weight = 0, objective = std::numeric_limits<double>::quiet_NaN();
+  std::string words;
+};
+
+bool is_better(const Attempt& a, const Attempt& b) {
+  if (std::isnan(a.objective) || std::isnan(b.objective)) return !std::isnan(a.objective);
+  return a.objective < b.objective;
+}
+
+}  // namespace
+
+std::vector<std::string> fit_method_names() {
+  std::vector<std::string> names{"auto"};
+  for (const NamedMethod& m : kMethods) names.emplace_back(m.name);
+  return names;
+}
+
+std::vector<std::string> weight_rule_names() {
+  std::vector<std::string> names{"auto"};
+  for (const NamedRule& r : kRules) names.emplace_back(r.name);
+  return names;
+}
+
+FitReport fit(LeastSquares& misfit, Regularizer& regularizer, std::span<const double> guess, const FitOptions& options,
+              const FitObserver& observe) {
+  ASPIC_CHECK(static_cast<int>(guess.size()) == misfit.unknowns());
+  check(options);
+  const bool few = misfit.unknowns() <= kFew;
+  const NamedMethod method =
+      options.method == "auto" ? kMethods[few ? 0 : 1] : named<NamedMethod>(kMethods, "method", options.method);
+  const NamedRule rule = options.weight_rule == "auto" ? kRules[few ? 0 : 1]
+                                                       : named<NamedRule>(kRules, "weight rule", options.weight_rule);
+  FitRun run(misfit, regularizer, options, observe);
+  run.weight = options.weight >= 0 ? options.weight : 1;
+
+  Attempt best;
+  WeightRule choose = options.weight >= 0 ? fit_with_weight : rule.rule;
+  for (int start = 0; start < options.starts; ++start) {
+    Attempt now;
+    run.start = start;
+    run.report.words.clear();
+    FitGoal goal{.tolerance = options.tolerance};
+    if (run.evaluate(scattered(run, guess, start), now.point)) {
+      now.status = choose(run, now.point, goal, method.method);
+      now.objective = now.point.objective(run.weight);
+      choose = fit_with_weight;  // the weight is comparable only if it is the same for all
+    }
+    now.words = run.report.words;
+    now.weight = run.weight;
+    run.report.starts.push_back(now.objective);
+    if (start == 0 || is_better(now, best)) best = std::move(now);
+    if (best.status == Status::interrupted || run.is_late()) break;
+  }
+
+  FitReport report = std::move(run.report);
+  report.status = best.status;
+  report.p = best.point.p;
+  report.weight = best.weight;
+  report.misfit = best.point.misfit;
+  report.roughness = best.point.roughness;
+  report.method = method.name;
+  report.iterations = static_cast<int>(report.history.size());
+  report.words = ending(best.status) + (best.words.empty() ? "" : "; " + best.words);
+  std::sort(report.weights.begin(), report.weights.end(),
+            [](const WeightTrial& a, const WeightTrial& b) { return a.weight < b.weight; });
+  std::vector<double> r(best.point.r.size());
+  if (!report.p.empty() && std::isfinite(best.objective) && !misfit.evaluate(report.p, r)) {
+    report.status = Status::undefined;
+    report.words = "failed: the model could not be evaluated again where the fit ended";
+  }
+  return report;
+}
+
+}  // namespace aspic

@@ -1,0 +1,95 @@
+// L-BFGS in the inner product of the prior: the library's minimiser, on f with the preconditioner s R''. One gradient
+// per iteration and no product with J'J: for when products cost more than iterations.
+#include <cmath>
+
+#include "base/check.h"
+#include "fit/fit_run.h"
+#include "optimize/lbfgs.h"
+
+namespace aspic {
+namespace {
+
+class FitObjective : public Objective {
+ public:
+  FitObjective(FitRun& run, FitPoint& at) : run_(run), at_(at), trial_(at), origin_(at.p) {}
+
+  double value(std::span<const double> p) override {
+    if (is_same(p, at_)) return at_.objective(run_.weight);
+    return run_.evaluate(p, trial_) ? trial_.objective(run_.weight) : INFINITY;
+  }
+  void gradient(std::span<const double> p, std::span<double> g) override {
+    const FitPoint& point = is_same(p, at_) ? at_ : trial_;
+    ASPIC_CHECK(is_same(p, point));
+    if (run_.linearize(point))
+      run_.gradient(point, g);
+    else
+      std::fill(g.begin(), g.end(), std::nan(""));
+  }
+  void note_iterate(std::span<const double> p) override {
+    if (!is_same(p, at_)) std::swap(at_, trial_);
+  }
+  double max_step(std::span<const double>, std::span<const double> d) override {
+    return run_.options.max_step / std::max(largest_entry(d), 1e-300);
+  }
+  double value_round_off() const override { return 1e-10 * std::abs(at_.objective(run_.weight)); }
+
+  // s R'' at the first iterate, with the curvature s of f along the first direction.
+  bool precondition(std::span<const double> r, std::span<double> z) override {
+    run_.solve_prior(origin_, r, z);
+    if (scale_ == 0) scale_ = curvature(z);
+    if (!(scale_ > 0) || !std::isfinite(scale_)) return false;
+    for (double& zi : z) zi /= scale_;
+    return true;
+  }
+
+ private:
+  static bool is_same(std::span<const double> p, const FitPoint& point) {
+    return std::equal(p.begin(), p.end(), point.p.begin(), point.p.end());
+  }
+  double curvature(std::span<const double> d) {
+    std::vector<double> Hd(d.size()), Rd(d.size(), 0.0);
+    run_.multiply_curvature(at_, d, Hd);
+    run_.add_prior_product(at_, d, 1, Rd);
+    return inner_product(d, Hd) / inner_product(d, Rd);
+  }
+  const BlockSparse& evaluate_hessian(std::span<const double>, const Projection&) override {
+    check_failed("a fit has no Hessian of blocks", __FILE__, __LINE__);
+  }
+
+  FitRun& run_;
+  FitPoint& at_;
+  FitPoint trial_;
+  std::vector<double> origin_;
+  double scale_ = 0;
+};
+
+}  // namespace
+
+Status fit_by_lbfgs(FitRun& run, FitPoint& at, FitGoal& goal) {
+  if (run.iterations_left() <= 0) return Status::iteration_limit;
+  FitObjective f(run, at);
+  LBFGS direction{Preconditioner(PreconditionerKind::own)};
+  Status ended = Status::interrupted;
+  const auto observe = [&](const LiveIteration& i) {
+    const double decrement = std::sqrt(std::max(0.0, 2 * i.decrement));
+    const bool go_on = run.note(
+        {.decrement = decrement, .step = i.alpha * largest_entry(i.d), .trials = static_cast<int>(i.tried.size())}, at);
+    if (goal.is_reached(decrement))
+      ended = Status::converged;
+    else if (is_lost_in_noise(decrement, at.objective(run.weight)))
+      ended = Status::round_off;
+    return go_on && ended == Status::interrupted;
+  };
+  Minimizer minimizer;
+  std::vector<double> p = at.p;
+  const MinimizeOptions options{.max_iterations = run.iterations_left(),
+                                .tolerance = 0,
+                                .criterion = Criterion::first_gradient,
+                                .line_search = {.tolerance = 1e-6},
+                                .deadline = run.options.deadline};
+  const MinimizeReport report =
+      minimizer.minimize(f, direction, p, {at.objective(run.weight), f.value_round_off()}, options, observe);
+  return report.status == Status::interrupted ? ended : report.status;
+}
+
+}  // namespace aspic

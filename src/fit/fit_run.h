@@ -1,0 +1,92 @@
+// What the methods of a fit share: f(p) = |r|^2 / 2 + weight R with its derivatives, counted, told to the observer.
+#pragma once
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "fit/fit.h"
+
+namespace aspic {
+
+struct FitPoint {
+  std::vector<double> p, r;
+  double misfit = 0, roughness = 0;
+
+  double objective(double weight) const { return misfit + weight * roughness; }
+};
+
+double inner_product(std::span<const double> a, std::span<const double> b);
+double largest_entry(std::span<const double> v);  // of |v|
+void add_multiple(double factor, std::span<const double> v, std::span<double> to);
+
+class FitRun {
+ public:
+  FitRun(LeastSquares& data, Regularizer& regularizer, const FitOptions& chosen, const FitObserver& observe)
+      : options(chosen), data_(data), regularizer_(regularizer), observe_(observe) {}
+
+  const FitOptions& options;
+  double weight = 1;
+  int start = 0;
+  FitReport report;
+
+  int unknowns() const { return data_.unknowns(); }
+  int residuals() const { return data_.residual_count(); }
+  // False: r is not defined at p, or not finite.
+  bool evaluate(std::span<const double> p, FitPoint& point);
+  bool linearize(const FitPoint& at);  // J at this point; false: it does not exist there
+  void gradient(const FitPoint& at, std::span<double> g);
+  void multiply(std::span<const double> dp, std::span<double> dr);
+  void multiply_transposed(std::span<const double> w, std::span<double> pbar);
+  void add_prior_product(const FitPoint& at, std::span<const double> v, double scale, std::span<double> y) const;
+  void multiply_curvature(const FitPoint& at, std::span<const double> v, std::span<double> y);  // (J'J + weight R'') v
+  void solve_prior(std::span<const double> p, std::span<const double> v, std::span<double> z);  // R''^-1 v
+
+  // Into the history; false: the observer wants no more.
+  bool note(FitIteration iteration, const FitPoint& at);
+  int iterations_left() const { return options.max_iterations - static_cast<int>(report.history.size()); }
+  bool is_late() const { return options.deadline.has_passed(); }
+
+ private:
+  LeastSquares& data_;
+  Regularizer& regularizer_;
+  const FitObserver& observe_;
+  std::vector<double> evaluated_;  // the p of the last successful evaluation
+  std::vector<double> dr_;
+};
+
+// How far a method is to go: to a part of the first decrement, or to an absolute one. The first is remembered from one
+// weight to the next.
+struct FitGoal {
+  double tolerance = 1e-3;
+  double absolute = 0;
+  double first_decrement = 0;  // 0: not known yet
+
+  bool is_reached(double decrement) {
+    if (first_decrement == 0) first_decrement = decrement;
+    return decrement <= std::max(absolute, tolerance * first_decrement);
+  }
+};
+
+// Each goes on from `at` for the weight of the run, and ends there with the best it found.
+Status levenberg_marquardt(FitRun& run, FitPoint& at, FitGoal& goal);
+Status gauss_newton_cg(FitRun& run, FitPoint& at, FitGoal& goal);
+Status fit_by_lbfgs(FitRun& run, FitPoint& at, FitGoal& goal);
+
+using FitMethod = Status (*)(FitRun&, FitPoint&, FitGoal&);
+
+// Choose the weight, and end at the p that belongs to it: so that |r|^2 is the number of residuals, or at the corner of
+// the curve of (log misfit, log roughness).
+Status fit_by_discrepancy(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method);
+Status fit_by_l_curve(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method);
+
+// Towards d from `at`, backtracking where f falls too little or is not defined. False: no step was found.
+struct FitStep {
+  double length = 0;  // of the accepted step, in d
+  int trials = 0;
+};
+bool search_along(FitRun& run, FitPoint& at, std::span<const double> d, double slope, FitStep& step);
+
+// Whether the decrease that can be hoped for drowns in the noise of f, as it is computed from equilibria.
+bool is_lost_in_noise(double decrement, double objective);
+
+}  // namespace aspic

@@ -1,0 +1,175 @@
+// How much to believe the prior, chosen from the data [Morozov 1966; Hansen 1998]: warm-started fits at falling
+// weights.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "fit/fit_run.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kLargestFall = 1.0 / 30;  // of the weight from one trial to the next
+constexpr int kTrials = 24;
+constexpr double kStagnation = 0.02;  // of the logarithm of |r|^2 per factor e of the weight
+constexpr double kRange = 1e12;       // between the first weight and the last
+
+// The weight at which prior and data pull equally along the steepest descent in the norm of the prior.
+std::optional<double> balanced_weight(FitRun& run, const FitPoint& at) {
+  if (!run.linearize(at)) return {};
+  std::vector<double> g(at.p.size()), d(g.size()), Rd(g.size(), 0.0), Jd(at.r.size());
+  run.multiply_transposed(at.r, g);
+  if (largest_entry(g) == 0) return 1;
+  run.solve_prior(at.p, g, d);
+  run.multiply(d, Jd);
+  run.add_prior_product(at, d, 1, Rd);
+  const double weight = inner_product(Jd, Jd) / inner_product(d, Rd);
+  if (!(weight > 0) || !std::isfinite(weight)) return {};
+  return weight;
+}
+
+// For which |r|^2 is known within its own scatter.
+FitGoal loosened(const FitGoal& goal, const FitRun& run) {
+  FitGoal loose = goal;
+  loose.absolute = std::sqrt(0.5 * std::sqrt(2.0 * run.residuals()));
+  return loose;
+}
+
+WeightTrial trial_at(const FitRun& run, const FitPoint& at) { return {run.weight, at.misfit, at.roughness, at.p}; }
+
+bool go_to(FitRun& run, FitPoint& at, const WeightTrial& trial) {
+  run.weight = trial.weight;
+  return at.p == trial.p || run.evaluate(trial.p, at);
+}
+
+std::string text(double x) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.3g", x);
+  return buffer;
+}
+
+// The weight where |r|^2 = the number of residuals, from what was tried.
+class Discrepancy {
+ public:
+  explicit Discrepancy(int residuals)
+      : count_(residuals), slack_(std::log1p(std::clamp(std::sqrt(2.0 / residuals), 0.02, 0.3))) {}
+
+  enum class Verdict { fits, try_on, unexplained, explained_by_guess };
+  Verdict judge(double weight, double misfit) {
+    const Known now{std::log(weight), std::log(std::max(2 * misfit / count_, 1e-300))};
+    if (!first_) first_ = now;
+    const std::optional<Known> before = last_;
+    last_ = now;
+    if (std::abs(now.y) <= slack_) return Verdict::fits;
+    (now.y > 0 ? too_large_ : too_small_) = now;
+    if (too_large_ && too_small_) {
+      if (std::abs(too_large_->w - too_small_->w) < 0.02) return Verdict::fits;
+      // Regula falsi, away from the ends.
+      const double part = std::clamp(too_large_->y / (too_large_->y - too_small_->y), 0.1, 0.9);
+      next_ = too_large_->w + part * (too_small_->w - too_large_->w);
+      return Verdict::try_on;
+    }
+    if (std::abs(now.w - first_->w) > std::log(kRange))
+      return now.y > 0 ? Verdict::unexplained : Verdict::explained_by_guess;
+    const double moved = before ? now.w - before->w : 0;
+    const double slope = moved != 0 ? (now.y - before->y) / moved : 0.5;
+    if (moved < 0 && now.y > 0 && slope < kStagnation && now.y < 2) return Verdict::unexplained;
+    next_ = now.w - std::copysign(std::clamp(std::abs(now.y) / std::clamp(slope, 0.1, 1.0), std::log(2.0),
+                                             -std::log(kLargestFall)),
+                                  now.y);
+    return Verdict::try_on;
+  }
+  double next() const { return std::exp(next_); }
+
+ private:
+  struct Known {
+    double w, y;  // log weight, log (|r|^2 / count)
+  };
+  int count_;
+  double slack_, next_ = 0;
+  std::optional<Known> first_, last_, too_large_, too_small_;
+};
+
+// The largest weight that explains the data about as well as any.
+const WeightTrial& most_cautious(const std::vector<WeightTrial>& trials) {
+  const auto less = [](const WeightTrial& a, const WeightTrial& b) { return a.misfit < b.misfit; };
+  const double best = std::min_element(trials.begin(), trials.end(), less)->misfit;
+  const WeightTrial* chosen = nullptr;
+  for (const WeightTrial& t : trials)
+    if (t.misfit <= 1.1 * best && (!chosen || t.weight > chosen->weight)) chosen = &t;
+  return *chosen;
+}
+
+// Of the circle through three points: its curvature, positive where the curve turns as at the corner of an L that is
+// walked downwards and to the right, by falling misfit and growing roughness.
+double curvature(const WeightTrial& a, const WeightTrial& b, const WeightTrial& c) {
+  const auto x = [](const WeightTrial& t) { return std::log(std::max(t.misfit, 1e-300)); };
+  const auto y = [](const WeightTrial& t) { return std::log(std::max(t.roughness, 1e-300)); };
+  const double ux = x(b) - x(a), uy = y(b) - y(a), vx = x(c) - x(b), vy = y(c) - y(b);
+  const double lengths = std::hypot(ux, uy) * std::hypot(vx, vy) * std::hypot(ux + vx, uy + vy);
+  return lengths > 0 ? 2 * (vx * uy - ux * vy) / lengths : 0;
+}
+
+}  // namespace
+
+Status fit_by_discrepancy(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method) {
+  const std::optional<double> balanced = balanced_weight(run, at);
+  if (!balanced) return Status::undefined;
+  run.weight = run.options.first_weight > 0 ? run.options.first_weight : 0.1 * *balanced;
+  FitGoal loose = loosened(goal, run);
+  Discrepancy rule(run.residuals());
+  std::vector<WeightTrial>& trials = run.report.weights;
+  auto verdict = Discrepancy::Verdict::try_on;
+  for (int i = 0; i < kTrials && verdict == Discrepancy::Verdict::try_on; ++i) {
+    const Status status = method(run, at, loose);
+    if (!is_success(status)) return status;
+    trials.push_back(trial_at(run, at));
+    verdict = rule.judge(run.weight, at.misfit);
+    if (verdict == Discrepancy::Verdict::try_on) run.weight = rule.next();
+  }
+  goal.first_decrement = loose.first_decrement;
+  const std::string found =
+      "|r|^2 = " + text(2 * trials.back().misfit) + " of " + std::to_string(run.residuals()) + " residuals";
+  switch (verdict) {
+    case Discrepancy::Verdict::fits:
+      run.report.words = "the weight leaves " + found;
+      break;
+    case Discrepancy::Verdict::explained_by_guess:
+      run.report.words = "the guess already explains the data within their standard deviations (" + found +
+                         "): they may be stated too large";
+      break;
+    default:
+      if (!go_to(run, at, most_cautious(trials))) return Status::undefined;
+      run.report.words = "no material of this kind explains the data within their standard deviations (" + found +
+                         "): they may be stated too small, or the model may be wrong";
+  }
+  return method(run, at, goal);
+}
+
+Status fit_by_l_curve(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method) {
+  const std::optional<double> balanced = balanced_weight(run, at);
+  if (!balanced) return Status::undefined;
+  run.weight = run.options.first_weight > 0 ? run.options.first_weight : 0.1 * *balanced;
+  FitGoal loose = loosened(goal, run);
+  std::vector<WeightTrial>& trials = run.report.weights;
+  for (int i = 0; i < kTrials; ++i, run.weight /= std::sqrt(10.0)) {
+    const Status status = method(run, at, loose);
+    if (status == Status::stuck && trials.size() >= 3) break;  // the weight is too small to go on
+    if (!is_success(status)) return status;
+    trials.push_back(trial_at(run, at));
+    if (2 * at.misfit < 0.1 * run.residuals()) break;  // noise is being fitted
+  }
+  goal.first_decrement = loose.first_decrement;
+  size_t corner = trials.size() - 1;
+  double sharpest = 0;
+  for (size_t i = 1; i + 1 < trials.size(); ++i)
+    if (const double k = curvature(trials[i - 1], trials[i], trials[i + 1]); k > sharpest) sharpest = k, corner = i;
+  run.report.words =
+      sharpest > 0 ? "the weight is at the corner of the L-curve, of " + std::to_string(trials.size()) + " weights"
+                   : "the L-curve has no corner: the smallest weight was taken";
+  if (!go_to(run, at, trials[corner])) return Status::undefined;
+  return method(run, at, goal);
+}
+
+}  // namespace aspic

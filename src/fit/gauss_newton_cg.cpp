@@ -1,0 +1,92 @@
+// Gauss-Newton for fields: (J'J + weight R'') d = -g by conjugate gradients, inexactly [Nash 2000]. Preconditioned by
+// weight R'', they need about as many iterations as the data see directions that the prior leaves open.
+#include <algorithm>
+#include <cmath>
+
+#include "fit/fit_run.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kLoosest = 0.3;  // relative residual, in the norm of the prior
+constexpr double kTightest = 0.03;
+
+struct Solution {
+  std::vector<double> d;
+  double decrement = 0;  // sqrt(-g.d)
+  int iterations = 0;
+  bool ok = true;
+};
+
+class InnerSolver {
+ public:
+  InnerSolver(FitRun& run, const FitPoint& at) : run_(run), at_(at) {}
+
+  Solution solve(std::span<const double> g, double tolerance) {
+    const size_t n = g.size();
+    Solution s{.d = std::vector<double>(n, 0.0)};
+    std::vector<double> r(n), z(n), q(n), Hq(n);
+    for (size_t i = 0; i < n; ++i) r[i] = -g[i];
+    precondition(r, z);
+    q = z;
+    double rz = inner_product(r, z);
+    const double first = rz;
+    while (rz > tolerance * tolerance * first && s.iterations < run_.options.max_inner && !run_.is_late()) {
+      run_.multiply_curvature(at_, q, Hq);
+      const double curvature = inner_product(q, Hq);
+      if (!(curvature > 0) || !std::isfinite(curvature)) {
+        s.ok = s.iterations > 0 && std::isfinite(curvature);
+        break;
+      }
+      ++s.iterations;
+      add_multiple(rz / curvature, q, s.d);
+      add_multiple(-rz / curvature, Hq, r);
+      precondition(r, z);
+      const double before = rz;
+      rz = inner_product(r, z);
+      for (size_t i = 0; i < n; ++i) q[i] = z[i] + rz / before * q[i];
+    }
+    s.decrement = std::sqrt(std::max(0.0, -inner_product(g, s.d)));
+    return s;
+  }
+
+ private:
+  void precondition(std::span<const double> r, std::span<double> z) {
+    run_.solve_prior(at_.p, r, z);
+    if (run_.weight > 0)
+      for (double& zi : z) zi /= run_.weight;
+  }
+
+  FitRun& run_;
+  const FitPoint& at_;
+};
+
+}  // namespace
+
+Status gauss_newton_cg(FitRun& run, FitPoint& at, FitGoal& goal) {
+  std::vector<double> g(at.p.size());
+  double forcing = kLoosest;
+  for (;;) {
+    if (run.is_late()) return Status::budget;
+    if (!run.linearize(at)) return Status::undefined;
+    run.gradient(at, g);
+    if (largest_entry(g) == 0) return Status::converged;
+    const Solution newton = InnerSolver(run, at).solve(g, forcing);
+    if (!newton.ok || !(newton.decrement > 0)) return run.is_late() ? Status::budget : Status::no_descent;
+    if (goal.is_reached(newton.decrement)) return Status::converged;
+    if (is_lost_in_noise(newton.decrement, at.objective(run.weight))) return Status::round_off;
+    if (run.iterations_left() <= 0) return Status::iteration_limit;
+    forcing = std::clamp(std::sqrt(newton.decrement / goal.first_decrement) * kLoosest, kTightest, kLoosest);
+    FitStep step;
+    const bool found = search_along(run, at, newton.d, -newton.decrement * newton.decrement, step);
+    const FitIteration done{.decrement = newton.decrement,
+                            .step = step.length * largest_entry(newton.d),
+                            .inner = newton.iterations,
+                            .trials = step.trials};
+    const bool go_on = run.note(done, at);
+    if (!found) return run.is_late() ? Status::budget : Status::stuck;
+    if (!go_on) return Status::interrupted;
+  }
+}
+
+}  // namespace aspic

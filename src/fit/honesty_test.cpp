@@ -1,0 +1,203 @@
+// Uncertainty with real equilibria: coverage, and what is told where no force was measured.
+#include <gmock/gmock.h>
+
+#include "fit/fit.h"
+#include "fit/poked_block_test.h"
+#include "fit/uncertainty.h"
+
+namespace aspic {
+namespace {
+
+using test::PokedBlock;
+
+std::vector<double> draw(Regularizer& prior, const ParameterMap& map, double weight, std::mt19937_64& random) {
+  std::vector<double> x(map.size());
+  PriorGaussian(prior, weight, map.guess()).sample(random, x);
+  for (size_t i = 0; i < x.size(); ++i) x[i] += map.guess()[i];
+  return x;
+}
+
+FitReport fitted(Misfit& misfit, Regularizer& prior, const ParameterMap& map, double weight = 1) {
+  const FitReport report = fit(misfit, prior, map.guess(), {.tolerance = 1e-4, .weight = weight});
+  EXPECT_TRUE(is_success(report.status)) << report.words;
+  return report;
+}
+
+struct Coverage {
+  int inside = 0, all = 0;
+  double part() const { return static_cast<double>(inside) / all; }
+};
+
+void add(const Posterior& posterior, const ParameterMap& map, const std::vector<double>& p,
+         const std::vector<double>& truth, Coverage& coverage) {
+  const std::vector<double> E = map.values(0, truth);
+  for (int t = 0; t < static_cast<int>(E.size()); ++t) {
+    const Interval i = interval(posterior, map, p, 0, t);
+    coverage.inside += i.lower < E[t] && E[t] < i.upper;
+    ++coverage.all;
+  }
+}
+
+// The truth is drawn from the prior; log E differs by about 0.6 from place to place, its deviation after the fit is a
+// half of that.
+TEST(Honesty, IntervalsOfAFieldHoldTheTruth) {
+  constexpr double kWeight = 4;
+  constexpr int kSeeds = 12;
+  Coverage coverage;
+  double error = 0, expected = 0;
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
+    PokedBlock block;
+    for (const PokedBlock::Site& site : PokedBlock::sites()) block.add_poke(site, 0.006, 0.02);
+    const ParameterMap map = block.map();
+    const auto prior = make_regularizer(block.experiment.mesh, map, {.prior_deviation = 0.5});
+    std::mt19937_64 random(seed);
+    const std::vector<double> truth = draw(*prior, map, kWeight, random);
+    block.measure(map, truth, random);
+    Misfit misfit(block.experiment, map);
+    const FitReport report = fitted(misfit, *prior, map, kWeight);
+    const Posterior posterior = aspic::posterior(misfit, *prior, kWeight, map, block.experiment.mesh, report.p);
+    ASSERT_TRUE(posterior.ok);
+    EXPECT_FALSE(posterior.scale_is_unknown);
+    EXPECT_NEAR(posterior.noise_factor, 1, 0.1);
+    EXPECT_EQ(posterior.applied_factor, 1);
+    EXPECT_GT(posterior.suggested_weight, kWeight / 3);
+    EXPECT_LT(posterior.suggested_weight, kWeight * 3);
+    add(posterior, map, report.p, truth, coverage);
+    for (int t = 0; t < map.size(); ++t) {
+      error += std::pow(report.p[t] - truth[t], 2);
+      expected += std::pow(posterior.deviation[0][t], 2);
+    }
+  }
+  RecordProperty("coverage", std::to_string(coverage.part()));
+  EXPECT_GT(coverage.part(), 0.90);
+  EXPECT_LT(coverage.part(), 0.99);
+  EXPECT_NEAR(std::sqrt(error / expected), 1, 0.15);
+}
+
+TEST(Honesty, IntervalsOfTwoLayersHoldTheTruth) {
+  PokedBlock block;
+  TetMesh& mesh = block.experiment.mesh;
+  for (const Tet& tet : mesh.tets) {
+    double height = 0;
+    for (const int v : tet) height += mesh.rest[v][2] / 4;
+    mesh.region.push_back(height < PokedBlock::kHeight / 2 ? 0 : 1);
+  }
+  for (const PokedBlock::Site& site : PokedBlock::sites()) block.add_poke(site, 0.006, 0.1);
+  const ParameterMap map = block.map({{.spread = Spread::regions, .guess = 2e4}});
+  const auto prior = make_regularizer(mesh, map, {.prior_deviation = 2});
+  const std::vector<double> truth = {std::log(5e4), std::log(1e4)};
+  Coverage coverage;
+  constexpr int kSeeds = 100;
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
+    std::mt19937_64 random(seed);
+    block.measure(map, truth, random);
+    Misfit misfit(block.experiment, map);
+    const FitReport report = fitted(misfit, *prior, map);
+    const Posterior posterior = aspic::posterior(misfit, *prior, 1, map, mesh, report.p);
+    for (int layer = 0; layer < 2; ++layer) {
+      const int t = static_cast<int>(std::ranges::find(mesh.region, layer) - mesh.region.begin());
+      const Interval i = interval(posterior, map, report.p, 0, t);
+      coverage.inside += i.lower < std::exp(truth[layer]) && std::exp(truth[layer]) < i.upper;
+      ++coverage.all;
+    }
+  }
+  RecordProperty("coverage", std::to_string(coverage.part()));
+  const double error = std::sqrt(0.95 * 0.05 / kSeeds);  // as if both layers were one
+  EXPECT_NEAR(coverage.part(), 0.95, 3 * error);
+}
+
+// ---------------------------------------------------------------------------------------------------- scale
+
+PokedBlock poked(bool with_force) {
+  PokedBlock block;
+  for (const PokedBlock::Site& site : PokedBlock::sites()) block.add_poke(site, 0.006, 0.01, with_force);
+  return block;
+}
+
+// Hides the nuisances of a misfit.
+class AtFaceValue : public LeastSquares {
+ public:
+  explicit AtFaceValue(LeastSquares& data) : data_(data) {}
+  int unknowns() const override { return data_.unknowns(); }
+  int residual_count() const override { return data_.residual_count(); }
+  bool evaluate(std::span<const double> p, std::span<double> r) override { return data_.evaluate(p, r); }
+  bool linearize() override { return data_.linearize(); }
+  void multiply(std::span<const double> dp, std::span<double> dr) override { data_.multiply(dp, dr); }
+  void multiply_transposed(std::span<const double> w, std::span<double> p) override { data_.multiply_transposed(w, p); }
+
+ private:
+  LeastSquares& data_;
+};
+
+TEST(Honesty, WithoutAForceOnlyRatiosOfStiffnessAreKnown) {
+  for (const bool with_force : {false, true}) {
+    PokedBlock block = poked(with_force);
+    const ParameterMap map = block.map();
+    const auto prior = make_regularizer(block.experiment.mesh, map, {.prior_deviation = 2});
+    std::mt19937_64 random(4);
+    block.measure(map, draw(*prior, map, 4, random), random);
+    Misfit misfit(block.experiment, map);
+    const FitReport report = fitted(misfit, *prior, map, 4);
+    const Posterior posterior = aspic::posterior(misfit, *prior, 4, map, block.experiment.mesh, report.p);
+    EXPECT_EQ(posterior.scale_is_unknown, !with_force);
+    ASSERT_FALSE(posterior.unseen.empty());
+    if (!with_force) {  // all that is left of the scale is the prior: 2 / sqrt(weight)
+      EXPECT_EQ(posterior.unseen[0].words, "young of the whole body");
+      EXPECT_LT(posterior.unseen[0].information, 0.1);
+      EXPECT_NEAR(posterior.unseen[0].deviation, 1, 0.1);
+      EXPECT_GT(posterior.seen.size(), 0u);  // ratios are
+    } else {
+      EXPECT_LT(posterior.unseen[0].deviation, 0.5);
+    }
+    AtFaceValue face_value(misfit);  // the layer would have passed for a force
+    EXPECT_FALSE(aspic::posterior(face_value, *prior, 4, map, block.experiment.mesh, report.p).scale_is_unknown);
+  }
+}
+
+TEST(Honesty, NuisanceIsTheDerivativeByTheStiffnessOfTheLayer) {
+  PokedBlock block = poked(true);
+  const ParameterMap map = block.map();
+  const auto residuals_at = [&](double log_factor) {
+    PokedBlock changed = block;
+    for (LoadCase& load : changed.experiment.cases) load.tip->stiffness *= std::exp(log_factor);
+    Misfit misfit(changed.experiment, map, {.tolerance = 1e-13});
+    std::vector<double> r(misfit.residual_count());
+    EXPECT_TRUE(misfit.evaluate(map.guess(), r));
+    return r;
+  };
+  Misfit misfit(block.experiment, map, {.tolerance = 1e-13});
+  std::vector<double> r(misfit.residual_count()), dr(r.size());
+  ASSERT_TRUE(misfit.evaluate(map.guess(), r));
+  ASSERT_TRUE(misfit.linearize());
+  ASSERT_EQ(misfit.nuisance_count(), 1);
+  misfit.nuisance(0, dr);
+  const std::vector<double> plus = residuals_at(1e-3), minus = residuals_at(-1e-3);
+  double size = 0, error = 0;
+  for (size_t i = 0; i < r.size(); ++i) {
+    size = std::max(size, std::abs(dr[i]));
+    error = std::max(error, std::abs((plus[i] - minus[i]) / 2e-3 - dr[i]));
+  }
+  EXPECT_GT(size, 0.1);
+  EXPECT_LT(error, 1e-5 * size);
+}
+
+// Directions of the covariance by sampling rows and columns agree at a real fit.
+TEST(Honesty, AllWaysToTheEigenpairsAgreeAtAFit) {
+  PokedBlock block = poked(true);
+  const ParameterMap map = block.map();
+  const auto prior = make_regularizer(block.experiment.mesh, map, {.prior_deviation = 1});
+  Misfit misfit(block.experiment, map);
+  const std::vector<double> p(map.guess().begin(), map.guess().end());
+  std::mt19937_64 random(4);
+  block.measure(map, p, random);
+  const Posterior dense = posterior(misfit, *prior, 1, map, block.experiment.mesh, p);
+  const Posterior sampled = posterior(misfit, *prior, 1, map, block.experiment.mesh, p, {.spectrum = {.dense = 10}});
+  ASSERT_LT(sampled.belief->spectrum().W.count(), map.size());
+  for (int t = 0; t < map.size(); ++t) {
+    EXPECT_GT(sampled.deviation[0][t], dense.deviation[0][t] * (1 - 1e-6));
+    EXPECT_LT(sampled.deviation[0][t], dense.deviation[0][t] * 1.05);
+  }
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,268 @@
+#include "fit/load_case.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "energy/linear_load.h"
+#include "energy/pressure.h"
+#include "mesh/surface.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kSmallestPart = 1.0 / 64;  // of a load
+constexpr char kAxis[] = "xyz";
+
+std::vector<double> positions(const std::vector<Vec3d>& points) {
+  std::vector<double> x;
+  x.reserve(3 * points.size());
+  for (const Vec3d& p : points) x.insert(x.end(), {p[0], p[1], p[2]});
+  return x;
+}
+
+Vec3d at(const SurfacePoint& point, std::span<const double> x) {
+  Vec3d sum{};
+  for (int k = 0; k < 3; ++k)
+    for (int r = 0; r < 3; ++r) sum[r] += point.weights[k] * x[3 * point.vertices[k] + r];
+  return sum;
+}
+
+Vec3d unit(const Vec3d& v) { return (1 / std::sqrt(dot(v, v))) * v; }
+
+TipPose between(const TipPose& a, const TipPose& b, double part) {
+  const auto mix = [part](const Vec3d& x, const Vec3d& y) { return (1 - part) * x + part * y; };
+  return {mix(a.center, b.center), mix(unit(a.axis), unit(b.axis)), mix(a.rotation, b.rotation)};
+}
+
+void require_positive(const Vec3d& deviation, const std::string& what) {
+  for (int r = 0; r < 3; ++r)
+    if (!(deviation[r] > 0) || !std::isfinite(deviation[r]))
+      throw InvalidInput(what + ": the standard deviation along " + kAxis[r] + " is " + std::to_string(deviation[r]) +
+                         "; it must be positive");
+}
+
+}  // namespace
+
+LoadedBody::LoadedBody(const Experiment& experiment, const LoadCase& load, const std::string& material,
+                       std::span<const MaterialParameters> parameters, const EquilibriumOptions& options)
+    : experiment_(experiment),
+      load_(readable(experiment, load)),
+      rest_(positions(experiment.mesh.rest)),
+      equilibrium_(make_model(material, parameters), rest_, options) {
+  for (auto* v : {&dx_, &xbar_, &start_}) v->resize(rest_.size());
+  prediction_.x = rest_;
+  prediction_.markers.resize(load.positions.size());
+}
+
+const LoadCase& LoadedBody::readable(const Experiment& experiment, const LoadCase& load) {
+  if (load.positions.empty() && !load.force && !load.torque)
+    throw InvalidInput(load.name + ": nothing was measured; give positions of markers, a force or a torque");
+  if (!load.tip && (load.force || load.torque))
+    throw InvalidInput(load.name + ": a force or torque needs the tip that it acts through");
+  for (const MarkerReading& reading : load.positions) {
+    if (reading.marker < 0 || reading.marker >= static_cast<int>(experiment.markers.size()))
+      throw InvalidInput(load.name + ": marker " + std::to_string(reading.marker) + " is unknown; there are " +
+                         std::to_string(experiment.markers.size()));
+    require_positive(reading.deviation, load.name + ": marker " + std::to_string(reading.marker));
+  }
+  if (load.force) require_positive(load.force_deviation, load.name + ": force");
+  if (load.torque) require_positive(load.torque_deviation, load.name + ": torque");
+  return load;
+}
+
+Model LoadedBody::make_model(const std::string& material, std::span<const MaterialParameters> parameters) {
+  Model model;
+  model.mesh = experiment_.mesh;
+  const TetMesh& mesh = experiment_.mesh;
+  model.bodies = {{"body", 0, mesh.vertex_count(), 0, mesh.tet_count()}};
+  model.density = experiment_.density;
+  model.mass = std::make_unique<MassMatrix>(mesh, model.density, MassKind::lumped);
+  model.elasticity.push_back(make_tet_elasticity(material, mesh, 0, parameters));
+  model.pins.push_back({"fixed", experiment_.fixed, {}});
+  const auto add_scaled = [&](std::unique_ptr<Energy> load) {
+    auto scaled = std::make_unique<ScaledLoad>(std::move(load));
+    scaled_.push_back(scaled.get());
+    model.loads.push_back(std::move(scaled));
+  };
+  if (dot(load_.gravity, load_.gravity) > 0) {
+    std::vector<double> weight(rest_.size());
+    for (int t = 0; t < mesh.tet_count(); ++t) add_body_force(mesh, t, model.density[t] * load_.gravity, weight);
+    add_scaled(make_linear_load("gravity", std::move(weight)));
+  }
+  if (load_.pressure != 0) add_scaled(make_pressure(mesh, load_.pressed, load_.pressure));
+  if (load_.tip) {
+    auto probe = make_probe(mesh, boundary_triangles(mesh, 0, mesh.tet_count()), *load_.tip, load_.touch);
+    probe->set_pose(load_.pose);
+    probe_ = probe.get();
+    model.loads.push_back(std::move(probe));
+  }
+  return model;
+}
+
+std::string LoadedBody::what(int residual) const {
+  const auto [reading, axis] = std::div(residual, 3);
+  const int markers = static_cast<int>(load_.positions.size());
+  const std::string of = reading < markers ? "marker " + std::to_string(load_.positions[reading].marker)
+                         : reading == markers && has_force() ? "force"
+                                                             : "torque";
+  return load_.name + ": " + of + ", " + kAxis[axis];
+}
+
+void LoadedBody::apply(double part) {
+  for (ScaledLoad* load : scaled_) load->set_factor(part);
+  if (probe_) probe_->set_pose(part == 1 ? load_.pose : between(load_.touch, load_.pose, part));
+}
+
+bool LoadedBody::try_from(std::span<const double> start) {
+  equilibrium_.set_x(start);
+  const MinimizeReport report = equilibrium_.solve();
+  ++counts_.equilibria;
+  counts_.newton_iterations += report.iterations;
+  counts_.factorizations += report.factorizations;
+  prediction_.solve = report;
+  return is_success(report.status);
+}
+
+// From rest, by parts that are halved where one fails and doubled again after a success.
+bool LoadedBody::load_in_parts() {
+  start_ = rest_;
+  double done = 0, part = 0.5;
+  while (done < 1) {
+    apply(std::min(1.0, done + part));
+    if (try_from(start_)) {
+      std::copy(x().begin(), x().end(), start_.begin());
+      done = std::min(1.0, done + part);
+      part *= 2;
+    } else {
+      part /= 2;
+      if (part < kSmallestPart) break;
+    }
+  }
+  failure_ = done < 1 ? load_.name + ", at " + std::to_string(std::lround(100 * (done + 2 * part))) +
+                            " % of the load: " + equilibrium_.failure()
+                      : std::string();
+  apply(1);
+  return done == 1;
+}
+
+bool LoadedBody::solve(std::span<const MaterialParameters> parameters, std::span<const double> start) {
+  equilibrium_.set_parameters(parameters);
+  const std::vector<double>& last = prediction_.x;
+  const bool has_start = !start.empty() && equilibrium_.model().elasticity[0]->min_det_F(start) > 0;
+  is_solved_ = (has_start && try_from(start)) || try_from(last) || load_in_parts();
+  if (is_solved_) predict_readings();
+  return is_solved_;
+}
+
+void LoadedBody::predict_readings() {
+  std::copy(x().begin(), x().end(), prediction_.x.begin());
+  for (size_t k = 0; k < load_.positions.size(); ++k)
+    prediction_.markers[k] = at(experiment_.markers[load_.positions[k].marker], x());
+  if (probe_) prediction_.wrench = probe_->wrench(x());
+}
+
+void LoadedBody::residuals(std::span<double> r) const {
+  size_t i = 0;
+  const auto put = [&](const Vec3d& predicted, const Vec3d& measured, const Vec3d& deviation) {
+    for (int k = 0; k < 3; ++k) r[i++] = (predicted[k] - measured[k]) / deviation[k];
+  };
+  for (size_t k = 0; k < load_.positions.size(); ++k)
+    put(prediction_.markers[k], load_.positions[k].position, load_.positions[k].deviation);
+  if (has_force()) put(prediction_.wrench.force, *load_.force, load_.force_deviation);
+  if (has_torque()) put(prediction_.wrench.torque, *load_.torque, load_.torque_deviation);
+}
+
+void LoadedBody::restore(std::span<const double> x) {
+  accepted_.assign(x.begin(), x.end());
+  prediction_.x = accepted_;
+}
+
+// What comes next depends on nothing but the point of the linearisation, whatever was tried since.
+bool LoadedBody::linearize(std::span<const MaterialParameters> parameters) {
+  equilibrium_.set_x(accepted_);
+  prediction_.x = accepted_;
+  equilibrium_.set_parameters(parameters);
+  ++counts_.factorizations;
+  if (equilibrium_.factorize()) return true;
+  failure_ = load_.name + ": " + equilibrium_.failure();
+  return false;
+}
+
+bool LoadedBody::predict(std::span<const double> dtheta, std::span<double> x) {
+  ++counts_.solves;
+  if (!equilibrium_.tangent(dtheta, x).ok) return false;
+  const std::span<const double> from = equilibrium_.linearized_x();
+  for (size_t i = 0; i < x.size(); ++i) x[i] += from[i];
+  return true;
+}
+
+bool LoadedBody::solved(const SolveReport& report) {
+  if (report.ok) return true;
+  failure_ =
+      load_.name + (report.indefinite ? ": the equilibrium is unstable"
+                                      : ": a system with the stiffness matrix was solved to a relative residual of " +
+                                            std::to_string(report.relative_residual) + " only");
+  return false;
+}
+
+void LoadedBody::put_change(const Wrench& change, std::span<double> dr) const {
+  size_t i = 0;
+  const auto put = [&](const Vec3d& d, const Vec3d& deviation) {
+    for (int k = 0; k < 3; ++k) dr[i++] = d[k] / deviation[k];
+  };
+  for (const MarkerReading& reading : load_.positions)
+    put(at(experiment_.markers[reading.marker], dx_), reading.deviation);
+  if (has_force()) put(change.force, load_.force_deviation);
+  if (has_torque()) put(change.torque, load_.torque_deviation);
+}
+
+bool LoadedBody::multiply(std::span<const double> dtheta, std::span<double> dr) {
+  ++counts_.solves;
+  if (!solved(equilibrium_.tangent(dtheta, dx_))) return false;
+  const bool has_wrench = has_force() || has_torque();
+  put_change(has_wrench ? probe_->wrench_product(equilibrium_.linearized_x(), dx_) : Wrench{}, dr);
+  return true;
+}
+
+// V_probe and its wrench are proportional to k: K dx = -grad V_probe.
+bool LoadedBody::multiply_by_layer(std::span<double> dr) {
+  const std::span<const double> x = equilibrium_.linearized_x();
+  std::fill(xbar_.begin(), xbar_.end(), 0.0);
+  probe_->add_gradient(x, -1, xbar_);
+  ++counts_.solves;
+  if (!solved(equilibrium_.solve_stiffness(xbar_, dx_))) return false;
+  Wrench change = probe_->wrench_product(x, dx_);
+  const Wrench own = probe_->wrench(x);
+  change.force = change.force + own.force, change.torque = change.torque + own.torque;
+  put_change(change, dr);
+  return true;
+}
+
+bool LoadedBody::add_transposed(std::span<const double> w, std::span<double> thetabar) {
+  if (std::all_of(w.begin(), w.end(), [](double x) { return x == 0; })) return true;
+  std::fill(xbar_.begin(), xbar_.end(), 0.0);
+  size_t i = 0;
+  const auto take = [&](const Vec3d& deviation) {
+    const Vec3d bar{{w[i] / deviation[0], w[i + 1] / deviation[1], w[i + 2] / deviation[2]}};
+    i += 3;
+    return bar;
+  };
+  for (const MarkerReading& reading : load_.positions) {
+    const SurfacePoint& point = experiment_.markers[reading.marker];
+    const Vec3d bar = take(reading.deviation);
+    for (int k = 0; k < 3; ++k)
+      for (int r = 0; r < 3; ++r) xbar_[3 * point.vertices[k] + r] += point.weights[k] * bar[r];
+  }
+  if (has_force() || has_torque()) {
+    Wrench bar;
+    if (has_force()) bar.force = take(load_.force_deviation);
+    if (has_torque()) bar.torque = take(load_.torque_deviation);
+    probe_->add_wrench_transposed(equilibrium_.linearized_x(), bar, 1, xbar_);
+  }
+  ++counts_.solves;
+  return solved(equilibrium_.add_adjoint(xbar_, thetabar));
+}
+
+}  // namespace aspic

@@ -1,0 +1,71 @@
+// One load case as a body at rest under its load, with what is read off it.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fit/misfit.h"
+#include "fit/scaled_load.h"
+
+namespace aspic {
+
+class LoadedBody {
+ public:
+  // Refers to both. Throws InvalidInput for a case that no residual comes from, or one that cannot be read.
+  LoadedBody(const Experiment& experiment, const LoadCase& load, const std::string& material,
+             std::span<const MaterialParameters> parameters, const EquilibriumOptions& options);
+
+  int residual_count() const { return static_cast<int>(3 * (load_.positions.size() + has_force() + has_torque())); }
+  std::string what(int residual) const;  // "poke 3, depth 2: marker 17, y"
+
+  // Finds the equilibrium for these parameters: from `start`, then from where the body is, then by applying the load in
+  // parts to the body at rest. False: there is none, failure() tells why.
+  bool solve(std::span<const MaterialParameters> parameters, std::span<const double> start);
+  bool is_solved() const { return is_solved_; }
+  std::span<const double> x() const { return equilibrium_.x(); }
+  void residuals(std::span<double> r) const;  // at x()
+  const CasePrediction& prediction() const { return prediction_; }
+  const std::string& failure() const { return failure_; }
+
+  // Remembers x(): linearize() returns there.
+  void accept() { accepted_.assign(x().begin(), x().end()); }
+  bool linearize(std::span<const MaterialParameters> parameters);
+  std::span<const double> accepted() const { return accepted_; }
+  void restore(std::span<const double> x);  // as if x had been found and accepted
+  bool is_linearized() const { return !equilibrium_.linearized_x().empty(); }
+  // x where it is linearised + dx/dtheta dtheta; false: that could not be solved.
+  bool predict(std::span<const double> dtheta, std::span<double> x);
+  bool multiply(std::span<const double> dtheta, std::span<double> dr);
+  bool add_transposed(std::span<const double> w, std::span<double> thetabar);
+  bool has_layer() const { return probe_ != nullptr; }
+  bool multiply_by_layer(std::span<double> dr);  // dr/dlog k, k the stiffness of the tip's layer
+
+  const Misfit::Counts& counts() const { return counts_; }
+
+ private:
+  bool has_force() const { return load_.force.has_value(); }
+  bool has_torque() const { return load_.torque.has_value(); }
+  static const LoadCase& readable(const Experiment& experiment, const LoadCase& load);  // throws when it is not
+  Model make_model(const std::string& material, std::span<const MaterialParameters> parameters);
+  void apply(double part);  // of the load
+  bool try_from(std::span<const double> start);
+  bool load_in_parts();
+  bool solved(const SolveReport& report);
+  void put_change(const Wrench& change, std::span<double> dr) const;  // with dx_
+  void predict_readings();
+
+  const Experiment& experiment_;
+  const LoadCase& load_;
+  Probe* probe_ = nullptr;           // in the model, if there is a tip
+  std::vector<ScaledLoad*> scaled_;  // in the model: weight and pressure
+  std::vector<double> rest_;
+  Equilibrium equilibrium_;
+  CasePrediction prediction_;
+  std::vector<double> accepted_;
+  bool is_solved_ = false;
+  std::string failure_;
+  Misfit::Counts counts_;
+  std::vector<double> dx_, xbar_, start_;  // scratch
+};
+
+}  // namespace aspic

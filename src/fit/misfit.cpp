@@ -1,0 +1,216 @@
+#include "fit/misfit.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "fit/load_case.h"
+
+namespace aspic {
+
+struct Misfit::Impl {
+  struct Case {
+    std::unique_ptr<LoadedBody> body;
+    int first = 0;                        // of its residuals
+    std::vector<double> start, thetabar;  // scratch
+    bool ok = false;
+  };
+
+  Impl(const Experiment& e, const ParameterMap& m, const EquilibriumOptions& options) : experiment(e), map(m) {
+    const std::vector<MaterialParameters> guess = map.parameters(map.guess());
+    for (const LoadCase& load : experiment.cases) {
+      Case& c = cases.emplace_back();
+      c.body = std::make_unique<LoadedBody>(experiment, load, map.material(), guess, options);
+      c.first = residual_count;
+      residual_count += c.body->residual_count();
+    }
+    theta_size = static_cast<size_t>(map.parameters_per_tet()) * experiment.mesh.tet_count();
+    dtheta.resize(theta_size);
+    dp.resize(map.size());
+    if (cases.empty()) throw InvalidInput("there is no load case to fit");
+  }
+
+  int case_count() const { return static_cast<int>(cases.size()); }
+
+  // Cases side by side where there are enough of them; otherwise one after another, each on all threads.
+  template <class Body>
+  void for_each_case(const Body& body) {
+    for_each(case_count(), [&](int c) { body(cases[c]); });
+  }
+  template <class Body>
+  static void for_each(int count, const Body& body) {
+    if (count >= thread_count()) {
+      parallel_for(count, body);
+    } else {
+      for (int i = 0; i < count; ++i) body(i);
+    }
+  }
+
+  bool evaluate(std::span<const double> p, std::span<double> r) {
+    const std::vector<MaterialParameters> parameters = map.parameters(p);
+    if (is_linearized) {
+      for (size_t i = 0; i < dp.size(); ++i) dp[i] = p[i] - linear_p[i];
+      map.multiply(linear_p, dp, dtheta);
+      for_each_case([&](Case& c) {
+        c.start.resize(3 * experiment.mesh.rest.size());
+        c.ok = c.body->solve(parameters, c.body->predict(dtheta, c.start) ? c.start : std::span<const double>());
+      });
+    } else if (has_solved) {
+      for_each_case([&](Case& c) { c.ok = c.body->solve(parameters, {}); });
+    } else {
+      solve_groups(parameters);
+    }
+    if (!all_ok()) return false;
+    for_each_case([&](Case& c) {
+      c.body->residuals(r.subspan(c.first, c.body->residual_count()));
+      c.body->accept();
+    });
+    has_solved = true;
+    accepted_p.assign(p.begin(), p.end());
+    accepted_parameters = parameters;
+    return true;
+  }
+
+  // Each group from its smallest load on.
+  void solve_groups(const std::vector<MaterialParameters>& parameters) {
+    std::vector<int> begin;
+    for (int c = 0; c < case_count(); ++c)
+      if (c == 0 || experiment.cases[c].group.empty() || experiment.cases[c].group != experiment.cases[c - 1].group)
+        begin.push_back(c);
+    begin.push_back(case_count());
+    for_each(static_cast<int>(begin.size()) - 1, [&](int g) {
+      for (int c = begin[g]; c < begin[g + 1]; ++c) {
+        const bool follows = c > begin[g] && cases[c - 1].ok;
+        cases[c].ok = cases[c].body->solve(parameters, follows ? cases[c - 1].body->x() : std::span<const double>());
+      }
+    });
+  }
+
+  bool all_ok() {
+    failure.clear();
+    for (const Case& c : cases)
+      if (!c.ok) failure += (failure.empty() ? "" : "; ") + c.body->failure();
+    return failure.empty();
+  }
+
+  bool linearize() {
+    ASPIC_CHECK(has_solved);
+    is_linearized = false;
+    for_each_case([&](Case& c) { c.ok = c.body->linearize(accepted_parameters); });
+    if (!all_ok()) return false;
+    linear_p = accepted_p;
+    return is_linearized = true;
+  }
+
+  void multiply(std::span<const double> direction, std::span<double> dr) {
+    ASPIC_CHECK(is_linearized);
+    map.multiply(linear_p, direction, dtheta);
+    for_each_case([&](Case& c) { c.ok = c.body->multiply(dtheta, dr.subspan(c.first, c.body->residual_count())); });
+    mark_unless_ok(dr);
+  }
+
+  void multiply_transposed(std::span<const double> w, std::span<double> pbar) {
+    ASPIC_CHECK(is_linearized);
+    for_each_case([&](Case& c) {
+      c.thetabar.assign(theta_size, 0.0);
+      c.ok = c.body->add_transposed(w.subspan(c.first, c.body->residual_count()), c.thetabar);
+    });
+    std::fill(dtheta.begin(), dtheta.end(), 0.0);
+    parallel_chunks(static_cast<int>(theta_size), [&](int first, int last) {
+      for (const Case& c : cases)
+        for (int i = first; i < last; ++i) dtheta[i] += c.thetabar[i];
+    });
+    std::fill(pbar.begin(), pbar.end(), 0.0);
+    map.add_transposed(linear_p, dtheta, pbar);
+    mark_unless_ok(pbar);
+  }
+
+  bool has_layers() const {
+    return std::any_of(cases.begin(), cases.end(), [](const Case& c) { return c.body->has_layer(); });
+  }
+
+  void multiply_by_layers(std::span<double> dr) {
+    ASPIC_CHECK(is_linearized);
+    for_each_case([&](Case& c) {
+      const std::span<double> part = dr.subspan(c.first, c.body->residual_count());
+      std::fill(part.begin(), part.end(), 0.0);
+      c.ok = !c.body->has_layer() || c.body->multiply_by_layer(part);
+    });
+    mark_unless_ok(dr);
+  }
+
+  // What could not be solved must not look like a result.
+  void mark_unless_ok(std::span<double> result) {
+    if (!all_ok()) std::fill(result.begin(), result.end(), std::numeric_limits<double>::quiet_NaN());
+  }
+
+  const Experiment& experiment;
+  const ParameterMap& map;
+  std::vector<Case> cases;
+  int residual_count = 0;
+  size_t theta_size = 0;
+  bool has_solved = false, is_linearized = false;
+  std::vector<double> accepted_p, linear_p;  // of the last successful evaluation, and of the Jacobian
+  std::vector<MaterialParameters> accepted_parameters;
+  std::vector<double> dp, dtheta;  // scratch
+  std::string failure;
+};
+
+Misfit::Misfit(const Experiment& experiment, const ParameterMap& map, const EquilibriumOptions& options)
+    : impl_(std::make_unique<Impl>(experiment, map, options)) {}
+Misfit::~Misfit() = default;
+
+int Misfit::unknowns() const { return impl_->map.size(); }
+int Misfit::residual_count() const { return impl_->residual_count; }
+bool Misfit::evaluate(std::span<const double> p, std::span<double> r) { return impl_->evaluate(p, r); }
+bool Misfit::linearize() { return impl_->linearize(); }
+void Misfit::multiply(std::span<const double> dp, std::span<double> dr) { impl_->multiply(dp, dr); }
+void Misfit::multiply_transposed(std::span<const double> w, std::span<double> pbar) {
+  impl_->multiply_transposed(w, pbar);
+}
+
+std::vector<double> Misfit::state() const {
+  std::vector<double> x;
+  for (const Impl::Case& c : impl_->cases) x.insert(x.end(), c.body->accepted().begin(), c.body->accepted().end());
+  return x;
+}
+
+void Misfit::set_state(std::span<const double> x) {
+  const size_t size = 3 * impl_->experiment.mesh.rest.size();
+  ASPIC_CHECK(x.size() == size * impl_->cases.size());
+  for (size_t c = 0; c < impl_->cases.size(); ++c) impl_->cases[c].body->restore(x.subspan(c * size, size));
+  impl_->has_solved = true;
+  impl_->is_linearized = false;
+}
+
+int Misfit::nuisance_count() const { return impl_->has_layers() ? 1 : 0; }
+void Misfit::nuisance(int, std::span<double> dr) { impl_->multiply_by_layers(dr); }
+
+const CasePrediction& Misfit::prediction(int c) const { return impl_->cases[c].body->prediction(); }
+std::pair<int, int> Misfit::residuals_of(int c) const {
+  return {impl_->cases[c].first, impl_->cases[c].body->residual_count()};
+}
+
+std::string Misfit::what(int residual) const {
+  int c = impl_->case_count() - 1;
+  while (impl_->cases[c].first > residual) --c;
+  return impl_->cases[c].body->what(residual - impl_->cases[c].first);
+}
+
+const std::string& Misfit::failure() const { return impl_->failure; }
+
+Misfit::Counts Misfit::counts() const {
+  Counts sum;
+  for (const Impl::Case& c : impl_->cases) {
+    const Counts& own = c.body->counts();
+    sum.equilibria += own.equilibria;
+    sum.newton_iterations += own.newton_iterations;
+    sum.factorizations += own.factorizations;
+    sum.solves += own.solves;
+  }
+  return sum;
+}
+
+}  // namespace aspic

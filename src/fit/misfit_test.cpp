@@ -1,0 +1,263 @@
+#include "fit/misfit.h"
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "fit/taylor_test.h"
+#include "mesh/generators.h"
+#include "mesh/surface.h"
+
+namespace aspic {
+namespace {
+
+using taylor::dot;
+using taylor::norm;
+using taylor::Numbers;
+
+const EquilibriumOptions kExact{.tolerance = 1e-14, .adjoint_tolerance = 1e-13};
+
+// A block of gel of 8 cm on a table, poked from above at two sites and two depths, pressed from the side, and hung.
+struct Gel {
+  Experiment experiment;
+  std::vector<Triangle> surface;
+
+  Gel() {
+    TetMesh& mesh = experiment.mesh = make_box({{0, 0, 0}}, {{0.08, 0.08, 0.05}}, {4, 4, 3});
+    surface = boundary_triangles(mesh, 0, mesh.tet_count());
+    experiment.density.assign(mesh.tet_count(), 1000.0);
+    for (int v = 0; v < mesh.vertex_count(); ++v)
+      if (mesh.rest[v][2] < 1e-9) experiment.fixed.push_back(v);
+    for (const Triangle& t : surface)
+      if (mesh.rest[t[0]][2] > 0.01) experiment.markers.push_back({t, {0.2, 0.3, 0.5}});
+    for (const double x : {0.03, 0.05})
+      for (const double depth : {0.004, 0.008}) experiment.cases.push_back(poke(x, depth));
+    experiment.cases.push_back(hung());
+    experiment.cases.push_back(pressed());
+  }
+
+  static std::string text(double x) { return std::to_string(std::lround(1000 * x)) + " mm"; }
+
+  LoadCase poke(double x, double depth) const {
+    LoadCase load{.name = "poke at " + text(x) + ", depth " + text(depth), .group = "poke at " + text(x)};
+    load.tip = Tip{TipShape::sphere, TipContact::bonded, 0.012, 5e8};
+    load.touch.center = {{x, 0.04, 0.062}};
+    load.pose = load.touch;
+    load.pose.center = {{x + 0.3 * depth, 0.04, 0.062 - depth}};
+    load.pose.rotation = {{0, 0.1, 0}};
+    load.force = load.torque = Vec3d{};
+    load.force_deviation = {{0.01, 0.01, 0.02}};
+    load.torque_deviation = {{1e-4, 1e-4, 1e-4}};
+    add_markers(load);
+    return load;
+  }
+  LoadCase hung() const {
+    LoadCase load{.name = "hung", .group = "hung"};
+    load.gravity = {{0, 2, 9.81}};
+    add_markers(load);
+    return load;
+  }
+  LoadCase pressed() const {
+    LoadCase load{.name = "pressed", .group = "pressed"};
+    load.pressure = 300;
+    for (const Triangle& t : surface) {
+      const auto& X = experiment.mesh.rest;
+      if (X[t[0]][0] + X[t[1]][0] + X[t[2]][0] < 1e-9) load.pressed.push_back(t);
+    }
+    add_markers(load);
+    return load;
+  }
+  void add_markers(LoadCase& load) const {
+    for (size_t m = 0; m < experiment.markers.size(); m += 7)
+      load.positions.push_back({static_cast<int>(m), {}, {{1e-4, 2e-4, 1e-4}}});
+  }
+
+  // Readings as if a body of this material had been measured, and noise of `noise` standard deviations.
+  void measure(const ParameterMap& map, const std::vector<double>& p, double noise) {
+    Misfit truth(experiment, map, kExact);
+    std::vector<double> r(truth.residual_count());
+    ASSERT_TRUE(truth.evaluate(p, r)) << truth.failure();
+    Numbers numbers;
+    const auto read = [&](const Vec3d& exact, const Vec3d& deviation) {
+      const std::vector<double> e = numbers(3);
+      return exact + Vec3d{{noise * e[0] * deviation[0], noise * e[1] * deviation[1], noise * e[2] * deviation[2]}};
+    };
+    for (size_t c = 0; c < experiment.cases.size(); ++c) {
+      LoadCase& load = experiment.cases[c];
+      const CasePrediction& exact = truth.prediction(static_cast<int>(c));
+      for (size_t k = 0; k < load.positions.size(); ++k)
+        load.positions[k].position = read(exact.markers[k], load.positions[k].deviation);
+      if (load.force) load.force = read(exact.wrench.force, load.force_deviation);
+      if (load.torque) load.torque = read(exact.wrench.torque, load.torque_deviation);
+    }
+  }
+
+  ParameterMap map(const std::string& material = "fung", int handles = 6) const {
+    const MaterialInfo& info = material_info(material);
+    MaterialParameters known{lame_from_young_poisson(2e4, 0.4), {}};
+    for (size_t k = 0; k < info.extra.size(); ++k) known.extra[k] = info.extra[k].fallback;
+    std::vector<Unknown> unknowns = {{"young", Spread::handles, handles, 2e4}, {"poisson", Spread::uniform, 0, 0.42}};
+    for (const ExtraParameter& extra : info.extra) unknowns.push_back({extra.name, Spread::uniform, 0, extra.fallback});
+    return {experiment.mesh, material, std::vector<MaterialParameters>(experiment.mesh.tet_count(), known), unknowns};
+  }
+};
+
+std::vector<double> moved(std::span<const double> p, const std::vector<double>& dp, double eps) {
+  std::vector<double> result(p.begin(), p.end());
+  for (size_t i = 0; i < result.size(); ++i) result[i] += eps * dp[i];
+  return result;
+}
+
+TEST(Misfit, IsZeroForTheMaterialThatWasMeasuredAndNotForOthers) {
+  Gel gel;
+  const ParameterMap map = gel.map();
+  const std::vector<double> truth = moved(map.guess(), Numbers(3)(map.size()), 0.5);
+  gel.measure(map, truth, 0);
+  Misfit misfit(gel.experiment, map, kExact);
+  std::vector<double> r(misfit.residual_count());
+  ASSERT_TRUE(misfit.evaluate(map.guess(), r)) << misfit.failure();
+  EXPECT_GT(norm(r), 10);
+  ASSERT_TRUE(misfit.evaluate(truth, r)) << misfit.failure();
+  EXPECT_LT(norm(r), 1e-7);
+}
+
+TEST(Misfit, JacobianHasTaylorSlope2) {
+  for (const std::string material : {"fung", "mooney_rivlin", "stable_neo_hookean"}) {
+    Gel gel;
+    const ParameterMap map = gel.map(material);
+    gel.measure(map, std::vector<double>(map.guess().begin(), map.guess().end()), 1);
+    Misfit misfit(gel.experiment, map, kExact);
+    const std::vector<double> p = moved(map.guess(), Numbers(4)(map.size()), 0.3);
+    std::vector<double> r(misfit.residual_count()), dr(r.size());
+    ASSERT_TRUE(misfit.evaluate(p, r)) << misfit.failure();
+    ASSERT_TRUE(misfit.linearize()) << misfit.failure();
+    const std::vector<double> dp = Numbers(6)(map.size());
+    misfit.multiply(dp, dr);
+    taylor::expect_slope_2(
+        [&](double eps) {
+          std::vector<double> at(r.size());
+          EXPECT_TRUE(misfit.evaluate(moved(p, dp, eps), at)) << misfit.failure();
+          return at;
+        },
+        dr, 0.1, material);
+  }
+}
+
+TEST(Misfit, TransposedProductIsTheTransposeAlsoAfterOtherPointsWereTried) {
+  Gel gel;
+  const ParameterMap map = gel.map();
+  gel.measure(map, std::vector<double>(map.guess().begin(), map.guess().end()), 1);
+  Misfit misfit(gel.experiment, map, kExact);
+  std::vector<double> r(misfit.residual_count()), dr(r.size()), again(r.size()), pbar(map.size());
+  ASSERT_TRUE(misfit.evaluate(map.guess(), r));
+  ASSERT_TRUE(misfit.linearize());
+  const std::vector<double> dp = Numbers(6)(map.size()), w = Numbers(7)(r.size());
+  misfit.multiply(dp, dr);
+  ASSERT_TRUE(misfit.evaluate(moved(map.guess(), dp, 0.4), again));
+  misfit.multiply(dp, again);
+  EXPECT_EQ(dr, again);
+  misfit.multiply_transposed(w, pbar);
+  EXPECT_NEAR(dot(w, dr), dot(pbar, dp), 1e-10 * norm(w) * norm(dr));
+}
+
+TEST(Misfit, BitsDoNotDependOnTheNumberOfThreads) {
+  const int before = thread_count();
+  std::vector<std::vector<double>> results;
+  for (const int threads : {1, 2, 8}) {
+    set_thread_count(threads);
+    Gel gel;
+    const ParameterMap map = gel.map();
+    Misfit misfit(gel.experiment, map);
+    std::vector<double> r(misfit.residual_count()), pbar(map.size());
+    ASSERT_TRUE(misfit.evaluate(map.guess(), r));
+    ASSERT_TRUE(misfit.linearize());
+    misfit.multiply_transposed(r, pbar);
+    ASSERT_TRUE(misfit.evaluate(moved(map.guess(), Numbers(6)(map.size()), 0.2), r));
+    r.insert(r.end(), pbar.begin(), pbar.end());
+    results.push_back(r);
+  }
+  set_thread_count(before);
+  EXPECT_EQ(results[0], results[1]);
+  EXPECT_EQ(results[0], results[2]);
+}
+
+TEST(Misfit, StartsFromTheTangentSoThatASmallStepTakesFewIterations) {
+  Gel gel;
+  const ParameterMap map = gel.map();
+  Misfit misfit(gel.experiment, map);
+  std::vector<double> r(misfit.residual_count());
+  ASSERT_TRUE(misfit.evaluate(map.guess(), r));
+  ASSERT_TRUE(misfit.linearize());
+  const Misfit::Counts before = misfit.counts();
+  ASSERT_TRUE(misfit.evaluate(moved(map.guess(), Numbers(6)(map.size()), 0.01), r));
+  const Misfit::Counts after = misfit.counts();
+  const long cases = static_cast<long>(gel.experiment.cases.size());
+  EXPECT_EQ(after.equilibria - before.equilibria, cases);
+  EXPECT_LE(after.newton_iterations - before.newton_iterations,
+            3 * cases);  // the tangent leaves 1e-4 of the step, then 1e-8
+}
+
+TEST(Misfit, ALoadThatIsTooMuchForOneSolveIsAppliedInParts) {
+  Gel gel;
+  gel.experiment.cases = {gel.poke(0.03, 0.02)};  // 40 % of the height
+  const ParameterMap map = gel.map();
+  std::vector<double> r, in_parts;
+  const auto iterations_of = [&](const EquilibriumOptions& options, std::vector<double>& into, long equilibria) {
+    Misfit misfit(gel.experiment, map, options);
+    into.resize(misfit.residual_count());
+    ASSERT_TRUE(misfit.evaluate(map.guess(), into)) << misfit.failure();
+    EXPECT_GE(misfit.counts().equilibria, equilibria);
+  };
+  iterations_of({}, r, 1);
+  iterations_of({.max_iterations = 5}, in_parts, 4);
+  for (size_t i = 0; i < r.size(); ++i) EXPECT_NEAR(r[i], in_parts[i], 1e-5 * norm(r));
+}
+
+TEST(Misfit, AFailureNamesTheCaseAndDoesNoHarm) {
+  Gel gel;
+  const ParameterMap map = gel.map();
+  Misfit misfit(gel.experiment, map);
+  std::vector<double> r(misfit.residual_count()), again(r.size());
+  ASSERT_TRUE(misfit.evaluate(map.guess(), r));
+  std::vector<double> wrong(map.guess().begin(), map.guess().end());
+  wrong[0] = std::nan("");
+  EXPECT_FALSE(misfit.evaluate(wrong, again));
+  EXPECT_NE(misfit.failure().find("poke at 30 mm, depth 4 mm"), std::string::npos) << misfit.failure();
+  ASSERT_TRUE(misfit.linearize()) << misfit.failure();  // where it succeeded
+  ASSERT_TRUE(misfit.evaluate(map.guess(), again)) << misfit.failure();
+  for (size_t i = 0; i < r.size(); ++i) EXPECT_NEAR(r[i], again[i], 1e-6 * norm(r));
+}
+
+TEST(Misfit, SaysWhatAResidualIs) {
+  Gel gel;
+  const ParameterMap map = gel.map();
+  const Misfit misfit(gel.experiment, map);
+  const auto [first, count] = misfit.residuals_of(1);
+  EXPECT_EQ(misfit.what(first + 1), "poke at 30 mm, depth 8 mm: marker 0, y");
+  EXPECT_EQ(misfit.what(first + 5), "poke at 30 mm, depth 8 mm: marker 7, z");
+  EXPECT_EQ(misfit.what(first + count - 6), "poke at 30 mm, depth 8 mm: force, x");
+  EXPECT_EQ(misfit.what(first + count - 1), "poke at 30 mm, depth 8 mm: torque, z");
+}
+
+TEST(Misfit, RefusesCasesThatCannotBeRead) {
+  const auto refused = [](const std::function<void(Gel&)>& spoil, const std::string& expected) {
+    Gel gel;
+    spoil(gel);
+    const ParameterMap map = gel.map();
+    try {
+      const Misfit misfit(gel.experiment, map);
+      FAIL() << expected;
+    } catch (const InvalidInput& e) {
+      EXPECT_NE(std::string(e.what()).find(expected), std::string::npos) << e.what();
+    }
+  };
+  refused([](Gel& gel) { gel.experiment.cases.clear(); }, "no load case");
+  refused([](Gel& gel) { gel.experiment.cases[4].positions.clear(); }, "hung: nothing was measured");
+  refused([](Gel& gel) { gel.experiment.cases[4].force = Vec3d{}; }, "hung: a force or torque needs the tip");
+  refused([](Gel& gel) { gel.experiment.cases[0].positions[2].marker = 1000; }, "marker 1000 is unknown");
+  refused([](Gel& gel) { gel.experiment.cases[0].positions[2].deviation[1] = 0; }, "deviation along y is 0");
+  refused([](Gel& gel) { gel.experiment.cases[1].force_deviation[0] = std::nan(""); }, "force");
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,187 @@
+#include "fit/next_poke.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "fit/cross_validation.h"
+#include "fit/field_words.h"
+#include "fit/without_nuisances.h"
+#include "mesh/surface.h"
+
+namespace aspic {
+namespace {
+
+double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+// What is read at every poke, and how well: as on the average of the experiment.
+struct Instruments {
+  Tip tip;
+  double depth = 0, position = 0, force = 0, torque = 0;  // standard deviations; 0: is not read
+};
+
+Instruments instruments(const Experiment& experiment, const NextPokeOptions& options) {
+  std::vector<double> position, force, torque;
+  Instruments result;
+  std::optional<Tip> tip = options.tip;
+  for (const LoadCase& c : experiment.cases) {
+    for (const MarkerReading& r : c.positions) position.push_back(length(r.deviation) / std::sqrt(3.0));
+    if (c.force) force.push_back(length(c.force_deviation) / std::sqrt(3.0));
+    if (c.torque) torque.push_back(length(c.torque_deviation) / std::sqrt(3.0));
+    if (!c.tip) continue;
+    if (!tip) tip = c.tip;
+    result.depth = std::max(result.depth, length(c.pose.center - c.touch.center));
+  }
+  if (!tip) throw InvalidInput("no case has a tip, so there is no next poke (give the tip to poke with)");
+  result.tip = *tip;
+  if (options.depth > 0) result.depth = options.depth;
+  if (!(result.depth > 0)) throw InvalidInput("how deep the next poke is to go is not known (give its depth)");
+  result.position = median(position), result.force = median(force), result.torque = median(torque);
+  return result;
+}
+
+Vec3d at_rest(const Experiment& experiment, const SurfacePoint& point) {
+  Vec3d X{};
+  for (int i = 0; i < 3; ++i) X = X + point.weights[i] * experiment.mesh.rest[point.vertices[i]];
+  return X;
+}
+
+LoadCase load_at(const Experiment& experiment, const Instruments& with, const Vec3d& site, const Vec3d& inward) {
+  LoadCase load;
+  load.name = load.group = "poke at " + words_of_point(site);
+  load.tip = with.tip;
+  load.touch.axis = inward;
+  load.touch.center = with.tip.shape == TipShape::sphere ? site - with.tip.radius * inward : site;
+  load.pose = load.touch;
+  load.pose.center = load.touch.center + with.depth * inward;
+  for (size_t m = 0; m < experiment.markers.size() && with.position > 0; ++m)
+    if (length(at_rest(experiment, experiment.markers[m]) - site) > with.tip.radius)  // the tip hides the others
+      load.positions.push_back({static_cast<int>(m), {}, {{with.position, with.position, with.position}}});
+  if (with.force > 0) load.force = Vec3d{}, load.force_deviation = {{with.force, with.force, with.force}};
+  if (with.torque > 0) load.torque = Vec3d{}, load.torque_deviation = {{with.torque, with.torque, with.torque}};
+  return load;
+}
+
+// Variances once the candidate counts: C - W diag(d / (1 + d)) W'.
+void set_deviation(const ParameterMap& map, const Posterior& posterior, const Spectrum& s, PokeCandidate& candidate) {
+  candidate.deviation = posterior.deviation;
+  for (size_t u = 0; u < candidate.deviation.size(); ++u) {
+    std::vector<double>& deviation = candidate.deviation[u];
+    for (double& x : deviation) x *= x;
+    std::vector<double> z(deviation.size());
+    for (int k = 0; k < s.W.count(); ++k) {
+      map.multiply_fitted(static_cast<int>(u), s.W[k], z);
+      for (size_t t = 0; t < z.size(); ++t) deviation[t] -= s.d[k] / (1 + s.d[k]) * z[t] * z[t];
+    }
+    for (double& x : deviation) x = std::sqrt(std::max(x, 0.0));
+  }
+}
+
+// "..., known within a factor of 1.9, would be within 1.2", with 95 %.
+std::string words_of_change(const Unknown& unknown, double before, double after) {
+  char text[160];
+  const double a = kDeviations95 * before, b = kDeviations95 * after;
+  if (unknown.quantity == "young")
+    std::snprintf(text, sizeof text, ", known within a factor of %.3g, would be within %.3g", std::exp(a), std::exp(b));
+  else
+    std::snprintf(text, sizeof text, ", known to +-%.2g on its scale, would be to +-%.2g", a, b);
+  return text;
+}
+
+void set_words(const ParameterMap& map, const TetMesh& mesh, const Posterior& posterior, PokeCandidate& candidate) {
+  size_t unknown = 0;
+  double largest = -1;
+  std::vector<double> best;
+  for (size_t u = 0; u < posterior.deviation.size(); ++u) {
+    std::vector<double> drop;
+    double sum = 0;
+    for (size_t t = 0; t < posterior.deviation[u].size(); ++t) {
+      drop.push_back(std::pow(posterior.deviation[u][t], 2) - std::pow(candidate.deviation[u][t], 2));
+      sum += volume(mesh, static_cast<int>(t)) * drop.back();
+    }
+    if (sum > largest) largest = sum, unknown = u, best = std::move(drop);
+  }
+  const size_t t = std::ranges::max_element(best) - best.begin();
+  const Unknown& what = map.unknowns()[unknown];
+  const std::string where = what.spread == Spread::uniform ? "of the whole body" : words_of_place(mesh, best);
+  candidate.words = "at " + words_of_point(candidate.site) + ": " + what.quantity + " " + where +
+                    words_of_change(what, posterior.deviation[unknown][t], candidate.deviation[unknown][t]);
+}
+
+void judge(const Experiment& experiment, const ParameterMap& map, Posterior& posterior, std::span<const double> p,
+           const NextPokeOptions& options, const EquilibriumOptions& equilibrium, PokeCandidate& candidate) {
+  Experiment one = subset(experiment, [](const LoadCase&) { return false; });
+  one.cases = {candidate.load};
+  try {
+    Misfit misfit(one, map, equilibrium);
+    WithoutNuisances data(misfit);
+    std::vector<double> r(misfit.residual_count());
+    if (!data.evaluate(p, r) || !data.linearize()) {
+      candidate.failure = misfit.failure();
+      return;
+    }
+    const Spectrum s = spectrum(data, *posterior.belief, options.spectrum);
+    if (!s.ok) {
+      candidate.failure = "a derivative could not be computed";
+      return;
+    }
+    for (const double d : s.d) candidate.gain += std::log1p(d) / 2;
+    set_deviation(map, posterior, s, candidate);
+  } catch (const InvalidInput& error) {  // the tip does not fit there
+    candidate.failure = error.what();
+    return;
+  }
+  set_words(map, experiment.mesh, posterior, candidate);
+  candidate.ok = true;
+}
+
+// Means of the candidates' gains, with weights 1 / distance^2, on the surface.
+std::vector<double> spread_gain(const TetMesh& mesh, const std::vector<PokeCandidate>& candidates) {
+  std::vector<double> gain(mesh.rest.size(), 0.0);
+  for (const int v : boundary_surface(mesh).tet_vertex) {
+    double sum = 0, weights = 0;
+    for (const PokeCandidate& c : candidates) {
+      if (!c.ok) continue;
+      const Vec3d d = c.site - mesh.rest[v];
+      const double weight = 1 / std::max(dot(d, d), 1e-300);
+      sum += weight * c.gain, weights += weight;
+    }
+    if (weights > 0) gain[v] = sum / weights;
+  }
+  return gain;
+}
+
+}  // namespace
+
+NextPoke next_poke(const Experiment& experiment, const ParameterMap& map, Posterior& posterior,
+                   std::span<const double> p, const NextPokeOptions& options, const EquilibriumOptions& equilibrium) {
+  ASPIC_CHECK(posterior.ok);
+  const Instruments with = instruments(experiment, options);
+  NextPoke result;
+  for (const PokeSite& site : poke_sites(experiment.mesh, experiment.fixed, with.tip.radius, options.sites)) {
+    PokeCandidate candidate{.vertex = site.vertex, .site = experiment.mesh.rest[site.vertex], .inward = site.inward};
+    candidate.load = load_at(experiment, with, candidate.site, candidate.inward);
+    judge(experiment, map, posterior, p, options, equilibrium, candidate);
+    if (!candidate.ok) result.warnings.push_back(candidate.load.name + " could not be judged: " + candidate.failure);
+    result.candidates.push_back(std::move(candidate));
+  }
+  if (result.candidates.empty())
+    result.warnings.push_back(
+        "there is no place for a tip: every vertex of the surface is nearer to a held one than its radius");
+  std::ranges::stable_sort(result.candidates, [](const PokeCandidate& a, const PokeCandidate& b) {
+    return a.ok != b.ok ? a.ok : a.gain > b.gain;
+  });
+  result.gain = spread_gain(experiment.mesh, result.candidates);
+  return result;
+}
+
+}  // namespace aspic

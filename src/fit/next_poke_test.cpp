@@ -1,0 +1,141 @@
+#include "fit/next_poke.h"
+
+#include <gmock/gmock.h>
+
+#include "base/error.h"
+#include "fit/poked_block_test.h"
+#include "mesh/generators.h"
+
+namespace aspic {
+namespace {
+
+using test::PokedBlock;
+using testing::HasSubstr;
+
+// Poked on the left only.
+struct Study {
+  PokedBlock block{{4, 3, 2}};
+  ParameterMap map = block.map();
+  std::unique_ptr<Regularizer> prior = make_regularizer(block.experiment.mesh, map, {.prior_deviation = 1});
+  std::vector<double> p{map.guess().begin(), map.guess().end()};
+
+  Study() {
+    block.add_poke(PokedBlock::sites()[0], 0.005, 0.02);
+    std::mt19937_64 random(3);
+    block.measure(map, p, random);
+  }
+  Posterior posterior_of(const Experiment& experiment) {
+    Misfit misfit(experiment, map);
+    return posterior(misfit, *prior, 1, map, experiment.mesh, p);
+  }
+};
+
+TEST(NextPoke, ToldGainAndDeviationsAreThoseOfThePokeOnceItIsMade) {
+  Study study;
+  Posterior before = study.posterior_of(study.block.experiment);
+  const NextPoke next =
+      next_poke(study.block.experiment, study.map, before, study.p, {.sites = 5, .spectrum = {.dense = 600}});
+  ASSERT_EQ(next.candidates.size(), 5u);
+  for (const PokeCandidate& candidate : {next.candidates.front(), next.candidates.back()}) {
+    ASSERT_TRUE(candidate.ok) << candidate.failure;
+    Experiment with = study.block.experiment;
+    with.cases.push_back(candidate.load);
+    std::mt19937_64 random(1);
+    PokedBlock measured;
+    measured.experiment = with;
+    measured.measure(study.map, study.p, random);
+    const Posterior after = study.posterior_of(measured.experiment);
+    double gain = 0;  // 1/2 log det(C / C after)
+    for (const double d : after.belief->spectrum().d) gain += std::log1p(d) / 2;
+    for (const double d : before.belief->spectrum().d) gain -= std::log1p(d) / 2;
+    // Told alone, the poke does not profit from what the others say of the layer of the tip.
+    EXPECT_LT(candidate.gain, gain * (1 + 1e-6));
+    EXPECT_GT(candidate.gain, 0.9 * gain);
+    for (int t = 0; t < study.map.size(); ++t) {
+      EXPECT_GT(candidate.deviation[0][t], after.deviation[0][t] * (1 - 1e-6));
+      EXPECT_LT(candidate.deviation[0][t], after.deviation[0][t] * 1.1);
+    }
+  }
+}
+
+TEST(NextPoke, IsWhereNothingIsKnownYet) {
+  Study study;
+  Posterior before = study.posterior_of(study.block.experiment);
+  const NextPoke next = next_poke(study.block.experiment, study.map, before, study.p, {.sites = 16});
+  ASSERT_FALSE(next.candidates.empty());
+  const PokeCandidate& best = next.candidates.front();
+  EXPECT_GE(best.site[0], 0.5 * PokedBlock::kSide);
+  EXPECT_LT(next.candidates.back().site[0], 0.4 * PokedBlock::kSide);
+  EXPECT_LT(next.candidates.back().gain, 0.8 * best.gain);
+  EXPECT_THAT(best.words, HasSubstr("young around"));
+  EXPECT_THAT(best.words, HasSubstr("would be within"));
+  for (size_t i = 1; i < next.candidates.size(); ++i) {
+    EXPECT_LE(next.candidates[i].gain, next.candidates[i - 1].gain);
+    EXPECT_GT(next.candidates[i].gain, 0);
+  }
+  EXPECT_EQ(next.gain[best.vertex], std::ranges::max(next.gain));
+  EXPECT_TRUE(next.warnings.empty());
+}
+
+TEST(NextPoke, FewDirectionsTellNearlyAsMuchAsAll) {
+  Study study;
+  Posterior before = study.posterior_of(study.block.experiment);
+  const NextPoke all =
+      next_poke(study.block.experiment, study.map, before, study.p, {.sites = 6, .spectrum = {.dense = 600}});
+  const NextPoke few = next_poke(study.block.experiment, study.map, before, study.p,
+                                 {.sites = 6, .spectrum = {.dense = 10, .max_rank = 24}});
+  for (size_t i = 0; i < all.candidates.size(); ++i) {
+    EXPECT_LE(few.candidates[i].gain, all.candidates[i].gain * (1 + 1e-6));
+    EXPECT_GT(few.candidates[i].gain, all.candidates[i].gain * 0.9);
+  }
+}
+
+TEST(NextPoke, NeedsATip) {
+  Study study;
+  Posterior before = study.posterior_of(study.block.experiment);
+  for (LoadCase& load : study.block.experiment.cases) load.tip.reset();
+  EXPECT_THROW(next_poke(study.block.experiment, study.map, before, study.p), InvalidInput);
+}
+
+TEST(PokeSites, LieOnTheFreeFlatSurfaceFarFromEachOther) {
+  const TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 0.5}}, {8, 8, 4});
+  std::vector<int> fixed;
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (mesh.rest[v][2] < 1e-9) fixed.push_back(v);
+  const std::vector<PokeSite> sites = poke_sites(mesh, fixed, 0.1, 9);
+  ASSERT_EQ(sites.size(), 9u);
+  for (const PokeSite& site : sites) {
+    const Vec3d& X = mesh.rest[site.vertex];
+    EXPECT_GT(X[2], 0.1);
+    int faces = 0, normal = 0;  // not on an edge
+    for (int i = 0; i < 3; ++i) {
+      const double upper = i == 2 ? 0.5 : 1;
+      faces += X[i] < 1e-9 || X[i] > upper - 1e-9;
+      if (X[i] < 1e-9) normal += site.inward[i] > 0.9;
+      if (X[i] > upper - 1e-9) normal += site.inward[i] < -0.9;
+    }
+    EXPECT_EQ(faces, 1);
+    EXPECT_EQ(normal, 1);
+    for (const PokeSite& other : sites)
+      if (other.vertex != site.vertex) {
+        const Vec3d d = mesh.rest[other.vertex] - X;
+        EXPECT_GT(dot(d, d), 0.25 * 0.25);
+      }
+  }
+  EXPECT_TRUE(poke_sites(mesh, fixed, 1, 9).empty());
+}
+
+TEST(PokeSites, OfASphereAreAllOverIt) {
+  const TetMesh mesh = make_sphere(1, 0.3);
+  const std::vector<PokeSite> sites = poke_sites(mesh, {}, 0.3, 12);
+  ASSERT_EQ(sites.size(), 12u);
+  Vec3d sum{};
+  for (const PokeSite& site : sites) {
+    sum = sum + mesh.rest[site.vertex];
+    EXPECT_GT(-1.0 * dot(site.inward, mesh.rest[site.vertex]), 0.97);
+  }
+  EXPECT_LT(dot(sum, sum), 4);
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,290 @@
+#include "fit/parameter_map.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "fit/quantity_scale.h"
+
+namespace aspic {
+namespace {
+
+enum class Role { young, poisson, extra };
+
+// One unknown as it is computed with.
+struct Fitted {
+  Role role = Role::young;
+  int extra = 0;  // index into MaterialParameters::extra
+  QuantityScale scale;
+  FieldBasis basis;
+  int first = 0;  // of its entries in p
+  double guess = 0;
+
+  std::span<const double> part(std::span<const double> p) const { return p.subspan(first, basis.size()); }
+  std::span<double> part(std::span<double> p) const { return p.subspan(first, basis.size()); }
+  std::vector<double> field(std::span<const double> p) const {
+    std::vector<double> z(basis.tet_count());
+    basis.multiply(part(p), z);
+    return z;
+  }
+};
+
+std::string text(double x) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.6g", x);
+  return buffer;
+}
+
+// E = mu (3 la + 2 mu) / (la + mu) and nu from and to mu and lambda.
+struct Elastic {
+  double young, poisson;
+
+  Lame lame() const { return lame_from_young_poisson(young, poisson); }
+  Lame slope_young() const { return lame_from_young_poisson(1, poisson); }
+  Lame slope_poisson() const {
+    const double a = 1 + poisson, b = 1 - 2 * poisson;
+    return {-young / (2 * a * a), young * (1 + 2 * poisson * poisson) / (a * a * b * b)};
+  }
+};
+
+struct Range {
+  double lower, upper;
+};
+
+void check_guess(const Unknown& u, const Range& range) {
+  if (u.guess > range.lower && u.guess < range.upper) return;
+  throw InvalidInput("the guess of '" + u.quantity + "' is " + text(u.guess) + "; it must lie between " +
+                     text(range.lower) + " and " + text(range.upper) + ", and not at an end");
+}
+
+// A range over several powers of ten is looked at by its logarithm.
+QuantityScale scale_of(const ExtraParameter& extra) {
+  const bool powers = extra.min > 0 && extra.max > 100 * extra.min;
+  return powers ? QuantityScale::bounded_powers(extra.min, extra.max) : QuantityScale::bounded(extra.min, extra.max);
+}
+
+void set_quantity(const Unknown& u, const MaterialInfo& info, Fitted& f) {
+  if (u.quantity == "young") {
+    if (!(u.guess > 0 && u.guess < 1e300))
+      throw InvalidInput("the guess of 'young' is " + text(u.guess) + " Pa; it must be positive");
+    return;
+  }
+  if (u.quantity == "poisson") {
+    check_guess(u, {-1, 0.5});
+    f.role = Role::poisson;
+    f.scale = QuantityScale::bounded(-1, 0.5);
+    return;
+  }
+  std::vector<std::string> known{"young", "poisson"};
+  for (size_t k = 0; k < info.extra.size(); ++k) {
+    const ExtraParameter& extra = info.extra[k];
+    known.push_back(extra.name);
+    if (extra.name != u.quantity) continue;
+    check_guess(u, {extra.min, extra.max});
+    f.role = Role::extra;
+    f.extra = static_cast<int>(k);
+    f.scale = scale_of(extra);
+    return;
+  }
+  throw InvalidInput("'" + u.quantity + "' is no quantity of " + info.name + suggestion(u.quantity, known));
+}
+
+FieldBasis make_basis(const TetMesh& mesh, const Unknown& u) {
+  switch (u.spread) {
+    case Spread::uniform:
+      return FieldBasis::uniform(mesh.tet_count());
+    case Spread::regions:
+      if (mesh.region.empty())
+        throw InvalidInput("'" + u.quantity + "' is wanted per region, but the mesh has none (try uniform or handles)");
+      return FieldBasis::regions(mesh.region);
+    case Spread::handles:
+      if (u.handles < 1 || u.handles > mesh.tet_count())
+        throw InvalidInput("'" + u.quantity + "' is wanted at " + std::to_string(u.handles) +
+                           " handles; there can be 1 to " + std::to_string(mesh.tet_count()) + ", one per tet");
+      return FieldBasis::radial(mesh, u.handles);
+    case Spread::tets:
+      break;
+  }
+  return FieldBasis::tets(mesh.tet_count());
+}
+
+}  // namespace
+
+struct ParameterMap::Impl {
+  std::string material;
+  int per_tet = 2;
+  std::vector<MaterialParameters> known;
+  std::vector<Elastic> elastic;  // of `known`
+  std::vector<Unknown> unknowns;
+  std::vector<Fitted> fitted;
+  std::vector<double> guess;
+
+  const Fitted* find(Role role) const {
+    const auto found = std::find_if(fitted.begin(), fitted.end(), [&](const Fitted& f) { return f.role == role; });
+    return found == fitted.end() ? nullptr : &*found;
+  }
+
+  // dtheta/dz of one unknown in every tet: only E and nu change two entries of theta.
+  struct Slopes {
+    std::vector<Lame> lame;     // empty for an extra
+    std::vector<double> extra;  // empty for E and nu
+  };
+  Slopes slopes(const Fitted& f, std::span<const double> p) const;
+  std::vector<Elastic> elastic_at(std::span<const double> p) const;
+};
+
+std::vector<Elastic> ParameterMap::Impl::elastic_at(std::span<const double> p) const {
+  std::vector<Elastic> e = elastic;
+  for (const Fitted& f : fitted) {
+    if (f.role == Role::extra) continue;
+    const std::vector<double> z = f.field(p);
+    parallel_chunks(static_cast<int>(z.size()), [&](int first, int last) {
+      for (int t = first; t < last; ++t) (f.role == Role::young ? e[t].young : e[t].poisson) = f.scale.value(z[t]);
+    });
+  }
+  return e;
+}
+
+ParameterMap::Impl::Slopes ParameterMap::Impl::slopes(const Fitted& f, std::span<const double> p) const {
+  const std::vector<double> z = f.field(p);
+  const int tets = static_cast<int>(z.size());
+  Slopes slopes;
+  if (f.role == Role::extra) {
+    slopes.extra.resize(z.size());
+    parallel_chunks(tets, [&](int first, int last) {
+      for (int t = first; t < last; ++t) slopes.extra[t] = f.scale.slope(z[t]);
+    });
+    return slopes;
+  }
+  const std::vector<Elastic> e = elastic_at(p);
+  slopes.lame.resize(z.size());
+  parallel_chunks(tets, [&](int first, int last) {
+    for (int t = first; t < last; ++t) {
+      const double dq = f.scale.slope(z[t]);
+      const Lame d = f.role == Role::young ? e[t].slope_young() : e[t].slope_poisson();
+      slopes.lame[t] = {d.mu * dq, d.lambda * dq};
+    }
+  });
+  return slopes;
+}
+
+ParameterMap::ParameterMap(const TetMesh& mesh, std::string material, std::vector<MaterialParameters> known,
+                           std::vector<Unknown> unknowns)
+    : impl_(std::make_unique<Impl>()) {
+  ASPIC_CHECK(static_cast<int>(known.size()) == mesh.tet_count());
+  const MaterialInfo& info = material_info(material);
+  impl_->material = std::move(material);
+  impl_->per_tet = 2 + static_cast<int>(info.extra.size());
+  impl_->known = std::move(known);
+  for (const MaterialParameters& m : impl_->known)
+    impl_->elastic.push_back({young_modulus(m.lame), poisson_ratio(m.lame)});
+  if (unknowns.empty()) throw InvalidInput("nothing is to be fitted (try young)");
+  for (const Unknown& u : unknowns) {
+    for (const Unknown& other : impl_->unknowns)
+      if (other.quantity == u.quantity) throw InvalidInput("'" + u.quantity + "' is to be fitted twice");
+    Fitted f;
+    set_quantity(u, info, f);
+    f.basis = make_basis(mesh, u);
+    f.first = static_cast<int>(impl_->guess.size());
+    f.guess = f.scale.fitted(u.guess);
+    impl_->guess.insert(impl_->guess.end(), static_cast<size_t>(f.basis.size()), f.guess);
+    impl_->fitted.push_back(std::move(f));
+    impl_->unknowns.push_back(u);
+  }
+}
+
+ParameterMap::~ParameterMap() = default;
+ParameterMap::ParameterMap(ParameterMap&&) noexcept = default;
+
+int ParameterMap::size() const { return static_cast<int>(impl_->guess.size()); }
+int ParameterMap::parameters_per_tet() const { return impl_->per_tet; }
+const std::vector<Unknown>& ParameterMap::unknowns() const { return impl_->unknowns; }
+const std::string& ParameterMap::material() const { return impl_->material; }
+std::span<const double> ParameterMap::guess() const { return impl_->guess; }
+std::pair<int, int> ParameterMap::range(int unknown) const {
+  const Fitted& f = impl_->fitted[unknown];
+  return {f.first, f.basis.size()};
+}
+const FieldBasis& ParameterMap::basis(int unknown) const { return impl_->fitted[unknown].basis; }
+
+std::vector<MaterialParameters> ParameterMap::parameters(std::span<const double> p) const {
+  ASPIC_CHECK(static_cast<int>(p.size()) == size());
+  std::vector<MaterialParameters> theta = impl_->known;
+  const int tets = static_cast<int>(theta.size());
+  if (impl_->find(Role::young) || impl_->find(Role::poisson)) {
+    const std::vector<Elastic> e = impl_->elastic_at(p);
+    parallel_chunks(tets, [&](int first, int last) {
+      for (int t = first; t < last; ++t) theta[t].lame = e[t].lame();
+    });
+  }
+  for (const Fitted& f : impl_->fitted) {
+    if (f.role != Role::extra) continue;
+    const std::vector<double> z = f.field(p);
+    for (int t = 0; t < tets; ++t) theta[t].extra[f.extra] = f.scale.value(z[t]);
+  }
+  return theta;
+}
+
+void ParameterMap::multiply(std::span<const double> p, std::span<const double> dp, std::span<double> dtheta) const {
+  const int n = impl_->per_tet, tets = static_cast<int>(impl_->known.size());
+  ASPIC_CHECK(static_cast<int>(dp.size()) == size() && dtheta.size() == static_cast<size_t>(n) * tets);
+  std::fill(dtheta.begin(), dtheta.end(), 0.0);
+  for (const Fitted& f : impl_->fitted) {
+    const Impl::Slopes slopes = impl_->slopes(f, p);
+    const std::vector<double> dz = f.field(dp);
+    parallel_chunks(tets, [&](int first, int last) {
+      for (int t = first; t < last; ++t) {
+        double* d = dtheta.data() + static_cast<size_t>(n) * t;
+        if (f.role == Role::extra)
+          d[2 + f.extra] += slopes.extra[t] * dz[t];
+        else
+          d[0] += slopes.lame[t].mu * dz[t], d[1] += slopes.lame[t].lambda * dz[t];
+      }
+    });
+  }
+}
+
+void ParameterMap::add_transposed(std::span<const double> p, std::span<const double> thetabar,
+                                  std::span<double> pbar) const {
+  const int n = impl_->per_tet, tets = static_cast<int>(impl_->known.size());
+  ASPIC_CHECK(static_cast<int>(pbar.size()) == size() && thetabar.size() == static_cast<size_t>(n) * tets);
+  std::vector<double> zbar(tets);
+  for (const Fitted& f : impl_->fitted) {
+    const Impl::Slopes slopes = impl_->slopes(f, p);
+    parallel_chunks(tets, [&](int first, int last) {
+      for (int t = first; t < last; ++t) {
+        const double* d = thetabar.data() + static_cast<size_t>(n) * t;
+        zbar[t] = f.role == Role::extra ? slopes.extra[t] * d[2 + f.extra]
+                                        : slopes.lame[t].mu * d[0] + slopes.lame[t].lambda * d[1];
+      }
+    });
+    f.basis.add_transposed(zbar, f.part(pbar));
+  }
+}
+
+std::vector<double> ParameterMap::fitted_values(int unknown, std::span<const double> p) const {
+  return impl_->fitted[unknown].field(p);
+}
+
+std::vector<double> ParameterMap::values(int unknown, std::span<const double> p) const {
+  const Fitted& f = impl_->fitted[unknown];
+  std::vector<double> q = f.field(p);
+  for (double& x : q) x = f.scale.value(x);
+  return q;
+}
+
+double ParameterMap::value(int unknown, double fitted) const { return impl_->fitted[unknown].scale.value(fitted); }
+
+void ParameterMap::multiply_fitted(int unknown, std::span<const double> dp, std::span<double> values) const {
+  const Fitted& f = impl_->fitted[unknown];
+  f.basis.multiply(f.part(dp), values);
+}
+
+void ParameterMap::add_fitted_transposed(int unknown, std::span<const double> values, std::span<double> pbar) const {
+  const Fitted& f = impl_->fitted[unknown];
+  f.basis.add_transposed(values, f.part(pbar));
+}
+
+}  // namespace aspic

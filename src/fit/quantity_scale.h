@@ -1,0 +1,48 @@
+// The line on which a quantity is fitted: z in (-inf, inf) -> its value, smooth and increasing.
+//   positive              q = exp(z)
+//   in (lower, upper)     q = middle + half tanh(z / 2): the logistic curve, z = +-2 reaches 12 % and 88 % of the range
+//   in a range of powers  log q = middle + half tanh(z / half), z = log(q / centre) in the middle of the range
+#pragma once
+#include <cmath>
+
+namespace aspic {
+
+class QuantityScale {
+ public:
+  static QuantityScale positive() { return {}; }
+  static QuantityScale bounded(double lower, double upper) {
+    QuantityScale scale;
+    scale.is_log_ = false;
+    scale.middle_ = (lower + upper) / 2, scale.half_ = (upper - lower) / 2, scale.width_ = 2;
+    return scale;
+  }
+  static QuantityScale bounded_powers(double lower, double upper) {  // 0 < lower
+    QuantityScale scale;
+    scale.middle_ = (std::log(lower) + std::log(upper)) / 2;
+    scale.half_ = scale.width_ = (std::log(upper) - std::log(lower)) / 2;
+    return scale;
+  }
+
+  double value(double z) const {
+    const double u = half_ > 0 ? middle_ + half_ * std::tanh(z / width_) : z;
+    return is_log_ ? std::exp(u) : u;
+  }
+  double slope(double z) const {  // dq/dz
+    double du = 1;
+    if (half_ > 0) {
+      const double c = std::cosh(z / width_);
+      du = half_ / (width_ * c * c);
+    }
+    return is_log_ ? value(z) * du : du;
+  }
+  double fitted(double q) const {  // z of a value inside the range
+    const double u = is_log_ ? std::log(q) : q;
+    return half_ > 0 ? width_ * std::atanh((u - middle_) / half_) : u;
+  }
+
+ private:
+  bool is_log_ = true;
+  double middle_ = 0, half_ = 0 /* 0: unbounded */, width_ = 1;
+};
+
+}  // namespace aspic

@@ -1,0 +1,238 @@
+#include "fit/regularizer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "fit/field_roughness.h"
+#include "linalg/scalar_cholesky.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kDeviationOfNoPrior = 100;
+
+double inverse_square(double x) { return 1 / (x * x); }
+
+// Of one unknown quantity: its entries of p and what is believed of them.
+class Belief {
+ public:
+  Belief(double guess, double deviation) : guess_(guess), precision_(inverse_square(deviation)) {}
+  virtual ~Belief() = default;
+  virtual double value(std::span<const double> p) const = 0;
+  virtual void add_gradient(std::span<const double> p, double scale, std::span<double> g) const = 0;
+  virtual void add_product(std::span<const double> p, std::span<const double> v, double scale,
+                           std::span<double> y) const = 0;
+  virtual void solve(std::span<const double> p, std::span<const double> v, double shift, std::span<double> z) = 0;
+  virtual void add_noise(std::span<const double> p, std::mt19937_64& random, std::span<double> g) const = 0;
+
+ protected:
+  double invertible_precision(double shift) const {
+    return precision_ > 0 || shift > 0 ? precision_ : inverse_square(kDeviationOfNoPrior);
+  }
+
+  double guess_, precision_;
+};
+
+class ValueBelief : public Belief {
+ public:
+  using Belief::Belief;
+
+  double value(std::span<const double> p) const override {
+    double sum = 0;
+    for (double pi : p) sum += (pi - guess_) * (pi - guess_);
+    return precision_ * sum / 2;
+  }
+  void add_gradient(std::span<const double> p, double scale, std::span<double> g) const override {
+    for (size_t i = 0; i < p.size(); ++i) g[i] += scale * precision_ * (p[i] - guess_);
+  }
+  void add_product(std::span<const double>, std::span<const double> v, double scale,
+                   std::span<double> y) const override {
+    for (size_t i = 0; i < v.size(); ++i) y[i] += scale * precision_ * v[i];
+  }
+  void solve(std::span<const double>, std::span<const double> v, double shift, std::span<double> z) override {
+    for (size_t i = 0; i < v.size(); ++i) z[i] = v[i] / (invertible_precision(shift) + shift);
+  }
+  void add_noise(std::span<const double>, std::mt19937_64& random, std::span<double> g) const override {
+    std::normal_distribution<double> normal;
+    for (double& gi : g) gi += std::sqrt(precision_) * normal(random);
+  }
+};
+
+class FieldBelief : public Belief {
+ public:
+  FieldBelief(const TetMesh& mesh, const FieldBasis& basis, Smoothness smoothness, double sharpness, double guess,
+              double deviation)
+      : Belief(guess, deviation),
+        basis_(basis),
+        roughness_(mesh,
+                   smoothness == Smoothness::total_variation ? sharpness : std::numeric_limits<double>::infinity()),
+        is_smooth_(smoothness != Smoothness::none) {}
+
+  double value(std::span<const double> p) const override {
+    const std::vector<double> z = field(p);
+    double sum = 0;
+    for (size_t t = 0; t < z.size(); ++t) sum += mass(t) * (z[t] - guess_) * (z[t] - guess_);
+    return precision_ * sum / 2 + (is_smooth_ ? roughness_.value(z) : 0);
+  }
+  void add_gradient(std::span<const double> p, double scale, std::span<double> g) const override {
+    const std::vector<double> z = field(p);
+    std::vector<double> zbar(z.size());
+    for (size_t t = 0; t < z.size(); ++t) zbar[t] = precision_ * mass(t) * (z[t] - guess_);
+    if (is_smooth_) roughness_.add_gradient(z, 1, zbar);
+    add_transposed(zbar, scale, g);
+  }
+  void add_product(std::span<const double> p, std::span<const double> v, double scale,
+                   std::span<double> y) const override {
+    const std::vector<double> dz = field(v);
+    std::vector<double> zbar(dz.size());
+    for (size_t t = 0; t < dz.size(); ++t) zbar[t] = precision_ * mass(t) * dz[t];
+    if (is_smooth_) roughness_.add_product(field(p), dz, 1, zbar);
+    add_transposed(zbar, scale, y);
+  }
+  void solve(std::span<const double> p, std::span<const double> v, double shift, std::span<double> z) override {
+    const bool depends_on_p = is_smooth_ && !roughness_.is_quadratic();
+    if (!made_shift_ || *made_shift_ != shift || (depends_on_p && !std::equal(p.begin(), p.end(), made_p_.begin())))
+      factorize(p, shift);
+    inverse_.solve(v, z);
+  }
+  void add_noise(std::span<const double> p, std::mt19937_64& random, std::span<double> g) const override {
+    std::normal_distribution<double> normal;
+    std::vector<double> zbar(static_cast<size_t>(basis_.tet_count()));
+    for (size_t t = 0; t < zbar.size(); ++t) zbar[t] = std::sqrt(precision_ * mass(t)) * normal(random);
+    if (is_smooth_) roughness_.add_noise(field(p), random, zbar);
+    add_transposed(zbar, 1, g);
+  }
+
+ private:
+  double mass(size_t t) const { return roughness_.volume_share()[t]; }
+  std::vector<double> field(std::span<const double> p) const {
+    std::vector<double> z(basis_.tet_count());
+    basis_.multiply(p, z);
+    return z;
+  }
+  void add_transposed(std::vector<double>& zbar, double scale, std::span<double> pbar) const {
+    for (double& b : zbar) b *= scale;
+    basis_.add_transposed(zbar, pbar);
+  }
+
+  // The matrix over the tets: roughness, then the diagonal.
+  std::vector<MatrixPlace> field_places() const {
+    std::vector<MatrixPlace> places = is_smooth_ ? roughness_.places() : std::vector<MatrixPlace>{};
+    for (int t = 0; t < basis_.tet_count(); ++t) places.push_back({t, t});
+    return places;
+  }
+  std::vector<double> field_entries(std::span<const double> p, double shift) const {
+    std::vector<double> entries = is_smooth_ ? roughness_.entries(field(p)) : std::vector<double>{};
+    for (double share : roughness_.volume_share()) entries.push_back(invertible_precision(shift) * share);
+    return entries;
+  }
+
+  void factorize(std::span<const double> p, double shift) {
+    std::vector<MatrixPlace> places = field_places();
+    std::vector<double> entries = field_entries(p, shift);
+    if (!basis_.is_identity()) reduce(places, entries);
+    for (int i = 0; i < basis_.size(); ++i) {
+      places.push_back({i, i});
+      entries.push_back(shift);
+    }
+    if (!made_shift_) inverse_.analyze(basis_.size(), places);
+    const bool is_definite = inverse_.factorize(entries);
+    if (!is_definite) throw std::runtime_error("the regulariser's matrix could not be factorised");
+    made_shift_ = shift;
+    made_p_.assign(p.begin(), p.end());
+  }
+
+  // W' A W, dense.
+  void reduce(std::vector<MatrixPlace>& places, std::vector<double>& entries) const {
+    const int n = basis_.size();
+    std::vector<std::vector<std::pair<int, double>>> row(static_cast<size_t>(basis_.tet_count()));
+    basis_.for_each_weight([&](int t, int j, double w) { row[t].emplace_back(j, w); });
+    std::vector<double> dense(static_cast<size_t>(n) * n, 0.0);
+    const auto add = [&](int a, int b, double value) {
+      for (const auto& [i, wi] : row[a])
+        for (const auto& [j, wj] : row[b]) dense[static_cast<size_t>(i) * n + j] += value * wi * wj;
+    };
+    for (size_t k = 0; k < places.size(); ++k) {
+      const auto& [a, b] = places[k];
+      add(a, b, entries[k]);
+      if (a != b) add(b, a, entries[k]);
+    }
+    places.clear(), entries.clear();
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j <= i; ++j) {
+        places.push_back({i, j});
+        entries.push_back(dense[static_cast<size_t>(i) * n + j]);
+      }
+  }
+
+  const FieldBasis& basis_;
+  FieldRoughness roughness_;
+  bool is_smooth_;
+  ScalarCholesky inverse_;
+  std::optional<double> made_shift_;
+  std::vector<double> made_p_;
+};
+
+class SumOfBeliefs : public Regularizer {
+ public:
+  SumOfBeliefs(const TetMesh& mesh, const ParameterMap& map, const RegularizerOptions& options) {
+    for (size_t u = 0; u < map.unknowns().size(); ++u) {
+      const auto [first, count] = map.range(static_cast<int>(u));
+      const double guess = map.guess()[first];
+      const Spread spread = map.unknowns()[u].spread;
+      std::unique_ptr<Belief> belief;
+      if (spread == Spread::uniform || spread == Spread::regions)
+        belief = std::make_unique<ValueBelief>(guess, options.prior_deviation);
+      else
+        belief = std::make_unique<FieldBelief>(mesh, map.basis(static_cast<int>(u)), options.smoothness,
+                                               options.sharpness, guess, options.prior_deviation);
+      parts_.push_back({static_cast<size_t>(first), static_cast<size_t>(count), std::move(belief)});
+    }
+  }
+
+  double value(std::span<const double> p) const override {
+    double sum = 0;
+    for (const Part& part : parts_) sum += part.belief->value(part.of(p));
+    return sum;
+  }
+  void add_gradient(std::span<const double> p, double scale, std::span<double> g) const override {
+    for (const Part& part : parts_) part.belief->add_gradient(part.of(p), scale, part.of(g));
+  }
+  void add_hessian_product(std::span<const double> p, std::span<const double> v, double scale,
+                           std::span<double> y) const override {
+    for (const Part& part : parts_) part.belief->add_product(part.of(p), part.of(v), scale, part.of(y));
+  }
+  void solve(std::span<const double> p, std::span<const double> v, double shift, std::span<double> z) override {
+    for (const Part& part : parts_) part.belief->solve(part.of(p), part.of(v), shift, part.of(z));
+  }
+  void add_noise(std::span<const double> p, std::mt19937_64& random, std::span<double> g) const override {
+    for (const Part& part : parts_) part.belief->add_noise(part.of(p), random, part.of(g));
+  }
+
+ private:
+  struct Part {
+    size_t first, count;
+    std::unique_ptr<Belief> belief;
+
+    template <class T>
+    std::span<T> of(std::span<T> v) const {
+      return v.subspan(first, count);
+    }
+  };
+  std::vector<Part> parts_;
+};
+
+}  // namespace
+
+std::unique_ptr<Regularizer> make_regularizer(const TetMesh& mesh, const ParameterMap& map,
+                                              const RegularizerOptions& options) {
+  if (!(options.prior_deviation > 0)) throw InvalidInput("the deviation of the prior must be positive (try 2)");
+  if (!(options.sharpness > 0 && std::isfinite(options.sharpness)))
+    throw InvalidInput("the sharpness of total variation must be positive and finite (try 10)");
+  return std::make_unique<SumOfBeliefs>(mesh, map, options);
+}
+
+}  // namespace aspic

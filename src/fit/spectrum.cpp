@@ -1,0 +1,221 @@
+#include "fit/spectrum.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "linalg/dense_eigen.h"
+
+namespace aspic {
+namespace {
+
+std::span<const double> column(const std::vector<double>& A, int rows, int j) {
+  return {A.data() + static_cast<size_t>(rows) * j, static_cast<size_t>(rows)};
+}
+
+bool all_finite(std::span<const double> values) {
+  return std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
+}
+
+bool all_finite(const Columns& A) {
+  for (int j = 0; j < A.count(); ++j)
+    if (!all_finite(A[j])) return false;
+  return true;
+}
+
+Spectrum nothing(int unknowns, bool ok) { return {.ok = ok, .W = Columns(unknowns), .dual = Columns(unknowns)}; }
+
+// Columns times diag(factor).
+void scale_columns(Columns& A, std::span<const double> factor) {
+  for (int j = 0; j < A.count(); ++j)
+    for (double& a : A[j]) a *= factor[j];
+}
+
+std::vector<double> powers(std::span<const double> values, double exponent) {
+  std::vector<double> result;
+  for (const double v : values) result.push_back(std::pow(v, exponent));
+  return result;
+}
+
+// How many of descending values are more than round-off beside the first.
+int numerical_rank(std::span<const double> values, double relative) {
+  int rank = 0;
+  while (rank < static_cast<int>(values.size()) && values[rank] > relative * std::max(values[0], 1e-300)) ++rank;
+  return rank;
+}
+
+DenseEigen truncated(DenseEigen e, int rows, double relative) {
+  const int rank = numerical_rank(e.values, relative);
+  e.values.resize(rank);
+  e.vectors.resize(static_cast<size_t>(rows) * rank);
+  return e;
+}
+
+Columns columns_of_transposed(LeastSquares& data) {  // J'
+  const int n = data.unknowns(), m = data.residual_count();
+  Columns rows(n, m);
+  std::vector<double> unit(m, 0.0);
+  for (int i = 0; i < m; ++i) {
+    unit[i] = 1;
+    data.multiply_transposed(unit, rows[i]);
+    unit[i] = 0;
+  }
+  return rows;
+}
+
+Columns products(LeastSquares& data, const Columns& V) {  // J V
+  Columns JV(data.residual_count(), V.count());
+  for (int j = 0; j < V.count(); ++j) data.multiply(V[j], JV[j]);
+  return JV;
+}
+
+// J V from the rows of J or by one product per column, whichever is fewer.
+Columns dense_products(LeastSquares& data, const Columns& V) {
+  if (V.count() <= data.residual_count()) return products(data, V);
+  const Columns rows = columns_of_transposed(data);
+  const std::vector<double> A = product_transposed(rows, V);
+  Columns JV(data.residual_count(), V.count());
+  for (int j = 0; j < V.count(); ++j) std::ranges::copy(column(A, data.residual_count(), j), JV[j].begin());
+  return JV;
+}
+
+// All of them: with C^-1 = U diag(l) U', the columns of Q = U diag(l)^-1/2 are orthonormal in the norm of C^-1.
+Spectrum all_eigenpairs(LeastSquares& data, Gaussian& before) {
+  const int n = data.unknowns();
+  std::vector<double> precision(static_cast<size_t>(n) * n), unit(n, 0.0);
+  for (int j = 0; j < n; ++j) {
+    unit[j] = 1;
+    before.precision(unit, std::span(precision).subspan(static_cast<size_t>(n) * j, n));
+    unit[j] = 0;
+  }
+  DenseEigen l = dense_eigen(n, precision);
+  for (double& value : l.values) value = std::max(value, 1e-15 * l.values[0]);
+  Columns Q(n), dual(n);
+  for (int j = 0; j < n; ++j) Q.push_back(column(l.vectors, n, j)), dual.push_back(column(l.vectors, n, j));
+  scale_columns(Q, powers(l.values, -0.5));
+  scale_columns(dual, powers(l.values, 0.5));
+  const Columns JQ = dense_products(data, Q);
+  if (!all_finite(JQ)) return nothing(n, false);
+  DenseEigen e = dense_eigen(n, product_transposed(JQ, JQ));
+  for (double& value : e.values) value = std::max(value, 0.0);
+  return {.d = e.values, .W = product(Q, e.vectors, n), .dual = product(dual, e.vectors, n), .complete = true};
+}
+
+// Eigenpairs of B B' w = d C^-1 w from those of the small matrix B' C B.
+Spectrum of_factor(const Columns& B, Gaussian& before) {
+  const int count = B.count();
+  if (!all_finite(B)) return nothing(B.rows(), false);
+  Columns Z(B.rows(), count);
+  for (int j = 0; j < count; ++j) before.covariance(B[j], Z[j]);
+  const DenseEigen e = truncated(dense_eigen(count, product_transposed(B, Z)), count, 1e-13);
+  const int rank = static_cast<int>(e.values.size());
+  Spectrum s{.d = e.values, .W = product(Z, e.vectors, rank), .dual = product(B, e.vectors, rank)};
+  scale_columns(s.W, powers(s.d, -0.5));
+  scale_columns(s.dual, powers(s.d, -0.5));
+  return s;
+}
+
+// A growing basis Q, orthonormal in the norm of C^-1, of the range of C J'.
+class RandomRange {
+ public:
+  RandomRange(LeastSquares& data, Gaussian& before, unsigned seed)
+      : data_(data),
+        before_(before),
+        random_(seed),
+        Q_(data.unknowns()),
+        dual_(data.unknowns()),
+        JQ_(data.residual_count()) {}
+
+  // False: there is no further direction.
+  bool grow() {
+    const int n = data_.unknowns();
+    std::normal_distribution<double> normal;
+    std::vector<double> q(n), y(n), r(data_.residual_count());
+    for (double& value : r) value = normal(random_);
+    data_.multiply_transposed(r, y);
+    before_.covariance(y, q);
+    is_finite_ = is_finite_ && all_finite(y);
+    if (!is_finite_) return false;
+    const double length = std::sqrt(std::max(dot(q, y), 0.0));
+    for (int pass = 0; pass < 2; ++pass) add_product(Q_, product_transposed(dual_, q), -1, q);
+    before_.precision(q, y);
+    const double rest = std::sqrt(std::max(dot(q, y), 0.0));
+    if (!(rest > 1e-10 * length)) return false;
+    for (double& value : q) value /= rest;
+    for (double& value : y) value /= rest;
+    data_.multiply(q, r);
+    is_finite_ = is_finite_ && all_finite(r);
+    if (!is_finite_) return false;
+    Q_.push_back(q), dual_.push_back(y), JQ_.push_back(r);
+    return true;
+  }
+
+  int count() const { return Q_.count(); }
+  bool is_finite() const { return is_finite_; }
+  DenseEigen ritz() const { return dense_eigen(count(), product_transposed(JQ_, JQ_)); }
+
+  // J'J ~ (J'JQ) (Q'J'JQ)^-1 (J'JQ)' = B B'
+  Columns nystroem_factor() {
+    const DenseEigen e = truncated(ritz(), count(), 1e-13);
+    const int rank = static_cast<int>(e.values.size());
+    Columns residuals = product(JQ_, e.vectors, rank), B(data_.unknowns(), rank);
+    scale_columns(residuals, powers(e.values, -0.5));
+    for (int j = 0; j < rank; ++j) data_.multiply_transposed(residuals[j], B[j]);
+    return B;
+  }
+
+ private:
+  LeastSquares& data_;
+  Gaussian& before_;
+  std::mt19937_64 random_;
+  Columns Q_, dual_, JQ_;
+  bool is_finite_ = true;
+};
+
+Spectrum leading_eigenpairs(LeastSquares& data, Gaussian& before, const SpectrumOptions& options) {
+  constexpr int kBatch = 24, kSpare = 8;  // so many negligible values mean that the rest is negligible, too
+  RandomRange range(data, before, options.seed);
+  const int limit = std::min({options.max_rank + kSpare, data.unknowns(), data.residual_count()});
+  double missed = 0;
+  for (bool more = true; more;) {
+    for (int k = 0; k < kBatch && more; ++k) more = range.count() < limit && range.grow();
+    if (!range.is_finite() || range.count() == 0) return nothing(data.unknowns(), range.is_finite());
+    const DenseEigen ritz = range.ritz();
+    missed = more || range.count() == options.max_rank + kSpare
+                 ? std::max(ritz.values[std::max(range.count() - kSpare, 0)], 0.0)
+                 : 0;
+    more = more && missed > options.negligible;
+  }
+  Spectrum s = of_factor(range.nystroem_factor(), before);
+  s.missed = missed;
+  return s;
+}
+
+}  // namespace
+
+Spectrum spectrum(LeastSquares& data, Gaussian& before, const SpectrumOptions& options) {
+  ASPIC_CHECK(data.unknowns() == before.size());
+  if (data.unknowns() <= options.dense) return all_eigenpairs(data, before);
+  if (data.residual_count() <= options.dense) return of_factor(columns_of_transposed(data), before);
+  return leading_eigenpairs(data, before, options);
+}
+
+PosteriorGaussian::PosteriorGaussian(PriorGaussian before, Spectrum spectrum)
+    : before_(std::move(before)), spectrum_(std::move(spectrum)) {}
+
+void PosteriorGaussian::precision(std::span<const double> v, std::span<double> y) {
+  before_.precision(v, y);
+  std::vector<double> c = product_transposed(spectrum_.dual, v);
+  for (size_t k = 0; k < c.size(); ++k) c[k] *= spectrum_.d[k];
+  // J'J = (C^-1 W) d (C^-1 W)' with W'(C^-1)v = dual' v
+  add_product(spectrum_.dual, c, 1, y);
+}
+
+void PosteriorGaussian::covariance(std::span<const double> v, std::span<double> z) {
+  before_.covariance(v, z);
+  std::vector<double> c = product_transposed(spectrum_.W, v);
+  for (size_t k = 0; k < c.size(); ++k) c[k] *= spectrum_.d[k] / (1 + spectrum_.d[k]);
+  add_product(spectrum_.W, c, -1, z);
+}
+
+}  // namespace aspic

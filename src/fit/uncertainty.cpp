@@ -1,0 +1,202 @@
+#include "fit/uncertainty.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/check.h"
+#include "fit/field_words.h"
+#include "fit/principal_directions.h"
+#include "fit/without_nuisances.h"
+
+namespace aspic {
+namespace {
+
+template <class... Numbers>
+std::string text(const char* format, Numbers... numbers) {
+  char buffer[512];
+  std::snprintf(buffer, sizeof buffer, format, numbers...);
+  return buffer;
+}
+
+// |J e|^2 for a common shift of log E: the stiffness of everything times a factor.
+double information_of_scale(LeastSquares& data, const ParameterMap& map, int young) {
+  std::vector<double> shift(map.size(), 0.0), dr(data.residual_count());
+  const auto [first, count] = map.range(young);
+  std::fill_n(shift.begin() + first, count, 1.0);  // the weights of a tet sum to 1
+  data.multiply(shift, dr);
+  return dot(dr, dr);
+}
+
+int index_of(const ParameterMap& map, const char* quantity) {
+  for (size_t u = 0; u < map.unknowns().size(); ++u)
+    if (map.unknowns()[u].quantity == quantity) return static_cast<int>(u);
+  return -1;
+}
+
+void warn_of_scale(LeastSquares& data, const ParameterMap& map, Posterior& result) {
+  constexpr double kNothing = 1e-2;  // the data alone would know E up to a factor of e^10
+  const int young = index_of(map, "young");
+  if (young < 0) return;
+  result.scale_is_unknown = information_of_scale(data, map, young) < kNothing;
+  if (result.scale_is_unknown)
+    result.warnings.push_back(
+        "without any force, torque, weight or pressure only ratios of stiffness are known: all of young could be "
+        "larger or smaller by a common factor, and what is shown of its level is the guess (measure one force)");
+}
+
+double informed(const Spectrum& s) {
+  double sum = 0;
+  for (const double d : s.d) sum += d / (1 + d);
+  return sum;
+}
+
+// |r|^2 of right standard deviations lies between residuals - informed (all that could be was fitted) and residuals,
+// within the scatter of chi^2.
+void judge_noise(double misfit, int residuals, Posterior& result, Spectrum& s) {
+  const double free = std::max(residuals - informed(s), 1.0);
+  const double lower = free - 3 * std::sqrt(2 * free), upper = residuals + 3 * std::sqrt(2.0 * residuals);
+  result.noise_factor = std::sqrt(misfit / free);
+  if (misfit > upper) {
+    result.applied_factor = result.noise_factor;
+    for (double& d : s.d) d /= result.noise_factor * result.noise_factor;
+    result.warnings.push_back(
+        text("the fit misses the measurements %.3g times further than their standard deviations allow: these are too "
+             "small, the weight of the regulariser is too large, or the model cannot do what the body does; all "
+             "deviations are raised by that factor",
+             result.noise_factor));
+  } else if (misfit < lower) {
+    result.warnings.push_back(text(
+        "the fit is %.3g times nearer to the measurements than their standard deviations say: these are too large, "
+        "or noise was fitted (a larger weight); the deviations are left as they are",
+        1 / std::max(result.noise_factor, 1e-300)));
+  }
+}
+
+// -2 log of the probability of the data under `factor` times the weight of the fit [MacKay 1992], up to a constant:
+// along direction k they found the amplitude a = c (1 + d) / d, c being that of the fit, which scatters as
+// N(0, 1 / factor + 1 / d).
+double surprise(double factor, const Spectrum& s, std::span<const double> amplitudes) {
+  double sum = 0;
+  for (size_t k = 0; k < s.d.size(); ++k) {
+    if (!(s.d[k] > 1e-6)) continue;
+    const double a = amplitudes[k] * (1 + s.d[k]) / s.d[k], variance = 1 / factor + 1 / s.d[k];
+    sum += a * a / variance + std::log(variance * s.d[k]);
+  }
+  return sum;
+}
+
+void judge_weight(Regularizer& prior, double weight, std::span<const double> p, const Spectrum& s, Posterior& result) {
+  if (!(weight > 0) || s.d.empty()) return;
+  std::vector<double> g(p.size(), 0.0);
+  prior.add_gradient(p, weight, g);
+  const std::vector<double> amplitudes = product_transposed(s.W, g);
+  constexpr double kRange = 14, kStep = 0.1;  // from e^-14 to e^14
+  double best = 1;
+  for (double x = -kRange; x <= kRange; x += kStep)
+    if (surprise(std::exp(x), s, amplitudes) < surprise(best, s, amplitudes)) best = std::exp(x);
+  result.suggested_weight = weight * best;
+  constexpr double kClear = 8;  // by chance it is exceeded once in 200 times (chi^2 of one degree)
+  if (surprise(1, s, amplitudes) - surprise(best, s, amplitudes) < kClear) return;
+  result.warnings.push_back(text(
+      best < 1 ? "the weight of the regulariser, %.3g, is %.2g times larger than what the data support (%.3g): details "
+                 "are lost and the deviations too small"
+               : "the weight of the regulariser, %.3g, is %.2g times smaller than what the data support (%.3g): noise "
+                 "may have been fitted",
+      weight, std::max(best, 1 / best), result.suggested_weight));
+}
+
+void warn_of_rank(Posterior& result) {
+  constexpr double kMuch = 3;  // deviations twice too large
+  const Spectrum& s = result.belief->spectrum();
+  if (s.missed > kMuch)
+    result.warnings.push_back(
+        text("only the %d best seen directions were looked at; each of the others may be known %.2g times better than "
+             "is shown, none worse",
+             s.W.count(), std::sqrt(1 + s.missed)));
+}
+
+void tell_seen(const ParameterMap& map, const TetMesh& mesh, int count, Posterior& result) {
+  const Spectrum& s = result.belief->spectrum();
+  for (int k = 0; k < std::min(count, s.W.count()) && s.d[k] >= 1; ++k) {
+    Direction direction{.information = s.d[k], .p = {s.W[k].begin(), s.W[k].end()}};
+    direction.deviation = root_mean_square(map, mesh, s.W[k]) / std::sqrt(1 + s.d[k]);
+    direction.words = words_of_direction(mesh, map, direction.p);
+    result.seen.push_back(std::move(direction));
+  }
+}
+
+void tell_unseen(const ParameterMap& map, const TetMesh& mesh, int count, Posterior& result) {
+  PosteriorGaussian& belief = *result.belief;
+  for (PrincipalDirection& principal : principal_directions(belief, map, mesh, count)) {
+    Direction direction{.information = principal.before / principal.after - 1,
+                        .deviation = std::sqrt(principal.after),
+                        .p = std::move(principal.p)};
+    std::vector<double> y(direction.p.size());
+    belief.before().precision(direction.p, y);
+    const double length = std::sqrt(dot(direction.p, y));
+    for (double& x : direction.p) x /= length;
+    direction.words = words_of_direction(mesh, map, direction.p);
+    result.unseen.push_back(std::move(direction));
+  }
+}
+
+void set_fields(const Marginals& m, Posterior& result) {
+  result.deviation_error = m.relative_error;
+  for (size_t u = 0; u < m.after.size(); ++u) {
+    std::vector<double>& deviation = result.deviation.emplace_back();
+    std::vector<double>& reduction = result.reduction.emplace_back();
+    for (size_t t = 0; t < m.after[u].size(); ++t) {
+      deviation.push_back(std::sqrt(m.after[u][t]));
+      reduction.push_back(m.before[u][t] > 0 ? 1 - m.after[u][t] / m.before[u][t] : 0);
+    }
+  }
+}
+
+double log_evidence(double misfit, double weight, double roughness, const Spectrum& s) {
+  double determinant = 0;
+  for (const double d : s.d) determinant += std::log1p(d);
+  return -misfit / 2 - weight * roughness - determinant / 2;
+}
+
+}  // namespace
+
+Posterior posterior(LeastSquares& misfit, Regularizer& prior, double weight, const ParameterMap& map,
+                    const TetMesh& mesh, std::span<const double> p, const PosteriorOptions& options) {
+  ASPIC_CHECK(map.size() == static_cast<int>(p.size()) && misfit.unknowns() == map.size());
+  Posterior result;
+  WithoutNuisances data(misfit);
+  std::vector<double> r(misfit.residual_count());
+  if (!data.evaluate(p, r) || !data.linearize()) {
+    result.warnings.push_back("nothing is known of the uncertainty: at the fit no stable equilibrium was found");
+    return result;
+  }
+  data.project(r);
+  warn_of_scale(data, map, result);
+  PriorGaussian before(prior, weight, p);
+  Spectrum s = spectrum(data, before, options.spectrum);
+  if (!s.ok) {
+    result.warnings.push_back("nothing is known of the uncertainty: a derivative at the fit could not be computed");
+    return result;
+  }
+  const double roughness = prior.value(p), squares = dot(r, r);
+  result.log_evidence = log_evidence(squares, weight, roughness, s);
+  judge_weight(prior, weight, p, s, result);
+  judge_noise(squares, misfit.residual_count() - data.dropped(), result, s);
+  result.informed = informed(s);
+  result.belief = std::make_shared<PosteriorGaussian>(std::move(before), std::move(s));
+  warn_of_rank(result);
+  set_fields(marginals(*result.belief, map, options.marginals), result);
+  tell_seen(map, mesh, options.directions, result);
+  tell_unseen(map, mesh, options.directions, result);
+  result.ok = true;
+  return result;
+}
+
+Interval interval(const Posterior& posterior, const ParameterMap& map, std::span<const double> p, int unknown, int tet,
+                  double deviations) {
+  const double z = map.fitted_values(unknown, p)[tet], s = deviations * posterior.deviation[unknown][tet];
+  return {map.value(unknown, z - s), map.value(unknown, z + s)};
+}
+
+}  // namespace aspic

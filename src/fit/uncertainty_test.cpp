@@ -1,0 +1,302 @@
+#include "fit/uncertainty.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "fit/field_words.h"
+#include "fit/linear_models_test.h"
+#include "mesh/generators.h"
+
+namespace aspic {
+namespace {
+
+using test::as_vector;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+ParameterMap make_map(const TetMesh& mesh, std::vector<Unknown> unknowns) {
+  return {mesh, "neo_hookean", std::vector<MaterialParameters>(mesh.tets.size(), {lame_from_young_poisson(1e5, 0.4)}),
+          std::move(unknowns)};
+}
+
+TetMesh bar(int cells) { return make_box({{0, 0, 0}}, {{0.01 * cells, 0.01, 0.01}}, {cells, 1, 1}, BoxCut::five); }
+
+// A field over the tets of a bar, averages of which were measured with standard deviation 1.
+struct Field {
+  TetMesh mesh;
+  ParameterMap map;
+  test::LinearModel data;
+  test::QuadraticBelief belief;
+  Eigen::VectorXd truth;
+
+  explicit Field(int cells, int residuals, double strength = 5)
+      : mesh(bar(cells)),
+        map(make_map(mesh, {{.guess = 1}})),  // log E = 0
+        data(test::averages(map.size(), residuals, strength, 4)),
+        belief(test::chain_belief(map.size(), 2, 1.5)) {}
+
+  void measure(unsigned seed, double noise = 1) {
+    std::mt19937_64 random(seed);
+    truth = belief.draw(1, random);
+    data.b = data.J * truth + noise * test::normal_vector(data.residual_count(), random);
+  }
+  std::vector<double> fit(double weight = 1) const {
+    const Eigen::MatrixXd H = data.J.transpose() * data.J + weight * belief.curvature;
+    return test::as_std(H.llt().solve(data.J.transpose() * data.b + weight * belief.curvature * belief.guess));
+  }
+  Eigen::VectorXd exact_deviation() const {
+    return (data.J.transpose() * data.J + belief.curvature).inverse().diagonal().cwiseSqrt();
+  }
+  Posterior posterior(double weight = 1, const PosteriorOptions& options = {}) {
+    return aspic::posterior(data, belief, weight, map, mesh, fit(weight), options);
+  }
+};
+
+bool has_warning(const Posterior& posterior, const std::string& part) {
+  return testing::Matches(testing::Contains(HasSubstr(part)))(posterior.warnings);
+}
+
+TEST(Posterior, HasTheDeviationsOfTheNormalEquations) {
+  Field f(12, 40);
+  f.measure(1);
+  const Eigen::VectorXd exact = f.exact_deviation(), before = f.belief.curvature.inverse().diagonal().cwiseSqrt();
+  for (const int dense : {600, 50, 0}) {  // all pairs, rows, sampled
+    const Posterior posterior = f.posterior(1, {.spectrum = {.dense = dense, .negligible = 0}});
+    ASSERT_TRUE(posterior.ok);
+    EXPECT_EQ(posterior.deviation_error, 0);
+    for (int t = 0; t < f.map.size(); ++t) {
+      EXPECT_NEAR(posterior.deviation[0][t], exact(t), 2e-4 * exact(t)) << dense;
+      EXPECT_NEAR(posterior.reduction[0][t], 1 - std::pow(exact(t) / before(t), 2), 1e-3);
+    }
+  }
+}
+
+TEST(Posterior, IsSampledWithinTheErrorThatItReports) {
+  Field f(30, 20);
+  f.measure(1);
+  const Eigen::VectorXd exact = f.exact_deviation();
+  for (const int samples : {50, 800}) {
+    const Posterior posterior =
+        f.posterior(1, {.spectrum = {.dense = 20}, .marginals = {.exact = 0, .samples = samples}});
+    EXPECT_GT(posterior.deviation_error, 0);
+    EXPECT_LE(posterior.deviation_error, std::sqrt(0.5 / samples));
+    double squares = 0;
+    for (int t = 0; t < f.map.size(); ++t) {
+      const double error = posterior.deviation[0][t] / exact(t) - 1;
+      EXPECT_LT(std::abs(error), 4.5 * posterior.deviation_error);
+      squares += error * error / f.map.size();
+    }
+    EXPECT_GT(std::sqrt(squares), 0.1 * posterior.deviation_error);  // it is no excuse either
+  }
+}
+
+TEST(Posterior, OfTwoQuantitiesKeepsThemApart) {
+  const TetMesh mesh = bar(3);
+  const int n = mesh.tet_count();
+  const ParameterMap map =
+      make_map(mesh, {{.guess = 1}, {.quantity = "poisson", .spread = Spread::uniform, .guess = 0.3}});
+  test::LinearModel data = test::averages(n + 1, 6, 5, 2);
+  test::QuadraticBelief belief = test::chain_belief(n + 1, 0.5, 1);
+  data.b.setZero();
+  const std::vector<double> p(map.guess().begin(), map.guess().end());
+  const Posterior posterior = aspic::posterior(data, belief, 1, map, mesh, p);
+  const Eigen::VectorXd exact = (data.J.transpose() * data.J + belief.curvature).inverse().diagonal().cwiseSqrt();
+  for (int t = 0; t < n; ++t) {
+    EXPECT_NEAR(posterior.deviation[0][t] / posterior.applied_factor, exact(t), 0.3 * exact(t));
+    EXPECT_EQ(posterior.deviation[1][t], posterior.deviation[1][0]);
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------- coverage
+
+TEST(Posterior, IntervalsOf95PercentHoldTheTruthAsOften) {
+  constexpr int kSeeds = 600;
+  Field f(8, 25);
+  int one = 0, all = 0;
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
+    f.measure(seed);
+    const std::vector<double> p = f.fit();
+    const Posterior posterior = aspic::posterior(f.data, f.belief, 1, f.map, f.mesh, p, {.directions = 0});
+    for (int t = 0; t < f.map.size(); ++t) {
+      const Interval i = interval(posterior, f.map, p, 0, t);
+      const double E = std::exp(f.truth(t));
+      const bool inside = i.lower < E && E < i.upper;
+      all += inside;
+      if (t == static_cast<int>(seed) % f.map.size()) one += inside;  // independent of each other
+    }
+  }
+  const double error = std::sqrt(0.95 * 0.05 / kSeeds);
+  EXPECT_NEAR(one / double(kSeeds), 0.95, 3.3 * error);  // 999 of 1000 times
+  EXPECT_NEAR(all / double(kSeeds * f.map.size()), 0.95, 3.3 * error);
+}
+
+// ---------------------------------------------------------------------------------------------------- scale
+
+// Rows of averages that do not change when log E is shifted everywhere.
+Field ratios_only() {
+  Field f(6, 40);
+  const Eigen::VectorXd mean = f.data.J.rowwise().mean();
+  f.data.J.colwise() -= mean;
+  f.measure(3);
+  return f;
+}
+
+TEST(Posterior, TellsThatOnlyRatiosOfStiffnessAreKnown) {
+  Field f = ratios_only();
+  const Posterior blind = f.posterior();
+  EXPECT_TRUE(blind.scale_is_unknown);
+  ASSERT_FALSE(blind.unseen.empty());
+  EXPECT_EQ(blind.unseen[0].words, "young of the whole body");
+  EXPECT_LT(blind.unseen[0].information, 0.5);
+  EXPECT_THAT(blind.warnings, testing::Contains(HasSubstr("measure one force")));
+
+  f.data.J.row(0).setConstant(10.0 / f.map.size());  // a force that is known to 10 %
+  f.measure(3);
+  const Posterior sees = f.posterior();
+  EXPECT_FALSE(sees.scale_is_unknown);
+  EXPECT_LT(sees.deviation[0][0], blind.deviation[0][0]);
+}
+
+TEST(Posterior, DoesNotTakeTheStiffnessOfAContactForAForce) {
+  Field f = ratios_only();
+  std::mt19937_64 random(1);
+  const Eigen::VectorXd leak = 3 * test::normal_vector(f.data.residual_count(), random);
+  f.data.J += leak * Eigen::RowVectorXd::Constant(f.map.size(), 1.0 / f.map.size());
+  f.measure(3);
+  EXPECT_FALSE(f.posterior().scale_is_unknown);
+  f.data.nuisances = {-leak};  // scaling contact and body together changes nothing
+  const Posterior posterior = f.posterior();
+  EXPECT_TRUE(posterior.scale_is_unknown);
+  EXPECT_LT(posterior.unseen[0].information, 0.5);
+}
+
+// ---------------------------------------------------------------------------------------------------- judgement
+
+TEST(Posterior, IsContentWithTheRightNoiseAndWeight) {
+  Field f(8, 300, 1);
+  int warned = 0;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    f.measure(seed);
+    const Posterior posterior = f.posterior();
+    warned += !posterior.warnings.empty();
+    EXPECT_NEAR(posterior.noise_factor, 1, 0.2);
+    EXPECT_EQ(posterior.applied_factor, 1);
+  }
+  EXPECT_LE(warned, 3);  // each judgement is wrong by chance about once in 200 times
+}
+
+TEST(Posterior, WidensWhenTheMeasurementsScatterMoreThanTheySay) {
+  Field f(8, 300, 1);
+  f.measure(1, 3);
+  const Posterior posterior = f.posterior();
+  EXPECT_NEAR(posterior.noise_factor, 3, 0.4);
+  EXPECT_EQ(posterior.applied_factor, posterior.noise_factor);
+  EXPECT_THAT(posterior.warnings, testing::Contains(HasSubstr("all deviations are raised")));
+  const Eigen::VectorXd exact =
+      (f.data.J.transpose() * f.data.J / std::pow(posterior.noise_factor, 2) + f.belief.curvature)
+          .inverse()
+          .diagonal()
+          .cwiseSqrt();
+  for (int t = 0; t < f.map.size(); ++t) EXPECT_NEAR(posterior.deviation[0][t], exact(t), 1e-3 * exact(t));
+}
+
+TEST(Posterior, DoesNotNarrowWhenTheyScatterLess) {
+  Field f(8, 300, 1);
+  f.measure(1, 0.3);
+  const Posterior posterior = f.posterior();
+  EXPECT_NEAR(posterior.noise_factor, 0.3, 0.05);
+  EXPECT_EQ(posterior.applied_factor, 1);
+  EXPECT_THAT(posterior.warnings, testing::Contains(HasSubstr("too large")));
+}
+
+TEST(Posterior, TellsWhichWeightTheDataSupport) {
+  Field f(30, 300, 20);
+  f.measure(1);
+  for (const double weight : {0.01, 1.0, 100.0}) {  // for linear residuals, what is suggested is the same
+    const Posterior posterior = f.posterior(weight);
+    EXPECT_GT(posterior.suggested_weight, 0.5) << weight;
+    EXPECT_LT(posterior.suggested_weight, 2) << weight;
+    EXPECT_EQ(has_warning(posterior, "details are lost"), weight == 100);
+    EXPECT_EQ(has_warning(posterior, "noise may have been fitted"), weight == 0.01);
+  }
+}
+
+TEST(Posterior, HasItsLargestEvidenceNearTheWeightOfTheTruth) {
+  Field f(30, 300, 1);
+  f.measure(2);
+  const double right = f.posterior(1).log_evidence;
+  EXPECT_GT(right, f.posterior(0.05).log_evidence);
+  EXPECT_GT(right, f.posterior(20).log_evidence);
+}
+
+TEST(Posterior, WithoutAnEquilibriumIsNone) {
+  class Undefined : public test::LinearModel {
+    bool evaluate(std::span<const double>, std::span<double>) override { return false; }
+  } data;
+  Field f(2, 5);
+  data.J = f.data.J;
+  const std::vector<double> p(f.map.size());
+  const Posterior posterior = aspic::posterior(data, f.belief, 1, f.map, f.mesh, p);
+  EXPECT_FALSE(posterior.ok);
+  EXPECT_THAT(posterior.warnings, ElementsAre(HasSubstr("no stable equilibrium")));
+}
+
+TEST(Posterior, TellsWhereTheDataSeeAndWhereNot) {
+  Field f(20, 25);
+  f.data.J.setZero();
+  for (int t = 0; t < 25; ++t) f.data.J(t, t) = 50;  // the first quarter of the bar
+  f.measure(1);
+  const Posterior posterior = f.posterior();
+  ASSERT_EQ(posterior.seen.size(), 3u);
+  ASSERT_EQ(posterior.unseen.size(), 3u);
+  EXPECT_GT(posterior.seen[0].information, 100);
+  EXPECT_LT(posterior.unseen[0].information, 1);
+  EXPECT_GT(posterior.unseen[0].deviation, posterior.seen[0].deviation);
+  EXPECT_THAT(posterior.seen[0].words, HasSubstr("young around (0.0"));
+  EXPECT_THAT(posterior.unseen[0].words, HasSubstr("young around (0.1"));
+  EXPECT_GT(posterior.reduction[0][3], 0.9);
+  EXPECT_LT(posterior.reduction[0][99], 0.01);
+}
+
+TEST(Interval, IsInUnitsOfTheQuantity) {
+  const TetMesh mesh = bar(1);
+  const ParameterMap map = make_map(mesh, {{.spread = Spread::uniform, .guess = 1e5}});
+  Posterior posterior;
+  posterior.deviation = {std::vector<double>(mesh.tets.size(), std::log(1.3))};
+  const Interval i = interval(posterior, map, map.guess(), 0, 2, 1);
+  EXPECT_NEAR(i.lower, 1e5 / 1.3, 1e-6);
+  EXPECT_NEAR(i.upper, 1.3e5, 1e-6);
+}
+
+// ---------------------------------------------------------------------------------------------------- words
+
+TEST(DirectionWords, NamePlacesRegionsAndContrasts) {
+  TetMesh mesh = bar(10);  // five tets per cell
+  for (int t = 0; t < mesh.tet_count(); ++t) mesh.region.push_back(t < 25 ? 1 : 7);
+  const ParameterMap tets = make_map(mesh, {{.guess = 1}}),
+                     regions = make_map(mesh, {{.spread = Spread::regions, .guess = 1}});
+  std::vector<double> p(tets.size(), -0.3);
+  EXPECT_EQ(words_of_direction(mesh, tets, p), "young of the whole body");
+  p.assign(p.size(), 0);
+  for (int t = 45; t < 50; ++t) p[t] = -2;
+  EXPECT_THAT(words_of_direction(mesh, tets, p),
+              testing::MatchesRegex("young around \\(0\\.09.*\\) m \\(10 % of the body\\)"));
+  for (int t = 0; t < 5; ++t) p[t] = 2.1;
+  EXPECT_THAT(words_of_direction(mesh, tets, p),
+              testing::MatchesRegex("young around \\(0\\.00.*\\) m .* against around \\(0\\.09.*"));
+  EXPECT_EQ(words_of_direction(mesh, regions, std::vector<double>{1, 1}), "young of the whole body");
+  EXPECT_EQ(words_of_direction(mesh, regions, std::vector<double>{0, -1}), "young of region 7");
+  EXPECT_EQ(words_of_direction(mesh, regions, std::vector<double>{1, -1.1}), "young of region 7 against region 1");
+}
+
+TEST(DirectionWords, NameEveryQuantityThatTakesPart) {
+  const TetMesh mesh = bar(2);
+  const ParameterMap map = make_map(mesh, {{.spread = Spread::uniform, .guess = 1},
+                                           {.quantity = "poisson", .spread = Spread::uniform, .guess = 0.3}});
+  EXPECT_EQ(words_of_direction(mesh, map, std::vector<double>{1, 0.1}), "young of the whole body");
+  EXPECT_EQ(words_of_direction(mesh, map, std::vector<double>{1, 0.9}),
+            "young of the whole body with poisson of the whole body");
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,58 @@
+// Arrows and balls in a view, lit like the body and hidden by it. Positions in metres.
+import * as THREE from "three";
+import type { Vec3 } from "../protocol";
+
+export interface Arrow {
+  from: Vec3;
+  to: Vec3;
+}
+
+const kUp = new THREE.Vector3(0, 1, 0);
+const kHead = 0.35; // of the length, at most
+const kSegments = 14;
+
+function instanced(geometry: THREE.BufferGeometry, material: THREE.Material, matrices: THREE.Matrix4[]): THREE.InstancedMesh {
+  const mesh = new THREE.InstancedMesh(geometry, material, matrices.length);
+  matrices.forEach((matrix, i) => mesh.setMatrixAt(i, matrix));
+  mesh.frustumCulled = false;
+  return mesh;
+}
+
+// Round shafts with heads, `radius` thick [m].
+export function makeArrows(arrows: readonly Arrow[], radius: number, colour: string): THREE.Group {
+  const material = new THREE.MeshLambertMaterial({ color: colour });
+  const [shafts, heads]: [THREE.Matrix4[], THREE.Matrix4[]] = [[], []];
+  for (const { from, to } of arrows) {
+    const start = new THREE.Vector3(...from);
+    const way = new THREE.Vector3(...to).sub(start);
+    const size = way.length();
+    if (!(size > 0)) continue;
+    const turn = new THREE.Quaternion().setFromUnitVectors(kUp, way.clone().divideScalar(size));
+    const head = Math.min(kHead * size, 6 * radius);
+    const middle = start.clone().addScaledVector(way, (size - head) / 2 / size);
+    shafts.push(new THREE.Matrix4().compose(middle, turn, new THREE.Vector3(radius, size - head, radius)));
+    const tip = start.clone().addScaledVector(way, (size - head / 2) / size);
+    heads.push(new THREE.Matrix4().compose(tip, turn, new THREE.Vector3(2.6 * radius, head, 2.6 * radius)));
+  }
+  const group = new THREE.Group();
+  group.add(instanced(new THREE.CylinderGeometry(1, 1, 1, kSegments), material, shafts));
+  group.add(instanced(new THREE.ConeGeometry(1, 1, kSegments), material, heads));
+  return group;
+}
+
+export function makeBalls(centres: readonly Vec3[], radius: number, colour: string, opacity = 1): THREE.Group {
+  const material = new THREE.MeshLambertMaterial({ color: colour, transparent: opacity < 1, opacity });
+  const matrices = centres.map((c) => new THREE.Matrix4().makeScale(radius, radius, radius).setPosition(...c));
+  const group = new THREE.Group();
+  group.add(instanced(new THREE.SphereGeometry(1, 20, 14), material, matrices));
+  return group;
+}
+
+export function disposeOf(group: THREE.Object3D): void {
+  group.traverse((object) => {
+    if (!(object instanceof THREE.Mesh)) return;
+    object.geometry.dispose();
+    (object.material as THREE.Material).dispose();
+    if (object instanceof THREE.InstancedMesh) object.dispose();
+  });
+}

@@ -1,0 +1,262 @@
+// The body of a fit in 3-D: coloured by a quantity of its tets, whole or cut open, with arrows and balls on it. The
+// cameras of all views of a page move together.
+import "../view/view.css";
+import * as THREE from "three";
+import { element } from "../dom";
+import type { Geometry, Vec3 } from "../protocol";
+import { Body } from "../view/body";
+import type { CameraRig } from "../view/cameras";
+import type { MapName } from "../view/colourMaps";
+import { kDefaults } from "../view/display";
+import { kSkinPoint } from "../view/labels";
+import { Overlay, readStyle } from "../view/overlay";
+import { logRange, type ColourRange } from "../view/ranges";
+import { Stage } from "../view/stage";
+import { disposeOf } from "./arrows";
+import { bodyBelow, boundaryOf, type Boundary, type Plane, type Soup, type TetMesh } from "./cut";
+
+export interface Shown {
+  label: string; // of the colour bar
+  unit: string;
+  values: Float32Array; // one per tet
+  map: MapName;
+  log: boolean;
+  range?: [number, number]; // else that of the values
+}
+
+export interface Note {
+  at: Vec3;
+  words: string;
+}
+
+export interface Cut {
+  axis: 0 | 1 | 2;
+  at: number; // 0 to 1 over the box
+  other: boolean; // keeps the other half
+}
+
+const kTurn = 1; // of the camera per pixel
+const kWheel = 0.0015;
+
+// What the views of one page share: it is computed once.
+export class FittedBody {
+  readonly boundary: Boundary;
+  readonly lower: Vec3;
+  readonly upper: Vec3;
+
+  constructor(
+    readonly mesh: TetMesh,
+    readonly up: Vec3,
+  ) {
+    this.boundary = boundaryOf(mesh);
+    const lower: Vec3 = [Infinity, Infinity, Infinity];
+    const upper: Vec3 = [-Infinity, -Infinity, -Infinity];
+    mesh.points.forEach((x, i) => {
+      lower[i % 3] = Math.min(lower[i % 3], x);
+      upper[i % 3] = Math.max(upper[i % 3], x);
+    });
+    [this.lower, this.upper] = [lower, upper];
+  }
+
+  get size(): number {
+    return Math.hypot(this.upper[0] - this.lower[0], this.upper[1] - this.lower[1], this.upper[2] - this.lower[2]);
+  }
+
+  plane(cut: Cut | null): Plane | null {
+    if (!cut) return null;
+    const sign = cut.other ? -1 : 1;
+    const normal: Vec3 = [0, 0, 0];
+    normal[cut.axis] = sign;
+    const level = this.lower[cut.axis] + cut.at * (this.upper[cut.axis] - this.lower[cut.axis]);
+    return { normal, offset: sign * level };
+  }
+}
+
+export class BodyView {
+  readonly element = element("div", { class: "view fit-view" });
+  private readonly canvas = document.createElement("canvas");
+  private readonly overlay = new Overlay();
+  private readonly stage: Stage | null;
+  private body: Body | null = null;
+  private soup: Soup | null = null;
+  private shown: Shown | null = null;
+  private cut: Cut | null = null;
+  private objects: THREE.Object3D[] = [];
+  private notes: Note[] = [];
+  private wires = true;
+  private frame = 0;
+  drawn = 0; // pictures so far
+
+  constructor(
+    private readonly fitted: FittedBody,
+    private readonly rig: CameraRig,
+    label: string,
+  ) {
+    this.element.append(this.canvas, this.overlay.canvas);
+    this.element.setAttribute("role", "img");
+    this.element.setAttribute("aria-label", label);
+    this.stage = this.makeStage();
+    this.stage?.place({ lower: fitted.lower, upper: fitted.upper, up: fitted.up });
+    rig.on("changed", () => this.redraw());
+    new ResizeObserver(() => this.applyDisplay()).observe(this.element); // also once it is in the page, whose colours it takes
+    this.listen();
+    this.rebuild();
+  }
+
+  show(shown: Shown | null): void {
+    this.shown = shown;
+    this.recolour();
+  }
+
+  slice(cut: Cut | null): void {
+    this.cut = cut;
+    this.rebuild();
+  }
+
+  showWires(wires: boolean): void {
+    this.wires = wires;
+    this.applyDisplay();
+  }
+
+  // In place of those before.
+  mark(objects: THREE.Object3D[], notes: Note[]): void {
+    for (const object of this.objects) disposeOf(object);
+    this.objects = objects;
+    this.notes = notes;
+    this.stage?.extras.clear();
+    for (const object of objects) this.stage?.extras.add(object);
+    this.redraw();
+  }
+
+  retheme(): void {
+    this.applyDisplay();
+  }
+
+  redraw(): void {
+    if (this.frame === 0) this.frame = requestAnimationFrame(() => this.draw());
+  }
+
+  private makeStage(): Stage | null {
+    try {
+      return new Stage(this.canvas);
+    } catch {
+      this.element.append(element("div", { class: "view-message" }, "This browser does not draw in 3-D: WebGL 2 is missing or switched off. Plots and numbers work without it."));
+      return null;
+    }
+  }
+
+  // A new body for a new cut: triangles of their own corners.
+  private rebuild(): void {
+    this.soup = bodyBelow(this.fitted.mesh, this.fitted.boundary, this.fitted.plane(this.cut));
+    const { positions, normals, tet, edges } = this.soup;
+    const corners = positions.length / 3;
+    const geometry: Geometry = {
+      side: "a",
+      generation: 1,
+      rest: positions,
+      triangles: Uint32Array.from({ length: corners }, (_, i) => i),
+      edges,
+      tet,
+      vertex: new Uint32Array(corners).fill(kSkinPoint),
+    };
+    this.body = new Body(geometry);
+    this.stage?.show(this.body);
+    const packed = new Int8Array(4 * corners);
+    for (let i = 0; i < corners; ++i) for (let k = 0; k < 3; ++k) packed[4 * i + k] = Math.round(127 * normals[3 * i + k]);
+    this.body.show({ side: "a", generation: 1, step: 0, iteration: -1, time: 0, positions, normals: packed, values: new Float32Array(corners), min: 0, max: 0 });
+    this.stage?.moved();
+    this.applyDisplay();
+    this.recolour();
+  }
+
+  private recolour(): void {
+    const { body, soup, shown } = this;
+    if (!body || !soup) return;
+    if (shown) {
+      const values = new Float32Array(soup.corner.length);
+      for (let i = 0; i < values.length; ++i) values[i] = shown.values[soup.tet[Math.floor(i / 3)]];
+      body.show({ side: "a", generation: 1, step: 0, iteration: -1, time: 0, positions: body.current, normals: body.shading, values, min: 0, max: 0 });
+    }
+    body.colour(shown && this.range(shown), shown?.map ?? "viridis");
+    this.redraw();
+  }
+
+  private range(shown: Shown): ColourRange {
+    let [low, high] = shown.range ?? [Infinity, -Infinity];
+    if (!shown.range)
+      for (const value of shown.values) {
+        if (value < low) low = value;
+        if (value > high) high = value;
+      }
+    const positive = shown.log ? logRange(low, high) : null;
+    return positive ? { ...positive, log: true } : { low, high, log: false };
+  }
+
+  private applyDisplay(): void {
+    const style = this.style();
+    this.body?.apply({ ...kDefaults, wires: this.wires, bodyColour: "#b9c3d0", inside: "same" });
+    this.stage?.apply({ ...kDefaults, ground: false }, style);
+    this.redraw();
+  }
+
+  private style(): ReturnType<typeof readStyle> {
+    return readStyle(this.element, kDefaults, null);
+  }
+
+  private draw(): void {
+    this.frame = 0;
+    const [width, height] = [this.element.clientWidth, this.element.clientHeight];
+    if (!this.stage || width === 0 || height === 0) return;
+    this.resize(width, height);
+    const style = this.style();
+    const lens = this.rig.lens(width, height);
+    this.stage.render(lens, this.rig.orientation, style.accent);
+    const bar = this.shown && { field: { name: "", label: this.shown.label, unit: this.shown.unit, diverging: false, center: 0 }, range: this.range(this.shown), map: this.shown.map };
+    this.overlay.draw(lens, style, {
+      axes: true,
+      gridStep: 0,
+      bar,
+      labels: [],
+      highlights: this.notes.map(({ at, words }) => ({ positions: [at], text: words })),
+      spring: null,
+      brush: null,
+      tip: null,
+    });
+    ++this.drawn;
+    this.element.dataset.drawn = String(this.drawn);
+  }
+
+  private resize(width: number, height: number): void {
+    const ratio = Math.min(2, window.devicePixelRatio || 1);
+    const [columns, rows] = [Math.floor(width * ratio), Math.floor(height * ratio)];
+    const { canvas } = this.overlay;
+    if (canvas.width === columns && canvas.height === rows) return;
+    this.stage?.renderer.setPixelRatio(ratio);
+    this.stage?.renderer.setSize(width, height, false);
+    [canvas.width, canvas.height] = [columns, rows];
+  }
+
+  private listen(): void {
+    const host = this.element;
+    host.addEventListener("pointerdown", (event) => host.setPointerCapture(event.pointerId));
+    host.addEventListener("pointermove", (event) => {
+      if (!host.hasPointerCapture(event.pointerId)) return;
+      if (event.shiftKey || (event.buttons & 2) !== 0) this.rig.pan(event.movementX, event.movementY, host.clientHeight);
+      else this.rig.turn(kTurn * event.movementX, kTurn * event.movementY);
+    });
+    host.addEventListener("contextmenu", (event) => event.preventDefault());
+    host.addEventListener("dblclick", () => this.rig.centre(this.fitted.lower, this.fitted.upper));
+    // Only with ctrl: the page scrolls with the wheel alone.
+    host.addEventListener(
+      "wheel",
+      (event) => {
+        if (!event.ctrlKey) return;
+        event.preventDefault();
+        const box = host.getBoundingClientRect();
+        const [x, y] = [event.clientX - box.left - box.width / 2, box.height / 2 - (event.clientY - box.top)];
+        this.rig.zoom(Math.exp(kWheel * event.deltaY), x, y, box.height);
+      },
+      { passive: false },
+    );
+  }
+}

@@ -1,0 +1,204 @@
+// The charts of a fit: force against depth, residuals, the trials of the weight, how it converged.
+import type uPlot from "uplot";
+import { Chart, type Curve } from "../plots/chart";
+import { short, withUnit } from "../plots/numbers";
+import type { Palette } from "../plots/palette";
+import type { MaybeNumber } from "../protocol";
+import { closeness, histogram, type FitHead, type GroupCurve } from "./data";
+
+// The value at x, or the last one.
+function valueAt(x: readonly number[], column: readonly MaybeNumber[], at: number | null): MaybeNumber {
+  if (at === null) return column[column.length - 1] ?? null;
+  let nearest = 0;
+  x.forEach((value, i) => {
+    if (Math.abs(value - at) < Math.abs(x[nearest] - at)) nearest = i;
+  });
+  return column[nearest] ?? null;
+}
+
+// Bars of one standard deviation, in device pixels.
+function paintErrorBars(u: uPlot, colours: Palette, curve: GroupCurve): void {
+  const { ctx } = u;
+  ctx.save();
+  ctx.strokeStyle = colours.text;
+  ctx.lineWidth = devicePixelRatio;
+  const cap = 4 * devicePixelRatio;
+  ctx.beginPath();
+  curve.x.forEach((x, i) => {
+    const middle = curve.measured[i];
+    if (middle === null) return;
+    const column = u.valToPos(x, "x", true);
+    const [top, bottom] = [middle + curve.deviation[i], middle - curve.deviation[i]].map((y) => u.valToPos(y, "y", true));
+    ctx.moveTo(column, top);
+    ctx.lineTo(column, bottom);
+    for (const y of [top, bottom]) {
+      ctx.moveTo(column - cap, y);
+      ctx.lineTo(column + cap, y);
+    }
+  });
+  ctx.stroke();
+  ctx.restore();
+}
+
+function around(values: readonly MaybeNumber[], includeZero: boolean): [number, number] {
+  const known = values.filter((v): v is number => v !== null && Number.isFinite(v));
+  if (includeZero) known.push(0);
+  const [low, high] = [Math.min(...known), Math.max(...known)];
+  const margin = 0.07 * (high - low) || 1e-9;
+  return [low === 0 ? 0 : low - margin, high + margin];
+}
+
+export function loadChart(name: string, curve: GroupCurve): Chart {
+  const chart = new Chart();
+  const hasHeldOut = curve.heldOut.some((v) => v !== null);
+  const hasFitted = curve.fitted.some((v) => v !== null);
+  const shape = curve.x.length > 2 ? "line" : "both";
+  const curves: Curve[] = [
+    ...(hasFitted ? [{ key: "fitted", label: "fitted", meaning: "by the fitted material", colour: "series1", width: 2, shape } as Curve] : []),
+    ...(hasHeldOut
+      ? [{ key: "heldOut", label: curve.leftOut ? "predicted" : "held out", meaning: "predicted by a material that was fitted without this group", colour: "series2", width: 2, dash: [6, 4], shape } as Curve]
+      : []),
+    { key: "measured", label: "measured", meaning: "as measured, ± one standard deviation", colour: "text", shape: "points" },
+  ];
+  const columns: Record<string, MaybeNumber[]> = { measured: curve.measured, fitted: curve.fitted, heldOut: curve.heldOut };
+  const spread = curve.measured.flatMap((m, i) => (m === null ? [] : [m - curve.deviation[i], m + curve.deviation[i]]));
+  chart.configure({
+    label: `${name}: ${curve.yLabel} against ${curve.xLabel}, measured and fitted`,
+    x: { label: curve.xLabel, unit: curve.xUnit },
+    y: { label: curve.yLabel, unit: curve.yUnit },
+    curves,
+    legend: "top",
+    read: (key, x) => [withUnit(valueAt(curve.x, columns[key], x), curve.yUnit, 3)],
+    xRange: () => around(curve.x, true),
+    yRange: () => around([...spread, ...curve.fitted, ...curve.heldOut], true),
+    paint: (u, colours) => paintErrorBars(u, colours, curve),
+  });
+  chart.show(curve.x, curves.map((c) => columns[c.key]));
+  return chart;
+}
+
+const kLimit = 4; // of the histogram, in standard deviations
+const kBins = 32;
+
+// Against what normal noise of the given deviations would leave.
+export function histogramChart(values: readonly number[]): Chart {
+  const chart = new Chart();
+  const { middle, count } = histogram(values, kLimit, kBins);
+  const width = (2 * kLimit) / kBins;
+  const normal = middle.map((r) => (values.length * width * Math.exp((-r * r) / 2)) / Math.sqrt(2 * Math.PI));
+  const columns: Record<string, number[]> = { count, normal };
+  chart.configure({
+    label: "Histogram of the residuals",
+    x: { label: "residual [standard deviations]" },
+    y: { label: "readings" },
+    curves: [
+      { key: "count", label: "residuals", meaning: "(fitted − measured) / standard deviation; those beyond ±4 stand at the ends", colour: "series1", shape: "bars" },
+      { key: "normal", label: "normal", meaning: "what noise of the stated deviations would leave", colour: "series2", width: 2 },
+    ],
+    legend: "top",
+    read: (key, x) => (x === null ? [] : [short(valueAt(middle, columns[key], x), 3)]),
+    xRange: () => [-kLimit, kLimit],
+    yRange: () => [0, 1.08 * Math.max(...count, ...normal, 1)],
+  });
+  chart.show(middle, [count, normal]);
+  return chart;
+}
+
+export function caseChart(names: readonly string[], ofCase: readonly MaybeNumber[]): Chart {
+  const chart = new Chart();
+  const x = ofCase.map((_, i) => i + 1);
+  const one = ofCase.map(() => 1);
+  chart.configure({
+    label: "Root mean square of the residuals of each case",
+    x: { label: "case", integer: true },
+    y: { label: "rms, in deviations" },
+    curves: [
+      { key: "rms", label: "of a case", colour: "series1", shape: "bars" },
+      { key: "one", label: "as expected", meaning: "1: as close as the standard deviations say", colour: "series2", dash: [6, 4] },
+    ],
+    legend: "top",
+    read: (key, at) => (key === "rms" && at !== null ? [short(valueAt(x, ofCase, at), 3)] : []),
+    caption: (at) => (at === null ? "" : (names[Math.min(names.length - 1, Math.max(0, Math.round(at) - 1))] ?? "")),
+    yRange: () => [0, 1.1 * Math.max(1, ...ofCase.map((v) => v ?? 0))],
+  });
+  chart.show(x, [[...ofCase], one]);
+  return chart;
+}
+
+const log10 = (value: MaybeNumber): MaybeNumber => (value !== null && value > 0 ? Math.log10(value) : null);
+
+// Misfit against roughness, both as powers of ten; the chosen weight stands out.
+export function weightChart(head: FitHead): Chart | null {
+  const trials = head.weights
+    .map((w) => ({ x: log10(w.roughness), misfit: w.misfit, weight: w.weight }))
+    .filter((w): w is { x: number; misfit: number; weight: number } => w.x !== null && w.misfit !== null && w.weight !== null)
+    .sort((a, b) => a.x - b.x);
+  if (trials.length < 2) return null;
+  const chart = new Chart();
+  const x = trials.map((t) => t.x);
+  const misfit = trials.map((t) => closeness(t.misfit, head.counts.residuals) ?? 0);
+  const log = Math.max(...misfit) > 30 * Math.min(...misfit);
+  const target = trials.map(() => 1);
+  chart.configure({
+    label: "Misfit against roughness for every weight that was tried",
+    x: { label: "roughness R, as a power of ten" },
+    y: { label: "|r|² per reading", log },
+    curves: [
+      { key: "trials", label: "weights tried", colour: "series1", width: 2, shape: "both" },
+      { key: "target", label: "noise", meaning: "1: what the standard deviations leave", colour: "series7", dash: [6, 4] },
+    ],
+    legend: "top",
+    read: (key, at) => (key === "trials" && at !== null ? [`weight ${short(valueAt(x, trials.map((t) => t.weight), at), 3)}`] : []),
+    xRange: () => around(x, false),
+    yRange: () => (log ? null : around([...misfit, 1], true)),
+    paint: (u, colours) => paintChosen(u, colours, log10(head.fit.roughness), closeness(head.fit.misfit, head.counts.residuals), `chosen: ${short(head.fit.weight, 3)}`),
+  });
+  chart.show(x, [misfit, target]);
+  return chart;
+}
+
+function paintChosen(u: uPlot, colours: Palette, x: MaybeNumber, y: MaybeNumber, words: string): void {
+  if (x === null || y === null || !(y > 0)) return;
+  const { ctx } = u;
+  const scale = devicePixelRatio;
+  const [column, row] = [u.valToPos(x, "x", true), u.valToPos(y, "y", true)];
+  ctx.save();
+  ctx.strokeStyle = ctx.fillStyle = colours.series2;
+  ctx.lineWidth = 2.5 * scale;
+  ctx.beginPath();
+  ctx.arc(column, row, 7 * scale, 0, 2 * Math.PI);
+  ctx.stroke();
+  ctx.font = `600 ${colours.fontSize * 0.86 * scale}px sans-serif`;
+  const leftwards = column > u.bbox.left + 0.6 * u.bbox.width;
+  ctx.textAlign = leftwards ? "right" : "left";
+  ctx.fillText(words, column + (leftwards ? -4 : 4) * scale, row - 16 * scale);
+  ctx.restore();
+}
+
+// In the order in which the iterations were made, over all starts and weights.
+export function historyChart(head: FitHead): Chart | null {
+  if (head.history.length < 2) return null;
+  const chart = new Chart();
+  const x = head.history.map((_, i) => i + 1);
+  const positive = (value: MaybeNumber): MaybeNumber => (value !== null && value > 0 ? value : null);
+  const columns: Record<string, MaybeNumber[]> = {
+    misfit: head.history.map((i) => positive(i.misfit)),
+    prior: head.history.map((i) => (i.roughness === null || i.weight === null ? null : positive(i.roughness * i.weight))),
+    decrement: head.history.map((i) => positive(i.decrement)),
+  };
+  const curves: Curve[] = [
+    { key: "misfit", label: "misfit", meaning: "|r|²/2", colour: "series1", width: 2, shape: "both" },
+    { key: "prior", label: "weight · R", meaning: "what the smoothness and the prior cost", colour: "series3", width: 2, shape: "both" },
+    { key: "decrement", label: "decrement", meaning: "how far the fit is from its minimum, in standard deviations of what is known", colour: "series2", width: 1.5, dash: [6, 4], shape: "both" },
+  ];
+  chart.configure({
+    label: "Misfit, prior and decrement over the iterations",
+    x: { label: "iteration", integer: true },
+    y: { label: "", log: true },
+    curves,
+    legend: "top",
+    read: (key, at) => [short(valueAt(x, columns[key], at), 3)],
+  });
+  chart.show(x, curves.map((c) => columns[c.key]));
+  return chart;
+}

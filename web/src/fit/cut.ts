@@ -1,0 +1,183 @@
+// The body that a map shows: the outside on one side of a plane, and the cut through its tets there. Triangles of their
+// own corners, so that each can have the value of its tet.
+import type { Vec3 } from "../protocol";
+
+export interface TetMesh {
+  points: Float32Array; // 3 per vertex [m]
+  tets: Uint32Array; // 4 per tet
+}
+
+// What is kept: normal . x <= offset.
+export interface Plane {
+  normal: Vec3;
+  offset: number;
+}
+
+export interface Boundary {
+  triangles: Uint32Array; // 3 per triangle, counter-clockwise from outside
+  tet: Uint32Array; // behind each
+  normals: Float32Array; // 3 per vertex of the mesh: of the boundary, averaged by area
+}
+
+export interface Soup {
+  positions: Float32Array; // 9 per triangle
+  normals: Float32Array; // 9 per triangle
+  tet: Uint32Array; // per triangle
+  corner: Int32Array; // per corner: its vertex of the mesh; -1 where an edge was cut
+  edges: Uint32Array; // 2 per line: corners of the soup
+}
+
+const kFaces = [
+  [1, 2, 3],
+  [0, 3, 2],
+  [0, 1, 3],
+  [0, 2, 1],
+];
+
+// Faces that belong to one tet only.
+export function boundaryOf({ points, tets }: TetMesh): Boundary {
+  const count = points.length / 3;
+  const open = new Map<number, number>(); // corner triple -> face
+  const faces: number[] = [];
+  for (let t = 0; t < tets.length / 4; ++t)
+    kFaces.forEach((face, f) => {
+      const [a, b, c] = face.map((k) => tets[4 * t + k]).sort((p, q) => p - q);
+      const key = (a * count + b) * count + c; // exact below 2^53: up to 200 000 vertices
+      if (!open.delete(key)) open.set(key, 4 * t + f);
+    });
+  for (const face of open.values()) faces.push(face);
+  const triangles = new Uint32Array(3 * faces.length);
+  const tet = new Uint32Array(faces.length);
+  const normals = new Float32Array(points.length);
+  faces.forEach((id, i) => {
+    const t = Math.floor(id / 4);
+    const corners = kFaces[id % 4].map((k) => tets[4 * t + k]);
+    triangles.set(corners, 3 * i);
+    tet[i] = t;
+    const n = areaVector(points, corners[0], corners[1], corners[2]);
+    for (const v of corners) for (let k = 0; k < 3; ++k) normals[3 * v + k] += n[k];
+  });
+  return { triangles, tet, normals };
+}
+
+function areaVector(x: Float32Array, a: number, b: number, c: number): Vec3 {
+  const u = [0, 1, 2].map((k) => x[3 * b + k] - x[3 * a + k]);
+  const v = [0, 1, 2].map((k) => x[3 * c + k] - x[3 * a + k]);
+  return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+}
+
+class SoupMaker {
+  private readonly x: number[] = [];
+  private readonly n: number[] = [];
+  private readonly tet: number[] = [];
+  private readonly corner: number[] = [];
+  private readonly edges: number[] = [];
+
+  // A polygon of one tet as a fan; `isEdge` tells which of its sides are lines to be seen.
+  add(polygon: Corner[], tet: number): void {
+    if (polygon.length < 3) return;
+    const first = this.corner.length;
+    const index: number[] = [];
+    for (let i = 1; i + 1 < polygon.length; ++i) {
+      const here = this.corner.length;
+      for (const c of [polygon[0], polygon[i], polygon[i + 1]]) {
+        this.x.push(...c.x);
+        this.n.push(...c.n);
+        this.corner.push(c.vertex);
+      }
+      this.tet.push(tet);
+      if (i === 1) index.push(first, here + 1);
+      index.push(here + 2);
+    }
+    for (let i = 0; i < index.length; ++i) this.edges.push(index[i], index[(i + 1) % index.length]);
+  }
+
+  soup(): Soup {
+    return {
+      positions: Float32Array.from(this.x),
+      normals: Float32Array.from(this.n),
+      tet: Uint32Array.from(this.tet),
+      corner: Int32Array.from(this.corner),
+      edges: Uint32Array.from(this.edges),
+    };
+  }
+}
+
+interface Corner {
+  x: Vec3;
+  n: Vec3;
+  vertex: number;
+}
+
+const mixed = (a: Vec3, b: Vec3, t: number): Vec3 => [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])];
+
+function unit(v: Vec3): Vec3 {
+  const size = Math.hypot(...v) || 1;
+  return [v[0] / size, v[1] / size, v[2] / size];
+}
+
+// Where the faces around a vertex differ that much, there is an edge to be seen rather than a round.
+const kCrease = Math.cos((30 * Math.PI) / 180);
+const isCrease = (n: Vec3, face: Vec3): boolean => n[0] * face[0] + n[1] * face[1] + n[2] * face[2] < kCrease;
+
+// The part of a polygon on the kept side [Sutherland and Hodgman 1974].
+function clipped(polygon: Corner[], height: (x: Vec3) => number): Corner[] {
+  const kept: Corner[] = [];
+  polygon.forEach((a, i) => {
+    const b = polygon[(i + 1) % polygon.length];
+    const [ha, hb] = [height(a.x), height(b.x)];
+    if (ha <= 0) kept.push(a);
+    if (ha < 0 !== hb < 0 && ha !== 0 && hb !== 0) {
+      const t = ha / (ha - hb);
+      kept.push({ x: mixed(a.x, b.x, t), n: unit(mixed(a.n, b.n, t)), vertex: -1 });
+    }
+  });
+  return kept;
+}
+
+// The polygon in which a plane cuts a tet, by the heights of its corners above the plane; counter-clockwise seen from
+// above the plane. Empty where the tet touches it only.
+export function section(corners: readonly Vec3[], heights: readonly number[], normal: Vec3): Vec3[] {
+  const below = [0, 1, 2, 3].filter((k) => heights[k] <= 0);
+  const above = [0, 1, 2, 3].filter((k) => heights[k] > 0);
+  if (below.length === 0 || above.length === 0) return [];
+  const at = (a: number, b: number): Vec3 => mixed(corners[a], corners[b], heights[a] / (heights[a] - heights[b]));
+  const [b, a] = [below, above];
+  let polygon: Vec3[];
+  if (b.length === 1) polygon = a.map((k) => at(b[0], k));
+  else if (a.length === 1) polygon = b.map((k) => at(k, a[0]));
+  else polygon = [at(b[0], a[0]), at(b[0], a[1]), at(b[1], a[1]), at(b[1], a[0])];
+  const [p, q, r] = polygon;
+  const u = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
+  const v = [r[0] - p[0], r[1] - p[1], r[2] - p[2]];
+  const turn = (u[1] * v[2] - u[2] * v[1]) * normal[0] + (u[2] * v[0] - u[0] * v[2]) * normal[1] + (u[0] * v[1] - u[1] * v[0]) * normal[2];
+  return turn < 0 ? polygon.reverse() : polygon;
+}
+
+// The body below a plane, closed by its cut; null: the whole body.
+export function bodyBelow(mesh: TetMesh, boundary: Boundary, plane: Plane | null): Soup {
+  const { points, tets } = mesh;
+  const point = (v: number): Vec3 => [points[3 * v], points[3 * v + 1], points[3 * v + 2]];
+  const normal = (v: number): Vec3 => unit([boundary.normals[3 * v], boundary.normals[3 * v + 1], boundary.normals[3 * v + 2]]);
+  const height = (x: Vec3): number => (plane ? x[0] * plane.normal[0] + x[1] * plane.normal[1] + x[2] * plane.normal[2] - plane.offset : -1);
+  const maker = new SoupMaker();
+  for (let f = 0; f < boundary.tet.length; ++f) {
+    const [a, b, c] = boundary.triangles.subarray(3 * f, 3 * f + 3);
+    const face = unit(areaVector(points, a, b, c));
+    const corners = [a, b, c].map((vertex) => {
+      const n = normal(vertex);
+      return { x: point(vertex), n: isCrease(n, face) ? face : n, vertex };
+    });
+    maker.add(plane ? clipped(corners, height) : corners, boundary.tet[f]);
+  }
+  if (!plane) return maker.soup();
+  for (let t = 0; t < tets.length / 4; ++t) {
+    const corners = [0, 1, 2, 3].map((k) => point(tets[4 * t + k]));
+    const polygon = section(corners, corners.map(height), plane.normal);
+    maker.add(
+      polygon.map((x) => ({ x, n: plane.normal, vertex: -1 })),
+      t,
+    );
+  }
+  return maker.soup();
+}

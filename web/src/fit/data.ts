@@ -1,0 +1,306 @@
+// A fit inside the page, as apps/viewer/fit_page.cpp packs it, and what follows from it.
+import { Pack } from "../pack";
+import type { MaybeNumber, Vec3 } from "../protocol";
+
+export interface ValueRow {
+  where: string;
+  value: MaybeNumber;
+  lower: MaybeNumber; // of 95 %
+  upper: MaybeNumber;
+}
+
+export interface Quantity {
+  name: string;
+  unit: string;
+  isLog: boolean; // looked at on a logarithmic scale
+  varies: boolean; // from tet to tet
+  hasDeviation: boolean;
+  rows: ValueRow[];
+}
+
+export interface Tip {
+  shape: "sphere" | "disc";
+  radius: number; // [m]
+  touch: Vec3;
+  center: Vec3;
+  axis: Vec3;
+}
+
+export interface Case {
+  name: string;
+  group: string;
+  first: number; // of its readings
+  count: number;
+  leftOut: boolean;
+  ok: boolean;
+  pressure: number; // [Pa]
+  gravity: number; // [m/s^2]
+  tip: Tip | null;
+  force: { measured: Vec3; deviation: Vec3; predicted: Vec3 | null; heldOut: Vec3 | null } | null; // [N]
+}
+
+export interface HeldOutGroup {
+  group: string;
+  ok: boolean;
+  failure: string;
+  peakMotion: MaybeNumber;
+  positionError: MaybeNumber;
+  positionNoise: MaybeNumber;
+  peakForce: MaybeNumber;
+  forceError: MaybeNumber;
+  forceNoise: MaybeNumber;
+}
+
+export interface Iteration {
+  iteration: number;
+  start: number;
+  weight: MaybeNumber;
+  misfit: MaybeNumber;
+  roughness: MaybeNumber;
+  objective: MaybeNumber;
+  decrement: MaybeNumber;
+}
+
+export interface WeightTrial {
+  weight: MaybeNumber;
+  misfit: MaybeNumber;
+  roughness: MaybeNumber;
+}
+
+export interface FitHead {
+  format: number;
+  name: string;
+  version: string;
+  model: string;
+  counts: {
+    vertices: number;
+    tets: number;
+    markers: number;
+    cases: number;
+    unknowns: number;
+    residuals: number;
+    equilibria: number;
+  };
+  fit: {
+    words: string;
+    success: boolean;
+    interrupted: boolean;
+    method: string;
+    rule: string;
+    iterations: number;
+    weight: MaybeNumber;
+    misfit: MaybeNumber; // |r|^2 / 2
+    roughness: MaybeNumber;
+    uniformMisfit: MaybeNumber;
+    informed: MaybeNumber;
+    noiseFactor: MaybeNumber;
+  };
+  quantities: Quantity[];
+  cases: Case[];
+  heldOut: { groups: HeldOutGroup[]; position: MaybeNumber; force: MaybeNumber } | null;
+  history: Iteration[];
+  weights: WeightTrial[];
+  notes: string[];
+  warnings: string[];
+  nextPoke: { site: Vec3; inward: Vec3; radius: number; depth: number; gain: MaybeNumber; words: string } | null;
+}
+
+export type Fit = Pack<FitHead>;
+
+// The page's fit; null: the page shows something else.
+export function findFit(): string | null {
+  const element = document.getElementById("fit");
+  return element ? (JSON.parse(element.textContent ?? "") as string) : null;
+}
+
+export async function unpackFit(text: string): Promise<Fit> {
+  const packed = Uint8Array.from(atob(text.trim()), (character) => character.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  const fit = new Pack<FitHead>(await new Response(stream).arrayBuffer());
+  if (fit.head.format !== 1) throw new Error(`the fit has format ${String(fit.head.format)}; this page reads 1`);
+  return fit;
+}
+
+export const length = (v: Vec3): number => Math.hypot(v[0], v[1], v[2]);
+export const minus = (a: Vec3, b: Vec3): Vec3 => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+export const dot = (a: Vec3, b: Vec3): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+
+export function vectorAt(list: Float32Array, i: number): Vec3 {
+  return [list[3 * i], list[3 * i + 1], list[3 * i + 2]];
+}
+
+// |r|^2 per reading: 1 when the fit is as close as the standard deviations say.
+export function closeness(misfit: MaybeNumber, residuals: number): MaybeNumber {
+  return misfit === null || !(residuals > 0) ? null : (2 * misfit) / residuals;
+}
+
+// The groups in the order of their first case.
+export function groupsOf(cases: readonly Case[]): { name: string; cases: number[] }[] {
+  const groups: { name: string; cases: number[] }[] = [];
+  cases.forEach((c, i) => {
+    const known = groups.find((group) => group.name === c.group);
+    if (known) known.cases.push(i);
+    else groups.push({ name: c.group, cases: [i] });
+  });
+  return groups;
+}
+
+// The way of a tip since it touched, of length 1; its axis when it has not moved.
+export function travel(tip: Tip): Vec3 {
+  const way = minus(tip.center, tip.touch);
+  const size = length(way);
+  const along = size > 1e-12 ? way : tip.axis;
+  const unit = length(along) || 1;
+  return [along[0] / unit, along[1] / unit, along[2] / unit];
+}
+
+export const depthOf = (tip: Tip): number => length(minus(tip.center, tip.touch));
+
+// What a chart of one group shows: load against answer, with one standard deviation of what was measured.
+export interface GroupCurve {
+  xLabel: string;
+  xUnit: string;
+  yLabel: string;
+  yUnit: string;
+  x: number[];
+  measured: MaybeNumber[];
+  deviation: number[];
+  fitted: MaybeNumber[];
+  heldOut: MaybeNumber[];
+  leftOut: boolean;
+}
+
+interface Sample {
+  x: number;
+  measured: MaybeNumber;
+  deviation: number;
+  fitted: MaybeNumber;
+  heldOut: MaybeNumber;
+}
+
+export function groupCurve(fit: Fit, group: { cases: number[] }): GroupCurve {
+  const cases = group.cases.map((c) => fit.head.cases[c]);
+  const pokes = cases.every((c) => c.tip !== null);
+  const forces = pokes && cases.some((c) => c.force !== null);
+  const pressed = !pokes && cases.some((c) => c.pressure !== 0);
+  const samples = cases.map((c, i) => ({ ...(forces ? forceSample(c) : motionSample(fit, c)), x: loadOf(c, i, pokes, pressed) }));
+  samples.sort((a, b) => a.x - b.x);
+  return {
+    xLabel: pokes ? "depth" : pressed ? "pressure" : "acceleration of gravity",
+    xUnit: pokes ? "m" : pressed ? "Pa" : "m/s²",
+    yLabel: forces ? "force" : "mean motion of markers",
+    yUnit: forces ? "N" : "m",
+    x: samples.map((s) => s.x),
+    measured: samples.map((s) => s.measured),
+    deviation: samples.map((s) => s.deviation),
+    fitted: samples.map((s) => s.fitted),
+    heldOut: samples.map((s) => s.heldOut),
+    leftOut: cases.some((c) => c.leftOut),
+  };
+}
+
+function loadOf(c: Case, i: number, pokes: boolean, pressed: boolean): number {
+  if (pokes && c.tip) return depthOf(c.tip);
+  if (pressed) return c.pressure;
+  return c.gravity || i;
+}
+
+// Along the way of the tip, of the tip on the body: positive where it pushes.
+function forceSample(c: Case): Omit<Sample, "x"> {
+  if (!c.tip || !c.force) return { measured: null, deviation: 0, fitted: null, heldOut: null };
+  const way = travel(c.tip);
+  const { measured, deviation, predicted, heldOut } = c.force;
+  return {
+    measured: dot(measured, way),
+    deviation: Math.hypot(way[0] * deviation[0], way[1] * deviation[1], way[2] * deviation[2]),
+    fitted: predicted && !c.leftOut ? dot(predicted, way) : null,
+    heldOut: heldOut ? dot(heldOut, way) : null,
+  };
+}
+
+function motionSample(fit: Fit, c: Case): Omit<Sample, "x"> {
+  const [marker, rest] = [fit.indices("reading.marker"), fit.floats("markers")];
+  const mean = (name: string): MaybeNumber => {
+    const positions = fit.floats(name);
+    let sum = 0;
+    for (let i = c.first; i < c.first + c.count; ++i) sum += length(minus(vectorAt(positions, i), vectorAt(rest, marker[i])));
+    return c.count > 0 && Number.isFinite(sum) ? sum / c.count : null;
+  };
+  const deviations = fit.floats("reading.deviation");
+  let variance = 0;
+  for (let i = c.first; i < c.first + c.count; ++i) variance += length(vectorAt(deviations, i)) ** 2 / 3;
+  return {
+    measured: mean("reading.measured"),
+    deviation: c.count > 0 ? Math.sqrt(variance) / c.count : 0,
+    fitted: c.leftOut ? null : mean("reading.predicted"),
+    heldOut: mean("reading.heldOut"),
+  };
+}
+
+// Residuals of everything that was fitted, in standard deviations.
+export interface Residuals {
+  all: number[];
+  ofCase: MaybeNumber[]; // root mean square of each case; null where nothing was fitted
+}
+
+export function residuals(fit: Fit): Residuals {
+  const [measured, predicted] = [fit.floats("reading.measured"), fit.floats("reading.predicted")];
+  const deviation = fit.floats("reading.deviation");
+  const all: number[] = [];
+  const ofCase = fit.head.cases.map((c) => {
+    if (c.leftOut || !c.ok) return null;
+    const own: number[] = [];
+    for (let i = 3 * c.first; i < 3 * (c.first + c.count); ++i) own.push((predicted[i] - measured[i]) / deviation[i]);
+    if (c.force?.predicted)
+      for (let k = 0; k < 3; ++k) own.push((c.force.predicted[k] - c.force.measured[k]) / c.force.deviation[k]);
+    all.push(...own);
+    return own.length > 0 ? Math.sqrt(own.reduce((sum, r) => sum + r * r, 0) / own.length) : null;
+  });
+  return { all, ofCase };
+}
+
+export interface WorstMarker {
+  reading: number;
+  case: number;
+  marker: number;
+  error: Vec3; // predicted - measured [m]
+  sigmas: number; // root mean square over its three coordinates
+}
+
+// The readings that the fit explains worst.
+export function worstMarkers(fit: Fit, count: number, onlyCase: number | null = null): WorstMarker[] {
+  const [measured, predicted] = [fit.floats("reading.measured"), fit.floats("reading.predicted")];
+  const [deviation, marker] = [fit.floats("reading.deviation"), fit.indices("reading.marker")];
+  const found: WorstMarker[] = [];
+  fit.head.cases.forEach((c, index) => {
+    if (!c.ok || (onlyCase !== null && index !== onlyCase)) return;
+    for (let i = c.first; i < c.first + c.count; ++i) {
+      const error = minus(vectorAt(predicted, i), vectorAt(measured, i));
+      const sigmas = Math.hypot(...error.map((e, k) => e / deviation[3 * i + k])) / Math.sqrt(3);
+      found.push({ reading: i, case: index, marker: marker[i], error, sigmas });
+    }
+  });
+  return found.sort((a, b) => b.sigmas - a.sigmas).slice(0, count);
+}
+
+// Counts of values in equal bins over [-limit, limit]; what lies outside is in the outermost.
+export function histogram(values: readonly number[], limit: number, bins: number): { middle: number[]; count: number[] } {
+  const width = (2 * limit) / bins;
+  const count = new Array<number>(bins).fill(0);
+  for (const value of values)
+    if (Number.isFinite(value)) ++count[Math.min(bins - 1, Math.max(0, Math.floor((value + limit) / width)))];
+  return { middle: count.map((_, i) => -limit + (i + 0.5) * width), count };
+}
+
+// What the numbers say, in one sentence.
+export function verdict(head: FitHead): { text: string; kind: "good" | "bad" | "plain" } {
+  const { fit, counts } = head;
+  if (fit.interrupted) return { text: "Interrupted: this is what was reached. The same command with --resume goes on.", kind: "bad" };
+  if (!fit.success) return { text: `Not converged: ${fit.words}. Do not rely on it.`, kind: "bad" };
+  const size = closeness(fit.misfit, counts.residuals);
+  if (size === null) return { text: fit.words, kind: "plain" };
+  if (size > 4)
+    return { text: "Converged, but it explains the readings worse than their standard deviations allow: the model is too simple, or the deviations are too small.", kind: "bad" };
+  if (size < 0.25) return { text: "Converged; the readings agree far better than their standard deviations say: those may be too large.", kind: "plain" };
+  return { text: "Converged; the fit explains the readings about as well as their standard deviations say it can.", kind: "good" };
+}

@@ -1,0 +1,219 @@
+// The report of a fit: what was found, how sure it is, and how well it explains what was measured.
+import "./fit.css";
+import { button, element, messageOf, type Child } from "../dom";
+import { Page } from "../page";
+import type { Chart } from "../plots/chart";
+import { plural, short, withUnit } from "../plots/numbers";
+import type { MaybeNumber, Vec3 } from "../protocol";
+import { Theme } from "../theme";
+import { CameraRig } from "../view/cameras";
+import { caseChart, histogramChart, historyChart, loadChart, weightChart } from "./charts";
+import { closeness, groupCurve, groupsOf, residuals, unpackFit, verdict, type Fit, type HeldOutGroup, type Quantity, type ValueRow } from "./data";
+import { FittedBody } from "./bodyView";
+import { Maps } from "./maps";
+import { Misfits } from "./misfits";
+
+function section(title: string, about: string, ...children: Child[]): HTMLElement {
+  return element("section", { "aria-label": title }, element("h2", {}, title), about ? element("p", { class: "about" }, about) : null, ...children);
+}
+
+const percent = (part: MaybeNumber): string => (part === null || part < 0 ? "–" : `${short(100 * part, 2)} %`);
+const ratio = (part: MaybeNumber, whole: MaybeNumber): MaybeNumber => (part === null || whole === null || !(whole > 0) ? null : part / whole);
+
+function valueText(value: MaybeNumber, unit: string): string {
+  return unit === "" ? short(value, 3) : withUnit(value, unit, 3);
+}
+
+function card(name: string, value: string, meaning: string): HTMLElement {
+  return element("div", { class: "card", title: meaning }, element("span", { class: "card-name" }, name), element("strong", {}, value), element("span", { class: "card-meaning" }, meaning));
+}
+
+function cards({ head }: Fit): HTMLElement {
+  const { fit, counts, heldOut } = head;
+  const list = element("div", { class: "cards" });
+  list.append(card("misfit per reading", short(closeness(fit.misfit, counts.residuals), 3), "|r|²: 1 is as close as the standard deviations say"));
+  if (fit.uniformMisfit !== null) list.append(card("one value for all", short(closeness(fit.uniformMisfit, counts.residuals), 3), "the same of a body of one material"));
+  if (heldOut && (heldOut.position ?? -1) >= 0) list.append(card("held-out positions", percent(heldOut.position), "error of what was not fitted, of the peak motion"));
+  if (heldOut && (heldOut.force ?? -1) >= 0) list.append(card("held-out forces", percent(heldOut.force), "error of what was not fitted, of the peak force"));
+  if (fit.informed !== null) list.append(card("learnt", `${short(fit.informed, 3)} of ${counts.unknowns}`, "directions of the material that the data determine"));
+  return list;
+}
+
+function valueTable(quantities: readonly Quantity[]): HTMLElement {
+  const row = (q: Quantity, r: ValueRow, first: boolean): HTMLElement =>
+    element(
+      "tr",
+      { class: first ? "first" : "" },
+      element("th", { scope: "row" }, first ? q.name : ""),
+      element("td", {}, r.where),
+      element("td", { class: "number" }, valueText(r.value, q.unit)),
+      element("td", { class: "number" }, r.lower === null ? "–" : `${valueText(r.lower, q.unit)} to ${valueText(r.upper, q.unit)}`),
+    );
+  return element(
+    "table",
+    { class: "values" },
+    element("thead", {}, element("tr", {}, ...["quantity", "where", "value", "95 % interval"].map((title, i) => element("th", { scope: "col", class: i > 1 ? "number" : "" }, title)))),
+    element("tbody", {}, ...quantities.flatMap((q) => q.rows.map((r, i) => row(q, r, i === 0)))),
+  );
+}
+
+function heldOutTable(groups: readonly HeldOutGroup[]): HTMLElement {
+  const titles = ["left out", "position error", "of peak motion", "force error", "of peak force"];
+  const row = (g: HeldOutGroup): HTMLElement => {
+    if (!g.ok) return element("tr", {}, element("th", { scope: "row" }, g.group), element("td", { colspan: "4" }, g.failure || "could not be predicted"));
+    const cells = [
+      withUnit(g.positionError, "m", 3),
+      percent(ratio(g.positionError, g.peakMotion)),
+      (g.peakForce ?? 0) > 0 ? withUnit(g.forceError, "N", 3) : "–",
+      percent(ratio(g.forceError, g.peakForce)),
+    ];
+    return element("tr", {}, element("th", { scope: "row" }, g.group), ...cells.map((text) => element("td", { class: "number" }, text)));
+  };
+  return element(
+    "table",
+    { class: "values" },
+    element("thead", {}, element("tr", {}, ...titles.map((title, i) => element("th", { scope: "col", class: i > 0 ? "number" : "" }, title)))),
+    element("tbody", {}, ...groups.map(row)),
+  );
+}
+
+function words(title: string, list: readonly string[], className: string): HTMLElement | null {
+  if (list.length === 0) return null;
+  return element("div", { class: `words ${className}` }, element("h3", {}, title), element("ul", {}, ...list.map((text) => element("li", {}, text))));
+}
+
+function figure(title: string, chart: Chart): HTMLElement {
+  return element("figure", {}, element("figcaption", {}, title), chart.element);
+}
+
+// Where up is: the weight pulls away from it, else pokes come mostly from above.
+function upward({ head }: Fit): Vec3 {
+  const sum: Vec3 = [0, 0, 0];
+  for (const { tip } of head.cases) if (tip) for (let k = 0; k < 3; ++k) sum[k] -= tip.axis[k];
+  const axis = [0, 1, 2].reduce((best, k) => (Math.abs(sum[k]) > Math.abs(sum[best]) ? k : best), 1);
+  const tips = head.cases.filter(({ tip }) => tip !== null).length;
+  const up: Vec3 = [0, 0, 0];
+  if (Math.abs(sum[axis]) > 0.7 * tips && tips > 0) up[axis] = Math.sign(sum[axis]);
+  else up[1] = 1;
+  return up;
+}
+
+class FitReport {
+  private readonly charts: Chart[] = [];
+
+  constructor(
+    private readonly fit: Fit,
+    private readonly page: Page,
+  ) {}
+
+  build(): HTMLElement {
+    const { fit } = this;
+    const body = new FittedBody({ points: fit.floats("points"), tets: fit.indices("tets") }, upward(fit));
+    const rig = new CameraRig();
+    rig.show(fit.head.name, body.lower, body.upper, body.up);
+    rig.pan(-0.12, 0, 1); // to the left of the colour bar, by a part of the view's height
+    const maps = new Maps(fit, body, rig);
+    const misfits = new Misfits(fit, body, rig);
+    const root = element("main", { class: "fit" }, this.found(), this.maps(maps), this.loads(), this.residuals(misfits), this.made());
+    this.page.on("theme", () => {
+      for (const chart of this.charts) chart.retheme();
+      maps.retheme();
+      misfits.retheme();
+    });
+    return root;
+  }
+
+  private found(): HTMLElement {
+    const { head } = this.fit;
+    const said = verdict(head);
+    const next = head.nextPoke ? element("div", { class: "words next" }, element("h3", {}, "Next best poke"), element("p", {}, head.nextPoke.words)) : null;
+    return section(
+      "What was found",
+      "",
+      element("p", { class: `verdict ${said.kind}` }, said.text),
+      cards(this.fit),
+      element("div", { class: "columns" }, element("div", {}, valueTable(head.quantities)), element("div", {}, words("Warnings", head.warnings, "warnings"), next, words("What was assumed", head.notes, ""))),
+    );
+  }
+
+  private maps(maps: Maps): HTMLElement {
+    return section("Stiffness and how sure it is", "", maps.element);
+  }
+
+  private loads(): HTMLElement {
+    const { fit } = this;
+    const grid = element("div", { class: "charts" });
+    for (const group of groupsOf(fit.head.cases)) {
+      const curve = groupCurve(fit, group);
+      const chart = this.keep(loadChart(group.name, curve));
+      grid.append(figure(curve.leftOut ? `${group.name} (left out)` : group.name, chart));
+    }
+    const groups = fit.head.heldOut?.groups ?? [];
+    return section(
+      "Measured against fitted",
+      "Bars are one standard deviation of what was measured. The dashed curve is predicted by a material that was fitted without that group.",
+      grid,
+      groups.length > 0 ? heldOutTable(groups) : null,
+    );
+  }
+
+  private residuals(misfits: Misfits): HTMLElement {
+    const found = residuals(this.fit);
+    const names = this.fit.head.cases.map((c) => c.name);
+    return section(
+      "What is not explained",
+      "Residuals by standard deviations: fitted minus measured. A histogram wider than the normal curve, or a case that stands out, tells of a model too simple or of a bad reading.",
+      element("div", { class: "charts" }, figure("All readings", this.keep(histogramChart(found.all))), figure("By case", this.keep(caseChart(names, found.ofCase)))),
+      misfits.element,
+    );
+  }
+
+  private made(): HTMLElement {
+    const { head } = this.fit;
+    const [weights, history] = [weightChart(head), historyChart(head)];
+    const { fit, counts } = head;
+    const facts = `${head.model}, ${fit.method}: ${fit.words} after ${plural(fit.iterations, "iteration")} and ${counts.equilibria} equilibria; ${counts.unknowns} unknowns, ${counts.residuals} readings, weight ${short(fit.weight, 3)}.`;
+    return section(
+      "How it was fitted",
+      facts,
+      element(
+        "div",
+        { class: "charts" },
+        weights ? figure("The weight of the smoothness", this.keep(weights)) : null,
+        history ? figure("Convergence", this.keep(history)) : null,
+      ),
+    );
+  }
+
+  private keep(chart: Chart): Chart {
+    this.charts.push(chart);
+    return chart;
+  }
+}
+
+function header({ head }: Fit, theme: Theme): HTMLElement {
+  const { counts } = head;
+  const facts = [head.model, plural(counts.tets, "tet"), plural(counts.markers, "marker"), plural(counts.cases, "case")];
+  return element(
+    "header",
+    { class: "fit-header" },
+    element("h1", {}, `Fit of ${head.name}`),
+    element("span", { class: "facts" }, facts.join(" · ")),
+    element("span", { class: "facts" }, `Aspic ${head.version}`),
+    button({ icon: "theme", label: "Light or dark" }, () => theme.toggle()),
+  );
+}
+
+export async function openFit(text: string): Promise<void> {
+  document.body.className = "fit-page";
+  document.documentElement.classList.add("fit-page");
+  try {
+    const fit = await unpackFit(text);
+    document.title = `Fit of ${fit.head.name}`;
+    const page = new Page();
+    const theme = new Theme(page);
+    document.body.replaceChildren(header(fit, theme), new FitReport(fit, page).build());
+  } catch (error) {
+    document.body.replaceChildren(element("p", { class: "damaged" }, `This fit cannot be shown: ${messageOf(error)}. Make it again with aspic fit.`));
+  }
+}

@@ -1,0 +1,145 @@
+// Two views of the fitted body side by side: a quantity, and how sure it is; both cut alike, seen by the same camera.
+import { element } from "../dom";
+import { checkbox, choice } from "../plots/dom";
+import type { Vec3 } from "../protocol";
+import { sceneAxes, type CameraRig } from "../view/cameras";
+import type { MapName } from "../view/colourMaps";
+import { makeArrows, makeBalls } from "./arrows";
+import { BodyView, type Cut, type FittedBody, type Note, type Shown } from "./bodyView";
+import type { Fit, Quantity } from "./data";
+
+interface Field {
+  key: string;
+  title: string;
+  shown: Shown;
+}
+
+const kNames: Record<string, string> = { young: "Young's modulus", poisson: "Poisson's ratio", density: "density" };
+
+// The factor within which a logarithm of that deviation is known with 95 %.
+const kDeviations95 = 1.96;
+
+function fieldsOf(fit: Fit): { values: Field[]; doubts: Field[] } {
+  const values: Field[] = [];
+  const doubts: Field[] = [];
+  const add = (list: Field[], key: string, title: string, label: string, unit: string, numbers: Float32Array, map: MapName, log: boolean, range?: [number, number]): void => {
+    list.push({ key, title, shown: { label, unit, values: numbers, map, log, range } });
+  };
+  const fitted = [...fit.head.quantities].filter((q) => fit.arrays.has(`tet.${q.name}`));
+  for (const q of fitted) {
+    const name = kNames[q.name] ?? q.name;
+    add(values, q.name, name, q.name === "young" ? "E" : q.name, q.unit, fit.floats(`tet.${q.name}`), "viridis", q.isLog);
+    addDoubts(q, name);
+  }
+  function addDoubts(q: Quantity, name: string): void {
+    const [deviation, reduction] = [`tet.${q.name}_deviation`, `tet.${q.name}_reduction`];
+    if (fit.arrays.has(deviation)) {
+      const sigma = fit.floats(deviation);
+      const numbers = q.isLog ? sigma.map((s) => Math.exp(kDeviations95 * s)) : sigma;
+      const label = q.isLog ? "factor" : "deviation";
+      add(doubts, `${q.name}.deviation`, `${name}: ${q.isLog ? "known within a factor" : "deviation, as fitted"}`, label, "", numbers, "cividis", false);
+    }
+    if (fit.arrays.has(reduction)) add(doubts, `${q.name}.reduction`, `${name}: learnt, from 0 nothing to 1 all`, "learnt", "", fit.floats(reduction), "blue_orange", false, [0, 1]);
+  }
+  return { values, doubts };
+}
+
+export class Maps {
+  readonly element = element("div", { class: "maps" });
+  private readonly views: BodyView[] = [];
+  private cut: Cut;
+  private isCut = true;
+  private showsMarkers = false;
+  private showsNext = true;
+
+  constructor(
+    private readonly fit: Fit,
+    private readonly body: FittedBody,
+    rig: CameraRig,
+  ) {
+    const { values, doubts } = fieldsOf(fit);
+    this.cut = cutInFront(body.up);
+    const row = element("div", { class: "map-row" });
+    if (values.length > 0) row.append(this.column("Quantity", values, rig));
+    if (doubts.length > 0) row.append(this.column("Uncertainty", doubts, rig));
+    this.element.append(this.controls(), row, element("p", { class: "hint" }, "Drag to turn, shift-drag to move, ctrl-wheel to zoom, double-click to see all. Both views move together."));
+    this.mark();
+  }
+
+  retheme(): void {
+    for (const view of this.views) view.retheme();
+  }
+
+  private column(label: string, fields: Field[], rig: CameraRig): HTMLElement {
+    const view = new BodyView(this.body, rig, `${label} on the body`);
+    this.views.push(view);
+    view.show(fields[0].shown);
+    view.slice(this.cut);
+    const pick = choice("", label, fields.map(({ key, title }) => [key, title] as const), fields[0].key, (key) => {
+      const field = fields.find((f) => f.key === key);
+      if (field) view.show(field.shown);
+    });
+    return element("div", { class: "map" }, pick.element, view.element);
+  }
+
+  private controls(): HTMLElement {
+    const slice = (): void => {
+      position.disabled = !this.isCut;
+      for (const view of this.views) view.slice(this.isCut ? this.cut : null);
+    };
+    const position = element("input", { type: "range", min: "0", max: "1", step: "0.01", value: "0.5", "aria-label": "Where the cut is" });
+    position.addEventListener("input", () => {
+      this.cut = { ...this.cut, at: position.valueAsNumber };
+      slice();
+    });
+    const axis = choice("cut", "Looks inside the body", [["off", "off"], ["0", "across x"], ["1", "across y"], ["2", "across z"]], String(this.cut.axis), (value) => {
+      this.isCut = value !== "off";
+      if (this.isCut) this.cut = { ...this.cut, axis: Number(value) as 0 | 1 | 2 };
+      slice();
+    });
+    axis.select.dataset.control = "cut";
+    const other = checkbox("other half", "Shows what the cut hides", this.cut.other, (on) => {
+      this.cut = { ...this.cut, other: on };
+      slice();
+    });
+    const markers = checkbox("markers", "Shows the markers at rest", false, (on) => {
+      this.showsMarkers = on;
+      this.mark();
+    });
+    const next = this.fit.head.nextPoke ? checkbox("next poke", "Shows where a poke would tell most", true, (on) => {
+      this.showsNext = on;
+      this.mark();
+    }) : null;
+    const wires = checkbox("edges", "Shows the edges of the tets", true, (on) => {
+      for (const view of this.views) view.showWires(on);
+    });
+    return element("div", { class: "map-controls plot-panel" }, axis.element, position, other.element, markers.element, next?.element ?? null, wires.element);
+  }
+
+  private mark(): void {
+    const poke = this.showsNext ? this.fit.head.nextPoke : null;
+    const size = this.body.size;
+    for (const view of this.views) {
+      const objects = [];
+      const notes: Note[] = [];
+      if (this.showsMarkers) objects.push(makeBalls(vectors(this.fit.floats("markers")), 0.006 * size, "#1b1f27"));
+      if (poke) {
+        const back = (by: number): Vec3 => [0, 1, 2].map((k) => poke.site[k] - by * poke.inward[k]) as Vec3;
+        objects.push(makeArrows([{ from: back(0.2 * size), to: poke.site }], 0.008 * size, "#d55e00"));
+        notes.push({ at: back(0.2 * size), words: "next best poke" });
+      }
+      view.mark(objects, notes);
+    }
+  }
+}
+
+// Through the middle, so that the camera looks onto it.
+function cutInFront(up: Vec3): Cut {
+  const front = sceneAxes(up).front.toArray();
+  const axis = [0, 1, 2].reduce((best, k) => (Math.abs(front[k]) > Math.abs(front[best]) ? k : best)) as 0 | 1 | 2;
+  return { axis, at: 0.5, other: front[axis] < 0 };
+}
+
+function vectors(list: Float32Array): Vec3[] {
+  return Array.from({ length: list.length / 3 }, (_, i) => [list[3 * i], list[3 * i + 1], list[3 * i + 2]] as Vec3);
+}

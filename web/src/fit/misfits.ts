@@ -1,0 +1,77 @@
+// Where the fit errs: the worst markers as arrows from where they were measured to where the fit puts them, many times
+// longer than they are.
+import { element } from "../dom";
+import { choice } from "../plots/dom";
+import { roundStep } from "../view/ranges";
+import { short, withUnit } from "../plots/numbers";
+import type { Vec3 } from "../protocol";
+import type { CameraRig } from "../view/cameras";
+import { makeArrows, makeBalls, type Arrow } from "./arrows";
+import { BodyView, type FittedBody, type Note } from "./bodyView";
+import { length, vectorAt, worstMarkers, type Fit, type WorstMarker } from "./data";
+
+const kArrows = 60;
+const kRows = 10;
+const kLongest = 0.25; // of the body's size
+
+export class Misfits {
+  readonly element: HTMLElement;
+  private readonly view: BodyView;
+  private readonly note = element("p", { class: "hint" });
+  private readonly table = element("tbody");
+
+  constructor(
+    private readonly fit: Fit,
+    private readonly body: FittedBody,
+    rig: CameraRig,
+  ) {
+    this.view = new BodyView(body, rig, "The worst markers on the body");
+    this.view.showWires(false);
+    const cases: [string, string][] = [["all", "all cases"], ...fit.head.cases.map((c, i): [string, string] => [String(i), c.name])];
+    const pick = choice("worst markers of", "Whose errors are drawn", cases, "all", (value) => this.show(value === "all" ? null : Number(value)));
+    const titles = ["marker", "case", "error", "deviations"];
+    this.element = element(
+      "div",
+      { class: "map-row misfits" },
+      element("div", { class: "map plot-panel" }, pick.element, this.view.element, this.note),
+      element(
+        "table",
+        { class: "values" },
+        element("thead", {}, element("tr", {}, ...titles.map((t, i) => element("th", { scope: "col", class: i > 1 ? "number" : "" }, t)))),
+        this.table,
+      ),
+    );
+    this.show(null);
+  }
+
+  retheme(): void {
+    this.view.retheme();
+  }
+
+  private show(onlyCase: number | null): void {
+    const worst = worstMarkers(this.fit, kArrows, onlyCase);
+    const rest = this.fit.floats("markers");
+    const largest = Math.max(...worst.map((w) => length(w.error)), 1e-300);
+    const scale = largest > 1e-300 ? magnification((kLongest * this.body.size) / largest) : 1;
+    const arrows: Arrow[] = worst.map((w) => {
+      const from = vectorAt(rest, w.marker);
+      return { from, to: [0, 1, 2].map((k) => from[k] + scale * w.error[k]) as Vec3 };
+    });
+    const size = this.body.size;
+    const notes: Note[] = worst.slice(0, 1).map((w) => ({ at: vectorAt(rest, w.marker), words: `marker ${w.marker + 1}: ${withUnit(length(w.error), "m", 3)}` }));
+    this.view.mark([makeArrows(arrows, 0.005 * size, "#d55e00"), makeBalls(arrows.map((a) => a.from), 0.006 * size, "#1b1f27")], notes);
+    this.note.textContent = worst.length > 0 ? `Arrows are drawn ${short(scale, 3)} times as long as the errors, at the markers' places at rest.` : "No positions were read in this case.";
+    this.table.replaceChildren(...worst.slice(0, kRows).map((w) => this.row(w)));
+  }
+
+  private row(w: WorstMarker): HTMLElement {
+    const cells = [String(w.marker + 1), this.fit.head.cases[w.case].name, withUnit(length(w.error), "m", 3), short(w.sigmas, 3)];
+    return element("tr", {}, ...cells.map((text, i) => element("td", { class: i > 1 ? "number" : "" }, text)));
+  }
+}
+
+// A round number near the wished one, and not above it.
+function magnification(wished: number): number {
+  const step = roundStep(wished);
+  return step > wished * (1 + 1e-9) ? roundStep(wished / 2.5) : step;
+}
