@@ -116,6 +116,7 @@ void Session::Impl::pin(Arguments& arguments) {
     shown->side.pin(anchors(shown->surface, same_vertices(a->surface, vertices, shown->surface)), pinned);
     tell(pins_message(*shown));
   }
+  keep_bench();
   ++version;
   note({{"do", "pin"}, {"side", "a"}, {"vertices", vertices}, {"pinned", pinned}});
 }

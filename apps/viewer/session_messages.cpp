@@ -83,7 +83,7 @@ Message scene_message(const ShownSide& shown, const std::string& field) {
                {"implicit", simulation.is_implicit()},
                {"solver", simulation.is_implicit() ? simulation.solver_description() : ""},
                {"potentials", simulation.potential_names()},
-               {"fields", fields_json(fields_of(model))},
+               {"fields", fields_json(shown.side.fields())},
                {"field", field},
                {"settings", settings_json(steered.document)},
                {"stiffness", shown.side.stiffness()}});

@@ -28,6 +28,19 @@ double positive(Arguments& arguments, const char* key, double most) {
   return value;
 }
 
+Json command_of(const SurfacePoint& point, const Tip& tip) {
+  return {{"do", "touch"},
+          {"side", "a"},
+          {"triangle", point.triangle},
+          {"weights", {point.weights[0], point.weights[1], point.weights[2]}},
+          {"shape", tip.shape == TipShape::disc ? "disc" : "sphere"},
+          {"contact", tip.contact == TipContact::sliding ? "sliding" : "bonded"},
+          {"radius", tip.radius},
+          {"stiffness", tip.stiffness}};
+}
+
+}  // namespace
+
 Tip tip_of(Arguments& touch, const Model& model, const Surface& cage) {
   Tip tip{.radius = usual_radius(cage)};
   if (touch.has("shape")) {
@@ -45,19 +58,6 @@ Tip tip_of(Arguments& touch, const Model& model, const Surface& cage) {
   tip.stiffness = touch.has("stiffness") ? positive(touch, "stiffness", 1e20) : usual_layer(model, tip.radius);
   return tip;
 }
-
-Json command_of(const SurfacePoint& point, const Tip& tip) {
-  return {{"do", "touch"},
-          {"side", "a"},
-          {"triangle", point.triangle},
-          {"weights", {point.weights[0], point.weights[1], point.weights[2]}},
-          {"shape", tip.shape == TipShape::disc ? "disc" : "sphere"},
-          {"contact", tip.contact == TipContact::sliding ? "sliding" : "bonded"},
-          {"radius", tip.radius},
-          {"stiffness", tip.stiffness}};
-}
-
-}  // namespace
 
 // The tip touches the boundary of the tets, whatever skin is shown.
 void Session::Impl::touch(Arguments& arguments) {

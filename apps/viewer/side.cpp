@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "scene/solver_options.h"
 
@@ -18,7 +20,18 @@ Side::Side(SteeredScene steered, size_t timeline_bytes) : steered_(std::move(ste
 }
 
 View Side::view() const {
-  return {simulation(), iteration_ >= 0 ? std::span<const double>(iterate_) : simulation().state().q};
+  return {simulation(), iteration_ >= 0 ? std::span<const double>(iterate_) : simulation().state().q, further_};
+}
+
+std::vector<Field> Side::fields() const {
+  std::vector<Field> fields = fields_of(model());
+  for (const TetField& own : further_) fields.push_back(own.field);
+  return fields;
+}
+
+bool Side::has_field(const std::string& name) const {
+  const std::vector<Field> all = fields();
+  return std::any_of(all.begin(), all.end(), [&](const Field& f) { return f.name == name; });
 }
 
 // ---------------------------------------------------------------- moments

@@ -38,6 +38,9 @@ class Side {
   const StepRows& rows() const { return rows_; }
   const Timeline& timeline() const { return timeline_; }
   const State& start() const { return *start_; }
+  std::vector<Field> fields() const;
+  bool has_field(const std::string& name) const;
+  void show_further(std::vector<TetField> further) { further_ = std::move(further); }  // beside those of the model
 
   // ---- steps
   Progress step(const Consent& go_on);     // the next one, or what is left of the one under way
@@ -127,6 +130,7 @@ class Side {
   std::vector<double> iterate_;
   IterationRows iterations_;  // of the step that is being taken
   bool is_blown_up_ = false;
+  std::vector<TetField> further_;
 };
 
 }  // namespace aspic::viewer

@@ -67,6 +67,7 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
   readonly cameras: { a: CameraRig; b: CameraRig } = { a: new CameraRig(), b: new CameraRig() };
   fields: Field[] = []; // of side a
   field = ""; // shown; "" for none
+  showsBench = false; // its markers
   private readonly running = new RunningRange();
   private measured = ""; // field whose range is running
 
