@@ -11,7 +11,7 @@
 namespace aspic::viewer {
 namespace {
 
-// A small block on a table, stiffer on one half; no coarser mesh keeps its shape so well that the fit would differ much.
+// A small block on a table, stiffer on one half.
 const std::string kBlock = R"(
 gravity = [0, 0, 0]
 [time]
@@ -115,8 +115,10 @@ TEST(Bench, SavesADataSetThatCanBeReadAgain) {
 TEST(Bench, AFitFindsTheStifferHalfAndIsSimulated) {
   Page page(kBlock);
   EXPECT_NE(page.refused({{"do", "fit"}}).find("nothing is recorded"), std::string::npos);
-  page.send({{"do", "bench"}, {"markers", 60}, {"noise", 0.002}});
+  page.send({{"do", "bench"}, {"markers", 60}, {"noise", 0.002}, {"same_mesh", true}});
+  EXPECT_TRUE(page.capture()["same_mesh"]);
   page.send(poke(6, 1));
+  EXPECT_NE(page.refused({{"do", "bench"}, {"same_mesh", false}}).find("forget them first"), std::string::npos);
   page.send({{"do", "fit"}});
   EXPECT_TRUE(page.capture()["fit"]["running"]);
   page.refused({{"do", "fit"}});

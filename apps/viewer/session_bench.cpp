@@ -76,9 +76,18 @@ void Session::Impl::set_bench(Arguments& arguments) {
     wanted.noise = arguments.number("noise");
     if (!(wanted.noise >= 0 && wanted.noise <= 1)) refuse("bench.noise", wanted.noise, "0 to 1 is expected");
   }
+  if (arguments.has("same_mesh")) wanted.same_mesh = arguments.boolean("same_mesh");
   arguments.finish();
-  bench().set_options(wanted);
+  if (wanted.same_mesh != capture.options.same_mesh) {
+    if (capture.bench && !capture.bench->data().experiment.cases.empty())
+      throw InvalidInput("the recorded cases are those of the other mesh; forget them first");
+    capture.bench.reset();
+    forget_fit();
+  } else if (capture.bench) {
+    capture.bench->set_options(wanted);
+  }
   capture.options = wanted;
+  bench();
   tell_capture();
 }
 

@@ -10,7 +10,7 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr double kShareOfBody = 0.06;  // radius / diagonal
+constexpr double kShareOfBody = 0.08;  // radius / diagonal
 constexpr double kEdges = 0.8;         // radius / mean edge, at least: a tip that falls between vertices feels one tet
 constexpr double kLayer = 100;
 

@@ -5,7 +5,7 @@
 
 namespace aspic::viewer {
 
-// About a twentieth of the body, and wide enough for its triangles [m].
+// About a twelfth of the body, and wide enough for its triangles [m].
 double usual_radius(const Surface& cage);
 // A layer a hundred times as stiff as the body under the tip, which gives way by a hundredth of the depth [Pa/m].
 double usual_layer(const Model& model, double radius);

@@ -30,7 +30,7 @@ export type Command = { id?: number } & (
   | ({ do: "touch"; side: SideName; triangle: number; weights: Vec3; stiffness?: number } & Partial<TipChoice>)
   | { do: "press"; depth: number; shift?: Vec3 } // to so far along the tip's axis from where it touched [m]
   | { do: "lift" } // the tip is taken away
-  | { do: "bench"; markers?: number; noise?: number; seed?: number } // sets the virtual bench up
+  | { do: "bench"; markers?: number; noise?: number; seed?: number; same_mesh?: boolean } // sets the virtual bench up
   | { do: "record"; depths?: number } // the tip's pose as load cases, in equal parts up to it
   | ({ do: "poke_all"; sites: number; depths: number; depth: number } & Partial<TipChoice>) // all over the body
   | { do: "forget"; case?: number } // a recorded case; all without it

@@ -19,7 +19,7 @@ function probe(change: Partial<ProbeState> = {}): ProbeState {
 
 test("the way in is that of the inward normal on the screen, and down where it is along the line of sight", () => {
   const inward = inwardNormal(kTop.positions, kTop.triangles, 0);
-  assert.deepEqual(inward.map(Math.round), [0, 0, -1]);
+  assert.ok(inward[2] < -0.99);
   const way = wayIn(kFront, [0, 0, 0], inward);
   assert.ok(Math.abs(way.direction[1] - 1) < 1e-9); // down on the screen
   assert.ok(Math.abs(depthOf(way, [5, 20]) - 20 * 0.05) < 1e-9); // 10 m high, 200 pixels
@@ -31,7 +31,7 @@ test("the way in is that of the inward normal on the screen, and down where it i
 test("markers lie where their weights put them, and show their front", () => {
   const [dot] = markersOn(kTop, { triangles: [0], weights: [0.5, 0.25, 0.25] });
   assert.deepEqual(dot!.at, [0.5, 0.5, 1]);
-  assert.deepEqual(dot!.normal.map(Math.round), [0, 0, 1]);
+  assert.ok(dot!.normal[2] > 0.99);
   assert.deepEqual(markersOn(kTop, { triangles: [7], weights: [1, 0, 0] }), []); // of a surface that has gone
   assert.equal(nearestOn([dot!], [3, 3, 3]).normal, dot!.normal);
 });

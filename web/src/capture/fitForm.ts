@@ -1,6 +1,7 @@
 // The fit: begun, watched while it converges, judged against the truth, and simulated.
 import { button, element, messageOf } from "../dom";
 import type { Page } from "../page";
+import { checkbox } from "../plots/dom";
 import { short, withUnit } from "../plots/numbers";
 import type { Capture, CaptureFit, Command } from "../protocol";
 import type { Store } from "../store";
@@ -35,8 +36,11 @@ export class FitForm {
   private readonly status = element("p", { class: "capture-status", role: "status" });
   private readonly result = element("p", { class: "capture-result" });
   private readonly bar = element("progress", { max: "1", value: "0", "aria-label": "How well the data are met" });
+  private readonly sameMesh = checkbox("on the mesh that was measured", "An inverse crime: sharper than any real measurement would be. Forget the recorded cases to change it", false, (on) =>
+    this.send({ do: "bench", same_mesh: on }),
+  );
   private readonly colours = element("div", { class: "capture-row", role: "group", "aria-label": "Colours of the body" });
-  private readonly note = element("p", { class: "faint capture-note" });
+  private readonly note = element("div", { class: "faint capture-note" });
 
   constructor(
     private readonly store: Store,
@@ -48,7 +52,7 @@ export class FitForm {
       this.colours.append(choose);
     }
     const buttons = element("div", { class: "capture-row" }, this.begin, this.end, this.simulate);
-    this.element.append(element("h3", {}, "3  Fit"), buttons, this.bar, this.status, this.colours, this.result, this.note);
+    this.element.append(element("h3", {}, "3  Fit"), buttons, this.sameMesh.element, this.bar, this.status, this.colours, this.result, this.note);
     store.on("scene", () => this.mark());
     this.show(null);
   }
@@ -67,7 +71,10 @@ export class FitForm {
     this.result.textContent = known
       ? `E from ${withUnit(fit.softest, "Pa", 2)} to ${withUnit(fit.stiffest, "Pa", 2)}; it misses the truth by ${errorText(fit.error!)} on average.`
       : "";
-    this.note.textContent = [...(fit && !fit.running ? fit.warnings.slice(0, 2) : []), ...meshNote(capture)].join(" ");
+    this.sameMesh.input.disabled = !steers || (capture?.cases.length ?? 0) > 0;
+    if (capture && capture.tets > 0) this.sameMesh.input.checked = capture.same_mesh;
+    const notes = [...meshNote(capture), ...(fit && !fit.running ? [...(fit.next ? [`Next poke: ${fit.next.words}`] : []), ...fit.warnings] : [])];
+    if (this.note.textContent !== notes.join("")) this.note.replaceChildren(...notes.map((text) => element("p", {}, `${text[0]!.toUpperCase()}${text.slice(1)}`)));
     this.mark();
   }
 
