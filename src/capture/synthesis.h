@@ -51,6 +51,9 @@ struct Synthesis {
 // Of the one body of a scene, held where its pins hold it. Throws InvalidInput when there is nothing to measure.
 Synthesis synthesize(const Scene& scene, const SynthesisOptions& options, const SynthesisWitness& witness = {});
 
+// Of the one body of a scene, by the user's numbers. Throws InvalidInput.
+FittedMaterial true_material(const Scene& scene);
+
 // A mesh of the same body with edges about one and a half times as long: its shape generated anew, or its surface
 // filled by aspic-mesh. None: neither is possible; the reason is among the notes.
 std::optional<TetMesh> coarser_mesh(const Scene& scene, const std::filesystem::path& mesher,
