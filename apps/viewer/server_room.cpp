@@ -104,12 +104,13 @@ void Room::receive(PageId id, std::string text) {
   const bool steers = steers_ == id;
   if (steers && (head.does == "grab" || head.does == "release")) is_holding_ = head.does == "grab";
   const Urgency urgency = steers ? urgency_of(head.does) : Urgency::none;
-  const bool is_added = simulation_->add({.page = id,
-                                          .role = steers ? Role::steers : Role::watches,
-                                          .text = std::move(text),
-                                          .urgency = urgency,
-                                          .is_question = head.does.empty(),
-                                          .is_superseded = (head.does == "move" || head.does == "press") && head.id == "null"});
+  const bool is_added =
+      simulation_->add({.page = id,
+                        .role = steers ? Role::steers : Role::watches,
+                        .text = std::move(text),
+                        .urgency = urgency,
+                        .is_question = head.does.empty(),
+                        .is_superseded = (head.does == "move" || head.does == "press") && head.id == "null"});
   if (!is_added) return send(*page, refusal(head.id, "too many messages wait for the step under way"));
   if (urgency != Urgency::none && !is_watching_urgency_) watch_urgency();
 }
