@@ -35,10 +35,10 @@ class Listener {
       : task_(task), tell_(tell), plan_(completed(task.plan, task.data.experiment)) {}
 
   FitOutcome run() {
-    const FitWitness witness{
-        .begin = [this](FitStage stage, const std::string&) { begin(stage); },
-        .iterate = [this](FitStage stage, const FitIteration& i, std::span<const double> p) { return hear(stage, i, p); },
-        .go_on = [this] { return goes_on_ = goes_on_ && tell_({}); }};
+    const FitWitness witness{.begin = [this](FitStage stage, const std::string&) { begin(stage); },
+                             .iterate = [this](FitStage stage, const FitIteration& i,
+                                               std::span<const double> p) { return hear(stage, i, p); },
+                             .go_on = [this] { return goes_on_ = goes_on_ && tell_({}); }};
     return fit_material(task_.data, task_.plan, {}, witness);
   }
 
