@@ -9,6 +9,8 @@ const char* words_of(FitStage stage) {
   switch (stage) {
     case FitStage::uniform:
       return "one value for the whole body";
+    case FitStage::mesh_errors:
+      return "what the mesh gets wrong, by a finer one";
     case FitStage::field:
       return "a value for every tet";
     case FitStage::uncertainty:
