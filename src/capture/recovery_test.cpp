@@ -14,12 +14,12 @@ class Recovery : public FolderTest {
  protected:
   Scene block(const std::string& young, int cells) {
     const std::string n = std::to_string(cells);
-    return load_scene(folder.write(
-        "block.toml", "gravity = [0, 0, 0]\n[time]\nduration = 0.1\n[[body]]\nname = \"block\"\nshape = { box = { lower "
-                      "= [0, 0, 0], upper = [0.1, 0.1, 0.1], cells = [" +
-                          n + ", " + n + ", " + n +
-                          "] } }\nmaterial = { model = \"neo_hookean\", young = \"" + young +
-                          "\", poisson = 0.4 }\n[[body.pin]]\nwhere = \"Z < 1e-6\"\n"));
+    return load_scene(
+        folder.write("block.toml",
+                     "gravity = [0, 0, 0]\n[time]\nduration = 0.1\n[[body]]\nname = \"block\"\nshape = { box = { lower "
+                     "= [0, 0, 0], upper = [0.1, 0.1, 0.1], cells = [" +
+                         n + ", " + n + ", " + n + "] } }\nmaterial = { model = \"neo_hookean\", young = \"" + young +
+                         "\", poisson = 0.4 }\n[[body.pin]]\nwhere = \"Z < 1e-6\"\n"));
   }
   static SynthesisOptions bench(int pokes, double noise) {
     SynthesisOptions options;
