@@ -54,13 +54,16 @@ std::vector<PokeSite> flat_sites(const TetMesh& mesh, const std::vector<Triangle
 
 std::vector<int> free_vertices(const TetMesh& mesh, const std::vector<Triangle>& surface, std::span<const int> fixed,
                                double radius) {
-  std::vector<char> is_on_surface(mesh.rest.size(), 0);
-  for (const Triangle& t : surface)
-    for (const int v : t) is_on_surface[v] = 1;
+  std::vector<char> is_fixed(mesh.rest.size(), 0), is_on_surface(mesh.rest.size(), 0), is_beside(mesh.rest.size(), 0);
+  for (const int v : fixed) is_fixed[v] = 1;
+  for (const Triangle& t : surface) {
+    const bool is_held = std::ranges::any_of(t, [&](int v) { return is_fixed[v] != 0; });  // a tip would press on it
+    for (const int v : t) is_on_surface[v] = 1, is_beside[v] |= is_held ? 1 : 0;
+  }
   std::vector<int> result;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const auto is_near = [&](int f) { return length(mesh.rest[f] - mesh.rest[v]) <= radius; };
-    if (is_on_surface[v] && std::ranges::none_of(fixed, is_near)) result.push_back(v);
+    if (is_on_surface[v] && !is_beside[v] && std::ranges::none_of(fixed, is_near)) result.push_back(v);
   }
   return result;
 }

@@ -1,0 +1,84 @@
+// From a scene to its material again: the virtual bench, then a fit, judged against the truth. docs/capture_results.md
+// has more and harder cases.
+#include <gtest/gtest.h>
+
+#include "capture/capture_cases_test.h"
+#include "capture/fit_run.h"
+#include "capture/judge.h"
+#include "capture/synthesis.h"
+
+namespace aspic {
+namespace {
+
+class Recovery : public FolderTest {
+ protected:
+  Scene block(const std::string& young, int cells) {
+    const std::string n = std::to_string(cells);
+    return load_scene(
+        folder.write("block.toml",
+                     "gravity = [0, 0, 0]\n[time]\nduration = 0.1\n[[body]]\nname = \"block\"\nshape = { box = { lower "
+                     "= [0, 0, 0], upper = [0.1, 0.1, 0.1], cells = [" +
+                         n + ", " + n + ", " + n + "] } }\nmaterial = { model = \"neo_hookean\", young = \"" + young +
+                         "\", poisson = 0.4 }\n[[body.pin]]\nwhere = \"Z < 1e-6\"\n"));
+  }
+  static SynthesisOptions bench(int pokes, double noise) {
+    SynthesisOptions options;
+    options.pokes = pokes, options.depths = 1, options.markers = 60;
+    options.noise = options.force_noise = noise;
+    options.tip_radius = 0.02;
+    return options;
+  }
+  static FitPlan plan(const std::string& unknown) {
+    FitPlan plan;
+    plan.unknowns = {parse_unknown(unknown)};
+    plan.known = {{"poisson", 0.4}};
+    plan.uncertainty = plan.cross_validation = false;
+    return plan;
+  }
+  static double factor(const Synthesis& made, const FitPlan& plan) {  // fitted by true E, of one phase
+    const FitOutcome outcome = fit_material(made.data, plan, {}, {});
+    EXPECT_TRUE(outcome.has_material()) << outcome.failure;
+    const Phase phase = judge(outcome.material, made.truth).at(0).phases.at(0);
+    return phase.fitted / phase.truth;
+  }
+};
+
+TEST_F(Recovery, OfAHomogeneousCubeToAThousandth) {
+  const Scene scene = block("2e4", 4);
+  SynthesisOptions options = bench(2, 0);
+  options.mesh = to_user(scene.simulation.model().numbering, scene.simulation.model().mesh);
+  EXPECT_NEAR(factor(synthesize(scene, options), plan("young=uniform")), 1, 1e-3);
+}
+
+// Hung by its base, on a mesh of three cells that makes it 20 % too stiff.
+TEST_F(Recovery, OnACoarseMeshNeedsWhatThatGetsWrong) {
+  SynthesisOptions options = bench(0, 0);
+  options.gravity = {{{0, 0, -1}}, {{1, 0, 0}}};
+  options.mesh = make_box({{0, 0, 0}}, {{0.1, 0.1, 0.1}}, {3, 3, 3});
+  const Synthesis made = synthesize(block("2e4", 10), options);
+  FitPlan fit = plan("young=uniform");
+  EXPECT_LT(factor(made, fit), 0.9);
+  fit.mesh_errors = true;
+  EXPECT_NEAR(factor(made, fit), 1, 0.03);  // the truth has a ninth of the error itself
+}
+
+TEST_F(Recovery, OfTwoLayersAtOnePercentNoise) {
+  const Scene scene = block("Z < 0.05 ? 6e4 : 2e4", 4);
+  SynthesisOptions options = bench(4, 0.01);
+  options.regions = true;
+  options.mesh = to_user(scene.simulation.model().numbering, scene.simulation.model().mesh);
+  const Synthesis made = synthesize(scene, options);
+  FitPlan fit = plan("young=regions");
+  fit.uncertainty = true;
+  const FitOutcome outcome = fit_material(made.data, fit, {}, {});
+  ASSERT_TRUE(outcome.has_material()) << outcome.failure;
+  const FittedQuantity& young = outcome.quantities.at(0);
+  const Judgement found = judge(outcome.material, made.truth).at(0);
+  ASSERT_EQ(young.deviation.size(), outcome.material.mesh.tets.size());
+  const double deviation = *std::max_element(young.deviation.begin(), young.deviation.end());
+  EXPECT_LT(deviation, 0.05);
+  EXPECT_LT(found.largest, 4 * deviation) << "four standard deviations: once in 16 000 times by chance";
+}
+
+}  // namespace
+}  // namespace aspic

@@ -1,0 +1,112 @@
+#include "fit/refined_experiment.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "fit/load_case.h"
+#include "mesh/generators.h"
+#include "mesh/surface.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kYoung = 1e4;
+
+// A column that stands on z = 0 and sags; markers on its top and sides.
+Experiment column(int cells) {
+  Experiment e;
+  e.mesh = make_box({{0, 0, 0}}, {{0.1, 0.1, 0.2}}, {cells, cells, 2 * cells});
+  e.density.assign(e.mesh.tets.size(), 1000);
+  for (int v = 0; v < e.mesh.vertex_count(); ++v)
+    if (e.mesh.rest[v][2] < 1e-9) e.fixed.push_back(v);
+  LoadCase load{.name = "weight", .group = "weight", .gravity = {{1, 0, -9.81}}};
+  for (const Triangle& t : boundary_triangles(e.mesh, 0, e.mesh.tet_count())) {
+    if (e.mesh.rest[t[0]][2] < 0.19 || e.mesh.rest[t[1]][2] < 0.19 || e.mesh.rest[t[2]][2] < 0.19) continue;
+    load.positions.push_back({static_cast<int>(e.markers.size()), {}, {{1e-5, 1e-5, 1e-5}}});
+    e.markers.push_back({t, {0.6, 0.3, 0.1}});
+    load.positions.push_back({static_cast<int>(e.markers.size()), {}, {{1e-5, 1e-5, 1e-5}}});
+    e.markers.push_back({t, {0.3, 0.4, 0.3}});
+  }
+  e.cases.push_back(load);
+  return e;
+}
+
+Vec3d place(const SurfacePoint& p, const TetMesh& mesh) {
+  Vec3d x{};
+  for (int i = 0; i < 3; ++i) x = x + p.weights[i] * mesh.rest[p.vertices[i]];
+  return x;
+}
+
+std::vector<MaterialParameters> material(const Experiment& e) {
+  return std::vector<MaterialParameters>(e.mesh.tets.size(), {lame_from_young_poisson(kYoung, 0.3), {}});
+}
+
+// The mean sag of the corners of the top, which every mesh has.
+double sag(const Experiment& e) {
+  const auto parameters = material(e);
+  LoadedBody body(e, e.cases[0], "neo_hookean", parameters, {});
+  EXPECT_TRUE(body.solve(parameters, {}));
+  double sum = 0;
+  for (int v = 0; v < e.mesh.vertex_count(); ++v) {
+    const Vec3d& X = e.mesh.rest[v];
+    const bool is_corner = X[2] > 0.199 && (X[0] < 1e-9 || X[0] > 0.0999) && (X[1] < 1e-9 || X[1] > 0.0999);
+    if (is_corner) sum += (body.x()[3 * v + 2] - X[2]) / 4;
+  }
+  return sum;
+}
+
+TEST(RefinedExperiment, HasTheSameBodyMarkersAndHolds) {
+  const Experiment coarse = column(2), fine = refined(coarse);
+  EXPECT_EQ(fine.mesh.tet_count(), 8 * coarse.mesh.tet_count());
+  EXPECT_EQ(fine.mesh.vertex_count(), 5 * 5 * 9) << "no vertex is there twice";
+  EXPECT_EQ(fine.fixed.size(), 25u);
+  for (int t = 0; t < fine.mesh.tet_count(); ++t)
+    EXPECT_NEAR(volume(fine.mesh, t), volume(coarse.mesh, t / 8) / 8, 1e-12);
+  std::set<std::set<int>> surface;
+  for (const Triangle& t : boundary_triangles(fine.mesh, 0, fine.mesh.tet_count()))
+    surface.insert({t.begin(), t.end()});
+  ASSERT_EQ(fine.markers.size(), coarse.markers.size());
+  for (size_t m = 0; m < fine.markers.size(); ++m) {
+    const Vec3d d = place(fine.markers[m], fine.mesh) - place(coarse.markers[m], coarse.mesh);
+    EXPECT_NEAR(std::sqrt(dot(d, d)), 0, 1e-15);
+    const auto& v = fine.markers[m].vertices;
+    EXPECT_TRUE(surface.contains({v.begin(), v.end()})) << "a marker lies on a triangle of the surface";
+    for (const double w : fine.markers[m].weights) EXPECT_GE(w, -1e-12);
+  }
+}
+
+TEST(RefinedExperiment, TellsWhatAFarFinerMeshWouldSay) {
+  // Between meshes of 3 and 12 cells the error falls to a sixteenth, if it falls with the square.
+  const Experiment coarse = column(3);
+  const MeshErrors errors = mesh_errors(coarse, "neo_hookean", material(coarse));
+  ASSERT_EQ(errors.cases.size(), 1u) << errors.failure;
+  double mean = 0;
+  for (const Vec3d& e : errors.cases[0].markers) mean += e[2] / static_cast<double>(errors.cases[0].markers.size());
+  const double difference = sag(column(12)) - sag(coarse);
+  EXPECT_LT(difference, 0) << "linear tets are too stiff";
+  EXPECT_NEAR(mean, 16.0 / 15 * difference, 0.15 * std::abs(difference));
+}
+
+TEST(RefinedExperiment, ErrorsAreTakenOffTheMeasurementsAndMakeThemLessCertain) {
+  Experiment e = column(2);
+  MeshErrors errors{{MeshError{}}, ""};
+  errors.cases[0].markers.assign(e.markers.size(), Vec3d{{3e-5, 0, 0}});
+  const Experiment better = without_mesh_errors(e, errors);
+  EXPECT_DOUBLE_EQ(better.cases[0].positions[0].position[0], -3e-5);
+  EXPECT_DOUBLE_EQ(better.cases[0].positions[0].position[1], 0);
+  EXPECT_NEAR(better.cases[0].positions[0].deviation[1], std::sqrt(2.0) * 1e-5, 1e-12);
+}
+
+TEST(RefinedExperiment, TellsWhyNothingIsKnown) {
+  Experiment e = column(2);
+  e.cases[0].gravity = {{0, 0, -1e5}};  // crushes it
+  const std::vector<MaterialParameters> soft(e.mesh.tets.size(), {lame_from_young_poisson(1e-3, 0.3), {}});
+  const MeshErrors errors = mesh_errors(e, "neo_hookean", soft, {.max_iterations = 3});
+  EXPECT_TRUE(errors.cases.empty());
+  EXPECT_FALSE(errors.failure.empty());
+}
+
+}  // namespace
+}  // namespace aspic
