@@ -161,6 +161,9 @@ int exit_code(const Arguments& arguments, const FitOutcome& outcome) {
 }
 
 int run(const Arguments& arguments) {
+  if (arguments.data.extension() == ".csv")
+    throw InvalidInput(arguments.data.string() + ": a data set is a folder; curves are fitted by: aspic fit-curves " +
+                       arguments.data.string());
   if (arguments.check) return check_data(arguments.data);
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   FitPlan plan = plan_of(arguments);
