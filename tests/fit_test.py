@@ -67,7 +67,6 @@ class Fit(FitCommand):
         stages = [row["stage"] for row in self.rows()]
         self.assertEqual(stages, sorted(stages, reverse=True))  # uniform before field
         self.assertIn('model = "neo_hookean"', (self.folder / "material.fit/options.toml").read_text())
-        self.assertTrue((self.folder / "material.fit/weights.csv").exists())
         left = [p.name for p in (self.folder / "material.fit").iterdir() if p.suffix in (".journal", ".state")]
         self.assertEqual(left, [], "a complete fit needs no memory")
         self.write("scene.toml", BODY % ("5, 5, 3", 'material = { file = "material.vtu" }'))
@@ -108,7 +107,8 @@ class Fit(FitCommand):
         self.fit(*options, "--force", "--allow-unconverged")
 
     def test_groups_are_left_out(self):
-        groups = sorted({row["group"] for row in csv.DictReader(open(self.folder / "layers/cases.csv", newline=""))})
+        with open(self.folder / "layers/cases.csv", newline="") as file:
+            groups = sorted({row["group"] for row in csv.DictReader(file)})
         self.fit(*QUICK, "--leave-out", groups[0])
         refused = self.fit(*QUICK, "--force", "--leave-out", "poke 99", code=2).stderr
         self.assertIn("the data have no such group", refused)
@@ -142,7 +142,7 @@ class Fit(FitCommand):
 class FitInterruption(FitCommand):
     """A fit with much to do is stopped after a few iterations, in three ways, and continued."""
 
-    OPTIONS = ("--unknown", "young=tets", "--known", "poisson=0.4", "--tolerance", "1e-5")
+    OPTIONS = ("--unknown", "young=tets", "--known", "poisson=0.4", "--iterations", "12", "--allow-unconverged")
 
     def interrupt(self, with_signal):
         process = self.start("fit", "layers", *self.OPTIONS, "-o", "part.vtu", "-v")

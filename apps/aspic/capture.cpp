@@ -138,6 +138,8 @@ Exit codes: 0 done, 2 bad input, 3 some case has no equilibrium and was left out
   command->add_option("--force-noise", b.force_noise, "Of forces, relative to the largest")->capture_default_str();
   command->add_flag("--no-force", a->no_force, "Leaves forces out");
   command->add_flag("--torque", b.torques, "Measures torques, too");
+  command->add_flag("--regions", b.regions,
+                    "Labels the tets by where the truth has one stiffness, for --unknown young=regions");
   command->add_option("--gravity", a->gravity, "X,Y,Z: a case that hangs in this direction of gravity")
       ->allow_extra_args(false);
   command->add_option("--mesh", a->mesh, "The mesh of the data set; default: a coarser one of the same body");

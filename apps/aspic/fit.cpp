@@ -7,6 +7,7 @@
 
 #include "aspic/commands.h"
 #include "aspic/fit_check.h"
+#include "aspic/fit_figures.h"
 #include "aspic/fit_progress.h"
 #include "aspic/fit_report.h"
 #include "aspic/fit_summary.h"
@@ -30,7 +31,7 @@ struct Arguments {
   FitOptions fit;
   double prior_deviation = RegularizerOptions().prior_deviation;
   int threads = 0;  // 0: not given
-  bool no_uncertainty = false, no_cross_validation = false, check = false;
+  bool no_uncertainty = false, no_cross_validation = false, no_mesh_errors = false, baselines = false, check = false;
   bool force = false, resume = false, quiet = false, verbose = false, allow_unconverged = false;
 };
 
@@ -58,6 +59,7 @@ FitPlan plan_of(const Arguments& arguments) {
   plan.left_out = arguments.left_out;
   plan.uncertainty = !arguments.no_uncertainty;
   plan.cross_validation = !arguments.no_cross_validation;
+  plan.mesh_errors = !arguments.no_mesh_errors;
   return plan;
 }
 
@@ -160,6 +162,11 @@ int exit_code(const Arguments& arguments, const FitOutcome& outcome) {
   return is_success(outcome.report.status) || arguments.allow_unconverged ? exit_done : exit_unconverged;
 }
 
+// Synthetic data come with what is true.
+fs::path truth_beside(const fs::path& data) {
+  return (fs::is_directory(data) ? data : data.parent_path()) / "truth.vtu";
+}
+
 int run(const Arguments& arguments) {
   if (arguments.data.extension() == ".csv")
     throw InvalidInput(arguments.data.string() + ": a data set is a folder; curves are fitted by: aspic fit-curves " +
@@ -167,6 +174,8 @@ int run(const Arguments& arguments) {
   if (arguments.check) return check_data(arguments.data);
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   FitPlan plan = plan_of(arguments);
+  if (arguments.baselines && arguments.left_out.empty())
+    throw InvalidInput("--baselines predicts groups of cases that were left out; name some with --leave-out");
   if (arguments.out.extension() != ".vtu")
     throw InvalidInput(arguments.out.string() + ": a material is a .vtu file; choose such a name with -o");
   const DataSet data = read_data_set(arguments.data);
@@ -185,7 +194,9 @@ int run(const Arguments& arguments) {
   }
   write_material(arguments.out, outcome.material);
   folder.add_weights(outcome.report);
-  if (!arguments.quiet) print_fit(stdout, data, outcome);
+  const FitFigures figures = figures_of(data, outcome, truth_beside(arguments.data), arguments.baselines);
+  write_figures(folder.path() / "figures.json", outcome, figures);
+  if (!arguments.quiet) print_fit(stdout, data, outcome), print_figures(stdout, figures);
   if (!is_success(outcome.report.status))
     fmt::print(stderr, "warning: the fit is not converged: {}\n", outcome.report.words);
   print_use(arguments, !outcome.interrupted);
@@ -224,6 +235,10 @@ void add_choices(CLI::App* command, Arguments& a) {
   command->add_option("--iterations", a.fit.max_iterations, "At most so many")->check(CLI::Range(1, 100000));
   command->add_option("--leave-out", a.left_out, "GROUP of cases: predicted, not fitted; can be repeated")
       ->allow_extra_args(false);
+  command->add_flag("--baselines", a.baselines,
+                    "What is left out is also predicted by one modulus, per-example linear and strain-space moduli");
+  command->add_flag("--no-mesh-errors", a.no_mesh_errors,
+                    "What the mesh gets wrong is not computed on a finer one and taken off the measurements");
   command->add_flag("--no-uncertainty", a.no_uncertainty, "No deviations, intervals and next poke");
   command->add_flag("--no-cross-validation", a.no_cross_validation, "No group is left out to be predicted");
 }

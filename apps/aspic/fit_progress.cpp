@@ -23,6 +23,8 @@ std::string stage_text(FitStage stage) {
   switch (stage) {
     case FitStage::uniform:
       return "one value";
+    case FitStage::mesh_errors:
+      return "the mesh";
     case FitStage::field:
       return "fit";
     case FitStage::uncertainty:

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -97,6 +98,19 @@ Vec3d Arguments::vector(const char* key) {
   }
   if (!fits) fail(key, "three finite numbers are expected");
   return x;
+}
+
+// As a page computes them: exact but for rounding to single precision.
+Vec3d Arguments::weights(const char* key) {
+  Vec3d weights = vector(key);
+  double sum = 0;
+  for (int c = 0; c < 3; ++c) {
+    if (!(weights[c] >= -0.01 && weights[c] <= 1.01)) fail(key, "three numbers from 0 to 1 are expected");
+    weights[c] = std::clamp(weights[c], 0.0, 1.0);
+    sum += weights[c];
+  }
+  if (std::abs(sum - 1) > 0.01) fail(key, "their sum must be 1");
+  return (1 / sum) * weights;
 }
 
 std::vector<std::string> Arguments::texts(const char* key) {

@@ -30,6 +30,7 @@ class Arguments {
   bool boolean(const char* key);
   std::string text(const char* key, size_t most = 4096);  // bytes
   Vec3d vector(const char* key);                          // three finite numbers
+  Vec3d weights(const char* key);                         // of a triangle's corners: from 0 to 1, their sum is 1
   std::vector<std::string> texts(const char* key);        // at most 200 of at most 4096 bytes
   std::vector<int> indices(const char* key, int count);   // each below count
   void finish() const;                                    // refuses members that nobody asked for

@@ -30,9 +30,10 @@ Event read_event(const Json& json) {
   arguments.finish();
   if (!event.command.is_object() || !event.command.contains("do") || !event.command["do"].is_string())
     refuse("event.command", event.command, "a command is expected, such as {\"do\": \"release\"}");
-  for (const char* known : {"set", "grab", "move", "release", "stiffness", "pin", "surface"})
+  for (const char* known : {"set", "grab", "move", "release", "stiffness", "pin", "surface", "touch", "press", "lift"})
     if (event.command["do"] == known) return event;
-  refuse("event.command", event.command, "set, grab, move, release, stiffness, pin or surface is expected");
+  refuse("event.command", event.command,
+         "set, grab, move, release, stiffness, pin, surface, touch, press or lift is expected");
 }
 
 }  // namespace
@@ -75,9 +76,10 @@ Recording read_recording(const Json& json) {
 
 void CommandLog::add(Event event) {
   // Of moves between two steps only the last one counts.
-  if (does(event, "move") && !events_.empty() && does(events_.back(), "move") && events_.back().step == event.step &&
-      events_.back().b == event.b)
-    events_.pop_back();
+  for (const char* what : {"move", "press"})
+    if (does(event, what) && !events_.empty() && does(events_.back(), what) && events_.back().step == event.step &&
+        events_.back().b == event.b)
+      events_.pop_back();
   if (events_.size() >= kMostEvents) {
     is_complete_ = false;
     return;

@@ -80,6 +80,8 @@ double largest_stretch(const Mat3d& F) {
 
 std::span<const double> FieldValues::tet_values(const std::string& field, const View& view) {
   const Model& model = view.simulation.model();
+  for (const TetField& own : view.further)
+    if (own.field.name == field) return own.values;
   if (field == "density") return model.density;
   for (const auto& [name, values] : model.tet_fields)
     if (name == field) return values;

@@ -15,10 +15,17 @@ struct Field {
 };
 std::vector<Field> fields_of(const Model& model);
 
+// Values per tet that the model does not know of, such as those of a fit.
+struct TetField {
+  Field field;
+  std::vector<double> values;  // by the order of the model
+};
+
 // A simulation as it is looked at: between steps, or at an iterate of the step under way.
 struct View {
   const Simulation& simulation;
   std::span<const double> x;
+  std::span<const TetField> further = {};
 };
 
 class FieldValues {

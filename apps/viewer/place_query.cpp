@@ -38,7 +38,7 @@ Json vertex_reply(const Side& side, const Surface& surface, int vertex) {
   Json values = Json::object();
   FieldValues evaluate;
   std::vector<float> all(surface.rest.size());
-  for (const Field& field : fields_of(model)) {
+  for (const Field& field : side.fields()) {
     evaluate.evaluate(field.name, view, surface, all);
     values[field.name] = all[vertex];
   }

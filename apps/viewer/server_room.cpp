@@ -109,7 +109,7 @@ void Room::receive(PageId id, std::string text) {
                                           .text = std::move(text),
                                           .urgency = urgency,
                                           .is_question = head.does.empty(),
-                                          .is_superseded = head.does == "move" && head.id == "null"});
+                                          .is_superseded = (head.does == "move" || head.does == "press") && head.id == "null"});
   if (!is_added) return send(*page, refusal(head.id, "too many messages wait for the step under way"));
   if (urgency != Urgency::none && !is_watching_urgency_) watch_urgency();
 }

@@ -19,6 +19,7 @@ SimulationThread::SimulationThread(Session& session, Audience& audience) : sessi
       const std::lock_guard lock(mutex_);
       failure_ = std::current_exception();
     }
+    fit_.reset();
     const std::lock_guard lock(mutex_);
     has_ended_ = true;
     ended_.notify_all();
@@ -85,6 +86,7 @@ void SimulationThread::run() {
       const std::lock_guard lock(mutex_);
       if (stopping_) return;
     }
+    serve_fit();
     play();
     show_pictures();
   }
@@ -141,6 +143,21 @@ void SimulationThread::carry_out(const Request& request) {
   Answer answer = interruptibly(gives_way_to, [&] { return session_.handle(request.text, request.role); });
   if (!answer.to_all.empty()) audience_.tell_all(std::move(answer.to_all));
   if (!answer.to_sender.empty() && request.page != kNoPage) audience_.tell(request.page, std::move(answer.to_sender));
+}
+
+// The fit runs beside the simulation; what it tells is noted between two steps.
+void SimulationThread::serve_fit() {
+  if (std::optional<FitTask> task = session_.take_fit())
+    fit_ = std::make_unique<FitJob>(*std::move(task), [this] {
+      const std::lock_guard lock(mutex_);
+      woken_ = true;
+      changed_.notify_one();
+    });
+  if (!fit_) return;
+  if (!session_.wants_fit()) fit_->stop();
+  const bool has_ended = fit_->has_ended();
+  if (const std::optional<FitNews> news = fit_->news()) audience_.tell_all(session_.note_fit(*news));
+  if (has_ended) fit_.reset();
 }
 
 void SimulationThread::play() {

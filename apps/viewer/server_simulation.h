@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <deque>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -63,6 +64,7 @@ class SimulationThread {
   std::optional<Request> next();
   void carry_out(const Request& request);
   void play();
+  void serve_fit();
   void show_pictures();
   template <class Work>
   auto interruptibly(Urgency for_what, Work work);
@@ -76,6 +78,7 @@ class SimulationThread {
   bool was_playing_ = false;
   Clock::time_point next_step_, next_picture_;
   std::optional<long> shown_;
+  std::unique_ptr<FitJob> fit_;
 
   mutable std::mutex mutex_;  // of everything below
   std::condition_variable changed_, ended_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <new>
+#include <utility>
 
 #include "base/error.h"
 #include "viewer/session_impl.h"
@@ -94,14 +95,15 @@ void Session::Impl::install(std::unique_ptr<ShownSide> first, std::unique_ptr<Sh
   playing = false;
   wants_skin = true;
   ++version;
-  const std::vector<Field> fields = fields_of(a->side.model());
-  if (std::none_of(fields.begin(), fields.end(), [&](const Field& f) { return f.name == field; })) field.clear();
   for (ShownSide* shown : {a.get(), b.get()}) {
     if (!shown) continue;
     show_surface(*shown);
     if (comparison) shown->label = shown == b.get() ? comparison->label : "";
-    tell_side(*shown);
   }
+  keep_bench();
+  if (!a->side.has_field(field)) field.clear();
+  for (const ShownSide* shown : {a.get(), b.get()})
+    if (shown) tell_side(*shown);
   if (had_b && !b) tell(text({{"kind", "end_compare"}}));
   tell_state();
 }
@@ -176,6 +178,7 @@ Messages Session::greeting(Role role) const {
   impl_->news.clear();
   for (const ShownSide* shown : {impl_->a.get(), impl_->b.get()})
     if (shown) impl_->tell_side(*shown);
+  impl_->tell_capture();
   impl_->tell_state();
   for (Message& message : impl_->news) messages.push_back(std::move(message));
   impl_->news = std::move(pending);
@@ -183,6 +186,15 @@ Messages Session::greeting(Role role) const {
 }
 
 Answer Session::handle(std::string_view text, Role role) { return impl_->handle(text, role); }
+
+std::optional<FitTask> Session::take_fit() { return std::exchange(impl_->capture.wanted, std::nullopt); }
+bool Session::wants_fit() const { return impl_->capture.is_fitting; }
+
+Messages Session::note_fit(const FitNews& news) {
+  impl_->news.clear();
+  impl_->note_fit(news);
+  return std::move(impl_->news);
+}
 
 bool Session::is_playing() const { return impl_->playing; }
 double Session::speed() const { return impl_->speed; }
@@ -200,8 +212,9 @@ Messages Session::pictures() const {
     if (!shown) continue;
     const Side& side = shown->side;
     const int step = side.steps_taken() + (side.iteration() >= 0 ? 1 : 0);
+    const bool shows = side.has_field(impl_->field);
     messages.push_back({true, impl_->encoder.encode({shown->number(), shown->generation},
-                                                    {step, side.iteration(), side.time(), impl_->field}, side.view(),
+                                                    {step, side.iteration(), side.time(), shows ? impl_->field : ""}, side.view(),
                                                     shown->surface)});
   }
   return messages;

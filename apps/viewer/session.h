@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "viewer/fit_job.h"
+
 namespace aspic::viewer {
 
 struct Message {
@@ -62,6 +64,12 @@ class Session {
   void note_rate(double rate);  // measured by who knows the time, for the pages
   // The next step of the side that is behind, and further ones as long as `goes_on`; what is new, for all pages.
   Messages advance(const std::function<bool()>& goes_on = {});
+
+  // A fit that was asked for: to be run by who has threads, and told by note_fit(), until wants_fit() is false or it has
+  // ended; what is new for all pages.
+  std::optional<FitTask> take_fit();
+  bool wants_fit() const;
+  Messages note_fit(const FitNews& news);
 
   Messages pictures() const;     // the newest of every side
   long picture_version() const;  // another number when they are others

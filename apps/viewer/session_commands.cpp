@@ -30,6 +30,17 @@ const std::map<std::string, Session::Impl::Command>& Session::Impl::commands() {
                                                        {"release", {&Impl::release}},
                                                        {"stiffness", {&Impl::stiffness}},
                                                        {"pin", {&Impl::pin}},
+                                                       {"touch", {&Impl::touch}},
+                                                       {"press", {&Impl::press}},
+                                                       {"lift", {&Impl::lift}},
+                                                       {"bench", {&Impl::set_bench, false}},
+                                                       {"record", {&Impl::record, false}},
+                                                       {"poke_all", {&Impl::poke_all, false}},
+                                                       {"forget", {&Impl::forget, false}},
+                                                       {"save_capture", {&Impl::save_capture, false}},
+                                                       {"fit", {&Impl::fit, false}},
+                                                       {"stop_fit", {&Impl::stop_fit, false}},
+                                                       {"simulate_fit", {&Impl::simulate_fit}},
                                                        {"compare", {&Impl::compare}},
                                                        {"end_compare", {&Impl::end_compare}},
                                                        {"colour", {&Impl::colour, false}},
@@ -146,8 +157,8 @@ void Session::Impl::colour(Arguments& arguments) {
   const std::string name = arguments.text("field", 100);
   arguments.finish();
   std::vector<std::string> known;
-  for (const Field& f : fields_of(a->side.model())) known.push_back(f.name);
-  if (!name.empty() && std::find(known.begin(), known.end(), name) == known.end())
+  for (const Field& f : a->side.fields()) known.push_back(f.name);
+  if (!name.empty() && !a->side.has_field(name))
     throw InvalidInput(fmt::format("no field '{}'{}", name, suggestion(name, known)));
   field = name;
   ++version;

@@ -24,30 +24,6 @@ Vec3d target_of(Arguments& arguments, const Side& side) {
   return target;
 }
 
-// Weights of a triangle's corners, as a page computes them: exact but for rounding to single precision.
-Vec3d weights_of(Arguments& arguments) {
-  Vec3d weights = arguments.vector("weights");
-  double sum = 0;
-  for (int c = 0; c < 3; ++c) {
-    if (!(weights[c] >= -0.01 && weights[c] <= 1.01))
-      refuse("grab.weights", arguments.value("weights"), "three numbers from 0 to 1 are expected");
-    weights[c] = std::clamp(weights[c], 0.0, 1.0);
-    sum += weights[c];
-  }
-  if (std::abs(sum - 1) > 0.01) refuse("grab.weights", arguments.value("weights"), "their sum must be 1");
-  return (1 / sum) * weights;
-}
-
-Vec3d rest_point(const Surface& surface, const SurfacePoint& point) {
-  Vec3d rest{};
-  for (int c = 0; c < 3; ++c) rest = rest + point.weights[c] * surface.rest[surface.triangles[point.triangle][c]];
-  return rest;
-}
-
-SurfacePoint same_point(const Surface& from, const SurfacePoint& point, const Surface& to) {
-  return from.has_same_shape(to) ? point : nearest_surface_point(to, rest_point(from, point));
-}
-
 // For each vertex the one of the other surface that is nearest at rest.
 std::vector<int> same_vertices(const Surface& from, const std::vector<int>& vertices, const Surface& to) {
   if (from.has_same_shape(to)) return vertices;
@@ -79,7 +55,7 @@ std::vector<int> anchors(const Surface& surface, const std::vector<int>& vertice
 void Session::Impl::grab(Arguments& arguments) {
   ShownSide& touched = side_of(arguments);
   const int triangle = arguments.integer("triangle", 0, touched.surface.triangle_count() - 1);
-  SurfacePoint point{triangle, weights_of(arguments)};
+  SurfacePoint point{triangle, arguments.weights("weights")};
   const Vec3d target = target_of(arguments, touched.side);
   arguments.finish();
   Json weights = arguments.value("weights");
@@ -140,6 +116,7 @@ void Session::Impl::pin(Arguments& arguments) {
     shown->side.pin(anchors(shown->surface, same_vertices(a->surface, vertices, shown->surface)), pinned);
     tell(pins_message(*shown));
   }
+  keep_bench();
   ++version;
   note({{"do", "pin"}, {"side", "a"}, {"vertices", vertices}, {"pinned", pinned}});
 }

@@ -5,9 +5,12 @@
 #include <memory>
 #include <optional>
 
+#include "viewer/bench.h"
 #include "viewer/command_log.h"
+#include "viewer/fit_job.h"
 #include "viewer/picture.h"
 #include "viewer/session_messages.h"
+#include "viewer/temporary_folder.h"
 
 namespace aspic::viewer {
 
@@ -32,6 +35,26 @@ class Busy {
   const SessionOptions& options_;
   bool spoke_ = false;
 };
+
+// What a session knows of its bench and the fit.
+struct Capture {
+  BenchOptions options;
+  std::unique_ptr<Bench> bench;  // null: nothing was measured yet
+  std::string body;              // whose bench it is: scene and settings
+
+  std::optional<FitTask> wanted;  // to be begun
+  long task = 0;                  // the latest
+  bool is_fitting = false;
+  std::string stage, words, failure;
+  std::vector<FitIteration> history;  // of the stage
+  std::vector<double> young;          // fitted, of each tet of the data [Pa]; empty: none
+  std::vector<double> deviation;      // of log E; empty: not known
+  std::optional<FitOutcome> outcome;
+  std::unique_ptr<TemporaryFolder> folder;  // of the material that is simulated
+};
+
+// The tip that a command describes; what it leaves out is chosen. Throws InvalidInput.
+Tip tip_of(Arguments& arguments, const Model& model, const Surface& cage);
 
 struct Session::Impl {
   explicit Impl(SessionOptions o) : options(std::move(o)) {}
@@ -86,6 +109,32 @@ struct Session::Impl {
   void stiffness(Arguments&);
   void pin(Arguments&);
 
+  // ---- session_tip.cpp
+  void touch(Arguments&);
+  void touch(const SurfacePoint& point, const Tip& tip);  // of the surface of side a
+  void press(Arguments&);
+  void lift(Arguments&);
+
+  // ---- session_bench.cpp
+  void set_bench(Arguments&);
+  void record(Arguments&);
+  void poke_all(Arguments&);
+  void forget(Arguments&);
+  void save_capture(Arguments&);
+  Bench& bench();     // made when it is needed
+  void keep_bench();  // after another scene was installed: unless the body is another one
+  std::string body_text() const;
+  void tell_capture();
+
+  // ---- session_fit.cpp
+  void fit(Arguments&);
+  void stop_fit(Arguments&);
+  void simulate_fit(Arguments&);
+  void note_fit(const FitNews& told);
+  void show_fit();  // as colours
+  void forget_fit();
+  Json fit_json() const;
+
   // ---- session_replay.cpp
   void replay(Arguments&);
   void note(Json command);  // that it was carried out now
@@ -102,6 +151,7 @@ struct Session::Impl {
   std::vector<std::string> base_overrides;
   std::optional<Recording::Comparison> comparison;
   CommandLog log;
+  Capture capture;
   struct Replay {
     Recording recording;
     size_t next = 0;

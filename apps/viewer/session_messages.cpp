@@ -13,6 +13,28 @@ Box box_of(std::span<const double> q) {
   return box;
 }
 
+const char* name_of(TipShape shape) { return shape == TipShape::disc ? "disc" : "sphere"; }
+const char* name_of(TipContact contact) { return contact == TipContact::sliding ? "sliding" : "bonded"; }
+
+Json probe_json(const Side& side) {
+  const Touch* touch = side.touched();
+  if (!touch) return nullptr;
+  const TipPose &begun = touch->begun, &pose = side.tip_pose(), &wanted = side.wanted_pose();
+  const Wrench wrench = side.tip_wrench();
+  return {{"shape", name_of(touch->tip.shape)},
+          {"contact", name_of(touch->tip.contact)},
+          {"radius", touch->tip.radius},
+          {"stiffness", touch->tip.stiffness},
+          {"begun", json_of(begun.center)},
+          {"center", json_of(pose.center)},
+          {"axis", json_of(pose.axis)},
+          {"depth", dot(pose.center - begun.center, begun.axis)},
+          {"wanted", dot(wanted.center - begun.center, begun.axis)},
+          {"force", json_of(wrench.force)},
+          {"torque", json_of(wrench.torque)},
+          {"points", side.touched_points()}};
+}
+
 }  // namespace
 
 Message text(const Json& json) { return {false, json.dump(-1, ' ', false, Json::error_handler_t::replace)}; }
@@ -61,7 +83,7 @@ Message scene_message(const ShownSide& shown, const std::string& field) {
                {"implicit", simulation.is_implicit()},
                {"solver", simulation.is_implicit() ? simulation.solver_description() : ""},
                {"potentials", simulation.potential_names()},
-               {"fields", fields_json(fields_of(model))},
+               {"fields", fields_json(shown.side.fields())},
                {"field", field},
                {"settings", settings_json(steered.document)},
                {"stiffness", shown.side.stiffness()}});
@@ -90,7 +112,8 @@ Json state_of(const ShownSide& shown) {
     grab = {{"point", json_of(side.grabbed_point())},
             {"target", json_of(side.mouse_target())},
             {"force", json_of(side.mouse_force())}};
-  Json state = {{"step", side.steps_taken()},
+  Json state = {{"probe", probe_json(side)},
+                {"step", side.steps_taken()},
                 {"time", side.time()},
                 {"iteration", side.iteration()},
                 {"timeline", {{"first", 0}, {"last", side.steps_taken()}}},

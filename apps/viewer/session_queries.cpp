@@ -1,7 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
-
-#include <cstdlib>
 #include <limits>
 #include <map>
 
@@ -12,6 +9,7 @@
 #include "viewer/iteration_query.h"
 #include "viewer/place_query.h"
 #include "viewer/session_impl.h"
+#include "viewer/temporary_folder.h"
 
 namespace aspic::viewer {
 namespace {
@@ -19,26 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMostTets = 500'000;  // of a mesh that a page can be given: about 60 MB of text
-
-// Gone at the end of its life, with what is in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "aspic-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw InvalidInput(name + ": a temporary folder cannot be made; is the disk full?");
-    path_ = name;
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 // As deformed now, by the user's numbers.
 std::string mesh_text(const ShownSide& shown, const std::string& format) {

@@ -35,6 +35,7 @@ void Session::Impl::set(Arguments& arguments) {
     p.shown.side.apply(std::move(p.change));
     tell(scene_message(p.shown, field));
   }
+  keep_bench();
   ++version;
   Json done = {{"do", "set"}, {"key", key}, {"value", value}};
   if (only) done["side"] = only->name;

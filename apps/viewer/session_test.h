@@ -129,7 +129,10 @@ class Page {
   }
   void advance() { hear(session_.advance()); }
 
+  void note_fit(const FitNews& news) { hear(session_.note_fit(news)); }
+
   Json state() const { return state_; }
+  Json capture() const { return capture_; }
   Json side(const std::string& name = "a") const { return state_.at(name); }
   Json scene(const std::string& name = "a") const { return scene_.at(name); }
   const std::vector<Json>& rows(const std::string& name = "a") { return rows_[name]; }
@@ -184,6 +187,7 @@ class Page {
       const Json json = Json::parse(message.bytes);
       const std::string kind = json["kind"], side = json.value("side", "");
       if (kind == "state") state_ = json;
+      if (kind == "capture") capture_ = json;
       if (kind == "scene") scene_[side] = json;
       if (kind == "pins") pins_[side] = json["vertices"];
       if (kind != "steps") continue;
@@ -195,7 +199,7 @@ class Page {
 
   Session session_;
   int id_ = 0;
-  Json state_, scene_ = Json::object(), pins_ = Json::object();
+  Json state_, capture_, scene_ = Json::object(), pins_ = Json::object();
   std::map<std::string, std::vector<Json>> rows_;
   std::map<std::string, Geometry> geometry_;
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "scene/solver_options.h"
 
@@ -18,7 +20,18 @@ Side::Side(SteeredScene steered, size_t timeline_bytes) : steered_(std::move(ste
 }
 
 View Side::view() const {
-  return {simulation(), iteration_ >= 0 ? std::span<const double>(iterate_) : simulation().state().q};
+  return {simulation(), iteration_ >= 0 ? std::span<const double>(iterate_) : simulation().state().q, further_};
+}
+
+std::vector<Field> Side::fields() const {
+  std::vector<Field> fields = fields_of(model());
+  for (const TetField& own : further_) fields.push_back(own.field);
+  return fields;
+}
+
+bool Side::has_field(const std::string& name) const {
+  const std::vector<Field> all = fields();
+  return std::any_of(all.begin(), all.end(), [&](const Field& f) { return f.name == name; });
 }
 
 // ---------------------------------------------------------------- moments
@@ -33,6 +46,7 @@ Moment Side::moment() const {
           .h = simulation().options().h,
           .integrator = simulation().options().integrator,
           .grab = resting(),
+          .poke = resting_poke(),
           .pins = pins_,
           .settings = settings_};
 }
@@ -64,14 +78,17 @@ void Side::stand_at(const Moment& moment) {
   wanted_ = grab_.to;
   mouse_jumps_ = 0;
   let_mouse_rest();
+  hold_again(moment.poke);
 }
 
 void Side::note_edit() {
   const Grab acted = timeline_.last().acted;
+  const Poke poked = timeline_.last().poked;
   const long settings = timeline_.last().settings;
   timeline_.drop_after(steps_taken() - 1);
   Moment now = moment();
   now.acted = acted;
+  now.poked = poked;
   now.settings = settings;
   timeline_.add(std::move(now));
 }
@@ -85,15 +102,21 @@ Progress Side::complete(const StepReport& report) {
   Grab acted = steered_.mouse->grab();
   grab_.from = grab_.to = wanted_;
   let_mouse_rest();
+  Poke poked = steered_.tip->poke();
+  poke_.from = poke_.to = wanted_pose_;
+  let_tip_rest();
+  const double by_mouse = report.target_work[steered_.mouse_load], by_probe = report.target_work[steered_.tip_load];
   StepRow row{.report = report,
               .iterations = iterations_.take(),
-              .mouse_work = report.target_work[steered_.mouse_load] + mouse_jumps_,
-              .pin_work = report.pin_work - report.target_work[steered_.mouse_load],
+              .mouse_work = by_mouse + mouse_jumps_,
+              .probe_work = by_probe + tip_jumps_,
+              .pin_work = report.pin_work - by_mouse - by_probe,
               .why = explain(simulation(), report)};
-  mouse_jumps_ = 0;
+  mouse_jumps_ = tip_jumps_ = 0;
   rows_.add(std::move(row));
   Moment now = moment();
   now.acted = acted;
+  now.poked = std::move(poked);
   timeline_.add(std::move(now));
   is_blown_up_ = report.status == Status::undefined && !simulation().is_implicit();
   return is_blown_up_ ? Progress::blown_up : Progress::stepped;
@@ -102,6 +125,7 @@ Progress Side::complete(const StepReport& report) {
 Progress Side::step(const Consent& go_on) {
   iterations_.begin();
   steered_.mouse->set(acting(), time());
+  steered_.tip->set(acting_poke(), time());
   const auto observe = [&](const LiveIteration& live) {
     iterations_.add(live);
     return go_on();
@@ -109,6 +133,7 @@ Progress Side::step(const Consent& go_on) {
   const StepReport report = simulated().step(observe, go_on);
   if (report.status != Status::interrupted) return complete(report);
   let_mouse_rest();
+  let_tip_rest();
   return Progress::interrupted;
 }
 
@@ -120,6 +145,7 @@ Progress Side::iterate(const Consent& go_on) {
   iterations_.begin();
   std::vector<double> iterate;
   steered_.mouse->set(acting(), time());
+  steered_.tip->set(acting_poke(), time());
   const auto observe = [&](const LiveIteration& live) {
     if (count == shown) iterate.assign(live.x_next.begin(), live.x_next.end());
     if (count++ > shown) return false;
@@ -129,6 +155,7 @@ Progress Side::iterate(const Consent& go_on) {
   const StepReport report = simulated().step(observe, go_on);
   if (report.status != Status::interrupted) return complete(report);
   let_mouse_rest();
+  let_tip_rest();
   if (count <= shown + 1) return Progress::interrupted;
   iterate_ = std::move(iterate);
   iteration_ = shown;
@@ -161,9 +188,11 @@ StepReport Side::repeat(int step, const IterationObserver& observe, const Consen
   const Simulation::Snapshot now = simulation().snapshot();
   simulated().restore(snapshot_of(*before));
   steered_.mouse->set(after ? after->acted : acting(), before->state.time);
+  steered_.tip->set(after ? after->poked : acting_poke(), before->state.time);
   const StepReport report = simulated().step(observe, go_on);
   simulated().restore(now);
   let_mouse_rest();
+  let_tip_rest();
   return report;
 }
 
@@ -182,6 +211,7 @@ Side::Change Side::prepared(const std::string& override_text, const Announce& an
   change.reloaded = load_steered(steered_.path, change.overrides, announce);
   if (change.reloaded->scene.simulation.model().mesh.vertex_count() != model().mesh.vertex_count())
     throw InvalidInput(fmt::format("{} changes the mesh; load the scene anew with it", override_text));
+  change.reloaded->tip->set(resting_poke(), time());
   return change;
 }
 
@@ -197,8 +227,9 @@ void Side::apply(Change change) {
     return;
   }
   const Moment now = moment();
-  const double jumps = mouse_jumps_;
+  const double jumps = mouse_jumps_, tip_jumps = tip_jumps_;
   const Vec3d wanted = wanted_;
+  const TipPose wanted_pose = wanted_pose_;
   steered_ = *std::move(change.reloaded);
   simulated().set_pins(*pins_);  // also where the scene would now choose others, such as the lowest vertices
   const Simulation::Snapshot snapshot = snapshot_of(now);
@@ -207,6 +238,9 @@ void Side::apply(Change change) {
   mouse_jumps_ = jumps;
   wanted_ = wanted;
   let_mouse_rest();
+  tip_jumps_ = tip_jumps;
+  wanted_pose_ = wanted_pose;
+  let_tip_rest();
   note_edit();
 }
 

@@ -38,6 +38,9 @@ class Side {
   const StepRows& rows() const { return rows_; }
   const Timeline& timeline() const { return timeline_; }
   const State& start() const { return *start_; }
+  std::vector<Field> fields() const;
+  bool has_field(const std::string& name) const;
+  void show_further(std::vector<TetField> further) { further_ = std::move(further); }  // beside those of the model
 
   // ---- steps
   Progress step(const Consent& go_on);     // the next one, or what is left of the one under way
@@ -67,6 +70,16 @@ class Side {
   Vec3d mouse_target() const { return wanted_; }
   Vec3d mouse_force() const;  // on the body [N]
 
+  // ---- the probe
+  void touch(std::shared_ptr<const Touch> touch);  // throws InvalidInput; nothing has changed then
+  void press(const TipPose& pose);                 // reached at the end of the next step
+  void lift();
+  const Touch* touched() const { return poke_.touch.get(); }   // null: there is no tip
+  const TipPose& tip_pose() const { return poke_.to; }         // now
+  const TipPose& wanted_pose() const { return wanted_pose_; }  // by the end of the next step
+  Wrench tip_wrench() const { return steered_.tip->wrench(view().x); }
+  int touched_points() const { return steered_.tip->touched_points(view().x); }
+
   // ---- pins by hand
   void pin(const std::vector<int>& vertices, bool pinned);  // by the numbers of the model; throws InvalidInput
   bool is_pinned(int vertex) const { return pinned_[vertex]; }
@@ -83,6 +96,12 @@ class Side {
   Grab resting() const;
   Grab acting() const;
   void let_mouse_rest();
+  Poke resting_poke() const;
+  Poke acting_poke() const;
+  void let_tip_rest();
+  void change_poke(const Poke& poke);
+  void hold_again(const Poke& poke);
+  double end_of_next_step() const;
   void change_grab(const Grab& grab);
   void leave_step();  // forgets the iterates of the step under way
   void note_edit();   // the moment of now is another one
@@ -103,10 +122,15 @@ class Side {
   double stiffness_ = 0;    // for the next grab [N/m]
   double mouse_jumps_ = 0;  // work of grabbing, letting go and stiffening since the last step [J]
 
+  Poke poke_;             // as it rests
+  TipPose wanted_pose_;   // where the tip is by now
+  double tip_jumps_ = 0;  // work of touching and lifting since the last step [J]
+
   int iteration_ = -1;
   std::vector<double> iterate_;
   IterationRows iterations_;  // of the step that is being taken
   bool is_blown_up_ = false;
+  std::vector<TetField> further_;
 };
 
 }  // namespace aspic::viewer

@@ -21,13 +21,15 @@ Grab Side::resting() const {
   return grab;
 }
 
+double Side::end_of_next_step() const { return start_time_ + (steps_taken() + 1) * simulation().options().h; }
+
 // Within the next step: from where the hand was at its start to where it is by now.
 Grab Side::acting() const {
   Grab grab = grab_;
   grab.from = grab_.to;
   grab.to = wanted_;
   grab.from_time = time();
-  grab.to_time = start_time_ + (steps_taken() + 1) * simulation().options().h;
+  grab.to_time = end_of_next_step();
   return grab;
 }
 

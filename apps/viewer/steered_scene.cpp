@@ -38,8 +38,13 @@ TetLimit tets_that_fit() {
 SteeredScene load_steered(const fs::path& path, const std::vector<std::string>& overrides, const Announce& announce) {
   require_file(path);
   GrabSpring* mouse = nullptr;
-  size_t mouse_load = 0;
+  HeldTip* tip = nullptr;
+  size_t mouse_load = 0, tip_load = 0;
   const auto amend = [&](Model& model) {
+    auto probe = std::make_unique<HeldTip>(model.mesh);
+    tip = probe.get();
+    tip_load = model.loads.size();
+    model.loads.push_back(std::move(probe));
     auto spring = std::make_unique<GrabSpring>();
     mouse = spring.get();
     mouse_load = model.loads.size();
@@ -48,7 +53,7 @@ SteeredScene load_steered(const fs::path& path, const std::vector<std::string>& 
   Scene scene =
       load_scene(path, {.overrides = overrides, .announce = announce, .limit = tets_that_fit(), .amend = amend});
   Table document = read_scene_document(scene.resolved, path.string());
-  return {std::move(scene), mouse, mouse_load, std::move(document), path, overrides};
+  return {std::move(scene), mouse, mouse_load, tip, tip_load, std::move(document), path, overrides};
 }
 
 bool is_of_solver_alone(const std::string& key) {

@@ -1,10 +1,11 @@
-// A scene with a mouse in it, and its document: loaded, or loaded again with other overrides.
+// A scene with a mouse and a probe in it, and its document: loaded, or loaded again with other overrides.
 #pragma once
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "energy/grab_spring.h"
+#include "energy/held_tip.h"
 #include "scene/scene.h"
 #include "scene/value.h"
 
@@ -14,7 +15,9 @@ struct SteeredScene {
   Scene scene;
   GrabSpring* mouse = nullptr;  // one of the model's loads
   size_t mouse_load = 0;        // which
-  Table document;               // complete
+  HeldTip* tip = nullptr;       // likewise
+  size_t tip_load = 0;
+  Table document;  // complete
   std::filesystem::path path;
   std::vector<std::string> overrides;
 };

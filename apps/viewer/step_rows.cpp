@@ -56,6 +56,7 @@ Json to_json(const StepRow& row) {
           {"kinetic", report.kinetic},
           {"potential", report.potential},
           {"mouse_work", row.mouse_work},
+          {"probe_work", row.probe_work},
           {"pin_work", row.pin_work},
           {"damping_loss", report.damping_loss},
           {"numerical_loss", report.numerical_loss},

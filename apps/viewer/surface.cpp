@@ -150,4 +150,14 @@ SurfacePoint nearest_surface_point(const Surface& surface, const Vec3d& rest) {
   return best;
 }
 
+Vec3d rest_point(const Surface& surface, const SurfacePoint& point) {
+  Vec3d rest{};
+  for (int c = 0; c < 3; ++c) rest = rest + point.weights[c] * surface.rest[surface.triangles[point.triangle][c]];
+  return rest;
+}
+
+SurfacePoint same_point(const Surface& from, const SurfacePoint& point, const Surface& to) {
+  return from.has_same_shape(to) ? point : nearest_surface_point(to, rest_point(from, point));
+}
+
 }  // namespace aspic::viewer

@@ -45,5 +45,8 @@ struct SurfacePoint {
   Vec3d weights{};
 };
 SurfacePoint nearest_surface_point(const Surface& surface, const Vec3d& rest);
+Vec3d rest_point(const Surface& surface, const SurfacePoint& point);
+// The point of another surface in the same place at rest.
+SurfacePoint same_point(const Surface& from, const SurfacePoint& point, const Surface& to);
 
 }  // namespace aspic::viewer

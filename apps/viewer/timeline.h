@@ -7,6 +7,7 @@
 
 #include "dynamics/simulation.h"
 #include "energy/grab_spring.h"
+#include "energy/held_tip.h"
 
 namespace aspic::viewer {
 
@@ -19,8 +20,10 @@ struct Moment {
   double start_time = 0, h = 0;   // [s] see Side::snapshot_of
   std::string integrator;
   Grab grab;                                     // resting, after what was done at this moment
+  Poke poke;                                     // likewise
   std::shared_ptr<const std::vector<Pin>> pins;  // likewise
   Grab acted;                                    // in the step that led here
+  Poke poked;                                    // likewise
   long settings = 0;                             // with which that step was taken
 
   size_t bytes() const;

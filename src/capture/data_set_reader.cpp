@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr size_t kMostMarkers = 1'000'000, kMostReadings = 5'000'000;
 constexpr double kFarOff = 0.1;      // of the body's size: a marker this far off its surface is none of it
 constexpr double kDeviation = 0.01;  // of the largest motion or force, where no standard deviation is given
-constexpr double kLayer = 1000;      // stiffness of a bonded tip's layer times the radius, over Young's modulus
+constexpr double kLayer = 1e5;       // stiffness of a bonded tip's layer times the radius, over Young's modulus
 constexpr double kSoftLayer = 200;   // of a sliding one
 
 void add_notes(const std::string& what, const std::vector<Finding>& findings, std::vector<std::string>& notes) {

@@ -58,6 +58,8 @@ const char* to_string(FitStage stage) {
   switch (stage) {
     case FitStage::uniform:
       return "uniform";
+    case FitStage::mesh_errors:
+      return "mesh_errors";
     case FitStage::field:
       return "field";
     case FitStage::uncertainty:

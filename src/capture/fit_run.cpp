@@ -8,13 +8,18 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "capture/fitted_values.h"
+#include "capture/surface_projection.h"
 #include "fit/fit_run.h"
+#include "fit/refined_experiment.h"
 
 namespace aspic {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int kTooFine = 20'000;  // tets, for a mesh of eight times as many
+constexpr int kPasses = 8;
+constexpr double kSettled = 3e-4;  // relative change of a value
 // Guesses that are tried when the first one is so soft that the loads crush the body.
 constexpr double kStiffer[] = {1, 10, 100, 0.1};
 constexpr double kUnexplained = 4;  // |r|^2 per reading: twice the standard deviations
@@ -61,20 +66,26 @@ class MaterialFit {
         plan_(completed(plan, data.experiment)),
         memory_(memory),
         witness_(witness),
+        experiment_(data.experiment),
         fitted_(without_groups(data.experiment, plan_.left_out)) {
     if (!memory.folder.empty()) fingerprint_ = fingerprint_of(data.experiment) + "\n" + text_of(plan_);
     outcome_.plan = plan_;
   }
 
   FitOutcome run() {
-    if (!are_single_values(plan_.unknowns) && !fit_single_values()) return std::move(outcome_);
+    const bool is_field = !are_single_values(plan_.unknowns);
+    if (is_field || plan_.mesh_errors) {
+      if (!fit_single_values("uniform")) return std::move(outcome_);
+      if (!settle_mesh_errors()) return std::move(outcome_);
+      if (!is_field) outcome_.uniform.reset();
+    }
     fit_fields();
     return std::move(outcome_);
   }
 
  private:
   // One value per quantity explains most of the data, and is where the fields begin. False: nothing comes after it.
-  bool fit_single_values() {
+  bool fit_single_values(const std::string& name) {
     begin(FitStage::uniform, "one value for the whole body");
     FitOptions options = plan_.fit;
     options.method = options.weight_rule = "auto";
@@ -83,7 +94,7 @@ class MaterialFit {
       std::vector<Unknown> unknowns = as_single_values(plan_.unknowns);
       for (Unknown& u : unknowns)
         if (u.quantity == "young") u.guess *= factor;
-      Stage stage(fitted_, plan_, std::move(unknowns), memory_, "uniform" + suffix(factor), fingerprint_);
+      Stage stage(fitted_, plan_, std::move(unknowns), memory_, name + suffix(factor), fingerprint_);
       const FitReport report = fit_stage(FitStage::uniform, stage, options);
       outcome_.uniform = outcome_.report = report;
       if (report.p.empty() || report.status == Status::undefined) {
@@ -93,6 +104,7 @@ class MaterialFit {
       outcome_.failure.clear();
       for (size_t u = 0; u < plan_.unknowns.size(); ++u)
         plan_.unknowns[u].guess = stage.map.values(static_cast<int>(u), report.p).front();
+      single_values_ = stage.map.parameters(report.p);
       if (report.status != Status::interrupted) return true;
       describe(stage, report.p);
       return false;
@@ -132,6 +144,70 @@ class MaterialFit {
                                 std::to_string(std::lround(std::sqrt(worst))) +
                                 " standard deviations; check this row, or state deviations that cover the errors of "
                                 "mesh and model");
+  }
+
+  // The errors depend on the values, which depend on them. False: nothing comes after it.
+  bool settle_mesh_errors() {
+    for (int pass = 1; plan_.mesh_errors; ++pass) {
+      if (pass > kPasses) {
+        outcome_.warnings.push_back(
+            "what the mesh gets wrong is so much that it could not be taken off reliably: take a finer mesh, or a larger "
+            "tip");
+        break;
+      }
+      const std::vector<Unknown> before = plan_.unknowns;
+      if (!take_off_mesh_errors()) break;
+      if (!fit_single_values("uniform_corrected" + std::to_string(pass))) return false;
+      double change = 0;
+      for (size_t u = 0; u < before.size(); ++u)
+        change = std::max(change, std::abs(plan_.unknowns[u].guess / before[u].guess - 1));
+      if (change < kSettled) break;
+    }
+    return !outcome_.interrupted;
+  }
+
+  // False: they are not known, and the data remain as they are.
+  bool take_off_mesh_errors() {
+    if (!may_go_on()) return false;
+    if (fitted_.mesh.tet_count() > kTooFine) {
+      outcome_.warnings.push_back("what the mesh gets wrong was not computed: it has more than " +
+                                  std::to_string(kTooFine) + " tets");
+      return plan_.mesh_errors = false;
+    }
+    begin(FitStage::mesh_errors, "what the mesh gets wrong, by one of eight times as many tets");
+    MeshErrors errors = mesh_errors(data_.experiment, plan_.model, single_values_, plan_.equilibrium);
+    if (errors.cases.empty()) {
+      outcome_.warnings.push_back("what the mesh gets wrong could not be computed: " + errors.failure);
+      return plan_.mesh_errors = false;
+    }
+    errors_ = std::move(errors.cases);
+    experiment_ = without_mesh_errors(data_.experiment, {errors_, {}});
+    fitted_ = without_groups(experiment_, plan_.left_out);
+    outcome_.mesh_error = relative_size(data_.experiment, errors_);
+    return true;
+  }
+
+  static double relative_size(const Experiment& e, const std::vector<MeshError>& errors) {
+    double sum = 0, largest = 0;
+    int count = 0;
+    for (size_t c = 0; c < errors.size(); ++c)
+      for (size_t k = 0; k < errors[c].markers.size(); ++k, ++count) {
+        const MarkerReading& reading = e.cases[c].positions[k];
+        const Vec3d motion = reading.position - position(e.markers[reading.marker], e.mesh.rest);
+        sum += dot(errors[c].markers[k], errors[c].markers[k]);
+        largest = std::max(largest, dot(motion, motion));
+      }
+    return largest > 0 ? std::sqrt(sum / count / largest) : -1;
+  }
+
+  // As a finer mesh would have it.
+  void set_prediction(size_t c, const CasePrediction& on_mesh, std::vector<Vec3d>& markers, Wrench& wrench) const {
+    markers = on_mesh.markers;
+    wrench = on_mesh.wrench;
+    if (errors_.empty()) return;
+    for (size_t k = 0; k < markers.size(); ++k) markers[k] = markers[k] + errors_[c].markers[k];
+    wrench.force = wrench.force + errors_[c].wrench.force;
+    wrench.torque = wrench.torque + errors_[c].wrench.torque;
   }
 
   static std::string suffix(double factor) {
@@ -195,7 +271,7 @@ class MaterialFit {
       outcome.left_out = is_left_out(data_.experiment.cases[c]);
       if (outcome.left_out) continue;
       const CasePrediction& prediction = stage.misfit.prediction(fitted++);
-      if (ok) outcome.ok = true, outcome.markers = prediction.markers, outcome.wrench = prediction.wrench;
+      if (ok) outcome.ok = true, set_prediction(c, prediction, outcome.markers, outcome.wrench);
     }
   }
 
@@ -203,10 +279,10 @@ class MaterialFit {
     return std::find(plan_.left_out.begin(), plan_.left_out.end(), c.group) != plan_.left_out.end();
   }
 
-  // The cases of a group as a material predicts them; calls use(case of the data, prediction) for each.
+  // The cases of a group as a material predicts them; calls use(index of a case of the data, prediction) for each.
   template <class Use>
   void predict_group(const std::string& group, const ParameterMap& map, std::span<const double> p, const Use& use) {
-    const Experiment part = subset(data_.experiment, [&](const LoadCase& c) { return c.group == group; });
+    const Experiment part = subset(experiment_, [&](const LoadCase& c) { return c.group == group; });
     Misfit misfit(part, map, plan_.equilibrium);
     std::vector<double> r(static_cast<size_t>(misfit.residual_count()));
     if (!misfit.evaluate(p, r)) {
@@ -215,15 +291,17 @@ class MaterialFit {
     }
     int own = 0;
     for (size_t c = 0; c < data_.experiment.cases.size(); ++c)
-      if (data_.experiment.cases[c].group == group) use(outcome_.cases[c], misfit.prediction(own++));
+      if (data_.experiment.cases[c].group == group) use(c, misfit.prediction(own++));
   }
 
   void predict_left_out(const ParameterMap& map, std::span<const double> p) {
     for (const std::string& group : plan_.left_out)
-      predict_group(group, map, p, [](CaseOutcome& outcome, const CasePrediction& prediction) {
+      predict_group(group, map, p, [&](size_t c, const CasePrediction& prediction) {
+        CaseOutcome& outcome = outcome_.cases[c];
         outcome.ok = outcome.has_held_out = true;
-        outcome.markers = outcome.held_out_markers = prediction.markers;
-        outcome.wrench = outcome.held_out_wrench = prediction.wrench;
+        set_prediction(c, prediction, outcome.markers, outcome.wrench);
+        outcome.held_out_markers = outcome.markers;
+        outcome.held_out_wrench = outcome.wrench;
       });
   }
 
@@ -244,10 +322,10 @@ class MaterialFit {
     add_warnings(held_out.warnings);
     for (const HeldOut& group : held_out.groups)
       if (group.ok)
-        predict_group(group.group, stage.map, group.p, [](CaseOutcome& outcome, const CasePrediction& prediction) {
+        predict_group(group.group, stage.map, group.p, [&](size_t c, const CasePrediction& prediction) {
+          CaseOutcome& outcome = outcome_.cases[c];
           outcome.has_held_out = true;
-          outcome.held_out_markers = prediction.markers;
-          outcome.held_out_wrench = prediction.wrench;
+          set_prediction(c, prediction, outcome.held_out_markers, outcome.held_out_wrench);
         });
     outcome_.held_out = std::move(held_out);
   }
@@ -279,7 +357,10 @@ class MaterialFit {
   FitPlan plan_;
   const FitMemory& memory_;
   const FitWitness& witness_;
-  Experiment fitted_;  // without what is left out
+  Experiment experiment_;          // without what the mesh gets wrong
+  Experiment fitted_;              // and without what is left out
+  std::vector<MeshError> errors_;  // of each case; empty: not known
+  std::vector<MaterialParameters> single_values_;
   std::string fingerprint_;
   FitOutcome outcome_;
 };

@@ -50,6 +50,7 @@ struct FitOutcome {
   std::vector<FittedQuantity> quantities;
   FittedMaterial material;         // by the user's numbers
   std::vector<CaseOutcome> cases;  // one per case of the data
+  double mesh_error = -1;          // of the positions, root mean square over the largest motion; < 0: not known
   std::optional<Posterior> posterior;
   std::optional<CrossValidation> held_out;
   std::optional<PokeCandidate> next_poke;
@@ -62,7 +63,7 @@ struct FitOutcome {
   bool has_material() const { return failure.empty(); }
 };
 
-enum class FitStage { uniform, field, uncertainty, cross_validation, next_poke };
+enum class FitStage { uniform, mesh_errors, field, uncertainty, cross_validation, next_poke };
 
 struct FitWitness {
   std::function<void(FitStage, const std::string& what)> begin;                           // a stage, or a part of it

@@ -9,6 +9,7 @@
 #include "capture/bench_sites.h"
 #include "capture/case_table.h"
 #include "capture/data_findings.h"
+#include "capture/judge.h"
 #include "fit/load_case.h"
 #include "fit/next_poke.h"
 #include "mesh/surface.h"
@@ -20,7 +21,7 @@ namespace {
 
 constexpr double kTipRadius = 0.08;    // relative to the size of the body
 constexpr double kGravity = 9.81;      // [m/s^2]
-constexpr double kBondedLayer = 1000;  // stiffness of a tip's layer times its radius, over Young's modulus
+constexpr double kBondedLayer = 1e5;  // stiffness of a tip's layer times its radius, over Young's modulus
 constexpr double kSlidingLayer = 200;
 constexpr double kLeastArm = 0.01;        // of a force about the centre of the tip, relative to its radius
 constexpr double kLeastDeviation = 1e-4;  // of exact data, relative to the largest motion or force
@@ -33,29 +34,6 @@ double volume_of(const TetMesh& mesh) {
 
 double distance_squared(const Vec3d& a, const Vec3d& b) { return dot(a - b, a - b); }
 
-FittedMaterial truth_of(const Scene& scene) {
-  const Model& model = scene.simulation.model();
-  const Value body = read_toml(scene.resolved, scene.name).find("body")->array().front();
-  if (!body["elastic"].boolean())
-    throw InvalidInput(scene.name + ": the body is not elastic; there is no material to measure");
-  FittedMaterial truth;
-  truth.model = body["material"]["model"].text();
-  truth.mesh = to_user(model.numbering, model.mesh);
-  const MaterialInfo& info = material_info(truth.model);
-  std::vector<double> young, poisson;
-  std::vector<std::vector<double>> extra(info.extra.size());
-  for (const MaterialParameters& p : model.elasticity.front()->parameters()) {
-    young.push_back(young_modulus(p.lame));
-    poisson.push_back(poisson_ratio(p.lame));
-    for (size_t e = 0; e < extra.size(); ++e) extra[e].push_back(p.extra[e]);
-  }
-  const Renumbering& tet = model.numbering.tet;
-  truth.values = {{"young", tet.to_user(young)}, {"poisson", tet.to_user(poisson)}};
-  for (size_t e = 0; e < extra.size(); ++e) truth.values.emplace_back(info.extra[e].name, tet.to_user(extra[e]));
-  truth.values.emplace_back("density", tet.to_user(model.density));
-  return truth;
-}
-
 class Bench {
  public:
   Bench(const Scene& scene, const SynthesisOptions& options)
@@ -64,7 +42,7 @@ class Bench {
       throw InvalidInput(scene.name + ": has " + std::to_string(model_.bodies.size()) +
                          " bodies; a bench holds one: take the others out");
     result_.data.name = scene.name;
-    result_.truth = truth_of(scene);
+    result_.truth = true_material(scene);
     set_up_truth();
     set_up_data(scene);
     place_markers();
@@ -110,12 +88,25 @@ class Bench {
     set.numbering = locality_numbering(*mesh);
     data().mesh = from_user(set.numbering, *mesh);
     data().density = sample(result_.truth, *result_.truth.find("density"), data().mesh);
+    if (options_.regions) label_regions();
     data().fixed = held_vertices(truth_.mesh, truth_.fixed, data().mesh);
     if (data().fixed.size() < 3)
       throw InvalidInput("only " + std::to_string(data().fixed.size()) +
                          " vertices of the data's mesh lie where the body is held; it is too coarse, or elsewhere");
     on_truth_ = std::make_unique<SurfaceProjection>(truth_.mesh);
     on_data_ = std::make_unique<SurfaceProjection>(data().mesh);
+  }
+
+  void label_regions() {
+    const std::vector<double>& young = *result_.truth.find("young");
+    const std::vector<double> levels = levels_of(young);
+    if (levels.empty())
+      throw InvalidInput("the stiffness varies from tet to tet; there are no regions that could be labelled");
+    data().mesh.region.clear();
+    for (const double E : sample(result_.truth, young, data().mesh)) {
+      const auto next = std::ranges::lower_bound(levels, E * (1 - 1e-6));
+      data().mesh.region.push_back(static_cast<int>(next - levels.begin()) + 1);
+    }
   }
 
   // Material points of the data's surface; where the surfaces differ, they move as the nearest of the truth.
@@ -294,6 +285,32 @@ void check(const SynthesisOptions& o) {
 }
 
 }  // namespace
+
+FittedMaterial true_material(const Scene& scene) {
+  const Model& model = scene.simulation.model();
+  if (model.bodies.size() != 1)
+    throw InvalidInput(scene.name + ": has " + std::to_string(model.bodies.size()) +
+                       " bodies; a bench holds one: take the others out");
+  const Value body = read_toml(scene.resolved, scene.name).find("body")->array().front();
+  if (!body["elastic"].boolean())
+    throw InvalidInput(scene.name + ": the body is not elastic; there is no material to measure");
+  FittedMaterial truth;
+  truth.model = body["material"]["model"].text();
+  truth.mesh = to_user(model.numbering, model.mesh);
+  const MaterialInfo& info = material_info(truth.model);
+  std::vector<double> young, poisson;
+  std::vector<std::vector<double>> extra(info.extra.size());
+  for (const MaterialParameters& p : model.elasticity.front()->parameters()) {
+    young.push_back(young_modulus(p.lame));
+    poisson.push_back(poisson_ratio(p.lame));
+    for (size_t e = 0; e < extra.size(); ++e) extra[e].push_back(p.extra[e]);
+  }
+  const Renumbering& tet = model.numbering.tet;
+  truth.values = {{"young", tet.to_user(young)}, {"poisson", tet.to_user(poisson)}};
+  for (size_t e = 0; e < extra.size(); ++e) truth.values.emplace_back(info.extra[e].name, tet.to_user(extra[e]));
+  truth.values.emplace_back("density", tet.to_user(model.density));
+  return truth;
+}
 
 Synthesis synthesize(const Scene& scene, const SynthesisOptions& options, const SynthesisWitness& witness) {
   check(options);

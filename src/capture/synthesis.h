@@ -24,6 +24,7 @@ struct SynthesisOptions {
   double noise = 0.01;        // standard deviation of positions, relative to the largest motion
   double force_noise = 0.01;  // of forces and torques, relative to the largest
   bool forces = true, torques = false;
+  bool regions = false;  // where the truth has one value, the tets of the data have one label: the anatomy is known
   std::vector<Vec3d> gravity;    // a case for each direction, 9.81 m/s^2
   std::optional<TetMesh> mesh;   // of the data set, at rest, in the place of the body; none: a coarser one is made
   std::filesystem::path mesher;  // aspic-mesh; empty: found by itself
@@ -49,6 +50,9 @@ struct Synthesis {
 
 // Of the one body of a scene, held where its pins hold it. Throws InvalidInput when there is nothing to measure.
 Synthesis synthesize(const Scene& scene, const SynthesisOptions& options, const SynthesisWitness& witness = {});
+
+// Of the one body of a scene, by the user's numbers. Throws InvalidInput.
+FittedMaterial true_material(const Scene& scene);
 
 // A mesh of the same body with edges about one and a half times as long: its shape generated anew, or its surface
 // filled by aspic-mesh. None: neither is possible; the reason is among the notes.

@@ -10,6 +10,8 @@
 namespace aspic {
 namespace {
 
+constexpr double kNear = 0.01;  // of the minimum, in standard deviations: few unknowns are worth it
+
 constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-14, kLargestDamping = 1e12;
 constexpr double kUnseen = 1e-14;  // diagonal entries below this part of the largest are as good as 0
 
@@ -111,7 +113,7 @@ Status levenberg_marquardt(FitRun& run, FitPoint& at, FitGoal& goal) {
     if (largest_entry(g) == 0) return Status::converged;
     const double decrement = std::sqrt(squared_decrement(A, g, d));
     if (!std::isfinite(decrement)) return Status::no_descent;
-    if (goal.is_reached(decrement)) return Status::converged;
+    if (goal.is_reached(decrement) && decrement <= kNear) return Status::converged;
     if (is_lost_in_noise(decrement, at.objective(run.weight))) return Status::round_off;
     if (run.iterations_left() <= 0) return Status::iteration_limit;
 

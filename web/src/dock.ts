@@ -4,7 +4,7 @@ import { button, element } from "./dom";
 import type { Page, Panel } from "./page";
 import { keyName } from "./shortcuts";
 
-const kKeys: Record<string, string> = { energy: "e", microscope: "m", landscape: "a", functions: "f", certificate: "q" };
+const kKeys: Record<string, string> = { energy: "e", microscope: "m", landscape: "a", functions: "f", certificate: "q", capture: "k" };
 const kSmallest = 120; // [px]
 const kShare = 0.62; // of the window, at most: the mesh keeps the rest
 

@@ -13,6 +13,7 @@ import { drawMeshPictures } from "./meshPicture";
 import { showNotices, showOwnErrors } from "./notices";
 import { Page } from "./page";
 import type { Panel } from "./page";
+import { makeCapturePanel } from "./panels/capture";
 import { addDisplayControls } from "./panels/display";
 import { makeEnergyPanel } from "./panels/energy";
 import { makeFunctionsPanel } from "./panels/functions";
@@ -47,7 +48,7 @@ function buildPage(store: Store, page: Page): void {
   const views = new Views(area("views"), store, page, display);
   const functions = makeFunctionsPanel(store, page);
   const panels: Panel[] = [makeEnergyPanel(store, page), makeMicroscopePanel(store, page)];
-  if (store.source.live) panels.push(makeLandscapePanel(store, page), functions);
+  if (store.source.live) panels.push(makeLandscapePanel(store, page), functions, makeCapturePanel(store, page, display));
   panels.push(makeReportPanel(store, page));
   const sidebar = new Sidebar(area("right"), page);
   new Settings(sidebar.body, store, page);

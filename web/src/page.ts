@@ -18,7 +18,7 @@ interface Events {
   chosen: ChosenIteration; // in the microscope
   highlight: Highlight[]; // on the body of side a
   theme: "light" | "dark"; // plots read their colours again
-  panel: PanelName; // to be opened in the dock
+  panel: Panel["name"]; // to be opened in the dock
   layout: void; // sizes have changed
   notice: { text: string; kind: "info" | "error" };
 }
@@ -56,7 +56,7 @@ export class Page extends Emitter<Events> {
 
 // A tab of the dock.
 export interface Panel {
-  readonly name: PanelName | "certificate";
+  readonly name: PanelName | "certificate" | "capture";
   readonly title: string;
   readonly element: HTMLElement;
   readonly isTall?: boolean; // takes more than the usual height

@@ -26,6 +26,18 @@ export type Command = { id?: number } & (
   | { do: "release" }
   | { do: "stiffness"; value: number } // of the mouse's spring [N/m]
   | { do: "pin"; side: SideName; vertices: number[]; pinned: boolean } // vertices of the surface that is shown
+  // A rigid tip touches the body at that point along the inward normal; what is left out is chosen by the program.
+  | ({ do: "touch"; side: SideName; triangle: number; weights: Vec3; stiffness?: number } & Partial<TipChoice>)
+  | { do: "press"; depth: number; shift?: Vec3 } // to so far along the tip's axis from where it touched [m]
+  | { do: "lift" } // the tip is taken away
+  | { do: "bench"; markers?: number; noise?: number; seed?: number; same_mesh?: boolean } // sets the virtual bench up
+  | { do: "record"; depths?: number } // the tip's pose as load cases, in equal parts up to it
+  | ({ do: "poke_all"; sites: number; depths: number; depth: number } & Partial<TipChoice>) // all over the body
+  | { do: "forget"; case?: number } // a recorded case; all without it
+  | { do: "save_capture"; folder: string } // as a data set, a path on the program's machine
+  | { do: "fit" } // Young's modulus of every tet to the recorded cases, in the background
+  | { do: "stop_fit" }
+  | { do: "simulate_fit" } // side b has the fitted material
   | { do: "compare"; overrides: string[]; label: string } // opens side b: the scene of side a with these overrides
   | { do: "end_compare" }
   | { do: "colour"; field: string } // name in Scene.fields; "" for none
@@ -33,6 +45,12 @@ export type Command = { id?: number } & (
   | { do: "replay"; recording: Recording } // resets, then repeats what the mouse did, and the settings
   | { do: "take" } // this page wants to steer; any page may send it
 );
+
+export interface TipChoice {
+  shape: "sphere" | "disc";
+  contact: "bonded" | "sliding";
+  radius: number; // [m]
+}
 
 // Asks; changes nothing; any page may send it. Always carries an id; answered by `reply` or `refused`.
 export type Query =
@@ -61,6 +79,7 @@ export type ServerMessage =
   | Scene
   | { kind: "end_compare" } // side b is gone
   | { kind: "steps"; side: SideName; from: number; steps: StepRow[] } // rows of steps from+1, ...; later ones are void
+  | Capture
   | { kind: "pins"; side: SideName; vertices: number[] } // of the surface
   | State
   | { kind: "busy"; what: string } // "" when done
@@ -149,6 +168,7 @@ export interface StepRow {
   kinetic: MaybeNumber; // [J], also below
   potential: MaybeNumber[];
   mouse_work: MaybeNumber; // in this step, also below
+  probe_work: MaybeNumber;
   pin_work: MaybeNumber;
   damping_loss: MaybeNumber;
   numerical_loss: MaybeNumber;
@@ -195,6 +215,64 @@ export interface SideState {
   status: string; // of the last step; "" at the start
   words: { cause: string; place: string; remedy: string } | null;
   grab: { point: Vec3; target: Vec3; force: Vec3 } | null; // force on the body [N]
+  probe: ProbeState | null;
+}
+
+// The virtual bench.
+export interface Capture {
+  kind: "capture";
+  radius: number; // that the program would choose for a tip [m]
+  noise: number; // standard deviation, relative to the largest motion and to the force of each case
+  seed: number;
+  words: string; // what has just happened
+  notes: string[]; // of the mesh of the fit
+  markers: { triangles: number[]; weights: number[] }; // on the surface of side a; 3 weights each
+  cases: CaptureCase[];
+  tets: number; // of the mesh of the fit; 0: there is none yet
+  same_mesh: boolean; // it is that of the body: an inverse crime
+  fit: CaptureFit | null;
+}
+
+export interface CaptureCase {
+  name: string; // "poke 3, depth 2"
+  group: string; // "poke 3"
+  shape: TipChoice["shape"];
+  radius: number;
+  center: Vec3; // of the tip in this case [m]
+  axis: Vec3;
+  depth: number; // [m]
+  force: Vec3; // as read, with its noise [N]
+  push: number; // its part along the axis
+  deviation: number; // of each part of the force [N]
+}
+
+export interface CaptureFit {
+  running: boolean;
+  stage: string; // what is being done; "" when nothing is
+  words: string; // how it ended
+  failure: string; // "" when it has not failed
+  // chi: root mean square of the residuals, each by its standard deviation; 1 is as good as the noise allows
+  iterations: { index: number; misfit: MaybeNumber; roughness: MaybeNumber; weight: MaybeNumber; chi: MaybeNumber }[];
+  residuals: number;
+  error: MaybeNumber; // root mean square of log(fitted / true modulus) over the volume
+  softest: MaybeNumber; // [Pa]
+  stiffest: MaybeNumber;
+  has_material: boolean; // it can be simulated
+  warnings: string[];
+  next: { site: Vec3; words: string } | null; // where the next poke would tell most
+}
+
+// The tip that touches the body.
+export interface ProbeState extends TipChoice {
+  stiffness: number; // of the layer between tip and body [Pa/m]
+  begun: Vec3; // its centre when it touched [m]: of the sphere, or of the flat end
+  center: Vec3; // now
+  axis: Vec3; // out of the tip, into the body
+  depth: number; // now [m]
+  wanted: number; // by the end of the next step [m]
+  force: Vec3; // of the tip on the body [N]
+  torque: Vec3; // about its centre [N m]
+  points: number; // of the surface that it touches
 }
 
 // What was done, by step: enough to repeat a session to the same bits.

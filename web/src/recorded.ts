@@ -257,6 +257,7 @@ export class RecordedSource implements Source {
         status: row?.status ?? "",
         words: row?.words ?? null,
         grab: null,
+        probe: null,
       },
       b: null,
     };

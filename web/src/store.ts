@@ -1,6 +1,6 @@
 // What the page knows: the last message of each kind. Panels read it and listen to it.
 import { Emitter } from "./emitter";
-import type { Geometry, Hello, Picture, Scene, SideName, State, StepRow } from "./protocol";
+import type { Capture, Geometry, Hello, Picture, Scene, SideName, State, StepRow } from "./protocol";
 import type { Incoming, Source } from "./source";
 
 const kMostRows = 20_000; // that the program, too, remembers
@@ -23,6 +23,7 @@ interface Events {
   picture: SideName;
   steps: { side: SideName; from: number };
   pins: SideName;
+  capture: Capture;
   state: State;
   busy: string;
   refused: string;
@@ -35,6 +36,7 @@ export class Store extends Emitter<Events> {
   connected = false;
   state: State | null = null;
   busy = "";
+  capture: Capture | null = null;
   readonly sides: { a: Side | null; b: Side | null } = { a: null, b: null };
 
   constructor(readonly source: Source) {
@@ -86,6 +88,9 @@ export class Store extends Emitter<Events> {
         side.pins = message.vertices;
         return this.emit("pins", message.side);
       }
+      case "capture":
+        this.capture = message;
+        return this.emit("capture", message);
       case "state":
         this.state = message;
         return this.emit("state", message);

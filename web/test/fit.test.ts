@@ -209,6 +209,8 @@ test("the verdict never calls a failure a success", () => {
   assert.equal(verdict({ ...what, fit: { ...what.fit, success: false } }).kind, "bad");
   assert.equal(verdict({ ...what, fit: { ...what.fit, interrupted: true } }).kind, "bad");
   assert.equal(verdict({ ...what, fit: { ...what.fit, misfit: 60 } }).kind, "bad");
+  assert.match(verdict({ ...what, heldOut: { groups: [], position: 0.01, force: 0.21 } }).text, /has not seen/);
+  assert.equal(verdict({ ...what, heldOut: { groups: [], position: 0.01, force: 0.02 } }).kind, "good");
 });
 
 test("damaged fits are refused", async () => {

@@ -218,6 +218,7 @@ export class BodyView {
       bar,
       labels: [],
       highlights: this.notes.map(({ at, words }) => ({ positions: [at], text: words })),
+      dots: [],
       spring: null,
       brush: null,
       tip: null,

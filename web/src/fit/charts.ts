@@ -149,7 +149,7 @@ export function weightChart(head: FitHead): Chart | null {
     ],
     legend: "top",
     read: (key, at) => (key === "trials" && at !== null ? [`weight ${short(valueAt(x, trials.map((t) => t.weight), at), 3)}`] : []),
-    xRange: () => around(x, false),
+    xRange: () => around([...x, log10(head.fit.roughness)], false),
     yRange: () => (log ? null : around([...misfit, 1], true)),
     paint: (u, colours) => paintChosen(u, colours, log10(head.fit.roughness), closeness(head.fit.misfit, head.counts.residuals), `chosen: ${short(head.fit.weight, 3)}`),
   });

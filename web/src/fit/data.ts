@@ -292,6 +292,10 @@ export function histogram(values: readonly number[], limit: number, bins: number
   return { middle: count.map((_, i) => -limit + (i + 0.5) * width), count };
 }
 
+// Held-out errors, of the peak, beyond which a material is not to be relied on.
+const kPoorPosition = 0.05;
+const kPoorForce = 0.1;
+
 // What the numbers say, in one sentence.
 export function verdict(head: FitHead): { text: string; kind: "good" | "bad" | "plain" } {
   const { fit, counts } = head;
@@ -299,8 +303,11 @@ export function verdict(head: FitHead): { text: string; kind: "good" | "bad" | "
   if (!fit.success) return { text: `Not converged: ${fit.words}. Do not rely on it.`, kind: "bad" };
   const size = closeness(fit.misfit, counts.residuals);
   if (size === null) return { text: fit.words, kind: "plain" };
-  if (size > 4)
+  if (size > 2.25)
     return { text: "Converged, but it explains the readings worse than their standard deviations allow: the model is too simple, or the deviations are too small.", kind: "bad" };
+  const { position, force } = head.heldOut ?? { position: null, force: null };
+  if ((position ?? 0) > kPoorPosition || (force ?? 0) > kPoorForce)
+    return { text: "Converged, but it predicts badly what it has not seen: the readings do not determine this material. Fit fewer values, measure more, or trust it only where it was poked.", kind: "bad" };
   if (size < 0.25) return { text: "Converged; the readings agree far better than their standard deviations say: those may be too large.", kind: "plain" };
   return { text: "Converged; the fit explains the readings about as well as their standard deviations say it can.", kind: "good" };
 }

@@ -86,15 +86,18 @@ function figure(title: string, chart: Chart): HTMLElement {
   return element("figure", {}, element("figcaption", {}, title), chart.element);
 }
 
-// Where up is: the weight pulls away from it, else pokes come mostly from above.
-function upward({ head }: Fit): Vec3 {
-  const sum: Vec3 = [0, 0, 0];
-  for (const { tip } of head.cases) if (tip) for (let k = 0; k < 3; ++k) sum[k] -= tip.axis[k];
-  const axis = [0, 1, 2].reduce((best, k) => (Math.abs(sum[k]) > Math.abs(sum[best]) ? k : best), 1);
-  const tips = head.cases.filter(({ tip }) => tip !== null).length;
+// Where up is: away from where the body is held, along an axis.
+function upward(fit: Fit): Vec3 {
+  const [points, fixed] = [fit.floats("points"), fit.indices("fixed")];
+  const mean = (k: number, vertices: Iterable<number>): number => {
+    let [sum, count] = [0, 0];
+    for (const v of vertices) [sum, count] = [sum + points[3 * v + k], count + 1];
+    return count > 0 ? sum / count : 0;
+  };
+  const away = [0, 1, 2].map((k) => (fixed.length > 0 ? mean(k, Array(points.length / 3).keys()) - mean(k, fixed) : 0));
+  const axis = [0, 1, 2].reduce((best, k) => (Math.abs(away[k]) > Math.abs(away[best]) ? k : best), 1);
   const up: Vec3 = [0, 0, 0];
-  if (Math.abs(sum[axis]) > 0.7 * tips && tips > 0) up[axis] = Math.sign(sum[axis]);
-  else up[1] = 1;
+  up[axis] = away[axis] < 0 ? -1 : 1;
   return up;
 }
 

@@ -229,7 +229,7 @@ export class Chosen extends Emitter<Events> {
 
 // What a step has while it is under way.
 function unfinished(step: number, time: number, iterations: IterationRow[]): StepRow {
-  const unknown = { residual: null, threshold: null, min_det_F: null, kinetic: null, mouse_work: null, pin_work: null };
+  const unknown = { residual: null, threshold: null, min_det_F: null, kinetic: null, mouse_work: null, probe_work: null, pin_work: null };
   const more = { damping_loss: null, numerical_loss: null, residual_work: null, ledger_error: null, potential: [] };
   return { step, time, status: "under way", success: true, iterations, ...unknown, ...more, seconds: 0, words: null };
 }

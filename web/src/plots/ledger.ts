@@ -46,6 +46,7 @@ export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
     line("potential_total", "V", "potential energy, the sum of its terms", "series1", 2),
     line("total", "T + V", "kinetic plus potential energy", "text", 2.5),
     line("mouse_work", "work of the mouse", "by the mouse's spring, summed over the steps", "series4", 1.5, true),
+    line("probe_work", "work of the probe", "by the tip that is pressed in, summed over the steps", "series6", 1.5, true),
     line("pin_work", "work of pins", "by moving pins and targets, summed over the steps", "series5", 1.5, true),
     line("damping_loss", "damping loss", "dissipated by damping, summed over the steps", "series7", 1.5, true),
     line("numerical_loss", "numerical loss", "dissipated by the integrator, summed over the steps", "bad", 1.5, true),
@@ -107,11 +108,11 @@ export class Ledger {
     const terms = this.potentials.map((_, i) => row.potential[i] ?? null);
     const potential = sum(terms);
     const total = sum([row.kinetic, potential]);
-    const flows = [row.mouse_work, row.pin_work, row.damping_loss, row.numerical_loss];
+    const flows = [row.mouse_work, row.probe_work, row.pin_work, row.damping_loss, row.numerical_loss];
     const firstFlow = terms.length + 3;
     const sums = flows.map((flow, i) => sum([last < 0 ? 0 : this.columns[firstFlow + i]![last]!, flow]));
-    const [mouse, pins, damping, numerical] = sums as [MaybeNumber, MaybeNumber, MaybeNumber, MaybeNumber];
-    const balance = sum([total, negated(mouse), negated(pins), damping, numerical]);
+    const [mouse, probe, pins, damping, numerical] = sums as MaybeNumber[];
+    const balance = sum([total, negated(mouse!), negated(probe!), negated(pins!), damping!, numerical!]);
     const values = [row.kinetic, ...terms, potential, total, ...sums, balance];
     values.forEach((value, i) => this.columns[i]!.push(value));
     this.lowest.push(Math.min(this.lowest[last] ?? Infinity, balance ?? Infinity));

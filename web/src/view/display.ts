@@ -1,13 +1,13 @@
 // How bodies are drawn: the settings that the views of both sides share.
 import { Emitter } from "../emitter";
 import type { Keeper } from "../page";
-import type { Field, Scene, SideName, Vec3 } from "../protocol";
+import type { Field, Scene, SideName, TipChoice, Vec3 } from "../protocol";
 import { CameraRig } from "./cameras";
 import { kMapNames, type MapName } from "./colourMaps";
 import type { Clip } from "./picking";
 import { about, logRange, RunningRange, type ColourRange } from "./ranges";
 
-export const kTools = { drag: "drag the body", pin: "pin by brush", read: "read values" } as const;
+export const kTools = { drag: "drag the body", pin: "pin by brush", read: "read values", probe: "press a probe in" } as const;
 export type Tool = keyof typeof kTools;
 
 export const kDefaults = {
@@ -39,6 +39,9 @@ export const kDefaults = {
   high: 1,
   tool: "drag" as Tool,
   brush: 24, // radius [px]
+  tipShape: "sphere" as TipChoice["shape"],
+  tipContact: "bonded" as TipChoice["contact"],
+  tipRadius: 0, // [m]; 0: as the program chooses
   unpin: false, // what the brush does
   linked: true, // one camera for both sides
 };
@@ -49,11 +52,14 @@ const kChoices: { [K in keyof DisplaySettings]?: readonly string[] } = {
   clip: ["off", "x", "y", "z"],
   map: ["auto", ...kMapNames],
   tool: Object.keys(kTools),
+  tipShape: ["sphere", "disc"],
+  tipContact: ["bonded", "sliding"],
 };
 const kLimits: { [K in keyof DisplaySettings]?: readonly [number, number] } = {
   shininess: [0, 200],
   clipAt: [0, 1],
   brush: [4, 200],
+  tipRadius: [0, 1e9],
 };
 
 export class Display extends Emitter<{ changed: void; camera: void; range: void }> implements Keeper {
@@ -61,6 +67,7 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
   readonly cameras: { a: CameraRig; b: CameraRig } = { a: new CameraRig(), b: new CameraRig() };
   fields: Field[] = []; // of side a
   field = ""; // shown; "" for none
+  showsBench = false; // its markers
   private readonly running = new RunningRange();
   private measured = ""; // field whose range is running
 

@@ -4,7 +4,7 @@ import type { Highlight } from "../page";
 import type { Field, Vec3 } from "../protocol";
 import { colourAt, type MapName } from "./colourMaps";
 import { apart, type Box } from "./labels";
-import { isBehind, project, type Lens } from "./lens";
+import { dot as dotProduct, isBehind, minus, project, type Lens } from "./lens";
 import { fraction, logTicks, ticks, type ColourRange } from "./ranges";
 import { unitText, valueText } from "./values";
 
@@ -86,6 +86,15 @@ export function spring(ink: Ink, lens: Lens, point: Vec3, target: Vec3, force: V
   dot(ink, from, 4, ink.accent);
   const newtons = force ? Math.hypot(...force) : NaN;
   if (Number.isFinite(newtons)) text(ink, valueText(newtons, "N", 3), to[0] + ink.em, to[1] - ink.em);
+}
+
+// Something glued to the surface; nothing of it is seen from behind.
+export function surfaceDot(ink: Ink, lens: Lens, at: Vec3, normal: Vec3, words?: string): void {
+  const sight = lens.extent > 0 ? lens.forward : minus(at, lens.eye);
+  const point = onScreen(lens, at);
+  if (!point || dotProduct(sight, normal) >= 0) return;
+  if (words === undefined) return dot(ink, point, 2.2, ink.text);
+  ring(ink, point, 0.9 * ink.em, words);
 }
 
 export function ring(ink: Ink, [x, y]: Point, radius: number, words: string): void {

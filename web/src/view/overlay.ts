@@ -15,8 +15,16 @@ export interface Marks {
   labels: Label[];
   highlights: Highlight[];
   spring: { point: Vec3; target: Vec3; force: Vec3 | null } | null;
+  dots: Dot[];
   brush: { at: [number, number]; radius: number; words: string } | null;
   tip: { at: [number, number]; words: string } | null;
+}
+
+// A marker on the surface, or a place to be looked at.
+export interface Dot {
+  at: Vec3;
+  normal: Vec3; // of the surface there: its back is not seen
+  ring?: string; // words beside a ring
 }
 
 export interface Style {
@@ -70,6 +78,7 @@ export class Overlay {
     if (what.axes) marks.axes(ink, lens);
     if (what.gridStep > 0) marks.gridNote(ink, lens, what.gridStep);
     if (what.bar) marks.colourBar(ink, lens, what.bar.field, what.bar.range, what.bar.map);
+    for (const dot of what.dots) marks.surfaceDot(ink, lens, dot.at, dot.normal, dot.ring);
     if (what.spring) marks.spring(ink, lens, what.spring.point, what.spring.target, what.spring.force);
     if (what.brush) marks.ring(ink, what.brush.at, what.brush.radius, what.brush.words);
     if (what.tip) marks.text(ink, what.tip.words, what.tip.at[0] + style.em, what.tip.at[1] - style.em);

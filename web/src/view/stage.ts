@@ -1,7 +1,7 @@
 // The three.js scene around a body: lights, ground, camera and renderer. Lengths are in radii of the scene's box, so
 // that bodies of micrometres and of kilometres are the same to the GPU's single precision.
 import * as THREE from "three";
-import type { Scene, Vec3 } from "../protocol";
+import type { ProbeState, Scene, Vec3 } from "../protocol";
 import type { Body, Box } from "./body";
 import { sceneAxes } from "./cameras";
 import type { DisplaySettings } from "./display";
@@ -9,6 +9,7 @@ import { dot, isInside, length, minus, type Lens } from "./lens";
 import type { Clip } from "./picking";
 import { roundStep } from "./ranges";
 import { kGroundRadius, makeGroundMaterial } from "./shading";
+import { TipBody } from "./tipBody";
 
 const kFarthest = 1e4; // of a body that bursts, else depths lose their digits
 const kBlownUp = 30; // radii of the scene, and heights of the view
@@ -37,6 +38,7 @@ export class Stage {
     gridOrigin: { value: new THREE.Vector2() },
     gridColour: { value: new THREE.Color() },
   };
+  private readonly tip = new TipBody();
   private readonly lit = new THREE.Sphere(new THREE.Vector3(), 0); // what the shadow map covers
 
   constructor(canvas: HTMLCanvasElement) {
@@ -52,7 +54,7 @@ export class Stage {
     this.sun.shadow.radius = 6;
     this.sun.shadow.bias = -0.0008;
     this.extras.matrixAutoUpdate = false;
-    this.scene.add(this.extras, this.sky, this.sun, this.sun.target, this.lamp, this.lamp.target, this.ground);
+    this.scene.add(this.extras, this.sky, this.sun, this.sun.target, this.lamp, this.lamp.target, this.ground, this.tip.root);
   }
 
   // Places ground and lights around the box of a scene.
@@ -81,6 +83,10 @@ export class Stage {
     body.root.matrix.makeScale(scale, scale, scale).multiply(new THREE.Matrix4().makeTranslation(-x, -y, -z));
     this.extras.matrix.copy(body.root.matrix);
     this.scene.add(body.root);
+  }
+
+  showTip(tip: ProbeState | null, colour: string): void {
+    if (this.tip.show(tip, colour, (point) => this.toUnits(point), this.radius)) this.renderer.shadowMap.needsUpdate = true;
   }
 
   remove(): void {
@@ -132,6 +138,7 @@ export class Stage {
 
   dispose(): void {
     this.remove();
+    this.tip.dispose();
     this.ground.geometry.dispose();
     this.ground.material.dispose();
     this.sun.dispose();

@@ -4,8 +4,9 @@ import type { SideName, Vec3 } from "../protocol";
 import type { Store } from "../store";
 import type { CameraRig } from "./cameras";
 import type { Display } from "./display";
-import { isFinite3, onFacingPlane, rayThrough, type Lens } from "./lens";
+import { isBehind, isFinite3, onFacingPlane, pixelsPerMetre, project, rayThrough, type Lens } from "./lens";
 import { pick, verticesInStroke, type Hit, type Surface } from "./picking";
+import { depthOf, inwardNormal, wayIn, type Way } from "./pressing";
 
 export interface Touched {
   readonly host: HTMLElement;
@@ -25,7 +26,8 @@ type Gesture =
   | { kind: "turn" | "pan"; moved: number; hit: Hit | null; reads: boolean }
   | { kind: "grab"; anchor: Vec3; target: Vec3 }
   | { kind: "brush"; pinned: boolean; known: Set<number>; path: [number, number][] } // since the last frame, and where it then was
-  | { kind: "pinch"; distance: number };
+  | { kind: "pinch"; distance: number }
+  | { kind: "press"; way: Way; from: number; moved: [number, number]; depth: number };
 
 const kClick = 4; // moves of fewer pixels are clicks
 
@@ -89,17 +91,44 @@ export class Touch {
     const hit = pans ? null : this.pick(at);
     const { tool } = this.view.display.settings;
     const reads = !pans && (event.shiftKey || tool === "read");
-    if (hit && !reads && this.mayTouch()) this.gesture = this.touch(hit);
+    const held = pans || reads ? null : this.heldTip(at);
+    if (held) this.gesture = held;
+    else if (hit && !reads && this.mayTouch()) this.gesture = this.touch(hit);
     else this.gesture = { kind: pans ? "pan" : "turn", moved: 0, hit, reads };
     this.schedule();
   }
 
   private touch(hit: Hit): Gesture {
     const { store, side, display } = this.view;
+    if (display.settings.tool === "probe") return this.touchWithTip(hit);
     if (display.settings.tool === "pin")
       return { kind: "brush", pinned: this.pins, known: new Set(store.side(side)?.pins), path: [this.cursor!] };
     store.source.send({ do: "grab", side, triangle: hit.triangle, weights: hit.weights, target: hit.point });
     return { kind: "grab", anchor: hit.point, target: hit.point };
+  }
+
+  // A new tip at that place; it is pressed in as the mouse goes on.
+  private touchWithTip(hit: Hit): Gesture {
+    const { store, side, display } = this.view;
+    const surface = this.view.surface()!;
+    const { tipShape: shape, tipContact: contact, tipRadius: radius } = display.settings;
+    const tip = { shape, contact, ...(radius > 0 ? { radius } : {}) };
+    store.source.send({ do: "touch", side, triangle: hit.triangle, weights: hit.weights, ...tip });
+    if (!store.state?.playing) store.source.send({ do: "play" });
+    const way = wayIn(this.view.lens(), hit.point, inwardNormal(surface.positions, surface.triangles, hit.triangle));
+    return { kind: "press", way, from: 0, moved: [0, 0], depth: 0 };
+  }
+
+  // The tip that is there already, where the mouse is on it.
+  private heldTip(at: [number, number]): Gesture | null {
+    const { store, side, display } = this.view;
+    const tip = store.state?.[side]?.probe;
+    if (!tip || display.settings.tool !== "probe" || !this.mayTouch()) return null;
+    const lens = this.view.lens();
+    const [x, y, depth] = project(lens, tip.center);
+    const reach = Math.max(kClick, tip.radius * pixelsPerMetre(lens, depth));
+    if (isBehind(lens, depth) || Math.hypot(at[0] - x, at[1] - y) > reach) return null;
+    return { kind: "press", way: wayIn(lens, tip.center, tip.axis), from: tip.wanted, moved: [0, 0], depth: tip.wanted };
   }
 
   private move(event: PointerEvent): void {
@@ -126,6 +155,9 @@ export class Touch {
       const [x, y] = this.middle();
       if (distance > 0) this.zoom(gesture.distance / distance, x, y);
       gesture.distance = distance;
+    } else if (gesture.kind === "press") {
+      gesture.moved = [gesture.moved[0] + dx, gesture.moved[1] + dy];
+      gesture.depth = gesture.from + depthOf(gesture.way, gesture.moved);
     } else if (gesture.kind === "grab") {
       const target = onFacingPlane(this.view.lens(), rayThrough(this.view.lens(), ...this.cursor!), gesture.anchor);
       if (target && isFinite3(target)) gesture.target = target;
@@ -186,6 +218,8 @@ export class Touch {
   private flush(): void {
     const { store, side } = this.view;
     if (this.gesture?.kind === "grab") store.source.send({ do: "move", target: this.gesture.target });
+    if (this.gesture?.kind === "press" && this.gesture.depth !== store.state?.[side]?.probe?.wanted)
+      store.source.send({ do: "press", depth: this.gesture.depth });
     const surface = this.view.surface();
     if (this.gesture?.kind !== "brush" || !surface) return;
     const { pinned, known, path } = this.gesture;
@@ -202,7 +236,7 @@ export class Touch {
   private look(): void {
     this.hover = this.cursor ? this.pick(this.cursor) : null;
     const { tool } = this.view.display.settings;
-    const touches = tool === "read" ? "help" : tool === "pin" ? "crosshair" : "grab";
+    const touches = tool === "read" ? "help" : tool === "drag" ? "grab" : "crosshair";
     this.view.host.style.cursor = this.hover && (tool === "read" || this.mayTouch()) ? touches : "default";
   }
 

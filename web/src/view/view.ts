@@ -9,7 +9,8 @@ import type { Display } from "./display";
 import { Figure } from "./figure";
 import { chooseLabels, type Label } from "./labels";
 import type { Lens } from "./lens";
-import { Overlay, png, readStyle, type Marks, type Style } from "./overlay";
+import { markersOn, nearestOn } from "./markers";
+import { Overlay, png, readStyle, type Dot, type Marks, type Style } from "./overlay";
 import { Pace } from "./pace";
 import { interpolated, nearestVertex, type Hit, type Surface } from "./picking";
 import { Stage } from "./stage";
@@ -172,6 +173,7 @@ export class View implements Touched {
     stop.push(store.on("picture", mine(() => this.takePicture())));
     stop.push(store.on("pins", mine(() => this.showPins(this.figure.side?.pins ?? []))));
     stop.push(store.on("state", () => this.takeState()));
+    stop.push(store.on("capture", () => this.redraw()));
     stop.push(display.on("changed", () => this.applyDisplay()));
     stop.push(display.on("range", () => this.recolour()));
     stop.push(page.on("theme", () => this.applyDisplay()));
@@ -185,6 +187,7 @@ export class View implements Touched {
 
   private takeState(): void {
     this.figure.takeState();
+    this.stage?.showTip(this.store.state?.[this.side]?.probe ?? null, this.style.accent);
     this.redraw();
   }
 
@@ -269,10 +272,22 @@ export class View implements Touched {
       bar: shown && { ...shown, map: this.display.map(shown.field) },
       labels: this.labels(lens),
       highlights: [...this.highlights, ...this.card.marks],
+      dots: this.dots(),
       spring: grab ? { ...grab, target: target ?? grab.target } : null,
       brush: brushes ? { at: cursor, radius: settings.brush, words: this.touch.pins ? "pin" : "unpin" } : null,
       tip: this.tip(),
     };
+  }
+
+  // The markers of the bench, and where its next poke would tell most.
+  private dots(): Dot[] {
+    const { capture } = this.store;
+    const surface = this.surface();
+    if (!capture || !surface || this.side !== "a" || !this.display.showsBench) return [];
+    const dots = markersOn(surface, capture.markers);
+    if (capture.fit?.next && !capture.fit.running)
+      dots.push({ ...nearestOn(dots, capture.fit.next.site), ring: "poke here next" });
+    return dots;
   }
 
   private labels(lens: Lens): Label[] {

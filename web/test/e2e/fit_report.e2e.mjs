@@ -20,7 +20,7 @@ const said = make("fit", data, "-o", material, "--unknown", "young=handles:8", "
 
 async function open() {
   const opened = await openPage(pathToFileURL(join(folder, "layers.fit", "report.html")).href, { offline: true, keepsPixels: true });
-  await opened.page.getByRole("heading", { level: 1, name: "Fit of layers" }).waitFor();
+  await opened.page.getByRole("heading", { level: 1, name: "Fit of two_layers" }).waitFor();
   return opened;
 }
 

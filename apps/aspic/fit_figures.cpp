@@ -1,0 +1,169 @@
+#include "aspic/fit_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "aspic/fit_summary.h"
+#include "fit/bickel.h"
+#include "io/atomic_file.h"
+
+namespace aspic::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool is_left_out(const LoadCase& c, const FitPlan& plan) {
+  return std::find(plan.left_out.begin(), plan.left_out.end(), c.group) != plan.left_out.end();
+}
+
+HeldOut held_out_by_fit(const DataSet& data, const FitOutcome& outcome, const Experiment& left_out) {
+  std::vector<CasePrediction> predictions;
+  for (const CaseOutcome& c : outcome.cases) {
+    if (!c.left_out) continue;
+    if (!c.ok) return {.failure = "a group could not be predicted"};
+    CasePrediction& prediction = predictions.emplace_back();
+    prediction.markers = c.markers;
+    prediction.wrench = c.wrench;
+  }
+  if (predictions.size() != left_out.cases.size() || outcome.cases.size() != data.experiment.cases.size())
+    return {.failure = "nothing was predicted"};
+  return compare(left_out, predictions);
+}
+
+BickelOptions baseline_options(const FitPlan& plan) {
+  BickelOptions options;
+  for (const auto& [quantity, value] : plan.known)
+    if (quantity == "poisson") options.poisson = value, options.fits_poisson = false;
+  for (const Unknown& u : plan.unknowns)
+    if (u.quantity == "young" && u.guess > 0) options.young = u.guess;
+  return options;
+}
+
+std::vector<Prediction> predictions_of(const DataSet& data, const FitOutcome& outcome, bool with_baselines) {
+  const FitPlan& plan = outcome.plan;
+  const Experiment left_out = subset(data.experiment, [&](const LoadCase& c) { return is_left_out(c, plan); });
+  if (left_out.cases.empty()) return {};
+  std::vector<Prediction> predictions = {{"fit", held_out_by_fit(data, outcome, left_out)}};
+  if (!with_baselines) return predictions;
+  const Experiment training = without_groups(data.experiment, plan.left_out);
+  for (const Baseline baseline : {Baseline::homogeneous, Baseline::per_example_linear, Baseline::bickel})
+    predictions.push_back(
+        {std::string(name(baseline)), predict(baseline, training, left_out, baseline_options(plan))});
+  return predictions;
+}
+
+std::string percent(double part) { return fmt::format("{:.3g} %", 100 * part); }
+
+void print_judgement(std::FILE* stream, const Judgement& j) {
+  if (j.quantity == "poisson")
+    fmt::print(stream, "truth      {}: error {:.3g} (root mean square)\n", j.quantity, j.error);
+  else
+    fmt::print(stream, "truth      {}: error {} (root mean square of its logarithm{}), largest a factor of {:.3g}\n",
+               j.quantity, percent(j.error),
+               j.relative_error < 0 ? "" : "; " + percent(j.relative_error) + " of its variation",
+               std::exp(j.largest));
+  if (j.phases.size() > 1)
+    for (const Phase& p : j.phases)
+      fmt::print(stream, "           {:.4g} where it is {:.4g}, {} of the body\n", p.fitted, p.truth, percent(p.share));
+  if (j.phases.size() > 1)
+    fmt::print(stream, "           contrast {:.3g} of {:.3g}{}\n", j.contrast(), j.true_contrast(),
+               j.overlap < 0 ? "" : fmt::format(", overlap of the smaller part {} (intersection over union)",
+                                                percent(j.overlap)));
+  if (j.coverage >= 0)
+    fmt::print(stream, "           in {} of the tets the 95 % interval holds the truth\n", percent(j.coverage));
+}
+
+void print_prediction(std::FILE* stream, const Prediction& prediction) {
+  const HeldOut& h = prediction.held_out;
+  if (!h.ok) {
+    fmt::print(stream, "left out   {}: no prediction: {}\n", prediction.method, h.failure);
+    return;
+  }
+  const double motion = std::max(h.peak_motion, 1e-300), force = std::max(h.peak_force, 1e-300);
+  fmt::print(stream, "left out   {}: positions within {} of the peak motion (noise: {})", prediction.method,
+             percent(h.relative_position_error()), percent(h.position_noise / motion));
+  if (h.forces > 0)
+    fmt::print(stream, ", forces within {} of the peak force (noise: {})", percent(h.relative_force_error()),
+               percent(h.force_noise / force));
+  fmt::print(stream, "\n");
+}
+
+Json json_of(const Judgement& j) {
+  Json phases = Json::array();
+  for (const Phase& p : j.phases) phases.push_back({{"share", p.share}, {"truth", p.truth}, {"fitted", p.fitted}});
+  return {{"quantity", j.quantity},   {"error", j.error},       {"relative_error", j.relative_error},
+          {"largest", j.largest},     {"level", j.level},       {"coverage", j.coverage},
+          {"contrast", j.contrast()}, {"true_contrast", j.true_contrast()},
+          {"overlap", j.overlap},     {"phases", phases}};
+}
+
+Json json_of(const HeldOut& h) {
+  if (!h.ok) return {{"ok", false}, {"failure", h.failure}};
+  return {{"ok", true},
+          {"peak_motion", h.peak_motion},
+          {"position_error", h.position_error},
+          {"position_noise", h.position_noise},
+          {"peak_force", h.peak_force},
+          {"force_error", h.force_error},
+          {"force_noise", h.force_noise}};
+}
+
+Json values_of(const FitOutcome& outcome) {
+  Json values = Json::object();
+  for (const FittedQuantity& q : outcome.quantities)
+    for (const ValueRow& row : q.rows) {
+      Json value = {{"value", row.value}};
+      if (row.interval) value["lower"] = row.interval->lower, value["upper"] = row.interval->upper;
+      values[q.name][row.where] = value;
+    }
+  return values;
+}
+
+}  // namespace
+
+FitFigures figures_of(const DataSet& data, const FitOutcome& outcome, const std::filesystem::path& truth,
+                      bool with_baselines) {
+  FitFigures figures;
+  std::error_code error;
+  if (std::filesystem::exists(truth, error)) figures.judgements = judge(outcome.material, read_material(truth));
+  figures.predictions = predictions_of(data, outcome, with_baselines);
+  return figures;
+}
+
+void print_figures(std::FILE* stream, const FitFigures& figures) {
+  for (const Judgement& j : figures.judgements) print_judgement(stream, j);
+  for (const Prediction& p : figures.predictions) print_prediction(stream, p);
+}
+
+void write_figures(const std::filesystem::path& file, const FitOutcome& outcome, const FitFigures& figures) {
+  const FitReport& report = outcome.report;
+  Json json = {{"converged", is_success(report.status)},
+               {"words", report.words},
+               {"unknowns", outcome.unknowns},
+               {"residuals", outcome.residuals},
+               {"iterations", report.iterations},
+               {"equilibria", outcome.counts.equilibria},
+               {"weight", report.weight},
+               {"squares", 2 * report.misfit},
+               {"values", values_of(outcome)},
+               {"warnings", outcome.warnings}};
+  if (outcome.uniform) json["squares_of_one_value"] = 2 * outcome.uniform->misfit;
+  if (outcome.posterior && outcome.posterior->ok)
+    json["posterior"] = {{"informed", outcome.posterior->informed},
+                         {"noise_factor", outcome.posterior->noise_factor},
+                         {"suggested_weight", outcome.posterior->suggested_weight},
+                         {"scale_is_unknown", outcome.posterior->scale_is_unknown}};
+  if (outcome.held_out)
+    json["cross_validation"] = {{"position_error", outcome.held_out->position_error},
+                                {"force_error", outcome.held_out->force_error}};
+  json["truth"] = Json::array();
+  for (const Judgement& j : figures.judgements) json["truth"].push_back(json_of(j));
+  json["left_out"] = Json::object();
+  for (const Prediction& p : figures.predictions) json["left_out"][p.method] = json_of(p.held_out);
+  write_file(file, json.dump(1) + "\n");
+}
+
+}  // namespace aspic::cli

@@ -1,0 +1,246 @@
+#include "viewer/bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "capture/bench_sites.h"
+#include "capture/synthesis.h"
+#include "fit/load_case.h"
+#include "mesh/tet_shape.h"
+#include "scene/toml_reader.h"
+
+namespace aspic::viewer {
+namespace {
+
+constexpr double kLeastDeviation = 1e-4;  // of exact readings
+constexpr double kMeshShare = 0.3;        // of what a coarser mesh changes that counts as noise
+constexpr uint64_t kApart = 1'000'003;    // seeds of two cases
+
+
+
+Vec3d gravity_of(const Scene& scene) {
+  const Table document = read_toml(scene.resolved, scene.name);
+  const Value* gravity = document.find("gravity");
+  Vec3d g{};
+  if (gravity && gravity->is_array())
+    for (int i = 0; i < 3; ++i) g[i] = gravity->array()[i].number();
+  return g;
+}
+
+std::vector<int> held_by(const Model& model) {
+  std::vector<int> held;
+  for (const Pin& pin : model.pins) held.insert(held.end(), pin.vertices.begin(), pin.vertices.end());
+  std::sort(held.begin(), held.end());
+  if (held.empty())
+    throw InvalidInput("nothing holds the body, which the probe would push away; pin it first (brush, B)");
+  return held;
+}
+
+MaterialParameters mean_of(const std::vector<MaterialParameters>& all) {
+  double log_young = 0, poisson = 0;
+  std::vector<double> extra(all.front().extra.size());
+  const double count = static_cast<double>(all.size());
+  for (const MaterialParameters& p : all) {
+    log_young += std::log(young_modulus(p.lame)) / count;
+    poisson += poisson_ratio(p.lame) / count;
+    for (size_t e = 0; e < extra.size(); ++e) extra[e] += p.extra[e] / count;
+  }
+  MaterialParameters mean = all.front();
+  mean.lame = lame_from_young_poisson(std::exp(log_young), poisson);
+  for (size_t e = 0; e < extra.size(); ++e) mean.extra[e] = extra[e];
+  return mean;
+}
+
+TipPose between(const TipPose& from, const TipPose& to, double s) {
+  return {(1 - s) * from.center + s * to.center, to.axis, to.rotation};
+}
+
+Vec3d centroid(const TetMesh& mesh, int t) {
+  Vec3d sum{};
+  for (const int v : mesh.tets[t]) sum = sum + 0.25 * mesh.rest[v];
+  return sum;
+}
+
+}  // namespace
+
+Bench::~Bench() = default;
+
+Bench::Bench(const Scene& scene, const BenchOptions& options) : options_(options), truth_(true_material(scene)) {
+  const Model& model = scene.simulation.model();
+  const auto parameters = model.elasticity.front()->parameters();
+  parameters_.assign(parameters.begin(), parameters.end());
+  body_.mesh = model.mesh;
+  body_.density = model.density;
+  body_.fixed = held_by(model);
+  gravity_ = gravity_of(scene);
+  data_.name = scene.name;
+  set_up_mesh(scene);
+  place_markers();
+  uniform_ = mean_of(parameters_);
+}
+
+void Bench::set_up_mesh(const Scene& scene) {
+  std::optional<TetMesh> mesh;
+  if (!options_.same_mesh) mesh = coarser_mesh(scene, {}, notes_);
+  is_same_mesh_ = !mesh;
+  if (!mesh) {
+    mesh = to_user(scene.simulation.model().numbering, body_.mesh);
+    notes_.emplace_back("Fitted on the very mesh that was measured: an inverse crime, the fit looks better than it is.");
+  }
+  data_.numbering = locality_numbering(*mesh);
+  Experiment& data = data_.experiment;
+  data.mesh = from_user(data_.numbering, *mesh);
+  data.density = sample(truth_, *truth_.find("density"), data.mesh);
+  data.fixed = held_vertices(body_.mesh, body_.fixed, data.mesh);
+  if (data.fixed.size() < 3)
+    throw InvalidInput(fmt::format("only {} vertices of the mesh of the fit lie where the body is held; pin more of it",
+                                   data.fixed.size()));
+  on_truth_ = std::make_unique<SurfaceProjection>(body_.mesh);
+  on_data_ = std::make_unique<SurfaceProjection>(data.mesh);
+  FittedMaterial numbered{.mesh = data.mesh, .model = truth_.model, .values = {}, .further = {}};
+  std::vector<Vec3d> centroids;
+  for (int t = 0; t < body_.mesh.tet_count(); ++t) centroids.push_back(centroid(body_.mesh, t));
+  data_tet_ = sampling(numbered, centroids).tet;
+}
+
+void Bench::place_markers() {
+  Experiment& data = data_.experiment;
+  data.markers.clear(), body_.markers.clear(), marker_rest_.clear(), truth_rest_.clear();
+  data_.marker_names.clear(), data_.marker_gap.clear();
+  for (const ProjectedPoint& p : marker_sites(data.mesh, *on_data_, data.fixed, options_.markers, options_.seed)) {
+    data_.marker_names.push_back(std::to_string(data.markers.size()));
+    data_.marker_gap.push_back(0);
+    data.markers.push_back(p.point);
+    marker_rest_.push_back(p.position);
+    const ProjectedPoint on_truth = on_truth_->nearest(p.position);
+    body_.markers.push_back(on_truth.point);
+    truth_rest_.push_back(on_truth.position);
+  }
+}
+
+void Bench::set_options(const BenchOptions& options) {
+  ASPIC_CHECK(options.same_mesh == options_.same_mesh);
+  const bool same_markers = options.markers == options_.markers && options.seed == options_.seed;
+  if (!same_markers && !data_.experiment.cases.empty())
+    throw InvalidInput("the recorded cases have other markers; forget them first");
+  options_ = options;
+  if (!same_markers) place_markers();
+}
+
+// Markers below the tip are hidden from the cameras.
+void Bench::record(const Touch& touch, const TipPose& pose, int depths, const Consent& go_on) {
+  LoadCase load;
+  load.group = fmt::format("poke {}", groups_ + 1);
+  load.tip = touch.tip;
+  load.touch = touch.rest;
+  load.gravity = gravity_;
+  const double back = touch.tip.shape == TipShape::sphere ? touch.tip.radius : 0;
+  const Vec3d site = touch.rest.center + back * touch.rest.axis;
+  for (size_t m = 0; m < truth_rest_.size(); ++m)
+    if (length(truth_rest_[m] - site) > touch.tip.radius)
+      load.positions.push_back({static_cast<int>(m), {}, {{1, 1, 1}}});
+  load.force = Vec3d{}, load.force_deviation = {{1, 1, 1}};
+  const double deepest = dot(pose.center - touch.begun.center, touch.begun.axis);
+  std::vector<double> last;
+  for (int d = 1; d <= depths; ++d) {
+    if (go_on && !go_on()) throw InvalidInput("interrupted; what was recorded is kept");
+    load.name = fmt::format("{}, depth {}", load.group, d);
+    load.pose = between(touch.begun, pose, static_cast<double>(d) / depths);
+    LoadedBody body(body_, load, truth_.model, parameters_, {});
+    if (!body.solve(parameters_, last))
+      throw InvalidInput(fmt::format("the body finds no rest under this tip: {}; press less deep", body.failure()));
+    last = body.prediction().x;
+    if (d == 1) ++groups_;
+    note_mesh_error(load);
+    add(load, body.prediction(), deepest * d / depths);
+  }
+}
+
+// Touch and pose are told relative to the surface, which in the mesh of the data may lie a little elsewhere.
+LoadCase Bench::as_data(const LoadCase& load) const {
+  LoadCase data = load;
+  const Vec3d site = load.touch.center + (load.tip->shape == TipShape::sphere ? load.tip->radius : 0) * load.touch.axis;
+  const Vec3d shift = on_data_->nearest(site).position - site;
+  data.touch.center = data.touch.center + shift;
+  data.pose.center = data.pose.center + shift;
+  return data;
+}
+
+// What the coarser mesh does to a uniform body it does to this one, too, and no fit knows better. Most of it is alike in
+// all cases; what differs between them counts as noise.
+void Bench::note_mesh_error(const LoadCase& load) {
+  mesh_error_.assign(load.positions.size(), 0.0);
+  mesh_force_error_ = 0;
+  if (is_same_mesh_) return;
+  const LoadCase as_read = as_data(load);
+  const std::vector<MaterialParameters> fine(body_.mesh.tets.size(), uniform_);
+  const std::vector<MaterialParameters> coarse(data_.experiment.mesh.tets.size(), uniform_);
+  LoadedBody on_body(body_, load, truth_.model, fine, {}), on_data(data_.experiment, as_read, truth_.model, coarse, {});
+  if (!on_body.solve(fine, {}) || !on_data.solve(coarse, {})) return;
+  const CasePrediction &a = on_body.prediction(), &b = on_data.prediction();
+  double squares = 0;
+  for (size_t k = 0; k < mesh_error_.size(); ++k) {
+    const int m = load.positions[k].marker;
+    mesh_error_[k] = length((a.markers[k] - truth_rest_[m]) - (b.markers[k] - marker_rest_[m])) / std::sqrt(3.0);
+    squares += mesh_error_[k] * mesh_error_[k] / static_cast<double>(mesh_error_.size());
+  }
+  for (double& error : mesh_error_) error = kMeshShare * std::hypot(error, std::sqrt(squares)) / std::sqrt(2.0);
+  const double force = length(a.wrench.force);
+  if (force > 0) mesh_force_error_ = kMeshShare * length(a.wrench.force - b.wrench.force) / force;
+}
+
+void Bench::add(const LoadCase& load, const CasePrediction& found, double depth) {
+  std::mt19937_64 random(options_.seed + kApart * ++recorded_);
+  std::normal_distribution<double> normal;
+  LoadCase read = as_data(load);
+  double motion = 0;
+  for (size_t k = 0; k < read.positions.size(); ++k)
+    motion = std::max(motion, length(found.markers[k] - truth_rest_[read.positions[k].marker]));
+  const auto disturbed = [&](Vec3d value, double deviation) {
+    for (int i = 0; i < 3; ++i) value[i] += deviation * normal(random);
+    return value;
+  };
+  const auto with = [](double deviation) { return Vec3d{{deviation, deviation, deviation}}; };
+  const double counted = std::max(options_.noise, kLeastDeviation);
+  const double largest = motion > 0 ? motion : load.tip->radius, force = std::max(length(found.wrench.force), 1e-300);
+  for (size_t k = 0; k < read.positions.size(); ++k) {
+    MarkerReading& reading = read.positions[k];
+    const Vec3d moved = found.markers[k] - truth_rest_[reading.marker];
+    reading.position = disturbed(marker_rest_[reading.marker] + moved, options_.noise * largest);
+    reading.deviation = with(std::hypot(counted * largest, mesh_error_[k]));
+  }
+  read.force = disturbed(found.wrench.force, options_.noise * force);
+  read.force_deviation = with(std::hypot(counted, mesh_force_error_) * force);
+  data_.experiment.cases.push_back(std::move(read));
+  depths_.push_back(depth);
+}
+
+void Bench::forget(int c) {
+  data_.experiment.cases.erase(data_.experiment.cases.begin() + c);
+  depths_.erase(depths_.begin() + c);
+}
+
+void Bench::forget_all() {
+  data_.experiment.cases.clear();
+  depths_.clear();
+  groups_ = 0;
+}
+
+std::vector<PokeSite> Bench::sites(double radius, int count) const {
+  return poke_sites(body_.mesh, body_.fixed, radius, count);
+}
+
+std::vector<double> Bench::on_scene(std::span<const double> of_data) const {
+  std::vector<double> values;
+  for (const int t : data_tet_) values.push_back(of_data[t]);
+  return values;
+}
+
+std::vector<double> Bench::true_young() const { return sample(truth_, *truth_.find("young"), data_.experiment.mesh); }
+
+}  // namespace aspic::viewer

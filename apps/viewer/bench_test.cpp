@@ -1,0 +1,235 @@
+// The virtual bench: recording, saving, fitting, and simulating what was fitted.
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+
+#include "capture/data_set.h"
+#include "viewer/session_test.h"
+
+namespace aspic::viewer {
+namespace {
+
+// A small block on a table, stiffer on one half.
+const std::string kBlock = R"(
+gravity = [0, 0, 0]
+[time]
+step = 0.01
+[[body]]
+name = "block"
+shape = { box = { upper = [0.12, 0.08, 0.06], cells = [6, 4, 3] } }
+material = { model = "neo_hookean", young = "X < 0.06 ? 1e4 : 4e4", poisson = 0.4, density = 1000 }
+[[body.pin]]
+name = "table"
+where = "Z < 1e-6"
+)";
+
+double number(const Json& json) { return json.get<double>(); }
+
+Json poke(int sites, int depths) {
+  return {{"do", "poke_all"}, {"sites", sites}, {"depths", depths}, {"depth", 0.006}, {"radius", 0.02}};
+}
+
+int upper_triangle(Page& page) {
+  const auto& g = page.geometry();
+  for (size_t t = 0; t < g.triangles.size() / 3; ++t) {
+    bool upper = true;
+    for (int c = 0; c < 3; ++c) {
+      const float* X = &g.rest[3 * g.triangles[3 * t + c]];
+      upper = upper && X[2] > 0.0599F && X[0] > 0.03F && X[0] < 0.09F;
+    }
+    if (upper) return static_cast<int>(t);
+  }
+  return -1;
+}
+
+void touch(Page& page) {
+  page.send({{"do", "touch"}, {"side", "a"}, {"triangle", upper_triangle(page)}, {"weights", {0.3, 0.3, 0.4}}, {"radius", 0.02}});
+}
+
+FitNews finished(const FitTask& task, Page& page) {
+  FitNews last;
+  run_fit(task, [&](FitNews news) {
+    news.task = task.number;
+    page.note_fit(news);
+    if (news.has_ended) last = std::move(news);
+    return page.session().wants_fit();
+  });
+  return last;
+}
+
+TEST(Bench, RecordsThePoseOfTheTipWithItsForceAtRest) {
+  Page page(kBlock, {"time.integrator=\"quasi_static\""});
+  page.send({{"do", "bench"}, {"noise", 0}, {"markers", 30}});
+  EXPECT_EQ(page.capture()["markers"]["triangles"].size(), 30u);
+  EXPECT_FALSE(page.capture()["same_mesh"]);
+  touch(page);
+  EXPECT_NE(page.refused({{"do", "record"}}).find("press it in"), std::string::npos);
+  page.send({{"do", "press"}, {"depth", 0.006}});
+  page.steps(1);
+  const Json probe = page.side()["probe"];
+  page.send({{"do", "record"}, {"depths", 3}});
+  const Json cases = page.capture()["cases"];
+  ASSERT_EQ(cases.size(), 3u);
+  EXPECT_EQ(cases[2]["name"], "poke 1, depth 3");
+  EXPECT_NEAR(number(cases[0]["depth"]), 0.002, 1e-12);
+  for (int r = 0; r < 3; ++r)  // the simulation, at rest, is as far from equilibrium as its solver stopped
+    EXPECT_NEAR(number(cases[2]["force"][r]), number(probe["force"][r]), 1e-3 * number(cases[2]["push"]));
+  EXPECT_GT(number(cases[1]["push"]), number(cases[0]["push"]));
+  page.send({{"do", "forget"}, {"case", 1}});
+  EXPECT_EQ(page.capture()["cases"].size(), 2u);
+  EXPECT_EQ(page.capture()["cases"][1]["name"], "poke 1, depth 3");
+  page.send({{"do", "forget"}});
+  EXPECT_TRUE(page.capture()["cases"].empty());
+}
+
+TEST(Bench, NoiseIsSeededAndOfTheSizeThatWasAskedFor) {
+  std::vector<Json> forces;
+  for (const int seed : {1, 1, 2}) {
+    Page page(kBlock);
+    page.send({{"do", "bench"}, {"noise", 0.05}, {"markers", 30}, {"seed", seed}});
+    page.send(poke(1, 1));
+    forces.push_back(page.capture()["cases"][0]["force"]);
+  }
+  EXPECT_EQ(forces[0], forces[1]);
+  EXPECT_NE(forces[0], forces[2]);
+}
+
+TEST(Bench, SavesADataSetThatCanBeReadAgain) {
+  const TestFolder folder;
+  const std::string path = (folder.path() / "poked").string();
+  Page page(kBlock);
+  EXPECT_NE(page.refused({{"do", "save_capture"}, {"folder", path}}).find("nothing is recorded"), std::string::npos);
+  page.send({{"do", "bench"}, {"markers", 30}});
+  page.send(poke(2, 2));
+  page.send({{"do", "save_capture"}, {"folder", path}});
+  const DataSet data = read_data_set(path);
+  ASSERT_EQ(data.experiment.cases.size(), 4u);
+  EXPECT_EQ(data.experiment.cases[3].name, "poke 2, depth 2");
+  EXPECT_EQ(data.experiment.markers.size(), 30u);
+  for (const DataFinding& finding : diagnose(data)) EXPECT_NE(finding.severity, Severity::error) << finding.what;
+  EXPECT_NE(page.refused({{"do", "save_capture"}, {"folder", path}}).find("exists already"), std::string::npos);
+}
+
+TEST(Bench, AFitFindsTheStifferHalfAndIsSimulated) {
+  Page page(kBlock);
+  EXPECT_NE(page.refused({{"do", "fit"}}).find("nothing is recorded"), std::string::npos);
+  page.send({{"do", "bench"}, {"markers", 60}, {"noise", 0.002}, {"same_mesh", true}});
+  EXPECT_TRUE(page.capture()["same_mesh"]);
+  page.send(poke(6, 1));
+  EXPECT_NE(page.refused({{"do", "bench"}, {"same_mesh", false}}).find("forget them first"), std::string::npos);
+  page.send({{"do", "fit"}});
+  EXPECT_TRUE(page.capture()["fit"]["running"]);
+  page.refused({{"do", "fit"}});
+  const std::optional<FitTask> task = page.session().take_fit();
+  ASSERT_TRUE(task);
+  EXPECT_FALSE(page.session().take_fit());
+  finished(*task, page);
+  const Json fit = page.capture()["fit"];
+  EXPECT_FALSE(fit["running"]);
+  EXPECT_EQ(fit["failure"], "");
+  ASSERT_TRUE(fit["has_material"]);
+  EXPECT_LT(number(fit["error"]), 0.5);  // log 4 = 1.4 apart
+  EXPECT_GT(number(fit["stiffest"]) / number(fit["softest"]), 2);
+  EXPECT_FALSE(fit["iterations"].empty());
+
+  // Shown as colours.
+  EXPECT_EQ(page.scene()["field"], "fitted_young");
+  const Picture picture = page.picture();
+  double soft = 0, stiff = 0;
+  int softs = 0, stiffs = 0;
+  for (size_t v = 0; v < picture.values.size(); ++v) {
+    const float X = page.geometry().rest[3 * v];
+    if (X < 0.04F) soft += picture.values[v], ++softs;
+    if (X > 0.08F) stiff += picture.values[v], ++stiffs;
+  }
+  EXPECT_GT(stiff / stiffs, 1.7 * soft / softs);
+  for (const char* name : {"fit_error", "young_deviation", "young"}) page.send({{"do", "colour"}, {"field", name}});
+
+  page.send({{"do", "simulate_fit"}});
+  EXPECT_EQ(page.scene("b")["label"], "fitted material");
+  EXPECT_EQ(page.scene("b")["field"], "young");
+  EXPECT_EQ(page.capture()["cases"].size(), 6u);  // the bench stays
+  touch(page);
+  page.send({{"do", "press"}, {"depth", 0.004}});
+  page.steps(20);
+  EXPECT_GT(number(page.side("b")["probe"]["depth"]), 0.0039);
+  page.send({{"do", "end_compare"}});
+  EXPECT_EQ(page.capture()["cases"].size(), 6u);
+}
+
+TEST(Bench, AStoppedFitKeepsWhatItReached) {
+  Page page(kBlock);
+  page.send({{"do", "bench"}, {"markers", 30}});
+  page.send(poke(2, 1));
+  page.send({{"do", "fit"}});
+  const std::optional<FitTask> task = page.session().take_fit();
+  int told = 0;
+  run_fit(*task, [&](FitNews news) {
+    news.task = task->number;
+    page.note_fit(news);
+    if (++told == 3) page.send({{"do", "stop_fit"}});
+    return page.session().wants_fit();
+  });
+  EXPECT_FALSE(page.capture()["fit"]["running"]);
+  EXPECT_LE(told, 5);
+  page.send({{"do", "fit"}});  // may be begun again
+}
+
+TEST(Bench, AnotherBodyHasAnotherBench) {
+  Page page(kBlock);
+  page.send({{"do", "bench"}, {"markers", 30}});
+  page.send(poke(1, 1));
+  page.send({{"do", "set"}, {"key", "solver.tolerance"}, {"value", 1e-8}});
+  EXPECT_EQ(page.capture()["cases"].size(), 1u);
+  page.send({{"do", "set"}, {"key", "material.poisson"}, {"value", 0.3}});
+  EXPECT_TRUE(page.capture()["cases"].empty());
+  EXPECT_NE(page.capture()["words"].get<std::string>().find("another one"), std::string::npos);
+}
+
+TEST(Bench, RefusesWhatCannotBeMeasured) {
+  Page page(kBlock);
+  page.refused({{"do", "record"}});
+  page.refused({{"do", "forget"}, {"case", 0}});
+  page.refused({{"do", "bench"}, {"markers", 0}});
+  page.refused({{"do", "bench"}, {"noise", 2}});
+  page.refused(poke(0, 1));
+  page.refused({{"do", "poke_all"}, {"sites", 3}, {"depths", 1}, {"depth", -1}});
+  page.refused({{"do", "simulate_fit"}});
+  page.send({{"do", "stop_fit"}});  // there is none
+  page.send({{"do", "pin"}, {"side", "a"}, {"vertices", page.pins()}, {"pinned", false}});
+  EXPECT_NE(page.refused({{"do", "bench"}}).find("nothing holds"), std::string::npos);
+}
+
+TEST(FitJob, RunsInAThreadOfItsOwnAndStops) {
+  Page page(kBlock);
+  page.send({{"do", "bench"}, {"markers", 30}});
+  page.send(poke(2, 1));
+  page.send({{"do", "fit"}});
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool woken = false;
+  FitJob job(*page.session().take_fit(), [&] {
+    const std::lock_guard lock(mutex);
+    woken = true;
+    changed.notify_one();
+  });
+  bool has_ended = false;
+  for (int news = 0; !has_ended && news < 1000; ++news) {
+    std::unique_lock lock(mutex);
+    ASSERT_TRUE(changed.wait_for(lock, std::chrono::seconds(120), [&] { return woken; }));
+    woken = false;
+    lock.unlock();
+    if (const std::optional<FitNews> told = job.news()) {
+      page.note_fit(*told);
+      has_ended = told->has_ended;
+    }
+    if (news == 1) job.stop();
+  }
+  EXPECT_TRUE(has_ended);
+  EXPECT_FALSE(page.capture()["fit"]["running"]);
+}
+
+}  // namespace
+}  // namespace aspic::viewer

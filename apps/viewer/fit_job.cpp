@@ -1,0 +1,136 @@
+#include "viewer/fit_job.h"
+
+#include <utility>
+
+namespace aspic::viewer {
+namespace {
+
+const char* words_of(FitStage stage) {
+  switch (stage) {
+    case FitStage::uniform:
+      return "one value for the whole body";
+    case FitStage::mesh_errors:
+      return "what the mesh gets wrong";
+    case FitStage::field:
+      return "a value for every tet";
+    case FitStage::uncertainty:
+      return "how certain it is";
+    case FitStage::cross_validation:
+      return "each poke left out";
+    case FitStage::next_poke:
+      return "where the next poke would tell most";
+  }
+  return "";
+}
+
+// The unknowns as a stage has them: first one value each.
+std::vector<Unknown> unknowns_of(const FitPlan& plan, FitStage stage) {
+  std::vector<Unknown> unknowns = plan.unknowns;
+  if (stage == FitStage::uniform)
+    for (Unknown& u : unknowns) u.spread = Spread::uniform, u.handles = 0;
+  return unknowns;
+}
+
+class Listener {
+ public:
+  Listener(const FitTask& task, const std::function<bool(FitNews)>& tell)
+      : task_(task), tell_(tell), plan_(completed(task.plan, task.data.experiment)) {}
+
+  FitOutcome run() {
+    const FitWitness witness{
+        .begin = [this](FitStage stage, const std::string&) { begin(stage); },
+        .iterate = [this](FitStage stage, const FitIteration& i, std::span<const double> p) { return hear(stage, i, p); },
+        .go_on = [this] { return goes_on_ = goes_on_ && tell_({}); }};
+    return fit_material(task_.data, task_.plan, {}, witness);
+  }
+
+ private:
+  void begin(FitStage stage) {
+    FitNews news{.stage = words_of(stage)};
+    if (stage == FitStage::uniform || stage == FitStage::field) {
+      news.is_new_stage = true;
+      map_.emplace(task_.data.experiment.mesh, plan_.model, known_parameters(plan_, task_.data.experiment),
+                   unknowns_of(plan_, stage));
+    }
+    goes_on_ = goes_on_ && tell_(std::move(news));
+  }
+
+  bool hear(FitStage stage, const FitIteration& iteration, std::span<const double> p) {
+    FitNews news;
+    if (stage == FitStage::uniform || stage == FitStage::field) {
+      news.iterations.push_back(iteration);
+      for (size_t u = 0; u < plan_.unknowns.size(); ++u)
+        if (plan_.unknowns[u].quantity == "young") news.young = map_->values(static_cast<int>(u), p);
+    }
+    return goes_on_ = goes_on_ && tell_(std::move(news));
+  }
+
+  const FitTask& task_;
+  const std::function<bool(FitNews)>& tell_;
+  FitPlan plan_;
+  std::optional<ParameterMap> map_;  // of the stage under way
+  bool goes_on_ = true;
+};
+
+void append(FitNews& to, FitNews more) {
+  if (!more.stage.empty()) to.stage = std::move(more.stage);
+  if (more.is_new_stage) to.is_new_stage = true, to.iterations.clear();
+  to.iterations.insert(to.iterations.end(), more.iterations.begin(), more.iterations.end());
+  if (!more.young.empty()) to.young = std::move(more.young);
+  if (more.outcome) to.outcome = std::move(more.outcome);
+  if (!more.failure.empty()) to.failure = std::move(more.failure);
+  to.has_ended = to.has_ended || more.has_ended;
+}
+
+}  // namespace
+
+void run_fit(const FitTask& task, const std::function<bool(FitNews)>& tell) {
+  FitNews last{.has_ended = true};
+  try {
+    last.outcome = Listener(task, tell).run();
+    for (const FittedQuantity& quantity : last.outcome->quantities)
+      if (quantity.name == "young") last.young = quantity.values;
+  } catch (const std::exception& e) {
+    last.failure = e.what();
+  }
+  tell(std::move(last));
+}
+
+FitJob::FitJob(FitTask task, std::function<void()> wake) : wake_(std::move(wake)) {
+  thread_ = std::thread([this, task = std::move(task)] {
+    run_fit(task, [&](FitNews news) {
+      news.task = task.number;
+      return add(std::move(news));
+    });
+  });
+}
+
+FitJob::~FitJob() {
+  stop();
+  thread_.join();
+}
+
+bool FitJob::add(FitNews news) {
+  const bool is_new = !news.stage.empty() || !news.iterations.empty() || news.has_ended;
+  if (is_new) {
+    const bool ends = news.has_ended;
+    {
+      const std::lock_guard lock(mutex_);
+      if (pending_) {
+        append(*pending_, std::move(news));
+      } else {
+        pending_ = std::move(news);
+      }
+    }
+    if (ends) has_ended_ = true;
+    if (wake_) wake_();
+  }
+  return !stopping_;
+}
+
+std::optional<FitNews> FitJob::news() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(pending_, std::nullopt);
+}
+
+}  // namespace aspic::viewer

@@ -1,0 +1,55 @@
+// A fit in a thread of its own: begun, listened to, stopped. Whoever listens asks for the news when it is woken.
+#pragma once
+#include <atomic>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "capture/fit_run.h"
+
+namespace aspic::viewer {
+
+struct FitTask {
+  long number = 0;  // tells tasks apart
+  DataSet data;
+  FitPlan plan;
+};
+
+// What has become known since the news before.
+struct FitNews {
+  long task = 0;                         // which
+  std::string stage;                     // in words; empty: as before
+  std::vector<FitIteration> iterations;  // of this stage, after those told before; `is_new_stage`: others are void
+  bool is_new_stage = false;
+  std::vector<double> young;  // of each tet of the data [Pa]; empty: as before
+  std::optional<FitOutcome> outcome;
+  std::string failure;  // the task could not be begun
+  bool has_ended = false;
+};
+
+// Carries the task out here and now; `tell` hears of it on this thread, and ends it by false.
+void run_fit(const FitTask& task, const std::function<bool(FitNews)>& tell);
+
+class FitJob {
+ public:
+  FitJob(FitTask task, std::function<void()> wake);  // `wake`: called from the thread of the fit
+  ~FitJob();                                         // stops it and waits for that
+
+  void stop() { stopping_ = true; }  // ends after its iteration under way, with what was reached
+  std::optional<FitNews> news();     // none: nothing is new
+  bool has_ended() const { return has_ended_; }
+
+ private:
+  bool add(FitNews news);
+
+  std::function<void()> wake_;
+  std::atomic<bool> stopping_ = false, has_ended_ = false;
+  std::mutex mutex_;  // of what follows
+  std::optional<FitNews> pending_;
+  std::thread thread_;
+};
+
+}  // namespace aspic::viewer

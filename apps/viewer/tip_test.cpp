@@ -1,0 +1,212 @@
+// The probe: touching, pressing, its force and its work.
+#include <algorithm>
+#include <cmath>
+
+#include "math/polar3.h"
+#include "viewer/session_test.h"
+#include "viewer/touch_place.h"
+
+namespace aspic::viewer {
+namespace {
+
+// A slab on a table, without gravity.
+const std::string kSlab = R"(
+gravity = [0, 0, 0]
+[time]
+step = 0.01
+[[body]]
+name = "slab"
+shape = { box = { upper = [0.2, 0.2, 0.08], cells = [5, 5, 2] } }
+material = { model = "neo_hookean", young = 2e4, poisson = 0.4, density = 1000 }
+[[body.pin]]
+name = "table"
+where = "Z < 1e-6"
+)";
+const double kYoung = 2e4;
+
+double number(const Json& json) { return json.get<double>(); }
+std::vector<double> vec(const Json& json) { return json.get<std::vector<double>>(); }
+double size(const Json& json) {
+  const std::vector<double> v = vec(json);
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+double sum(const Json& list) {
+  double total = 0;
+  for (const Json& x : list) total += number(x);
+  return total;
+}
+
+// A triangle of the upper side, near its middle.
+int upper_triangle(Page& page) {
+  const auto& g = page.geometry();
+  int best = -1;
+  double least = 1;
+  for (size_t t = 0; t < g.triangles.size() / 3; ++t) {
+    double x = 0, y = 0, z = 1;
+    for (int c = 0; c < 3; ++c) {
+      const float* X = &g.rest[3 * g.triangles[3 * t + c]];
+      x += X[0] / 3, y += X[1] / 3, z = std::min<double>(z, X[2]);
+    }
+    const double away = std::hypot(x - 0.1, y - 0.1);
+    if (z > 0.0799 && away < least) least = away, best = static_cast<int>(t);
+  }
+  return best;
+}
+
+Json touch_message(Page& page, const Json& further = Json::object()) {
+  Json message = {{"do", "touch"}, {"side", "a"}, {"triangle", upper_triangle(page)}, {"weights", {0.3, 0.3, 0.4}}};
+  message.update(further);
+  return message;
+}
+
+void expect_balance(Page& page) {
+  for (size_t i = 1; i < page.rows().size(); ++i) {
+    const Json &row = page.rows()[i], &before = page.rows()[i - 1];
+    const double gain =
+        number(row["kinetic"]) + sum(row["potential"]) - number(before["kinetic"]) - sum(before["potential"]);
+    const double work = number(row["mouse_work"]) + number(row["probe_work"]) + number(row["pin_work"]) -
+                        number(row["damping_loss"]) - number(row["numerical_loss"]) + number(row["residual_work"]);
+    const double scale = std::abs(number(row["kinetic"])) + std::abs(sum(row["potential"])) +
+                         std::abs(number(row["probe_work"])) + std::abs(number(row["numerical_loss"])) +
+                         std::abs(sum(before["potential"]));
+    EXPECT_NEAR(gain, work, 1e-12 * scale + 1e-13) << "step " << row["step"];
+  }
+}
+
+TEST(Tip, PressesTheBodyInAndIsPushedBack) {
+  Page page(kSlab, {"time.integrator=\"quasi_static\""});
+  page.send(touch_message(page, {{"radius", 0.03}}));
+  page.steps(1);
+  const Json begun = page.side()["probe"];
+  EXPECT_EQ(number(begun["depth"]), 0);
+  EXPECT_NEAR(vec(begun["center"])[2], 0.08 + 0.03, 1e-6);  // single precision of the weights does not move it up
+  page.send({{"do", "press"}, {"depth", 0.01}});
+  page.steps(1);
+  const Json probe = page.side()["probe"];
+  EXPECT_NEAR(number(probe["depth"]), 0.01, 1e-12);
+  EXPECT_NEAR(vec(probe["center"])[2], 0.08 + 0.03 - 0.01, 1e-6);
+  EXPECT_LT(vec(probe["force"])[2], 0);  // on the body
+  // A rigid punch of radius a: F = 2 a E / (1 - nu^2) d; a layer of finite thickness is stiffer.
+  EXPECT_GT(size(probe["force"]), kYoung * 0.015 * 0.01);
+  EXPECT_LT(size(probe["force"]), 50 * kYoung * 0.03 * 0.01);
+  EXPECT_GT(probe["points"].get<int>(), 10);
+  page.send({{"do", "lift"}});
+  page.steps(1);
+  EXPECT_TRUE(page.side()["probe"].is_null());
+  const Picture after = page.picture();
+  for (size_t i = 0; i < after.positions.size(); ++i) EXPECT_NEAR(after.positions[i], page.geometry().rest[i], 1e-7);
+}
+
+TEST(Tip, EnergiesBalanceWithItsWork) {
+  for (const char* contact : {"bonded", "sliding"})
+    for (const char* integrator : {"backward_euler", "tr_bdf2", "midpoint"}) {
+      SCOPED_TRACE(std::string(contact) + " " + integrator);
+      Page page(kSlab, {std::string("time.integrator=") + integrator});
+      page.steps(1);
+      page.send(touch_message(page, {{"contact", contact}, {"shape", "disc"}}));
+      page.steps(1);
+      page.send({{"do", "press"}, {"depth", 0.004}});
+      page.steps(2);
+      page.send({{"do", "press"}, {"depth", 0.008}, {"shift", {0.001, 0, 0}}});
+      page.steps(2);
+      page.send({{"do", "lift"}});
+      page.steps(2);
+      double work = 0, most = 0;
+      for (const Json& row : page.rows()) {
+        work += number(row["probe_work"]);
+        most = std::max(most, work);
+        EXPECT_NEAR(number(row["pin_work"]), 0, 1e-12);
+      }
+      EXPECT_GT(most, 0);
+      expect_balance(page);
+    }
+}
+
+TEST(Tip, GoesBackWithTheTimelineAndRepeatsToTheSameBits) {
+  Page page(kSlab);
+  page.steps(2);
+  page.send(touch_message(page));
+  page.send({{"do", "press"}, {"depth", 0.005}});
+  page.steps(3);
+  const Picture then = page.picture();
+  page.send({{"do", "press"}, {"depth", 0.01}});
+  page.steps(2);
+  const Picture deep = page.picture();
+  page.send({{"do", "rewind"}, {"step", 5}});
+  EXPECT_EQ(page.picture().positions, then.positions);
+  EXPECT_NEAR(number(page.side()["probe"]["depth"]), 0.005, 1e-15);
+  page.send({{"do", "press"}, {"depth", 0.01}});
+  page.steps(2);
+  EXPECT_EQ(page.picture().positions, deep.positions);
+  page.send({{"do", "rewind"}, {"step", 1}});
+  EXPECT_TRUE(page.side()["probe"].is_null());
+}
+
+TEST(Tip, ARecordingRepeatsIt) {
+  Page page(kSlab);
+  page.steps(1);
+  page.send(touch_message(page, {{"contact", "sliding"}}));
+  for (int k = 1; k <= 4; ++k) {
+    page.send({{"do", "press"}, {"depth", 0.002 * k}});
+    page.steps(1);
+  }
+  const Picture end = page.picture();
+  const Json recording = page.send({{"ask", "recording"}});
+  page.send({{"do", "replay"}, {"recording", recording}});
+  page.play_until_it_stops();
+  EXPECT_EQ(page.picture().positions, end.positions);
+  EXPECT_NEAR(number(page.side()["probe"]["depth"]), 0.008, 1e-15);
+}
+
+TEST(Tip, StaysThroughANewSetting) {
+  Page page(kSlab, {"time.integrator=\"quasi_static\""});
+  page.send(touch_message(page));
+  page.send({{"do", "press"}, {"depth", 0.008}});
+  page.steps(1);
+  const double before = size(page.side()["probe"]["force"]);
+  page.send({{"do", "set"}, {"key", "material.young"}, {"value", 4e4}});
+  page.steps(1);
+  EXPECT_NEAR(number(page.side()["probe"]["depth"]), 0.008, 1e-12);
+  EXPECT_GT(size(page.side()["probe"]["force"]), 1.8 * before);
+}
+
+TEST(Tip, BothSidesOfAComparisonAreTouchedAlike) {
+  Page page(kSlab, {"time.integrator=\"quasi_static\""});
+  page.send({{"do", "compare"}, {"overrides", {"material.young=1e4"}}, {"label", "softer"}});
+  page.send(touch_message(page));
+  page.send({{"do", "press"}, {"depth", 0.008}});
+  page.steps(1);
+  const Json a = page.side("a")["probe"], b = page.side("b")["probe"];
+  EXPECT_EQ(a["depth"], b["depth"]);
+  EXPECT_GT(size(a["force"]), 1.5 * size(b["force"]));
+}
+
+TEST(Tip, RefusesWhatIsNoTip) {
+  Page page(kSlab);
+  EXPECT_NE(page.refused({{"do", "press"}, {"depth", 0.01}}).find("no tip"), std::string::npos);
+  page.refused(touch_message(page, {{"radius", 0}}));
+  page.refused(touch_message(page, {{"radius", 1e9}}));
+  page.refused(touch_message(page, {{"shape", "cone"}}));
+  page.refused(touch_message(page, {{"contact", "glued"}}));
+  page.refused(touch_message(page, {{"triangle", -1}}));
+  page.refused(touch_message(page, {{"stiffness", -2}}));
+  EXPECT_TRUE(page.side()["probe"].is_null());
+  page.send(touch_message(page));
+  page.refused({{"do", "press"}, {"depth", 1e30}});
+  page.refused({{"do", "press"}, {"depth", "deep"}});
+  EXPECT_EQ(number(page.side()["probe"]["wanted"]), 0);
+}
+
+TEST(RotationVector, IsThatOfTheRotation) {
+  for (const double angle : {0.0, 1e-12, 0.3, 2.0, 3.0, 3.1415, 3.14159265358979}) {
+    const Vec3d a = {{2.0 / 3, -1.0 / 3, 2.0 / 3}};
+    const Mat3d turn = {0, a[2], -a[1], -a[2], 0, a[0], a[1], -a[0], 0};
+    const Mat3d R = identity3<double>() + std::sin(angle) * turn + (1 - std::cos(angle)) * (turn * turn);
+    const Vec3d r = rotation_vector(R);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(r[i], angle * a[i], 1e-7) << angle;
+  }
+}
+
+}  // namespace
+}  // namespace aspic::viewer

@@ -1,0 +1,83 @@
+#include "viewer/touch_place.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/polar3.h"
+#include "mesh/tet_shape.h"
+#include "viewer/fields.h"
+
+namespace aspic::viewer {
+namespace {
+
+constexpr double kShareOfBody = 0.08;  // radius / diagonal
+constexpr double kEdges = 0.8;         // radius / mean edge, at least: a tip that falls between vertices feels one tet
+constexpr double kLayer = 100;
+
+double mean_young(const Model& model) {
+  for (const auto& [name, young] : model.tet_fields) {
+    if (name != "young") continue;
+    double logs = 0, volumes = 0;
+    for (int t = 0; t < model.mesh.tet_count(); ++t) {
+      if (!(young[t] > 0)) continue;
+      logs += volume(model.mesh, t) * std::log(young[t]);
+      volumes += volume(model.mesh, t);
+    }
+    if (volumes > 0) return std::exp(logs / volumes);
+  }
+  return 1e5;
+}
+
+Vec3d unit(const Vec3d& v) { return (1 / length(v)) * v; }
+
+}  // namespace
+
+double usual_radius(const Surface& cage) {
+  Vec3d lower = cage.rest.front(), upper = lower;
+  for (const Vec3d& X : cage.rest)
+    for (int r = 0; r < 3; ++r) lower[r] = std::min(lower[r], X[r]), upper[r] = std::max(upper[r], X[r]);
+  double edges = 0;
+  for (const auto& [a, b] : cage.edges) edges += length(cage.rest[a] - cage.rest[b]);
+  const double edge = edges / std::max<double>(1, static_cast<double>(cage.edges.size()));
+  return std::max(kShareOfBody * length(upper - lower), kEdges * edge);
+}
+
+double usual_layer(const Model& model, double radius) { return kLayer * mean_young(model) / radius; }
+
+Vec3d rotation_vector(const Mat3d& R) {
+  const Vec3d twice_sine = {{R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1)}};
+  const double sine = length(twice_sine) / 2, cosine = (trace(R) - 1) / 2;
+  const double angle = std::atan2(sine, cosine);
+  if (cosine > -0.9) return (sine > 1e-9 ? angle / (2 * sine) : 0.5) * twice_sine;
+  // Near half a turn: (R + R') / 2 - cos I = (1 - cos) a a'
+  const Mat3d A = 0.5 * (R + transpose(R)) - cosine * identity3<double>();
+  int best = 0;
+  for (int c = 1; c < 3; ++c)
+    if (A(c, c) > A(best, best)) best = c;
+  const Vec3d a = unit({{A(0, best), A(1, best), A(2, best)}});
+  return (dot(a, twice_sine) < 0 ? -angle : angle) * a;
+}
+
+TipPose pressed(const Touch& touch, double depth, const Vec3d& shift) {
+  TipPose pose = touch.begun;
+  pose.center = pose.center + depth * pose.axis + shift;
+  return pose;
+}
+
+Touch touch_at(const Model& model, const Surface& cage, const SurfacePoint& point, const Tip& tip,
+               std::span<const double> x) {
+  const Triangle& corners = cage.triangles[point.triangle];
+  const Vec3d &A = cage.rest[corners[0]], &B = cage.rest[corners[1]], &C = cage.rest[corners[2]];
+  const Vec3d inward = -1.0 * unit(cross(B - A, C - A));
+  const Mat3d R = closest_rotation(deformation_gradient(model.mesh, cage.tet[point.triangle], x));
+  Vec3d rest{}, here{};
+  for (int c = 0; c < 3; ++c) {
+    rest = rest + point.weights[c] * cage.rest[corners[c]];
+    here = here + point.weights[c] * cage.position(corners[c], x);
+  }
+  const double back = tip.shape == TipShape::sphere ? tip.radius : 0;
+  const Vec3d axis = R * inward;
+  return {tip, {.center = rest - back * inward, .axis = inward}, {here - back * axis, axis, rotation_vector(R)}};
+}
+
+}  // namespace aspic::viewer

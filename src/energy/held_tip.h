@@ -1,0 +1,61 @@
+// A probe whose tip a hand holds: which tip, where it touched the body at rest, and where the hand moves it may change
+// between steps.
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "energy/probe.h"
+
+namespace aspic {
+
+struct Touch {
+  Tip tip;
+  TipPose rest;   // in which the tip touches the body at rest
+  TipPose begun;  // in which the hand put it on the body as it was then
+};
+
+// What the hand does. The pose changes along a line from one time to another, and rests before and after. [m, rad, s]
+struct Poke {
+  std::shared_ptr<const Touch> touch;  // null: there is no tip
+  TipPose from, to;
+  double from_time = 0, to_time = 0;
+
+  TipPose pose(double time) const;
+};
+
+class HeldTip : public Energy {
+ public:
+  // `mesh`: of the model, whose boundary the tip may touch; nothing of it is kept but positions.
+  explicit HeldTip(const TetMesh& mesh);
+  ~HeldTip() override;
+
+  std::string_view name() const override { return "probe"; }
+
+  // At that time, until the next step begins. Throws InvalidInput for a touch as make_probe does; nothing has changed
+  // then.
+  void set(const Poke& poke, double time);
+  const Poke& poke() const { return poke_; }
+  Wrench wrench(Positions x) const;       // of the tip on the body
+  int touched_points(Positions x) const;  // of the surface; 0: the tip is in the air, or there is none
+
+  void begin_step(const StepContext& step) override;
+  double value(Positions x) const override;
+  void add_gradient(Positions x, double scale, std::span<double> g) const override;
+  void bind(const BlockPattern& pattern) override;
+  int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override;
+  bool prepare_vertex_systems(int vertex_count) override;
+  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
+                          std::span<Mat3d> H) const override;
+
+ private:
+  std::unique_ptr<Probe> made(const Touch& touch) const;
+
+  TetMesh mesh_;  // without tets
+  std::vector<Triangle> surface_;
+  Poke poke_;
+  std::unique_ptr<Probe> probe_;  // of the poke; null without a tip
+  const BlockPattern* pattern_ = nullptr;
+  std::optional<int> vertex_count_;  // once vertex systems were asked for
+};
+
+}  // namespace aspic

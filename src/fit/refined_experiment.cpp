@@ -1,0 +1,182 @@
+#include "fit/refined_experiment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "fit/load_case.h"
+#include "mesh/surface.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kRichardson = 4.0 / 3;  // 1 / (1 - 1/2^2)
+
+double norm(const Vec3d& v) { return std::sqrt(dot(v, v)); }
+
+class Refinement {
+ public:
+  explicit Refinement(const Experiment& coarse) : coarse_(coarse) {
+    fine_.mesh.rest = coarse.mesh.rest;
+    for (int t = 0; t < coarse.mesh.tet_count(); ++t) split(t);
+    for (const SurfacePoint& marker : coarse.markers) fine_.markers.push_back(in_part(marker));
+    hold();
+    for (LoadCase load : coarse.cases) {
+      load.pressed = split(load.pressed);
+      fine_.cases.push_back(std::move(load));
+    }
+  }
+
+  Experiment take() { return std::move(fine_); }
+
+ private:
+  int middle(int a, int b) {
+    const auto [place, is_new] = middle_.try_emplace(std::minmax(a, b), fine_.mesh.vertex_count());
+    if (is_new) fine_.mesh.rest.push_back(0.5 * (coarse_.mesh.rest[a] + coarse_.mesh.rest[b]));
+    return place->second;
+  }
+
+  void add(Tet tet, int parent) {
+    fine_.mesh.tets.push_back(tet);
+    if (volume(fine_.mesh, fine_.mesh.tet_count() - 1) < 0) std::swap(fine_.mesh.tets.back()[2], fine_.mesh.tets.back()[3]);
+    if (!coarse_.mesh.region.empty()) fine_.mesh.region.push_back(coarse_.mesh.region[parent]);
+    if (!coarse_.density.empty()) fine_.density.push_back(coarse_.density[parent]);
+  }
+
+  void split(int t) {
+    const auto& [a, b, c, d] = coarse_.mesh.tets[t];
+    const int ab = middle(a, b), ac = middle(a, c), ad = middle(a, d), bc = middle(b, c), bd = middle(b, d),
+              cd = middle(c, d);
+    add({a, ab, ac, ad}, t), add({b, ab, bc, bd}, t), add({c, ac, bc, cd}, t), add({d, ad, bd, cd}, t);
+    // Opposite corners of the octahedron, and the four others around them.
+    const std::array<std::array<int, 6>, 3> ways = {
+        {{ab, cd, ac, bc, bd, ad}, {ac, bd, ab, bc, cd, ad}, {ad, bc, ab, bd, cd, ac}}};
+    const auto length = [&](const std::array<int, 6>& way) {
+      return norm(fine_.mesh.rest[way[0]] - fine_.mesh.rest[way[1]]);
+    };
+    const auto& way = *std::min_element(ways.begin(), ways.end(),
+                                        [&](const auto& p, const auto& q) { return length(p) < length(q) * (1 - 1e-9); });
+    for (int k = 0; k < 4; ++k) add({way[0], way[1], way[2 + k], way[2 + (k + 1) % 4]}, t);
+  }
+
+  SurfacePoint in_part(const SurfacePoint& p) {
+    const auto& v = p.vertices;
+    const auto& w = p.weights;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      if (w[i] >= 0.5) return {{v[i], middle(v[i], v[j]), middle(v[i], v[k])}, {2 * w[i] - 1, 2 * w[j], 2 * w[k]}};
+    }
+    return {{middle(v[0], v[1]), middle(v[1], v[2]), middle(v[2], v[0])},
+            {1 - 2 * w[2], 1 - 2 * w[0], 1 - 2 * w[1]}};
+  }
+
+  std::vector<Triangle> split(const std::vector<Triangle>& triangles) {
+    std::vector<Triangle> parts;
+    for (const auto& [a, b, c] : triangles) {
+      const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+      parts.insert(parts.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+    }
+    return parts;
+  }
+
+  // The middle of an edge is held where a triangle of the surface or a tet around it is.
+  void hold() {
+    fine_.fixed = coarse_.fixed;
+    std::vector<char> is_held(coarse_.mesh.rest.size(), 0);
+    for (const int v : coarse_.fixed) is_held[v] = 1;
+    const auto hold_edges = [&](const auto& corners) {
+      if (!std::ranges::all_of(corners, [&](int v) { return is_held[v] != 0; })) return;
+      for (size_t i = 0; i < corners.size(); ++i)
+        for (size_t j = 0; j < i; ++j) fine_.fixed.push_back(middle(corners[i], corners[j]));
+    };
+    for (const Triangle& t : boundary_triangles(coarse_.mesh, 0, coarse_.mesh.tet_count())) hold_edges(t);
+    for (const Tet& t : coarse_.mesh.tets) hold_edges(t);
+    std::sort(fine_.fixed.begin(), fine_.fixed.end());
+    fine_.fixed.erase(std::unique(fine_.fixed.begin(), fine_.fixed.end()), fine_.fixed.end());
+  }
+
+  const Experiment& coarse_;
+  Experiment fine_;
+  std::map<std::pair<int, int>, int> middle_;
+};
+
+struct Predictions {
+  std::vector<CasePrediction> cases;
+  std::string failure;
+};
+
+Predictions predicted(const Experiment& experiment, const std::string& material,
+                      std::span<const MaterialParameters> parameters, const EquilibriumOptions& options) {
+  Predictions result;
+  const int count = static_cast<int>(experiment.cases.size());
+  result.cases.resize(count);
+  std::vector<std::string> failures(count);
+  std::vector<int> begin;
+  for (int c = 0; c < count; ++c)
+    if (c == 0 || experiment.cases[c].group.empty() || experiment.cases[c].group != experiment.cases[c - 1].group)
+      begin.push_back(c);
+  begin.push_back(count);
+  parallel_for(static_cast<int>(begin.size()) - 1, [&](int g) {
+    std::vector<double> last;
+    for (int c = begin[g]; c < begin[g + 1]; ++c) {
+      LoadedBody body(experiment, experiment.cases[c], material, parameters, options);
+      if (!body.solve(parameters, last)) {
+        failures[c] = body.failure();
+        return;
+      }
+      result.cases[c] = body.prediction();
+      last = std::move(result.cases[c].x);
+    }
+  });
+  for (const std::string& failure : failures)
+    if (!failure.empty()) result.failure += (result.failure.empty() ? "" : "; ") + failure;
+  return result;
+}
+
+void shift(Vec3d& value, Vec3d& deviation, const Vec3d& error) {
+  value = value - error;
+  for (int i = 0; i < 3; ++i) deviation[i] = std::hypot(deviation[i], kUncertain * norm(error));
+}
+
+}  // namespace
+
+Experiment refined(const Experiment& experiment) { return Refinement(experiment).take(); }
+
+MeshErrors mesh_errors(const Experiment& experiment, const std::string& material,
+                       std::span<const MaterialParameters> parameters, const EquilibriumOptions& options) {
+  const Experiment fine = refined(experiment);
+  std::vector<MaterialParameters> fine_parameters;
+  for (const MaterialParameters& p : parameters) fine_parameters.insert(fine_parameters.end(), 8, p);
+  const Predictions on_mesh = predicted(experiment, material, parameters, options);
+  const Predictions on_fine = predicted(fine, material, fine_parameters, options);
+  MeshErrors errors{{}, on_mesh.failure.empty() ? on_fine.failure : on_mesh.failure};
+  if (!errors.failure.empty()) return errors;
+  for (size_t c = 0; c < on_mesh.cases.size(); ++c) {
+    const CasePrediction &coarse = on_mesh.cases[c], &better = on_fine.cases[c];
+    MeshError& error = errors.cases.emplace_back();
+    for (size_t k = 0; k < coarse.markers.size(); ++k)
+      error.markers.push_back(kRichardson * (better.markers[k] - coarse.markers[k]));
+    error.wrench.force = kRichardson * (better.wrench.force - coarse.wrench.force);
+    error.wrench.torque = kRichardson * (better.wrench.torque - coarse.wrench.torque);
+  }
+  return errors;
+}
+
+Experiment without_mesh_errors(Experiment experiment, const MeshErrors& errors) {
+  if (errors.cases.empty()) return experiment;
+  ASPIC_CHECK(errors.cases.size() == experiment.cases.size());
+  for (size_t c = 0; c < errors.cases.size(); ++c) {
+    LoadCase& load = experiment.cases[c];
+    const MeshError& error = errors.cases[c];
+    for (size_t k = 0; k < load.positions.size(); ++k)
+      shift(load.positions[k].position, load.positions[k].deviation, error.markers[k]);
+    if (load.force) shift(*load.force, load.force_deviation, error.wrench.force);
+    if (load.torque) shift(*load.torque, load.torque_deviation, error.wrench.torque);
+  }
+  return experiment;
+}
+
+}  // namespace aspic

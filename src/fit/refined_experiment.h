@@ -1,0 +1,36 @@
+// What the mesh of a fit gets wrong: linear tets are too stiff. The same body is put at rest under the same loads on a
+// mesh with edges half as long; errors fall with the square of the edges, so that 4/3 of the difference is that of the
+// mesh [Richardson 1911]. It is taken off the measurements, and a part of it is added to their standard deviations
+// (as in the approximation errors of [Kaipio and Somersalo 2007]).
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fit/misfit.h"
+
+namespace aspic {
+
+// Every tet in eight, the octahedron in its middle along its shortest diagonal.
+Experiment refined(const Experiment& experiment);
+
+// Limit of fine meshes minus mesh of the fit, of what is predicted for a case.
+struct MeshError {
+  std::vector<Vec3d> markers;  // one per position [m]
+  Wrench wrench;
+};
+
+struct MeshErrors {
+  std::vector<MeshError> cases;  // empty: unknown
+  std::string failure;           // why
+};
+
+// For a material, one set of parameters per tet.
+MeshErrors mesh_errors(const Experiment& experiment, const std::string& material,
+                       std::span<const MaterialParameters> parameters, const EquilibriumOptions& options = {});
+
+// What would have been measured on a body that is like the mesh; deviations grow by kUncertain of the error.
+inline constexpr double kUncertain = 1.0 / 3;
+Experiment without_mesh_errors(Experiment experiment, const MeshErrors& errors);
+
+}  // namespace aspic

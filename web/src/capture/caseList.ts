@@ -1,0 +1,105 @@
+// The recorded cases, and what records more of them.
+import { button, element, messageOf } from "../dom";
+import type { Page } from "../page";
+import { numberField } from "../plots/dom";
+import { plural, withUnit } from "../plots/numbers";
+import type { Capture, Command, ProbeState } from "../protocol";
+import type { Store } from "../store";
+import type { Display } from "../view/display";
+
+const kDepths = 3; // of one place
+const kDeep = 0.6; // of the pokes all over, in radii
+
+export class CaseList {
+  readonly element = element("section", { class: "capture-cases", "aria-label": "Recorded cases" });
+  private readonly record = this.make("Record this pose", "Keep force and markers of this pose, with the noise of real instruments (Y)", () => ({ do: "record" }));
+  private readonly recordDepths = this.make(`${kDepths} depths here`, "The pose in three equal parts: how the force grows with the depth", () => ({ do: "record", depths: kDepths }));
+  private readonly sites = numberField("places", "How many pokes, as far from each other as can be", 12, { min: 1, max: 200, step: 1 }, () => {});
+  private readonly all = this.make("Poke all over", "Pokes and records by itself, at places as far from each other as can be", () => this.pokeAll());
+  private readonly noise = numberField("noise [%]", "Of positions and forces: standard deviation, relative to the largest motion and the force", 1, { min: 0, max: 100 }, (value) =>
+    this.send({ do: "bench", noise: value / 100 }),
+  );
+  private readonly seed = numberField("seed", "Other noise with another number, the same with the same one", 1, { min: 0, step: 1 }, (value) =>
+    this.send({ do: "bench", seed: value }),
+  );
+  private readonly list = element("ol", { class: "capture-list", "aria-label": "Cases" });
+  private readonly count = element("span", { class: "faint", role: "status" });
+  private readonly clear = this.make("Forget all", "Forget all recorded cases", () => ({ do: "forget" }));
+  private readonly save = button({ text: "Save data set…", title: "As a folder that aspic fit reads, on the program's machine", steers: true }, () => this.saveAs());
+  private told = "";
+
+  constructor(
+    private readonly store: Store,
+    private readonly page: Page,
+    private readonly display: Display,
+  ) {
+    page.shortcut({ key: "y", does: "Record the pose of the tip", group: "Simulation", run: () => this.record.disabled || this.record.click() });
+    this.element.append(
+      element("h3", {}, "2  Record"),
+      element("div", { class: "capture-row" }, this.record, this.recordDepths),
+      element("div", { class: "capture-row" }, this.all, this.sites.element),
+      element("div", { class: "capture-row" }, this.noise.element, this.seed.element),
+      this.list,
+      element("div", { class: "capture-row" }, this.count, this.clear, this.save),
+    );
+    this.show(null);
+    this.follow(null);
+  }
+
+  // What the tip allows.
+  follow(probe: ProbeState | null): void {
+    const ready = probe !== null && probe.wanted !== 0 && this.store.steers;
+    this.record.disabled = this.recordDepths.disabled = !ready;
+  }
+
+  show(capture: Capture | null): void {
+    const cases = capture?.cases ?? [];
+    this.count.textContent = cases.length === 0 ? "Nothing recorded yet." : `${plural(cases.length, "case")} recorded`;
+    this.clear.disabled = this.save.disabled = cases.length === 0 || !this.store.steers;
+    if (capture) {
+      if (document.activeElement !== this.noise.input) this.noise.input.value = String(Number((100 * capture.noise).toPrecision(3)));
+      if (document.activeElement !== this.seed.input) this.seed.input.value = String(capture.seed);
+    }
+    const told = JSON.stringify(cases);
+    if (told === this.told) return;
+    this.told = told;
+    this.list.replaceChildren(
+      ...cases.map((recorded, i) =>
+        element(
+          "li",
+          {},
+          element("span", {}, recorded.name),
+          element("span", { class: "faint" }, `${withUnit(recorded.depth, "m", 2)} deep`),
+          element("span", {}, withUnit(recorded.push, "N", 3)),
+          button({ icon: "close", label: `Forget ${recorded.name}`, steers: true }, () => this.send({ do: "forget", case: i })),
+        ),
+      ),
+    );
+    this.list.scrollTop = this.list.scrollHeight;
+  }
+
+  private pokeAll(): Command {
+    const { tipShape: shape, tipContact: contact, tipRadius } = this.display.settings;
+    const radius = tipRadius > 0 ? tipRadius : (this.store.capture?.radius ?? 0);
+    return { do: "poke_all", sites: this.sites.input.valueAsNumber || 12, depths: 2, depth: kDeep * radius, shape, contact, radius };
+  }
+
+  private saveAs(): void {
+    const folder = prompt("Folder of the data set, on the program's machine", `${this.store.side("a")?.scene.name ?? "body"}_capture`);
+    if (folder) void this.send({ do: "save_capture", folder }).then((ok) => ok && this.page.notice(`Saved. Fit it with: aspic fit ${folder}`));
+  }
+
+  private make(text: string, title: string, command: () => Command): HTMLButtonElement {
+    return button({ text, title, steers: true }, () => void this.send(command()));
+  }
+
+  private async send(command: Command): Promise<boolean> {
+    try {
+      await this.store.source.request(command);
+      return true;
+    } catch (reason) {
+      this.page.notice(messageOf(reason), "error");
+      return false;
+    }
+  }
+}

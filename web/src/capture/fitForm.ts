@@ -1,0 +1,106 @@
+// The fit: begun, watched while it converges, judged against the truth, and simulated.
+import { button, element, messageOf } from "../dom";
+import type { Page } from "../page";
+import { checkbox } from "../plots/dom";
+import { short, withUnit } from "../plots/numbers";
+import type { Capture, CaptureFit, Command } from "../protocol";
+import type { Store } from "../store";
+
+const kFields = [
+  ["young", "true"],
+  ["fitted_young", "fitted"],
+  ["fit_error", "error"],
+  ["young_deviation", "uncertainty"],
+] as const;
+
+// How the fit goes, in a line.
+export function fitText(fit: CaptureFit | null): string {
+  if (!fit) return "";
+  if (fit.failure !== "") return `The fit failed: ${fit.failure}`;
+  const last = fit.iterations[fit.iterations.length - 1];
+  const where = last ? `iteration ${last.index}, data missed by ${short(last.chi, 2)} standard deviations` : "";
+  if (fit.running) return [fit.stage, where].filter((text) => text !== "").join(": ");
+  return last ? `Done: ${where}` : "";
+}
+
+// A factor that people say: 0.1 is "10 %", 0.7 "a factor of 2.0".
+export function errorText(log: number): string {
+  return log < 0.3 ? `${short(100 * (Math.exp(log) - 1), 2)} %` : `a factor of ${short(Math.exp(log), 2)}`;
+}
+
+export class FitForm {
+  readonly element = element("section", { class: "capture-fit", "aria-label": "Fit" });
+  private readonly begin = button({ text: "Fit the stiffness", title: "Finds Young's modulus of every tet from the recorded cases, in the background", steers: true }, () => this.send({ do: "fit" }));
+  private readonly end = button({ text: "Stop", title: "Stop the fit and keep what it has reached", steers: true }, () => this.send({ do: "stop_fit" }));
+  private readonly simulate = button({ text: "Simulate it", title: "Beside the true body, under the same probe and mouse", steers: true }, () => this.send({ do: "simulate_fit" }));
+  private readonly status = element("p", { class: "capture-status", role: "status" });
+  private readonly result = element("p", { class: "capture-result" });
+  private readonly bar = element("progress", { max: "1", value: "0", "aria-label": "How well the data are met" });
+  private readonly sameMesh = checkbox("on the mesh that was measured", "An inverse crime: sharper than any real measurement would be. Forget the recorded cases to change it", false, (on) =>
+    this.send({ do: "bench", same_mesh: on }),
+  );
+  private readonly colours = element("div", { class: "capture-row", role: "group", "aria-label": "Colours of the body" });
+  private readonly note = element("div", { class: "faint capture-note" });
+
+  constructor(
+    private readonly store: Store,
+    private readonly page: Page,
+  ) {
+    for (const [field, words] of kFields) {
+      const choose = button({ text: words, title: `Colour the body: ${words}`, steers: true }, () => this.send({ do: "colour", field }));
+      choose.dataset.field = field;
+      this.colours.append(choose);
+    }
+    const buttons = element("div", { class: "capture-row" }, this.begin, this.end, this.simulate);
+    this.element.append(element("h3", {}, "3  Fit"), buttons, this.sameMesh.element, this.bar, this.status, this.colours, this.result, this.note);
+    store.on("scene", () => this.mark());
+    this.show(null);
+  }
+
+  show(capture: Capture | null): void {
+    const fit = capture?.fit ?? null;
+    const steers = this.store.steers;
+    this.begin.disabled = !steers || !capture || capture.cases.length === 0 || fit?.running === true;
+    this.end.disabled = !steers || fit?.running !== true;
+    this.simulate.disabled = !steers || fit?.has_material !== true || fit.running;
+    this.bar.hidden = fit?.running !== true;
+    if (fit) this.progress(fit);
+    this.status.textContent = fitText(fit) || capture?.words || "";
+    this.status.classList.toggle("plot-error", (fit?.failure ?? "") !== "");
+    const known = fit?.error !== null && fit?.error !== undefined;
+    this.result.textContent = known
+      ? `E from ${withUnit(fit.softest, "Pa", 2)} to ${withUnit(fit.stiffest, "Pa", 2)}; it misses the truth by ${errorText(fit.error!)} on average.`
+      : "";
+    this.sameMesh.input.disabled = !steers || (capture?.cases.length ?? 0) > 0;
+    if (capture && capture.tets > 0) this.sameMesh.input.checked = capture.same_mesh;
+    const notes = [...meshNote(capture), ...(fit && !fit.running ? [...(fit.next ? [`Next poke: ${fit.next.words}`] : []), ...fit.warnings] : [])];
+    if (this.note.textContent !== notes.join("")) this.note.replaceChildren(...notes.map((text) => element("p", {}, `${text[0]!.toUpperCase()}${text.slice(1)}`)));
+    this.mark();
+  }
+
+  // From the first chi to 1, on a scale of logarithms.
+  private progress({ iterations }: CaptureFit): void {
+    const [first, last] = [iterations[0]?.chi, iterations[iterations.length - 1]?.chi];
+    if (!first || !last || first <= 1) return this.bar.removeAttribute("value");
+    this.bar.value = Math.min(1, Math.max(0, 1 - Math.log(last) / Math.log(first)));
+  }
+
+  private mark(): void {
+    const scene = this.store.side("a")?.scene;
+    for (const choose of this.colours.querySelectorAll("button")) {
+      choose.hidden = !scene?.fields.some(({ name }) => name === choose.dataset.field);
+      choose.setAttribute("aria-pressed", String(scene?.field === choose.dataset.field));
+      choose.classList.add("plot-button");
+    }
+  }
+
+  private send(command: Command): void {
+    this.store.source.request(command).catch((reason: unknown) => this.page.notice(messageOf(reason), "error"));
+  }
+}
+
+function meshNote(capture: Capture | null): string[] {
+  if (!capture || capture.tets === 0) return [];
+  if (capture.same_mesh) return ["Inverse crime: the fit has the very mesh that was measured, and looks better than it is."];
+  return [`Fitted on a coarser mesh of ${capture.tets} tets than the one measured: on the same one it would look better than it is.`];
+}

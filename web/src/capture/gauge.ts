@@ -1,0 +1,72 @@
+// The force gauge of the probe: dial, numbers, and the force over the depth.
+import { element } from "../dom";
+import { Chart } from "../plots/chart";
+import { oncePerFrame } from "../plots/dom";
+import { withUnit } from "../plots/numbers";
+import { merged } from "../plots/table";
+import type { ProbeState, Vec3 } from "../protocol";
+import { entryTexts } from "../view/values";
+import { ForceCurve } from "./curve";
+import { Dial } from "./dial";
+
+const size = (v: Vec3): number => Math.hypot(...v);
+
+export class Gauge {
+  readonly element = element("section", { class: "capture-gauge", "aria-label": "Force gauge" });
+  readonly chart = new Chart();
+  visible = false;
+  private readonly dial = new Dial("N");
+  private readonly force = element("output", { class: "capture-force", "aria-label": "Force of the tip" });
+  private readonly parts = element("dl", { class: "capture-parts" });
+  private readonly curve = new ForceCurve();
+  private recorded: [depth: number, force: number][] = [];
+  private readonly redraw = oncePerFrame(() => this.visible && this.draw());
+
+  constructor() {
+    this.element.append(element("h3", {}, "Force gauge"), this.dial.element, this.force, this.parts);
+    this.chart.configure({
+      label: "Force over depth",
+      x: { label: "depth", unit: "m" },
+      y: { label: "force", unit: "N" },
+      curves: [
+        { key: "live", label: "now", meaning: "What the gauge showed at this touch", colour: "series2", width: 2, shape: "both" },
+        { key: "recorded", label: "recorded", meaning: "The recorded cases, with their noise", colour: "series1", shape: "points" },
+      ],
+      legend: "top",
+      read: () => [],
+    });
+    this.show(null);
+  }
+
+  show(probe: ProbeState | null): void {
+    const newtons = probe ? size(probe.force) : 0;
+    this.dial.show(newtons);
+    this.force.textContent = probe ? withUnit(newtons, "N", 3) : "–";
+    this.parts.replaceChildren(
+      ...row("depth", probe ? withUnit(probe.depth, "m", 3) : "–"),
+      ...row("force x, y, z", probe ? `${entryTexts(probe.force).join("  ")} N` : "–"),
+      ...row("torque", probe ? withUnit(size(probe.torque), "Nm", 3) : "–"),
+      ...row("touches", probe ? (probe.points > 0 ? `${probe.points} points` : "nothing: in the air") : "–"),
+    );
+    if (this.curve.add(probe)) this.redraw();
+  }
+
+  showRecorded(points: [depth: number, force: number][]): void {
+    this.recorded = [...points].sort((a, b) => a[0] - b[0]);
+    this.redraw();
+  }
+
+  refresh(): void {
+    this.redraw();
+  }
+
+  private draw(): void {
+    const column = (points: [number, number][]) => ({ x: points.map(([x]) => x), columns: [points.map(([, y]) => y)] });
+    const { x, columns } = merged(column(this.curve.sorted()), column(this.recorded));
+    this.chart.show(x, columns);
+  }
+}
+
+function row(name: string, value: string): HTMLElement[] {
+  return [element("dt", {}, name), element("dd", {}, value)];
+}

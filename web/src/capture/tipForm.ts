@@ -1,0 +1,79 @@
+// Which tip touches, and how deep it is pressed: by slider, number or keys.
+import { button, element } from "../dom";
+import type { Page } from "../page";
+import { choice, numberField } from "../plots/dom";
+import { short } from "../plots/numbers";
+import type { ProbeState, TipChoice } from "../protocol";
+import type { Store } from "../store";
+import type { Display } from "../view/display";
+
+const kNotches = 40; // of the slider and the keys, over the radius of the tip
+const kDeepest = 1.5; // of the slider, in radii
+
+export class TipForm {
+  readonly element = element("section", { class: "capture-tip", "aria-label": "Tip" });
+  private readonly slider = element("input", { type: "range", min: "0", max: "1", step: "any", "aria-label": "Depth, slider" });
+  private readonly depth = numberField("Depth [m]", "How far the tip is pressed in from where it touched", 0, {}, (value) => this.press(value));
+  private readonly radius: ReturnType<typeof numberField>;
+  private readonly lift = button({ text: "Lift", title: "Take the tip away", steers: true }, () => this.store.source.send({ do: "lift" }));
+  private probe: ProbeState | null = null;
+  private held = false;
+
+  constructor(
+    private readonly store: Store,
+    page: Page,
+    private readonly display: Display,
+  ) {
+    const { settings } = display;
+    const shape = choice("Tip", "Shape of the tip", [["sphere", "sphere"], ["disc", "flat disc"]], settings.tipShape, (value) =>
+      display.change({ tipShape: value as TipChoice["shape"] }),
+    );
+    const contact = choice(
+      "held",
+      "Bonded: glued to what it touches, so that it can also pull. Sliding: pushes without friction.",
+      [["bonded", "glued on"], ["sliding", "sliding"]],
+      settings.tipContact,
+      (value) => display.change({ tipContact: value as TipChoice["contact"] }),
+    );
+    this.radius = numberField("Radius [m]", "Of the next tip; 0: the program chooses", settings.tipRadius, { min: 0 }, (value) =>
+      display.change({ tipRadius: value }),
+    );
+    display.on("changed", () => {
+      shape.select.value = settings.tipShape;
+      contact.select.value = settings.tipContact;
+      if (document.activeElement !== this.radius.input) this.radius.input.value = short(settings.tipRadius);
+    });
+    this.slider.addEventListener("pointerdown", () => (this.held = true));
+    this.slider.addEventListener("change", () => (this.held = false));
+    this.slider.addEventListener("input", () => this.probe && this.press(this.slider.valueAsNumber * kDeepest * this.probe.radius));
+    this.element.append(
+      element("h3", {}, "1  Touch and press"),
+      element("div", { class: "capture-row" }, shape.element, contact.element, this.radius.element),
+      element("div", { class: "capture-row capture-depth" }, this.depth.element, this.slider, this.lift),
+    );
+    page.shortcut({ key: "j", does: "Press the tip one notch deeper", group: "Simulation", run: () => this.notch(1) });
+    page.shortcut({ key: "u", does: "Draw the tip one notch back", group: "Simulation", run: () => this.notch(-1) });
+    this.show(null);
+  }
+
+  show(probe: ProbeState | null): void {
+    this.probe = probe;
+    this.slider.disabled = this.depth.input.disabled = probe === null || !this.store.steers;
+    this.lift.disabled = probe === null || !this.store.steers;
+    if (!probe) return;
+    if (!this.held) this.slider.value = String(probe.wanted / (kDeepest * probe.radius));
+    if (document.activeElement !== this.depth.input) this.depth.input.value = String(Number(probe.wanted.toPrecision(3)));
+    if (this.display.settings.tipRadius === 0) this.radius.input.placeholder = short(probe.radius);
+  }
+
+  private notch(by: number): void {
+    if (this.probe) this.press(this.probe.wanted + (by * this.probe.radius) / kNotches);
+  }
+
+  private press(depth: number): void {
+    if (!this.probe) return;
+    this.probe = { ...this.probe, wanted: depth }; // the next notch goes on from there
+    this.store.source.send({ do: "press", depth });
+    if (!this.store.state?.playing) this.store.source.send({ do: "play" });
+  }
+}

@@ -1,0 +1,27 @@
+// Markers on the surface as it is now.
+import type { Capture, Vec3 } from "../protocol";
+import { along, length, minus } from "./lens";
+import type { Dot } from "./overlay";
+import type { Surface } from "./picking";
+import { inwardNormal } from "./pressing";
+
+export function markersOn(surface: Pick<Surface, "positions" | "triangles">, { triangles, weights }: Capture["markers"]): Dot[] {
+  const { positions, triangles: corners } = surface;
+  return triangles.flatMap((triangle, i) => {
+      if (3 * triangle + 2 >= corners.length) return []; // of another surface, which is about to come
+      let at: Vec3 = [0, 0, 0];
+      for (let c = 0; c < 3; ++c) {
+        const v = 3 * corners[3 * triangle + c];
+        at = along(at, weights[3 * i + c]!, [positions[v], positions[v + 1], positions[v + 2]]);
+      }
+      const [x, y, z] = inwardNormal(positions, corners, triangle);
+      return [{ at, normal: [-x, -y, -z] as Vec3 }];
+  });
+}
+
+// At that place, with the normal of the marker nearest to it.
+export function nearestOn(dots: Dot[], at: Vec3): Dot {
+  let best: Dot | null = null;
+  for (const dot of dots) if (!best || length(minus(dot.at, at)) < length(minus(best.at, at))) best = dot;
+  return { at, normal: best?.normal ?? [0, 0, 0] };
+}

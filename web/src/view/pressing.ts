@@ -1,0 +1,33 @@
+// How the mouse presses a tip in: which way on the screen leads into the body, and how far a pixel is.
+import type { Vec3 } from "../protocol";
+import { along, cross, minus, pixelsPerMetre, project, unit, type Lens } from "./lens";
+
+export interface Way {
+  direction: [number, number]; // on the screen
+  metres: number; // per pixel
+}
+
+const kSlant = 0.3; // sine of the angle between the way in and the line of sight, below which down on the screen is in
+
+export function inwardNormal(positions: ArrayLike<number>, triangles: ArrayLike<number>, triangle: number): Vec3 {
+  const corner = (c: number): Vec3 => {
+    const v = 3 * triangles[3 * triangle + c];
+    return [positions[v], positions[v + 1], positions[v + 2]];
+  };
+  const [a, b, c] = [corner(0), corner(1), corner(2)];
+  return unit(cross(minus(c, a), minus(b, a)));
+}
+
+export function wayIn(lens: Lens, point: Vec3, axis: Vec3): Way {
+  const [x, y, depth] = project(lens, point);
+  const pixels = pixelsPerMetre(lens, depth);
+  const step = 1 / pixels; // one pixel, where nothing is foreshortened
+  const [u, v] = project(lens, along(point, step, axis));
+  const seen = Math.hypot(u - x, v - y);
+  if (!(seen > kSlant)) return { direction: [0, 1], metres: step };
+  return { direction: [(u - x) / seen, (v - y) / seen], metres: step / seen };
+}
+
+export function depthOf(way: Way, [dx, dy]: [number, number]): number {
+  return way.metres * (dx * way.direction[0] + dy * way.direction[1]);
+}
