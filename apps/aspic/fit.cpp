@@ -31,7 +31,7 @@ struct Arguments {
   FitOptions fit;
   double prior_deviation = RegularizerOptions().prior_deviation;
   int threads = 0;  // 0: not given
-  bool no_uncertainty = false, no_cross_validation = false, no_mesh_errors = false, baselines = false, check = false;
+  bool no_uncertainty = false, no_cross_validation = false, mesh_errors = false, baselines = false, check = false;
   bool force = false, resume = false, quiet = false, verbose = false, allow_unconverged = false;
 };
 
@@ -59,7 +59,7 @@ FitPlan plan_of(const Arguments& arguments) {
   plan.left_out = arguments.left_out;
   plan.uncertainty = !arguments.no_uncertainty;
   plan.cross_validation = !arguments.no_cross_validation;
-  plan.mesh_errors = !arguments.no_mesh_errors;
+  plan.mesh_errors = arguments.mesh_errors;
   return plan;
 }
 
@@ -237,8 +237,8 @@ void add_choices(CLI::App* command, Arguments& a) {
       ->allow_extra_args(false);
   command->add_flag("--baselines", a.baselines,
                     "What is left out is also predicted by one modulus, per-example linear and strain-space moduli");
-  command->add_flag("--no-mesh-errors", a.no_mesh_errors,
-                    "What the mesh gets wrong is not computed on a finer one and taken off the measurements");
+  command->add_flag("--mesh-errors", a.mesh_errors,
+                    "What the mesh gets wrong is computed on a finer one, and taken off the measurements");
   command->add_flag("--no-uncertainty", a.no_uncertainty, "No deviations, intervals and next poke");
   command->add_flag("--no-cross-validation", a.no_cross_validation, "No group is left out to be predicted");
 }

@@ -21,8 +21,6 @@ constexpr double kLeastDeviation = 1e-4;  // of exact readings
 constexpr double kMeshShare = 0.3;        // of what a coarser mesh changes that counts as noise
 constexpr uint64_t kApart = 1'000'003;    // seeds of two cases
 
-
-
 Vec3d gravity_of(const Scene& scene) {
   const Table document = read_toml(scene.resolved, scene.name);
   const Value* gravity = document.find("gravity");
@@ -90,7 +88,8 @@ void Bench::set_up_mesh(const Scene& scene) {
   is_same_mesh_ = !mesh;
   if (!mesh) {
     mesh = to_user(scene.simulation.model().numbering, body_.mesh);
-    notes_.emplace_back("Fitted on the very mesh that was measured: an inverse crime, the fit looks better than it is.");
+    notes_.emplace_back(
+        "Fitted on the very mesh that was measured: an inverse crime, the fit looks better than it is.");
   }
   data_.numbering = locality_numbering(*mesh);
   Experiment& data = data_.experiment;
@@ -171,8 +170,8 @@ LoadCase Bench::as_data(const LoadCase& load) const {
   return data;
 }
 
-// What the coarser mesh does to a uniform body it does to this one, too, and no fit knows better. Most of it is alike in
-// all cases; what differs between them counts as noise.
+// What the coarser mesh does to a uniform body it does to this one, too, and no fit knows better. Most of it is alike
+// in all cases; what differs between them counts as noise.
 void Bench::note_mesh_error(const LoadCase& load) {
   mesh_error_.assign(load.positions.size(), 0.0);
   mesh_force_error_ = 0;

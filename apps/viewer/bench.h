@@ -33,14 +33,14 @@ class Bench {
   const BenchOptions& options() const { return options_; }
   void set_options(const BenchOptions& options);  // other markers: refused by InvalidInput once there are cases
 
-  // Presses a tip in, in equal parts up to that pose, and reads each part. Throws InvalidInput, with what was read kept,
-  // when the body finds no rest or `go_on` wants no more.
+  // Presses a tip in, in equal parts up to that pose, and reads each part. Throws InvalidInput, with what was read
+  // kept, when the body finds no rest or `go_on` wants no more.
   void record(const Touch& touch, const TipPose& pose, int depths, const Consent& go_on);
   void forget(int c);  // a case
   void forget_all();
 
   const DataSet& data() const { return data_; }
-  const std::vector<double>& depths() const { return depths_; }      // of each case [m]
+  const std::vector<double>& depths() const { return depths_; }          // of each case [m]
   const std::vector<Vec3d>& marker_rest() const { return truth_rest_; }  // on the surface of the scene's body [m]
   const FittedMaterial& truth() const { return truth_; }
   bool is_same_mesh() const { return is_same_mesh_; }  // of the data and of the scene: an inverse crime
@@ -72,8 +72,8 @@ class Bench {
   MaterialParameters uniform_;      // about the mean of the truth
   std::vector<double> mesh_error_;  // of each position of a case, where the body is uniform [m]
   double mesh_force_error_ = 0;     // relative to the force
-  std::vector<int> data_tet_;  // in which each tet of the scene lies
-  uint64_t recorded_ = 0;      // cases so far: each has noise of its own
+  std::vector<int> data_tet_;       // in which each tet of the scene lies
+  uint64_t recorded_ = 0;           // cases so far: each has noise of its own
   int groups_ = 0;
 };
 

@@ -45,7 +45,11 @@ int upper_triangle(Page& page) {
 }
 
 void touch(Page& page) {
-  page.send({{"do", "touch"}, {"side", "a"}, {"triangle", upper_triangle(page)}, {"weights", {0.3, 0.3, 0.4}}, {"radius", 0.02}});
+  page.send({{"do", "touch"},
+             {"side", "a"},
+             {"triangle", upper_triangle(page)},
+             {"weights", {0.3, 0.3, 0.4}},
+             {"radius", 0.02}});
 }
 
 FitNews finished(const FitTask& task, Page& page) {

@@ -10,7 +10,7 @@ const char* words_of(FitStage stage) {
     case FitStage::uniform:
       return "one value for the whole body";
     case FitStage::mesh_errors:
-      return "what the mesh gets wrong";
+      return "what the mesh gets wrong, by a finer one";
     case FitStage::field:
       return "a value for every tet";
     case FitStage::uncertainty:
@@ -37,10 +37,10 @@ class Listener {
       : task_(task), tell_(tell), plan_(completed(task.plan, task.data.experiment)) {}
 
   FitOutcome run() {
-    const FitWitness witness{
-        .begin = [this](FitStage stage, const std::string&) { begin(stage); },
-        .iterate = [this](FitStage stage, const FitIteration& i, std::span<const double> p) { return hear(stage, i, p); },
-        .go_on = [this] { return goes_on_ = goes_on_ && tell_({}); }};
+    const FitWitness witness{.begin = [this](FitStage stage, const std::string&) { begin(stage); },
+                             .iterate = [this](FitStage stage, const FitIteration& i,
+                                               std::span<const double> p) { return hear(stage, i, p); },
+                             .go_on = [this] { return goes_on_ = goes_on_ && tell_({}); }};
     return fit_material(task_.data, task_.plan, {}, witness);
   }
 

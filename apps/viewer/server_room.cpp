@@ -28,6 +28,11 @@ Urgency urgency_of(std::string_view command) {
   return is_urgent ? Urgency::before_steps : Urgency::before_questions;
 }
 
+Aim aim_of(std::string_view command) {
+  if (command == "move") return Aim::mouse;
+  return command == "press" ? Aim::tip : Aim::none;
+}
+
 std::string refusal(const std::string& id, const std::string& why) {
   return fmt::format(R"({{"kind":"refused","id":{},"why":{}}})", id, nlohmann::json(why).dump());
 }
@@ -109,7 +114,7 @@ void Room::receive(PageId id, std::string text) {
                                           .text = std::move(text),
                                           .urgency = urgency,
                                           .is_question = head.does.empty(),
-                                          .is_superseded = (head.does == "move" || head.does == "press") && head.id == "null"});
+                                          .aim = head.id == "null" ? aim_of(head.does) : Aim::none});
   if (!is_added) return send(*page, refusal(head.id, "too many messages wait for the step under way"));
   if (urgency != Urgency::none && !is_watching_urgency_) watch_urgency();
 }

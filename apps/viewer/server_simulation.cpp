@@ -36,7 +36,7 @@ bool SimulationThread::add(Request request) {
   const size_t size = request.text.size();
   if (!inbox_.empty()) {
     Request& last = inbox_.back();
-    if (last.is_superseded && request.is_superseded && last.page == request.page && last.role == request.role) {
+    if (last.aim != Aim::none && last.aim == request.aim && last.page == request.page && last.role == request.role) {
       inbox_bytes_ += size - last.text.size();
       last = std::move(request);
       return true;

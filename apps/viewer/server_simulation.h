@@ -32,13 +32,15 @@ class Audience {
 // What a request does not wait for when that takes long: it is interrupted.
 enum class Urgency { none, before_questions, before_steps };
 
+enum class Aim { none, mouse, tip };  // what a request moves
+
 struct Request {
   PageId page = kNoPage;
   Role role = Role::watches;
   std::string text;  // empty: the page has just come, and is to be greeted
   Urgency urgency = Urgency::none;
   bool is_question = false;
-  bool is_superseded = false;  // by one of its kind that directly follows
+  Aim aim = Aim::none;  // superseded by one that directly follows with the same
 };
 
 class SimulationThread {

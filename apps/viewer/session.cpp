@@ -214,8 +214,8 @@ Messages Session::pictures() const {
     const int step = side.steps_taken() + (side.iteration() >= 0 ? 1 : 0);
     const bool shows = side.has_field(impl_->field);
     messages.push_back({true, impl_->encoder.encode({shown->number(), shown->generation},
-                                                    {step, side.iteration(), side.time(), shows ? impl_->field : ""}, side.view(),
-                                                    shown->surface)});
+                                                    {step, side.iteration(), side.time(), shows ? impl_->field : ""},
+                                                    side.view(), shown->surface)});
   }
   return messages;
 }

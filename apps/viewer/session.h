@@ -65,8 +65,8 @@ class Session {
   // The next step of the side that is behind, and further ones as long as `goes_on`; what is new, for all pages.
   Messages advance(const std::function<bool()>& goes_on = {});
 
-  // A fit that was asked for: to be run by who has threads, and told by note_fit(), until wants_fit() is false or it has
-  // ended; what is new for all pages.
+  // A fit that was asked for: to be run by who has threads, and told by note_fit(), until wants_fit() is false or it
+  // has ended; what is new for all pages.
   std::optional<FitTask> take_fit();
   bool wants_fit() const;
   Messages note_fit(const FitNews& news);

@@ -120,8 +120,7 @@ void Session::Impl::poke_all(Arguments& arguments) {
   if (!(depth > 0 && depth <= 10 * tip.radius))
     refuse("poke_all.depth", depth, "a positive depth, at most ten radii of the tip, is expected [m]");
   const std::vector<PokeSite> places = bench().sites(tip.radius, sites);
-  if (places.empty())
-    throw InvalidInput("there is no free and flat place for this tip; choose a smaller radius");
+  if (places.empty()) throw InvalidInput("there is no free and flat place for this tip; choose a smaller radius");
   if (bench().data().experiment.cases.size() + places.size() * depths > kMostCases)
     throw InvalidInput(fmt::format("at most {} cases are kept; forget some", kMostCases));
   Busy busy(options);
@@ -142,7 +141,8 @@ void Session::Impl::poke_all(Arguments& arguments) {
     if (stop) break;
   }
   tell_capture();
-  if (failed > 0) throw InvalidInput(fmt::format("{} of {} pokes were not recorded whole: {}", failed, places.size(), why));
+  if (failed > 0)
+    throw InvalidInput(fmt::format("{} of {} pokes were not recorded whole: {}", failed, places.size(), why));
 }
 
 void Session::Impl::forget(Arguments& arguments) {
@@ -163,8 +163,7 @@ void Session::Impl::save_capture(Arguments& arguments) {
   arguments.finish();
   if (!capture.bench || capture.bench->data().experiment.cases.empty())
     throw InvalidInput("nothing is recorded yet; record a case first");
-  if (std::filesystem::exists(folder))
-    throw InvalidInput(folder + ": exists already; choose a new folder");
+  if (std::filesystem::exists(folder)) throw InvalidInput(folder + ": exists already; choose a new folder");
   write_data_set(folder, capture.bench->data());
 }
 

@@ -119,8 +119,7 @@ void Session::Impl::show_fit() {
     const std::vector<double> truth = capture.bench->true_young();
     for (size_t t = 0; t < truth.size(); ++t) log_error[t] = std::log(capture.young[t] / truth[t]);
     shown.push_back({{"fitted_young", "fitted Young's modulus", "Pa"}, capture.bench->on_scene(capture.young)});
-    shown.push_back(
-        {{"fit_error", "log of fitted / true modulus", "", true, 0}, capture.bench->on_scene(log_error)});
+    shown.push_back({{"fit_error", "log of fitted / true modulus", "", true, 0}, capture.bench->on_scene(log_error)});
     if (!capture.deviation.empty())
       shown.push_back({{"young_deviation", "deviation of log E (0.1: known to 10 %)", ""},
                        capture.bench->on_scene(capture.deviation)});

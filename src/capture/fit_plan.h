@@ -21,7 +21,7 @@ struct FitPlan {
   EquilibriumOptions equilibrium;
   std::vector<std::string> left_out;  // groups of cases that are predicted, not fitted
   bool uncertainty = true, cross_validation = true;
-  bool mesh_errors = true;  // what the mesh gets wrong is computed on a finer one and taken off the measurements
+  bool mesh_errors = false;  // what the mesh gets wrong is computed on a finer one and taken off the measurements
 };
 
 // "young=tets", "poisson=uniform", "b=handles:40". Throws InvalidInput.

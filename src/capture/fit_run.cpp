@@ -18,8 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kTooFine = 20'000;  // tets, for a mesh of eight times as many
-constexpr int kPasses = 8;
-constexpr double kSettled = 3e-4;  // relative change of a value
+constexpr int kPasses = 4;
+constexpr double kSettled = 1e-3;  // relative change of a value
 // Guesses that are tried when the first one is so soft that the loads crush the body.
 constexpr double kStiffer[] = {1, 10, 100, 0.1};
 constexpr double kUnexplained = 4;  // |r|^2 per reading: twice the standard deviations
@@ -76,7 +76,8 @@ class MaterialFit {
     const bool is_field = !are_single_values(plan_.unknowns);
     if (is_field || plan_.mesh_errors) {
       if (!fit_single_values("uniform")) return std::move(outcome_);
-      if (!settle_mesh_errors()) return std::move(outcome_);
+      if (plan_.mesh_errors && take_off_mesh_errors() && !fit_single_values("uniform_corrected"))
+        return std::move(outcome_);
       if (!is_field) outcome_.uniform.reset();
     }
     fit_fields();
@@ -104,7 +105,7 @@ class MaterialFit {
       outcome_.failure.clear();
       for (size_t u = 0; u < plan_.unknowns.size(); ++u)
         plan_.unknowns[u].guess = stage.map.values(static_cast<int>(u), report.p).front();
-      single_values_ = stage.map.parameters(report.p);
+      material_ = stage.map.parameters(report.p);
       if (report.status != Status::interrupted) return true;
       describe(stage, report.p);
       return false;
@@ -146,26 +147,6 @@ class MaterialFit {
                                 "mesh and model");
   }
 
-  // The errors depend on the values, which depend on them. False: nothing comes after it.
-  bool settle_mesh_errors() {
-    for (int pass = 1; plan_.mesh_errors; ++pass) {
-      if (pass > kPasses) {
-        outcome_.warnings.push_back(
-            "what the mesh gets wrong is so much that it could not be taken off reliably: take a finer mesh, or a larger "
-            "tip");
-        break;
-      }
-      const std::vector<Unknown> before = plan_.unknowns;
-      if (!take_off_mesh_errors()) break;
-      if (!fit_single_values("uniform_corrected" + std::to_string(pass))) return false;
-      double change = 0;
-      for (size_t u = 0; u < before.size(); ++u)
-        change = std::max(change, std::abs(plan_.unknowns[u].guess / before[u].guess - 1));
-      if (change < kSettled) break;
-    }
-    return !outcome_.interrupted;
-  }
-
   // False: they are not known, and the data remain as they are.
   bool take_off_mesh_errors() {
     if (!may_go_on()) return false;
@@ -175,7 +156,7 @@ class MaterialFit {
       return plan_.mesh_errors = false;
     }
     begin(FitStage::mesh_errors, "what the mesh gets wrong, by one of eight times as many tets");
-    MeshErrors errors = mesh_errors(data_.experiment, plan_.model, single_values_, plan_.equilibrium);
+    MeshErrors errors = mesh_errors(data_.experiment, plan_.model, material_, plan_.equilibrium);
     if (errors.cases.empty()) {
       outcome_.warnings.push_back("what the mesh gets wrong could not be computed: " + errors.failure);
       return plan_.mesh_errors = false;
@@ -217,8 +198,23 @@ class MaterialFit {
 
   void fit_fields() {
     begin(FitStage::field, "");
-    Stage stage(fitted_, plan_, plan_.unknowns, memory_, "fit", fingerprint_);
-    outcome_.report = fit_stage(FitStage::field, stage, plan_.fit);
+    std::optional<Stage> last;
+    std::vector<double> start;
+    for (int pass = 0;; ++pass) {
+      const std::string name = pass == 0 ? "fit" : "fit_corrected" + std::to_string(pass);
+      last.emplace(fitted_, plan_, plan_.unknowns, memory_, name, fingerprint_);
+      outcome_.report = fit_stage(FitStage::field, *last, plan_.fit, start);
+      const std::vector<double>& p = outcome_.report.p;
+      if (!plan_.mesh_errors || pass == kPasses || !is_success(outcome_.report.status)) break;
+      double change = 0;
+      for (size_t i = 0; i < start.size(); ++i) change = std::max(change, std::abs(p[i] - start[i]));
+      if (pass > 0 && change < kSettled) break;
+      start = p;
+      material_ = last->map.parameters(p);
+      last.reset();
+      take_off_mesh_errors();  // else the last ones stay
+    }
+    Stage& stage = *last;
     const FitReport& report = outcome_.report;
     if (report.p.empty() || report.status == Status::undefined || report.status == Status::no_descent) {
       outcome_.failure = words_of_failure(report, stage.misfit);
@@ -232,7 +228,8 @@ class MaterialFit {
     if (!outcome_.interrupted) find_next_poke(stage);
   }
 
-  FitReport fit_stage(FitStage which, Stage& stage, const FitOptions& options) {
+  FitReport fit_stage(FitStage which, Stage& stage, const FitOptions& options,
+                      const std::vector<double>& start = {}) {
     outcome_.unknowns = stage.map.size();
     outcome_.residuals = stage.misfit.residual_count();
     const auto observe = [&](const FitIteration& iteration, std::span<const double> p) {
@@ -241,7 +238,7 @@ class MaterialFit {
       if (stage.journal) stage.journal->stop_writing();
       return false;
     };
-    FitReport report = fit(stage.model(), *stage.prior, stage.map.guess(), options, observe);
+    FitReport report = fit(stage.model(), *stage.prior, start.empty() ? stage.map.guess() : start, options, observe);
     outcome_.counts = stage.misfit.counts();
     return report;
   }
@@ -360,7 +357,7 @@ class MaterialFit {
   Experiment experiment_;          // without what the mesh gets wrong
   Experiment fitted_;              // and without what is left out
   std::vector<MeshError> errors_;  // of each case; empty: not known
-  std::vector<MaterialParameters> single_values_;
+  std::vector<MaterialParameters> material_;  // for which they are computed
   std::string fingerprint_;
   FitOutcome outcome_;
 };

@@ -69,7 +69,7 @@ export class CaseList {
           "li",
           {},
           element("span", {}, recorded.name),
-          element("span", { class: "faint" }, `${withUnit(recorded.depth, "m", 2)} deep`),
+          element("span", { class: "faint" }, withUnit(recorded.depth, "m", 2)),
           element("span", {}, withUnit(recorded.push, "N", 3)),
           button({ icon: "close", label: `Forget ${recorded.name}`, steers: true }, () => this.send({ do: "forget", case: i })),
         ),

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { dirname, join } from "node:path";
+import { dirname, join, resolve } from "node:path";
 import { after, afterEach } from "node:test";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
@@ -47,7 +47,7 @@ export async function until(what, condition, told = () => "") {
 
 // `aspic view`, with its address and what it said.
 export async function startProgram(scene, more = []) {
-  const child = spawn(aspic, ["view", join(root, scene), "--no-browser", ...more]);
+  const child = spawn(aspic, ["view", resolve(root, scene), "--no-browser", ...more]);
   const program = { child, address: "", said: "", complained: "", ended: null };
   child.stdout.on("data", (chunk) => (program.said += chunk));
   child.stderr.on("data", (chunk) => (program.complained += chunk));

@@ -1,0 +1,121 @@
+#include "energy/held_tip.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "base/error.h"
+#include "energy/tet_elasticity.h"
+#include "mesh/generators.h"
+#include "mesh/surface.h"
+
+namespace aspic {
+namespace {
+
+const TetMesh& mesh() {
+  static const TetMesh box = make_box({{0, 0, 0}}, {{1, 0.8, 0.6}}, {4, 3, 3});
+  return box;
+}
+
+BlockPattern pattern() {
+  const std::vector<MaterialParameters> parameters(mesh().tet_count(), {lame_from_young_poisson(1, 0.3), {}});
+  Couplings couplings;
+  make_tet_elasticity("neo_hookean", mesh(), 0, parameters)->add_couplings(couplings);
+  return make_pattern(mesh().vertex_count(), couplings);
+}
+
+std::vector<double> rest() {
+  std::vector<double> x;
+  for (const Vec3d& X : mesh().rest) x.insert(x.end(), {X[0], X[1], X[2]});
+  return x;
+}
+
+std::shared_ptr<const Touch> touch(TipContact contact = TipContact::bonded) {
+  const TipPose pose{.center = {{0.5, 0.4, 0.8}}, .axis = {{0, 0, -1}}, .rotation = {}};
+  return std::make_shared<const Touch>(Touch{{TipShape::sphere, contact, 0.2, 50}, pose, pose});
+}
+
+Poke pressed(double depth, TipContact contact = TipContact::bonded) {
+  Poke poke{.touch = touch(contact), .from = {}, .to = {}};
+  poke.from = poke.to = poke.touch->begun;
+  poke.to.center[2] -= depth;
+  poke.from_time = 1, poke.to_time = 3;
+  return poke;
+}
+
+TEST(HeldTip, ItsPoseMovesAlongALineAndRestsBeforeAndAfter) {
+  const Poke poke = pressed(0.1);
+  EXPECT_EQ(poke.pose(0).center[2], 0.8);
+  EXPECT_NEAR(poke.pose(1.5).center[2], 0.775, 1e-15);
+  EXPECT_NEAR(poke.pose(9).center[2], 0.7, 1e-15);
+}
+
+TEST(HeldTip, WithoutATouchIsNothing) {
+  HeldTip V(mesh());
+  const std::vector<double> x = rest();
+  std::vector<double> g(x.size());
+  V.add_gradient(x, 1, g);
+  EXPECT_EQ(V.value(x), 0);
+  EXPECT_EQ(g, std::vector<double>(x.size(), 0.0));
+  EXPECT_EQ(V.touched_points(x), 0);
+  EXPECT_TRUE(V.prepare_vertex_systems(mesh().vertex_count()));
+}
+
+// Bound, and asked for vertex systems, before there was a tip.
+TEST(HeldTip, IsTheProbeThatItHolds) {
+  const BlockPattern blocks = pattern();
+  const std::vector<double> x = rest();
+  for (const TipContact contact : {TipContact::bonded, TipContact::sliding}) {
+    const Poke poke = pressed(0.1, contact);
+    HeldTip V(mesh());
+    V.bind(blocks);
+    ASSERT_TRUE(V.prepare_vertex_systems(mesh().vertex_count()));
+    V.set(poke, 9);
+    const auto probe =
+        make_probe(mesh(), boundary_triangles(mesh(), 0, mesh().tet_count()), poke.touch->tip, poke.touch->rest);
+    probe->bind(blocks);
+    probe->set_pose(poke.to);
+    EXPECT_GT(V.value(x), 0);
+    EXPECT_EQ(V.value(x), probe->value(x));
+    std::vector<double> g(x.size()), wanted(x.size());
+    V.add_gradient(x, 2, g);
+    probe->add_gradient(x, 2, wanted);
+    EXPECT_EQ(g, wanted);
+    BlockSparse H(blocks), K(blocks);
+    V.add_hessian(x, 1, {Definiteness::exact}, H);
+    probe->add_hessian(x, 1, {Definiteness::exact}, K);
+    for (size_t b = 0; b < H.block.size(); ++b) EXPECT_EQ(squared_norm(H.block[b] - K.block[b]), 0);
+    for (int r = 0; r < 3; ++r) EXPECT_EQ(V.wrench(x).force[r], probe->wrench(x).force[r]);
+
+    std::vector<Vec3d> gv(1, Vec3d{});
+    std::vector<Mat3d> Hv(1, Mat3d{});
+    const std::vector<int> vertex = {mesh().vertex_count() - 1};
+    V.add_vertex_systems(x, 2, vertex, gv, Hv);
+    for (int r = 0; r < 3; ++r) EXPECT_NEAR(gv[0][r], g[3 * vertex[0] + r], 1e-12);
+
+    V.set(poke, 0);
+    V.begin_step({.start = x, .h = 1, .time = 2});  // halfway
+    probe->set_pose(poke.pose(2));
+    EXPECT_EQ(V.value(x), probe->value(x));
+    V.set({}, 0);
+    EXPECT_EQ(V.value(x), 0);
+  }
+}
+
+TEST(HeldTip, ABadTouchChangesNothing) {
+  HeldTip V(mesh());
+  const Poke good = pressed(0.1);
+  V.set(good, 9);
+  const std::vector<double> x = rest();
+  const double before = V.value(x);
+  Poke bad = good;
+  Touch away = *good.touch;
+  away.rest.center[2] += 5;  // glued to nothing
+  bad.touch = std::make_shared<const Touch>(away);
+  EXPECT_THROW(V.set(bad, 9), InvalidInput);
+  EXPECT_EQ(V.value(x), before);
+  EXPECT_EQ(V.poke().touch, good.touch);
+}
+
+}  // namespace
+}  // namespace aspic
