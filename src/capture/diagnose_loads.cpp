@@ -107,6 +107,11 @@ class LoadDiagnosis {
   }
 
   void examine_touch(const LoadCase& load, double off) {
+    const Vec3d axis = (1 / norm(load.touch.axis)) * load.touch.axis;
+    if (-dot(axis, surface_.nearest(load.touch.center).normal) < kBackwards)
+      return findings_.error(where_, "the axis of the tip points out of the body",
+                             "axis_x, axis_y, axis_z point out of the tip, into the body: turn their signs, or leave "
+                             "them blank");
     Tip tip = *load.tip;
     if (!(tip.stiffness > 0)) tip.stiffness = 1;
     try {
@@ -115,11 +120,6 @@ class LoadDiagnosis {
       findings_.error(where_, e.what(), "give touch and axis as they were when the tip touched the body at rest");
       return;
     }
-    const Vec3d axis = (1 / norm(load.touch.axis)) * load.touch.axis;
-    if (-dot(axis, surface_.nearest(load.touch.center).normal) < kBackwards)
-      return findings_.error(where_, "the axis of the tip points out of the body",
-                             "axis_x, axis_y, axis_z point out of the tip, into the body: turn their signs, or leave "
-                             "them blank");
     const double gap = tip.shape == TipShape::sphere ? off - tip.radius : off;
     if (tip.contact == TipContact::sliding && gap > kLoose * size_)
       findings_.warning(where_,

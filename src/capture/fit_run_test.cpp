@@ -49,7 +49,7 @@ TEST(FitRun, FindsTheLayersOfABlock) {
   const std::vector<double>& E = *outcome.material.find("young");
   for (size_t t = 0; t < E.size(); ++t)
     EXPECT_NEAR(E[t], outcome.material.mesh.region[t] == 1 ? kSoftLayer : kStiffLayer, 0.01 * E[t]);
-  EXPECT_EQ(outcome.material.find("poisson")->front(), 0.4);
+  EXPECT_DOUBLE_EQ(outcome.material.find("poisson")->front(), 0.4);
   EXPECT_EQ(outcome.material.find("density")->front(), 1000);
   for (size_t c = 0; c < outcome.cases.size(); ++c) {
     ASSERT_TRUE(outcome.cases[c].ok);
