@@ -1005,7 +1005,7 @@ class BadData(Captured):
 
 class MaterialFile(CommandLine):
     TETS = """<VTKFile type="UnstructuredGrid" version="1.0"><UnstructuredGrid><Piece NumberOfPoints="4" NumberOfCells="1">
-<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 0.1 0 0 0 0.1 0 0 0 0.1</DataArray></Points>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 0.3 0 0 0 0.3 0 0 0 0.3</DataArray></Points>
 <Cells><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3</DataArray>
 <DataArray type="Int64" Name="offsets" format="ascii">4</DataArray>
 <DataArray type="UInt8" Name="types" format="ascii">10</DataArray></Cells>

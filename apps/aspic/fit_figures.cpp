@@ -50,8 +50,7 @@ std::vector<Prediction> predictions_of(const DataSet& data, const FitOutcome& ou
   if (!with_baselines) return predictions;
   const Experiment training = without_groups(data.experiment, plan.left_out);
   for (const Baseline baseline : {Baseline::homogeneous, Baseline::per_example_linear, Baseline::bickel})
-    predictions.push_back(
-        {std::string(name(baseline)), predict(baseline, training, left_out, baseline_options(plan))});
+    predictions.push_back({std::string(name(baseline)), predict(baseline, training, left_out, baseline_options(plan))});
   return predictions;
 }
 
@@ -63,15 +62,15 @@ void print_judgement(std::FILE* stream, const Judgement& j) {
   else
     fmt::print(stream, "truth      {}: error {} (root mean square of its logarithm{}), largest a factor of {:.3g}\n",
                j.quantity, percent(j.error),
-               j.relative_error < 0 ? "" : "; " + percent(j.relative_error) + " of its variation",
-               std::exp(j.largest));
+               j.relative_error < 0 ? "" : "; " + percent(j.relative_error) + " of its variation", std::exp(j.largest));
   if (j.phases.size() > 1)
     for (const Phase& p : j.phases)
       fmt::print(stream, "           {:.4g} where it is {:.4g}, {} of the body\n", p.fitted, p.truth, percent(p.share));
   if (j.phases.size() > 1)
     fmt::print(stream, "           contrast {:.3g} of {:.3g}{}\n", j.contrast(), j.true_contrast(),
-               j.overlap < 0 ? "" : fmt::format(", overlap of the smaller part {} (intersection over union)",
-                                                percent(j.overlap)));
+               j.overlap < 0
+                   ? ""
+                   : fmt::format(", overlap of the smaller part {} (intersection over union)", percent(j.overlap)));
   if (j.coverage >= 0)
     fmt::print(stream, "           in {} of the tets the 95 % interval holds the truth\n", percent(j.coverage));
 }
@@ -94,10 +93,16 @@ void print_prediction(std::FILE* stream, const Prediction& prediction) {
 Json json_of(const Judgement& j) {
   Json phases = Json::array();
   for (const Phase& p : j.phases) phases.push_back({{"share", p.share}, {"truth", p.truth}, {"fitted", p.fitted}});
-  return {{"quantity", j.quantity},   {"error", j.error},       {"relative_error", j.relative_error},
-          {"largest", j.largest},     {"level", j.level},       {"coverage", j.coverage},
-          {"contrast", j.contrast()}, {"true_contrast", j.true_contrast()},
-          {"overlap", j.overlap},     {"phases", phases}};
+  return {{"quantity", j.quantity},
+          {"error", j.error},
+          {"relative_error", j.relative_error},
+          {"largest", j.largest},
+          {"level", j.level},
+          {"coverage", j.coverage},
+          {"contrast", j.contrast()},
+          {"true_contrast", j.true_contrast()},
+          {"overlap", j.overlap},
+          {"phases", phases}};
 }
 
 Json json_of(const HeldOut& h) {

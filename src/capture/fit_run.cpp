@@ -228,8 +228,7 @@ class MaterialFit {
     if (!outcome_.interrupted) find_next_poke(stage);
   }
 
-  FitReport fit_stage(FitStage which, Stage& stage, const FitOptions& options,
-                      const std::vector<double>& start = {}) {
+  FitReport fit_stage(FitStage which, Stage& stage, const FitOptions& options, const std::vector<double>& start = {}) {
     outcome_.unknowns = stage.map.size();
     outcome_.residuals = stage.misfit.residual_count();
     const auto observe = [&](const FitIteration& iteration, std::span<const double> p) {
@@ -354,9 +353,9 @@ class MaterialFit {
   FitPlan plan_;
   const FitMemory& memory_;
   const FitWitness& witness_;
-  Experiment experiment_;          // without what the mesh gets wrong
-  Experiment fitted_;              // and without what is left out
-  std::vector<MeshError> errors_;  // of each case; empty: not known
+  Experiment experiment_;                     // without what the mesh gets wrong
+  Experiment fitted_;                         // and without what is left out
+  std::vector<MeshError> errors_;             // of each case; empty: not known
   std::vector<MaterialParameters> material_;  // for which they are computed
   std::string fingerprint_;
   FitOutcome outcome_;

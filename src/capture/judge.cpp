@@ -10,9 +10,9 @@
 namespace aspic {
 namespace {
 
-constexpr int kPoints = 20;      // in a tet of the fit, where the truth is looked up
-constexpr size_t kPhases = 8;    // more values are a field
-constexpr double kSame = 1e-6;   // relative difference of values of one phase
+constexpr int kPoints = 20;     // in a tet of the fit, where the truth is looked up
+constexpr size_t kPhases = 8;   // more values are a field
+constexpr double kSame = 1e-6;  // relative difference of values of one phase
 
 // Evenly spread over a tet: barycentric coordinates (i + 1/4) / 4 with i + j + k + l = 3.
 std::vector<Vec3d> points_of(const TetMesh& mesh) {
@@ -99,7 +99,8 @@ class Judge {
     for (const auto& [name, deviation] : fitted_.further) {
       if (name != result.quantity + "_deviation") continue;
       int covered = 0;
-      for (size_t t = 0; t < z.size(); ++t) covered += std::abs(z[t] - truth[t]) <= kDeviations95 * deviation[t] ? 1 : 0;
+      for (size_t t = 0; t < z.size(); ++t)
+        covered += std::abs(z[t] - truth[t]) <= kDeviations95 * deviation[t] ? 1 : 0;
       result.coverage = static_cast<double>(covered) / static_cast<double>(z.size());
     }
   }

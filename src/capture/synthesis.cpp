@@ -19,8 +19,8 @@
 namespace aspic {
 namespace {
 
-constexpr double kTipRadius = 0.08;    // relative to the size of the body
-constexpr double kGravity = 9.81;      // [m/s^2]
+constexpr double kTipRadius = 0.08;   // relative to the size of the body
+constexpr double kGravity = 9.81;     // [m/s^2]
 constexpr double kBondedLayer = 1e5;  // stiffness of a tip's layer times its radius, over Young's modulus
 constexpr double kSlidingLayer = 200;
 constexpr double kLeastArm = 0.01;        // of a force about the centre of the tip, relative to its radius

@@ -41,7 +41,8 @@ class Refinement {
 
   void add(Tet tet, int parent) {
     fine_.mesh.tets.push_back(tet);
-    if (volume(fine_.mesh, fine_.mesh.tet_count() - 1) < 0) std::swap(fine_.mesh.tets.back()[2], fine_.mesh.tets.back()[3]);
+    if (volume(fine_.mesh, fine_.mesh.tet_count() - 1) < 0)
+      std::swap(fine_.mesh.tets.back()[2], fine_.mesh.tets.back()[3]);
     if (!coarse_.mesh.region.empty()) fine_.mesh.region.push_back(coarse_.mesh.region[parent]);
     if (!coarse_.density.empty()) fine_.density.push_back(coarse_.density[parent]);
   }
@@ -57,8 +58,8 @@ class Refinement {
     const auto length = [&](const std::array<int, 6>& way) {
       return norm(fine_.mesh.rest[way[0]] - fine_.mesh.rest[way[1]]);
     };
-    const auto& way = *std::min_element(ways.begin(), ways.end(),
-                                        [&](const auto& p, const auto& q) { return length(p) < length(q) * (1 - 1e-9); });
+    const auto& way = *std::min_element(
+        ways.begin(), ways.end(), [&](const auto& p, const auto& q) { return length(p) < length(q) * (1 - 1e-9); });
     for (int k = 0; k < 4; ++k) add({way[0], way[1], way[2 + k], way[2 + (k + 1) % 4]}, t);
   }
 
@@ -69,8 +70,7 @@ class Refinement {
       const int j = (i + 1) % 3, k = (i + 2) % 3;
       if (w[i] >= 0.5) return {{v[i], middle(v[i], v[j]), middle(v[i], v[k])}, {2 * w[i] - 1, 2 * w[j], 2 * w[k]}};
     }
-    return {{middle(v[0], v[1]), middle(v[1], v[2]), middle(v[2], v[0])},
-            {1 - 2 * w[2], 1 - 2 * w[0], 1 - 2 * w[1]}};
+    return {{middle(v[0], v[1]), middle(v[1], v[2]), middle(v[2], v[0])}, {1 - 2 * w[2], 1 - 2 * w[0], 1 - 2 * w[1]}};
   }
 
   std::vector<Triangle> split(const std::vector<Triangle>& triangles) {
