@@ -112,8 +112,11 @@ class CommandLine(unittest.TestCase):
 
 class Help(CommandLine):
     def test_every_level_has_examples(self):
-        for arguments in ([], ["run"], ["check"], ["convert"], ["materials"], ["minimize"]):
-            self.assertIn("Examples:", self.aspic(*arguments, "--help").stdout)
+        for arguments in ([], ["run"], ["check"], ["convert"], ["materials"], ["minimize"], ["capture"], ["fit"], ["fit-curves"],
+                          ["closed-loop"]):
+            text = self.aspic(*arguments, "--help").stdout
+            self.assertIn("Examples:", text)
+            self.assertIn(" ".join(["  aspic", *arguments]), text)
 
     def test_version_states_how_the_program_was_built(self):
         text = self.aspic("--version").stdout
