@@ -150,10 +150,12 @@ class ForceDiagnosis {
                         "if they are grams, set units = { force = \"g\" }");
   }
 
+  // Of cases whose force is more than noise.
   std::map<std::string, std::vector<size_t>> groups() const {
     std::map<std::string, std::vector<size_t>> groups;
     for (size_t c = 0; c < cases_.size(); ++c)
-      if (apparent_young(cases_[c])) groups[cases_[c].group].push_back(c);
+      if (apparent_young(cases_[c]) && norm(*cases_[c].force) > 3 * norm(cases_[c].force_deviation))
+        groups[cases_[c].group].push_back(c);
     return groups;
   }
 

@@ -61,6 +61,14 @@ TEST(Diagnosis, OnePokeInAnotherUnitIsNoticed) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:4", "times as stiff here", "as mN are")));
 }
 
+TEST(Diagnosis, AForceBelowItsNoiseSaysNothingOfTheStiffness) {
+  DataSet data = data_in_lines(4);
+  for (const size_t c : {2, 3}) data.experiment.cases[c].force = 0.01 * *data.experiment.cases[c].force;
+  EXPECT_THAT(diagnose(data), Not(Contains(finding(Severity::warning, "cases.csv:4", "as stiff here"))));
+  for (const size_t c : {2, 3}) data.experiment.cases[c].force_deviation = {{1e-4, 1e-4, 1e-4}};
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:4", "1/100 times as stiff here")));
+}
+
 TEST(Diagnosis, ForcesOfTheBodyOnTheTipAreNoticed) {
   DataSet data = data_in_lines();
   data.experiment.cases[1].force = -1.0 * *data.experiment.cases[1].force;
