@@ -115,6 +115,14 @@ int capture(const Arguments& arguments) {
 void add_capture(CLI::App& app, Action& action) {
   auto* command =
       app.add_subcommand("capture", "Synthetic measurements of a scene's body, for fits whose truth is known");
+  command->footer(R"(
+Examples:
+  aspic capture scenes/capture/pillow.toml                     into out/pillow_data
+  aspic capture scenes/capture/pillow.toml -o pillow --pokes 12 --tip disc:0.01
+  aspic capture scenes/capture/pillow.toml -o hung --pokes 0 --gravity 0,0,-1 --gravity 1,0,0
+then: aspic fit out/pillow_data --check, and without --check
+
+Exit codes: 0 done, 2 bad input, 3 some case has no equilibrium and was left out, 130 interrupted: nothing is written.)");
   auto a = std::make_shared<Arguments>();
   SynthesisOptions& b = a->bench;
   command->add_option("scene", a->input, "The scene or mesh to measure")->required();
@@ -135,8 +143,10 @@ void add_capture(CLI::App& app, Action& action) {
   command->add_option("--gravity", a->gravity, "X,Y,Z: a case that hangs in this direction of gravity")
       ->allow_extra_args(false);
   command->add_option("--mesh", a->mesh, "The mesh of the data set; default: a coarser one of the same body");
-  command->add_option("--seed", b.seed, "Of the noise and the markers")->capture_default_str();
-  command->add_option("--threads", a->threads, "How many; default: all");
+  command->add_option("--seed", b.seed, "Of the noise and the markers")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--threads", a->threads, "How many; default: all")->check(CLI::Range(1, 1024));
   command->add_flag("--force", a->force, "Overwrites a data set");
   command->add_flag("-q,--quiet", a->quiet, "No progress");
   command->callback([a, &action] { action = [a] { return capture(*a); }; });

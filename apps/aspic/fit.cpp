@@ -168,6 +168,9 @@ fs::path truth_beside(const fs::path& data) {
 }
 
 int run(const Arguments& arguments) {
+  if (arguments.data.extension() == ".csv")
+    throw InvalidInput(arguments.data.string() + ": a data set is a folder; curves are fitted by: aspic fit-curves " +
+                       arguments.data.string());
   if (arguments.check) return check_data(arguments.data);
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   FitPlan plan = plan_of(arguments);

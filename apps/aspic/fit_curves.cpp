@@ -212,6 +212,9 @@ int fit_curves(const CurveFitRequest& request) {
     require_drawable(request.picture);
     if (request.files.size() > 1) throw InvalidInput("--plot draws one table; give one FILE");
   }
+  for (const std::filesystem::path& file : request.files)
+    if (std::error_code error; std::filesystem::is_directory(file, error))
+      throw InvalidInput(file.string() + ": is a folder; a data set is fitted by: aspic fit " + file.string());
   std::vector<Fitted> all;
   for (const std::filesystem::path& file : request.files)
     for (const std::string& material : request.materials) {

@@ -10,6 +10,7 @@
 #include "capture/data_set.h"
 #include "capture/settings.h"
 #include "capture/surface_projection.h"
+#include "capture/units.h"
 #include "io/mesh_file.h"
 #include "scene/placement.h"
 #include "scene/selection.h"
@@ -141,18 +142,20 @@ class DataSetReader {
     const ProjectedPoint projected = surface.nearest(*p);
     gap = projected.distance;
     if (gap > kFarOff * size_)
-      table.error("the marker at " + point_text(*p) + " m lies " + number_text(gap) +
-                  " m off the surface of the body, whose size is " + number_text(size_) + " m" + unit_hint(*p));
+      table.error("the marker lies " + three_digits(gap) + " m off the surface of the body, whose size is " +
+                  three_digits(size_) + " m; " + unit_hint(surface, *p));
     return projected.point;
   }
 
   // Whether another unit would bring the point onto the body.
-  std::string unit_hint(const Vec3d& p) const {
-    const SurfaceProjection surface(data_.experiment.mesh);
-    for (const auto& [factor, unit] : {std::pair{1e-3, "thousandth"}, {1e-2, "hundredth"}, {1e3, "thousandfold"}})
+  std::string unit_hint(const SurfaceProjection& surface, const Vec3d& p) const {
+    const double length = settings_.unit("length");
+    for (const std::string& unit : unit_names("length")) {
+      const double factor = unit_in_si("length", unit) / length;
       if (surface.nearest(factor * p).distance < kFarOff * size_ && norm(factor * p) > kFarOff * size_)
-        return std::string("; at a ") + unit + " of its coordinates it would not: check length in units";
-    return "; correct it, or move the mesh to where the markers are";
+        return "in " + unit + " it would not: units = { length = \"" + unit + "\" }";
+    }
+    return "correct it, or move the mesh to where the markers are";
   }
 
   std::optional<int> stored_vertex(MeasuredTable& table, const char* column) {

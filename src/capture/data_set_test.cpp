@@ -211,8 +211,8 @@ TEST_F(DataSetFile, NamesAreGivenOnce) {
 TEST_F(DataSetFile, AMarkerFarOffTheSurfaceIsRefusedWithAHintAtUnits) {
   measured();
   folder.write("markers.csv", "marker,x,y,z\nA,50,40,60\nB,0.02,0.03,0.06\n");
-  EXPECT_THAT(refusal(), HasSubstr("markers.csv:2: the marker at (50, 40, 60) m lies"));
-  EXPECT_THAT(refusal(), HasSubstr("thousandth"));
+  EXPECT_THAT(refusal(), HasSubstr("markers.csv:2: the marker lies 87.6 m off"));
+  EXPECT_THAT(refusal(), HasSubstr("units = { length = \"mm\" }"));
 }
 
 TEST_F(DataSetFile, MissingFilesAndColumnsAndUnknownKeysAreNamed) {

@@ -29,7 +29,7 @@ std::string three_digits(double value) {
 }
 
 std::string factor_text(double factor) {
-  return factor >= 1 ? three_digits(factor) + " times" : "1/" + three_digits(1 / factor) + " of";
+  return factor >= 1 ? three_digits(factor) + " times" : "1/" + three_digits(1 / factor) + " times";
 }
 
 Vec3d displacement(const Experiment& experiment, const MarkerReading& reading) {

@@ -13,6 +13,7 @@ namespace {
 constexpr double kSoftest = 50, kStiffest = 1.5e7;  // [Pa] Young's moduli of bodies that one pokes
 constexpr double kUnlike = 30;                      // ratio of apparent moduli within one body that is no tissue's
 constexpr double kFalling = 0.8;                    // a force that falls below this share of the last, going deeper
+constexpr double kLargest = 1e9, kFinest = 1e-12;   // [N] of bodies that one pokes, and of their deviations
 constexpr int kEnough = 6;                          // forces that tell how a gauge rounds
 
 class ForceDiagnosis {
@@ -22,6 +23,7 @@ class ForceDiagnosis {
 
   void run() {
     examine_missing();
+    if (!examine_readings()) return;
     examine_signs();
     examine_size();
     examine_rounding();
@@ -53,6 +55,35 @@ class ForceDiagnosis {
                      "is one of " + std::to_string(without.size()) + " pokes without a force (of " +
                          std::to_string(cases_.size()) + " cases)",
                      "its motion is fitted all the same");
+  }
+
+  bool examine_readings() {
+    size_t zero = 0, measured = 0;
+    for (size_t c = 0; c < cases_.size(); ++c) {
+      const LoadCase& load = cases_[c];
+      if (!load.force) continue;
+      const Vec3d& sd = load.force_deviation;
+      if (!(norm(*load.force) < kLargest))
+        return refuse(where(c), "the force is larger than " + three_digits(kLargest) + " N",
+                      "correct it, or leave it blank");
+      if (std::min({sd[0], sd[1], sd[2]}) < kFinest)
+        return refuse(where(c),
+                      "the force has a standard deviation of " + three_digits(std::min({sd[0], sd[1], sd[2]})) +
+                          " N: no gauge is so exact",
+                      "check the unit of force_sd; leave it blank for 1 % of the largest force");
+      if (!load.tip || load_size(load) == 0) continue;
+      ++measured;
+      zero += norm(*load.force) == 0;
+    }
+    if (zero > 0 && zero == measured)
+      findings_.error(data_.source.cases, "all forces are 0, though the tip goes into the body",
+                      "leave them blank if none was measured");
+    return true;
+  }
+
+  bool refuse(const std::string& where, const std::string& what, const std::string& remedy) {
+    findings_.error(where, what, remedy);
+    return false;
   }
 
   // The tip pushes the body the way it goes.
@@ -119,10 +150,12 @@ class ForceDiagnosis {
                         "if they are grams, set units = { force = \"g\" }");
   }
 
+  // Of cases whose force is more than noise.
   std::map<std::string, std::vector<size_t>> groups() const {
     std::map<std::string, std::vector<size_t>> groups;
     for (size_t c = 0; c < cases_.size(); ++c)
-      if (apparent_young(cases_[c])) groups[cases_[c].group].push_back(c);
+      if (apparent_young(cases_[c]) && norm(*cases_[c].force) > 3 * norm(cases_[c].force_deviation))
+        groups[cases_[c].group].push_back(c);
     return groups;
   }
 

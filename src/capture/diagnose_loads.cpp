@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/error.h"
 #include "capture/case_table.h"
@@ -12,6 +13,10 @@ namespace {
 
 constexpr double kDeep = 0.5;                       // of the body's size: a way that no poke goes
 constexpr double kLoose = 0.05;                     // of the body's size: a gap at the touch that is no round-off
+constexpr double kHuge = 100;                       // of the body's size: a radius that is in another unit
+constexpr double kTurned = 1;                       // [rad] a turn that no glued tip makes
+constexpr double kBackwards = -0.5;                 // cosine between a tip's axis and the way into the body
+constexpr double kCoarse = 4;                       // edges of the surface over the radius of a tip that they blur
 constexpr double kStrongest = 200, kWeakest = 0.1;  // [m/s^2] gravity that was meant
 
 class LoadDiagnosis {
@@ -49,12 +54,45 @@ class LoadDiagnosis {
           "check units: length = \"mm\" or \"cm\"; touch and center are the same point of the tip");
     if (way == 0 && norm(load.pose.rotation) == 0)
       findings_.note(where_, "the tip is where it touched: the body stays at rest", "poke deeper, or take the row out");
+    if (load.tip->radius > kHuge * size_)
+      return findings_.error(where_,
+                             "the radius of the tip, " + three_digits(load.tip->radius) +
+                                 " m, is far larger than the body, " + three_digits(size_) + " m",
+                             "correct radius of [[tip]], or units: length");
     if (load.tip->radius > kDeep * size_)
       findings_.warning(where_,
                         "the radius of the tip, " + three_digits(load.tip->radius) + " m, is large beside the body, " +
                             three_digits(size_) + " m",
                         "check radius of [[tip]] and units: length");
+    examine_turn(load);
     examine_touch(load, off);
+    examine_resolution(load);
+  }
+
+  void examine_turn(const LoadCase& load) {
+    const double turn = norm(load.pose.rotation);
+    if (turn > 2 * std::numbers::pi)
+      return findings_.error(where_, "the tip turns by " + three_digits(turn) + " rad since the touch",
+                             "it would fit in degrees: units = { angle = \"deg\" }");
+    if (turn > kTurned)
+      findings_.warning(where_, "the tip turns by " + three_digits(turn) + " rad since the touch",
+                        "rotation_x, _y, _z are a rotation vector in rad: check units: angle");
+  }
+
+  // Forces under a tip that is smaller than the triangles are the mesh's, not the body's.
+  void examine_resolution(const LoadCase& load) {
+    if (told_of_mesh_) return;
+    const SurfacePoint near = surface_.nearest(load.touch.center).point;
+    const auto& X = experiment_.mesh.rest;
+    double edge = 0;
+    for (int i = 0; i < 3; ++i) edge = std::max(edge, norm(X[near.vertices[i]] - X[near.vertices[(i + 1) % 3]]));
+    if (edge <= kCoarse * load.tip->radius) return;
+    told_of_mesh_ = true;
+    findings_.warning(where_,
+                      "the tip, of radius " + three_digits(load.tip->radius) +
+                          " m, is small beside the triangles of the surface, whose edges are " + three_digits(edge) +
+                          " m long",
+                      "the forces of such a mesh are wrong: use one with edges no longer than the tip is wide");
   }
 
   void far_off(const LoadCase& load, double off) {
@@ -69,6 +107,11 @@ class LoadDiagnosis {
   }
 
   void examine_touch(const LoadCase& load, double off) {
+    const Vec3d axis = (1 / norm(load.touch.axis)) * load.touch.axis;
+    if (-dot(axis, surface_.nearest(load.touch.center).normal) < kBackwards)
+      return findings_.error(where_, "the axis of the tip points out of the body",
+                             "axis_x, axis_y, axis_z point out of the tip, into the body: turn their signs, or leave "
+                             "them blank");
     Tip tip = *load.tip;
     if (!(tip.stiffness > 0)) tip.stiffness = 1;
     try {
@@ -104,6 +147,9 @@ class LoadDiagnosis {
   // Three vertices that are not on a line hold a body.
   void examine_holds() {
     const std::vector<int>& fixed = experiment_.fixed;
+    if (fixed.size() == experiment_.mesh.rest.size())
+      return findings_.error(data_.source.settings, "all vertices are fixed: nothing can move",
+                             "say with fixed only what rested on the table: fixed = { lowest = 0.02 }");
     const auto& X = experiment_.mesh.rest;
     double area = 0;
     for (size_t i = 2; i < fixed.size(); ++i)
@@ -112,12 +158,16 @@ class LoadDiagnosis {
     const bool is_glued = std::all_of(experiment_.cases.begin(), experiment_.cases.end(), [](const LoadCase& load) {
       return load.tip && load.tip->contact == TipContact::bonded;
     });
+    const bool is_pulled = std::any_of(experiment_.cases.begin(), experiment_.cases.end(), [](const LoadCase& load) {
+      return load.pressure != 0 || norm(load.gravity) > 0;
+    });
     const std::string what =
         fixed.empty() ? "no vertex is fixed" : std::to_string(fixed.size()) + " vertices are fixed, all on one line";
-    if (is_glued)
-      return findings_.warning(data_.source.settings, what + ": only the tip holds the body, which it cannot deform",
+    if (is_glued && is_pulled)
+      return findings_.warning(data_.source.settings, what + ": only the tip holds the body",
                                "say with fixed what rested on the table: fixed = { lowest = 0.02 }");
-    findings_.error(data_.source.settings, what + ": the body would be pushed away",
+    findings_.error(data_.source.settings,
+                    what + (is_glued ? ": the body would go with the tip" : ": the body would be pushed away"),
                     "say with fixed what rested on the table: fixed = { lowest = 0.02 }");
   }
 
@@ -127,6 +177,7 @@ class LoadDiagnosis {
   SurfaceProjection surface_;
   double size_;
   std::string where_;
+  bool told_of_mesh_ = false;
 };
 
 }  // namespace

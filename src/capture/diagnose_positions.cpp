@@ -17,6 +17,8 @@ constexpr double kSuspicious = 6;     // times what neighbours differ by
 constexpr double kNoticeable = 0.05;  // of the largest motion of the case
 constexpr double kReach = 2;          // of a tip, in radii, within which the surface goes its way
 constexpr double kFar = 1;            // of the body's size: a motion that is none
+constexpr double kFarthest = 10;      // likewise, of a single marker: no fit stands that
+constexpr double kFinest = 1e-9;      // of the body's size: a deviation that no instrument has
 
 // The markers nearest to each at rest, of those given.
 std::vector<std::vector<int>> neighbours(const std::vector<Vec3d>& X) {
@@ -105,7 +107,8 @@ class PositionDiagnosis {
 
   void run() {
     examine_gaps();
-    if (!examine_units()) return;  // everything else would be said of each marker
+    if (!examine_units()) return;     // everything else would be said of each marker
+    if (!examine_readings()) return;  // nor is there a sense in comparing them
     for (size_t c = 0; c < experiment_.cases.size(); ++c) examine_outliers(static_cast<int>(c));
     if (outliers_ > kMostListed)
       findings_.warning(data_.source.positions, std::to_string(outliers_ - kMostListed) + " more markers are outliers",
@@ -143,13 +146,41 @@ class PositionDiagnosis {
       for (const LoadCase& load : experiment_.cases)
         for (const MarkerReading& r : load.positions)
           scaled.push_back(norm(factor * r.position - position(experiment_.markers[r.marker], experiment_.mesh.rest)));
-      if (median(scaled) < 0.2 * size_)
-        remedy = std::string("in ") + (factor == 1e-3 ? "mm" : "cm") + " they would fit: units = { length = ... }";
+      if (median(scaled) < 0.2 * size_) {
+        const std::string unit = factor == 1e-3 ? "mm" : "cm";
+        remedy = "in " + unit + " they would fit: units = { length = \"" + unit + "\" }";
+      }
     }
     findings_.error(data_.source.positions,
                     "markers move by " + three_digits(median(motion)) + " m, more than the size of the body, " +
                         three_digits(size_) + " m",
                     remedy);
+    return false;
+  }
+
+  // Readings that no body or instrument gives; their residuals would swamp all others.
+  bool examine_readings() {
+    for (size_t c = 0; c < experiment_.cases.size(); ++c) {
+      const std::vector<MarkerReading>& readings = experiment_.cases[c].positions;
+      for (size_t i = 0; i < readings.size(); ++i) {
+        const MarkerReading& r = readings[i];
+        const std::string where = data_.source.position(static_cast<int>(c), static_cast<int>(i));
+        const std::string who = name(r.marker) + " in '" + experiment_.cases[c].name + "'";
+        if (!(norm(displacement(experiment_, r)) < kFarthest * size_))
+          return refuse(where, who + " is far outside of the body, whose size is " + three_digits(size_) + " m",
+                        "correct its place, or leave the row out");
+        const double finest = std::min({r.deviation[0], r.deviation[1], r.deviation[2]});
+        if (finest < kFinest * size_)
+          return refuse(where,
+                        who + " has a standard deviation of " + three_digits(finest) + " m: no instrument is so exact",
+                        "check the unit of sd; leave it blank for 1 % of the largest motion");
+      }
+    }
+    return true;
+  }
+
+  bool refuse(const std::string& where, const std::string& what, const std::string& remedy) {
+    findings_.error(where, what, remedy);
     return false;
   }
 

@@ -1,6 +1,8 @@
 // What is odd about measurements is told with its row and a remedy; what is well is not.
 #include <gmock/gmock.h>
 
+#include <numeric>
+
 #include "capture/capture_cases_test.h"
 #include "capture/data_set.h"
 
@@ -57,6 +59,14 @@ TEST(Diagnosis, OnePokeInAnotherUnitIsNoticed) {
   data.experiment.cases[2].force = 1000.0 * *data.experiment.cases[2].force;
   data.experiment.cases[3].force = 1000.0 * *data.experiment.cases[3].force;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:4", "times as stiff here", "as mN are")));
+}
+
+TEST(Diagnosis, AForceBelowItsNoiseSaysNothingOfTheStiffness) {
+  DataSet data = data_in_lines(4);
+  for (const size_t c : {2, 3}) data.experiment.cases[c].force = 0.01 * *data.experiment.cases[c].force;
+  EXPECT_THAT(diagnose(data), Not(Contains(finding(Severity::warning, "cases.csv:4", "as stiff here"))));
+  for (const size_t c : {2, 3}) data.experiment.cases[c].force_deviation = {{1e-4, 1e-4, 1e-4}};
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:4", "1/100 times as stiff here")));
 }
 
 TEST(Diagnosis, ForcesOfTheBodyOnTheTipAreNoticed) {
@@ -180,9 +190,54 @@ TEST(Diagnosis, ATipThatTouchesNothingAndABodyThatNothingHoldsAreErrors) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "touches nothing")));
   data = data_in_lines();
   data.experiment.fixed.clear();
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "capture.toml", "go with the tip")));
+  data.experiment.cases[1].gravity = {{0, 0, -9.81}};
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "capture.toml", "only the tip holds")));
   for (LoadCase& load : data.experiment.cases) load.tip->contact = TipContact::sliding;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "capture.toml", "pushed away", "fixed")));
+  data = data_in_lines();
+  data.experiment.fixed.resize(data.experiment.mesh.rest.size());
+  std::iota(data.experiment.fixed.begin(), data.experiment.fixed.end(), 0);
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "capture.toml", "all vertices are fixed", "lowest")));
+}
+
+TEST(Diagnosis, ReadingsThatNoInstrumentGivesAreErrors) {
+  DataSet data = data_in_lines();
+  data.experiment.cases[1].positions[3].position[0] = 1e300;
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, data.source.position(1, 3), "far outside", "correct")));
+  data = data_in_lines();
+  data.experiment.cases[1].positions[3].deviation[1] = 1e-300;
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, data.source.position(1, 3), "so exact", "blank")));
+  data = data_in_lines();
+  data.experiment.cases[2].force = Vec3d{{0, 0, -1e300}};
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:4", "the force is larger", "blank")));
+  data = data_in_lines();
+  data.experiment.cases[2].force_deviation[0] = 1e-200;
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:4", "no gauge", "force_sd")));
+  data = data_in_lines();
+  for (LoadCase& load : data.experiment.cases) load.force = Vec3d{};
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv", "all forces are 0", "blank")));
+}
+
+TEST(Diagnosis, PosesInsideOutOrTurnedTooFarAreNoticed) {
+  DataSet data = data_in_lines();
+  for (LoadCase& load : data.experiment.cases) load.touch.axis = load.pose.axis = {{0, 0, 1}};
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "points out of the body", "signs")));
+  data = data_in_lines();
+  data.experiment.cases[0].pose.rotation = {{0, 0, 3}};
+  data.experiment.cases[1].pose.rotation = {{0, 0, 30}};
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:2", "turns by 3 rad", "angle")));
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:3", "turns by 30 rad", "deg")));
+}
+
+TEST(Diagnosis, ATipOfAnotherSizeThanBodyOrTrianglesIsNoticed) {
+  DataSet data = data_in_lines();
+  for (LoadCase& load : data.experiment.cases) load.tip->radius = 100;
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "far larger than the body", "units")));
+  data = data_in_lines();
+  for (LoadCase& load : data.experiment.cases) load.tip->radius = 0.003, load.touch.center[2] = 0.063;
+  EXPECT_THAT(diagnose(data),
+              Contains(finding(Severity::warning, "cases.csv:2", "small beside the triangles", "edges")));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "capture/fitted_values.h"
 #include "capture/surface_projection.h"
+#include "fit/fit_run.h"
 #include "fit/refined_experiment.h"
 
 namespace aspic {
@@ -21,6 +22,7 @@ constexpr int kPasses = 4;
 constexpr double kSettled = 1e-3;  // relative change of a value
 // Guesses that are tried when the first one is so soft that the loads crush the body.
 constexpr double kStiffer[] = {1, 10, 100, 0.1};
+constexpr double kUnexplained = 4;  // |r|^2 per reading: twice the standard deviations
 
 std::vector<Unknown> as_single_values(std::vector<Unknown> unknowns) {
   for (Unknown& u : unknowns) u.spread = Spread::uniform, u.handles = 0;
@@ -96,7 +98,11 @@ class MaterialFit {
       Stage stage(fitted_, plan_, std::move(unknowns), memory_, name + suffix(factor), fingerprint_);
       const FitReport report = fit_stage(FitStage::uniform, stage, options);
       outcome_.uniform = outcome_.report = report;
-      if (report.p.empty() || report.status == Status::undefined) continue;
+      if (report.p.empty() || report.status == Status::undefined) {
+        outcome_.failure = words_of_failure(report, stage.misfit);
+        continue;
+      }
+      outcome_.failure.clear();
       for (size_t u = 0; u < plan_.unknowns.size(); ++u)
         plan_.unknowns[u].guess = stage.map.values(static_cast<int>(u), report.p).front();
       material_ = stage.map.parameters(report.p);
@@ -104,8 +110,41 @@ class MaterialFit {
       describe(stage, report.p);
       return false;
     }
-    outcome_.failure = outcome_.report.words;
     return false;
+  }
+
+  // With the row of the first case that could not be solved.
+  std::string words_of_failure(const FitReport& report, const Misfit& misfit) const {
+    const std::string& why = misfit.failure();
+    const auto is_named = [&](const LoadCase& c) {
+      return why.starts_with(c.name + ",") || why.starts_with(c.name + ":");
+    };
+    const std::vector<LoadCase>& cases = data_.experiment.cases;
+    const auto found = std::find_if(cases.begin(), cases.end(), is_named);
+    if (found == cases.end())
+      return report.words + (why.empty() ? "" : " (" + why + ")") + "; aspic fit --check tells which rows are odd";
+    return report.words + "\n" + data_.source.load_case(static_cast<int>(found - cases.begin())) + ": " +
+           why.substr(0, why.find("; ")) + "; check its load and its pose, or take the row out";
+  }
+
+  // Which row is explained worst, when that is far more than noise.
+  void warn_of_misfit(const Misfit& misfit, std::span<const double> r) {
+    const double count = static_cast<double>(r.size()), usual = inner_product(r, r) / count;
+    if (!(usual > std::max(kUnexplained, 1 + 5 * std::sqrt(2 / count)))) return;
+    double worst = 0;
+    int worst_case = 0, fitted = 0;
+    for (size_t c = 0; c < data_.experiment.cases.size(); ++c) {
+      if (is_left_out(data_.experiment.cases[c])) continue;
+      const auto [first, number] = misfit.residuals_of(fitted++);
+      const std::span<const double> own = r.subspan(first, number);
+      const double mean = number > 0 ? inner_product(own, own) / number : 0;
+      if (mean > worst) worst = mean, worst_case = static_cast<int>(c);
+    }
+    outcome_.warnings.push_back(data_.source.load_case(worst_case) + " ('" + data_.experiment.cases[worst_case].name +
+                                "') is explained worst: its readings are missed by " +
+                                std::to_string(std::lround(std::sqrt(worst))) +
+                                " standard deviations; check this row, or state deviations that cover the errors of "
+                                "mesh and model");
   }
 
   // False: they are not known, and the data remain as they are.
@@ -178,7 +217,7 @@ class MaterialFit {
     Stage& stage = *last;
     const FitReport& report = outcome_.report;
     if (report.p.empty() || report.status == Status::undefined || report.status == Status::no_descent) {
-      outcome_.failure = report.words.empty() ? stage.misfit.failure() : report.words;
+      outcome_.failure = words_of_failure(report, stage.misfit);
       return;
     }
     if (!is_over(report)) return describe(stage, report.p);
@@ -221,6 +260,7 @@ class MaterialFit {
     std::vector<double> r(static_cast<size_t>(stage.misfit.residual_count()));
     if (stage.journal) stage.journal->catch_up();
     const bool ok = stage.misfit.evaluate(p, r);
+    if (ok) warn_of_misfit(stage.misfit, r);
     int fitted = 0;
     for (size_t c = 0; c < outcome_.cases.size(); ++c) {
       CaseOutcome& outcome = outcome_.cases[c];

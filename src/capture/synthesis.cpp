@@ -142,6 +142,9 @@ class Bench {
     if (options_.pokes == 0) return;
     Tip with = tip();
     const auto sites = poke_sites(truth_.mesh, truth_.fixed, 2 * with.radius, options_.pokes);
+    if (sites.empty())
+      throw InvalidInput("there is no site that a tip of radius " + three_digits(with.radius) +
+                         " m can poke; take a smaller one (--tip), or hold less of the body");
     if (static_cast<int>(sites.size()) < options_.pokes)
       result_.notes.push_back("only " + std::to_string(sites.size()) + " sites were found that a tip of radius " +
                               number_text(with.radius) + " m can poke");

@@ -35,14 +35,12 @@ StressColumn stress_column(const CsvReader& csv, const std::string& file) {
 
 std::vector<TestCurve> read_test_curves(const std::filesystem::path& path) {
   const std::string file = path.string();
-  CsvReader csv(path);
+  CsvReader csv(path, CsvOrigin::foreign);
   const size_t test = csv.column("test"), stretch = csv.column("stretch");
   const StressColumn stress = stress_column(csv, file);
   std::vector<TestCurve> curves;
-  for (int line = 2; csv.next(); ++line) {
-    const auto fail = [&](const std::string& what) {
-      throw InvalidInput(file + ":" + std::to_string(line) + ": " + what);
-    };
+  while (csv.next()) {
+    const auto fail = [&](const std::string& what) { throw InvalidInput(csv.where() + ": " + what); };
     Deformation deformation{};
     try {
       deformation = deformation_named(csv.text(test));

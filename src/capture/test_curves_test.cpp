@@ -104,6 +104,7 @@ TEST(ReadTestCurves, NamesTheRowAndTheRemedy) {
   EXPECT_THAT(refusal("test,stretch,stress_Pa\nuniaxial,0,1\n"), HasSubstr("1 at rest"));
   EXPECT_THAT(refusal("test,stretch,stress_Pa\nuniaxial,1.1,nan\n"), HasSubstr("leave the row out"));
   EXPECT_THAT(refusal("test,stretch,stress_Pa\n"), HasSubstr("no rows"));
+  EXPECT_THAT(refusal("# pulled\n\ntest,stretch,stress_Pa\nuniaxial,1.1,1\nuniaxial,0,1"), HasSubstr(".csv:5: "));
 }
 
 }  // namespace

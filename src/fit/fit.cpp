@@ -80,9 +80,9 @@ std::string ending(Status status) {
     case Status::budget:
       return "stopped when the time was up: not converged";
     case Status::undefined:
-      return "failed: the model or its Jacobian could not be evaluated";
+      return "the model or its Jacobian could not be evaluated";
     case Status::no_descent:
-      return "failed: no direction leads to a better fit";
+      return "no direction leads to a better fit";
     default:
       return "stuck: no step leads to a better fit";
   }
@@ -161,7 +161,7 @@ FitReport fit(LeastSquares& misfit, Regularizer& regularizer, std::span<const do
   std::vector<double> r(best.point.r.size());
   if (!report.p.empty() && std::isfinite(best.objective) && !misfit.evaluate(report.p, r)) {
     report.status = Status::undefined;
-    report.words = "failed: the model could not be evaluated again where the fit ended";
+    report.words = "the model could not be evaluated again where the fit ended";
   }
   return report;
 }

@@ -114,7 +114,8 @@ bool CsvReader::next() {
   if (!read_line()) return false;
   if (cells_.size() != columns_.size())
     throw InvalidInput(path_.string() + ":" + std::to_string(line_) + ": has " + std::to_string(cells_.size()) +
-                       " cells; the head names " + std::to_string(columns_.size()));
+                       " cells; the head names " + std::to_string(columns_.size()) +
+                       " (is the row torn, or a separator inside a text without quotes?)");
   return true;
 }
 

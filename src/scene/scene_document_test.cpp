@@ -247,5 +247,15 @@ TEST(Schema, AlternativesNameExistingKeys) {
       for (const std::string& name : group) EXPECT_TRUE(scene_schema().find(rule.section, name)) << name;
 }
 
+TEST(SceneDocument, KeysThatAreNestedWithoutEndAreRefused) {
+  std::string key = "a";
+  for (int i = 0; i < 100'000; ++i) key += ".a";
+  EXPECT_THAT(refusal("[" + key + "]\n"), HasSubstr(":1:1: a key of more than 32 parts"));
+  EXPECT_THAT(refusal("\n" + key + " = 1\n"), HasSubstr(":2:1: a key of more than 32 parts"));
+  EXPECT_THAT(refusal("b = { " + key + " = 1 }\n"), HasSubstr("a key of more than 32 parts"));
+  const std::string dots(100, '.');
+  EXPECT_THAT(refusal("# " + dots + "\nnome = \"" + dots + "\"\n"), HasSubstr("unknown key nome"));
+}
+
 }  // namespace
 }  // namespace aspic

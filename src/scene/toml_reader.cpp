@@ -7,6 +7,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "base/error.h"
 
@@ -50,6 +51,35 @@ Value convert(const toml::node& node, const Source& source) {
   return value;
 }
 
+// The library follows the parts of a.b.c by recursion, as far as the stack reaches. Texts and comments are passed over.
+void check_depth_of_keys(std::string_view text, const Source& source) {
+  constexpr int kDeepest = 32;
+  int line = 1, dots = 0;
+  char quote = 0;
+  const auto continues_key = [](char c) {
+    return c == ' ' || c == '\t' || c == '_' || c == '-' || std::isalnum(static_cast<unsigned char>(c)) != 0;
+  };
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n') {
+      ++line, dots = 0, quote = 0;
+    } else if (quote != 0) {
+      if (c == '\\' && quote == '"') ++i;
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '#') {
+      i = std::min(text.find('\n', i), text.size()) - 1;
+    } else if (c == '.') {
+      if (++dots > kDeepest)
+        throw InvalidInput(to_string(Place{source, line, 1}) + ": a key of more than " + std::to_string(kDeepest) +
+                           " parts; nothing here is nested so deeply");
+    } else if (!continues_key(c)) {
+      dots = 0;
+    }
+  }
+}
+
 void forget_lines(Value& value) {
   value.place.line = value.place.column = 0;
   if (value.is_array())
@@ -62,6 +92,7 @@ void forget_lines(Value& value) {
 
 Table read_toml(const std::string& text, const std::string& source) {
   const auto name = std::make_shared<const std::string>(source);
+  check_depth_of_keys(text, name);
   try {
     const toml::table document = toml::parse(text, source);
     return std::move(convert(document, name).table());
