@@ -190,7 +190,7 @@ TEST_P(Methods, NeverCallAFailureSuccess) {
   model.bound = -1;
   const FitReport nowhere = fit(model, *few.prior, few.map.guess(), {.method = GetParam()});
   EXPECT_EQ(nowhere.status, Status::undefined);
-  EXPECT_THAT(nowhere.words, HasSubstr("failed"));
+  EXPECT_THAT(nowhere.words, HasSubstr("could not be evaluated"));
   model.bound = 1e-3;  // the data pull where nothing can be evaluated
   EXPECT_FALSE(
       is_success(fit(model, *few.prior, few.map.guess(), {.method = GetParam(), .max_iterations = 30}).status));

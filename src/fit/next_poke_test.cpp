@@ -50,10 +50,10 @@ TEST(NextPoke, ToldGainAndDeviationsAreThoseOfThePokeOnceItIsMade) {
     for (const double d : before.belief->spectrum().d) gain -= std::log1p(d) / 2;
     // Told alone, the poke does not profit from what the others say of the layer of the tip.
     EXPECT_LT(candidate.gain, gain * (1 + 1e-6));
-    EXPECT_GT(candidate.gain, 0.9 * gain);
+    EXPECT_GT(candidate.gain, 0.85 * gain);
     for (int t = 0; t < study.map.size(); ++t) {
       EXPECT_GT(candidate.deviation[0][t], after.deviation[0][t] * (1 - 1e-6));
-      EXPECT_LT(candidate.deviation[0][t], after.deviation[0][t] * 1.1);
+      EXPECT_LT(candidate.deviation[0][t], after.deviation[0][t] * 1.15);
     }
   }
 }
@@ -86,7 +86,7 @@ TEST(NextPoke, FewDirectionsTellNearlyAsMuchAsAll) {
                                  {.sites = 6, .spectrum = {.dense = 10, .max_rank = 24}});
   for (size_t i = 0; i < all.candidates.size(); ++i) {
     EXPECT_LE(few.candidates[i].gain, all.candidates[i].gain * (1 + 1e-6));
-    EXPECT_GT(few.candidates[i].gain, all.candidates[i].gain * 0.9);
+    EXPECT_GT(few.candidates[i].gain, all.candidates[i].gain * 0.85);
   }
 }
 
