@@ -165,6 +165,7 @@ void Session::Impl::save_capture(Arguments& arguments) {
     throw InvalidInput("nothing is recorded yet; record a case first");
   if (std::filesystem::exists(folder)) throw InvalidInput(folder + ": exists already; choose a new folder");
   write_data_set(folder, capture.bench->data());
+  save_material(folder);
 }
 
 void Session::Impl::tell_capture() {
