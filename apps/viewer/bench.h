@@ -1,5 +1,5 @@
 // The virtual bench: what a probe and cameras measure at the body of a scene, case by case, as a data set. The body is
-// at rest in every case, on its own mesh; the data set has a coarser one where that can be had.
+// at rest in every case, on its own mesh; the data set has that mesh, or a coarser one.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -21,7 +21,7 @@ struct BenchOptions {
   double noise = 0.01;  // standard deviation: of positions relative to the case's largest motion, of its force relative
                         // to the force
   uint64_t seed = 1;
-  bool same_mesh = false;  // the fit has the mesh of the body: an inverse crime
+  bool same_mesh = true;  // the fit has the mesh of the body: an inverse crime
 };
 
 class Bench {

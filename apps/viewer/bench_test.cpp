@@ -66,7 +66,7 @@ FitNews finished(const FitTask& task, Page& page) {
 
 TEST(Bench, RecordsThePoseOfTheTipWithItsForceAtRest) {
   Page page(kBlock, {"time.integrator=\"quasi_static\""});
-  page.send({{"do", "bench"}, {"noise", 0}, {"markers", 30}});
+  page.send({{"do", "bench"}, {"noise", 0}, {"markers", 30}, {"same_mesh", false}});
   EXPECT_EQ(page.capture()["markers"]["triangles"].size(), 30u);
   EXPECT_FALSE(page.capture()["same_mesh"]);
   touch(page);

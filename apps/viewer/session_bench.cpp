@@ -178,7 +178,7 @@ void Session::Impl::tell_capture() {
                {"markers", {{"triangles", Json::array()}, {"weights", Json::array()}}},
                {"cases", Json::array()},
                {"tets", 0},
-               {"same_mesh", false},
+               {"same_mesh", capture.options.same_mesh},
                {"fit", fit_json()}};
   if (const Bench* measured = capture.bench.get()) {
     for (const Vec3d& X : measured->marker_rest()) {

@@ -54,7 +54,8 @@ std::string setting_of(const std::filesystem::path& material) { return "material
 bool is_of_temporary(const std::optional<Recording::Comparison>& comparison, const TemporaryFolder* folder) {
   if (!comparison || !folder) return false;
   const std::string path = folder->path().string();
-  return std::ranges::any_of(comparison->overrides, [&](const std::string& text) { return text.find(path) != std::string::npos; });
+  return std::ranges::any_of(comparison->overrides,
+                             [&](const std::string& text) { return text.find(path) != std::string::npos; });
 }
 
 // log(fitted / true), its root mean square over the volume.
@@ -194,7 +195,8 @@ void Session::Impl::save_material(const std::filesystem::path& folder) {
 
 void Session::Impl::require_saved_material() const {
   if (is_of_temporary(comparison, capture.folder.get()))
-    throw InvalidInput("side B has the fitted material, which no file keeps: save the data set, and the material with it");
+    throw InvalidInput(
+        "side B has the fitted material, which no file keeps: save the data set, and the material with it");
 }
 
 Json Session::Impl::fit_json() const {
