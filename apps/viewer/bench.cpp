@@ -18,7 +18,6 @@ namespace aspic::viewer {
 namespace {
 
 constexpr double kLeastDeviation = 1e-4;  // of exact readings
-constexpr double kMeshShare = 0.3;        // of what a coarser mesh changes that counts as noise
 constexpr uint64_t kApart = 1'000'003;    // seeds of two cases
 
 Vec3d gravity_of(const Scene& scene) {
@@ -37,21 +36,6 @@ std::vector<int> held_by(const Model& model) {
   if (held.empty())
     throw InvalidInput("nothing holds the body, which the probe would push away; pin it first (brush, B)");
   return held;
-}
-
-MaterialParameters mean_of(const std::vector<MaterialParameters>& all) {
-  double log_young = 0, poisson = 0;
-  std::vector<double> extra(all.front().extra.size());
-  const double count = static_cast<double>(all.size());
-  for (const MaterialParameters& p : all) {
-    log_young += std::log(young_modulus(p.lame)) / count;
-    poisson += poisson_ratio(p.lame) / count;
-    for (size_t e = 0; e < extra.size(); ++e) extra[e] += p.extra[e] / count;
-  }
-  MaterialParameters mean = all.front();
-  mean.lame = lame_from_young_poisson(std::exp(log_young), poisson);
-  for (size_t e = 0; e < extra.size(); ++e) mean.extra[e] = extra[e];
-  return mean;
 }
 
 TipPose between(const TipPose& from, const TipPose& to, double s) {
@@ -79,7 +63,6 @@ Bench::Bench(const Scene& scene, const BenchOptions& options) : options_(options
   data_.name = scene.name;
   set_up_mesh(scene);
   place_markers();
-  uniform_ = mean_of(parameters_);
 }
 
 void Bench::set_up_mesh(const Scene& scene) {
@@ -155,7 +138,6 @@ void Bench::record(const Touch& touch, const TipPose& pose, int depths, const Co
       throw InvalidInput(fmt::format("the body finds no rest under this tip: {}; press less deep", body.failure()));
     last = body.prediction().x;
     if (d == 1) ++groups_;
-    note_mesh_error(load);
     add(load, body.prediction(), deepest * d / depths);
   }
 }
@@ -168,29 +150,6 @@ LoadCase Bench::as_data(const LoadCase& load) const {
   data.touch.center = data.touch.center + shift;
   data.pose.center = data.pose.center + shift;
   return data;
-}
-
-// What the coarser mesh does to a uniform body it does to this one, too, and no fit knows better. Most of it is alike
-// in all cases; what differs between them counts as noise.
-void Bench::note_mesh_error(const LoadCase& load) {
-  mesh_error_.assign(load.positions.size(), 0.0);
-  mesh_force_error_ = 0;
-  if (is_same_mesh_) return;
-  const LoadCase as_read = as_data(load);
-  const std::vector<MaterialParameters> fine(body_.mesh.tets.size(), uniform_);
-  const std::vector<MaterialParameters> coarse(data_.experiment.mesh.tets.size(), uniform_);
-  LoadedBody on_body(body_, load, truth_.model, fine, {}), on_data(data_.experiment, as_read, truth_.model, coarse, {});
-  if (!on_body.solve(fine, {}) || !on_data.solve(coarse, {})) return;
-  const CasePrediction &a = on_body.prediction(), &b = on_data.prediction();
-  double squares = 0;
-  for (size_t k = 0; k < mesh_error_.size(); ++k) {
-    const int m = load.positions[k].marker;
-    mesh_error_[k] = length((a.markers[k] - truth_rest_[m]) - (b.markers[k] - marker_rest_[m])) / std::sqrt(3.0);
-    squares += mesh_error_[k] * mesh_error_[k] / static_cast<double>(mesh_error_.size());
-  }
-  for (double& error : mesh_error_) error = kMeshShare * std::hypot(error, std::sqrt(squares)) / std::sqrt(2.0);
-  const double force = length(a.wrench.force);
-  if (force > 0) mesh_force_error_ = kMeshShare * length(a.wrench.force - b.wrench.force) / force;
 }
 
 void Bench::add(const LoadCase& load, const CasePrediction& found, double depth) {
@@ -211,10 +170,10 @@ void Bench::add(const LoadCase& load, const CasePrediction& found, double depth)
     MarkerReading& reading = read.positions[k];
     const Vec3d moved = found.markers[k] - truth_rest_[reading.marker];
     reading.position = disturbed(marker_rest_[reading.marker] + moved, options_.noise * largest);
-    reading.deviation = with(std::hypot(counted * largest, mesh_error_[k]));
+    reading.deviation = with(counted * largest);
   }
   read.force = disturbed(found.wrench.force, options_.noise * force);
-  read.force_deviation = with(std::hypot(counted, mesh_force_error_) * force);
+  read.force_deviation = with(counted * force);
   data_.experiment.cases.push_back(std::move(read));
   depths_.push_back(depth);
 }

@@ -1,5 +1,5 @@
 // The virtual bench: what a probe and cameras measure at the body of a scene, case by case, as a data set. The body is
-// at rest in every case, on its own mesh; the data set has a coarser one where that can be had.
+// at rest in every case, on its own mesh; the data set has that mesh, or a coarser one.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -21,7 +21,7 @@ struct BenchOptions {
   double noise = 0.01;  // standard deviation: of positions relative to the case's largest motion, of its force relative
                         // to the force
   uint64_t seed = 1;
-  bool same_mesh = false;  // the fit has the mesh of the body: an inverse crime
+  bool same_mesh = true;  // the fit has the mesh of the body: an inverse crime
 };
 
 class Bench {
@@ -55,7 +55,6 @@ class Bench {
   void set_up_mesh(const Scene& scene);
   void place_markers();
   LoadCase as_data(const LoadCase& load) const;  // with the tip where the surface of the data's mesh is
-  void note_mesh_error(const LoadCase& load);    // of this case
   void add(const LoadCase& load, const CasePrediction& found, double depth);
 
   BenchOptions options_;
@@ -69,11 +68,8 @@ class Bench {
   std::unique_ptr<SurfaceProjection> on_truth_, on_data_;
   std::vector<Vec3d> marker_rest_, truth_rest_;  // on the surfaces of data and truth [m]
   std::vector<double> depths_;
-  MaterialParameters uniform_;      // about the mean of the truth
-  std::vector<double> mesh_error_;  // of each position of a case, where the body is uniform [m]
-  double mesh_force_error_ = 0;     // relative to the force
-  std::vector<int> data_tet_;       // in which each tet of the scene lies
-  uint64_t recorded_ = 0;           // cases so far: each has noise of its own
+  std::vector<int> data_tet_;  // in which each tet of the scene lies
+  uint64_t recorded_ = 0;      // cases so far: each has noise of its own
   int groups_ = 0;
 };
 

@@ -1,4 +1,5 @@
 // The virtual bench: recording, saving, fitting, and simulating what was fitted.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
@@ -65,7 +66,7 @@ FitNews finished(const FitTask& task, Page& page) {
 
 TEST(Bench, RecordsThePoseOfTheTipWithItsForceAtRest) {
   Page page(kBlock, {"time.integrator=\"quasi_static\""});
-  page.send({{"do", "bench"}, {"noise", 0}, {"markers", 30}});
+  page.send({{"do", "bench"}, {"noise", 0}, {"markers", 30}, {"same_mesh", false}});
   EXPECT_EQ(page.capture()["markers"]["triangles"].size(), 30u);
   EXPECT_FALSE(page.capture()["same_mesh"]);
   touch(page);
@@ -155,12 +156,50 @@ TEST(Bench, AFitFindsTheStifferHalfAndIsSimulated) {
   EXPECT_EQ(page.scene("b")["label"], "fitted material");
   EXPECT_EQ(page.scene("b")["field"], "young");
   EXPECT_EQ(page.capture()["cases"].size(), 6u);  // the bench stays
+
+  // A recording names no file that vanishes.
+  EXPECT_NE(page.refused({{"ask", "recording"}}).find("save the data set"), std::string::npos);
+  const TestFolder folder;
+  page.send({{"do", "save_capture"}, {"folder", (folder.path() / "poked").string()}});
+  const Json recording = page.send({{"ask", "recording"}});
+  const std::string material = (folder.path() / "poked" / "material.vtu").string();
+  EXPECT_TRUE(std::filesystem::exists(material));
+  EXPECT_NE(recording["compare"]["overrides"].dump().find(material), std::string::npos);
+  read_data_set(folder.path() / "poked");
   touch(page);
   page.send({{"do", "press"}, {"depth", 0.004}});
   page.steps(20);
   EXPECT_GT(number(page.side("b")["probe"]["depth"]), 0.0039);
   page.send({{"do", "end_compare"}});
   EXPECT_EQ(page.capture()["cases"].size(), 6u);
+}
+
+TEST(Bench, WhatACoarserMeshGetsWrongIsTakenOff) {
+  for (const bool same_mesh : {false, true}) {
+    Page page(kBlock);
+    page.send({{"do", "bench"}, {"markers", 30}, {"noise", 0.02}, {"same_mesh", same_mesh}});
+    page.send(poke(2, 1));
+    page.send({{"do", "fit"}});
+    const std::optional<FitTask> task = page.session().take_fit();
+    ASSERT_TRUE(task);
+    EXPECT_EQ(task->plan.mesh_errors, !same_mesh);
+    for (const LoadCase& load : task->data.experiment.cases) {  // deviations are the instruments' own alone
+      const Vec3d& f = *load.force;
+      EXPECT_NEAR(load.force_deviation[0], 0.02 * std::hypot(f[0], f[1], f[2]), 0.2 * load.force_deviation[0]);
+    }
+    std::vector<std::string> stages;
+    run_fit(*task, [&](const FitNews& news) {
+      if (!news.stage.empty()) stages.push_back(news.stage);
+      return true;
+    });
+    EXPECT_EQ(std::ranges::count(stages, "what the mesh gets wrong, by a finer one") > 0, !same_mesh);
+    EXPECT_GT(std::ranges::count(stages, "a value for every tet"), 0);
+  }
+}
+
+TEST(Bench, StiffnessIsLookedAtOnALogarithmicScale) {
+  Page page(kBlock);
+  for (const Json& field : page.scene()["fields"]) EXPECT_EQ(field["log"], field["name"] == "young") << field;
 }
 
 TEST(Bench, AStoppedFitKeepsWhatItReached) {

@@ -37,7 +37,7 @@ std::vector<Field> fields_of(const Model& model) {
       {"density", "density at rest", "kg/m^3"},     {"quality", "shape of tets at rest (1: regular)", ""}};
   for (const auto& [name, unused] : model.tet_fields) {
     if (name == "young") {
-      fields.push_back({name, "Young's modulus", "Pa"});
+      fields.push_back({.name = name, .label = "Young's modulus", .unit = "Pa", .is_log = true});
     } else if (name == "poisson") {
       fields.push_back({name, "Poisson's ratio", ""});
     } else {

@@ -11,7 +11,8 @@ namespace aspic::viewer {
 struct Field {
   std::string name, label, unit;
   bool is_diverging = false;
-  double center = 0;  // of a diverging one
+  double center = 0;    // of a diverging one
+  bool is_log = false;  // looked at on a logarithmic scale
 };
 std::vector<Field> fields_of(const Model& model);
 

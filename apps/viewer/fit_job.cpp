@@ -45,18 +45,22 @@ class Listener {
   }
 
  private:
-  void begin(FitStage stage) {
+  void begin(FitStage stage) { goes_on_ = goes_on_ && tell_(beginning(stage)); }
+
+  FitNews beginning(FitStage stage) {
+    stage_ = stage;
     FitNews news{.stage = words_of(stage)};
     if (stage == FitStage::uniform || stage == FitStage::field) {
       news.is_new_stage = true;
       map_.emplace(task_.data.experiment.mesh, plan_.model, known_parameters(plan_, task_.data.experiment),
                    unknowns_of(plan_, stage));
     }
-    goes_on_ = goes_on_ && tell_(std::move(news));
+    return news;
   }
 
+  // Stages alternate: what the mesh gets wrong is computed anew for what was fitted.
   bool hear(FitStage stage, const FitIteration& iteration, std::span<const double> p) {
-    FitNews news;
+    FitNews news = stage == stage_ ? FitNews{} : beginning(stage);
     if (stage == FitStage::uniform || stage == FitStage::field) {
       news.iterations.push_back(iteration);
       for (size_t u = 0; u < plan_.unknowns.size(); ++u)
@@ -68,6 +72,7 @@ class Listener {
   const FitTask& task_;
   const std::function<bool(FitNews)>& tell_;
   FitPlan plan_;
+  FitStage stage_ = FitStage::uniform;
   std::optional<ParameterMap> map_;  // of the stage under way
   bool goes_on_ = true;
 };

@@ -13,7 +13,8 @@ Json fields_json(const std::vector<Field>& fields) {
                     {"label", field.label},
                     {"unit", field.unit},
                     {"diverging", field.is_diverging},
-                    {"center", field.center}});
+                    {"center", field.center},
+                    {"log", field.is_log}});
   return list;
 }
 

@@ -165,6 +165,7 @@ void Session::Impl::save_capture(Arguments& arguments) {
     throw InvalidInput("nothing is recorded yet; record a case first");
   if (std::filesystem::exists(folder)) throw InvalidInput(folder + ": exists already; choose a new folder");
   write_data_set(folder, capture.bench->data());
+  save_material(folder);
 }
 
 void Session::Impl::tell_capture() {
@@ -177,7 +178,7 @@ void Session::Impl::tell_capture() {
                {"markers", {{"triangles", Json::array()}, {"weights", Json::array()}}},
                {"cases", Json::array()},
                {"tets", 0},
-               {"same_mesh", false},
+               {"same_mesh", capture.options.same_mesh},
                {"fit", fit_json()}};
   if (const Bench* measured = capture.bench.get()) {
     for (const Vec3d& X : measured->marker_rest()) {

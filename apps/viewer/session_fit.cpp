@@ -21,13 +21,14 @@ double mean_of(const FittedMaterial& truth, const std::string& quantity) {
   return sum / volumes;
 }
 
-// Young's modulus of every tet is fitted; all else is known.
+// Young's modulus of every tet is fitted; all else is known. What a coarser mesh gets wrong is taken off.
 FitPlan plan_for(const Bench& bench) {
   FitPlan plan{.model = bench.truth().model};
   plan.unknowns = {{.quantity = "young", .spread = Spread::tets, .handles = 0, .guess = 0}};
   for (const std::string& quantity : quantities_of(plan.model))
     if (quantity != "young") plan.known.emplace_back(quantity, mean_of(bench.truth(), quantity));
   plan.cross_validation = false;
+  plan.mesh_errors = !bench.is_same_mesh();
   return plan;
 }
 
@@ -43,6 +44,18 @@ int residuals_of(const Experiment& e) {
   size_t count = 0;
   for (const LoadCase& c : e.cases) count += 3 * (c.positions.size() + (c.force ? 1 : 0) + (c.torque ? 1 : 0));
   return static_cast<int>(count);
+}
+
+constexpr const char* kMaterialFile = "material.vtu";
+
+std::string setting_of(const std::filesystem::path& material) { return "material.file=\"" + material.string() + "\""; }
+
+// That comparison's material would be gone when it is repeated.
+bool is_of_temporary(const std::optional<Recording::Comparison>& comparison, const TemporaryFolder* folder) {
+  if (!comparison || !folder) return false;
+  const std::string path = folder->path().string();
+  return std::ranges::any_of(comparison->overrides,
+                             [&](const std::string& text) { return text.find(path) != std::string::npos; });
 }
 
 // log(fitted / true), its root mean square over the volume.
@@ -88,6 +101,7 @@ void Session::Impl::forget_fit() {
   capture.young.clear();
   capture.deviation.clear();
   capture.outcome.reset();
+  capture.saved.clear();
   show_fit();
 }
 
@@ -100,6 +114,7 @@ void Session::Impl::note_fit(const FitNews& told) {
   if (!told.failure.empty()) capture.failure = told.failure;
   if (told.outcome) {
     capture.outcome = told.outcome;
+    capture.saved.clear();
     capture.failure = told.outcome->failure;
     capture.words = told.outcome->report.words;
     for (const FittedQuantity& quantity : told.outcome->quantities)
@@ -118,7 +133,8 @@ void Session::Impl::show_fit() {
     std::vector<double> log_error = capture.young;
     const std::vector<double> truth = capture.bench->true_young();
     for (size_t t = 0; t < truth.size(); ++t) log_error[t] = std::log(capture.young[t] / truth[t]);
-    shown.push_back({{"fitted_young", "fitted Young's modulus", "Pa"}, capture.bench->on_scene(capture.young)});
+    const Field young{.name = "fitted_young", .label = "fitted Young's modulus", .unit = "Pa", .is_log = true};
+    shown.push_back({young, capture.bench->on_scene(capture.young)});
     shown.push_back({{"fit_error", "log of fitted / true modulus", "", true, 0}, capture.bench->on_scene(log_error)});
     if (!capture.deviation.empty())
       shown.push_back({{"young_deviation", "deviation of log E (0.1: known to 10 %)", ""},
@@ -141,11 +157,15 @@ void Session::Impl::simulate_fit(Arguments& arguments) {
   arguments.finish();
   if (!capture.outcome || !capture.outcome->has_material())
     throw InvalidInput("there is no fitted material yet; fit one first");
-  capture.folder = std::make_unique<TemporaryFolder>();
-  const std::filesystem::path file = capture.folder->path() / "material.vtu";
-  write_material(file, capture.outcome->material);
+  std::unique_ptr<TemporaryFolder> temporary;
+  std::filesystem::path file = capture.saved;
+  if (file.empty()) {
+    temporary = std::make_unique<TemporaryFolder>();
+    file = temporary->path() / kMaterialFile;
+    write_material(file, capture.outcome->material);
+  }
   const SteeredScene& steered = a->side.steered();
-  const std::vector<std::string> fitted = {"material.file=\"" + file.string() + "\"", "material.frame=\"placed\""};
+  const std::vector<std::string> fitted = {setting_of(file), "material.frame=\"placed\""};
   std::vector<std::string> overrides;
   for (const std::string& text : steered.overrides)
     if (!key_of(text).starts_with("material.") || key_of(text) == "material.model") overrides.push_back(text);
@@ -154,10 +174,29 @@ void Session::Impl::simulate_fit(Arguments& arguments) {
   auto second = loaded("b", steered.path, overrides);
   install(loaded("a", steered.path, steered.overrides), std::move(second),
           Recording::Comparison{fitted, "fitted material"});
+  capture.folder = std::move(temporary);
+  capture.simulated = capture.task;
   a->label = "true material";
   field = "young";
   for (const ShownSide* side : {a.get(), b.get()}) tell(scene_message(*side, field));
   ++version;
+}
+
+// Beside its data set. If it is simulated already, a recording names that file from now on.
+void Session::Impl::save_material(const std::filesystem::path& folder) {
+  if (!capture.outcome || !capture.outcome->has_material()) return;
+  capture.saved = std::filesystem::absolute(folder) / kMaterialFile;
+  write_material(capture.saved, capture.outcome->material);
+  if (capture.simulated != capture.task || !is_of_temporary(comparison, capture.folder.get())) return;
+  std::vector<std::string>& overrides = comparison->overrides;
+  std::replace(overrides.begin(), overrides.end(), setting_of(capture.folder->path() / kMaterialFile),
+               setting_of(capture.saved));
+}
+
+void Session::Impl::require_saved_material() const {
+  if (is_of_temporary(comparison, capture.folder.get()))
+    throw InvalidInput(
+        "side B has the fitted material, which no file keeps: save the data set, and the material with it");
 }
 
 Json Session::Impl::fit_json() const {

@@ -44,13 +44,15 @@ struct Capture {
 
   std::optional<FitTask> wanted;  // to be begun
   long task = 0;                  // the latest
+  long simulated = 0;             // whose material side b has
   bool is_fitting = false;
   std::string stage, words, failure;
   std::vector<FitIteration> history;  // of the stage
   std::vector<double> young;          // fitted, of each tet of the data [Pa]; empty: none
   std::vector<double> deviation;      // of log E; empty: not known
   std::optional<FitOutcome> outcome;
-  std::unique_ptr<TemporaryFolder> folder;  // of the material that is simulated
+  std::unique_ptr<TemporaryFolder> folder;  // of the material that is simulated, until it is saved
+  std::filesystem::path saved;              // the fitted material beside its data set; empty: not saved
 };
 
 // The tip that a command describes; what it leaves out is chosen. Throws InvalidInput.
@@ -133,6 +135,8 @@ struct Session::Impl {
   void note_fit(const FitNews& told);
   void show_fit();  // as colours
   void forget_fit();
+  void save_material(const std::filesystem::path& folder);
+  void require_saved_material() const;  // by what side b is made of; throws InvalidInput
   Json fit_json() const;
 
   // ---- session_replay.cpp

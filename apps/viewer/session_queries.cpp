@@ -104,6 +104,7 @@ Json Session::Impl::query(const Json& message) {
   }
   if (what == "recording") {
     arguments.finish();
+    require_saved_material();
     if (!log.is_complete()) throw InvalidInput("too much was done to be recorded; reset begins a new recording");
     return to_json(
         Recording{a->side.steered().path.string(), base_overrides, comparison, log.events(), a->side.steps_taken()});

@@ -174,7 +174,7 @@ class Painter {
 
   // Half as high as the panels beside it, in their middle.
   private addBar(ink: Ink, head: MeshPicture, range: [number, number], top: number, height: number): void {
-    const field: Field = { name: "", label: head.value_label, unit: "", diverging: false, center: 0 };
+    const field: Field = { name: "", label: head.value_label, unit: "", diverging: false, center: 0, log: false };
     const lens = { width: head.width, height } as Lens;
     ink.context.translate(0, top + Math.max(0, (height - 23 * ink.em) / 2));
     colourBar(ink, lens, field, colours(range), "viridis");

@@ -140,6 +140,7 @@ export interface Field {
   unit: string; // "Pa"
   diverging: boolean; // about `center`
   center: number;
+  log: boolean; // looked at on a logarithmic scale, unless another is chosen
 }
 
 export interface Setting {

@@ -4,8 +4,9 @@ import type { Field, Scene } from "../src/protocol";
 import { coarseBox } from "../src/view/body";
 import { Display, kDefaults } from "../src/view/display";
 
-const kStress: Field = { name: "von_mises", label: "von Mises stress", unit: "Pa", diverging: false, center: 0 };
-const kDet: Field = { name: "det_F", label: "det F", unit: "", diverging: true, center: 1 };
+const kStress: Field = { name: "von_mises", label: "von Mises stress", unit: "Pa", diverging: false, center: 0, log: false };
+const kDet: Field = { name: "det_F", label: "det F", unit: "", diverging: true, center: 1, log: false };
+const kYoung: Field = { name: "young", label: "E", unit: "Pa", diverging: false, center: 0, log: true };
 
 test("settings are restored from what was saved", () => {
   const display = new Display();
@@ -36,6 +37,19 @@ test("a fixed range is what was typed, whichever way round", () => {
   display.feed("a", kStress, 0, 10);
   display.change({ fixedRange: true, low: 5, high: 2 });
   assert.deepEqual(display.range(kStress), { low: 2, high: 5, log: false });
+});
+
+test("a stiffness has a logarithmic scale unless another is chosen", () => {
+  const display = new Display();
+  display.feed("a", kYoung, 1e3, 1e5);
+  assert.deepEqual(display.range(kYoung), { low: 1e3, high: 1e5, log: true });
+  display.change({ scale: "linear" });
+  assert.deepEqual(display.range(kYoung), { low: 1e3, high: 1e5, log: false });
+  display.change({ scale: "auto" });
+  display.feed("a", kStress, 1, 10);
+  assert.equal(display.range(kStress)?.log, false);
+  display.change({ scale: "log" });
+  assert.equal(display.range(kStress)?.log, true);
 });
 
 test("cameras of both sides are one until they are unlinked, and then start where they were", () => {

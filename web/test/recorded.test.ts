@@ -27,7 +27,7 @@ function positionBytes(): Uint8Array {
   return bytes;
 }
 
-const kField = { unit: "", diverging: false, center: 0 };
+const kField = { unit: "", diverging: false, center: 0, log: false };
 const kScene = {
   kind: "scene",
   side: "a",

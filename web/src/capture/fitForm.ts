@@ -36,7 +36,7 @@ export class FitForm {
   private readonly status = element("p", { class: "capture-status", role: "status" });
   private readonly result = element("p", { class: "capture-result" });
   private readonly bar = element("progress", { max: "1", value: "0", "aria-label": "How well the data are met" });
-  private readonly sameMesh = checkbox("on the mesh that was measured", "An inverse crime: sharper than any real measurement would be. Forget the recorded cases to change it", false, (on) =>
+  private readonly sameMesh = checkbox("on the mesh that was measured", "An inverse crime: sharper than any real measurement would be. Without it, what the coarser mesh gets wrong hides much of the stiffness. Forget the recorded cases to change it", true, (on) =>
     this.send({ do: "bench", same_mesh: on }),
   );
   private readonly colours = element("div", { class: "capture-row", role: "group", "aria-label": "Colours of the body" });

@@ -211,7 +211,7 @@ export class BodyView {
     const style = this.style();
     const lens = this.rig.lens(width, height);
     this.stage.render(lens, this.rig.orientation, style.accent);
-    const bar = this.shown && { field: { name: "", label: this.shown.label, unit: this.shown.unit, diverging: false, center: 0 }, range: this.range(this.shown), map: this.shown.map };
+    const bar = this.shown && { field: { name: "", label: this.shown.label, unit: this.shown.unit, diverging: false, center: 0, log: false }, range: this.range(this.shown), map: this.shown.map };
     this.overlay.draw(lens, style, {
       axes: true,
       gridStep: 0,

@@ -151,7 +151,7 @@ function addField(folder: Folder, display: Display, views: () => View[]): void {
   range.number("low", "From", { fixedRange: true });
   range.number("high", "To", { fixedRange: true });
   range.button("Fix at what is shown", () => display.fixRange());
-  range.add("log", "Logarithmic");
+  range.add("scale", "Scale", { "by field": "auto", linear: "linear", logarithmic: "log" });
 }
 
 function addCamera(folder: Folder, display: Display, views: () => View[]): void {

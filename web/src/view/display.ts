@@ -33,7 +33,7 @@ export const kDefaults = {
   vertexLabels: false,
   faceLabels: false,
   map: "auto" as "auto" | MapName,
-  log: false,
+  scale: "auto" as "auto" | "linear" | "log", // auto: that of the field
   fixedRange: false,
   low: 0,
   high: 1,
@@ -51,6 +51,7 @@ const kChoices: { [K in keyof DisplaySettings]?: readonly string[] } = {
   inside: ["own", "same", "hidden"],
   clip: ["off", "x", "y", "z"],
   map: ["auto", ...kMapNames],
+  scale: ["auto", "linear", "log"],
   tool: Object.keys(kTools),
   tipShape: ["sphere", "disc"],
   tipContact: ["bonded", "sliding"],
@@ -132,11 +133,11 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
   }
 
   range(field: Field): ColourRange | null {
-    const { fixedRange, log, low, high } = this.settings;
+    const { fixedRange, scale, low, high } = this.settings;
     const running = this.running.get();
     if (!fixedRange && !running) return null;
     const chosen = fixedRange ? { low: Math.min(low, high), high: Math.max(low, high) } : running!;
-    const positive = log ? logRange(chosen.low, chosen.high) : null;
+    const positive = (scale === "auto" ? field.log : scale === "log") ? logRange(chosen.low, chosen.high) : null;
     if (positive) return { ...positive, log: true };
     return { ...(field.diverging && !fixedRange ? about(field.center, chosen.low, chosen.high) : chosen), log: false };
   }
