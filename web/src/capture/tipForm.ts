@@ -6,6 +6,7 @@ import { short } from "../plots/numbers";
 import type { ProbeState, TipChoice } from "../protocol";
 import type { Store } from "../store";
 import type { Display } from "../view/display";
+import { AskedDepths } from "./askedDepths";
 
 const kNotches = 40; // of the slider and the keys, over the radius of the tip
 const kDeepest = 1.5; // of the slider, in radii
@@ -17,6 +18,7 @@ export class TipForm {
   private readonly radius: ReturnType<typeof numberField>;
   private readonly lift = button({ text: "Lift", title: "Take the tip away", steers: true }, () => this.store.source.send({ do: "lift" }));
   private probe: ProbeState | null = null;
+  private readonly asked = new AskedDepths();
   private held = false;
 
   constructor(
@@ -58,6 +60,7 @@ export class TipForm {
 
   show(probe: ProbeState | null): void {
     this.probe = probe;
+    this.asked.hear(probe?.wanted ?? null);
     this.slider.disabled = this.depth.input.disabled = probe === null || !this.store.steers;
     this.lift.disabled = probe === null || !this.store.steers;
     if (!probe) return;
@@ -67,12 +70,12 @@ export class TipForm {
   }
 
   private notch(by: number): void {
-    if (this.probe) this.press(this.probe.wanted + (by * this.probe.radius) / kNotches);
+    if (this.probe) this.press(this.asked.last(this.probe.wanted) + (by * this.probe.radius) / kNotches);
   }
 
   private press(depth: number): void {
     if (!this.probe) return;
-    this.probe = { ...this.probe, wanted: depth }; // the next notch goes on from there
+    this.asked.ask(depth, this.probe.wanted);
     this.store.source.send({ do: "press", depth });
     if (!this.store.state?.playing) this.store.source.send({ do: "play" });
   }

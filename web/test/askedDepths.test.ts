@@ -1,0 +1,28 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { AskedDepths } from "../src/capture/askedDepths";
+
+test("notches go on from what was asked for, however late the program tells it", () => {
+  const asked = new AskedDepths();
+  asked.ask(1, 0);
+  asked.ask(2, 0);
+  asked.hear(0); // still on its way
+  assert.equal(asked.last(0), 2);
+  asked.hear(1);
+  assert.equal(asked.last(1), 2);
+  asked.ask(3, 1);
+  asked.hear(1);
+  assert.equal(asked.last(1), 3);
+  asked.hear(3); // 2 was passed over
+  assert.equal(asked.last(3), 3);
+});
+
+test("another's depth, and another tip, count", () => {
+  const asked = new AskedDepths();
+  asked.ask(1, 0);
+  asked.hear(0.3); // by the mouse
+  assert.equal(asked.last(0.3), 0.3);
+  asked.ask(0.5, 0.3);
+  asked.hear(null);
+  assert.equal(asked.last(0), 0);
+});
