@@ -5,12 +5,12 @@
 #include <memory>
 #include <optional>
 
+#include "io/external_program.h"
 #include "viewer/bench.h"
 #include "viewer/command_log.h"
 #include "viewer/fit_job.h"
 #include "viewer/picture.h"
 #include "viewer/session_messages.h"
-#include "viewer/temporary_folder.h"
 
 namespace aspic::viewer {
 

@@ -4,12 +4,12 @@
 
 #include "base/error.h"
 #include "io/atomic_file.h"
+#include "io/external_program.h"
 #include "io/mesh_file.h"
 #include "viewer/function_query.h"
 #include "viewer/iteration_query.h"
 #include "viewer/place_query.h"
 #include "viewer/session_impl.h"
-#include "viewer/temporary_folder.h"
 
 namespace aspic::viewer {
 namespace {
