@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   fs::path data, out = "material.vtu";
-  std::string model = FitPlan().model, smooth = "h1", weight = "auto", refine = "auto";
+  std::string model = FitPlan().model, smooth = "h1", weight = "auto", refine = "auto", parts = "off";
   std::vector<std::string> unknowns, known, left_out;
   FitOptions fit;
   double prior_deviation = RegularizerOptions().prior_deviation;
@@ -56,6 +56,15 @@ int refinement_of(const std::string& text) {
   return static_cast<int>(times);
 }
 
+int parts_of(const std::string& text) {
+  if (text == "off") return 0;
+  if (text == "auto") return -1;
+  const double count = parse_known("parts=" + text).second;
+  if (count < 2 || count > kMostParts || count != std::floor(count))
+    throw InvalidInput("--parts " + text + ": 2 to " + std::to_string(kMostParts) + " are possible, auto or off");
+  return static_cast<int>(count);
+}
+
 FitPlan plan_of(const Arguments& arguments) {
   FitPlan plan;
   plan.model = material_info(arguments.model).name;
@@ -69,6 +78,7 @@ FitPlan plan_of(const Arguments& arguments) {
   plan.uncertainty = !arguments.no_uncertainty;
   plan.cross_validation = !arguments.no_cross_validation;
   plan.refine = refinement_of(arguments.refine);
+  plan.parts = parts_of(arguments.parts);
   plan.mesh_errors = arguments.mesh_errors;
   return plan;
 }
@@ -250,6 +260,9 @@ void add_choices(CLI::App* command, Arguments& a) {
       ->allow_extra_args(false);
   command->add_flag("--baselines", a.baselines,
                     "What is left out is also predicted by one modulus, per-example linear and strain-space moduli");
+  command->add_option("--parts", a.parts,
+                      "N or auto: a stiffness per tet is divided into parts of one value each, where these explain the "
+                      "data as well; off by default");
   command->add_option("--refine", a.refine,
                       "Simulates the body with every tet in 8, N times, while the material stays per tet of the data; "
                       "auto: once up to 50000 tets");

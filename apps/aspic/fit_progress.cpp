@@ -29,6 +29,8 @@ std::string stage_text(FitStage stage) {
       return "fit";
     case FitStage::uncertainty:
       return "uncertainty";
+    case FitStage::parts:
+      return "parts";
     case FitStage::cross_validation:
       return "held out";
     case FitStage::next_poke:

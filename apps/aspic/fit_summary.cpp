@@ -48,6 +48,19 @@ void print_misfit(std::FILE* stream, const FitOutcome& outcome) {
   fmt::print(stream, "\n");
 }
 
+void print_parts(std::FILE* stream, const FitOutcome& outcome) {
+  if (!outcome.parts) return;
+  const FoundParts& found = *outcome.parts;
+  if (!found.are_kept) {
+    fmt::print(stream, "parts      none: they do not explain the data as well as the field ({} per reading)\n",
+               closeness(found.squares / 2, outcome.residuals));
+    return;
+  }
+  for (size_t k = 0; k < found.values.size(); ++k)
+    fmt::print(stream, "{:<10} {:<10} in {} of the body\n", k == 0 ? "parts" : "", value_text(found.values[k], "Pa"),
+               percent(found.volume[k]));
+}
+
 void print_held_out(std::FILE* stream, const FitOutcome& outcome) {
   if (!outcome.held_out) return;
   const CrossValidation& all = *outcome.held_out;
@@ -83,6 +96,7 @@ void print_fit(std::FILE* stream, const DataSet& data, const FitOutcome& outcome
   print_mesh(stream, data, outcome);
   print_misfit(stream, outcome);
   print_values(stream, outcome);
+  print_parts(stream, outcome);
   if (outcome.posterior && outcome.posterior->ok)
     fmt::print(stream, "learnt     the data determine {:.1f} of {} directions of the material\n",
                outcome.posterior->informed, outcome.unknowns);

@@ -15,6 +15,8 @@ const char* words_of(FitStage stage) {
       return "a value for every tet";
     case FitStage::uncertainty:
       return "how certain it is";
+    case FitStage::parts:
+      return "the parts of which it is made";
     case FitStage::cross_validation:
       return "each poke left out";
     case FitStage::next_poke:

@@ -64,6 +64,8 @@ const char* to_string(FitStage stage) {
       return "field";
     case FitStage::uncertainty:
       return "uncertainty";
+    case FitStage::parts:
+      return "parts";
     case FitStage::cross_validation:
       return "cross_validation";
     case FitStage::next_poke:

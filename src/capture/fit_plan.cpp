@@ -170,6 +170,7 @@ std::string text_of(const FitPlan& plan) {
   add("tolerance", number_text(plan.fit.tolerance));
   add("max_iterations", std::to_string(plan.fit.max_iterations));
   for (const std::string& group : plan.left_out) add("leave_out." + group, "true");
+  add("parts", std::to_string(plan.parts));
   add("refine", std::to_string(plan.refine));
   add("mesh_errors", plan.mesh_errors ? "true" : "false");
   add("equilibrium.tolerance", number_text(plan.equilibrium.tolerance));

@@ -22,6 +22,9 @@ struct FitPlan {
   std::vector<std::string> left_out;  // groups of cases that are predicted, not fitted
   bool uncertainty = true, cross_validation = true;
   int refine = 0;  // the body is simulated on the mesh of the data with every tet in 8, so often; < 0: see completed()
+  // A stiffness that was fitted per tet is divided into so many parts of one value each, where that explains the data
+  // as well as the field; < 0: as few as do, up to kMostParts; 0: not.
+  int parts = 0;
   bool mesh_errors = false;  // what the mesh gets wrong is computed on a finer one and taken off the measurements
 };
 
@@ -32,6 +35,8 @@ std::pair<std::string, double> parse_known(const std::string& text);  // "poisso
 
 // Refinement that was left open: once where that makes at most so many tets.
 inline constexpr int kAffordableTets = 50'000;
+
+inline constexpr int kMostParts = 4;
 
 // The plan with everything filled in that the data and the model decide. Throws InvalidInput for names that the model
 // or the data do not have.

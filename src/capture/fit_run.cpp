@@ -10,7 +10,9 @@
 #include "capture/fitted_values.h"
 #include "capture/surface_projection.h"
 #include "fit/fit_run.h"
+#include "fit/parts.h"
 #include "fit/refined_experiment.h"
+#include "scene/value.h"
 
 namespace aspic {
 namespace {
@@ -22,7 +24,8 @@ constexpr int kPasses = 4;
 constexpr double kSettled = 1e-3;  // relative change of a value
 // Guesses that are tried when the first one is so soft that the loads crush the body.
 constexpr double kStiffer[] = {1, 10, 100, 0.1};
-constexpr double kUnexplained = 4;  // |r|^2 per reading: twice the standard deviations
+constexpr double kSoftest = 1e-2, kStiffest = 1e13;  // Young's moduli that a body can have [Pa]
+constexpr double kUnexplained = 4;                   // |r|^2 per reading: twice the standard deviations
 
 std::vector<Unknown> as_single_values(std::vector<Unknown> unknowns) {
   for (Unknown& u : unknowns) u.spread = Spread::uniform, u.handles = 0;
@@ -108,11 +111,25 @@ class MaterialFit {
       for (size_t u = 0; u < plan_.unknowns.size(); ++u)
         plan_.unknowns[u].guess = stage.map.values(static_cast<int>(u), report.p).front();
       material_ = stage.map.parameters(report.p);
+      outcome_.failure = words_of_runaway(material_.front());
+      if (!outcome_.failure.empty()) return false;
       if (report.status != Status::interrupted) return true;
       describe(stage, report.p);
       return false;
     }
     return false;
+  }
+
+  // Readings that no stiffness makes smaller or larger, such as forces of a body that they do not belong to.
+  std::string words_of_runaway(const MaterialParameters& material) const {
+    const double young = young_modulus(material.lame);
+    if (young >= kSoftest && young <= kStiffest) return "";
+    const std::vector<LoadCase>& cases = data_.experiment.cases;
+    const bool has_positions =
+        std::any_of(cases.begin(), cases.end(), [](const LoadCase& c) { return !c.positions.empty(); });
+    return "the readings do not determine the stiffness: it ran to " + number_text(young) + " Pa; check the units of " +
+           (has_positions ? "lengths and forces" : "lengths and forces, and state the positions of some markers") +
+           ", and that loads and readings belong to the same body";
   }
 
   // With the row of the first case that could not be solved.
@@ -222,10 +239,13 @@ class MaterialFit {
       outcome_.failure = words_of_failure(report, stage.misfit);
       return;
     }
+    outcome_.failure = words_of_runaway(stage.map.parameters(report.p).front());
+    if (!outcome_.failure.empty()) return;
     if (!is_over(report)) return describe(stage, report.p);
     learn_uncertainty(stage);
-    describe(stage, report.p);
-    predict_left_out(stage.map, report.p);
+    const std::vector<double> p = divided(stage);
+    describe(stage, p);
+    predict_left_out(stage.map, p);
     if (!outcome_.interrupted) cross_validate_groups(stage);
     if (!outcome_.interrupted) find_next_poke(stage);
   }
@@ -250,6 +270,48 @@ class MaterialFit {
     outcome_.posterior =
         posterior(stage.model(), *stage.prior, outcome_.report.weight, stage.map, mesh(), outcome_.report.p);
     add_warnings(outcome_.posterior->warnings);
+  }
+
+  // The material in parts, where it is wanted and the data allow it; else that of the field.
+  std::vector<double> divided(Stage& stage) {
+    const FitReport& report = outcome_.report;
+    const auto young = std::find_if(plan_.unknowns.begin(), plan_.unknowns.end(),
+                                    [](const Unknown& u) { return u.quantity == "young" && u.spread == Spread::tets; });
+    if (plan_.parts == 0 || young == plan_.unknowns.end() || !may_go_on()) return report.p;
+    const int unknown = static_cast<int>(young - plan_.unknowns.begin());
+    FoundParts& found = outcome_.parts.emplace();
+    const int fewest = plan_.parts > 0 ? plan_.parts : 2, most = plan_.parts > 0 ? plan_.parts : kMostParts;
+    for (int count = fewest; count <= most && !found.are_kept && may_go_on(); ++count, ++found.tried) {
+      begin(FitStage::parts, std::to_string(count) + " parts");
+      const Parts parts = find_parts(stage.model(), stage.map, mesh(), report.p, unknown, count);
+      found.squares = parts.squares;
+      found.are_kept = are_as_good(parts, 2 * report.misfit, outcome_.residuals);
+      if (!found.are_kept) continue;
+      outcome_.report.misfit = parts.squares / 2;
+      return keep(parts, stage.map, unknown, found);
+    }
+    return report.p;
+  }
+
+  std::vector<double> keep(const Parts& parts, const ParameterMap& map, int unknown, FoundParts& found) {
+    const PartsEstimate& e = parts.estimate;
+    for (size_t k = 0; k < e.levels.size(); ++k) {
+      found.values.push_back(map.value(unknown, e.levels[k]));
+      double part = 0, all = 0;
+      for (int t = 0; t < mesh().tet_count(); ++t) all += volume(mesh(), t), part += volume(mesh(), t) * e.share[k][t];
+      found.volume.push_back(part / all);
+    }
+    if (outcome_.posterior && outcome_.posterior->ok) {
+      Posterior& belief = *outcome_.posterior;
+      for (size_t t = 0; t < e.deviation.size(); ++t) {  // what was believed of single tets remains
+        double& deviation = belief.deviation[unknown][t];
+        double& reduction = belief.reduction[unknown][t];
+        const double before = deviation * deviation / std::max(1 - reduction, 1e-12);
+        deviation = e.deviation[t];
+        reduction = std::clamp(1 - deviation * deviation / before, 0.0, 1.0);
+      }
+    }
+    return parts.p;
   }
 
   // The material of p, its values for people, and what it predicts for the cases that were fitted.

@@ -43,6 +43,15 @@ struct CaseOutcome {
   Wrench held_out_wrench;
 };
 
+// What a field of stiffness was divided into.
+struct FoundParts {
+  int tried = 0;               // numbers of parts
+  bool are_kept = false;       // false: none explains the data as well as the field
+  std::vector<double> values;  // [SI], ascending
+  std::vector<double> volume;  // of each, as a share of the body
+  double squares = 0;          // |r|^2 of what was kept, or of the last that was tried
+};
+
 struct FitOutcome {
   FitPlan plan;                      // completed
   FitReport report;                  // of the last stage that was begun
@@ -52,6 +61,7 @@ struct FitOutcome {
   std::vector<CaseOutcome> cases;  // one per case of the data
   double mesh_error = -1;          // of the positions, root mean square over the largest motion; < 0: not known
   std::optional<Posterior> posterior;
+  std::optional<FoundParts> parts;
   std::optional<CrossValidation> held_out;
   std::optional<PokeCandidate> next_poke;
   std::vector<std::string> warnings;
@@ -64,7 +74,7 @@ struct FitOutcome {
   bool has_material() const { return failure.empty(); }
 };
 
-enum class FitStage { uniform, mesh_errors, field, uncertainty, cross_validation, next_poke };
+enum class FitStage { uniform, mesh_errors, field, uncertainty, parts, cross_validation, next_poke };
 
 struct FitWitness {
   std::function<void(FitStage, const std::string& what)> begin;                           // a stage, or a part of it

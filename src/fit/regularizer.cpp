@@ -14,6 +14,12 @@ namespace {
 
 constexpr double kDeviationOfNoPrior = 100;
 
+// Of a field: beyond a factor of 100 from its guess (of log E, 4.6) values are held back, whatever the weight. Where
+// the weight is low, nothing else keeps tets that the data hardly see from running to 0 or infinity.
+constexpr double kFarthest = 4.6, kWall = 1e4;
+
+double excess(double distance) { return std::copysign(std::max(0.0, std::abs(distance) - kFarthest), distance); }
+
 double inverse_square(double x) { return 1 / (x * x); }
 
 // Of one unknown quantity: its entries of p and what is believed of them.
@@ -74,39 +80,48 @@ class FieldBelief : public Belief {
   double value(std::span<const double> p) const override {
     const std::vector<double> z = field(p);
     double sum = 0;
-    for (size_t t = 0; t < z.size(); ++t) sum += mass(t) * (z[t] - guess_) * (z[t] - guess_);
-    return precision_ * sum / 2 + (is_smooth_ ? roughness_.value(z) : 0);
+    for (size_t t = 0; t < z.size(); ++t) {
+      const double distance = z[t] - guess_, beyond = excess(distance);
+      sum += mass(t) * (precision_ * distance * distance + kWall * beyond * beyond);
+    }
+    return sum / 2 + (is_smooth_ ? roughness_.value(z) : 0);
   }
   void add_gradient(std::span<const double> p, double scale, std::span<double> g) const override {
     const std::vector<double> z = field(p);
     std::vector<double> zbar(z.size());
-    for (size_t t = 0; t < z.size(); ++t) zbar[t] = precision_ * mass(t) * (z[t] - guess_);
+    for (size_t t = 0; t < z.size(); ++t)
+      zbar[t] = mass(t) * (precision_ * (z[t] - guess_) + kWall * excess(z[t] - guess_));
     if (is_smooth_) roughness_.add_gradient(z, 1, zbar);
     add_transposed(zbar, scale, g);
   }
   void add_product(std::span<const double> p, std::span<const double> v, double scale,
                    std::span<double> y) const override {
-    const std::vector<double> dz = field(v);
+    const std::vector<double> z = field(p), dz = field(v);
     std::vector<double> zbar(dz.size());
-    for (size_t t = 0; t < dz.size(); ++t) zbar[t] = precision_ * mass(t) * dz[t];
-    if (is_smooth_) roughness_.add_product(field(p), dz, 1, zbar);
+    for (size_t t = 0; t < dz.size(); ++t) zbar[t] = (precision_ + wall(z[t])) * mass(t) * dz[t];
+    if (is_smooth_) roughness_.add_product(z, dz, 1, zbar);
     add_transposed(zbar, scale, y);
   }
   void solve(std::span<const double> p, std::span<const double> v, double shift, std::span<double> z) override {
-    const bool depends_on_p = is_smooth_ && !roughness_.is_quadratic();
+    const std::vector<double> z_now = field(p);
+    const auto is_far = [&](double x) { return wall(x) > 0; };
+    const bool is_beyond = std::any_of(z_now.begin(), z_now.end(), is_far);
+    const bool depends_on_p = (is_smooth_ && !roughness_.is_quadratic()) || is_beyond || made_beyond_;
     if (!made_shift_ || *made_shift_ != shift || (depends_on_p && !std::equal(p.begin(), p.end(), made_p_.begin())))
-      factorize(p, shift);
+      factorize(p, shift), made_beyond_ = is_beyond;
     inverse_.solve(v, z);
   }
   void add_noise(std::span<const double> p, std::mt19937_64& random, std::span<double> g) const override {
     std::normal_distribution<double> normal;
     std::vector<double> zbar(static_cast<size_t>(basis_.tet_count()));
-    for (size_t t = 0; t < zbar.size(); ++t) zbar[t] = std::sqrt(precision_ * mass(t)) * normal(random);
-    if (is_smooth_) roughness_.add_noise(field(p), random, zbar);
+    const std::vector<double> z = field(p);
+    for (size_t t = 0; t < zbar.size(); ++t) zbar[t] = std::sqrt((precision_ + wall(z[t])) * mass(t)) * normal(random);
+    if (is_smooth_) roughness_.add_noise(z, random, zbar);
     add_transposed(zbar, 1, g);
   }
 
  private:
+  double wall(double z) const { return excess(z - guess_) != 0 ? kWall : 0; }
   double mass(size_t t) const { return roughness_.volume_share()[t]; }
   std::vector<double> field(std::span<const double> p) const {
     std::vector<double> z(basis_.tet_count());
@@ -126,7 +141,8 @@ class FieldBelief : public Belief {
   }
   std::vector<double> field_entries(std::span<const double> p, double shift) const {
     std::vector<double> entries = is_smooth_ ? roughness_.entries(field(p)) : std::vector<double>{};
-    for (double share : roughness_.volume_share()) entries.push_back(invertible_precision(shift) * share);
+    const std::vector<double> z = field(p);
+    for (size_t t = 0; t < z.size(); ++t) entries.push_back((invertible_precision(shift) + wall(z[t])) * mass(t));
     return entries;
   }
 
@@ -173,6 +189,7 @@ class FieldBelief : public Belief {
   bool is_smooth_;
   ScalarCholesky inverse_;
   std::optional<double> made_shift_;
+  bool made_beyond_ = false;
   std::vector<double> made_p_;
 };
 

@@ -1,0 +1,85 @@
+// Parts of a body that shows every tet, through noise: their values, places and intervals are known.
+#include "fit/parts_sampler.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "mesh/generators.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kNoise = 0.4;  // of the reading of a single tet
+
+struct Body {
+  TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {5, 5, 5});
+  std::vector<double> truth, read;
+
+  explicit Body(double jump, unsigned seed = 1) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    for (const auto& [a, b, c, d] : mesh.tets) {
+      const Vec3d x = 0.25 * (mesh.rest[a] + mesh.rest[b] + mesh.rest[c] + mesh.rest[d]) - Vec3d{{0.5, 0.5, 0.5}};
+      truth.push_back(dot(x, x) < 0.09 ? jump : 0);
+      read.push_back(truth.back() + kNoise * normal(random));
+    }
+  }
+  int size() const { return mesh.tet_count(); }
+
+  // r = (z - read) / noise, about z = 0, in the norm of the unit matrix.
+  PartsEstimate estimate(std::vector<double> levels) const {
+    Spectrum s{.W = Columns(size()), .dual = Columns(size()), .complete = true};
+    std::vector<double> unit(size(), 0.0), gradient;
+    for (int t = 0; t < size(); ++t) {
+      unit[t] = 1;
+      s.W.push_back(unit), s.dual.push_back(unit), s.d.push_back(1 / (kNoise * kNoise));
+      unit[t] = 0;
+      gradient.push_back(-read[t] / (kNoise * kNoise));
+    }
+    return sample_parts(mesh, s, gradient, 0, std::vector<double>(size(), 0.0), std::move(levels), 1, {.sweeps = 200});
+  }
+};
+
+TEST(PartsSampler, FindsTheValuesAndThePlacesOfTwoParts) {
+  const Body body(1.2);
+  const PartsEstimate e = body.estimate({0.2, 0.8});
+  EXPECT_NEAR(e.levels[0], 0, 0.06);
+  EXPECT_NEAR(e.levels[1], 1.2, 0.12);
+  int wrong = 0;
+  for (int t = 0; t < body.size(); ++t) wrong += (e.share[1][t] > 0.5) != (body.truth[t] > 0) ? 1 : 0;
+  EXPECT_LT(wrong, 0.05 * body.size()) << "of single readings alone, 7 % would be on the wrong side";
+}
+
+TEST(PartsSampler, TellsHowFarItMayBeOff) {
+  double squares = 0, expected = 0;
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const Body body(1, seed);
+    const PartsEstimate e = body.estimate({0, 1});
+    for (int t = 0; t < body.size(); ++t) {
+      squares += (e.mean[t] - body.truth[t]) * (e.mean[t] - body.truth[t]);
+      expected += e.deviation[t] * e.deviation[t];
+    }
+  }
+  EXPECT_LT(squares, 2 * expected);
+  EXPECT_GT(squares, expected / 2);
+}
+
+TEST(PartsSampler, DrawsTheSameAgain) {
+  const Body body(1);
+  EXPECT_EQ(body.estimate({0, 1}).mean, body.estimate({0, 1}).mean);
+}
+
+TEST(GatheredLevels, AreTheMeansOfWhatIsNear) {
+  const std::vector<double> z{0, 0.1, 1, 1.1}, volume{1, 1, 3, 1};
+  const std::vector<double> levels = gathered_levels(z, volume, 2);
+  ASSERT_EQ(levels.size(), 2u);
+  EXPECT_NEAR(levels[0], 0.05, 1e-12);
+  EXPECT_NEAR(levels[1], 1.025, 1e-12);
+  EXPECT_EQ(gathered_levels(std::vector<double>{1, 1}, std::vector<double>{1, 1}, 2).size(), 1u)
+      << "one value gathers about one level";
+}
+
+}  // namespace
+}  // namespace aspic
