@@ -115,6 +115,37 @@ TEST_P(Regularizers, GradientIsThatOfTheValue) {
   EXPECT_EQ(report.hessian.passed, is_quadratic()) << "that of total variation is lagged";
 }
 
+TEST(RegularizerWall, HoldsFieldsBackBeyondAFactorOfAHundred) {
+  const TetMesh mesh = box(2);
+  const ParameterMap map = map_of(mesh, {{.guess = 1e5}});
+  const auto R = make_regularizer(mesh, map, {.smoothness = Smoothness::h1});
+  const auto shifted = [&](double by) {
+    std::vector<double> p(map.guess().begin(), map.guess().end());
+    for (double& x : p) x += by;
+    return p;
+  };
+  EXPECT_NEAR(R->value(shifted(4.5)), 4.5 * 4.5 / 8, 1e-9);
+  EXPECT_GT(R->value(shifted(5)), 100);
+  std::vector<double> p = shifted(0), v = noise(p.size(), 3), Hv(p.size(), 0.0), back(p.size());
+  for (size_t i = 0; i < p.size(); ++i) p[i] += i % 3 == 0 ? 6 : i % 3 == 1 ? -5.5 : 2;
+  const DerivativeReport report = check_derivatives({[&](auto x) { return R->value(x); },
+                                                     [&](auto x, auto g) {
+                                                       std::fill(g.begin(), g.end(), 0.0);
+                                                       R->add_gradient(x, 1, g);
+                                                     },
+                                                     [&](auto x, auto d, auto y) {
+                                                       std::fill(y.begin(), y.end(), 0.0);
+                                                       R->add_hessian_product(x, d, 1, y);
+                                                     }},
+                                                    p);
+  EXPECT_TRUE(report.gradient.passed) << report.gradient.smallest_error;
+  EXPECT_TRUE(report.hessian.passed) << report.hessian.smallest_error;
+  R->solve(shifted(0), v, 0, back);  // the matrix of another place is not kept
+  R->add_hessian_product(p, v, 1, Hv);
+  R->solve(p, Hv, 0, back);
+  for (size_t i = 0; i < v.size(); ++i) EXPECT_NEAR(back[i], v[i], 1e-8);
+}
+
 // A(z) z is the gradient, so R(q) <= R(p) + g.(q - p) + (q - p)' A(p) (q - p) / 2.
 TEST_P(Regularizers, HessianBoundsTheFunctionFromAbove) {
   const std::vector<double> p = somewhere();
