@@ -103,6 +103,22 @@ TEST(FitRun, PredictsWhatWasLeftOut) {
   EXPECT_LT(outcome.held_out->force_error, 0.05);
 }
 
+// Forces in units a thousand million million times too large, and nothing else: no stiffness of a body explains them.
+TEST(FitRun, RefusesAStiffnessThatNoBodyHas) {
+  DataSet data = block();
+  for (LoadCase& c : data.experiment.cases) {
+    c.positions.clear();
+    c.force = 1e-15 * *c.force;
+    c.force_deviation = 1e-17 * Vec3d{{1, 1, 1}};
+  }
+  FitPlan plan = quick_plan();
+  plan.unknowns = {parse_unknown("young=uniform")};
+  const FitOutcome outcome = fit_material(data, plan, {}, {});
+  EXPECT_FALSE(outcome.has_material());
+  EXPECT_THAT(outcome.failure, HasSubstr("do not determine the stiffness"));
+  EXPECT_THAT(outcome.failure, HasSubstr("positions of some markers"));
+}
+
 // Measured on a mesh of twice as many cells: simulated so, the material of the data's tets is exact.
 TEST(FitRun, SimulatesOnAFinerMeshThanItFits) {
   DataSet data = block();
