@@ -66,8 +66,8 @@ TEST(RubberCurves, AreFittedByTheSplineWithinThePublishedErrors) {
   }
 }
 
-// Silicone: the best published fit leaves a root mean square of 0.0199 MPa in tension, of a formula that is not
-// polyconvex. No polyconvex sum over |F| and |cof F| is below 0.0212; the spline comes near.
+// Silicone: the best published fit leaves a root mean square of 0.0199 MPa in tension, of a formula that need
+// not be polyconvex. No sum of convex functions of |F| and |cof F| is below 0.0212; the spline comes near.
 TEST(RubberCurves, OfSiliconeAreFittedByTheSplineNearlyAsWellAsPublished) {
   auto curves = rubber("meunier_2008");
   TestCurve& pull = curves[0];
