@@ -58,13 +58,15 @@ State at_rest(const TetMesh& mesh) {
 }
 
 struct Cost {
-  double forward = 1e300, backward = 1e300;  // [s] of processor time
-  long newton = 0, factorizations = 0;
+  double forward = 1e300, backward = 1e300;           // [s] of processor time
+  long newton = 0, factorizations = 0;                // forward; with preconditioners that were made
+  long back_factorizations = 0, back_iterations = 0;  // of conjugate gradients
 };
 
 void print(const char* what, int n, const std::string& linear, int vertices, const Cost& cost) {
-  std::printf("%-8s %3d %-10s %8d %8ld %8ld %10.4f %10.4f %7.1f %%\n", what, n, linear.c_str(), vertices, cost.newton,
-              cost.factorizations, cost.forward, cost.backward, 100 * cost.backward / cost.forward);
+  std::printf("%-8s %3d %-12s %8d %8ld %8ld %8ld %8ld %10.4f %10.4f %7.1f %%\n", what, n, linear.c_str(), vertices,
+              cost.newton, cost.factorizations, cost.back_factorizations, cost.back_iterations, cost.forward,
+              cost.backward, 100 * cost.backward / cost.forward);
   std::fflush(stdout);
 }
 
@@ -73,14 +75,18 @@ bool bench_statics(int n, const std::string& linear, const Arguments& arguments)
   Model first = make_beam(n, arguments);
   const std::vector<double> rest = at_rest(first.mesh).q;
   const int vertices = first.mesh.vertex_count(), tets = first.mesh.tet_count();
-  Equilibrium body(std::move(first), rest, {.tolerance = arguments.tolerance, .linear = linear, .adjoint = linear});
+  Equilibrium body(std::move(first), rest,
+                   {.tolerance = arguments.tolerance, .linear = linear, .adjoint = linear, .solves = 1});
   std::vector<double> thetabar(static_cast<size_t>(body.parameters_per_tet()) * tets);
   for (int run = 0; run <= arguments.runs; ++run) {  // the first one analyses
     body.set_x(rest);
     Stopwatch stopwatch;
     const MinimizeReport report = body.solve();
     const double forward = stopwatch.lap().processor;
-    if (!is_success(report.status) || !body.factorize() || !body.add_adjoint(body.x(), thetabar).ok) {
+    SolveReport adjoint;
+    const bool solved = is_success(report.status) && body.factorize();
+    if (solved) adjoint = body.add_adjoint(body.x(), thetabar);
+    if (!adjoint.ok) {
       std::printf("statics, n = %d: %s\n", n, body.failure().c_str());
       return false;
     }
@@ -89,6 +95,8 @@ bool bench_statics(int n, const std::string& linear, const Arguments& arguments)
     cost.forward = std::min(cost.forward, forward);
     cost.newton = report.iterations;
     cost.factorizations = report.factorizations;
+    cost.back_factorizations = 1;
+    cost.back_iterations = adjoint.iterations;
   }
   print("statics", n, linear, vertices, cost);
   return true;
@@ -132,6 +140,8 @@ bool bench_motion(int n, const std::string& linear, const Arguments& arguments) 
     cost.forward = std::min(cost.forward, forward);
     cost.newton = report.newton_iterations;
     cost.factorizations = report.factorizations;
+    cost.back_factorizations = report.adjoint_factorizations;
+    cost.back_iterations = report.adjoint_iterations;
   }
   print("motion", n, linear, vertices, cost);
   return true;
@@ -157,8 +167,8 @@ int main(int argc, char** argv) {
   return run_program(app, argc, argv, [&] {
     aspic::set_thread_count(arguments.threads);
     print_facts(machine_facts());
-    std::printf("%-8s %3s %-10s %8s %8s %8s %10s %10s %9s\n", "", "n", "solver", "vertices", "Newton", "factors",
-                "forward [s]", "back [s]", "back");
+    std::printf("%-8s %3s %-12s %8s %8s %8s %8s %8s %10s %10s %9s\n", "", "n", "solver", "vertices", "Newton",
+                "factors", "back:fac", "CG", "forward [s]", "back [s]", "back");
     bool ok = true;
     for (const int n : arguments.sizes)
       for (const std::string& linear : arguments.linear)

@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "bench/machine.h"
 #include "bench/program.h"
+#include "bench/results.h"
 #include "bench/stopwatch.h"
 #include "bench/virtual_capture.h"
 #include "fit/fit.h"
@@ -20,6 +21,7 @@ struct Choices {
   std::string smoothness = "h1";
   double guess = 2;  // times the stiffness of the tissue
   bool quiet = false;
+  std::string csv;
 };
 
 // Of the fitted field against the truth, over the body.
@@ -53,6 +55,26 @@ void print_iteration(const FitIteration& i, const Misfit& misfit, double seconds
   std::fflush(stdout);
 }
 
+void record(const Choices& choices, const Misfit& misfit, const FitReport& report, const Stopwatch& stopwatch,
+            const Recovery& found) {
+  const Misfit::Counts c = misfit.counts();
+  Results results("capture_fit");
+  results.begin(report.method + ", " + choices.smoothness + ", " + std::to_string(choices.setup.cells) + " cells",
+                thread_count());
+  results.add("wall", stopwatch.seconds(), "s");
+  results.add("processor", stopwatch.cpu_seconds(), "s");
+  results.add("iterations", report.iterations, "1");
+  results.add("evaluations", report.evaluations, "1");
+  results.add("products", static_cast<double>(report.products), "1");
+  results.add("equilibria", static_cast<double>(c.equilibria), "1");
+  results.add("newton_iterations", static_cast<double>(c.newton_iterations), "1");
+  results.add("factorizations", static_cast<double>(c.factorizations), "1");
+  results.add("solves", static_cast<double>(c.solves), "1");
+  results.add("error_of_log_young", found.error, "1");
+  results.add("contrast", found.contrast, "1");
+  results.write(choices.csv);
+}
+
 int measure(Choices& choices) {
   if (!choices.quiet) print_facts(machine_facts());
   const Captured data = capture(choices.setup);
@@ -82,6 +104,7 @@ int measure(Choices& choices) {
       "relative error of log E %.3f, contrast %.2f of %.2f, outside %.3f of the truth\n",
       report.method.c_str(), report.words.c_str(), stopwatch.seconds(), stopwatch.cpu_seconds(), report.iterations,
       report.evaluations, report.products, found.error, found.contrast, choices.setup.contrast, found.outside);
+  record(choices, misfit, report, stopwatch, found);
   return is_success(report.status) ? 0 : 1;
 }
 
@@ -112,6 +135,7 @@ int main(int argc, char** argv) {
   app.add_option("--adjoint-tolerance", c.equilibrium.adjoint_tolerance)->capture_default_str();
   app.add_option("--equilibrium-tolerance", c.equilibrium.tolerance)->capture_default_str();
   app.add_option("--guess", c.guess, "times the stiffness of the tissue")->capture_default_str();
+  app.add_option("--csv", c.csv, "a file for the results");
   app.add_flag("--quiet", c.quiet, "without the facts about the machine");
   return run_program(app, argc, argv, [&] { return measure(c); });
 }

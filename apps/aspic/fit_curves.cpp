@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "capture/test_curves.h"
 #include "io/csv_reader.h"
+#include "io/text_scanner.h"
 
 namespace aspic::cli {
 namespace {
@@ -146,12 +147,14 @@ void draw_fits(const CurveFitRequest& request, const std::vector<Fitted>& all) {
   draw(request.picture, chart);
 }
 
-// Leaves the points of at least this stretch.
-void cut(std::vector<TestCurve>& curves, double least) {
-  for (TestCurve& curve : curves) {
+// Leaves the points of these stretches; `largest`: of each curve, in their order, or none for all.
+void cut(std::vector<TestCurve>& curves, double least, const std::vector<double>& largest) {
+  for (size_t k = 0; k < curves.size(); ++k) {
+    TestCurve& curve = curves[k];
+    const double most = k < largest.size() ? largest[k] : std::numeric_limits<double>::infinity();
     TestCurve kept{curve.name, curve.deformation, {}, {}};
     for (size_t i = 0; i < curve.stretch.size(); ++i)
-      if (curve.stretch[i] >= least) {
+      if (curve.stretch[i] >= least && curve.stretch[i] <= most) {
         kept.stretch.push_back(curve.stretch[i]);
         kept.stress.push_back(curve.stress[i]);
       }
@@ -162,6 +165,17 @@ void cut(std::vector<TestCurve>& curves, double least) {
 std::vector<std::string> words(const std::string& text) {
   std::istringstream in(text);
   return {std::istream_iterator<std::string>(in), {}};
+}
+
+std::vector<double> numbers(const CsvReader& csv, size_t column) {
+  std::vector<double> numbers;
+  for (const std::string& word : words(csv.text(column))) {
+    const std::optional<double> number = parse_number(word);
+    if (!number)
+      throw InvalidInput(csv.where() + ": '" + word + "' is no stretch; give one number for each test, or nothing");
+    numbers.push_back(*number);
+  }
+  return numbers;
 }
 
 double rms(const CurveFit& fit) {
@@ -178,7 +192,8 @@ double rms(const CurveFit& fit) {
 int compare_with_published(const CurveFitRequest& request) {
   CsvReader csv(request.published);
   const size_t data = csv.column("data"), tests = csv.column("tests"), least = csv.column("least_stretch"),
-               model = csv.column("model"), measure = csv.column("measure"), value = csv.column("value");
+               largest = csv.column("largest_stretch"), model = csv.column("model"), measure = csv.column("measure"),
+               value = csv.column("value");
   bool converged = true;
   fmt::print("| data | tests | measure | published | of | {} |\n|---|---|---|---:|---|---:|\n",
              fmt::join(request.materials, " | "));
@@ -187,7 +202,7 @@ int compare_with_published(const CurveFitRequest& request) {
                                   csv.number(value), csv.text(model));
     std::vector<TestCurve> curves =
         chosen(request.published.parent_path() / (csv.text(data) + ".csv"), words(csv.text(tests)));
-    cut(curves, csv.number(least));
+    cut(curves, csv.number(least), numbers(csv, largest));
     for (const std::string& material : request.materials) {
       CurveFitOptions options = request.options;
       options.material = material;

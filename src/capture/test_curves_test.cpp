@@ -66,22 +66,23 @@ TEST(RubberCurves, AreFittedByTheSplineWithinThePublishedErrors) {
   }
 }
 
-// Silicone: the best published fit has a root mean square of 0.0192 MPa in tension, of a formula that need not be
-// polyconvex. The spline comes near, and much nearer than the other materials.
+// Silicone: the best published fit leaves a root mean square of 0.0199 MPa in tension, of a formula that need
+// not be polyconvex. No sum of convex functions of |F| and |cof F| is below 0.0212; the spline comes near.
 TEST(RubberCurves, OfSiliconeAreFittedByTheSplineNearlyAsWellAsPublished) {
   auto curves = rubber("meunier_2008");
   TestCurve& pull = curves[0];
   ASSERT_EQ(pull.stretch[15], 0.96);
   pull.stretch.erase(pull.stretch.begin(), pull.stretch.begin() + 16);
   pull.stress.erase(pull.stress.begin(), pull.stress.begin() + 16);
-  curves[2].stretch.resize(16), curves[2].stress.resize(16);  // those that were used there
+  curves[1].stretch.resize(12), curves[1].stress.resize(12);  // those that were used there
+  curves[2].stretch.resize(16), curves[2].stress.resize(16);
   const auto error = [&](const char* material) {
     return rms(fit_curves(curves, {.material = material, .weighting = Weighting::absolute, .starts = 2}), curves);
   };
   const double spline = error("spline");
   EXPECT_LT(spline, 0.0230e6);
-  EXPECT_LT(spline, 0.7 * error("fung"));
-  EXPECT_LT(spline, 0.5 * error("mooney_rivlin"));
+  EXPECT_LT(spline, 0.75 * error("fung"));
+  EXPECT_LT(spline, 0.55 * error("mooney_rivlin"));
 }
 
 std::string refusal(const std::string& text) {

@@ -28,11 +28,6 @@ std::string words(const MinimizeReport& report) {
          " N was asked for";
 }
 
-const Cholesky* as_cholesky(const LinearSolver& solver) {
-  if (const auto* choice = dynamic_cast<const AutoSolver*>(&solver)) return as_cholesky(choice->chosen());
-  return dynamic_cast<const Cholesky*>(&solver);
-}
-
 // With parts along all modes of a body, the same on every system.
 void fill_without_pattern(std::span<double> b) {
   for (size_t i = 0; i < b.size(); ++i) b[i] = std::sin(1.0 + 12.9898 * static_cast<double>(i % 100'003));
@@ -91,9 +86,11 @@ struct Equilibrium::Impl {
     linear_x.assign(x.begin(), x.end());
     linear_parameters = parameters;
     if (as_cholesky(*solver)) return true;
-    // Conjugate gradients tell an indefinite matrix when they meet negative curvature.
+    // Conjugate gradients tell an indefinite matrix when they meet negative curvature: at the latest when the residual
+    // is smaller than the part of b along any one mode.
     fill_without_pattern(b);
-    const SolveReport report = solve_stiffness(b, u);
+    pins.set_zero(b);
+    const SolveReport report = solver->solve(b, u, 0.01 / std::sqrt(static_cast<double>(b.size())));
     if (!report.indefinite && std::isfinite(report.relative_residual)) return true;
     linear_x.clear();
     return refuse();

@@ -61,7 +61,9 @@ void check_guess(const Unknown& u, const Range& range) {
 
 // A range over several powers of ten is looked at by its logarithm.
 QuantityScale scale_of(const ExtraParameter& extra) {
-  const bool powers = extra.min > 0 && extra.max > 100 * extra.min;
+  constexpr double kPowers = 100;
+  if (extra.min == 0 && extra.max > kPowers) return QuantityScale::powers_from_zero(extra.max);
+  const bool powers = extra.min > 0 && extra.max > kPowers * extra.min;
   return powers ? QuantityScale::bounded_powers(extra.min, extra.max) : QuantityScale::bounded(extra.min, extra.max);
 }
 

@@ -59,7 +59,9 @@ TEST(QuantityScale, InvertsAndHasItsSlope) {
   } cases[] = {{QuantityScale::positive(), 3e5},
                {QuantityScale::bounded(-1, 0.5), 0.49},
                {QuantityScale::bounded(0, 1), 0.2},
-               {QuantityScale::bounded_powers(1e-3, 1e3), 40}};
+               {QuantityScale::bounded_powers(1e-3, 1e3), 40},
+               {QuantityScale::powers_from_zero(1000), 0.02},
+               {QuantityScale::powers_from_zero(1000), 300}};
   for (const auto& [scale, q] : cases) {
     const double z = scale.fitted(q), h = 1e-5;
     EXPECT_NEAR(scale.value(z), q, 1e-12 * q);
@@ -76,6 +78,29 @@ TEST(QuantityScale, StaysInsideItsRange) {
     EXPECT_LE(b.value(z), 1e3 * (1 + 1e-14));
   }
   EXPECT_NEAR(b.slope(0) / b.value(0), 1, 1e-14) << "in the middle of its range it is a logarithm";
+}
+
+TEST(QuantityScale, OfPowersFromZeroTakesSmallAndLargeValuesInLikeSteps) {
+  const QuantityScale growth = QuantityScale::powers_from_zero(1000);
+  double last = growth.fitted(0.5);
+  for (const double q : {1.0, 3.0, 10.0, 30.0, 100.0, 300.0}) {  // linearly, 0.5 to 1 would be 1/400 of 100 to 300
+    const double z = growth.fitted(q);
+    EXPECT_GT(z - last, 0.5) << q;
+    EXPECT_LT(z - last, 3) << q;
+    last = z;
+  }
+  for (double z : {-1e3, -30.0, 0.0, 30.0, 1e3}) {
+    EXPECT_GE(growth.value(z), 0);
+    EXPECT_LE(growth.value(z), 1000 * (1 + 1e-13));
+  }
+}
+
+TEST(ParameterMap, FitsGrowthsOnThatScale) {
+  const TetMesh mesh = two_layers();
+  const ParameterMap map(mesh, "spline", std::vector<MaterialParameters>(mesh.tet_count()),
+                         {{"growth_2", Spread::uniform, 0, 0.5}, {"share", Spread::uniform, 0, 0.5}});
+  EXPECT_DOUBLE_EQ(map.guess()[0], QuantityScale::powers_from_zero(1000).fitted(0.5));
+  EXPECT_DOUBLE_EQ(map.guess()[1], QuantityScale::bounded(0, 1).fitted(0.5));
 }
 
 TEST(FieldBasis, IsAPartitionOfUnity) {

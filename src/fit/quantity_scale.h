@@ -2,6 +2,7 @@
 //   positive              q = exp(z)
 //   in (lower, upper)     q = middle + half tanh(z / 2): the logistic curve, z = +-2 reaches 12 % and 88 % of the range
 //   in a range of powers  log q = middle + half tanh(z / half), z = log(q / centre) in the middle of the range
+//   powers from zero      log(1 + q) likewise: linear below 1, a logarithm above
 #pragma once
 #include <cmath>
 
@@ -23,25 +24,34 @@ class QuantityScale {
     return scale;
   }
 
-  double value(double z) const {
-    const double u = half_ > 0 ? middle_ + half_ * std::tanh(z / width_) : z;
-    return is_log_ ? std::exp(u) : u;
+  static QuantityScale powers_from_zero(double upper) {  // [1]
+    QuantityScale scale;
+    scale.shift_ = 1;
+    scale.middle_ = scale.half_ = scale.width_ = std::log1p(upper) / 2;
+    return scale;
   }
+
+  double value(double z) const { return is_log_ ? std::exp(line(z)) - shift_ : line(z); }
   double slope(double z) const {  // dq/dz
     double du = 1;
     if (half_ > 0) {
       const double c = std::cosh(z / width_);
       du = half_ / (width_ * c * c);
     }
-    return is_log_ ? value(z) * du : du;
+    return is_log_ ? std::exp(line(z)) * du : du;
   }
   double fitted(double q) const {  // z of a value inside the range
-    const double u = is_log_ ? std::log(q) : q;
+    const double u = is_log_ ? std::log(q + shift_) : q;
     return half_ > 0 ? width_ * std::atanh((u - middle_) / half_) : u;
   }
 
  private:
+  double line(double z) const {
+    return half_ > 0 ? middle_ + half_ * std::tanh(z / width_) : z;
+  }  // q or log(q + shift)
+
   bool is_log_ = true;
+  double shift_ = 0;
   double middle_ = 0, half_ = 0 /* 0: unbounded */, width_ = 1;
 };
 

@@ -4,11 +4,13 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "linalg/auto_solver.h"
 
 namespace aspic {
 namespace {
 
-constexpr size_t kRemembered = 6;  // solutions: more cost as many products as they save
+constexpr size_t kRemembered = 6;   // solutions: more cost as many products as they save
+constexpr int kMaxIterations = 50;  // with a factor of another matrix
 
 double dot(std::span<const double> a, std::span<const double> b) {
   return parallel_sum(static_cast<int>(a.size()), [&](int first, int last) {
@@ -29,37 +31,92 @@ void scale(double s, std::span<double> x) {
   for (double& xi : x) xi *= s;
 }
 
+// The factor of a solver, whichever matrix it is of.
+class KeptFactor : public ApproximateInverse {
+ public:
+  explicit KeptFactor(LinearSolver& solver) : solver_(solver) {}
+  std::string_view name() const override { return solver_.name(); }
+  void analyze(const BlockPattern&) override {}
+  bool factorize(const BlockSparse&) override { return true; }
+  void apply(std::span<const double> r, std::span<double> z) override { as_cholesky(solver_)->substitute(r, z); }
+
+ private:
+  LinearSolver& solver_;
+};
+
 }  // namespace
+
+SequenceSolver::SequenceSolver(const std::string& linear, double tolerance)
+    : solver_(make_linear_solver(linear)),
+      by_factor_(std::make_unique<KeptFactor>(*solver_), kMaxIterations),
+      tolerance_(tolerance) {}
 
 void SequenceSolver::begin() {
   last_.clear();
+  digits_ = 0;
   solver_->begin();
 }
 
-SolveReport SequenceSolver::solve(const BlockSparse& H, std::span<const double> b, std::span<double> x) {
+SequenceReport SequenceSolver::solve(const BlockSparse& H, std::span<const double> b, std::span<double> x) {
   for (Vector* v : {&residual_, &rest_}) v->resize(b.size());
-  if (analyzed_version_ != H.pattern->version) solver_->analyze(*H.pattern);
+  if (analyzed_version_ != H.pattern->version) {
+    solver_->analyze(*H.pattern);
+    by_factor_.analyze(*H.pattern);
+    digits_ = 0;
+  }
   analyzed_version_ = H.pattern->version;
-  SolveReport report;
-  report.indefinite = !solver_->factorize(H);
-  if (report.indefinite) return report;
 
   project(H, b, x);
   H.multiply(x, rest_);
   for (size_t i = 0; i < b.size(); ++i) residual_[i] = b[i] - rest_[i];
   const double size = norm(b), left = norm(residual_);
+  SequenceReport report;
+  SolveReport& solve = report.solve;
   if (left <= tolerance_ * size) {
-    report.ok = true;
-    report.relative_residual = size > 0 ? left / size : 0;
+    solve.ok = true;
+    solve.relative_residual = size > 0 ? left / size : 0;
   } else {
-    report = solver_->solve(residual_, rest_, tolerance_ * size / left);
-    report.relative_residual *= left / size;
+    const double tolerance = tolerance_ * size / left;
+    if (!solve_with_factor(H, residual_, rest_, tolerance, solve)) {
+      report.factorized = true;
+      solve.indefinite = !solver_->factorize(H);
+      if (solve.indefinite) return report;
+      const int before = solve.products;
+      solve = solver_->solve(residual_, rest_, tolerance);
+      solve.products += before;
+      digits_ = rate_ = 0;
+      if (const Cholesky* factor = as_cholesky(*solver_)) {
+        spent_ = factor->substitutions_per_factorization();
+        note(solve, tolerance);
+      }
+    }
+    solve.relative_residual *= left / size;
     add(1, rest_, x);
   }
-  report.products += 1 + static_cast<int>(last_.size());
-  if (report.ok) remember(x);
+  solve.products += 1 + static_cast<int>(last_.size());
+  if (solve.ok) remember(x);
   return report;
 }
+
+bool SequenceSolver::solve_with_factor(const BlockSparse& H, std::span<const double> b, std::span<double> x,
+                                       double tolerance, SolveReport& report) {
+  if (is_worn()) return false;
+  by_factor_.factorize(H);
+  report = by_factor_.solve(b, x, tolerance);
+  note(report, tolerance);
+  return report.ok;
+}
+
+void SequenceSolver::note(const SolveReport& report, double tolerance) {
+  const double digits = std::max(1e-3, -std::log10(std::max(tolerance, report.relative_residual)));
+  const int substitutions = std::max(1, report.iterations);
+  rate_ = substitutions / digits;
+  spent_ += substitutions;
+  digits_ += digits;
+}
+
+// The mean cost of a digit falls as long as the next one costs less.
+bool SequenceSolver::is_worn() const { return digits_ == 0 || rate_ > spent_ / digits_; }
 
 // By modified Gram-Schmidt in the inner product of H [Fischer 1998].
 void SequenceSolver::project(const BlockSparse& H, std::span<const double> b, std::span<double> x) {

@@ -207,8 +207,10 @@ struct Trajectory::Impl {
 
   bool solve() {
     const BlockSparse& H = E.hessian(after.q, {Definiteness::exact});
-    const SolveReport solved = solver.solve(H, rhs, mu);
+    const auto [solved, factorized] = solver.solve(H, rhs, mu);
     ++report.adjoint_solves;
+    report.adjoint_factorizations += factorized;
+    report.adjoint_iterations += solved.iterations;
     report.adjoint_products += solved.products;
     if (solved.ok || (!solved.indefinite && solved.relative_residual <= kUsable)) return true;
     return fail(point, solved.indefinite ? "the matrix of the step is not positive definite"

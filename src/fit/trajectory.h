@@ -43,12 +43,13 @@ struct TrajectoryGradient {
 
 struct TrajectoryReport {
   bool ok = false;
-  std::string failure;                              // in words
-  double value = 0;                                 // of the objective
-  long steps = 0;                                   // forward, with those that are repeated
-  long newton_iterations = 0, factorizations = 0;   // forward
-  long adjoint_solves = 0, adjoint_products = 0;    // backwards, a factorisation each; products with H
-  double forward_seconds = 0, adjoint_seconds = 0;  // wall time
+  std::string failure;                                  // in words
+  double value = 0;                                     // of the objective
+  long steps = 0;                                       // forward, with those that are repeated
+  long newton_iterations = 0, factorizations = 0;       // forward
+  long adjoint_solves = 0, adjoint_factorizations = 0;  // backwards; factors or preconditioners made
+  long adjoint_iterations = 0, adjoint_products = 0;    // of conjugate gradients; products with H
+  double forward_seconds = 0, adjoint_seconds = 0;      // wall time
 };
 
 class Trajectory {

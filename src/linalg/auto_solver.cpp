@@ -89,8 +89,9 @@ double predict_iterations(const BlockSparse& H) {
     uniform += sum + own;
     diagonal += own;
   }
-  if (!(diagonal > 0) || uniform < 0) return 1;  // an indefinite matrix is found out soon
-  return uniform > 0 ? kIterations * std::sqrt(diagonal / uniform) : std::numeric_limits<double>::infinity();
+  const double round_off = 1e-12 * diagonal;              // a body at rest resists no uniform displacement
+  if (!(diagonal > 0) || uniform < -round_off) return 1;  // an indefinite matrix is found out soon
+  return uniform > round_off ? kIterations * std::sqrt(diagonal / uniform) : std::numeric_limits<double>::infinity();
 }
 
 AutoSolver::AutoSolver(int64_t memory_limit, int solves)
@@ -171,6 +172,11 @@ SolveReport AutoSolver::solve(std::span<const double> b, std::span<double> x, do
     total.indefinite = true;
     return total;
   }
+}
+
+Cholesky* as_cholesky(LinearSolver& solver) {
+  auto* choice = dynamic_cast<AutoSolver*>(&solver);
+  return choice ? as_cholesky(choice->chosen()) : dynamic_cast<Cholesky*>(&solver);
 }
 
 std::string AutoSolver::description() const {

@@ -39,6 +39,7 @@ class AutoSolver : public LinearSolver {
   bool factorize(const BlockSparse& H) override;
   SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) override;
 
+  LinearSolver& chosen() { return *solver_[choice_]; }
   const LinearSolver& chosen() const { return *solver_[choice_]; }
   int64_t fallbacks() const { return fallbacks_; }  // choices that turned out wrong
 
@@ -65,5 +66,8 @@ class AutoSolver : public LinearSolver {
   Choice choice_ = kBlockJacobi;
   int64_t fallbacks_ = 0;
 };
+
+// The factorisation that a solver is, or has chosen; null: none.
+Cholesky* as_cholesky(LinearSolver& solver);
 
 }  // namespace aspic

@@ -86,6 +86,15 @@ TEST(AutoSolver, PredictsIterationsOfSoftBodiesWithinAFactorOfTwo) {
   }
 }
 
+TEST(PredictIterations, ExpectsTheMostOfABodyAtRestWhateverItsRoundOff) {
+  for (const double sign : {-1, 1}) {
+    Matrix H = spring_lattice({.nx = 6, .ny = 6, .nz = 6, .stiffness = 1, .mass = 0});
+    for (int row = 0; row < H.rows(); ++row)
+      for (int r = 0; r < 3; ++r) H.values.block[H.pattern->diagonal(row)](r, r) *= 1 + sign * 1e-15;
+    EXPECT_TRUE(std::isinf(predict_iterations(H.values))) << sign;
+  }
+}
+
 // 4 913 vertices in a compact box, held firmly at one of them. That makes a uniform displacement stiff, on which the
 // prediction rests, but leaves the rotations about it all but free, so that CG does not get there.
 Matrix hard_lattice() {

@@ -21,6 +21,11 @@ class Cholesky : public LinearSolver {
   bool factorize(const BlockSparse& H) override;
   SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) override;
 
+  // x = (L L')^-1 b with the last factor, whatever became of its matrix: a preconditioner of matrices alike. False:
+  // there is none.
+  bool substitute(std::span<const double> b, std::span<double> x);
+  double substitutions_per_factorization() const;  // of the same cost, roughly; 0: there is no factor
+
   const CholeskyAnalysis& analysis() const { return supernodes_.cost; }  // valid after analyze()
   bool refused() const { return refused_; }                              // the last factorize() for want of memory
 
@@ -35,7 +40,7 @@ class Cholesky : public LinearSolver {
   void add_children(int s, const Front& front, int first, int last);
   bool pivots_are_sound(const BlockSparse& H, int s, const double* panel) const;
   double residual(std::span<const double> b, std::span<const double> x);  // its norm
-  void substitute(std::span<const double> b, std::span<double> x);        // x += (L L')^-1 b
+  void add_substituted(std::span<const double> b, std::span<double> x);   // x += (L L')^-1 b
   void substitute_forward(int s);
   void substitute_backward(int s);
 
