@@ -290,6 +290,24 @@ TEST_F(RunResults, InputsAreKeptBesideTheSceneAndReplacedWithTheRun) {
   EXPECT_EQ(read_file(path("run/inputs/mine.msh")), "mine");
 }
 
+// The scene of a run that somebody else made may name anything.
+TEST_F(RunResults, OverwritingRemovesNothingThatInputsLeadsTo) {
+  Scene scene = sagging_scene();
+  scene.resolved += "mesh = \"inputs/mine.msh\"\nskin = \"inputs/deep/mine.msh\"\n";
+  RunDirectory::create(path("run"), scene, ExistingRun::refuse);
+  fs::create_directories(path("elsewhere/deep"));
+  put(path("elsewhere/mine.msh"), "mine");
+  put(path("elsewhere/deep/mine.msh"), "mine");
+  fs::create_directories(path("run/inputs"));
+  fs::create_directory_symlink(path("elsewhere/deep"), path("run/inputs/deep"));
+  RunDirectory::create(path("run"), scene, ExistingRun::overwrite);
+  EXPECT_TRUE(fs::exists(path("elsewhere/deep/mine.msh")));
+  fs::remove_all(path("run/inputs"));
+  fs::create_directory_symlink(path("elsewhere"), path("run/inputs"));
+  RunDirectory::create(path("run"), scene, ExistingRun::overwrite);
+  EXPECT_TRUE(fs::exists(path("elsewhere/mine.msh")));
+}
+
 TEST_F(RunResults, ADirectoryThatHoldsNoRunIsNeverTouched) {
   fs::create_directories(path("mine"));
   put(path("mine/scene.toml"), "my scene");
