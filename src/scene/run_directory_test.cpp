@@ -221,6 +221,18 @@ TEST_F(RunResults, AFinishedRunResumesWithoutChange) {
   EXPECT_EQ(contents(path("run")), before);
 }
 
+TEST_F(RunResults, ACheckpointWithAnImpossibleNumberOfStepsIsRefused) {
+  run_whole(path("run"), {});
+  for (const int64_t steps : {int64_t{-1}, int64_t{1} << 32}) {
+    Checkpoint checkpoint = read_checkpoint(path("run/checkpoint.bin"));
+    checkpoint.integers = {{"steps_taken", steps}};
+    write_checkpoint(path("run/checkpoint.bin"), checkpoint);
+    Scene scene = sagging_scene();
+    EXPECT_THAT(message_of<InvalidInput>([&] { RunDirectory::resume(path("run"), scene); }),
+                HasSubstr("counts " + std::to_string(steps) + " steps"));
+  }
+}
+
 TEST_F(RunResults, ADamagedCheckpointFallsBackToTheOneBefore) {
   run_whole(path("whole"), {});
   {
