@@ -15,6 +15,8 @@ case "${ASPIC_VIEWER-}" in 0 | OFF) viewer_programs= viewer_packages= ;; esac
 test_programs="python3 chromium"
 test_packages="libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libsuitesparse-dev python3-meshio"
 bench_packages="libbenchmark-dev"
+fuzz_programs="clang:clang++" # with libFuzzer and its sanitizers, which clang recommends and we name
+fuzz_packages="libclang-rt-14-dev llvm-14"
 
 say() { printf '%s\n' "$*" >&2; }
 die() {

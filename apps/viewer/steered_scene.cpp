@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "linalg/free_memory.h"
+#include "base/free_memory.h"
 #include "scene/scene_document.h"
 
 namespace aspic::viewer {

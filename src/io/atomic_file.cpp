@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/free_memory.h"
 
 namespace aspic {
 namespace {
@@ -128,10 +129,10 @@ std::string read_file(const fs::path& path) {
   if (S_ISDIR(info.st_mode)) throw InvalidInput(path.string() + ": is a folder; name a file in it");
   if (!S_ISREG(info.st_mode)) throw InvalidInput(path.string() + ": is not a regular file; copy it to one first");
   const auto size = static_cast<size_t>(info.st_size);
-  const size_t memory = static_cast<size_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<size_t>(::sysconf(_SC_PAGESIZE));
-  if (size > memory)
-    throw InvalidInput(path.string() + ": is " + std::to_string(size) + " bytes, more than this machine's memory of " +
-                       std::to_string(memory) + "; use a smaller file");
+  constexpr size_t kSmall = size_t{1} << 24;
+  if (const size_t available = size > kSmall ? static_cast<size_t>(free_memory()) : size; size > available)
+    throw InvalidInput(path.string() + ": is " + std::to_string(size) + " bytes, more than the " +
+                       std::to_string(available) + " bytes of memory that are free; use a smaller file");
 
   std::string contents(size, '\0');
   size_t done = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "io/byte_cursor.h"
@@ -91,6 +92,8 @@ class PlyReader {
         source_.fail("triangle strips are not read; export the surface with faces");
       if (element.properties.empty()) continue;  // takes no room, whatever its count
       if (element.name == "vertex") {
+        if (std::exchange(has_vertices_, true))
+          source_.fail("the header has a second element 'vertex'; merge it with the first");
         read_vertices(element);
       } else if (element.name == "face") {
         read_faces(element);
@@ -171,6 +174,7 @@ class PlyReader {
   Source source_;
   MeshContent content_;
   std::vector<int> corners_;
+  bool has_vertices_ = false;
 };
 
 }  // namespace

@@ -76,6 +76,8 @@ TEST(Ply, ErrorsNameTheLine) {
   EXPECT_THAT(
       error<parse_ply>(small_ply(vertices + "element tristrips 1\nproperty list int int vertex_indices\n", "0 0 0\n")),
       HasSubstr("triangle strips"));
+  EXPECT_THAT(error<parse_ply>(small_ply(vertices + faces + vertices, "0 0 0\n3 0 0 0\n0 0 0\n")),
+              HasSubstr("a second element 'vertex'"));
   EXPECT_THAT(error<parse_ply>(small_ply("element b\001d 9\nproperty float x\n", "")),
               HasSubstr("a:6: the number of elements 'b?d' is 9"));
 }

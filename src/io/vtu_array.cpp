@@ -6,10 +6,10 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
-#include <limits>
 #include <utility>
 
 #include "base/error.h"
+#include "base/free_memory.h"
 #include "io/base64.h"
 
 namespace aspic {
@@ -23,6 +23,8 @@ class ByteSource {
   ByteSource(std::string_view text, bool base64) : text_(text), base64_(base64) {}
 
   bool can_hold(size_t count) const { return count <= spare_.size() + (base64_ ? text_.size() / 4 * 3 : text_.size()); }
+
+  size_t left() const { return text_.size(); }
 
   bool take(size_t count, std::string& bytes) {
     if (!can_hold(count)) return false;
@@ -46,10 +48,19 @@ class ByteSource {
 
 class ArrayReader {
  public:
-  ArrayReader(const VtkFile& file, const XmlElement& array, ByteSource source)
-      : file_(file), array_(array), source_(std::move(source)) {}
+  ArrayReader(const VtkFile& file, const XmlElement& array, ByteSource source, bool is_appended)
+      : file_(file), array_(array), source_(std::move(source)), is_appended_(is_appended) {}
 
-  std::string read(size_t size) { return file_.compressed ? read_blocks(size) : read_plain(size); }
+  // An array of <AppendedData> counts towards what all of them may take of it.
+  std::string read(size_t size) {
+    const size_t before = source_.left();
+    std::string bytes = file_.compressed ? read_blocks(size) : read_plain(size);
+    if (const size_t taken = before - source_.left(); is_appended_) {
+      if (taken > file_.appended_left) fail_at(file_, array_, "the arrays of <AppendedData> overlap");
+      file_.appended_left -= taken;
+    }
+    return bytes;
+  }
 
  private:
   uint64_t read_header() {
@@ -110,6 +121,7 @@ class ArrayReader {
   const VtkFile& file_;
   const XmlElement& array_;
   ByteSource source_;
+  bool is_appended_;
 };
 
 template <class Stored, class Number>
@@ -149,12 +161,12 @@ std::vector<Number> parse_ascii(const VtkFile& file, const XmlElement& array, si
 
 std::string array_bytes(const VtkFile& file, const XmlElement& array, size_t size) {
   const std::string* format = array.attribute("format");
-  if (format && *format == "binary") return ArrayReader(file, array, ByteSource(array.text, true)).read(size);
+  if (format && *format == "binary") return ArrayReader(file, array, ByteSource(array.text, true), false).read(size);
   if (!format || *format != "appended") fail_at(file, array, "its format is not ascii, binary or appended");
   if (!file.has_appended) fail_at(file, array, "its data is missing: the file has no <AppendedData>");
   const int64_t offset = count_attribute(file, array, "offset", 0, static_cast<int64_t>(file.appended.size()));
-  return ArrayReader(file, array, ByteSource(file.appended.substr(static_cast<size_t>(offset)), file.appended_base64))
-      .read(size);
+  const ByteSource source(file.appended.substr(static_cast<size_t>(offset)), file.appended_base64);
+  return ArrayReader(file, array, source, true).read(size);
 }
 
 template <class Number>
@@ -163,6 +175,17 @@ struct StoredType {
   size_t size;
   std::vector<Number> (*convert)(const std::string& bytes, bool swapped);
 };
+
+// Compressed data may unpack to a thousand times their size: what is not free is not asked for.
+void check_memory(const VtkFile& file, const XmlElement& array, size_t count) {
+  constexpr size_t kFew = size_t{1} << 20;
+  if (count < kFew) return;
+  const size_t available = static_cast<size_t>(free_memory()) / (sizeof(double) + sizeof(double));  // stored, converted
+  if (count > available)
+    fail_at(file, array,
+            std::to_string(count) + " numbers; there is memory for " + std::to_string(available) +
+                " (use a smaller file, or a machine with more)");
+}
 
 template <class Number>
 std::vector<Number> read_array(const VtkFile& file, const XmlElement& array, size_t count) {
@@ -181,7 +204,7 @@ std::vector<Number> read_array(const VtkFile& file, const XmlElement& array, siz
   if (const std::string* format = array.attribute("format"); !format || *format == "ascii") {
     return parse_ascii<Number>(file, array, count);
   }
-  if (count > std::numeric_limits<size_t>::max() / 8) fail_at(file, array, "too many numbers");
+  check_memory(file, array, count);
   return type->convert(array_bytes(file, array, count * type->size), file.swapped);
 }
 
@@ -234,6 +257,7 @@ VtkFile vtk_file(const XmlElement& root, std::string_view type, std::string name
     if (start == std::string_view::npos) fail_at(file, *appended, "the underscore before the data is missing");
     file.appended = appended->text.substr(start + 1);
     file.appended_base64 = *encoding == "base64";
+    file.appended_left = file.appended.size();
     file.has_appended = true;
   }
   return file;

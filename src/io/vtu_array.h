@@ -11,11 +11,12 @@ namespace aspic {
 
 // What the head of the file says about all its arrays.
 struct VtkFile {
-  std::string name;           // for messages
-  bool swapped = false;       // byte order differs from this machine's
-  size_t header_size = 4;     // bytes of the counts in front of binary data: 4 or 8
-  bool compressed = false;    // vtkZLibDataCompressor
-  std::string_view appended;  // after the underscore of <AppendedData>
+  std::string name;                  // for messages
+  bool swapped = false;              // byte order differs from this machine's
+  size_t header_size = 4;            // bytes of the counts in front of binary data: 4 or 8
+  bool compressed = false;           // vtkZLibDataCompressor
+  std::string_view appended;         // after the underscore of <AppendedData>
+  mutable size_t appended_left = 0;  // [bytes] of it that no array has taken yet
   bool appended_base64 = false;
   bool has_appended = false;
 };

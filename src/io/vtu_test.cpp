@@ -205,6 +205,22 @@ TEST_F(VtuFile, ReadsAppendedRawAndBase64) {
   }
 }
 
+// A small file would otherwise fill the memory: as many arrays as it likes, all of them the same bytes.
+TEST_F(VtuFile, RefusesAppendedArraysThatShareTheirBytes) {
+  const std::string block = stored<uint32_t>(40, false) + std::string(40, '\0');
+  std::string fields;
+  for (int i = 0; i < 3; ++i)
+    fields += array_tag("Float64", "u" + std::to_string(i), 1, "format=\"appended\" offset=\"0\"/>");
+  const std::string text =
+      "<VTKFile type=\"UnstructuredGrid\">\n<UnstructuredGrid><Piece NumberOfPoints=\"5\" "
+      "NumberOfCells=\"0\"><Points>" +
+      ascii("Float64", "Points", 3, std::vector<double>(15, 0.0)) + "</Points><PointData>" + fields +
+      "</PointData></Piece></UnstructuredGrid>\n<AppendedData encoding=\"raw\">_";
+  EXPECT_EQ(read_text(text + block + block + block + "</AppendedData></VTKFile>").point_fields.size(), 3u);
+  EXPECT_THAT(message(text + block + "</AppendedData></VTKFile>"),
+              HasSubstr("array 'u1': the arrays of <AppendedData> overlap"));
+}
+
 TEST_F(VtuFile, JoinsPieces) {
   std::string text = grid("", ascii);
   const size_t start = text.find("<Piece"), end = text.find("</UnstructuredGrid>");

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "base/check.h"
-#include "linalg/free_memory.h"
+#include "base/free_memory.h"
 #include "linalg/multigrid.h"
 
 namespace aspic {

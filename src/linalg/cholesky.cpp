@@ -7,8 +7,8 @@
 #include <new>
 
 #include "base/check.h"
+#include "base/free_memory.h"
 #include "base/parallel.h"
-#include "linalg/free_memory.h"
 #include "linalg/ordering.h"
 #include "linalg/triangular_solve.h"
 #include "math/pack.h"

@@ -19,4 +19,8 @@ TetMesh make_cylinder(double radius, double height, double size);           // a
 TetMesh make_sphere(double radius, double size);                            // about the origin
 TetMesh make_torus(double major_radius, double minor_radius, double size);  // about the z axis; minor < major
 
+// How many tets they have, before any is made; infinite for sizes that no number of tets fills.
+double tets_in_cylinder(double radius, double height, double size);
+double tets_in_torus(double major_radius, double minor_radius, double size);
+
 }  // namespace aspic

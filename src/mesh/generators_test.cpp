@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -104,6 +105,15 @@ TEST(Cylinder, IsSoundAtAnySize) {
       EXPECT_GT(smallest_dihedral(mesh), 33);
     }
   }
+}
+
+TEST(RoundShapes, HaveAsManyTetsAsWasCounted) {
+  for (const double size : {0.03, 0.1, 0.25, 7.0}) {
+    EXPECT_EQ(tets_in_cylinder(0.2, 1, size), make_cylinder(0.2, 1, size).tet_count());
+    EXPECT_EQ(tets_in_torus(1, 0.2, size), make_torus(1, 0.2, size).tet_count());
+  }
+  EXPECT_EQ(tets_in_cylinder(1e-6, 1e6, 1e-3), 18e9);
+  EXPECT_EQ(tets_in_cylinder(1, 1e300, 1e-300), std::numeric_limits<double>::infinity());
 }
 
 TEST(Sphere, IsSoundAtAnySize) {

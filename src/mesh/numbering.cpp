@@ -82,14 +82,14 @@ Numbering locality_numbering(const TetMesh& mesh) {
 }
 
 TetMesh from_user(const Numbering& numbering, const TetMesh& user) {
-  const auto& [vertex, tet] = numbering;
+  const Renumbering &vertex = numbering.vertex, &tet = numbering.tet;
   return rearranged(
       user, [&](int v) { return vertex.to_user(v); }, [&](int v) { return vertex.from_user(v); },
       [&](int t) { return tet.to_user(t); });
 }
 
 TetMesh to_user(const Numbering& numbering, const TetMesh& stored) {
-  const auto& [vertex, tet] = numbering;
+  const Renumbering &vertex = numbering.vertex, &tet = numbering.tet;
   return rearranged(
       stored, [&](int v) { return vertex.from_user(v); }, [&](int v) { return vertex.to_user(v); },
       [&](int t) { return tet.from_user(t); });

@@ -10,9 +10,32 @@
 namespace aspic {
 namespace {
 
-int pieces(double length, double size) { return std::max(1, static_cast<int>(std::lround(length / size))); }
+constexpr double kMostPieces = 1e9;  // that can be counted; far more than a computer holds
+
+double counted(double length, double size) { return std::max(1.0, std::round(length / size)); }
+
+int pieces(double length, double size) {
+  const double count = counted(length, size);
+  ASPIC_CHECK(count <= kMostPieces);
+  return static_cast<int>(std::min(count, kMostPieces));
+}
+
+// Six sectors of n^2 triangles, three tets to a prism.
+double tets_swept(double rings, double layers) { return 18 * rings * rings * layers; }
+
+double copies_round(double major_radius, double size) {
+  return std::max(6.0, counted(2 * std::numbers::pi * major_radius, size));
+}
 
 }  // namespace
+
+double tets_in_cylinder(double radius, double height, double size) {
+  return tets_swept(counted(radius, size), counted(height, size));
+}
+
+double tets_in_torus(double major_radius, double minor_radius, double size) {
+  return tets_swept(counted(minor_radius, size), copies_round(major_radius, size));
+}
 
 TetMesh make_cylinder(double radius, double height, double size) {
   ASPIC_CHECK(radius > 0 && height > 0 && size > 0);

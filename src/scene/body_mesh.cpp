@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "base/error.h"
+#include "base/free_memory.h"
 #include "io/mesh_file.h"
 #include "io/tetrahedralise.h"
 #include "mesh/doctor.h"
@@ -23,6 +24,7 @@ namespace fs = std::filesystem;
 constexpr int kManyTets = 300'000;                 // about a second of work
 constexpr std::uintmax_t kManyBytes = 30'000'000;  // of a file
 constexpr double kBytesPerTet = 1000;              // more than any file takes for one
+constexpr double kBytesInModel = 500;              // the least that a simulated tet takes, with its share of vertices
 
 // The remedy names an option of another command than the one that fails here.
 std::string sentence(const Finding& finding) {
@@ -72,12 +74,12 @@ TetMesh shape_mesh(const Value& shape, const MeshLoader& loader) {
   if (const Value* box = shape.find("box")) return box_mesh(*box, loader);
   if (const Value* c = shape.find("cylinder")) {
     const double r = number(*c, "radius"), h = number(*c, "height"), size = number(*c, "size");
-    check_count(tets_in(3.15 * r * r * h, size), *c, loader);
+    check_count(tets_in_cylinder(r, h, size), *c, loader);
     return make_cylinder(r, h, size);
   }
   if (const Value* s = shape.find("sphere")) {
     const double r = number(*s, "radius"), size = number(*s, "size");
-    check_count(tets_in(4.19 * r * r * r, size), *s, loader);
+    check_count(tets_in(4.19, size / r), *s, loader);
     return make_sphere(r, size);
   }
   const Value& t = shape["torus"];
@@ -85,7 +87,7 @@ TetMesh shape_mesh(const Value& shape, const MeshLoader& loader) {
   if (!(minor < major))
     throw error_at(t["minor_radius"].place,
                    "minor_radius = " + number_text(minor) + "; must be below major_radius = " + number_text(major));
-  check_count(tets_in(19.8 * major * minor * minor, size), t, loader);
+  check_count(tets_in_torus(major, minor, size), t, loader);
   return make_torus(major, minor, size);
 }
 
@@ -178,15 +180,25 @@ void MeshLoader::tell_if_many(int tet_count, const std::string& what) const {
 }
 
 std::string MeshLoader::why_not(double more_tets) const {
-  if (tets + more_tets <= limit.tets) return "";
-  return "about " + rounded_text(tets + more_tets) + " tets; at most " + number_text(limit.tets) + " " + limit.why;
+  const double all = tets + more_tets;
+  if (all <= limit.tets) return why_not_in_memory(more_tets);
+  return "about " + rounded_text(all) + " tets; at most " + number_text(limit.tets) + " " + limit.why;
+}
+
+std::string MeshLoader::why_not_in_memory(double more_tets) const {
+  const double bytes = (tets + more_tets) * kBytesInModel;
+  const auto available = static_cast<double>(std::min(limit.memory, free_memory()));
+  if (bytes <= available) return "";
+  return "about " + rounded_text(tets + more_tets) + " tets take at least " + rounded_text(bytes / 1e9) + " GB; " +
+         rounded_text(available / 1e9) + " GB of memory are free";
 }
 
 LoadedMesh load_mesh(const fs::path& path, double size, MeshLoader& loader) {
   check_size(path, loader);
   std::variant<TetMesh, TriMesh> mesh = read_mesh(path);
   if (TetMesh* tets = std::get_if<TetMesh>(&mesh)) {
-    const std::string why = loader.limit.counts_files ? loader.why_not(tets->tet_count()) : "";
+    const int count = tets->tet_count();
+    const std::string why = loader.limit.counts_files ? loader.why_not(count) : loader.why_not_in_memory(count);
     if (!why.empty()) throw InvalidInput(path.string() + ": " + why + " (choose a coarser mesh)");
     return {std::move(*tets), {}};
   }

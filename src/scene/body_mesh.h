@@ -29,7 +29,8 @@ struct MeshLoader {
 
   void tell(const std::string& what) const;
   void tell_if_many(int tets, const std::string& what) const;  // so many that it takes more than a moment
-  std::string why_not(double more_tets) const;                 // empty: they are within the limit
+  std::string why_not(double more_tets) const;                 // empty: they are within the limit and fit into memory
+  std::string why_not_in_memory(double more_tets) const;       // empty: what they take at least is free
 };
 
 // Reads a mesh; fills a surface with tets of edge length `size` (0: the mesher's choice). Errors that the doctor finds

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <system_error>
@@ -119,7 +120,10 @@ State state_of(const Checkpoint& checkpoint, const std::string& prefix, const Mo
 
 Simulation::Snapshot to_snapshot(const Checkpoint& checkpoint, const Model& model) {
   Simulation::Snapshot snapshot;
-  snapshot.steps_taken = static_cast<int>(checkpoint.integer("steps_taken"));
+  const int64_t steps = checkpoint.integer("steps_taken");
+  if (steps < 0 || steps > std::numeric_limits<int>::max())
+    throw InvalidInput("the checkpoint counts " + std::to_string(steps) + " steps; it is damaged");
+  snapshot.steps_taken = static_cast<int>(steps);
   snapshot.state = state_of(checkpoint, "", model);
   snapshot.start = state_of(checkpoint, "start_", model);
   read_history(checkpoint.array("history"), model.numbering.vertex, snapshot);

@@ -80,14 +80,15 @@ std::vector<fs::path> files_in(const fs::path& folder, Condition is_wanted) {
 // The files that the scene of the run calls "inputs/...".
 std::vector<fs::path> named_inputs(const fs::path& root, const fs::path& scene) {
   std::error_code error;
-  if (!fs::is_regular_file(scene, error)) return {};
+  if (!fs::is_regular_file(scene, error) || fs::is_symlink(root / "inputs", error)) return {};
   const std::string text = read_file(scene);
   constexpr std::string_view kFolder = "inputs/";
   std::vector<fs::path> files;
   for (size_t start = text.find(kFolder); start != std::string::npos; start = text.find(kFolder, start + 1)) {
     const std::string name = text.substr(start, text.find_first_of("\"'\n", start) - start);
     const fs::path file = root / name;
-    if (name.find("..") == std::string::npos && fs::is_regular_file(file, error)) files.push_back(file);
+    const bool is_plain = name.find('/', kFolder.size()) == std::string::npos;
+    if (is_plain && name.find("..") == std::string::npos && fs::is_regular_file(file, error)) files.push_back(file);
   }
   return files;
 }

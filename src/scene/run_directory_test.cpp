@@ -221,6 +221,18 @@ TEST_F(RunResults, AFinishedRunResumesWithoutChange) {
   EXPECT_EQ(contents(path("run")), before);
 }
 
+TEST_F(RunResults, ACheckpointWithAnImpossibleNumberOfStepsIsRefused) {
+  run_whole(path("run"), {});
+  for (const int64_t steps : {int64_t{-1}, int64_t{1} << 32}) {
+    Checkpoint checkpoint = read_checkpoint(path("run/checkpoint.bin"));
+    checkpoint.integers = {{"steps_taken", steps}};
+    write_checkpoint(path("run/checkpoint.bin"), checkpoint);
+    Scene scene = sagging_scene();
+    EXPECT_THAT(message_of<InvalidInput>([&] { RunDirectory::resume(path("run"), scene); }),
+                HasSubstr("counts " + std::to_string(steps) + " steps"));
+  }
+}
+
 TEST_F(RunResults, ADamagedCheckpointFallsBackToTheOneBefore) {
   run_whole(path("whole"), {});
   {
@@ -288,6 +300,24 @@ TEST_F(RunResults, InputsAreKeptBesideTheSceneAndReplacedWithTheRun) {
   RunDirectory::create(path("run"), sagging_scene(), ExistingRun::overwrite);
   EXPECT_FALSE(fs::exists(path("run/inputs/bar.msh")));
   EXPECT_EQ(read_file(path("run/inputs/mine.msh")), "mine");
+}
+
+// The scene of a run that somebody else made may name anything.
+TEST_F(RunResults, OverwritingRemovesNothingThatInputsLeadsTo) {
+  Scene scene = sagging_scene();
+  scene.resolved += "mesh = \"inputs/mine.msh\"\nskin = \"inputs/deep/mine.msh\"\n";
+  RunDirectory::create(path("run"), scene, ExistingRun::refuse);
+  fs::create_directories(path("elsewhere/deep"));
+  put(path("elsewhere/mine.msh"), "mine");
+  put(path("elsewhere/deep/mine.msh"), "mine");
+  fs::create_directories(path("run/inputs"));
+  fs::create_directory_symlink(path("elsewhere/deep"), path("run/inputs/deep"));
+  RunDirectory::create(path("run"), scene, ExistingRun::overwrite);
+  EXPECT_TRUE(fs::exists(path("elsewhere/deep/mine.msh")));
+  fs::remove_all(path("run/inputs"));
+  fs::create_directory_symlink(path("elsewhere"), path("run/inputs"));
+  RunDirectory::create(path("run"), scene, ExistingRun::overwrite);
+  EXPECT_TRUE(fs::exists(path("elsewhere/mine.msh")));
 }
 
 TEST_F(RunResults, ADirectoryThatHoldsNoRunIsNeverTouched) {

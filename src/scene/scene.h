@@ -1,7 +1,9 @@
 // From a TOML file, or from a mesh alone, to a simulation that is ready to run.
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -49,6 +51,7 @@ struct TetLimit {
   double tets = 2e7;
   std::string why = "are generated";  // after "at most 2e+07"
   bool counts_files = false;          // meshes that are read, too, not only those that are generated
+  std::int64_t memory = std::numeric_limits<std::int64_t>::max();  // [bytes] to be taken, however much more is free
 };
 
 struct SceneOptions {

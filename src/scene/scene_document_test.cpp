@@ -121,6 +121,14 @@ TEST(SceneDocument, SyntaxErrorsHaveAPlace) {
   EXPECT_THAT(refusal("gravity = \n"), StartsWith("beam.toml:1:"));
 }
 
+// toml++ tells the compiler that these letters cannot stand there.
+TEST(SceneDocument, LettersBeyondAsciiOutsideOfStringsAreNamed) {
+  for (const std::string letter : {"\u00e4", "\u048f", "\u1680", "\u2028", "\U0001f41f"}) {
+    EXPECT_THAT(refusal(letter + " = 1\n" + kBox), StartsWith("beam.toml:1:")) << letter;
+    EXPECT_THAT(refusal("[[body" + letter + "]]\n"), StartsWith("beam.toml:1:")) << letter;
+  }
+}
+
 TEST(SceneDocument, FormulasAreCheckedWhereTheyStand) {
   EXPECT_THAT(refusal(kBox + "material = { young = \"1e5 * foo\" }\n"),
               AllOf(StartsWith("beam.toml:3:22"), HasSubstr("'foo'")));

@@ -1,5 +1,6 @@
 #include "scene/scene_files.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -25,6 +26,13 @@ bool is_confined(const fs::path& path) {
   auto part = normal.begin();
   if (part != normal.end() && *part == "..") ++part;
   return part == normal.end() || *part != "..";
+}
+
+// Whether the file that a confined name leads to is confined as well: links lead anywhere.
+bool is_below(const fs::path& file, const fs::path& top) {
+  std::error_code error;
+  const fs::path real = fs::canonical(file, error), real_top = fs::canonical(top, error);
+  return !error && std::mismatch(real_top.begin(), real_top.end(), real.begin(), real.end()).first == real_top.end();
 }
 
 }  // namespace
@@ -68,7 +76,12 @@ fs::path SceneFiles::find(const Value& name) const {
                                    "give it on the command line with --set");
   const fs::path full = path.is_absolute() ? path : (name.place.is_override() ? path : folder_ / path);
   std::error_code error;
-  if (fs::is_regular_file(full, error)) return full;
+  if (fs::is_regular_file(full, error)) {
+    if (trusted || is_below(full, folder_.empty() ? ".." : folder_ / "..")) return full;
+    throw error_at(name.place, shown +
+                                   " is a link that leads out of the scene's folder and the one above it; copy the "
+                                   "file there, or give it on the command line with --set");
+  }
   if (fs::is_directory(full, error)) throw error_at(name.place, shown + " is a folder; a file is needed");
   const std::string nearest = nearest_name(full.filename().string(), names_in(full.parent_path()));
   throw error_at(name.place, shown + " does not exist (looked for " + full.lexically_normal().string() + ")" +

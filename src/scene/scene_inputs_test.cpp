@@ -149,6 +149,55 @@ TEST(Scene, MoreTetsThanTheLimitAreRefusedBeforeTheyAreMade) {
   EXPECT_THAT(refused(body("a", "mesh = \"box.msh\""), true), AllOf(HasSubstr("box.msh"), HasSubstr("coarser")));
 }
 
+TEST(Scene, WhatNoMemoryHoldsIsRefusedBeforeItIsMade) {
+  const TestFolder folder;
+  const auto refused = [&](const std::string& shape, const TetLimit& limit = {}) {
+    return refusal_of(folder.write("s.toml", "[[body]]\n" + shape + "\n"), {.limit = limit});
+  };
+  EXPECT_THAT(refused("shape = { box = { upper = [1, 1, 1], cells = [10000, 10000, 10000] } }"),
+              AllOf(HasSubstr("s.toml:2:"), HasSubstr("about 6e+12 tets"), HasSubstr("fewer cells")));
+  EXPECT_THAT(refused("shape = { cylinder = { radius = 1e-6, height = 1e6, size = 1e-3 } }"),
+              HasSubstr("about 1.8e+10 tets"));
+  EXPECT_THAT(refused("shape = { torus = { major_radius = 1e6, minor_radius = 1e-6, size = 1e-3 } }"),
+              HasSubstr("tets; at most"));
+  const std::string box = "shape = { box = { upper = [1, 1, 1], cells = [5, 5, 5] } }";  // 750 tets
+  EXPECT_THAT(refused(box, {.memory = 300'000}),
+              AllOf(HasSubstr("about 750 tets take at least 0.000375 GB; 0.0003 GB of memory are free"),
+                    HasSubstr("fewer cells")));
+  EXPECT_EQ(refused(box, {.memory = 400'000}), "");
+  write_mesh(folder / "box.msh", make_box({{0, 0, 0}}, {{1, 1, 1}}, {5, 5, 5}));
+  EXPECT_THAT(refused("mesh = \"box.msh\"", {.memory = 300'000}), AllOf(HasSubstr("box.msh"), HasSubstr("coarser")));
+}
+
+TEST(Scene, MoreStepsThanCanBeCountedAreRefused) {
+  const TestFolder folder;
+  const auto refused = [&](const std::string& time) {
+    return refusal_of(folder.write("s.toml", "[time]\n" + time + "\n" + kCube));
+  };
+  EXPECT_THAT(refused("duration = 1e9\nstep = 1e-9"), HasSubstr("needs 1e+18 steps"));
+  EXPECT_THAT(refused("duration = 1e400"), HasSubstr("s.toml:2:"));
+  EXPECT_THAT(refused("step = nan"), HasSubstr("s.toml:2:"));
+  EXPECT_THAT(refused("duration = inf"), HasSubstr("s.toml:2:"));
+}
+
+TEST(Scene, LinksThatLeadOutsideAreRefused) {
+  const TestFolder folder;
+  fs::create_directories(folder / "a/b/scenes");
+  write_mesh(folder / "cube.msh", make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}));
+  write_mesh(folder / "a/b/inside.msh", make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}));
+  fs::create_symlink(folder / "cube.msh", folder / "a/b/scenes/cube.msh");
+  fs::create_symlink("../inside.msh", folder / "a/b/scenes/inside.msh");
+  fs::create_directory_symlink(folder / ".", folder / "a/b/scenes/meshes");
+  const auto with = [&](const std::string& name) {
+    return folder.write("a/b/scenes/s.toml", "[[body]]\nmesh = \"" + name + "\"\n");
+  };
+  EXPECT_THAT(refusal_of(with("cube.msh")), AllOf(HasSubstr("s.toml:2:8"), HasSubstr("is a link that leads out")));
+  EXPECT_THAT(refusal_of(with("meshes/cube.msh")), HasSubstr("is a link that leads out"));
+  EXPECT_EQ(refusal_of(with("inside.msh")), "");
+  EXPECT_EQ(refusal_of(with("cube.msh"), {.allow_outside = true}), "");
+  EXPECT_EQ(refusal_of(with("x.msh"), {.overrides = {"mesh=" + (folder / "a/b/scenes/cube.msh").string()}}), "");
+}
+
 TEST(Scene, MissingOrUnreadableFilesAreNamed) {
   const TestFolder folder;
   EXPECT_THAT(refusal_of(folder / "none.toml"), HasSubstr("none.toml"));

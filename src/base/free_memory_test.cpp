@@ -1,4 +1,4 @@
-#include "linalg/free_memory.h"
+#include "base/free_memory.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,162 @@
+// Readers of folders: scenes with their meshes, runs, fits, measurements.
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "base/error.h"
+#include "capture/data_set.h"
+#include "capture/journal.h"
+#include "capture/test_curves.h"
+#include "io/atomic_file.h"
+#include "io/checkpoint.h"
+#include "io/mesh_file.h"
+#include "mesh/generators.h"
+#include "mesh/surface.h"
+#include "scene/material_file.h"
+#include "scene/run_directory.h"
+#include "scene/scene.h"
+#include "several_files.h"
+#include "targets.h"
+
+namespace aspic::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMostTets = 300;
+
+TetMesh small_box() { return make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}); }
+
+// What scenes of the corpus refer to.
+fs::path folder_with_meshes() {
+  static const fs::path folder = [] {
+    const fs::path& path = folder_of_process();
+    TetMesh mesh = small_box();
+    mesh.region = {1, 1, 1, 2, 2, 2};
+    write_mesh(path / "box.msh", mesh);
+    write_mesh(path / "skin.obj", boundary_surface(mesh).surface);
+    put_file(path / "young.csv", "1e5\n1e5\n1e5\n2e5\n2e5\n2e5\n");
+    write_material(path / "material.vtu",
+                   {.mesh = mesh,
+                    .model = "neo_hookean",
+                    .values = {{"young", std::vector<double>(6, 1e5)}, {"poisson", std::vector<double>(6, 0.4)}}});
+    return path;
+  }();
+  return folder;
+}
+
+SceneOptions small_scenes() {
+  return {.mesher = "/nonexistent", .limit = {.tets = kMostTets, .why = "are fuzzed", .counts_files = true}};
+}
+
+// Puts each file of the text into the folder and removes them at the end.
+class Files {
+ public:
+  Files(const fs::path& folder, std::string_view bytes, const std::vector<std::string>& allowed) {
+    for (const auto& [name, contents] : split_files(bytes, allowed))
+      put_file(paths_.emplace_back(folder / name), contents);
+  }
+  Files(const Files&) = delete;
+  Files& operator=(const Files&) = delete;
+  ~Files() {
+    std::error_code ignored;
+    for (const fs::path& path : paths_) fs::remove(path, ignored);
+  }
+
+ private:
+  std::vector<fs::path> paths_;
+};
+
+// Asks what a fit asks, of a model that is the identity.
+class Identity : public LeastSquares {
+ public:
+  int unknowns() const override { return 2; }
+  int residual_count() const override { return 2; }
+  bool evaluate(std::span<const double> p, std::span<double> r) override { return copy(p, r), true; }
+  bool linearize() override { return true; }
+  void multiply(std::span<const double> dp, std::span<double> dr) override { copy(dp, dr); }
+  void multiply_transposed(std::span<const double> w, std::span<double> pbar) override { copy(w, pbar); }
+
+ private:
+  static void copy(std::span<const double> from, std::span<double> to) {
+    std::copy(from.begin(), from.end(), to.begin());
+  }
+};
+
+void make_checkpoint_right(const fs::path& path, std::string_view fingerprint) {
+  if (fs::exists(path)) put_file(path, with_right_checksum(with_fingerprint(read_file(path), fingerprint)));
+}
+
+}  // namespace
+
+void scene(std::string_view bytes) {
+  const fs::path path = folder_with_meshes() / "scene.toml";
+  put_file(path, bytes);
+  const Scene built = load_scene(path, small_scenes());
+  require(built.simulation.model().mesh.tet_count() <= kMostTets, "the limit of tets holds");
+  require(built.steps >= 0, "the number of steps is none or more");
+  for (const double q : built.simulation.state().q) require(std::isfinite(q), "positions are finite");
+}
+
+void material(std::string_view bytes) {
+  const fs::path path = folder_of_process() / "fuzzed.vtu";
+  put_file(path, bytes);
+  const FittedMaterial fitted = read_material(path);
+  for (const auto& [name, values] : fitted.values)
+    require(values.size() == fitted.mesh.tets.size(), "a quantity has a value per tet");
+  if (fitted.mesh.tets.empty() || fitted.values.empty()) return;
+  const Vec3d places[] = {{{0, 0, 0}}, {{0.3, 0.3, 0.3}}, {{1e9, 0, -1e9}}};
+  for (const int tet : sampling(fitted, places).tet)
+    require(tet >= 0 && tet < fitted.mesh.tet_count(), "a place has a tet");
+}
+
+void data_set(std::string_view bytes) {
+  const fs::path folder = folder_of_process();
+  const Files files(folder, bytes,
+                    {"capture.toml", "markers.csv", "cases.csv", "positions.csv", "rest.msh", "patch.csv"});
+  const DataSet data = read_data_set(folder);
+  diagnose(data);
+  for (const SurfacePoint& marker : data.experiment.markers)
+    for (const int v : marker.vertices) require(v >= 0 && v < data.experiment.mesh.vertex_count(), "markers lie on it");
+}
+
+void curves(std::string_view bytes) {
+  const fs::path path = folder_of_process() / "curves.csv";
+  put_file(path, bytes);
+  require(!read_test_curves(path).empty(), "a table that is read has a curve");
+}
+
+void journal(std::string_view bytes) {
+  const fs::path stem = folder_of_process() / "fit";
+  const Files files(folder_of_process(), bytes, {"fit.journal", "fit.state"});
+  make_checkpoint_right(folder_of_process() / "fit.state", "fuzz");
+  Identity model;
+  std::vector<double> state = {1, 2}, p = {0.5, 1}, r(2);
+  const ModelState keeps{[&] { return state; }, [&](std::span<const double> s) { state.assign(s.begin(), s.end()); }};
+  Journal log(model, keeps, stem, "fuzz", JournalStart::resume);
+  for (int i = 0; i < 3; ++i) {
+    log.evaluate(p, r);
+    log.linearize();
+    log.multiply(p, r);
+    log.multiply_transposed(r, p);
+  }
+  Journal::remove(stem);
+}
+
+void run_folder(std::string_view bytes) {
+  static const std::string kScene =
+      "[time]\nduration = 0.1\nstep = 0.01\n[[body]]\nname = \"a\"\nshape = { box = { lower = [0, 0, 0], "
+      "upper = [1, 1, 1], cells = [1, 1, 1] } }\n";
+  const fs::path run = folder_of_process() / "run";
+  fs::remove_all(run);
+  put_file(folder_of_process() / "scene.toml", kScene);
+  { RunDirectory::create(run, load_scene(folder_of_process() / "scene.toml"), ExistingRun::overwrite); }
+  const Files files(run, bytes,
+                    {"checkpoint.bin", "steps.csv", "iterations.csv", "timings.csv", "scene.toml", "run.pvd"});
+  Scene again = load_scene(scene_of_run(run), small_scenes());
+  make_checkpoint_right(run / "checkpoint.bin", fingerprint(again.resolved));
+  RunDirectory resumed = RunDirectory::resume(run, again);
+  require(again.simulation.steps_taken() >= 0, "a run that goes on has taken no negative number of steps");
+}
+
+}  // namespace aspic::fuzz

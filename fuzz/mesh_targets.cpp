@@ -1,0 +1,66 @@
+#include <cmath>
+#include <string>
+
+#include "io/gmsh.h"
+#include "io/medit.h"
+#include "io/mesh_content.h"
+#include "io/obj.h"
+#include "io/off.h"
+#include "io/ply.h"
+#include "io/stl.h"
+#include "io/tetgen.h"
+#include "io/vtu.h"
+#include "targets.h"
+
+namespace aspic::fuzz {
+namespace {
+
+template <class Elements>
+void require_indices(const Elements& elements, size_t vertices) {
+  for (const auto& element : elements)
+    for (const int v : element) require(v >= 0 && static_cast<size_t>(v) < vertices, "indices are in range");
+}
+
+void require_finite(const std::vector<Vec3d>& vertices) {
+  for (const Vec3d& vertex : vertices)
+    for (const double x : vertex.a) require(std::isfinite(x), "coordinates are finite");
+}
+
+void require_valid(const MeshContent& mesh) {
+  require_finite(mesh.vertices);
+  require_indices(mesh.tets, mesh.vertices.size());
+  require_indices(mesh.triangles, mesh.vertices.size());
+  require(mesh.region.empty() || mesh.region.size() == mesh.tets.size(), "each tet has its region");
+}
+
+void require_lengths(const std::vector<Field>& fields, size_t items) {
+  for (const Field& field : fields)
+    require(field.values.size() == items * static_cast<size_t>(field.components), "a field has a value per item");
+}
+
+}  // namespace
+
+void gmsh(std::string_view bytes) { require_valid(parse_gmsh("file", bytes)); }
+void medit(std::string_view bytes) { require_valid(parse_medit("file", bytes)); }
+void obj(std::string_view bytes) { require_valid(parse_obj("file", bytes)); }
+void off(std::string_view bytes) { require_valid(parse_off("file", bytes)); }
+void ply(std::string_view bytes) { require_valid(parse_ply("file", bytes)); }
+void stl(std::string_view bytes) { require_valid(parse_stl("file", bytes)); }
+
+void tetgen(std::string_view bytes) {
+  constexpr std::string_view kBetween = "====\n";
+  const size_t node_end = std::min(bytes.find(kBetween), bytes.size());
+  const std::string_view ele = bytes.substr(std::min(node_end + kBetween.size(), bytes.size()));
+  require_valid(parse_tetgen("node", bytes.substr(0, node_end), "ele", ele));
+}
+
+void vtu(std::string_view bytes) {
+  const Vtu grid = parse_vtu(bytes, "file");
+  require_valid({grid.mesh.rest, grid.mesh.tets, grid.mesh.region, {}});
+  require_valid({grid.triangles.vertices, {}, {}, grid.triangles.triangles});
+  require(grid.mesh.tets.empty() || grid.triangles.triangles.empty(), "tets or triangles");
+  require_lengths(grid.point_fields, std::max(grid.mesh.rest.size(), grid.triangles.vertices.size()));
+  require_lengths(grid.cell_fields, std::max(grid.mesh.tets.size(), grid.triangles.triangles.size()));
+}
+
+}  // namespace aspic::fuzz

@@ -1,0 +1,74 @@
+// Feeds files to a target without a fuzzer, in any build: "replay gmsh FILE|FOLDER ...".
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/atomic_file.h"
+#include "targets.h"
+
+namespace aspic::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Target kTargets[] = {
+    {"gmsh", gmsh},
+    {"medit", medit},
+    {"tetgen", tetgen},
+    {"vtu", vtu},
+    {"obj", obj},
+    {"off", off},
+    {"ply", ply},
+    {"stl", stl},
+    {"gzip", gzip},
+    {"base64", base64},
+    {"xml", xml},
+    {"csv", csv},
+    {"material", material},
+    {"checkpoint", checkpoint},
+    {"point_cache", point_cache},
+    {"run_folder", run_folder},
+    {"journal", journal},
+    {"data_set", data_set},
+    {"curves", curves},
+    {"toml", toml},
+    {"scene", scene},
+    {"expression", expression},
+    {"overrides", overrides},
+};
+
+std::vector<fs::path> files_of(int count, char** arguments) {
+  std::vector<fs::path> files;
+  for (int i = 0; i < count; ++i)
+    if (fs::is_directory(arguments[i]))
+      for (const auto& entry : fs::directory_iterator(arguments[i])) files.push_back(entry.path());
+    else
+      files.emplace_back(arguments[i]);
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+}  // namespace aspic::fuzz
+
+int main(int count, char** arguments) {
+  using namespace aspic::fuzz;
+  const std::string name = count > 1 ? arguments[1] : "";
+  const auto target = std::find_if(std::begin(kTargets), std::end(kTargets), [&](auto& t) { return t.name == name; });
+  if (count < 3 || target == std::end(kTargets)) {
+    std::fprintf(stderr, "usage: replay TARGET FILE|FOLDER ...\nTargets:");
+    for (const Target& t : kTargets) std::fprintf(stderr, " %s", std::string(t.name).c_str());
+    std::fprintf(stderr, "\n");
+    return 2;
+  }
+  const std::vector<fs::path> files = files_of(count - 2, arguments + 2);
+  for (const fs::path& file : files) {
+    std::fprintf(stderr, "%s: ", file.string().c_str());  // the last one named is the one at fault
+    const std::string refusal = attempt(target->feed, aspic::read_file(file));
+    std::fprintf(stderr, "%s\n", refusal.empty() ? "read" : refusal.c_str());
+  }
+  return files.empty() ? 1 : 0;
+}

@@ -1,0 +1,29 @@
+// Writes the seeds of all targets into a folder, each small: "seeds FOLDER". Meshes come from the library's writers and
+// from the examples of its tests.
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "io/atomic_file.h"
+#include "seeds.h"
+
+namespace aspic::fuzz {
+
+void write_seeds(const std::filesystem::path& folder, const std::vector<Seed>& seeds) {
+  for (const Seed& seed : seeds) {
+    std::filesystem::create_directories(folder / seed.target);
+    write_file(folder / seed.target / ("seed_" + seed.name), seed.bytes);
+  }
+}
+
+}  // namespace aspic::fuzz
+
+int main(int count, char** arguments) {
+  using namespace aspic::fuzz;
+  if (count != 2) {
+    std::fprintf(stderr, "usage: seeds FOLDER\n");
+    return 2;
+  }
+  for (const auto seeds : {mesh_seeds, vtu_seeds, part_seeds, record_seeds, scene_seeds})
+    write_seeds(arguments[1], seeds());
+}

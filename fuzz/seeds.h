@@ -1,0 +1,18 @@
+// What the fuzzers begin with.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace aspic::fuzz {
+
+struct Seed {
+  std::string target, name, bytes;
+};
+
+std::vector<Seed> mesh_seeds();
+std::vector<Seed> vtu_seeds();
+std::vector<Seed> part_seeds();
+std::vector<Seed> record_seeds();
+std::vector<Seed> scene_seeds();
+
+}  // namespace aspic::fuzz

@@ -1,0 +1,51 @@
+// What the fuzzers feed: one function per reader of files that others wrote. Each takes any bytes, and either reads
+// them or throws InvalidInput; anything else that happens is a fault. What was read is checked for what the rest of the
+// library relies on.
+#pragma once
+#include <string>
+#include <string_view>
+
+namespace aspic::fuzz {
+
+using Feed = void (*)(std::string_view bytes);
+
+struct Target {
+  std::string_view name;
+  Feed feed;
+};
+
+// Surfaces and meshes.
+void gmsh(std::string_view bytes);
+void medit(std::string_view bytes);
+void tetgen(std::string_view bytes);  // .node, a line "====", .ele
+void vtu(std::string_view bytes);
+void obj(std::string_view bytes);
+void off(std::string_view bytes);
+void ply(std::string_view bytes);
+void stl(std::string_view bytes);
+// Parts of files.
+void gzip(std::string_view bytes);
+void base64(std::string_view bytes);
+void xml(std::string_view bytes);
+void csv(std::string_view bytes);
+// Runs and fits.
+void checkpoint(std::string_view bytes);
+void point_cache(std::string_view bytes);
+void run_folder(std::string_view bytes);  // files in one text, see several_files.h
+void journal(std::string_view bytes);
+void material(std::string_view bytes);
+void data_set(std::string_view bytes);  // files in one text
+void curves(std::string_view bytes);
+// Scenes.
+void toml(std::string_view bytes);
+void scene(std::string_view bytes);  // built, with at most a few hundred tets
+void expression(std::string_view bytes);
+void overrides(std::string_view bytes);  // one per line
+
+// Calls `feed` and returns what InvalidInput said, which is what a reader should throw; empty: it was read.
+std::string attempt(Feed feed, std::string_view bytes);
+
+// Ends the program when a target's promise does not hold, in every build.
+void require(bool holds, const char* what);
+
+}  // namespace aspic::fuzz
