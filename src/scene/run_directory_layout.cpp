@@ -110,6 +110,13 @@ bool RunLayout::holds_run() const {
   return std::getline(in, head) && head.starts_with(kStepsHead);
 }
 
+bool RunLayout::is_barely_begun() const {
+  std::error_code error;
+  for (fs::directory_iterator entry(root_, error), end; !error && entry != end; entry.increment(error))
+    if (fs::is_directory(entry->symlink_status()) || !is_unfinished(entry->path())) return false;
+  return !error;
+}
+
 void RunLayout::remove_run(const std::vector<fs::path>& needed) const {
   remove_unfinished();
   std::vector<fs::path> files = named_inputs(root_, scene());
