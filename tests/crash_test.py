@@ -274,7 +274,7 @@ class ReadOnly(Crash):
         before = {p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}
         for folder in (self.folder, self.folder / "run"):
             os.chmod(folder, 0o555)
-        self.addCleanup(os.chmod, self.folder, 0o755)
+            self.addCleanup(os.chmod, folder, 0o755)
         if subprocess.run([ASPIC, "--version"], capture_output=True).returncode or \
                 self.without_rights("--version").returncode:
             self.skipTest("the program cannot be started by a user without rights here")
@@ -366,7 +366,7 @@ class Signals(Crash):
 
     def test_loading_ends_at_once(self):
         """Nothing is there to be kept, so the signal ends the program as it does by default."""
-        self.beam("large.toml", 0.05, "120, 60, 60")
+        self.beam("large.toml", 0.05, "60, 30, 30")
         for arguments in (("check", "large.toml"), ("run", "large.toml"), ("compare", "large.toml", "--methods", "newton")):
             process = self.start(*arguments)
             time.sleep(0.3)

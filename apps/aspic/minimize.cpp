@@ -211,11 +211,8 @@ int run(const Arguments& arguments) {
     print_json_summary(problem, done);
   else
     print_summary(problem, done);
-  const bool is_interrupted = done.report.status == Status::interrupted;
-  const int code = is_interrupted                   ? exit_signal + interrupt_signal()
-                   : is_success(done.report.status) ? exit_done
-                                                    : exit_unconverged;
-  if (is_interrupted) return code;
+  if (done.report.status == Status::interrupted) return exit_signal + interrupt_signal();
+  const int code = is_success(done.report.status) ? exit_done : exit_unconverged;
   if (!arguments.model.empty()) draw_model(arguments.model, problem, done, arguments.iteration);
   if (!arguments.plot.empty()) {
     const std::string title = fmt::format("{} on f = {}", done.method, problem.formula);
