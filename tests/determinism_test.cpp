@@ -53,7 +53,7 @@ std::vector<Way> all_ways() {
   return ways;
 }
 
-// 45 vertices, of which some are moved and some pulled.
+// 81 vertices, of which some are moved and some pulled.
 Simulation small_scene(const Way& way) { return simulate(damped_beam_with_moving_pins_and_targets(2), way.options); }
 
 class Determinism : public testing::TestWithParam<Way> {};
@@ -76,7 +76,7 @@ TEST_P(Determinism, ARunRestartedAfterAnyOfFiftyStepsGoesOnToTheSameBits) {
   }
 }
 
-// 1 029 vertices: several chunks for the threads.
+// 1 225 vertices: several chunks for the threads.
 TEST_P(Determinism, ThreadsChangeNoBit) {
   const int before = thread_count();
   std::vector<std::uint64_t> one;
