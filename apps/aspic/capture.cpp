@@ -84,29 +84,32 @@ void show(const SynthesisStep& step) {
 
 int capture(const Arguments& arguments) {
   if (arguments.threads > 0) set_thread_count(arguments.threads);
-  catch_interrupts();
   const SynthesisOptions bench = bench_options(arguments);
   const Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides});
   const fs::path folder = folder_of(arguments, scene.name);
+  catch_interrupts();  // not before there is something to keep
   const Synthesis made = synthesize(scene, bench, [&](const SynthesisStep& step) {
     if (!arguments.quiet) show(step);
     return !interrupt_signal();
   });
   for (const std::string& note : made.notes) fmt::print("note: {}\n", note);
-  if (made.interrupted) {
-    fmt::print(stderr, "interrupted: nothing was written\n");
+  if (made.interrupted && made.data.experiment.cases.empty()) {
+    fmt::print(stderr, "interrupted before the first case was done: nothing was written\n");
     return exit_signal + interrupt_signal();
   }
   if (made.data.experiment.cases.empty()) {
     fmt::print(stderr, "error: no case has an equilibrium; poke less deep (--depth) or with a larger tip (--tip)\n");
     return exit_unconverged;
   }
-  write_data_set(folder, made.data);
-  write_material(folder / "truth.vtu", made.truth);
+  write_data_set(folder, made.data, [&](const fs::path& place) { write_material(place / "truth.vtu", made.truth); });
   const Experiment& e = made.data.experiment;
   fmt::print("{}: {} cases, {} markers, mesh of {} tets (truth: {}); {} holds what is true\n", folder.string(),
              e.cases.size(), e.markers.size(), e.mesh.tet_count(), made.truth.mesh.tet_count(),
              (folder / "truth.vtu").string());
+  if (made.interrupted) {
+    fmt::print(stderr, "interrupted: the data set holds the cases that were done; --force makes it anew\n");
+    return exit_signal + interrupt_signal();
+  }
   return made.failed > 0 ? exit_unconverged : exit_done;
 }
 
@@ -122,7 +125,8 @@ Examples:
   aspic capture scenes/capture/pillow.toml -o hung --pokes 0 --gravity 0,0,-1 --gravity 1,0,0
 then: aspic fit out/pillow_data --check, and without --check
 
-Exit codes: 0 done, 2 bad input, 3 some case has no equilibrium and was left out, 130 interrupted: nothing is written.)");
+Exit codes: 0 done, 2 bad input, 3 some case has no equilibrium and was left out, 130 interrupted by ctrl-C,
+143 by kill: the cases that were done are written.)");
   auto a = std::make_shared<Arguments>();
   SynthesisOptions& b = a->bench;
   command->add_option("scene", a->input, "The scene or mesh to measure")->required();

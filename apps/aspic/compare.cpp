@@ -8,6 +8,7 @@
 #include "aspic/commands.h"
 #include "aspic/comparison.h"
 #include "aspic/comparison_files.h"
+#include "aspic/interrupt.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "scene/scene.h"
@@ -57,9 +58,16 @@ int compare(const Arguments& arguments) {
              model.mesh.tet_count(), arguments.step, thread_count());
   std::fflush(stdout);
   const auto begun = [](const std::string& method) { fmt::print(stderr, "{} ...\n", method); };
-  const Comparison comparison = compare_methods(
-      scene.simulation,
-      {.methods = arguments.methods, .step = arguments.step, .max_seconds = arguments.max_seconds, .begun = begun});
+  catch_interrupts();
+  const Comparison comparison = compare_methods(scene.simulation, {.methods = arguments.methods,
+                                                                   .step = arguments.step,
+                                                                   .max_seconds = arguments.max_seconds,
+                                                                   .begun = begun,
+                                                                   .go_on = [] { return !interrupt_signal(); }});
+  if (!comparison.has_reference) {
+    fmt::print(stderr, "interrupted before there was anything to compare with: nothing was written\n");
+    return exit_signal + interrupt_signal();
+  }
   fmt::print("E* = {:.10g} by Newton's method to round-off, {} iterations, |g| = {:.1e}\n\n",
              comparison.reference.objective, comparison.reference.iterations, comparison.reference.objective_gradient);
   print_table(comparison);
@@ -67,6 +75,11 @@ int compare(const Arguments& arguments) {
   const std::string missing = write_comparison(folder, scene.name, comparison);
   if (!missing.empty()) fmt::print(stderr, "note: no pictures: {}\n", missing);
   fmt::print("\nresults    {}\n", (folder / "index.html").string());
+  if (comparison.interrupted) {
+    fmt::print(stderr, "interrupted: {} of {} methods are in the tables\n", comparison.results.size(),
+               arguments.methods.size());
+    return exit_signal + interrupt_signal();
+  }
   const auto agrees = [](const MethodResult& result) { return result.same_minimiser; };
   return std::all_of(comparison.results.begin(), comparison.results.end(), agrees) ? exit_done : exit_unconverged;
 }
@@ -84,7 +97,8 @@ Examples:
   aspic compare scenes/bunny.toml --methods newton,gradient_descent
   aspic compare beam.toml --methods newton:exact,newton:clamped --step 20 --set solver.tolerance=1e-8
 
-Exit codes: 0 every method reached the same minimiser, 2 bad input, 3 some did not.)");
+Exit codes: 0 every method reached the same minimiser, 2 bad input, 3 some did not;
+130 interrupted by ctrl-C, 143 by kill: the methods that came to their end are written.)");
   command->add_option("SCENE", arguments->input, "Scene (.toml) or mesh")->required();
   command->add_option("--methods", arguments->methods, "Methods, separated by commas")->required()->delimiter(',');
   command->add_option("--step", arguments->step, "Which step; those before are taken by the scene's own method")

@@ -33,14 +33,18 @@ class Comparer {
   }
 
   Comparison compare() {
-    take_steps_before();
     Comparison comparison;
     comparison.step = options_.step;
-    comparison.reference = solve_reference();
+    comparison.interrupted = true;
+    if (!take_steps_before() || !solve_reference(comparison.reference)) return comparison;
+    comparison.has_reference = true;
     for (size_t i = 0; i < solvers_.size(); ++i) {
       if (options_.begun) options_.begun(options_.methods[i]);
-      comparison.results.push_back(run(options_.methods[i], solvers_[i], comparison.reference));
+      MethodResult result = run(options_.methods[i], solvers_[i], comparison.reference);
+      if (!may_go_on()) return comparison;
+      comparison.results.push_back(std::move(result));
     }
+    comparison.interrupted = false;
     return comparison;
   }
 
@@ -65,9 +69,15 @@ class Comparer {
           "--set time.adaptive.tolerance=0");
   }
 
-  void take_steps_before() {
+  bool may_go_on() const { return !options_.go_on || options_.go_on(); }
+  IterationObserver stopper() const {
+    return [this](const LiveIteration&) { return may_go_on(); };
+  }
+
+  bool take_steps_before() {
     while (simulation_.steps_taken() < options_.step - 1) {
-      const StepReport report = simulation_.step();
+      const StepReport report = simulation_.step(stopper());
+      if (report.status == Status::interrupted) return false;
       if (!is_success(report.status))
         throw InvalidInput(
             fmt::format("step {} of the scene did not converge ({}), so there is no state to compare "
@@ -75,9 +85,10 @@ class Comparer {
                         report.step, to_string(report.status)));
     }
     start_ = simulation_.snapshot();
+    return true;
   }
 
-  StepReport solve_reference() {
+  bool solve_reference(StepReport& report) {
     SolverOptions exact;
     exact.minimize = base_.minimize;
     exact.minimize.criterion = Criterion::scale;
@@ -85,12 +96,13 @@ class Comparer {
     exact.minimize.max_iterations = 1000;
     exact.minimize.line_search = {};
     simulation_.set_solver(exact);
-    const StepReport report = simulation_.step();
+    report = simulation_.step(stopper());
+    if (report.status == Status::interrupted) return false;
     if (!is_success(report.status))
       throw InvalidInput(fmt::format("Newton's method found no minimiser of step {} to compare with ({})",
                                      options_.step, to_string(report.status)));
     reference_ = simulation_.state().q;
-    return report;
+    return true;
   }
 
   MethodResult run(const std::string& method, SolverOptions solver, const StepReport& reference) {
@@ -102,7 +114,7 @@ class Comparer {
       simulation_.set_solver(solver);
       MethodResult result = run_once();
       if (i == 0 || result.seconds < best.seconds) best = std::move(result);
-      if (best.seconds > kWorthRepeating) break;
+      if (best.seconds > kWorthRepeating || !may_go_on()) break;
     }
     best.method = method;
     best.description = simulation_.solver_description();
@@ -128,7 +140,7 @@ class Comparer {
                              .hessians = hessians,
                              .seconds = seconds});
       stopwatch.lap();
-      return seconds < options_.max_seconds;
+      return seconds < options_.max_seconds && may_go_on();
     });
     result.seconds = seconds;
     if (!result.work.empty()) {

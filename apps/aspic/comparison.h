@@ -27,9 +27,10 @@ struct MethodResult {
 };
 
 struct Comparison {
-  int step = 1;                       // which was solved
-  StepReport reference;               // Newton's method as far as double precision goes
-  std::vector<MethodResult> results;  // in the order asked for
+  int step = 1;                                     // which was solved
+  StepReport reference;                             // Newton's method as far as double precision goes
+  std::vector<MethodResult> results;                // in the order asked for
+  bool has_reference = false, interrupted = false;  // then the methods that are missing were not tried to their end
 };
 
 struct ComparisonOptions {
@@ -37,6 +38,7 @@ struct ComparisonOptions {
   int step = 1;
   double max_seconds = 60;  // of one method; what takes longer is cut off, and says so
   std::function<void(const std::string& method)> begun = {};  // called before each method
+  Consent go_on = {};                                         // asked at every iteration; empty: always given
 };
 
 // Brings the simulation to the start of the step by its own method and solves it by each of them. Throws InvalidInput

@@ -25,7 +25,8 @@ Examples:
   aspic materials                           the materials and their formulas
 'aspic COMMAND --help' tells more about a command.
 
-Exit codes: 0 done, 1 internal error, 2 bad input, 3 not converged or a wrong derivative, 130 interrupted.)";
+Exit codes: 0 done, 1 internal error, 2 bad input, 3 not converged or a wrong derivative,
+4 time limit, 130 interrupted by ctrl-C, 143 by kill.)";
 
 constexpr char kOutputLost[] = "standard output: cannot be written; free some space or choose another disk";
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "aspic/interrupt.h"
 #include "aspic/minimize.h"
 #include "base/error.h"
 #include "optimize/test_functions.h"
@@ -51,7 +52,7 @@ Minimization minimize(const Problem& problem, const SolverOptions& options, cons
                                planar(live.x_next),
                                {live.tried.begin(), live.tried.end()}});
     if (show) show(done.iterations.back(), live);
-    return true;
+    return !interrupt_signal();
   };
   done.report = Minimizer().minimize(*problem.function, *direction, x, options.minimize, observe);
   done.end = planar(x);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "aspic/commands.h"
+#include "aspic/interrupt.h"
 #include "aspic/plot.h"
 #include "base/error.h"
 #include "optimize/solver.h"
@@ -152,7 +153,7 @@ std::string in_words(const Minimization& done) {
     case Status::inaccurate:  // of time steps only
       break;
   }
-  return "interrupted";
+  return fmt::format("interrupted after {} iterations", report.iterations);
 }
 
 // Norms go through abs, which takes the sign from what is not a number.
@@ -204,11 +205,13 @@ int run(const Arguments& arguments) {
   for (const fs::path& picture : {arguments.plot, arguments.model})
     if (!picture.empty()) require_drawable(picture);
   const Problem problem = problem_of(arguments);
+  catch_interrupts();
   Minimization done = minimize(problem, arguments);
   if (arguments.json)
     print_json_summary(problem, done);
   else
     print_summary(problem, done);
+  if (done.report.status == Status::interrupted) return exit_signal + interrupt_signal();
   const int code = is_success(done.report.status) ? exit_done : exit_unconverged;
   if (!arguments.model.empty()) draw_model(arguments.model, problem, done, arguments.iteration);
   if (!arguments.plot.empty()) {
@@ -255,7 +258,7 @@ Examples:
   aspic minimize --expression "cosh(x) + (y - x)^2" --start 2,-1
   aspic minimize --list
 
-Exit codes: 0 done, 2 bad input, 3 not converged.)");
+Exit codes: 0 done, 2 bad input, 3 not converged, 130 interrupted by ctrl-C, 143 by kill.)");
   command->add_option("FUNCTION", arguments->function, "One of --list");
   command->add_option("--expression", arguments->expression, "A formula of x and y instead");
   command->add_option("--start", arguments->start, "x,y where it begins");

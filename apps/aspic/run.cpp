@@ -13,9 +13,11 @@
 #include "aspic/run_report.h"
 #include "aspic/step_json.h"
 #include "aspic/summary.h"
+#include "base/deadline.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "dynamics/explanation.h"
+#include "dynamics/state_hash.h"
 #include "scene/run_directory.h"
 #include "scene/scene.h"
 #include "scene/trace.h"
@@ -29,6 +31,7 @@ struct Arguments {
   fs::path input, out;
   std::vector<std::string> overrides, landscapes;
   int threads = 0, steps = 0;  // 0: not given
+  double time_limit = 0;       // [s]; 0: not given
   bool force = false, resume = false, trace = false, quiet = false, json = false, allow_unconverged = false;
 };
 
@@ -106,8 +109,9 @@ int unconverged_before(const fs::path& directory, int steps) {
 // Takes the steps of one run and tells everyone who listens.
 class Runner {
  public:
-  Runner(const Arguments& arguments, Scene& scene, RunDirectory& directory)
+  Runner(const Arguments& arguments, Scene& scene, RunDirectory& directory, const Deadline& limit)
       : arguments_(arguments),
+        limit_(limit),
         scene_(scene),
         directory_(directory),
         human_(human_stream(arguments)),
@@ -117,10 +121,14 @@ class Runner {
     if (arguments.trace || !arguments.landscapes.empty()) start_trace();
   }
 
-  // Stops early when a signal asks for it; a step cut short is dropped, so what is written ends with a whole one.
+  // Stops early when a signal or the time limit asks for it; a step cut short is dropped, so what is written ends with
+  // a whole one.
   void run() {
     Simulation& simulation = scene_.simulation;
+    const Consent go_on = [] { return !interrupt_signal(); };
     while (simulation.steps_taken() < last_step_ && !interrupt_signal()) {
+      has_run_out_ = limit_.has_passed();
+      if (has_run_out_) break;
       iterations_.clear();
       const auto observe = [&](const LiveIteration& iteration) {
         iterations_.push_back(iteration);
@@ -128,8 +136,11 @@ class Runner {
         if (progress_) progress_->show(simulation.steps_taken() + 1, iteration);
         return !interrupt_signal();
       };
-      const StepReport report = simulation.step(observe, [] { return !interrupt_signal(); });
-      if (report.status == Status::interrupted) break;
+      const StepReport report = simulation.step(observe, go_on, limit_.left());
+      if (report.status == Status::interrupted) {
+        has_run_out_ = !interrupt_signal();
+        break;
+      }
       record(report);
       // The body stays where it was, and an explicit scheme, which has nothing else to try, would fail again.
       has_blown_up_ = report.status == Status::undefined && !simulation.is_implicit();
@@ -145,6 +156,7 @@ class Runner {
   }
 
   bool has_blown_up() const { return has_blown_up_; }
+  bool has_run_out() const { return has_run_out_; }
   const RunTotals& totals() const { return totals_; }
   std::FILE* human() const { return human_; }
   int last_step() const { return last_step_; }
@@ -208,11 +220,12 @@ class Runner {
   }
 
   const Arguments& arguments_;
+  const Deadline limit_;
   Scene& scene_;
   RunDirectory& directory_;
   std::FILE* human_;
   int last_step_, first_step_;
-  bool has_blown_up_ = false;
+  bool has_blown_up_ = false, has_run_out_ = false;
   std::optional<Progress> progress_;
   std::optional<Trace> trace_;
   std::vector<Iteration> iterations_;  // of the step under way; recorded once it is whole
@@ -230,13 +243,16 @@ void print_start(std::FILE* stream, const Arguments& arguments, const Scene& sce
   std::fflush(stream);
 }
 
-int exit_code(const Arguments& arguments, int unconverged) {
+int exit_code(const Arguments& arguments, bool has_run_out, int unconverged) {
   if (interrupt_signal()) return exit_signal + interrupt_signal();
+  if (has_run_out) return exit_time_limit;
   if (unconverged > 0 && !arguments.allow_unconverged) return exit_unconverged;
   return exit_done;
 }
 
 int run(const Arguments& arguments) {
+  const WallClock clock = steady_seconds;
+  const Deadline limit = arguments.time_limit > 0 ? Deadline(clock, arguments.time_limit) : Deadline();
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   landscapes(arguments);  // bad input is told before anything is written
   Scene scene = load(arguments);
@@ -245,7 +261,7 @@ int run(const Arguments& arguments) {
 
   const int earlier = unconverged_before(directory.path(), scene.simulation.steps_taken());
 
-  Runner runner(arguments, scene, directory);
+  Runner runner(arguments, scene, directory, limit);
   if (!arguments.quiet) print_start(runner.human(), arguments, scene, directory.path());
   runner.run();
   if (!arguments.quiet) {
@@ -254,13 +270,15 @@ int run(const Arguments& arguments) {
                   {.last_step = runner.last_step(),
                    .steps_taken = scene.simulation.steps_taken(),
                    .interrupted = interrupt_signal() != 0,
+                   .time_limit = runner.has_run_out() ? arguments.time_limit : 0,
                    .blown_up = runner.has_blown_up(),
                    .solver = scene.simulation.is_implicit() ? scene.simulation.solver_description() : "",
+                   .state_hash = state_hash(scene.simulation.state(), scene.simulation.model().numbering.vertex),
                    .directory = directory.path()});
   }
   write_run_report(directory.path(), scene, arguments.quiet ? nullptr : runner.human());
   if (runner.has_blown_up()) return exit_unconverged;  // an unfinished run is not a matter of allowing
-  return exit_code(arguments, earlier + runner.totals().unconverged);
+  return exit_code(arguments, runner.has_run_out(), earlier + runner.totals().unconverged);
 }
 
 }  // namespace
@@ -274,12 +292,13 @@ Examples:
   aspic run scenes/bunny.toml                     results in out/bunny
   aspic run beam.toml --set material.young=2e5 --set time.step=0.005 --out out/soft
   aspic run beam.toml --resume                    continues an interrupted run, to the same bits
+  aspic run beam.toml --time-limit 3600           at most an hour; --resume goes on
   aspic run beam.toml --json | jq .iterations     one line of JSON per step
   aspic run beam.toml --landscape 12:0            why is step 12 slow? its first iteration, looked at closely
 
 Exit codes: 0 done, 2 bad input, 3 some step did not converge (unless --allow-unconverged, or because its
 solver.time_budget was spent) or an explicit scheme blew up, which ends the run;
-130 interrupted by ctrl-C, 143 by kill: everything up to the last whole step is written.)");
+4 --time-limit came first; 130 interrupted by ctrl-C, 143 by kill: everything up to the last whole step is written.)");
   command->add_option("INPUT", arguments->input, "Scene (.toml), mesh, or with --resume a run directory")->required();
   command->add_option("--set", arguments->overrides, "Override a value: material.young=2e5; can be repeated")
       ->allow_extra_args(false);
@@ -287,6 +306,10 @@ solver.time_budget was spent) or an explicit scheme blew up, which ends the run;
       ->check(CLI::Range(1, 1024));
   command->add_option("--steps", arguments->steps, "Stop after this many steps of the run")
       ->check(CLI::Range(1, 1000000000));
+  command
+      ->add_option("--time-limit", arguments->time_limit,
+                   "Stop after so many seconds of wall time, dropping the step under way; --resume goes on")
+      ->check(CLI::Range(1e-3, 1e9));
   command->add_option("--out", arguments->out, "Directory of the results; out/NAME by default");
   command->add_flag("--force", arguments->force, "Replace the results of an earlier run");
   command->add_flag("--resume", arguments->resume, "Continue the run in the directory")->excludes("--force");

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/hash.h"
+
 namespace aspic::cli {
 
 std::string step_json(const StepReport& report, const Explanation& why, const Simulation& simulation) {
@@ -33,6 +35,7 @@ std::string step_json(const StepReport& report, const Explanation& why, const Si
       {"residual", report.residual},
       {"residual_threshold", report.residual_threshold},
       {"residual_round_off", report.residual_round_off},
+      {"decrement", report.decrement},
       {"worst_vertex", worst},
       {"worst_residual", report.worst_residual},
       {"min_det_F", report.min_det_F},
@@ -44,6 +47,9 @@ std::string step_json(const StepReport& report, const Explanation& why, const Si
       {"numerical_loss", report.numerical_loss},
       {"residual_work", report.residual_work},
       {"ledger_error", report.ledger_error},
+      {"energy_bound", to_string(report.energy_bound)},
+      {"energy_slack", report.energy_slack},
+      {"state_hash", hex_digits(report.state_hash)},
       {"seconds", report.seconds},
   };
   if (!is_success(report.status))

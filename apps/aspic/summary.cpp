@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "aspic/progress.h"
+#include "base/hash.h"
 
 namespace aspic::cli {
 namespace {
@@ -53,10 +54,39 @@ void print_results(std::FILE* stream, const std::filesystem::path& directory) {
   }
 }
 
+// Larger is worse: no success before a budget before a success, then by how far the residual missed its threshold.
+std::pair<int, double> badness(const StepReport& report) {
+  const int kind = is_success(report.status) ? 0 : report.status == Status::budget ? 1 : 2;
+  return {kind, report.residual_threshold > 0 ? report.residual / report.residual_threshold : report.residual};
+}
+
+std::string status_text(const RunTotals& totals) {
+  std::string text;
+  for (int i = 0; i < kStatusCount; ++i)
+    if (totals.by_status[i] > 0)
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", totals.by_status[i], to_string(static_cast<Status>(i)));
+  return text;
+}
+
+void print_certificate(std::FILE* stream, const RunTotals& totals) {
+  const StepReport& worst = *totals.worst;
+  fmt::print(stream, "status     {}; worst: step {}, {}, residual {:.3g} N", status_text(totals), worst.step,
+             to_string(worst.status), worst.residual);
+  if (worst.residual_threshold > 0) fmt::print(stream, " (wanted {:.3g} N)", worst.residual_threshold);
+  fmt::print(stream, "\n");
+  if (totals.bounds_held + totals.bounds_broken > 0)
+    fmt::print(stream, "energy     the bound of backward Euler held in {} of {} steps that have it\n",
+               totals.bounds_held, totals.bounds_held + totals.bounds_broken);
+}
+
 }  // namespace
 
 void RunTotals::add(const StepReport& report) {
   ++steps;
+  ++by_status[static_cast<size_t>(report.status)];
+  bounds_held += report.energy_bound == EnergyBound::holds;
+  bounds_broken += report.energy_bound == EnergyBound::broken;
+  if (!worst || badness(report) > badness(*worst)) worst = report;
   if (report.status == Status::budget) {
     ++out_of_time;
   } else if (!is_success(report.status)) {
@@ -77,12 +107,13 @@ void RunTotals::add(const StepReport& report) {
 }
 
 void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end) {
-  if (totals.steps == 0 && !end.interrupted) {
+  if (totals.steps == 0 && !end.interrupted && end.time_limit == 0) {
     fmt::print(stream, "nothing to do: step {} is taken already\n", end.steps_taken);
   } else {
     fmt::print(stream, "{}  {} of {} steps, to t = {:g} s\n",
-               end.interrupted || end.blown_up ? "stopped  " : "done     ", end.steps_taken, end.last_step,
-               totals.time);
+               end.interrupted || end.blown_up || end.time_limit > 0 ? "stopped  " : "done     ", end.steps_taken,
+               end.last_step, totals.time);
+    if (end.time_limit > 0) fmt::print(stream, "limit      --time-limit of {:g} s\n", end.time_limit);
   }
   if (totals.steps > 0) {
     fmt::print(stream, "converged  {} of {}; iterations per step: mean {:.1f}, most {}\n",
@@ -91,6 +122,7 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
     if (totals.out_of_time > 0)
       fmt::print(stream, "budget     {} steps ended by solver.time_budget: these results depend on the clock\n",
                  totals.out_of_time);
+    print_certificate(stream, totals);
     const auto per_step = [&](long count) { return static_cast<double>(count) / totals.steps; };
     fmt::print(stream,
                "work       per step: {:.1f} values, {:.1f} gradients, {:.1f} Hessians, {:.1f} factorizations, {:.1f} "
@@ -106,8 +138,9 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
     fmt::print(stream, "took       {} in steps, {} each; peak memory {:.0f} MB\n", duration_text(totals.seconds),
                step_duration_text(totals.seconds / totals.steps), peak_megabytes());
   }
+  fmt::print(stream, "state      {} after step {}\n", hex_digits(end.state_hash), end.steps_taken);
   print_results(stream, end.directory);
-  if (end.interrupted) {
+  if (end.interrupted || end.time_limit > 0) {
     fmt::print(stream, "continue   aspic run {} --resume\n", end.directory.string());
   }
 }

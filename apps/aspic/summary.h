@@ -1,7 +1,10 @@
 // What a run amounted to, and how to look at its results.
 #pragma once
+#include <array>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "dynamics/step_report.h"
@@ -11,6 +14,9 @@ namespace aspic::cli {
 struct RunTotals {
   int steps = 0, unconverged = 0;
   int out_of_time = 0;  // ended by solver.time_budget, which was asked for: not among the unconverged
+  std::array<int, kStatusCount> by_status = {};
+  int bounds_held = 0, bounds_broken = 0;  // of energy, where backward Euler guarantees one
+  std::optional<StepReport> worst;         // least of a success, then furthest from its threshold
   long iterations = 0;
   long values = 0, gradients = 0, hessians = 0, factorizations = 0, products = 0, cycles = 0;
   int most_iterations = 0;
@@ -23,8 +29,11 @@ struct RunTotals {
 
 struct RunEnd {
   int last_step = 0, steps_taken = 0;
-  bool interrupted = false, blown_up = false;
-  std::string solver;  // the methods and what they chose, and why; empty: none was needed
+  bool interrupted = false;
+  double time_limit = 0;  // that ended the run [s]; 0: it did not
+  bool blown_up = false;
+  std::string solver;            // the methods and what they chose, and why; empty: none was needed
+  std::uint64_t state_hash = 0;  // of the last state
   std::filesystem::path directory;
 };
 

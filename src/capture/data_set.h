@@ -2,6 +2,7 @@
 // (docs/capture_format.md).
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,8 +37,10 @@ struct DataSet {
 // one per line.
 DataSet read_data_set(const std::filesystem::path& path);
 // Reading gives the same data to the last bit, when the axis of each pose is that of the touch, turned by the rotation
-// of the pose. Throws InvalidInput.
-void write_data_set(const std::filesystem::path& folder, const DataSet& data);
+// of the pose. A data set that is there already is replaced as a whole, or kept. `beside` writes further files into the
+// folder that it is given, which appear together with the data. Throws InvalidInput.
+using WriteBeside = std::function<void(const std::filesystem::path& folder)>;
+void write_data_set(const std::filesystem::path& folder, const DataSet& data, const WriteBeside& beside = {});
 
 struct DataFinding {
   Severity severity = Severity::note;

@@ -46,16 +46,13 @@ class DataSetWriter {
   DataSetWriter(const fs::path& folder, const DataSet& data) : folder_(folder), data_(data) {}
 
   void write() {
-    std::error_code error;
-    fs::create_directories(folder_, error);
-    if (error) throw InvalidInput(folder_.string() + ": cannot be made (" + error.message() + "); choose another");
     collect();
     write_mesh(folder_ / "rest.msh", to_user(data_.numbering, data_.experiment.mesh));
     write_markers();
     write_cases();
     write_positions();
     for (size_t p = 0; p < patches_.size(); ++p) write_patch(p);
-    write_settings();  // last: without it the folder is no data set
+    write_settings();
   }
 
  private:
@@ -182,6 +179,31 @@ class DataSetWriter {
 
 }  // namespace
 
-void write_data_set(const fs::path& folder, const DataSet& data) { DataSetWriter(folder, data).write(); }
+// Written beside what it replaces, which is touched only once everything is on the disk. Without capture.toml the
+// folder is no data set, so that goes first and comes last: never do files of two data sets look like one.
+void write_data_set(const fs::path& folder, const DataSet& data, const WriteBeside& beside) {
+  const fs::path unfinished = folder / ".aspic-unfinished", settings = "capture.toml";
+  std::error_code error;
+  fs::remove_all(unfinished, error);
+  fs::create_directories(unfinished, error);
+  if (error) throw InvalidInput(folder.string() + ": cannot be made (" + error.message() + "); choose another");
+  try {
+    DataSetWriter(unfinished, data).write();
+    if (beside) beside(unfinished);
+  } catch (...) {
+    fs::remove_all(unfinished, error);
+    throw;
+  }
+  std::vector<fs::path> names;
+  for (const auto& entry : fs::directory_iterator(unfinished))
+    if (entry.path().filename() != settings) names.push_back(entry.path().filename());
+  names.push_back(settings);
+  fs::remove(folder / settings, error);
+  for (const fs::path& name : names) {
+    fs::rename(unfinished / name, folder / name, error);
+    if (error) throw InvalidInput((folder / name).string() + ": cannot be written (" + error.message() + ")");
+  }
+  fs::remove(unfinished, error);
+}
 
 }  // namespace aspic

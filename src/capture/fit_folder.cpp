@@ -99,7 +99,11 @@ FitFolder FitFolder::open(const fs::path& material, const std::string& options, 
   std::error_code error;
   fs::create_directories(path, error);
   if (error) throw InvalidInput(path.string() + ": cannot be created: " + error.message());
-  for (const fs::path& file : journals(path)) remove_file(file);
+  // Until it is finished there is a journal, so that a fit that was killed at once does not pass for a complete one.
+  const fs::path begun = path / "begun.journal";
+  write_file(begun, "");
+  for (const fs::path& file : journals(path))
+    if (file != begun) remove_file(file);
   for (const char* name : {"history.csv", "weights.csv", "report.html"})
     if (fs::exists(path / name)) remove_file(path / name);
   write_file(options_file(path), options);

@@ -14,6 +14,7 @@ class BackwardEuler : public Integrator {
   std::string_view name() const override { return "backward_euler"; }
   int order() const override { return 1; }
   bool is_implicit() const override { return true; }
+  bool is_backward_euler() const override { return true; }
 
   StepSolve advance(const StepTools& tools, State& end, StepForces& forces) override {
     StepSolve solve;
@@ -110,6 +111,7 @@ class QuasiStatic : public Integrator {
     add_work(lead, solve.work);
     if (!judges_direction(tools.options.criterion)) solve.threshold = report.threshold;
     solve.round_off = report.gradient_round_off;
+    solve.decrement = report.decrement;
     std::fill(end.qdot.begin(), end.qdot.end(), 0.0);
     forces.add(tools.E, 1, end.q, {}, solve.work);
     end.time = tools.end_time;

@@ -16,6 +16,12 @@ MinimizeOptions one_iteration(const MinimizeOptions& options) {
   return one;
 }
 
+void note_end(const IncrementalPotential& E, const StageOptions& options, const MinimizeReport& report,
+              StepSolve& solve) {
+  solve.round_off += options.weight * (report.gradient_round_off / E.gradient_unit());
+  solve.decrement = std::max(solve.decrement, report.decrement / E.gradient_unit());
+}
+
 }  // namespace
 
 // Pinned vertices: with x'' known, q~ = x(t*) - beta^2 x'' makes their inertia M_fp x'' on the free ones, and
@@ -55,7 +61,7 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
     MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, minimize, tools.observe);
     // The scheme asks for one iteration, not for a small gradient; what is left over stays in the report.
     if (report.status == Status::iteration_limit) report.status = Status::converged;
-    solve.round_off += options.weight * (report.gradient_round_off / tools.E.gradient_unit());
+    note_end(tools.E, options, report, solve);
     return report;
   }
   MinimizeReport lead;
@@ -71,7 +77,7 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
   MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, guess.value, minimize, tools.observe);
   if (!judges_direction(minimize.criterion))
     solve.threshold += options.weight * (report.threshold / tools.E.gradient_unit());
-  solve.round_off += options.weight * (report.gradient_round_off / tools.E.gradient_unit());
+  note_end(tools.E, options, report, solve);
   add_work(lead, report);
   return report;
 }

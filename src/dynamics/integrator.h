@@ -49,6 +49,7 @@ struct StepSolve {
   MinimizeReport work = {.status = Status::converged};
   double threshold = 0;  // of |r| over the free vertices, that the solves were asked for [N]
   double round_off = 0;  // the part of |r| that is noise [N]
+  double decrement = 0;  // the largest of its stages [J]
   InitialGuess guess = InitialGuess::none;
 
   // False when there is nothing to go on from.
@@ -65,6 +66,7 @@ class Integrator {
   virtual bool is_multistep() const { return false; }  // uses StepTools::previous, a step of the same length ago
   virtual bool chooses_guess() const { return is_implicit(); }  // whether StepTools::guess is heeded
   virtual bool takes_one_iteration() const { return false; }    // of Newton's method, in place of a minimisation
+  virtual bool is_backward_euler() const { return false; }      // however its E is minimised
   // Gives the pinned vertices of the first state the velocities that the scheme expects there.
   virtual void set_pin_velocity(const Pins&, double /* h */, State&) const {}
   // Writes the state at the end of the step, and what acted in it.

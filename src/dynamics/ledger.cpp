@@ -76,7 +76,8 @@ void Ledger::note_worst_vertex(const Pins& pins, StepReport& report) const {
   report.worst_residual = most;
 }
 
-void Ledger::add(const StepTools& tools, int order, const State& end, const StepForces& forces, StepReport& report) {
+BoundedEnergies Ledger::add(const StepTools& tools, int order, const State& end, const StepForces& forces,
+                            StepReport& report) {
   const State& start = tools.start;
   const size_t n = end.q.size();
   for (auto* v : {&Ma_, &momentum_, &residual_}) v->assign(n, 0.0);
@@ -87,11 +88,14 @@ void Ledger::add(const StepTools& tools, int order, const State& end, const Step
   tools.model.mass->multiply(forces.acceleration, Ma_);
 
   double residual_squared = 0, reaction_work = 0, residual_work = 0;
-  double inertia_work = 0, gradient_work = 0, damping_work = 0;
+  double inertia_work = 0, gradient_work = 0, damping_work = 0, jump = 0;
+  bool pins_moved = false;
   for (size_t i = 0; i < n; ++i) {
     const double dx = end.q[i] - start.q[i];
     const double r = residual_[i] = Ma_[i] + forces.gradient[i] + forces.damping[i];
     const bool pinned = tools.pins.holds(static_cast<int>(i / 3));
+    pins_moved |= pinned && dx != 0;
+    jump += 0.5 * tools.h * tools.h * forces.acceleration[i] * Ma_[i];
     (pinned ? reaction_work : residual_work) += r * dx;
     if (!pinned) residual_squared += r * r;
     inertia_work += Ma_[i] * dx;
@@ -122,6 +126,13 @@ void Ledger::add(const StepTools& tools, int order, const State& end, const Step
   report.numerical_loss += loss;
   report.residual_work += residual_work;
   report.ledger_error += kinetic_gain + potential_gain - pin_work + damping_work + loss - residual_work;
+
+  double magnitude = report.kinetic + kinetic_before + jump + std::abs(potential_before);
+  for (const double V : report.potential) magnitude += std::abs(V);
+  return {.allowed = potential_before + kinetic_before + target,
+          .reached = report.potential_total + jump,
+          .magnitude = magnitude,
+          .pins_moved = pins_moved};
 }
 
 }  // namespace aspic

@@ -20,8 +20,10 @@ class Ledger {
   // next one starts, and evaluates only those of its end.
   void begin(const Model& model, std::span<const double> q);
   // Adds the works of a step that started in tools.start, was acted on by `forces` and ended in `end` to the report,
-  // whose energies become those of `end`. Moving targets then stand where they are at the end of the step.
-  void add(const StepTools& tools, int order, const State& end, const StepForces& forces, StepReport& report);
+  // whose energies become those of `end`. Moving targets then stand where they are at the end of the step. What it
+  // returns is about a step of backward Euler.
+  BoundedEnergies add(const StepTools& tools, int order, const State& end, const StepForces& forces,
+                      StepReport& report);
 
  private:
   double target_work(const StepTools& tools, int order, const State& end, double& loads_before, StepReport& report);

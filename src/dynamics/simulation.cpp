@@ -10,6 +10,7 @@
 #include "dynamics/integrator.h"
 #include "dynamics/ledger.h"
 #include "dynamics/simulation_checks.h"
+#include "dynamics/state_hash.h"
 
 namespace aspic {
 namespace {
@@ -60,23 +61,49 @@ struct Simulation::Impl {
     return {solve, before, has_previous ? &previous : nullptr, options.h, end_time};
   }
 
+  // The deadline of the step under way; true: what misses it is dropped.
+  bool set_deadline(double time_limit) {
+    const double budget = options.solver.time_budget;
+    const bool is_limit = std::isfinite(time_limit) && !(budget > 0 && budget <= time_limit);
+    if (is_limit)
+      minimize.deadline = Deadline(options.clock, time_limit);
+    else if (budget > 0)
+      minimize.deadline = Deadline(options.clock, budget).earlier_by(report_seconds);
+    return is_limit;
+  }
+
+  StepReport limited_step(const IterationObserver& observe, const Consent& go_on, double time_limit) {
+    minimize = options.solver.minimize;
+    if (!set_deadline(time_limit)) return step(observe, go_on);
+    // A direction that the deadline cut short is another one than without it, and so is all that follows.
+    const auto whole = [&](const LiveIteration& iteration) {
+      return (!observe || observe(iteration)) && !iteration.direction.stopped;
+    };
+    const auto in_time = [&] { return (!go_on || go_on()) && !minimize.deadline.has_passed(); };
+    is_limited = true;
+    StepReport report = step(whole, in_time);
+    is_limited = false;
+    return report;
+  }
+
   StepReport step(const IterationObserver& observe, const Consent& go_on) {
     Stopwatch stopwatch;
-    minimize = options.solver.minimize;
-    if (options.solver.time_budget > 0)
-      minimize.deadline = Deadline(options.clock, options.solver.time_budget).earlier_by(report_seconds);
     before = state;
     const StepTools with = tools(observe, go_on, end_of_next_step());
     StepReport report;
-    const StepSolve solved = adaptive ? adaptive->advance(*integrator, with, ledger, state, report)
-                                      : integrator->advance(with, state, forces);
+    StepSolve solved = adaptive ? adaptive->advance(*integrator, with, ledger, state, report)
+                                : integrator->advance(with, state, forces);
+    if (is_limited && solved.work.status == Status::budget) solved.work.status = Status::interrupted;
     const double advanced = minimize.deadline.now();
     describe(solved, report);
     const bool is_interrupted = solved.work.status == Status::interrupted;
     if (!can_go_on(report.status)) {
       take_back(with, is_interrupted ? before.time : with.end_time, report);
     } else {
-      if (!adaptive) ledger.add(with, integrator->order(), state, forces, report);
+      if (!adaptive) {
+        const BoundedEnergies bounded = ledger.add(with, integrator->order(), state, forces, report);
+        if (integrator->is_backward_euler()) judge(bounded, solved, report);
+      }
       if (!is_finite(report)) {
         if (is_success(report.status)) report.status = Status::undefined;
         take_back(with, with.end_time, report);
@@ -90,8 +117,14 @@ struct Simulation::Impl {
     report.min_det_F = INFINITY;
     for (const auto& V : model.elasticity) report.min_det_F = std::min(report.min_det_F, V->min_det_F(state.q));
     report_seconds = minimize.deadline.now() - advanced;
+    report.state_hash = state_hash(state, model.numbering.vertex);
     report.seconds = stopwatch.lap();
     return report;
+  }
+
+  void judge(const BoundedEnergies& bounded, const StepSolve& solved, StepReport& report) const {
+    report.energy_bound = energy_bound(bounded, solved.work.value / (options.h * options.h));
+    report.energy_slack = bounded.allowed - bounded.reached;
   }
 
   // A minimisation that stopped early leaves a state to go on from; a step divided for its accuracy does not.
@@ -107,7 +140,8 @@ struct Simulation::Impl {
   // begins anew.
   void take_back(const StepTools& with, double time, StepReport& report) {
     report.residual = report.pin_work = report.damping_loss = 0;
-    report.numerical_loss = report.residual_work = report.ledger_error = 0;
+    report.numerical_loss = report.residual_work = report.ledger_error = report.energy_slack = 0;
+    report.energy_bound = EnergyBound::none;
     report.target_work.clear();
     state = before;
     state.time = time;
@@ -131,6 +165,7 @@ struct Simulation::Impl {
     report.objective_gradient = solved.work.gradient_norm;
     report.residual_threshold = solved.threshold;
     report.residual_round_off = solved.round_off;
+    report.decrement = solved.decrement;
     report.initial_guess = solved.guess;
   }
 
@@ -151,6 +186,7 @@ struct Simulation::Impl {
   Ledger ledger;
   int steps_taken = 0;
   MinimizeOptions minimize;   // of the step under way
+  bool is_limited = false;    // its deadline is one that drops it
   double report_seconds = 0;  // what the report of the last step took, if it had a time budget
 };
 
@@ -165,8 +201,8 @@ Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
-StepReport Simulation::step(const IterationObserver& observe, const Consent& go_on) {
-  return impl_->step(observe, go_on);
+StepReport Simulation::step(const IterationObserver& observe, const Consent& go_on, double time_limit) {
+  return impl_->limited_step(observe, go_on, time_limit);
 }
 const Model& Simulation::model() const { return impl_->model; }
 const State& Simulation::state() const { return impl_->state; }

@@ -43,8 +43,10 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  // A step that the observer stops, or that may not go on, is dropped with the status `interrupted`.
-  StepReport step(const IterationObserver& observe = {}, const Consent& go_on = {});
+  // A step that the observer stops, that may not go on, or that takes longer than `time_limit` [s] of the options'
+  // clock is dropped with the status `interrupted`. A limit that is not met changes no bit; within a factorisation
+  // nothing is stopped.
+  StepReport step(const IterationObserver& observe = {}, const Consent& go_on = {}, double time_limit = kNoTimeLimit);
   // From the next step on; both throw InvalidInput as the constructor does, and change nothing then.
   void set_solver(const SolverOptions& solver);
   void set_pins(std::vector<Pin> pins);

@@ -1,15 +1,19 @@
 // What is known of a step after it was taken. A step that did not converge says so here.
 #pragma once
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "dynamics/energy_bound.h"
 #include "dynamics/initial_guess.h"
 #include "optimize/minimize.h"
 
 namespace aspic {
 
 using Consent = std::function<bool()>;  // asked between the parts of an adaptive step; empty: always given
+inline constexpr double kNoTimeLimit = std::numeric_limits<double>::infinity();
 
 struct StepReport : Work {  // of all its solves, and of what is reported here
   int step = 0;             // 1 for the first
@@ -27,6 +31,7 @@ struct StepReport : Work {  // of all its solves, and of what is reported here
   double residual_round_off = 0;  // the part of a residual that double precision cannot tell from zero [N]
   int worst_vertex = -1;          // where most of the residual is left
   double worst_residual = 0;      // its size there [N]
+  double decrement = 0;           // -g.d / 2 of the last iteration, of solves the largest; 0 without one [J]
   double min_det_F = 0;
 
   // The ledger: kinetic + potential changes by pin_work - damping_loss - numerical_loss + residual_work. [J]
@@ -39,7 +44,10 @@ struct StepReport : Work {  // of all its solves, and of what is reported here
   double numerical_loss = 0;        // by the integrator, in this step
   double residual_work = 0;         // by the forces that the solve left over
   double ledger_error = 0;          // what does not add up
-  double seconds = 0;               // wall time of the step
+  EnergyBound energy_bound = EnergyBound::none;
+  double energy_slack = 0;       // by how much the bound holds; 0 where there is none [J]
+  std::uint64_t state_hash = 0;  // of the state at the end, see state_hash()
+  double seconds = 0;            // wall time of the step
 };
 
 }  // namespace aspic

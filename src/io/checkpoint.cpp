@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "io/atomic_file.h"
 #include "io/number_text.h"
 
@@ -181,11 +182,9 @@ NewestCheckpoint read_newest_checkpoint(const fs::path& path) {
 }
 
 std::string fingerprint(std::string_view text) {
-  uint64_t hash = 0xcbf29ce484222325;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  std::string digits(16, '0');
-  for (int i = 15; i >= 0; --i, hash >>= 4) digits[i] = "0123456789abcdef"[hash & 15];
-  return digits;
+  Fnv1a hash;
+  hash.add(text.data(), text.size());
+  return hex_digits(hash.value());
 }
 
 }  // namespace aspic

@@ -52,8 +52,8 @@ CsvRow& CsvRow::add(int number) {
 
 CsvFile CsvFile::create(const std::filesystem::path& path, const std::vector<std::string>& columns) {
   CsvFile table;
-  table.file_ = OutputFile::create(path);
-  table.file_.append(head_line(columns));
+  write_file(path, head_line(columns));  // never without its head
+  table.file_ = OutputFile::open_existing(path);
   return table;
 }
 

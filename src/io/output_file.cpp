@@ -41,7 +41,12 @@ OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
 }
 
 void OutputFile::append(std::string_view bytes) {
-  write_at(size_, bytes);
+  try {
+    write_at(size_, bytes);
+  } catch (const InvalidInput&) {  // a disk may take a part of it
+    [[maybe_unused]] const int best_effort = ::ftruncate(descriptor_, static_cast<off_t>(size_));
+    throw;
+  }
   size_ += bytes.size();
 }
 

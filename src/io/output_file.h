@@ -16,7 +16,7 @@ class OutputFile {
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&& other) noexcept;
 
-  void append(std::string_view bytes);                     // one system call for a short text: written whole or not
+  void append(std::string_view bytes);                     // written whole or, where the system refuses, not at all
   void write_at(uint64_t offset, std::string_view bytes);  // overwrites
   void truncate(uint64_t size);                            // keeps the first `size` bytes
   void sync();                                             // returns when the bytes are on the disk

@@ -124,6 +124,7 @@ void add(const Iteration& iteration, MinimizeReport& report) {
   report.projected_hessians += direction.projected;
   report.projected_elements += direction.projected_elements;
   report.retreats += iteration.retreats;
+  report.decrement = iteration.decrement;
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ enum class Status {
   undefined,        // value or gradient is not finite at the start
   inaccurate,       // not of a minimisation: the smallest part of an adaptive time step misses its tolerance
 };
+inline constexpr int kStatusCount = 9;
 std::string_view to_string(Status status);
 inline bool is_success(Status status) { return status == Status::converged || status == Status::round_off; }
 
@@ -78,6 +79,7 @@ struct MinimizeReport : Work {
   double value = 0, gradient_norm = 0, first_gradient_norm = 0;
   double reached = 0, threshold = 0;  // what the criterion looks at (|g|, or a size of d), and what was asked for
   double gradient_round_off = 0;      // the part of |g| that is noise
+  double decrement = 0;               // -g.d / 2 of the last iteration; 0 without one
   int trials = 0, retreats = 0, projected_hessians = 0, projected_elements = 0;
 };
 

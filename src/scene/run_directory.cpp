@@ -38,7 +38,7 @@ void make_room(const RunLayout& layout, const Scene& scene, ExistingRun existing
   std::error_code error;
   if (!fs::exists(layout.root(), error)) return create_folder(layout.root());
   if (!fs::is_directory(layout.root(), error)) throw InvalidInput(name + ": is a file; results need a directory");
-  if (fs::is_empty(layout.root(), error)) return;
+  if (fs::is_empty(layout.root(), error) || layout.is_barely_begun()) return;
   if (!layout.holds_run()) {
     throw InvalidInput(name + ": is not empty and holds no run; choose another directory, or empty this one");
   }
@@ -169,9 +169,9 @@ struct RunDirectory::Impl {
     if (output.vtu) write_pvd(layout.index(), frames);
   }
 
-  void add_frame(const Simulation& simulation) {
+  void add_frame(const Simulation& simulation, const StepReport* report) {
     const int frame = static_cast<int>(frame_times.size());
-    if (output.vtu) write_frame(layout.root() / RunLayout::frame_file(frame), simulation);
+    if (output.vtu) write_frame(layout.root() / RunLayout::frame_file(frame), simulation, report);
     skins->add_frame(frame, simulation.state().q);
     frame_times.push_back(simulation.state().time);
     skins->write_usd_when_doubled(frame_times);
@@ -216,7 +216,7 @@ RunDirectory RunDirectory::create(const fs::path& path, const Scene& scene, Exis
   if (output.vtu || output.obj || output.ply) create_folder(layout.frames());
   if ((output.pc2 || output.usd) && !scene.skins.empty()) create_folder(layout.skins());
   impl->skins = RunSkins::create(layout, scene);
-  impl->add_frame(scene.simulation);
+  impl->add_frame(scene.simulation, nullptr);
   impl->save_checkpoint(scene.simulation);
   return RunDirectory(std::move(impl));
 }
@@ -225,6 +225,9 @@ RunDirectory RunDirectory::resume(const fs::path& path, Scene& scene) {
   auto impl = std::make_unique<Impl>(RunLayout(path), scene);
   const RunLayout& layout = impl->layout;
   if (!layout.holds_run()) throw InvalidInput(path.string() + ": holds no run to continue");
+  if (!fs::exists(layout.checkpoint()) && !fs::exists(previous_checkpoint(layout.checkpoint())))
+    throw InvalidInput(path.string() +
+                       ": the run was ended before its first checkpoint, so nothing is lost; start it with --force");
   const NewestCheckpoint newest = read_newest_checkpoint(layout.checkpoint());
   check_same_scene(layout, scene, newest.checkpoint);
   scene.simulation.restore(to_snapshot(newest.checkpoint, scene.simulation.model()));
@@ -248,7 +251,7 @@ void RunDirectory::on_iteration(int step, const Iteration& iteration) { impl_->t
 void RunDirectory::on_step(const StepReport& report, const Simulation& simulation) {
   impl_->tables.add(report);
   const bool has_frame = impl_->is_frame_due(report.time);
-  if (has_frame) impl_->add_frame(simulation);
+  if (has_frame) impl_->add_frame(simulation, &report);
   if (impl_->is_checkpoint_due(has_frame)) impl_->save_checkpoint(simulation);
 }
 
@@ -268,7 +271,8 @@ fs::path scene_of_run(const fs::path& run) {
   const RunLayout layout(run);
   std::error_code error;
   if (!fs::exists(layout.scene(), error)) {
-    throw InvalidInput(run.string() + ": holds no run to continue (there is no scene.toml in it)");
+    throw InvalidInput(run.string() + ": holds no run to continue (there is no scene.toml in it)" +
+                       (layout.holds_run() ? "; it was ended before it began: start it with --force" : ""));
   }
   return layout.scene();
 }

@@ -3,9 +3,11 @@
 #include <filesystem>
 
 #include "dynamics/simulation.h"
+#include "dynamics/step_report.h"
 
 namespace aspic {
 
-void write_frame(const std::filesystem::path& path, const Simulation& simulation);
+// `report` of the step that ended there becomes numbers of the whole file; null for the start.
+void write_frame(const std::filesystem::path& path, const Simulation& simulation, const StepReport* report);
 
 }  // namespace aspic

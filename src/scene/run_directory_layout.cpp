@@ -111,9 +111,19 @@ bool RunLayout::holds_run() const {
   return std::getline(in, head) && head.starts_with(kStepsHead);
 }
 
+bool RunLayout::is_barely_begun() const {
+  std::error_code error;
+  for (fs::directory_iterator entry(root_, error), end; !error && entry != end; entry.increment(error))
+    if (fs::is_directory(entry->symlink_status()) ? !fs::is_empty(entry->path(), error) : !is_unfinished(entry->path()))
+      return false;
+  return !error;
+}
+
 void RunLayout::remove_run(const std::vector<fs::path>& needed) const {
   remove_unfinished();
-  std::vector<fs::path> files = named_inputs(root_, scene());
+  // First what would let it be continued, or names files that are about to go.
+  std::vector<fs::path> files = {checkpoint(), previous_checkpoint(checkpoint()), index(), usd(), report()};
+  for (const fs::path& file : named_inputs(root_, scene())) files.push_back(file);
   for (const fs::path& file : files_in(frames(), [](const fs::path& f) { return frame_number(f).has_value(); })) {
     files.push_back(file);
   }
@@ -122,11 +132,8 @@ void RunLayout::remove_run(const std::vector<fs::path>& needed) const {
   for (const fs::path& folder : folders) {
     for (const fs::path& file : files_in(folder, is_trace_file)) files.push_back(file);
   }
-  for (const fs::path& file :
-       {scene(), iterations(), timings(), checkpoint(), previous_checkpoint(checkpoint()), index(), usd(), report()}) {
-    files.push_back(file);
-  }
-  files.push_back(steps());  // last: without it the directory is no run any more
+  // The table of steps last: without it the directory is no run any more.
+  files.insert(files.end(), {scene(), iterations(), timings(), steps()});
   for (const fs::path& file : files) {
     const auto is_same = [&](const fs::path& other) {
       std::error_code error;

@@ -28,7 +28,8 @@ class RunLayout {
   std::filesystem::path skin_rest(const std::string& skin) const { return skins() / ("skin_" + skin + ".obj"); }
   std::filesystem::path skin_cache(const std::string& skin) const { return skins() / ("skin_" + skin + ".pc2"); }
 
-  bool holds_run() const;  // a steps.csv with the head that runs write
+  bool holds_run() const;        // a steps.csv with the head that runs write
+  bool is_barely_begun() const;  // nothing but what a run that was killed at once had begun to write
   // Every file of the run, its inputs included, except those in `needed`.
   void remove_run(const std::vector<std::filesystem::path>& needed) const;
   void remove_frames_from(int first) const;  // of bodies and skins

@@ -1,5 +1,6 @@
 #include "scene/run_directory_tables.h"
 
+#include "base/hash.h"
 #include "scene/run_directory_layout.h"
 
 namespace aspic {
@@ -32,8 +33,8 @@ std::vector<std::string> step_columns(const std::vector<std::string>& potential_
                                       "min_det_F",
                                       "kinetic"};
   for (const std::string& name : potential_names) columns.push_back("potential_" + name);
-  for (const char* name :
-       {"potential_total", "pin_work", "damping_loss", "numerical_loss", "residual_work", "ledger_error"}) {
+  for (const char* name : {"potential_total", "pin_work", "damping_loss", "numerical_loss", "residual_work",
+                           "ledger_error", "decrement", "energy_bound", "energy_slack", "state_hash"}) {
     columns.push_back(name);
   }
   return columns;
@@ -87,7 +88,8 @@ void RunTables::add(const StepReport& report) {
   row.add(report.residual).add(report.residual_threshold).add(report.min_det_F).add(report.kinetic);
   for (const double energy : report.potential) row.add(energy);
   row.add(report.potential_total).add(report.pin_work).add(report.damping_loss).add(report.numerical_loss);
-  row.add(report.residual_work).add(report.ledger_error);
+  row.add(report.residual_work).add(report.ledger_error).add(report.decrement);
+  row.add(to_string(report.energy_bound)).add(report.energy_slack).add(hex_digits(report.state_hash));
   steps_.append(row);
   timings_.append(CsvRow().add(report.step).add(report.seconds));
 }

@@ -37,17 +37,6 @@ bool is_below(const fs::path& file, const fs::path& top) {
 
 }  // namespace
 
-void Fingerprint::add(const void* bytes, size_t count) {
-  const auto* byte = static_cast<const unsigned char*>(bytes);
-  for (size_t i = 0; i < count; ++i) hash_ = (hash_ ^ byte[i]) * 1099511628211u;
-}
-
-std::string Fingerprint::text() const {
-  std::string digits(16, '0');
-  for (int i = 0; i < 16; ++i) digits[15 - i] = "0123456789abcdef"[(hash_ >> (4 * i)) & 15];
-  return "fnv1a:" + digits;
-}
-
 std::string fingerprint_of(const TetMesh& mesh) {
   Fingerprint hash;
   hash.add(mesh.rest.data(), mesh.rest.size() * sizeof(Vec3d));

@@ -5,20 +5,15 @@
 #include <utility>
 #include <vector>
 
+#include "base/hash.h"
 #include "mesh/tet_mesh.h"
 #include "scene/value.h"
 
 namespace aspic {
 
-// 64-bit FNV-1a of bytes: names contents, protects from mistakes, not from malice.
-class Fingerprint {
+class Fingerprint : public Fnv1a {
  public:
-  void add(const void* bytes, size_t count);
-  std::string text() const;  // "fnv1a:0123456789abcdef"
-  std::uint64_t value() const { return hash_; }
-
- private:
-  std::uint64_t hash_ = 14695981039346656037u;
+  std::string text() const { return "fnv1a:" + hex_digits(value()); }  // "fnv1a:0123456789abcdef"
 };
 std::string fingerprint_of(const TetMesh& mesh);
 std::string fingerprint_of_file(const std::filesystem::path& path);

@@ -1,0 +1,423 @@
+#!/usr/bin/env python3
+"""Runs that are killed, interrupted, out of time, out of disk: what is on the disk can be opened, and goes on to the
+same bits.
+
+usage: ASPIC=path/to/aspic crash_test.py [TestCase...]
+"""
+import csv
+import filecmp
+import json
+import os
+import random
+import re
+import resource
+import shutil
+import signal
+import struct
+import subprocess
+import time
+import unittest
+import xml.etree.ElementTree
+import zlib
+
+from cli_test import ASPIC, BENCH, CUBE, CommandLine
+from fit_test import QUICK, FitCommand
+
+RUN_KILLS, OTHER_KILLS = 200, 24
+NOBODY = 65534
+EVERY_STEP = "[output]\nevery = 0\ncheckpoint_every = 0\n"
+
+
+def checkpoint(path):
+    """{name: numbers} of a checkpoint; raises where a byte is wrong."""
+    data = path.read_bytes()
+    assert data[:8] == b"ASPICCHK" and struct.unpack("<Q", data[16:24])[0] == len(data), f"{path}: cut short"
+    assert zlib.crc32(data[:-4]) == struct.unpack("<I", data[-4:])[0], f"{path}: wrong checksum"
+    at, found = 24, {}
+
+    def take(count):
+        nonlocal at
+        at += count
+        return data[at - count:at]
+
+    integer = lambda: struct.unpack("<Q", take(8))[0]
+    take(integer())  # the fingerprint
+    for _ in range(integer()):
+        name = take(integer()).decode()
+        found[name] = struct.unpack("<q", take(8))[0]
+    for _ in range(integer()):
+        name, count = take(integer()).decode(), integer()
+        found[name] = take(8 * count)
+    return found
+
+
+def state_hash(state):
+    """As docs/determinism.md describes it."""
+    value = 0xCBF29CE484222325
+    for name in ("q", "qdot"):
+        for (word,) in struct.iter_unpack("<Q", state[name]):
+            value = ((value ^ word) * 0x100000001B3) % 2**64
+            value ^= value >> 32
+    return f"{value:016x}"
+
+
+class Crash(CommandLine):
+    def scene(self, name="beam.toml", duration=0.4, cells="3, 1, 1", extra=""):
+        return self.beam(name, duration, cells, EVERY_STEP + extra)
+
+    def assert_whole_table(self, path):
+        text = path.read_text()
+        self.assertTrue(text.endswith("\n"), f"{path}: torn last line {text[-60:]!r}")
+        rows = list(csv.reader(text.splitlines()))
+        self.assertEqual({len(row) for row in rows}, {len(rows[0])}, f"{path}: rows of different lengths")
+
+    def assert_readable(self, run):
+        """Whatever instant the run was killed at; returns the step of the checkpoint, -1 without one."""
+        run = self.folder / run
+        for table in ("steps.csv", "iterations.csv", "timings.csv"):
+            if (run / table).exists():
+                self.assert_whole_table(run / table)
+        for index in [*run.glob("run.pvd")]:
+            for frame in xml.etree.ElementTree.parse(index).getroot().iter("DataSet"):
+                xml.etree.ElementTree.parse(run / frame.get("file"))
+        for page in [*run.glob("report.html")]:
+            self.assertIn("</html>", page.read_text())
+        for stage in [*run.glob("run.usda")]:
+            text = stage.read_text()
+            self.assertEqual(text.count("{"), text.count("}"))
+        for cache in run.glob("skins/*.pc2"):
+            data = cache.read_bytes()
+            if data:
+                points, samples = struct.unpack("<i", data[16:20])[0], struct.unpack("<i", data[28:32])[0]
+                self.assertGreaterEqual(len(data), 32 + 12 * points * samples)
+        newest = run / "checkpoint.bin"
+        for path in (newest, run / "checkpoint.previous.bin"):
+            if path.exists():
+                checkpoint(path)
+        return checkpoint(newest)["steps_taken"] if newest.exists() else -1
+
+    def kill_at(self, seconds, *arguments, stdout=subprocess.DEVNULL):
+        """True: killed; False: it had come to its end before."""
+        process = subprocess.Popen([ASPIC, *arguments], cwd=self.folder, stdout=stdout, stderr=subprocess.PIPE)
+        try:
+            _, complaint = process.communicate(timeout=seconds)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.communicate()
+            return True
+        self.assertEqual(process.returncode, 0, complaint.decode())
+        return False
+
+    def duration_of(self, *arguments):
+        begin = time.monotonic()
+        self.aspic(*arguments)
+        return time.monotonic() - begin
+
+    def assert_same_folder(self, one, other, ignore=("timings.csv",)):
+        left, right = self.folder / one, self.folder / other
+        files = lambda root: {p.relative_to(root) for p in root.rglob("*") if p.is_file()}
+        self.assertEqual(files(left), files(right))
+        for name in sorted(files(left)):
+            if name.name not in ignore:
+                self.assertTrue(filecmp.cmp(left / name, right / name, shallow=False), f"{name} differs")
+
+
+class Killed(Crash):
+    def test_a_run_at_200_instants(self):
+        scene, chance = self.scene(), random.Random(1)
+        seconds = self.duration_of("run", scene, "--out", "whole")
+        kills, completed, step = 0, 0, -1
+        with open(self.folder / "lines.json", "ab") as lines:
+            while kills < RUN_KILLS:
+                how = "--resume" if step >= 0 else "--force"
+                if self.kill_at(chance.uniform(0, seconds), "run", scene, "--out", "run", how, "--json", stdout=lines):
+                    kills += 1
+                    before, step = step, self.assert_readable("run")
+                    self.assertGreaterEqual(step, before)
+                    continue
+                completed += 1
+                self.assert_same_folder("whole", "run")
+                step = -1  # begin anew over it
+        if step >= 0:
+            self.aspic("run", scene, "--out", "run", "--resume")
+            self.assert_same_folder("whole", "run")
+            completed += 1
+        self.assertGreater(completed, 0)
+        for line in (self.folder / "lines.json").read_text().splitlines():
+            json.loads(line)
+
+    def test_a_report(self):
+        self.aspic("run", self.scene(), "--out", "run")
+        page = self.folder / "run/report.html"
+        whole, chance = page.read_bytes(), random.Random(2)
+        seconds = self.duration_of("report", "run")
+        for _ in range(OTHER_KILLS):
+            self.kill_at(chance.uniform(0, seconds), "report", "run")
+            self.assertEqual(page.read_bytes(), whole)
+
+    def test_a_capture(self):
+        self.write("cube.toml", CUBE)
+        command = ("capture", "cube.toml", *BENCH)
+        seconds, chance = self.duration_of(*command, "-o", "whole"), random.Random(3)
+        self.aspic(*command, "-o", "other", "--seed", "2")
+        shutil.copytree(self.folder / "other", self.folder / "data")
+        for kill in range(OTHER_KILLS):
+            # Most of the time goes into the cases; the files are written at the end.
+            self.kill_at(chance.uniform(0.5, 1.1) * seconds, *command, "-o", "data", "--force")
+            if (self.folder / "data/capture.toml").exists():
+                files = {p.name for p in (self.folder / "data").iterdir() if p.is_file()}
+                same = [name for name in ("whole", "other")
+                        if all(filecmp.cmp(self.folder / name / f, self.folder / "data" / f, shallow=False)
+                               for f in files if not f.startswith(".aspic"))]
+                self.assertTrue(same, f"kill {kill}: files of two data sets")
+        self.aspic(*command, "-o", "data", "--force")
+        self.assert_same_folder("whole", "data")
+
+
+@unittest.skipUnless(shutil.which("chromium") and shutil.which("ffmpeg"), "chromium or ffmpeg is missing")
+class KilledRender(Crash):
+    def test_pictures_are_whole(self):
+        self.aspic("run", self.scene(duration=0.05), "--out", "run")
+        command = ("render", "run", "-o", "frames", "--size", "80x60")
+        seconds, chance = self.duration_of(*command), random.Random(4)
+        whole = {p.name: p.read_bytes() for p in (self.folder / "frames").iterdir()}
+        for _ in range(OTHER_KILLS // 2):
+            shutil.rmtree(self.folder / "frames", ignore_errors=True)
+            self.kill_at(chance.uniform(0.3, 1) * seconds, *command)
+            for picture in (self.folder / "frames").glob("frame_*.png"):
+                self.assertEqual(picture.read_bytes(), whole[picture.name])
+
+
+class KilledFit(FitCommand, Crash):
+    def test_it_goes_on_to_the_same_material(self):
+        options = ("fit", "layers", *QUICK, "-q")
+        seconds, chance = self.duration_of(*options, "-o", "whole.vtu"), random.Random(5)
+        kills, completed = 0, 0
+        part = self.folder / "part.fit"
+        while kills < OTHER_KILLS or not completed:
+            # Every second completed fit is begun anew over the one before.
+            is_unfinished = (part / "options.toml").exists() and any(part.glob("*.journal"))
+            how = "--resume" if is_unfinished else "--force"
+            limit = chance.uniform(0, seconds) if kills < OTHER_KILLS else 300
+            if not self.kill_at(limit, *options, "-o", "part.vtu", how):
+                self.assertEqual(self.bytes_of("part.vtu"), self.bytes_of("whole.vtu"))
+                completed += 1
+                if completed % 2:
+                    shutil.rmtree(part)
+                    (self.folder / "part.vtu").unlink()
+                continue
+            kills += 1
+            for table in part.glob("*.csv"):
+                self.assert_whole_table(table)
+
+
+class NoRoom(Crash):
+    """A disk that is full: here, files that may not grow beyond a limit."""
+
+    def limited(self, size, *arguments):
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+        return subprocess.run([ASPIC, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=120,
+                              preexec_fn=limit)
+
+    def assert_refused(self, done, *names):
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertIn("File too large", done.stderr)
+        self.assertTrue(any(name in done.stderr for name in names), done.stderr)
+
+    def test_a_run_names_the_file_and_goes_on_when_there_is_room(self):
+        scene = self.scene()
+        self.aspic("run", scene, "--out", "whole")
+        for size in (600, 3000, 8000, 15000):
+            shutil.rmtree(self.folder / "run", ignore_errors=True)
+            self.assert_refused(self.limited(size, "run", scene, "--out", "run"), "run/")
+            step = self.assert_readable("run")
+            self.aspic("run", scene, "--out", "run", "--resume" if step >= 0 else "--force")
+            self.assert_same_folder("whole", "run")
+
+    def test_what_was_there_is_kept(self):
+        self.aspic("run", self.scene(), "--out", "run")
+        self.write("cube.toml", CUBE)
+        self.aspic("capture", "cube.toml", "-o", "data", *BENCH)
+        before = {p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}
+        self.assert_refused(self.limited(2000, "report", "run"), "report.html")
+        self.assert_refused(self.limited(500, "capture", "cube.toml", "-o", "data", *BENCH, "--seed", "2", "--force"), "data")
+        self.assertEqual({p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}, before)
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "needs a device that is always full")
+    def test_lines_of_json_that_do_not_arrive_are_an_error(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([ASPIC, "run", self.scene(), "--json"], cwd=self.folder, stdout=full,
+                                  stderr=subprocess.PIPE, text=True, timeout=60)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("standard output", done.stderr)
+
+
+class ReadOnly(Crash):
+    def without_rights(self, *arguments):
+        """As a user who may not write here: root may everywhere."""
+        def drop():
+            if os.getuid() == 0:
+                os.setgid(NOBODY)
+                os.setuid(NOBODY)
+
+        return subprocess.run([ASPIC, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=120,
+                              preexec_fn=drop)
+
+    def test_an_error_names_the_place_and_nothing_changes(self):
+        scene = self.scene(duration=0.05)
+        self.aspic("run", scene, "--out", "run")
+        self.write("cube.toml", CUBE)
+        before = {p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}
+        for folder in (self.folder, self.folder / "run"):
+            os.chmod(folder, 0o555)
+            self.addCleanup(os.chmod, folder, 0o755)
+        if subprocess.run([ASPIC, "--version"], capture_output=True).returncode or \
+                self.without_rights("--version").returncode:
+            self.skipTest("the program cannot be started by a user without rights here")
+        for arguments, name in ((("run", scene, "--out", "new"), "new"), (("run", scene, "--out", "run", "--force"), "run/"),
+                                (("run", "run", "--resume"), "run/"), (("report", "run"), "report.html"),
+                                (("capture", "cube.toml", "-o", "data", *BENCH), "data")):
+            done = self.without_rights(*arguments)
+            self.assertEqual(done.returncode, 2, f"{arguments}: {done.stdout}{done.stderr}")
+            self.assertIn(name, done.stderr)
+            self.assertRegex(done.stderr, "Permission denied|not permitted")
+        self.assertEqual({p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}, before)
+
+
+class TimeLimit(Crash):
+    def test_a_run_ends_between_steps_and_goes_on_to_the_same_bits(self):
+        scene = self.scene(duration=1.0, cells="8, 2, 2")
+        self.aspic("run", scene, "--out", "whole")
+        for _ in range(3):
+            how = ["--resume"] if (self.folder / "run").exists() else []
+            done = subprocess.run([ASPIC, "run", scene, "--out", "run", "--time-limit", "0.15", *how], cwd=self.folder,
+                                  capture_output=True, text=True, timeout=60)
+            self.assertIn(done.returncode, (0, 4), done.stderr)
+            if done.returncode == 0:
+                break
+            self.assertIn("--time-limit of 0.15 s", done.stdout)
+            self.assertIn("aspic run run --resume", done.stdout)
+            self.assertEqual(self.assert_readable("run"), len(self.steps("run")))
+        self.aspic("run", scene, "--out", "run", "--resume")
+        self.assert_same_folder("whole", "run")
+
+    def test_a_step_that_takes_too_long_is_dropped(self):
+        """Ten thousand iterations of gradient descent on a stiff beam: one step is minutes of work."""
+        scene = self.scene(duration=0.02, cells="24, 6, 6", extra="""[solver]
+method = "gradient_descent"
+preconditioner = "none"
+tolerance = 1e-12
+max_iterations = 1000000
+""")
+        begin = time.monotonic()
+        out = self.aspic("run", scene, "--time-limit", "1", code=4).stdout
+        self.assertLess(time.monotonic() - begin, 60)
+        self.assertIn("stopped    0 of 2 steps", out)
+        self.assertEqual(self.assert_readable("out/beam"), 0)
+
+
+class Signals(Crash):
+    CODES = {signal.SIGINT: 130, signal.SIGTERM: 143}
+
+    def signalled(self, with_signal, ready, *arguments, stream="stderr"):
+        """Sends the signal at the first line of the stream that matches."""
+        process = self.start(*arguments)
+        for line in getattr(process, stream):
+            if re.search(ready, line):
+                break
+        else:
+            self.fail(process.communicate())
+        process.send_signal(with_signal)
+        out, err = process.communicate(timeout=60)
+        return process.returncode, out + err
+
+    def test_compare_writes_the_methods_that_are_done(self):
+        for with_signal, code in self.CODES.items():
+            shutil.rmtree(self.folder / "out", ignore_errors=True)
+            got, said = self.signalled(with_signal, "gradient_descent", "compare", self.scene(cells="16, 6, 6"), "--methods",
+                                       "newton,gradient_descent:none,lbfgs", "--set", "solver.tolerance=1e-13")
+            self.assertEqual(got, code, said)
+            self.assertIn("1 of 3 methods are in the tables", said)
+            with open(self.folder / "out/compare_beam/methods.csv", newline="") as file:
+                self.assertEqual(len(list(csv.DictReader(file))), 1)
+
+    def test_minimize_ends_with_what_it_has(self):
+        for with_signal, code in self.CODES.items():
+            got, said = self.signalled(with_signal, "^ +100 ", "minimize", "rosenbrock", "--method", "gradient_descent",
+                                       "--max-iterations", "100000000", "--tolerance", "0", "--trace", "trace",
+                                       stream="stdout")
+            self.assertEqual(got, code, said)
+            self.assertIn("interrupted after", said)
+            self.assert_whole_table(self.folder / "trace/iterations.csv")
+
+    def test_capture_writes_the_cases_that_are_done(self):
+        self.write("cube.toml", CUBE)
+        for with_signal, code in self.CODES.items():
+            got, said = self.signalled(with_signal, "2 of", "capture", "cube.toml", "-o", "data", "--pokes", "20",
+                                       "--depths", "4", "--markers", "20", "--tip", "disc:0.02", "--force",
+                                       stream="stdout")
+            self.assertEqual(got, code, said)
+            self.assertIn("the cases that were done", said)
+            self.assertNotIn("error:", self.aspic("fit", "--check", "data").stdout)
+
+    def test_loading_ends_at_once(self):
+        """Nothing is there to be kept, so the signal ends the program as it does by default."""
+        self.beam("large.toml", 0.05, "60, 30, 30")
+        for arguments in (("check", "large.toml"), ("run", "large.toml"), ("compare", "large.toml", "--methods", "newton")):
+            process = self.start(*arguments)
+            time.sleep(0.3)
+            process.send_signal(signal.SIGINT)
+            process.communicate(timeout=20)
+            self.assertEqual(process.returncode, -signal.SIGINT, arguments)
+        self.assertFalse((self.folder / "out/large").exists())
+
+
+class Certificate(Crash):
+    def test_the_hash_is_the_documented_one_and_everywhere_the_same(self):
+        done = self.aspic("run", self.scene(duration=0.1), "--json", "--out", "run")
+        lines = [json.loads(line) for line in done.stdout.splitlines()]
+        rows = self.steps("run")
+        self.assertEqual([line["state_hash"] for line in lines], [row["state_hash"] for row in rows])
+        self.assertEqual(len({row["state_hash"] for row in rows}), 10)
+        self.assertEqual(rows[-1]["state_hash"], state_hash(checkpoint(self.folder / "run/checkpoint.bin")))
+        self.assertIn(f"state      {rows[-1]['state_hash']} after step 10", done.stderr)
+
+    def test_every_step_tells_how_it_ended(self):
+        done = self.aspic("run", self.scene(duration=0.1), "--json", "--out", "run")
+        for line in map(json.loads, done.stdout.splitlines()):
+            self.assertEqual((line["status"], line["criterion"], line["energy_bound"]), ("converged", "scale", "holds"))
+            self.assertLessEqual(line["residual"], line["residual_threshold"])
+            self.assertGreater(line["decrement"], 0)
+            self.assertGreater(line["energy_slack"], 0)
+        self.assertIn("the bound of backward Euler held in 10 of 10 steps", done.stderr)
+        self.assertRegex(done.stderr, r"status     10 converged; worst: step \d+, converged, residual .* N \(wanted .* N\)")
+
+    def test_the_worst_step_is_named(self):
+        done = self.aspic("run", self.scene(duration=0.1), "--set", "solver.max_iterations=1", "--allow-unconverged")
+        self.assertRegex(done.stdout, r"status     .*iteration_limit; worst: step \d+, iteration_limit, residual")
+
+
+class SameBits(Crash):
+    """Threads and restarts through the program; the library is tested for every combination elsewhere."""
+
+    def test_for_any_number_of_threads(self):
+        scene = self.scene(duration=0.1, cells="12, 4, 4")
+        self.aspic("run", scene, "--out", "one", "--threads", "1")
+        for threads in ("2", "3", "8"):
+            self.aspic("run", scene, "--out", threads, "--threads", threads)
+            self.assert_same_folder("one", threads)
+
+    def test_after_a_restart_at_every_step(self):
+        scene = self.scene(duration=0.5)
+        self.aspic("run", scene, "--out", "whole")
+        for k in range(1, 50, 7):
+            self.aspic("run", scene, "--out", "run", "--force", "--steps", str(k))
+            self.aspic("run", scene, "--out", "run", "--resume")
+            self.assert_same_folder("whole", "run")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
