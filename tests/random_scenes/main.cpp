@@ -94,6 +94,7 @@ int hunt(const Arguments& arguments, const std::filesystem::path& folder) {
     ++faults;
     std::printf("---- seed %llu: %s\n%s", static_cast<unsigned long long>(seed), judgement.fault.c_str(),
                 random_scene(seed).c_str());
+    std::fflush(stdout);
   }
   std::printf("---- %llu scenes from seed %llu, %d at fault:", static_cast<unsigned long long>(arguments.count),
               static_cast<unsigned long long>(arguments.seed), faults);
