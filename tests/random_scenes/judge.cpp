@@ -12,8 +12,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kRoundOff = 1e-9;  // of the energies that are added, and of the forces that balance
-constexpr int kMostParts = 300;     // of all the adaptive steps of a scene
+constexpr double kRoundOff = 1e-9;     // of the energies that are added, and of the forces that balance
+constexpr double kLastDigits = 1e-11;  // of forces that are made anew from differences of positions
+constexpr int kMostParts = 300;        // of all the adaptive steps of a scene
 
 bool is_finite(std::span<const double> v) {
   return std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
@@ -84,8 +85,9 @@ class Judge {
   void judge_success(const StepReport& report) {
     if (!std::isfinite(report.kinetic) || !std::isfinite(report.potential_total))
       fault("the energy is not finite", report);
-    const double allowed = report.residual_threshold + 1000 * report.residual_round_off;
-    if (report.residual_threshold > 0 && report.status == Status::converged && report.residual > 1.01 * allowed)
+    const double scale = report.residual_threshold / simulation_.options().solver.minimize.tolerance;
+    const double allowed = 1.01 * report.residual_threshold + 1000 * report.residual_round_off + kLastDigits * scale;
+    if (report.residual_threshold > 0 && report.status == Status::converged && report.residual > allowed)
       fault("residual " + shortest(report.residual) + " N, threshold " + shortest(report.residual_threshold) +
                 " N, round-off " + shortest(report.residual_round_off) + " N",
             report);
@@ -108,9 +110,18 @@ class Judge {
       size += std::abs(w);
     const double open = std::abs(kinetic - report.kinetic) + std::abs(potential - report.potential_total) +
                         std::abs(report.ledger_error);
-    if (!(open <= kRoundOff * size)) fault("the ledger is open by " + shortest(open) + " of " + shortest(size), report);
+    if (!(open <= kRoundOff * size * std::max(1.0, 1e-6 * distance())))
+      fault("the ledger is open by " + shortest(open) + " of " + shortest(size), report);
     size_ = std::abs(kinetic);
     for (const double V : report.potential) size_ += std::abs(V);
+  }
+
+  // How far the body is from the origin, in sizes of its rest shape: so many times coarser are its strains.
+  double distance() const {
+    double far = 0, low = INFINITY, high = -INFINITY;
+    for (const double q : simulation_.state().q) far = std::max(far, std::abs(q));
+    for (const Vec3d& X : simulation_.model().mesh.rest) low = std::min(low, X[0]), high = std::max(high, X[0]);
+    return far / (high - low);
   }
 
   // Backward Euler: V1 + |v1 - v0|^2 / 2 <= V0 + T0 wherever nothing is moved, whatever the status.
