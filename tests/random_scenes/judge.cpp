@@ -12,9 +12,10 @@
 namespace aspic {
 namespace {
 
-constexpr double kRoundOff = 1e-9;     // of the energies that are added, and of the forces that balance
-constexpr double kLastDigits = 1e-11;  // of forces that are made anew from differences of positions
-constexpr int kMostParts = 300;        // of all the adaptive steps of a scene
+constexpr double kRoundOff = 1e-9;  // of the energies that are added, and of the forces that balance
+// Of forces that are made anew from differences of positions, and of energies that cancel in a body at rest.
+constexpr double kLastDigits = 1e-11;
+constexpr int kMostParts = 300;  // of all the adaptive steps of a scene
 
 bool is_finite(std::span<const double> v) {
   return std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
@@ -124,6 +125,14 @@ class Judge {
     return far / (high - low);
   }
 
+  // Young's modulus times volume: an energy is known to the last digits of that. [J]
+  double stiffness() const {
+    const Model& model = simulation_.model();
+    double sum = 0;
+    for (int t = 0; t < model.mesh.tet_count(); ++t) sum += model.tet_fields[0].second[t] * volume(model.mesh, t);
+    return sum;
+  }
+
   // Backward Euler: V1 + |v1 - v0|^2 / 2 <= V0 + T0 wherever nothing is moved, whatever the status.
   void judge_descent(const State& before, const StepReport& report) {
     const SimulationOptions& options = simulation_.options();
@@ -139,7 +148,7 @@ class Judge {
     double lost = 0;
     for (size_t i = 0; i < change.size(); ++i) lost += 0.5 * change[i] * momentum[i];
     const double rise = report.potential_total + lost - earlier;
-    if (!(rise <= kRoundOff * (size_ + std::abs(lost) + std::abs(earlier))))
+    if (!(rise <= kRoundOff * (size_ + std::abs(lost) + std::abs(earlier)) + kLastDigits * stiffness()))
       fault("the energy rises by " + shortest(rise) + " from " + shortest(earlier), report);
   }
 
