@@ -77,7 +77,7 @@ class Explain(Explanations):
         self.scene(poisson="0.4999")
         text = self.run_scene()
         self.assertIn("linear tets lock", text)
-        self.assertNotIn("lock", self.assert_cured(text, "0.4999", change="material.poisson="))
+        self.assertNotIn("tets lock", self.assert_cured(text, "0.4999", change="material.poisson="))
 
     def test_a_modulus_in_kilopascals(self):
         self.scene(young="100")
@@ -101,15 +101,8 @@ class Explain(Explanations):
     def test_pins_that_crush_an_element_to_nothing(self):
         # One cell, all of whose vertices are pinned: no step is short enough.
         self.scene(model="neo_hookean_log", pins='[[body.pin]]\nname = "press"\nwhere = "x > 1e-9"\n'
-                   'motion = { keyframes = [{ time = 0.02, displacement = [-0.11, 0, 0] }] }')
+                   'motion = { keyframes = [{ time = 0, displacement = [0, 0, 0] }, { time = 0.02, displacement = [-0.21, 0, 0] }] }')
         self.assert_cured(self.run_scene(code=3), "pins themselves", "corners are all pinned", change="material.model=")
-
-    def test_pins_that_are_too_fast(self):
-        self.scene(model="neo_hookean_log", step=0.2, duration=0.2, pins='[[body.pin]]\nname = "tip"\nwhere = "x > 0.39"\n'
-                   'motion = { rotate = { axis = [1, 0, 0], rate_deg = 3000 } }')
-        text = self.run_scene(code=3)
-        self.assertIn("time.step", text)
-        self.run_scene("--set", "time.step=0.01")
 
     def test_an_element_of_no_volume(self):
         mesh = box_mesh().replace("\n1 1 1 0\n", "\n0.5 0.5 0.5 0\n")
@@ -145,8 +138,9 @@ class Explain(Explanations):
 
     def test_a_tolerance_below_round_off(self):
         self.scene(solver="[solver]\ntolerance = 1e-17")
-        text = self.run_scene(code=3)
-        self.assert_cured(text, "round-off", change="solver.tolerance=")
+        self.assertIn("round_off", self.run_scene())  # as good as converged, and called what it is
+        self.scene(solver='[solver]\ntolerance = 1e-17\nmethod = "lbfgs"\npreconditioner = "mass"')
+        self.assert_cured(self.run_scene(code=3), "without the Hessian", change="solver.preconditioner=")
 
     def test_what_is_no_number_in_a_field(self):
         self.write("rho.csv", "1000\n" * 11 + "nan\n" + "1000\n" * 12)
@@ -157,7 +151,7 @@ class Explain(Explanations):
         self.write("rho.csv", "1000\n" * 24)
         self.run_scene()
         self.scene(young='"1e5 / (x - x)"')
-        self.assertIn("young", self.run_scene(code=2))
+        self.assertIn("is inf at (", self.run_scene(code=2))
         self.write("bad.mesh", box_mesh().replace("\n1 1 1 0\n", "\nnan 1 1 0\n"))
         text = self.aspic("run", "bad.mesh", code=2).stderr
         self.assertIn("bad.mesh:", text)

@@ -106,7 +106,8 @@ class Explainer {
               "pin some vertices, or use time.integrator = \"backward_euler\""};
     switch (report_.status) {
       case Status::undefined:
-        return !simulation_.is_implicit() ? blow_up() : report_.iterations > 0 ? undefined_end() : undefined_start();
+        if (!simulation_.is_implicit()) return blow_up();
+        return std::isfinite(report_.objective) && report_.iterations > 0 ? undefined_end() : undefined_start();
       case Status::stuck:
         return stuck();
       case Status::iteration_limit:
@@ -194,6 +195,7 @@ class Explainer {
       return {"the pins move so far in one step that a tet is inverted, where the material has no energy",
               tet_name(model_, worst.tet) + ": " + text(worst.det_F) + " of its volume",
               smaller_steps() + ", or move the pins more slowly"};
+    if (report_.iterations > 0) return undefined_end();
     int fastest = 0;
     double most = -1;
     const std::vector<double>& v = simulation_.state().qdot;
@@ -266,6 +268,10 @@ class Explainer {
                   ? "solver.tolerance = " + text(reachable)
                   : "lengthen time.step: positions have 16 digits, and too few of them change in so short a time"};
     }
+    const std::string& B = solver_.preconditioner;
+    if (!is_newton() && B != "auto" && B != "hessian")
+      return {cause + ": without the Hessian " + solver_.method + " takes many more for stiff bodies",
+              "solver.preconditioner = \"" + B + "\"", "solver.preconditioner = \"hessian\""};
     if (!is_newton())
       return {cause + ": methods without the Hessian take many more for stiff bodies",
               "solver.method = \"" + solver_.method + "\"",

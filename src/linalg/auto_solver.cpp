@@ -18,7 +18,7 @@ constexpr double kFlopsPerIteration = 1500;
 // share of the set-up, which serves all matrices of a sequence. bench_preconditioners measures both.
 constexpr double kMultigridCost = 30;
 constexpr double kLoose = 1.5;        // loose solves are followed by more Newton iterations than exact ones
-constexpr double kRoundOff = 1e-12;  // of a sum of entries that cancel, relative to the diagonal
+constexpr double kRoundOff = 1e-12;   // of a sum of entries that cancel, relative to the diagonal
 constexpr double kIterations = 4;     // fit to beams of 425 to 12 825 vertices, E = 1e4 to 1e8
 constexpr int kBlockJacobiCap = 300;  // iterations before giving up
 constexpr int kMultigridCap = 500;
