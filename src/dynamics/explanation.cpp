@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "material/registry.h"
 
@@ -77,6 +78,14 @@ std::string residual_place(const Model& model, const StepReport& report, std::sp
          "balance: " + text(report.worst_residual) + " N are left over";
 }
 
+// Half of the longest edge of the bounding box. [m]
+double size_of(const TetMesh& mesh) {
+  Vec3d low{{INFINITY, INFINITY, INFINITY}}, high{{-INFINITY, -INFINITY, -INFINITY}};
+  for (const Vec3d& X : mesh.rest)
+    for (int r = 0; r < 3; ++r) low[r] = std::min(low[r], X[r]), high[r] = std::max(high[r], X[r]);
+  return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}) / 2;
+}
+
 // A relative tolerance above this accepts what is no solution.
 constexpr double kLoosest = 1e-2;
 
@@ -97,7 +106,8 @@ class Explainer {
               "pin some vertices, or use time.integrator = \"backward_euler\""};
     switch (report_.status) {
       case Status::undefined:
-        return simulation_.is_implicit() ? undefined_start() : blow_up();
+        if (!simulation_.is_implicit()) return blow_up();
+        return std::isfinite(report_.objective) && report_.iterations > 0 ? undefined_end() : undefined_start();
       case Status::stuck:
         return stuck();
       case Status::iteration_limit:
@@ -125,7 +135,7 @@ class Explainer {
   bool is_held() const {
     if (!model_.pins.empty()) return true;
     std::vector<double> moved = x_, here(x_.size()), there(x_.size());
-    for (double& xi : moved) xi += 1;
+    for (double& xi : moved) xi += size_of(model_.mesh);
     for (const auto& V : model_.loads) {
       V->add_gradient(x_, 1, here);
       V->add_gradient(moved, 1, there);
@@ -158,11 +168,12 @@ class Explainer {
           "the explicit scheme " + name + " left the range of numbers",
           step_text() + " is below " + text(stable.h) + " s, where it is stable for small motions, but not for these",
           "shorten time.step, or use time.integrator = \"backward_euler\""};
-    return {
-        "the explicit scheme " + name + " blew up: its steps of " + text(h) + " s are longer than the " +
-            text(stable.h) + " s up to which it can be stable here",
-        stable.vertex < 0 ? "" : vertex_name(model_, stable.vertex) + " vibrates fastest: small, stiff or light tets",
-        "time.step = " + text(stable.h / 2) + " or less, or time.integrator = \"backward_euler\""};
+    return {"the explicit scheme " + name + " blew up: its steps of " + text(h) + " s are longer than the " +
+                text(stable.h) + " s up to which it can be stable here",
+            stable.vertex < 0 ? ""
+                              : vertex_name(model_, stable.vertex) + " vibrates fastest, at " +
+                                    text(1 / (std::numbers::pi * stable.h)) + " Hz: small, stiff or light tets",
+            "time.step = " + text(stable.h / 2) + " or less, or time.integrator = \"backward_euler\""};
   }
 
   Explanation undefined_start() const {
@@ -176,10 +187,15 @@ class Explainer {
         for (int r = 0; r < 3; ++r) placed[i + r] = to[r];
       }
     const WorstTet worst = most_squashed(model_.mesh, placed);
+    if (!(worst.det_F > 0) && worst.tet >= 0 && is_pinned(worst.tet))
+      return {"the pins themselves turn a tet inside out, however short the step; the material has no energy there",
+              tet_name(model_, worst.tet) + ", whose corners are all pinned: " + text(worst.det_F) + " of its volume",
+              "material.model = \"stable_neo_hookean\", which bears it, or pins that stop earlier"};
     if (!(worst.det_F > 0) && worst.tet >= 0)
       return {"the pins move so far in one step that a tet is inverted, where the material has no energy",
               tet_name(model_, worst.tet) + ": " + text(worst.det_F) + " of its volume",
               smaller_steps() + ", or move the pins more slowly"};
+    if (report_.iterations > 0) return undefined_end();
     int fastest = 0;
     double most = -1;
     const std::vector<double>& v = simulation_.state().qdot;
@@ -190,6 +206,29 @@ class Explainer {
     return {"the energy at the start of the step is not a finite number",
             vertex_name(model_, fastest) + " is fastest: " + text(most) + " m/s",
             smaller_steps() + ", and look for forces, pins or velocities that are too large"};
+  }
+
+  // Iterations were taken, but what came of them has no energy.
+  Explanation undefined_end() const {
+    const std::string& name = simulation_.options().integrator;
+    const std::string remedy = "time.integrator = \"backward_euler\", whose line search stays where there is energy";
+    if (name == "linearly_implicit_euler")
+      return {"one Newton iteration without a line search went to where the material has no energy",
+              "time.integrator = \"" + name + "\"", remedy};
+    if (name == "midpoint" || name == "trapezoid" || name == "tr_bdf2" || name == "bdf2")
+      return {"the step of " + name + " goes on beyond what it minimised, to where the material has no energy",
+              "time.integrator = \"" + name + "\"", remedy};
+    return {"the iterations left the range of numbers", residual_place(model_, report_, x_),
+            smaller_steps() + ", and look for forces, pins or velocities that are too large"};
+  }
+
+  bool is_pinned(int tet) const {
+    const auto& corners = model_.mesh.tets[tet];
+    return std::all_of(corners.begin(), corners.end(), [&](int corner) {
+      return std::any_of(model_.pins.begin(), model_.pins.end(), [&](const Pin& pin) {
+        return std::find(pin.vertices.begin(), pin.vertices.end(), corner) != pin.vertices.end();
+      });
+    });
   }
 
   Explanation inaccurate() const {
@@ -229,6 +268,10 @@ class Explainer {
                   ? "solver.tolerance = " + text(reachable)
                   : "lengthen time.step: positions have 16 digits, and too few of them change in so short a time"};
     }
+    const std::string& B = solver_.preconditioner;
+    if (!is_newton() && B != "auto" && B != "hessian")
+      return {cause + ": without the Hessian " + solver_.method + " takes many more for stiff bodies",
+              "solver.preconditioner = \"" + B + "\"", "solver.preconditioner = \"hessian\""};
     if (!is_newton())
       return {cause + ": methods without the Hessian take many more for stiff bodies",
               "solver.method = \"" + solver_.method + "\"",

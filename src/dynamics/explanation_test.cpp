@@ -123,6 +123,19 @@ TEST(Explanation, OfStaticsNamesWhatIsMissingWhenNothingHoldsTheBodyWhateverTheM
   }
 }
 
+// Every retreat covers more elements, though each of their systems can be solved.
+TEST(Explanation, OfStaticsThatNothingHoldsIsReachedThroughEveryRetreat) {
+  for (const char* method : {"newton", "newton_cg"}) {
+    Model model = make_model(make_sphere(0.5, 0.6), {.young = 3e7, .poisson = 0.4, .gravity = {{-14, 26, 5}}});
+    SimulationOptions options{.integrator = "quasi_static", .solver = {.method = method, .definiteness = "progressive"}};
+    options.solver.minimize.max_iterations = 20;
+    Simulation simulation = simulate(std::move(model), options);
+    const StepReport report = simulation.step();
+    EXPECT_FALSE(is_success(report.status)) << method;
+    EXPECT_THAT(explain(simulation, report).cause, HasSubstr("nothing holds the body")) << method;
+  }
+}
+
 TEST(Explanation, OfALineSearchThatAsksForTooMuchNamesItsParameter) {
   SimulationOptions slide;
   slide.solver.minimize.line_search.test = DecreaseTest::slide;

@@ -30,6 +30,7 @@ class IncrementalPotential : public Objective {
                       std::span<Mat3d> H) override;
   double max_step(std::span<const double> q, std::span<const double> d) override;
   // The energy of doubling the body in size, in the units of E: offsets of the potential do not count.
+  double x_scale() const override { return radius_; }
   double value_scale() const override { return inertia_ * growth_inertia_ + factor_ * growth_stiffness_; }
   double gradient_scale() const override { return gradient_scale_; }
   double gradient_unit() const override { return factor_; }  // g is a force times f

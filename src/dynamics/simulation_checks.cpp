@@ -68,8 +68,8 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
           "smaller initial deformation or another material");
     throw InvalidInput("the initial shape has infinite energy: " + std::to_string(inverted.size()) +
                        " tets are inverted or flat (" + listed(model.numbering.tet.to_user(inverted)) +
-                       "); choose a smaller initial deformation, or a material that tolerates inversion, such as "
-                       "neo_hookean or stable_neo_hookean");
+                       "); set material.model = \"stable_neo_hookean\", which tolerates inversion, or choose a "
+                       "smaller initial deformation");
   }
 }
 

@@ -24,6 +24,7 @@ class VelocityForm : public Objective {
   double max_step(std::span<const double> v, std::span<const double> d) override;
 
   const BlockSparse* metric() override { return E_.metric(); }
+  double x_scale() const override { return E_.x_scale() / h_; }
   double value_scale() const override { return E_.value_scale() / (h_ * h_); }
   double gradient_scale() const override { return E_.gradient_scale() / h_; }
   double gradient_unit() const override { return E_.gradient_unit() / h_; }

@@ -18,6 +18,7 @@ constexpr double kFlopsPerIteration = 1500;
 // share of the set-up, which serves all matrices of a sequence. bench_preconditioners measures both.
 constexpr double kMultigridCost = 30;
 constexpr double kLoose = 1.5;        // loose solves are followed by more Newton iterations than exact ones
+constexpr double kRoundOff = 1e-12;   // of a sum of entries that cancel, relative to the diagonal
 constexpr double kIterations = 4;     // fit to beams of 425 to 12 825 vertices, E = 1e4 to 1e8
 constexpr int kBlockJacobiCap = 300;  // iterations before giving up
 constexpr int kMultigridCap = 500;
@@ -89,7 +90,7 @@ double predict_iterations(const BlockSparse& H) {
     uniform += sum + own;
     diagonal += own;
   }
-  const double round_off = 1e-12 * diagonal;              // a body at rest resists no uniform displacement
+  const double round_off = kRoundOff * diagonal;
   if (!(diagonal > 0) || uniform < -round_off) return 1;  // an indefinite matrix is found out soon
   return uniform > round_off ? kIterations * std::sqrt(diagonal / uniform) : std::numeric_limits<double>::infinity();
 }

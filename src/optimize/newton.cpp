@@ -81,7 +81,8 @@ bool Newton::compute(Objective& E, std::span<const double> x, std::span<const do
   if (used_kept_) return true;
   kept_.drop();
   if (definiteness_ == NewtonDefiniteness::progressive) {
-    if (cautious) progressive_.tighten(g);
+    // Relaxed only once a direction was of use: else a retreat would take back what it gains, and never end.
+    cautious ? progressive_.tighten(g) : progressive_.relax();
     return solve_progressively(E, x, g, forcing, d, report);
   }
   clamped_ = cautious;
@@ -108,7 +109,6 @@ bool Newton::solve_progressively(Objective& E, std::span<const double> x, std::s
     if (solve(E, x, projection, g, forcing, d, report)) break;
     if (progressive_.is_complete() || is_late(report)) return false;
   }
-  progressive_.relax();
   return true;
 }
 

@@ -42,8 +42,9 @@ class Objective {
     return false;
   }
 
-  // The sizes against which the last value and the last gradient are small or large, in their own units, and the part
-  // of them that is round-off. A plain function measures against 1.
+  // The sizes against which x, the last value and the last gradient are small or large, in their own units, and the
+  // part of the last two that is round-off. A plain function measures against 1.
+  virtual double x_scale() const { return 1; }
   virtual double value_scale() const { return 1; }
   virtual double gradient_scale() const { return 1; }
   virtual double gradient_unit() const { return 1; }  // what a gradient of one physical unit is

@@ -63,6 +63,13 @@ void note_jump(const Motion& motion, const std::vector<Vec3d>& starts, const std
     notes.push_back(what + " jumps by " + number_text(jump) + " m at time 0: its motion does not start at 0");
 }
 
+// What the second of two pins could select, so that none of the first's vertices is in it.
+std::string leave_out(const Value& first, const Value& second) {
+  const Value &a = first["where"], &b = second["where"];
+  if (!a.is_text() || !b.is_text()) return "let one of them leave it out";
+  return "try where = \"(" + b.text() + ") && !(" + a.text() + ")\" in pin '" + second["name"].text() + "'";
+}
+
 void add_pins(Builder& builder, const PlacedBody& body) {
   std::vector<const Value*> holder(body.mesh.rest.size(), nullptr);
   for (const Value& scene : list_of(body, "pin")) {
@@ -76,7 +83,7 @@ void add_pins(Builder& builder, const PlacedBody& body) {
         throw error_at(scene["where"].place, "vertex " + std::to_string(v) + " of body '" + body.name() + "' at " +
                                                  point_text(body.mesh.rest[v]) + " is in pin '" +
                                                  (*holder[v])["name"].text() + "' and in pin '" + scene["name"].text() +
-                                                 "'; let one of them leave it out");
+                                                 "'; " + leave_out(*holder[v], scene));
       holder[v] = &scene;
       pin.vertices.push_back(body.model_vertex(v));
     }

@@ -207,7 +207,7 @@ void note_locking(const std::vector<MaterialParameters>& parameters, const std::
   for (const MaterialParameters& p : parameters) highest = std::max(highest, poisson_ratio(p.lame));
   if (highest > kLockingPoisson + 1e-9)
     notes.push_back("body '" + body + "': Poisson's ratio reaches " + number_text(highest) +
-                    "; linear tets lock above 0.45 and deform too little (0.45 is safe)");
+                    "; linear tets lock above 0.45 and deform too little: set material.poisson = 0.45");
 }
 
 template <class Source>

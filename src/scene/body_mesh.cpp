@@ -31,7 +31,11 @@ std::string sentence(const Finding& finding) {
   std::string remedy = finding.remedy;
   if (const size_t option = remedy.find("--repair"); option != std::string::npos)
     remedy.replace(option, 8, "aspic check MESH --repair -o MENDED");
-  return finding.message + (remedy.empty() ? "" : "; " + remedy);
+  std::string which;
+  const size_t shown = std::min<size_t>(finding.indices.size(), 5);
+  for (size_t i = 0; i < shown; ++i) which += (i ? ", " : " (") + std::to_string(finding.indices[i]);
+  if (shown > 0) which += shown < finding.indices.size() ? ", ...)" : ")";
+  return finding.message + which + (remedy.empty() ? "" : "; " + remedy);
 }
 
 void heed(const std::vector<Finding>& findings, const std::string& what, std::vector<std::string>& notes) {

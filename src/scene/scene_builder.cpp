@@ -7,14 +7,13 @@
 #include "dynamics/integrator.h"
 #include "scene/body_actions.h"
 #include "scene/body_material.h"
+#include "scene/body_notes.h"
 #include "scene/placement.h"
 #include "scene/schema.h"
 #include "scene/solver_options.h"
 
 namespace aspic {
 namespace {
-
-constexpr double kFarFromOrigin = 1e8;  // in sizes of the body; half of the 16 digits of a position are lost there
 
 std::vector<MaterialParameters> from_user(const Renumbering& tet, const std::vector<MaterialParameters>& user) {
   std::vector<MaterialParameters> stored;
@@ -131,8 +130,7 @@ class SceneBuilder {
       } catch (const InvalidInput& e) {
         throw InvalidInput(source_.file + ": body '" + body.name() + "', deform: " + e.what());
       }
-      note_inverted_start(body);
-      note_lost_digits(body);
+      note_start(body, source_.notes);
       add_to_model(body);
       for (Tet& corners : mesh.embedding.vertices)
         for (int& v : corners) v = body.model_vertex(v);
@@ -151,38 +149,13 @@ class SceneBuilder {
     model_.bodies.push_back({body.name(), body.first_vertex, vertices, body.first_tet, tets});
   }
 
-  void note_inverted_start(const PlacedBody& body) {
-    const TetMesh start{body.start, body.mesh.tets, {}};
-    int count = 0;
-    for (int t = 0; t < start.tet_count(); ++t)
-      if (!(volume(start, t) > 0)) ++count;
-    if (count > 0 && body.scene["elastic"].boolean())
-      source_.notes.push_back(
-          "body '" + body.name() + "': " + std::to_string(count) +
-          " tets start inverted or flat; a shape that is flat or a point may be in balance and stay "
-          "so (disturb it with a small deform.displacement)");
-  }
-
-  // Strains are differences of positions, whose last digits are lost far from the origin.
-  void note_lost_digits(const PlacedBody& body) {
-    const Box box = bounding_box(body.start);
-    double far = 0, extent = 0;
-    for (int i = 0; i < 3; ++i) {
-      far = std::max({far, std::abs(box.lower[i]), std::abs(box.upper[i])});
-      extent = std::max(extent, box.upper[i] - box.lower[i]);
-    }
-    if (far > kFarFromOrigin * extent)
-      source_.notes.push_back("body '" + body.name() + "' is " + number_text(extent) + " m large and " +
-                              number_text(far) +
-                              " m from the origin: its strains have few exact digits (translate it " + "nearer)");
-  }
-
   void add_model() {
     const Value& solver = *source_.document.find("solver");
     const MassKind kind = solver["mass"].text() == "lumped" ? MassKind::lumped : MassKind::consistent;
     for (PlacedBody& body : bodies_) {
       const Renumbering& tet = body.numbering.tet;
       const BodyMaterial material = body_material(body, files_, source_.notes);
+      note_stiffness(body, material, source_.document.find("gravity")->vector(), source_.notes);
       const std::vector<double> density = tet.from_user(material.density);
       model_.density.insert(model_.density.end(), density.begin(), density.end());
       const std::vector<MaterialParameters> parameters = from_user(tet, material.parameters);

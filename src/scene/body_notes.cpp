@@ -1,0 +1,134 @@
+#include "scene/body_notes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "energy/tet_elasticity.h"
+#include "mesh/generators.h"
+#include "scene/placement.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kFarFromOrigin = 1e8;  // in sizes of the body; half of the 16 digits of a position are lost there
+constexpr double kCrushed = 3;          // rho g H / E: strain at the bottom of a column under its own weight
+constexpr double kDiamond = 1.2e12;     // [Pa]
+constexpr double kSoft = 1e7;           // [Pa] above it few bodies are soft
+
+void note_inverted(const PlacedBody& body, std::vector<std::string>& notes) {
+  const TetMesh start{body.start, body.mesh.tets, {}};
+  int count = 0;
+  for (int t = 0; t < start.tet_count(); ++t)
+    if (!(volume(start, t) > 0)) ++count;
+  if (count > 0 && body.scene["elastic"].boolean())
+    notes.push_back("body '" + body.name() + "': " + std::to_string(count) +
+                    " tets start inverted or flat; a shape that is flat or a point may be in balance and stay "
+                    "so (disturb it with a small deform.displacement)");
+}
+
+// Strains are differences of positions, whose last digits are lost far from the origin.
+void note_lost_digits(const PlacedBody& body, std::vector<std::string>& notes) {
+  const Box box = bounding_box(body.start);
+  double far = 0, extent = 0;
+  for (int i = 0; i < 3; ++i) {
+    far = std::max({far, std::abs(box.lower[i]), std::abs(box.upper[i])});
+    extent = std::max(extent, box.upper[i] - box.lower[i]);
+  }
+  if (far > kFarFromOrigin * extent)
+    notes.push_back("body '" + body.name() + "' is " + number_text(extent) + " m large and " + number_text(far) +
+                    " m from the origin: its strains have few exact digits (translate it " + "nearer)");
+}
+
+struct Means {
+  double young = 0, density = 0;  // by volume [Pa], [kg/m^3]
+};
+
+Means means(const TetMesh& mesh, const BodyMaterial& material) {
+  Means sum;
+  double whole = 0;
+  for (int t = 0; t < mesh.tet_count(); ++t) {
+    const double part = volume(mesh, t);
+    whole += part;
+    sum.young += part * young_modulus(material.parameters[t].lame);
+    sum.density += part * material.density[t];
+  }
+  return {sum.young / whole, sum.density / whole};
+}
+
+// Along `direction`, which need not be a unit vector, times its length.
+double extent(const std::vector<Vec3d>& X, const Vec3d& direction) {
+  double low = INFINITY, high = -INFINITY;
+  for (const Vec3d& x : X) low = std::min(low, dot(x, direction)), high = std::max(high, dot(x, direction));
+  return high - low;
+}
+
+std::string rounded(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", x);
+  return text;
+}
+
+void note_weight(const PlacedBody& body, const Means& mean, const Vec3d& gravity, std::vector<std::string>& notes) {
+  const Value& scene = body.scene;
+  if (!scene.find("pin") && !scene.find("spring")) return;  // it falls
+  const double strain = mean.density * extent(body.mesh.rest, gravity) / mean.young;
+  if (!(strain > kCrushed)) return;
+  double factor = 1e3;
+  while (factor < 1e9 && strain > factor) factor *= 1e3;
+  const char* unit = factor == 1e3 ? "kPa" : factor == 1e6 ? "MPa" : "GPa";
+  notes.push_back("body '" + body.name() + "': its weight crushes it: density * gravity * height / young = " +
+                  rounded(strain) + ", where 1 is much; if " + rounded(mean.young) + " was meant in " + unit +
+                  ", set material.young = " + rounded(factor * mean.young));
+}
+
+void note_diamond(const PlacedBody& body, const Means& mean, std::vector<std::string>& notes) {
+  if (!(mean.young > kDiamond)) return;
+  const Box box = bounding_box(body.mesh.rest);
+  const double length = std::sqrt(dot(box.upper - box.lower, box.upper - box.lower));
+  double factor = 1e3;
+  while (factor < 1e9 && mean.young / factor > kSoft) factor *= 1e3;
+  notes.push_back("body '" + body.name() + "': stiffer than diamond (1.2e12 Pa), it rings at " +
+                  rounded(std::sqrt(mean.young / mean.density) / (2 * length)) + " Hz; if " + rounded(mean.young) +
+                  " Pa is " + rounded(factor) +
+                  " times too much, set material.young = " + rounded(mean.young / factor));
+}
+
+// At a thousandth and at a thousand times its size, a body should have more energy than at rest.
+void note_unbounded(const PlacedBody& body, const BodyMaterial& material, std::vector<std::string>& notes) {
+  const auto least = std::min_element(material.parameters.begin(), material.parameters.end(),
+                                      [](auto& a, auto& b) { return poisson_ratio(a.lame) < poisson_ratio(b.lame); });
+  if (least == material.parameters.end() || !(poisson_ratio(least->lame) < 0)) return;
+  TetMesh tet = make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1});
+  tet.tets.resize(1);
+  const auto V = make_tet_elasticity(material.model, tet, 0, {&*least, 1});
+  for (const double size : {1e-3, 1e3}) {
+    std::vector<double> x;
+    for (const Vec3d& X : tet.rest)
+      for (int r = 0; r < 3; ++r) x.push_back(size * X[r]);
+    if (!(V->value(x) < 0)) continue;
+    notes.push_back("body '" + body.name() + "': with poisson = " + number_text(poisson_ratio(least->lame)) +
+                    " the energy of " + material.model + " has no least value: a body that is " +
+                    (size < 1 ? "squeezed" : "stretched") +
+                    " far enough never comes back (poisson = 0 or more, or model = \"stvk\")");
+    return;
+  }
+}
+
+}  // namespace
+
+void note_start(const PlacedBody& body, std::vector<std::string>& notes) {
+  note_inverted(body, notes);
+  note_lost_digits(body, notes);
+}
+
+void note_stiffness(const PlacedBody& body, const BodyMaterial& material, const Vec3d& gravity,
+                    std::vector<std::string>& notes) {
+  if (!body.scene["elastic"].boolean() || body.mesh.tets.empty()) return;
+  const Means mean = means(body.mesh, material);
+  note_weight(body, mean, gravity, notes);
+  note_diamond(body, mean, notes);
+  note_unbounded(body, material, notes);
+}
+
+}  // namespace aspic

@@ -1,0 +1,162 @@
+#!/usr/bin/env python3
+"""Failures that are made on purpose: the message names the cause and one change, and that change works.
+
+usage: ASPIC=path/to/aspic explain_test.py [TestCase...]
+"""
+import os
+import re
+import unittest
+
+from cli_test import CommandLine, box_mesh
+
+BODY = """[time]
+step = {step}
+duration = {duration}
+integrator = "{integrator}"
+[output]
+vtu = false
+pc2 = false
+usd = false
+report = false
+{solver}
+[[body]]
+name = "beam"
+shape = {{ box = {{ upper = [0.4, 0.1, 0.1], cells = [4, 1, 1] }} }}
+material = {{ model = "{model}", young = {young}, poisson = {poisson}, density = {density} }}
+{body}
+[[body.pin]]
+name = "wall"
+where = "x < 1e-9"
+{pins}
+"""
+USUAL = {"step": 0.01, "duration": 0.03, "integrator": "backward_euler", "model": "neo_hookean", "young": "1e5",
+         "poisson": "0.3", "density": "1000", "solver": "", "body": "", "pins": ""}
+CHANGE = r"((?:time|solver|material|body)[\w.]*) = (\"[^\"]*\"|[-+.\w]+)"
+
+
+class Explanations(CommandLine):
+    def scene(self, name="scene.toml", **parts):
+        return self.write(name, BODY.format(**{**USUAL, **parts}))
+
+    def run_scene(self, *options, code=0):
+        done = self.aspic("run", "scene.toml", "--force", *options, code=code)
+        return done.stdout + done.stderr
+
+    def assert_cured(self, text, *said, change=None):
+        """The words are in the text, and the change that it proposes makes every step converge."""
+        for words in said:
+            self.assertIn(words, text)
+        remedy = text[text.index("remedy:"):] if "remedy:" in text else text
+        found = re.search(CHANGE, remedy)
+        self.assertTrue(found, f"no change in: {text}")
+        proposed = f"{found[1]}={found[2]}"
+        if change:
+            self.assertTrue(proposed.startswith(change), f"{proposed}, not {change}\n{text}")
+        return self.run_scene("--set", proposed)
+
+
+class Explain(Explanations):
+    def test_an_inverted_start(self):
+        self.scene(model="neo_hookean_log", body="deform = { matrix = [[-1, 0, 0], [0, 1, 0], [0, 0, 1]] }", pins="")
+        self.assert_cured(self.run_scene(code=2), "infinite energy", "tets are inverted", change="material.model=")
+
+    def test_an_explicit_step_that_is_too_long(self):
+        self.scene(integrator="symplectic_euler", step=0.02, duration=0.4, young="1e6")
+        text = self.run_scene(code=3)
+        for words in ("blew up", "0.02 s", "vibrates fastest", "Hz"):
+            self.assertIn(words, text)
+        found = re.search(r"time\.step = ([\d.e-]+)", text)
+        self.run_scene("--set", f"time.step={found[1]}", "--set", f"time.duration={400 * float(found[1])}")
+        self.run_scene("--set", "time.integrator=" + re.search(r'time.integrator = ("\w+")', text)[1])
+
+    def test_poissons_ratio_too_near_one_half(self):
+        self.scene(poisson="0.5")
+        text = self.run_scene(code=2)
+        self.assertIn("poisson = 0.5; must be > -1 and < 0.5", text)
+        self.run_scene("--set", "material.poisson=" + re.search(r"\(try ([\d.]+)\)", text)[1])
+        self.scene(poisson="0.4999")
+        text = self.run_scene()
+        self.assertIn("linear tets lock", text)
+        self.assertNotIn("tets lock", self.assert_cured(text, "0.4999", change="material.poisson="))
+
+    def test_a_modulus_in_kilopascals(self):
+        self.scene(young="100")
+        for text in (self.run_scene(), self.aspic("check", "scene.toml").stdout):
+            self.assertIn("its weight crushes it", text)
+            self.assertNotIn("crushes", self.assert_cured(text, "kPa", change="material.young=1e+05"))
+
+    def test_a_modulus_in_gigapascals(self):
+        self.scene(young="1e14")
+        text = self.run_scene()
+        self.assertNotIn("diamond", self.assert_cured(text, "stiffer than diamond", "Hz", change="material.young=1e+05"))
+
+    def test_pins_that_contradict_each_other(self):
+        self.scene(pins='[[body.pin]]\nname = "tip"\nwhere = "x < 0.15"\nmotion = { linear = { velocity = [1, 0, 0] } }')
+        text = self.run_scene(code=2)
+        for words in ("'wall'", "'tip'", "scene.toml:"):
+            self.assertIn(words, text)
+        where = re.search(r'where = "([^"]+)"', text[text.index("try"):])[1]
+        self.run_scene("--set", f'body.beam.pin.1.where="{where}"')
+
+    def test_pins_that_crush_an_element_to_nothing(self):
+        # One cell, all of whose vertices are pinned: no step is short enough.
+        self.scene(model="neo_hookean_log", pins='[[body.pin]]\nname = "press"\nwhere = "x > 1e-9"\n'
+                   'motion = { keyframes = [{ time = 0, displacement = [0, 0, 0] }, { time = 0.02, displacement = [-0.21, 0, 0] }] }')
+        self.assert_cured(self.run_scene(code=3), "pins themselves", "corners are all pinned", change="material.model=")
+
+    def test_an_element_of_no_volume(self):
+        mesh = box_mesh().replace("\n1 1 1 0\n", "\n0.5 0.5 0.5 0\n")
+        self.write("flat.mesh", mesh)
+        text = self.aspic("run", "flat.mesh", code=2).stderr
+        self.assertRegex(text, r"zero|volume|flat")
+        self.assertIn("--repair", text)
+        self.aspic("check", "flat.mesh", "--repair", "-o", "mended.mesh", code=0)
+        self.aspic("run", "mended.mesh", "--steps", "2")
+
+    def test_no_mass(self):
+        self.scene(density="0")
+        text = self.run_scene(code=2)
+        self.assertIn("density = 0; must be > 0", text)
+        self.run_scene("--set", "material.density=" + re.search(r"\(try ([\d.]+)\)", text)[1])
+        self.scene(density='"x < 0.2 ? 0 : 1000"')
+        self.assertIn("density = 0 in tet", self.run_scene(code=2))
+
+    def test_a_vertex_without_mass(self):
+        lines = box_mesh().split("\n")
+        at = lines.index("Vertices") + 1
+        lines[at] = str(int(lines[at]) + 1)
+        lines.insert(at + 1 + int(lines[at]) - 1, "5 5 5 0")
+        self.write("stray.mesh", "\n".join(lines))
+        text = self.aspic("run", "stray.mesh", "--steps", "1", code=2).stderr
+        self.assertIn("--repair", text)
+        self.aspic("check", "stray.mesh", "--repair", "-o", "mended.mesh")
+        self.aspic("run", "mended.mesh", "--steps", "1")
+
+    def test_an_indefinite_hessian(self):
+        self.scene(integrator="quasi_static", young="2e3", solver='[solver]\ndefiniteness = "exact"')
+        self.assert_cured(self.run_scene(code=3), "negative curvature", change="solver.definiteness=")
+
+    def test_a_tolerance_below_round_off(self):
+        self.scene(solver="[solver]\ntolerance = 1e-17")
+        self.assertIn("round_off", self.run_scene())  # as good as converged, and called what it is
+        self.scene(solver='[solver]\ntolerance = 1e-17\nmethod = "lbfgs"\npreconditioner = "mass"')
+        self.assert_cured(self.run_scene(code=3), "without the Hessian", change="solver.preconditioner=")
+
+    def test_what_is_no_number_in_a_field(self):
+        self.write("rho.csv", "1000\n" * 11 + "nan\n" + "1000\n" * 12)
+        self.scene(density='{ file = "rho.csv" }')
+        text = self.run_scene(code=2)
+        for words in ("rho.csv:12", "nan"):
+            self.assertIn(words, text)
+        self.write("rho.csv", "1000\n" * 24)
+        self.run_scene()
+        self.scene(young='"1e5 / (x - x)"')
+        self.assertIn("is inf at (", self.run_scene(code=2))
+        self.write("bad.mesh", box_mesh().replace("\n1 1 1 0\n", "\nnan 1 1 0\n"))
+        text = self.aspic("run", "bad.mesh", code=2).stderr
+        self.assertIn("bad.mesh:", text)
+        self.assertIn("nan", text)
+
+
+if __name__ == "__main__":
+    unittest.main()

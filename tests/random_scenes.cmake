@@ -1,0 +1,9 @@
+# Random small scenes through the parser and the solvers: none crashes, hangs, or claims what is not so. For a longer
+# hunt: build/bin/random_scenes --seed 1001 --count 20000
+add_executable(random_scenes ${CMAKE_CURRENT_LIST_DIR}/random_scenes/main.cpp
+                             ${CMAKE_CURRENT_LIST_DIR}/random_scenes/judge.cpp
+                             ${CMAKE_CURRENT_LIST_DIR}/random_scenes/scene_text.cpp)
+target_link_libraries(random_scenes PRIVATE aspic aspic_build)
+target_include_directories(random_scenes PRIVATE ${CMAKE_SOURCE_DIR}/src ${CMAKE_CURRENT_LIST_DIR})
+add_test(NAME random_scenes COMMAND random_scenes --seed 1 --count 1000)
+set_tests_properties(random_scenes PROPERTIES TIMEOUT 600)

@@ -1,0 +1,168 @@
+#include "random_scenes/judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "dynamics/explanation.h"
+#include "material/registry.h"
+#include "random_scenes/draw.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kRoundOff = 1e-9;  // of the energies that are added, and of the forces that balance
+// Of forces that are made anew from differences of positions, and of energies that cancel in a body at rest.
+constexpr double kLastDigits = 1e-11;
+constexpr int kMostParts = 300;  // of all the adaptive steps of a scene
+
+bool is_finite(std::span<const double> v) {
+  return std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
+}
+
+// Of each body, by the text: whether its material is infinitely stiff against inversion.
+std::vector<bool> barriers(const std::string& text) {
+  std::vector<bool> found;
+  for (size_t at = text.find("[[body]]"); at != std::string::npos;) {
+    const size_t next = text.find("[[body]]", at + 1);
+    const std::string body = text.substr(at, next - at);
+    const auto has = [&](const MaterialInfo& m) {
+      return m.barrier && body.find("model = \"" + m.name + "\"") != std::string::npos;
+    };
+    found.push_back(std::any_of(materials().begin(), materials().end(), has));
+    at = next;
+  }
+  return found;
+}
+
+class Judge {
+ public:
+  Judge(Scene& scene, const std::string& text)
+      : scene_(scene),
+        simulation_(scene.simulation),
+        barriers_(barriers(text)),
+        moves_(text.find("motion = {") != std::string::npos),
+        total_(simulation_.kinetic_energy()) {
+    for (const double V : simulation_.potential_energies()) total_ += V;
+  }
+
+  Judgement run() {
+    judgement_.ending = "converged";
+    int parts = 0;
+    const Consent go_on = [&] { return ++parts <= kMostParts; };
+    for (int i = 0; i < scene_.steps && judgement_.fault.empty(); ++i) {
+      const State before = simulation_.state();
+      const StepReport report = simulation_.step({}, go_on);
+      if (report.status == Status::interrupted) {
+        judgement_.ending = "interrupted";
+        break;
+      }
+      judge(before, report);
+    }
+    return judgement_;
+  }
+
+ private:
+  void fault(const std::string& text, const StepReport& report) {
+    if (judgement_.fault.empty())
+      judgement_.fault =
+          "step " + std::to_string(report.step) + ", status " + std::string(to_string(report.status)) + ": " + text;
+  }
+
+  void judge(const State& before, const StepReport& report) {
+    const State& state = simulation_.state();
+    if (!is_finite(state.q) || !is_finite(state.qdot)) fault("the state is not finite", report);
+    if (!std::isfinite(report.ledger_error)) fault("the ledger is not finite", report);
+    for (size_t body = 0; body < barriers_.size(); ++body) {
+      const double det_F = simulation_.model().elasticity[body]->min_det_F(state.q);
+      if (barriers_[body] && !(det_F > 0)) fault("det F = " + shortest(det_F), report);
+    }
+    is_success(report.status) ? judge_success(report) : judge_failure(report);
+    judge_ledger(report);
+    if (simulation_.options().integrator == "backward_euler") judge_descent(before, report);
+  }
+
+  void judge_success(const StepReport& report) {
+    if (!std::isfinite(report.kinetic) || !std::isfinite(report.potential_total))
+      fault("the energy is not finite", report);
+    const double scale = report.residual_threshold / simulation_.options().solver.minimize.tolerance;
+    const double allowed = 1.01 * report.residual_threshold + 1000 * report.residual_round_off + kLastDigits * scale;
+    if (report.residual_threshold > 0 && report.status == Status::converged && report.residual > allowed)
+      fault("residual " + shortest(report.residual) + " N, threshold " + shortest(report.residual_threshold) +
+                " N, round-off " + shortest(report.residual_round_off) + " N",
+            report);
+  }
+
+  void judge_failure(const StepReport& report) {
+    const Explanation why = explain(simulation_, report);
+    if (why.cause.empty() || why.remedy.empty()) fault("no explanation", report);
+    if (judgement_.ending != "converged") return;
+    judgement_.ending = to_string(report.status);
+    judgement_.detail = why.cause + " | " + why.place + " | " + why.remedy;
+  }
+
+  // The energies of the report are those of the state, and their changes add up.
+  void judge_ledger(const StepReport& report) {
+    double potential = 0, size = std::abs(report.kinetic);
+    for (const double V : simulation_.potential_energies()) potential += V, size += std::abs(V);
+    const double kinetic = simulation_.kinetic_energy();
+    for (const double w : {report.pin_work, report.damping_loss, report.numerical_loss, report.residual_work, size_})
+      size += std::abs(w);
+    const double open = std::abs(kinetic - report.kinetic) + std::abs(potential - report.potential_total) +
+                        std::abs(report.ledger_error);
+    if (!(open <= kRoundOff * size * std::max(1.0, 1e-6 * distance())))
+      fault("the ledger is open by " + shortest(open) + " of " + shortest(size), report);
+    size_ = std::abs(kinetic);
+    for (const double V : report.potential) size_ += std::abs(V);
+  }
+
+  // How far the body is from the origin, in sizes of its rest shape: so many times coarser are its strains.
+  double distance() const {
+    double far = 0, low = INFINITY, high = -INFINITY;
+    for (const double q : simulation_.state().q) far = std::max(far, std::abs(q));
+    for (const Vec3d& X : simulation_.model().mesh.rest) low = std::min(low, X[0]), high = std::max(high, X[0]);
+    return far / (high - low);
+  }
+
+  // Young's modulus times volume: an energy is known to the last digits of that. [J]
+  double stiffness() const {
+    const Model& model = simulation_.model();
+    double sum = 0;
+    for (int t = 0; t < model.mesh.tet_count(); ++t) sum += model.tet_fields[0].second[t] * volume(model.mesh, t);
+    return sum;
+  }
+
+  // Backward Euler: V1 + |v1 - v0|^2 / 2 <= V0 + T0 wherever nothing is moved, whatever the status.
+  void judge_descent(const State& before, const StepReport& report) {
+    const SimulationOptions& options = simulation_.options();
+    const bool descends = options.solver.minimize.line_search.test != DecreaseTest::none &&
+                          (options.initial_guess == "best" || options.initial_guess == "current") &&
+                          options.adaptive.tolerance == 0 && simulation_.model().damping.empty();
+    const double total = report.kinetic + report.potential_total;
+    const double earlier = std::exchange(total_, total);
+    if (!descends || moves_ || report.status == Status::undefined) return;
+    std::vector<double> change(before.qdot.size()), momentum(before.qdot.size());
+    for (size_t i = 0; i < change.size(); ++i) change[i] = simulation_.state().qdot[i] - before.qdot[i];
+    simulation_.model().mass->multiply(change, momentum);
+    double lost = 0;
+    for (size_t i = 0; i < change.size(); ++i) lost += 0.5 * change[i] * momentum[i];
+    const double rise = report.potential_total + lost - earlier;
+    if (!(rise <= kRoundOff * (size_ + std::abs(lost) + std::abs(earlier)) + kLastDigits * stiffness()))
+      fault("the energy rises by " + shortest(rise) + " from " + shortest(earlier), report);
+  }
+
+  Scene& scene_;
+  Simulation& simulation_;
+  std::vector<bool> barriers_;  // of each body
+  bool moves_;                  // pins or targets
+  double size_ = 0;             // the energies of the report, each without its sign
+  double total_;                // energy before the step
+  Judgement judgement_;
+};
+
+}  // namespace
+
+Judgement judge(Scene& scene, const std::string& text) { return Judge(scene, text).run(); }
+
+}  // namespace aspic

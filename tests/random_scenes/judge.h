@@ -1,0 +1,19 @@
+// What every run of every scene owes: a status that is true, numbers that are numbers, energies that add up, and words
+// where something failed.
+#pragma once
+#include <string>
+
+#include "scene/scene.h"
+
+namespace aspic {
+
+struct Judgement {
+  std::string ending;  // "converged", "refused", or the status of the first step that failed
+  std::string detail;  // the words of the refusal or the explanation
+  std::string fault;   // what the run owes and does not give; empty: nothing
+};
+
+// Runs the scene of that text to its end, whatever its steps end with.
+Judgement judge(Scene& scene, const std::string& text);
+
+}  // namespace aspic

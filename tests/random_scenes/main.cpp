@@ -1,0 +1,154 @@
+// random_scenes [--seed FIRST] [--count N]: runs so many random scenes, each in a process of its own, so that one that
+// crashes or never ends does not end the others. What a scene owes is in judge.h. Prints the scenes at fault.
+//   --print SEED    the text of that scene; --run SEED: in this process, for a debugger
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "random_scenes/judge.h"
+#include "random_scenes/scene_text.h"
+
+namespace aspic {
+namespace {
+
+constexpr rlim_t kMostSeconds = 30;  // of the processor, for scenes that take hundredths of one
+
+struct Arguments {
+  uint64_t seed = 1, count = 1000;
+  bool prints = false, runs = false, verbose = false;
+};
+
+Judgement run_scene(uint64_t seed, const std::filesystem::path& folder) {
+  const std::string text = random_scene(seed);
+  const std::filesystem::path file = folder / "scene.toml";
+  std::ofstream(file, std::ios::binary) << text;
+  try {
+    Scene scene = load_scene(file);
+    return judge(scene, text);
+  } catch (const InvalidInput& refusal) {
+    return {"refused", refusal.what(), ""};
+  } catch (const std::exception& e) {
+    return {"exception", "", std::string("exception: ") + e.what()};
+  }
+}
+
+// "ending\ndetail\nfault" through a pipe; how the process ended where nothing comes.
+Judgement run_apart(uint64_t seed, const std::filesystem::path& folder) {
+  int ends[2];
+  if (pipe(ends) != 0) throw InvalidInput("no pipe");
+  std::fflush(stdout);
+  const pid_t child = fork();
+  if (child == 0) {
+    close(ends[0]);
+    const rlimit seconds{kMostSeconds, kMostSeconds};
+    setrlimit(RLIMIT_CPU, &seconds);
+    const rlimit no_core{0, 0};
+    setrlimit(RLIMIT_CORE, &no_core);
+    set_thread_count(1);
+    const Judgement judgement = run_scene(seed, folder);
+    std::string text;
+    for (const std::string* part : {&judgement.ending, &judgement.detail, &judgement.fault}) {
+      for (const char c : *part) text += c == '\n' ? ' ' : c;
+      text += '\n';
+    }
+    const bool is_told = write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size());
+    _exit(is_told ? 0 : 1);
+  }
+  close(ends[1]);
+  std::string text;
+  char buffer[4096];
+  for (ssize_t got = 0; (got = read(ends[0], buffer, sizeof buffer)) > 0;) text.append(buffer, got);
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  if (WIFSIGNALED(status)) {
+    const bool is_slow = WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL;
+    return {is_slow ? "hang" : "crash", "", is_slow ? "did not end" : strsignal(WTERMSIG(status))};
+  }
+  const size_t first = text.find('\n'), second = text.find('\n', first + 1);
+  if (second == std::string::npos) return {"crash", "", "ended without a word"};
+  return {text.substr(0, first), text.substr(first + 1, second - first - 1),
+          text.substr(second + 1, text.size() - second - 2)};
+}
+
+int hunt(const Arguments& arguments, const std::filesystem::path& folder) {
+  std::map<std::string, int> endings;
+  int faults = 0;
+  for (uint64_t seed = arguments.seed; seed < arguments.seed + arguments.count; ++seed) {
+    const Judgement judgement = run_apart(seed, folder);
+    ++endings[judgement.ending];
+    if (arguments.verbose)
+      std::printf("%llu %s: %s\n", static_cast<unsigned long long>(seed), judgement.ending.c_str(),
+                  judgement.detail.c_str());
+    if (judgement.fault.empty()) continue;
+    ++faults;
+    std::printf("---- seed %llu: %s\n%s", static_cast<unsigned long long>(seed), judgement.fault.c_str(),
+                random_scene(seed).c_str());
+    std::fflush(stdout);
+  }
+  std::printf("---- %llu scenes from seed %llu, %d at fault:", static_cast<unsigned long long>(arguments.count),
+              static_cast<unsigned long long>(arguments.seed), faults);
+  for (const auto& [ending, count] : endings) std::printf(" %d %s", count, ending.c_str());
+  std::printf("\n");
+  const bool are_too_many_refused = 4 * static_cast<uint64_t>(endings["refused"]) > arguments.count;
+  if (are_too_many_refused) std::printf("more than a quarter was refused: that is no test\n");
+  return faults > 0 || (are_too_many_refused && arguments.count >= 100) ? 1 : 0;
+}
+
+Arguments read(int argc, char** argv) {
+  Arguments arguments;
+  for (int i = 1; i < argc; ++i) {
+    const std::string option = argv[i];
+    if (option == "--verbose") {
+      arguments.verbose = true;
+      continue;
+    }
+    const bool takes_number = option == "--seed" || option == "--count" || option == "--print" || option == "--run";
+    if (!takes_number || i + 1 == argc)
+      throw InvalidInput("usage: random_scenes [--seed FIRST] [--count N] [--verbose] | --print SEED | --run SEED");
+    const uint64_t number = std::strtoull(argv[++i], nullptr, 10);
+    (option == "--count" ? arguments.count : arguments.seed) = number;
+    arguments.prints |= option == "--print";
+    arguments.runs |= option == "--run";
+  }
+  return arguments;
+}
+
+int run(const Arguments& arguments) {
+  if (arguments.prints) return std::printf("%s", random_scene(arguments.seed).c_str()) < 0;
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("aspic_random_scenes_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  int code = 0;
+  if (arguments.runs) {
+    const Judgement judgement = run_scene(arguments.seed, folder);
+    std::printf("%s\n%s\n%s\n", judgement.ending.c_str(), judgement.detail.c_str(), judgement.fault.c_str());
+    code = judgement.fault.empty() ? 0 : 1;
+  } else {
+    code = hunt(arguments, folder);
+  }
+  std::filesystem::remove_all(folder);
+  return code;
+}
+
+}  // namespace
+}  // namespace aspic
+
+int main(int argc, char** argv) {
+  try {
+    return aspic::run(aspic::read(argc, argv));
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s\n", e.what());
+    return 2;
+  }
+}
