@@ -72,11 +72,11 @@ void add_overview(ReportPage& page, const std::vector<Verification>& results) {
   page.paragraph(count_text(results));
   std::vector<std::vector<Cell>> rows;
   for (const Verification& result : results)
-    rows.push_back({{result.check->key()},
+    rows.push_back({verdict_cell(result.findings.passes()),
                     {result.check->title},
                     {std::to_string(result.findings.rows.size())},
-                    verdict_cell(result.findings.passes())});
-  page.table({"check", "", "rows", ""}, rows);
+                    {result.check->key()}});
+  page.table({"", "check", "rows", "name"}, rows);
 }
 
 void add_check(ReportPage& page, const Verification& result, const std::vector<Figure>& figures) {
@@ -87,14 +87,17 @@ void add_check(ReportPage& page, const Verification& result, const std::vector<F
   page.paragraph(sources_text(*result.check));
   page.code("aspic verify --only " + result.check->key());
   std::vector<std::vector<Cell>> rows;
-  for (const verify::Row& row : result.findings.rows)
-    rows.push_back({{row.quantity},
+  std::string reason;  // stands once for the rows that share it
+  for (const verify::Row& row : result.findings.rows) {
+    rows.push_back({verdict_cell(row.passes()),
+                    {row.quantity},
                     {value_text(row.measured, row)},
                     {value_text(row.reference, row)},
                     {tolerance_text(row)},
-                    verdict_cell(row.passes()),
-                    {row.reason}});
-  page.table({"quantity", "measured", "reference", "tolerance", "", "why this tolerance"}, rows);
+                    {row.reason == reason ? "" : row.reason}});
+    reason = row.reason;
+  }
+  page.table({"", "quantity", "measured", "reference", "tolerance", "why this tolerance"}, rows);
   if (!figures.empty()) page.figures(figures);
 }
 

@@ -46,6 +46,7 @@ std::vector<double> drops(int n, const std::string& material, const std::vector<
                                       }),
                            {.material = material, .young = 1, .poisson = 0, .gravity = {}});
   model.pins.push_back({"wall", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] < 1e-9; }), {}});
+  model.loads.push_back(make_plane_hold(model.mesh, 1e3 * width));  // so narrow a strip would buckle sideways
   const double area = height * width, inertia = width * height * height * height / 12;
   model.loads.push_back(make_growing_load(
       traction_on(model.mesh, [](const Vec3d& X) { return X[0] > 1 - 1e-9; }, {{0, -inertia / area, 0}}),
@@ -56,7 +57,7 @@ std::vector<double> drops(int n, const std::string& material, const std::vector<
   const int tip =
       vertices_where(model.mesh, [n](const Vec3d& X) { return X[0] > 1 - 1e-9 && std::abs(X[1]) < 1e-9; }).at(0);
   SimulationOptions options{.h = 1, .integrator = "quasi_static", .solver = {}};
-  options.solver.minimize.tolerance = 1e-9;
+  options.solver.minimize.tolerance = 1e-13;  // bending is soft beside the moduli that forces are judged by
   Simulation simulation = simulate(std::move(model), options);
   std::vector<double> found;
   for (const TipLoad& row : loads) {
@@ -74,7 +75,7 @@ void check_elastica(const Subject& subject, Findings& found) {
   std::vector<std::vector<double>> by_mesh;
   Plot plot{"drop of the tip (dashed: the elastica)", "P L^2 / (E I)", "drop / L", Scales::linear, {}};
   for (const int n : cells) {
-    by_mesh.push_back(drops(n, subject.taken_for("stvk"), loads));
+    by_mesh.push_back(drops(n, subject.taken_for("neo_hookean_log"), loads));
     Curve curve{std::to_string(n) + " cells through the height", {0}, {0}};
     for (size_t k = 0; k < loads.size(); ++k) curve.x.push_back(loads[k].load), curve.y.push_back(by_mesh.back()[k]);
     plot.curves.push_back(curve);
@@ -86,14 +87,13 @@ void check_elastica(const Subject& subject, Findings& found) {
     for (const auto& mesh : by_mesh) values.push_back(mesh[k]);
     const double reference = loads[k].drop;
     exact.x.push_back(loads[k].load), exact.y.push_back(reference);
-    found.expect(name + ": drop / L, limit", richardson(values, 2), reference,
-                 (subject.quick ? 0.02 : 5e-3) * reference,
-                 subject.quick ? "4 cells through the height are at the end of locking"
-                               : "shear adds 0.6 (h/L)^2 = 4e-4; the rest is left by the extrapolation");
-    const size_t last = values.size() - 1;
-    if (!subject.quick)
-      found.expect(name + ": ratio of the last two errors", (values[last - 1] - reference) / (values[last] - reference),
-                   4, 0.6, "order 2: locking is over once there are 4 cells through the height");
+    found.expect(
+        name + ": drop / L, limit", richardson(values, 2), reference, (subject.quick ? 0.02 : 2.5e-3) * reference,
+        subject.quick ? "4 cells through the height are at the end of locking"
+                      : "shear adds 0.6 (h/L)^2 = 4e-4, the law as much at strains of 5 %, the extrapolation some");
+    if (values.size() >= 3)
+      found.expect(name + ": order of the last three meshes", extrapolate(values).order, 2, 0.3,
+                   "locking is over once there are 4 cells through the height; the next term of the error");
   }
   plot.curves.push_back(exact);
   found.plots.push_back(plot);
