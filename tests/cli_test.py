@@ -655,6 +655,8 @@ class Verify(CommandLine):
         self.assertIn("FAIL  bdf2:", text)
         self.assertIn("pass  midpoint:", text)
         self.assertFalse(self.results()[0]["passes"])
+        self.verify("--only", "materials/uniaxial", "--instead", "stvk=corotated", code=3)
+        self.assertEqual(len(self.results()), 1)  # not the table beside it
         self.verify("--only", "uniaxial_table", "--instead", "stvk=corotated", code=3)
 
     def test_what_cannot_be_computed_fails(self):

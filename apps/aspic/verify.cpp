@@ -28,17 +28,19 @@ struct Arguments {
   int threads = 0;
 };
 
-bool is_meant(const verify::Check& check, const std::vector<std::string>& words) {
-  const auto holds = [&](const std::string& word) {
-    return check.key().find(word) != std::string::npos || check.title.find(word) != std::string::npos;
-  };
-  return words.empty() || std::any_of(words.begin(), words.end(), holds);
+// A word that is the whole name of a check means that one alone.
+bool is_meant(const verify::Check& check, const std::string& word) {
+  const auto& all = verify::checks();
+  if (std::any_of(all.begin(), all.end(), [&](const verify::Check& c) { return c.key() == word; }))
+    return check.key() == word;
+  return check.key().find(word) != std::string::npos || check.title.find(word) != std::string::npos;
 }
 
 std::vector<const verify::Check*> chosen(const std::vector<std::string>& words) {
   std::vector<const verify::Check*> found;
   for (const verify::Check& check : verify::checks())
-    if (is_meant(check, words)) found.push_back(&check);
+    if (words.empty() || std::any_of(words.begin(), words.end(), [&](const auto& w) { return is_meant(check, w); }))
+      found.push_back(&check);
   if (found.empty()) throw InvalidInput(fmt::format("no check is about '{}'; --list shows them", words.front()));
   return found;
 }
@@ -110,7 +112,9 @@ Examples:
   aspic verify --quick --instead bdf2=backward_euler   see it fail
 
 Exit codes: 0 every row passes, 2 bad input, 3 a row fails; one that could not be computed fails.)");
-  command->add_option("--only", arguments->only, "Checks whose name or title holds this word; may be repeated")
+  command
+      ->add_option("--only", arguments->only,
+                   "Checks whose name or title holds this word, or the check of this name; may be repeated")
       ->type_name("WORD");
   command->add_flag("--list", arguments->list, "List the checks and run nothing");
   command->add_flag("--quick", arguments->quick, "Fewer and coarser cases: seconds in place of minutes");

@@ -23,7 +23,7 @@ std::string value_text(double value, const verify::Row& row) {
   if (!std::isfinite(value)) return fmt::format("{}", value);
   if (row.reference == 0 || !(row.tolerance > 0)) return fmt::format("{:.3g}", value);
   const double digits = std::log10(std::abs(row.reference) / row.tolerance);
-  return fmt::format("{:.{}g}", value, std::clamp(static_cast<int>(std::ceil(digits)) + 2, 3, 15));
+  return fmt::format("{:#.{}g}", value, std::clamp(static_cast<int>(std::ceil(digits)) + 2, 3, 15));
 }
 
 std::string tolerance_text(const verify::Row& row) {

@@ -91,7 +91,7 @@ void check_sphere(const Subject& subject, Findings& found) {
       const Inflation one = blown_up(level, subject.taken_for(material), poisson, inner);
       outer.push_back(one.outer), force.push_back(one.force);
     }
-    const double tolerance = subject.quick ? 0.03 : 5e-3;
+    const double tolerance = subject.quick ? 0.03 : 1e-3;
     const std::string reason = "what the extrapolation with order 2 leaves: the next term of the error";
     found.expect(material + ": growth of the outer radius, limit", richardson(outer, 2) - 2, exact.outer - 2,
                  tolerance * (exact.outer - 2), reason, "m");
@@ -186,7 +186,7 @@ void check_torsion(const Subject& subject, Findings& found) {
   for (const int n : subject.quick ? std::vector<int>{3, 6} : std::vector<int>{6, 12})
     values.push_back(torsional_constant(n, material));
   found.expect("torque / (G twist a^4), limit", richardson(values, 2), 0.1405770,
-               (subject.quick ? 0.03 : 5e-3) * 0.140577, "what the extrapolation with order 2 leaves");
+               (subject.quick ? 0.03 : 3e-3) * 0.140577, "what the extrapolation with order 2 leaves");
 }
 
 }  // namespace
