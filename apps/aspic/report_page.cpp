@@ -31,7 +31,7 @@ th { text-align: left; font-weight: 600; border-bottom: 2px solid #bbb; padding:
 td { border-bottom: 1px solid #ececec; padding: .3rem .9rem .3rem 0; vertical-align: top; }
 td.number, th.number { text-align: right; }
 td.number, td.short { white-space: nowrap; }
-td:not([class]) { min-width: 9rem; }
+td:not([class]) { min-width: 12rem; }
 .badge { display: inline-block; border-radius: 3px; padding: 0 .45em; font-size: .85em; font-weight: 600;
   white-space: nowrap; }
 .pass { background: #d9efe6; color: #00573f; } .pass::before { content: "\2713\00a0"; }

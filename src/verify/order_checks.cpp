@@ -37,7 +37,7 @@ void check_time_order(const Subject& subject, Findings& found) {
       }
       found.expect(integrator + ": order, " + words(held), order_between(curve.y[curve.y.size() - 2], curve.y.back()),
                    order, 0.2,
-                   "the next term of the error is some h of the first: 0.04 to 0.15 of the order at these steps");
+                   "the next term of the error is some h of the first: up to a tenth of the order at these steps");
       if (held == Held::on_one_face) plot.curves.push_back(curve);
     }
   }

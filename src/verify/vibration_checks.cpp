@@ -37,14 +37,16 @@ Model strip(int n, const std::string& material) {
 void expect_limits(Findings& found, const std::vector<std::string>& names, const std::vector<double>& reference,
                    const std::vector<double>& tolerance, const std::vector<std::vector<double>>& by_mesh,
                    const std::string& reason) {
+  Findings orders;  // after the limits
   for (size_t k = 0; k < names.size(); ++k) {
     std::vector<double> values;
     for (const auto& mesh : by_mesh) values.push_back(mesh[k]);
     found.expect(names[k] + ": limit", richardson(values, 2), reference[k], tolerance[k] * reference[k], reason, "Hz");
     if (values.size() >= 3)
-      found.expect(names[k] + ": order of the last three meshes", extrapolate(values).order, 2, 0.2,
-                   "the next term of the error, with 4 cells or more through the height");
+      orders.expect(names[k] + ": order of the last three meshes", extrapolate(values).order, 2, 0.2,
+                    "the next term of the error, with 4 cells or more through the height");
   }
+  found.rows.insert(found.rows.end(), orders.rows.begin(), orders.rows.end());
 }
 
 void check_bar(const Subject& subject, Findings& found) {
