@@ -113,7 +113,7 @@ class CommandLine(unittest.TestCase):
 class Help(CommandLine):
     def test_every_level_has_examples(self):
         for arguments in ([], ["run"], ["check"], ["convert"], ["materials"], ["minimize"], ["capture"], ["fit"], ["fit-curves"],
-                          ["closed-loop"]):
+                          ["closed-loop"], ["verify"]):
             text = self.aspic(*arguments, "--help").stdout
             self.assertIn("Examples:", text)
             self.assertIn(" ".join(["  aspic", *arguments]), text)
@@ -619,6 +619,57 @@ class Compare(CommandLine):
         for arguments, message in ((["--methods", "newtn"], "newton"), (["--methods", "newton:clampd"], "clamped"),
                                    (["--methods", "newton", "--set", "time.integrator=forward_euler"], "implicit")):
             self.assertIn(message, self.aspic("compare", self.beam(), *arguments, code=2).stderr)
+class Verify(CommandLine):
+    def verify(self, *arguments, code=0):
+        return self.aspic("verify", "--quick", *arguments, code=code).stdout
+
+    def results(self):
+        return json.loads((self.folder / "out/verify/verify.json").read_text())["checks"]
+
+    def test_every_check_is_listed_and_nothing_is_run(self):
+        rows = self.verify("--list").splitlines()
+        self.assertGreater(len(rows), 20)
+        self.assertIn("statics/cook", [row.split()[0] for row in rows])
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_rows_say_what_was_measured_against_what_and_why(self):
+        text = self.verify("--only", "free_fall", "--only", "numbering")
+        self.assertRegex(text, r"pass  backward_euler: distance from the closed form .* \+- 1e-12 m")
+        self.assertIn("(round-off of 20 solves", text)
+        self.assertEqual([check["check"] for check in self.results()], ["invariants/numbering", "integrators/free_fall"])
+        for check in self.results():
+            self.assertTrue(check["passes"] and check["rows"])
+            for row in check["rows"]:
+                self.assertLessEqual(abs(row["measured"] - row["reference"]), row["tolerance"])
+                self.assertTrue(row["reason"])
+
+    def test_the_page_holds_everything(self):
+        self.verify("--only", "euler_energies")
+        page = (self.folder / "out/verify/index.html").read_text()
+        self.assertIn("symplectic_euler: drift", page)
+        self.assertIn("<svg", page)
+        self.assertNotRegex(page, r'(src|href)="http')
+
+    def test_a_wrong_integrator_or_material_fails(self):
+        text = self.verify("--only", "free_fall", "--instead", "bdf2=backward_euler", code=3)
+        self.assertIn("FAIL  bdf2:", text)
+        self.assertIn("pass  midpoint:", text)
+        self.assertFalse(self.results()[0]["passes"])
+        self.verify("--only", "materials/uniaxial", "--instead", "stvk=corotated", code=3)
+        self.assertEqual(len(self.results()), 1)  # not the table beside it
+        self.verify("--only", "uniaxial_table", "--instead", "stvk=corotated", code=3)
+
+    def test_what_cannot_be_computed_fails(self):
+        # The explicit scheme explodes where the implicit one is to be measured.
+        text = self.verify("--only", "pendulum", "--instead", "midpoint=forward_euler", code=3)
+        self.assertIn("FAIL  could not be computed", text)
+        self.assertIsNone(self.results()[0]["rows"][-1]["measured"])
+
+    def test_bad_input_is_named(self):
+        self.assertIn("no check is about 'nonsense'", self.aspic("verify", "--only", "nonsense", code=2).stderr)
+        self.assertIn("--instead bdf2=stvk", self.aspic("verify", "--instead", "bdf2=stvk", code=2).stderr)
+
+
 class Lecture(CommandLine):
     def lecture(self, *arguments, code=0):
         return self.aspic("lecture", *arguments, code=code).stdout

@@ -14,6 +14,7 @@ MODULES = {  # module: the modules it may include
     "energy": "base math mesh linalg material",
     "optimize": "base math linalg",
     "dynamics": "base math mesh linalg material energy optimize",
+    "verify": "base math mesh linalg material energy optimize dynamics",
     "fit": "base math mesh linalg material energy optimize dynamics",
     "scene": "base math mesh io linalg material energy optimize dynamics",
     "capture": "base math mesh io linalg material energy optimize dynamics fit scene",
@@ -42,7 +43,7 @@ violations = []
 for path in sorted(p for folder in ("src", "apps", "bench", "tests") for p in (root / folder).rglob("*.[hc]*")):
     name = path.relative_to(root).as_posix()
     module = name.split("/")[1] if name.startswith("src/") else None
-    is_test = name.endswith("_test.cpp")
+    is_test = name.endswith(("_test.cpp", "_test.h"))
     for number, line in enumerate(path.read_text().splitlines(), 1):
         ours = re.match(r'#include "(\w+)/', line)
         if ours and module and not is_test and ours[1] in MODULES and ours[1] != module:

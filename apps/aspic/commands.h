@@ -13,7 +13,7 @@ enum ExitCode {
   exit_done = 0,
   exit_internal_error = 1,
   exit_bad_input = 2,
-  exit_unconverged = 3,  // a step, a minimisation; of a check of derivatives: one is wrong
+  exit_unconverged = 3,  // a step, a minimisation; of a check of derivatives: one is wrong; of verify: a row fails
   exit_time_limit = 4,   // of `aspic run`: its --time-limit came first
   exit_signal = 128,     // plus the number of the signal: 130 after ctrl-C, 143 after a plain kill
 };
@@ -32,6 +32,7 @@ void add_closed_loop(CLI::App& app, Action& action);
 void add_minimize(CLI::App& app, Action& action);
 void add_capture(CLI::App& app, Action& action);
 void add_lecture(CLI::App& app, Action& action);
+void add_verify(CLI::App& app, Action& action);
 void add_viewer_commands(CLI::App& app, Action& action);  // view, report, render
 void add_view(CLI::App& app, Action& action);
 void add_report(CLI::App& app, Action& action);

@@ -25,7 +25,7 @@ Examples:
   aspic materials                           the materials and their formulas
 'aspic COMMAND --help' tells more about a command.
 
-Exit codes: 0 done, 1 internal error, 2 bad input, 3 not converged or a wrong derivative,
+Exit codes: 0 done, 1 internal error, 2 bad input, 3 not converged, a wrong derivative, a failed check,
 4 time limit, 130 interrupted by ctrl-C, 143 by kill.)";
 
 constexpr char kOutputLost[] = "standard output: cannot be written; free some space or choose another disk";
@@ -99,6 +99,7 @@ int run_program(int argc, char** argv) {
   add_minimize(app, action);
   add_capture(app, action);
   add_lecture(app, action);
+  add_verify(app, action);
   add_viewer_commands(app, action);
   if (argc == 1) {
     fmt::print("{}", app.help());

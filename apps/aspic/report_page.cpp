@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kStyle = R"(
-:root { color-scheme: light; }
+:root { color-scheme: light dark; }
 body { margin: 0 auto; max-width: 62rem; padding: 2.5rem 1.5rem 5rem; color: #222; background: #fff;
   font: 1rem/1.55 system-ui, -apple-system, "Segoe UI", "Helvetica Neue", Arial, sans-serif; }
 h1 { font-size: 1.9rem; line-height: 1.2; margin: 0 0 .3rem; }
@@ -31,6 +31,7 @@ th { text-align: left; font-weight: 600; border-bottom: 2px solid #bbb; padding:
 td { border-bottom: 1px solid #ececec; padding: .3rem .9rem .3rem 0; vertical-align: top; }
 td.number, th.number { text-align: right; }
 td.number, td.short { white-space: nowrap; }
+td:not([class]) { min-width: 12rem; }
 .badge { display: inline-block; border-radius: 3px; padding: 0 .45em; font-size: .85em; font-weight: 600;
   white-space: nowrap; }
 .pass { background: #d9efe6; color: #00573f; } .pass::before { content: "\2713\00a0"; }
@@ -40,6 +41,15 @@ td.number, td.short { white-space: nowrap; }
 figure { margin: 0; flex: 1 1 22rem; min-width: 0; }
 figure svg, figure img { display: block; max-width: 100%; height: auto; margin: 0 auto; }
 figcaption { color: #555; font-size: .9rem; margin-top: .3rem; }
+@media screen and (prefers-color-scheme: dark) {
+  body { color: #ddd; background: #16181b; }
+  h2 { border-top-color: #33373c; } .subtitle, figcaption { color: #a0a5ab; } nav ol { color: #8a9097; }
+  a { color: #6cb6ff; } pre { background: #1f2226; border-color: #33373c; }
+  th { border-bottom-color: #555; } td { border-bottom-color: #2b2f34; }
+  .pass { background: #123d31; color: #8fe0c4; } .fail { background: #4d2410; color: #ffb48a; }
+  .neutral { background: #33373c; color: #ccc; }
+  figure svg { filter: invert(.92) hue-rotate(180deg); }
+}
 @media print { body { max-width: none; padding: 0; } figure, table, pre { break-inside: avoid; } }
 )";
 

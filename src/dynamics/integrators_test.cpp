@@ -5,56 +5,23 @@
 
 #include <cmath>
 #include <map>
-#include <numbers>
 
-#include "dynamics/oscillator_test.h"
+#include "dynamics/models_test.h"
+#include "verify/integrators.h"
+#include "verify/oscillator.h"
 
 namespace aspic {
 namespace {
 
 using namespace testing_models;
 
-// r of the oscillation after its first steps: those of a scheme that begins otherwise have died away.
-std::complex<double> measured_factor(const std::string& integrator, double h) {
-  Simulation simulation = oscillator({.h = h, .integrator = integrator, .solver = {}});
-  for (int i = 0; i < 40; ++i) simulation.step();
-  std::vector<double> x;
-  for (int i = 0; i < 4; ++i) {
-    EXPECT_TRUE(is_success(simulation.step().status)) << integrator;
-    x.push_back(oscillator_position(simulation));
-  }
-  return factor_per_step(x);
-}
-
 TEST(Integrators, DampAndDelayAnOscillatorAsTheirFormulasSay) {
-  struct Expected {
-    double energy_after_one_period, frequency_ratio;
-  };
-  const double x = 0.1;  // w h
-  const std::map<std::string, Expected> expected = {
-      {"backward_euler", {.535156, .99669}},
-      {"linearly_implicit_euler", {.535156, .99669}},
-      {"bdf2", {.996940, .99671}},
-      {"tr_bdf2", {.999954, .99960}},
-      {"midpoint", {1, .99917}},
-      {"trapezoid", {1, .99917}},
-      {"symplectic_euler", {1, 1.00042}},
-      {"forward_euler", {std::pow(1.01, 20 * std::numbers::pi), .99669}},
-      {"rk4", {1 - std::pow(x, 5) / 72 * 2 * std::numbers::pi, 1 - std::pow(x, 4) / 120}}};
-  for (const auto& [integrator, value] : expected) {
-    const std::complex<double> r = measured_factor(integrator, 0.01);
-    const double periods = 2 * std::numbers::pi / x;  // in steps
-    EXPECT_NEAR(std::pow(std::norm(r), periods), value.energy_after_one_period,
-                6e-7 * std::max(1.0, value.energy_after_one_period))
-        << integrator;
-    EXPECT_NEAR(std::arg(r) / x, value.frequency_ratio, 6e-6) << integrator;
+  EXPECT_EQ(expected_oscillations().size() + 1, integrator_names().size()) << "all but quasi_static";
+  for (const auto& [integrator, expected] : expected_oscillations()) {
+    const Oscillation measured = measured_oscillation(integrator);
+    EXPECT_NEAR(measured.energy_left, expected.energy_left, 6e-7 * std::max(1.0, expected.energy_left)) << integrator;
+    EXPECT_NEAR(measured.frequency_ratio, expected.frequency_ratio, 6e-6) << integrator;
   }
-  EXPECT_EQ(expected.size() + 1, integrator_names().size()) << "all but quasi_static";
-}
-
-double oscillator_energy(const Simulation& s) {
-  const double x = oscillator_position(s), v = oscillator_velocity(s);
-  return 0.5 * v * v + 50 * x * x;
 }
 
 TEST(Integrators, EulersMethodsGainLoseAndKeepEnergyOfAnOscillatorByFixedFactors) {
@@ -82,45 +49,17 @@ TEST(Integrators, EulersMethodsGainLoseAndKeepEnergyOfAnOscillatorByFixedFactors
 }
 
 TEST(Integrators, AreOfTheirOrderWithDampingAndAMovingTarget) {
-  // x'' + c x' + k (x - s(t)) = 0 with c = 2, k = 100 and s such that x = cos 3t.
-  const double c = 2, k = 100, w = 3;
-  const auto target = [=](double t) { return ((k - w * w) * std::cos(w * t) - c * w * std::sin(w * t)) / k; };
-  for (const std::string& integrator : integrator_names()) {
-    const auto scheme = make_integrator(integrator);
-    if (scheme->is_static()) continue;
-    const auto error = [&](double h) {
-      Simulation s = oscillator({.h = h, .integrator = integrator, .solver = {}},
-                                {.stiffness = k, .damping = c, .offset = target});
-      for (int i = 0; i < std::lround(1 / h); ++i) s.step();
-      return std::abs(oscillator_position(s) - std::cos(w)) + std::abs(oscillator_velocity(s) + w * std::sin(w));
-    };
+  for (const std::string& integrator : integrators_in_time()) {
     const double h = 0.004;
-    EXPECT_NEAR(std::log2(error(h) / error(h / 2)), scheme->order(), 0.1) << integrator;
+    EXPECT_NEAR(std::log2(driven_oscillator_error(integrator, h) / driven_oscillator_error(integrator, h / 2)),
+                make_integrator(integrator)->order(), 0.1)
+        << integrator;
   }
 }
 
 TEST(Integrators, FallFreelyAsTheirFormulasSay) {
-  // After n steps: backward, linearly implicit and symplectic Euler g h^2 n(n+1)/2, forward Euler g h^2 n(n-1)/2, and
-  // those of higher order the parabola.
-  const int n = 20;
-  const double h = 0.01, g = 9.81;
-  const std::map<std::string, double> first_order = {{"backward_euler", n * (n + 1) / 2.0},
-                                                     {"linearly_implicit_euler", n * (n + 1) / 2.0},
-                                                     {"symplectic_euler", n * (n + 1) / 2.0},
-                                                     {"forward_euler", n * (n - 1) / 2.0}};
-  for (const std::string& integrator : integrator_names()) {
-    if (integrator == "quasi_static") continue;
-    const double steps = first_order.contains(integrator) ? first_order.at(integrator) : n * n / 2.0;
-    SimulationOptions options{.h = h, .integrator = integrator, .solver = {}};
-    options.solver.minimize.tolerance = 1e-14;
-    // Soft enough for the explicit schemes to be stable.
-    Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}), {.young = 1e3});
-    Simulation simulation = simulate(std::move(model), options);
-    for (int i = 0; i < n; ++i) ASSERT_TRUE(is_success(simulation.step().status)) << integrator;
-    for (int v = 0; v < simulation.model().mesh.vertex_count(); ++v)
-      EXPECT_NEAR(simulation.state().q[3 * v + 1], simulation.model().mesh.rest[v][1] - g * h * h * steps, 1e-12)
-          << integrator;
-  }
+  for (const std::string& integrator : integrators_in_time())
+    EXPECT_LT(free_fall_error(integrator, expected_fall(integrator, kFallSteps)), 1e-12) << integrator;
 }
 
 Model spinning_box(State& start) {

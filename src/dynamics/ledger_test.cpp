@@ -5,7 +5,8 @@
 
 #include <cmath>
 
-#include "dynamics/oscillator_test.h"
+#include "dynamics/models_test.h"
+#include "verify/oscillator.h"
 
 namespace aspic {
 namespace {

@@ -1,20 +1,14 @@
-// Four harmonic oscillators: the vertices of a tet without stiffness, 1 kg each, held to where they rest by springs.
-#pragma once
-#include <complex>
-#include <string>
-#include <vector>
+#include "verify/oscillator.h"
 
-#include "dynamics/models_test.h"
+#include <cmath>
 
-namespace aspic::testing_models {
+#include "base/check.h"
+#include "energy/rayleigh_damping.h"
+#include "energy/springs.h"
 
-struct OscillatorOptions {
-  double stiffness = 100;                                             // [N/m]
-  double damping = 0;                                                 // per mass [1/s]
-  std::function<double(double)> offset = [](double) { return 0.0; };  // of the targets along x at a time [m]
-};
+namespace aspic::verify {
 
-inline Model oscillator_model(const OscillatorOptions& options = {}) {
+Model oscillator_model(const OscillatorOptions& options) {
   Model model;
   model.mesh.rest = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}};
   model.mesh.tets = {{0, 1, 2, 3}};
@@ -34,8 +28,7 @@ inline Model oscillator_model(const OscillatorOptions& options = {}) {
   return model;
 }
 
-// Released 1 m from where it rests.
-inline Simulation oscillator(SimulationOptions options, const OscillatorOptions& physics = {}) {
+Simulation oscillator(SimulationOptions options, const OscillatorOptions& physics) {
   Model model = oscillator_model(physics);
   State start = at_rest(model.mesh);
   for (size_t i = 0; i < start.q.size(); i += 3) start.q[i] += 1;
@@ -43,15 +36,17 @@ inline Simulation oscillator(SimulationOptions options, const OscillatorOptions&
   return Simulation(std::move(model), std::move(start), std::move(options));
 }
 
-inline double oscillator_position(const Simulation& s) { return s.state().q[0]; }     // of the first vertex [m]
-inline double oscillator_velocity(const Simulation& s) { return s.state().qdot[0]; }  // [m/s]
+double oscillator_energy(const Simulation& s) {
+  const double x = oscillator_position(s), v = oscillator_velocity(s);
+  return 0.5 * v * v + 50 * x * x;
+}
 
-// The factor r of a solution x_n = Re(c r^n): x_(n+1) = 2 Re(r) x_n - |r|^2 x_(n-1), twice, from four positions.
-inline std::complex<double> factor_per_step(const std::vector<double>& x) {
+std::complex<double> factor_per_step(std::span<const double> x) {
+  ASPIC_CHECK(x.size() == 4);
   const double determinant = x[1] * x[1] - x[0] * x[2];
   const double trace = (x[2] * x[1] - x[0] * x[3]) / determinant;
   const double product = (x[2] * x[2] - x[1] * x[3]) / determinant;
   return {trace / 2, std::sqrt(product - trace * trace / 4)};
 }
 
-}  // namespace aspic::testing_models
+}  // namespace aspic::verify

@@ -1,0 +1,131 @@
+// `aspic verify`: problems whose answers are known.
+#include "aspic/verify.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <system_error>
+
+#include "aspic/commands.h"
+#include "aspic/verify_text.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/stopwatch.h"
+#include "dynamics/simulation.h"
+#include "material/registry.h"
+
+namespace aspic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::vector<std::string> only, instead;
+  fs::path out = fs::path("out") / "verify";
+  bool list = false, quick = false;
+  int threads = 0;
+};
+
+// A word that is the whole name of a check means that one alone.
+bool is_meant(const verify::Check& check, const std::string& word) {
+  const auto& all = verify::checks();
+  if (std::any_of(all.begin(), all.end(), [&](const verify::Check& c) { return c.key() == word; }))
+    return check.key() == word;
+  return check.key().find(word) != std::string::npos || check.title.find(word) != std::string::npos;
+}
+
+std::vector<const verify::Check*> chosen(const std::vector<std::string>& words) {
+  std::vector<const verify::Check*> found;
+  for (const verify::Check& check : verify::checks())
+    if (words.empty() || std::any_of(words.begin(), words.end(), [&](const auto& w) { return is_meant(check, w); }))
+      found.push_back(&check);
+  if (found.empty()) throw InvalidInput(fmt::format("no check is about '{}'; --list shows them", words.front()));
+  return found;
+}
+
+bool contains(const std::vector<std::string>& list, const std::string& name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+// A material may stand for a material, an integrator for an integrator.
+void add_replacement(const std::string& text, verify::Subject& subject) {
+  const size_t at = text.find('=');
+  const std::string name = text.substr(0, at), other = at == std::string::npos ? "" : text.substr(at + 1);
+  std::vector<std::string> material_names;
+  for (const MaterialInfo& info : materials()) material_names.push_back(info.name);
+  for (const auto& list : {material_names, integrator_names()})
+    if (contains(list, name) && contains(list, other)) {
+      subject.instead[name] = other;
+      return;
+    }
+  throw InvalidInput(
+      fmt::format("--instead {}: give two materials or two integrators, for example "
+                  "bdf2=backward_euler",
+                  text));
+}
+
+int run(const Arguments& arguments) {
+  const auto checks = chosen(arguments.only);
+  if (arguments.list) {
+    print_list(checks);
+    return exit_done;
+  }
+  if (arguments.threads > 0) set_thread_count(arguments.threads);
+  verify::Subject subject{.quick = arguments.quick, .instead = {}};
+  for (const std::string& text : arguments.instead) add_replacement(text, subject);
+  return verify_all(checks, subject, arguments.out);
+}
+
+}  // namespace
+
+int verify_all(const std::vector<const verify::Check*>& checks, const verify::Subject& subject,
+               const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InvalidInput(folder.string() + ": cannot be created: " + error.message());
+  std::vector<Verification> results;
+  Stopwatch whole;
+  for (const verify::Check* check : checks) {
+    print_head(*check, results.size() + 1, checks.size());
+    Stopwatch stopwatch;
+    verify::Findings findings = verify::run_check(*check, subject);
+    results.push_back({check, std::move(findings), stopwatch.lap()});
+    print_rows(results.back());
+  }
+  write_verification(folder, results, how_text(subject, checks.size() == verify::checks().size(), whole.lap()));
+  fmt::print("\n{}\n{}\n", count_text(results), (folder / "index.html").string());
+  const auto passes = [](const Verification& result) { return result.findings.passes(); };
+  return std::all_of(results.begin(), results.end(), passes) ? exit_done : exit_unconverged;
+}
+
+void add_verify(CLI::App& app, Action& action) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("verify", "Problems whose answers are known, each judged by numbers");
+  command->footer(R"(
+Examples:
+  aspic verify                                everything: some minutes; out/verify/index.html shows it
+  aspic verify --quick                        fewer and coarser cases: seconds
+  aspic verify --list                         what there is
+  aspic verify --only orders --only cook      checks whose name or title holds one of these words
+  aspic verify --quick --instead bdf2=backward_euler   see it fail
+
+Exit codes: 0 every row passes, 2 bad input, 3 a row fails; one that could not be computed fails.)");
+  command
+      ->add_option("--only", arguments->only,
+                   "Checks whose name or title holds this word, or the check of this name; may be repeated")
+      ->type_name("WORD");
+  command->add_flag("--list", arguments->list, "List the checks and run nothing");
+  command->add_flag("--quick", arguments->quick, "Fewer and coarser cases: seconds in place of minutes");
+  command
+      ->add_option("--instead", arguments->instead,
+                   "Use another material or integrator in place of a named one: what must fail then, fails")
+      ->type_name("NAME=OTHER");
+  command->add_option("--out", arguments->out, "Folder of the page and the JSON file")->capture_default_str();
+  command->add_option("--threads", arguments->threads, "Threads; all cores by default; the result is the same")
+      ->check(CLI::Range(1, 1024));
+  command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+}
+
+}  // namespace aspic::cli

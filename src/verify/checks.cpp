@@ -1,0 +1,24 @@
+#include "verify/check.h"
+#include "verify/families.h"
+
+namespace aspic::verify {
+
+const std::vector<Check>& checks() {
+  static const std::vector<Check> all = [] {
+    std::vector<Check> list;
+    add_material_checks(list);
+    add_derivative_checks(list);
+    add_invariant_checks(list);
+    add_momentum_checks(list);
+    add_patch_checks(list);
+    add_integrator_checks(list);
+    add_order_checks(list);
+    add_bending_checks(list);
+    add_solid_checks(list);
+    add_vibration_checks(list);
+    return list;
+  }();
+  return all;
+}
+
+}  // namespace aspic::verify

@@ -1,0 +1,79 @@
+#include "verify/statics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "mesh/surface.h"
+
+namespace aspic::verify {
+namespace {
+
+class GrowingLoad : public Energy {
+ public:
+  GrowingLoad(std::vector<double> force, std::function<double(double)> growth)
+      : force_(std::move(force)), growth_(std::move(growth)) {}
+  std::string_view name() const override { return "growing_load"; }
+  void begin_step(const StepContext& step) override { factor_ = growth_(step.time); }
+  double value(Positions x) const override {
+    double V = 0;
+    for (size_t i = 0; i < x.size(); ++i) V -= factor_ * force_[i] * x[i];
+    return V;
+  }
+  void add_gradient(Positions, double scale, std::span<double> g) const override {
+    for (size_t i = 0; i < g.size(); ++i) g[i] -= scale * factor_ * force_[i];
+  }
+  int add_hessian(Positions, double, const Projection&, BlockSparse&) const override { return 0; }
+
+ private:
+  std::vector<double> force_;
+  std::function<double(double)> growth_;
+  double factor_ = 0;
+};
+
+}  // namespace
+
+std::vector<int> boundary_vertices(const TetMesh& mesh) {
+  std::vector<int> vertices = boundary_surface(mesh).tet_vertex;
+  std::sort(vertices.begin(), vertices.end());
+  return vertices;
+}
+
+Simulation equilibrium(Model model, int steps, const std::string& what, double tolerance) {
+  SimulationOptions options{.h = 1.0 / steps, .integrator = "quasi_static", .solver = {}};
+  options.solver.minimize.tolerance = tolerance;
+  Simulation simulation = simulate(std::move(model), options);
+  take_steps(simulation, steps, what);
+  return simulation;
+}
+
+std::vector<double> elastic_forces(const Simulation& simulation) {
+  std::vector<double> g(simulation.state().q.size());
+  for (const auto& term : simulation.model().elasticity) term->add_gradient(simulation.state().q, 1, g);
+  return g;
+}
+
+Vec3d sum_over(const std::vector<int>& vertices, const std::vector<double>& values) {
+  Vec3d sum{};
+  for (const int v : vertices) sum = sum + Vec3d{{values[3 * v], values[3 * v + 1], values[3 * v + 2]}};
+  return sum;
+}
+
+std::unique_ptr<Energy> make_growing_load(std::vector<double> force, std::function<double(double time)> factor) {
+  return std::make_unique<GrowingLoad>(std::move(force), std::move(factor));
+}
+
+Extrapolation extrapolate(const std::vector<double>& values) {
+  ASPIC_CHECK(values.size() >= 3);
+  const double* v = values.data() + values.size() - 3;
+  const double ratio = (v[1] - v[0]) / (v[2] - v[1]);
+  return {std::log2(ratio), v[2] + (v[2] - v[1]) / (ratio - 1)};
+}
+
+double richardson(const std::vector<double>& values, double order) {
+  ASPIC_CHECK(values.size() >= 2);
+  const double fine = values.back(), coarse = values[values.size() - 2];
+  return fine + (fine - coarse) / (std::exp2(order) - 1);
+}
+
+}  // namespace aspic::verify

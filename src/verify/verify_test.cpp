@@ -1,0 +1,115 @@
+// Every check passes, and fails where it must.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ostream>
+#include <stdexcept>
+
+#include "verify/check.h"
+
+namespace aspic::verify {
+
+void PrintTo(const Check& check, std::ostream* out) { *out << check.key(); }
+
+namespace {
+
+class QuickCheck : public testing::TestWithParam<Check> {};
+
+TEST_P(QuickCheck, Passes) {
+  const Findings found = run_check(GetParam(), {.quick = true, .instead = {}});
+  EXPECT_FALSE(found.rows.empty());
+  for (const Row& row : found.rows) {
+    EXPECT_TRUE(row.passes()) << row.quantity << ": " << row.measured << ", not " << row.reference << " +- "
+                              << row.tolerance;
+    EXPECT_FALSE(row.reason.empty()) << row.quantity;
+  }
+}
+
+std::string test_name(const testing::TestParamInfo<Check>& info) {
+  std::string name = info.param.key();
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
+}
+INSTANTIATE_TEST_SUITE_P(Every, QuickCheck, testing::ValuesIn(checks()), test_name);
+
+TEST(Checks, HaveNamesOfTheirOwn) {
+  for (const Check& check : checks())
+    EXPECT_EQ(std::count_if(checks().begin(), checks().end(), [&](const Check& c) { return c.key() == check.key(); }),
+              1)
+        << check.key();
+}
+
+struct Wrong {
+  std::string check, name, instead;
+};
+void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.check << " with " << wrong.instead; }
+class WrongSubject : public testing::TestWithParam<Wrong> {};
+
+TEST_P(WrongSubject, FailsTheCheck) {
+  const auto& [key, name, instead] = GetParam();
+  const auto check = std::find_if(checks().begin(), checks().end(), [&](const Check& c) { return c.key() == key; });
+  ASSERT_NE(check, checks().end()) << key;
+  EXPECT_FALSE(run_check(*check, {.quick = true, .instead = {{name, instead}}}).passes()) << key;
+}
+
+std::string wrong_name(const testing::TestParamInfo<Wrong>& info) {
+  std::string name = info.param.check + "_with_" + info.param.instead;
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
+}
+// One of each kind of reference.
+INSTANTIATE_TEST_SUITE_P(
+    Every, WrongSubject,
+    testing::Values(
+        Wrong{"materials/uniaxial_table", "neo_hookean", "neo_hookean_log"},
+        Wrong{"materials/uniaxial", "fung", "mooney_rivlin"}, Wrong{"invariants/forces", "corotated", "linear"},
+        Wrong{"invariants/rigid_motions", "stvk", "linear"},
+        Wrong{"invariants/angular_momentum", "midpoint", "backward_euler"},
+        Wrong{"invariants/angular_momentum_of_backward_euler", "backward_euler", "midpoint"},
+        Wrong{"integrators/oscillator", "bdf2", "midpoint"},
+        Wrong{"integrators/euler_energies", "symplectic_euler", "rk4"},
+        Wrong{"integrators/free_fall", "backward_euler", "midpoint"}, Wrong{"orders/time", "bdf2", "backward_euler"},
+        Wrong{"orders/time_damped", "rk4", "trapezoid"}, Wrong{"orders/time_floor", "rk4", "midpoint"},
+        Wrong{"orders/space", "stvk", "arap"}, Wrong{"statics/cook", "neo_hookean_log", "linear"},
+        Wrong{"statics/elastica", "neo_hookean_log", "linear"},
+        Wrong{"statics/hollow_sphere", "neo_hookean_log", "corotated"}, Wrong{"statics/half_space", "linear", "arap"},
+        Wrong{"vibration/tapered_membrane", "neo_hookean_log", "arap"},
+        Wrong{"vibration/pendulum", "midpoint", "backward_euler"}),
+    wrong_name);
+
+Check made_of(std::function<void(const Subject&, Findings&)> run) {
+  return {"family", "name", "title", "problem", "reference", {}, std::move(run)};
+}
+
+TEST(RunCheck, WhatThrowsOrFindsNothingFails) {
+  const Findings thrown = run_check(made_of([](const Subject&, Findings& found) {
+                                      found.expect("before", 1, 1, 0, "exact");
+                                      throw std::runtime_error("the solver gave up");
+                                    }),
+                                    {});
+  EXPECT_FALSE(thrown.passes());
+  ASSERT_EQ(thrown.rows.size(), 2u) << "what was found before is kept";
+  EXPECT_TRUE(thrown.rows[0].passes());
+  EXPECT_EQ(thrown.rows[1].reason, "the solver gave up");
+  EXPECT_FALSE(run_check(made_of([](const Subject&, Findings&) {}), {}).passes());
+}
+
+TEST(Row, IsJudgedOnlyByFiniteNumbers) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const auto passes = [](double measured, double reference, double tolerance) {
+    return Row{"", measured, reference, tolerance, "", ""}.passes();
+  };
+  EXPECT_TRUE(passes(1.1, 1, 0.2));
+  EXPECT_TRUE(passes(1, 1, 0));
+  EXPECT_FALSE(passes(1.1, 1, 0.05));
+  EXPECT_FALSE(passes(nan, 1, 0.2));
+  EXPECT_FALSE(passes(1, nan, 0.2));
+  EXPECT_FALSE(passes(1, 1, nan));
+  EXPECT_FALSE(passes(inf, 1, inf));
+  EXPECT_FALSE(passes(inf, inf, 1));
+}
+
+}  // namespace
+}  // namespace aspic::verify
