@@ -873,7 +873,7 @@ class Capture(Captured):
 
 
 class Fit(Captured):
-    QUICK = ("--no-uncertainty", "--no-cross-validation", "--known", "poisson=0.4")
+    QUICK = ("--refine", "0", "--no-uncertainty", "--no-cross-validation", "--known", "poisson=0.4")
 
     def setUp(self):
         super().setUp()

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -26,7 +27,7 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   fs::path data, out = "material.vtu";
-  std::string model = FitPlan().model, smooth = "h1", weight = "auto";
+  std::string model = FitPlan().model, smooth = "h1", weight = "auto", refine = "auto";
   std::vector<std::string> unknowns, known, left_out;
   FitOptions fit;
   double prior_deviation = RegularizerOptions().prior_deviation;
@@ -47,6 +48,14 @@ double weight_of(const std::string& text) {
   return weight;
 }
 
+int refinement_of(const std::string& text) {
+  if (text == "auto") return -1;
+  const double times = parse_known("refine=" + text).second;
+  if (times < 0 || times > 4 || times != std::floor(times))
+    throw InvalidInput("--refine " + text + ": 0 to 4 times are possible, or auto");
+  return static_cast<int>(times);
+}
+
 FitPlan plan_of(const Arguments& arguments) {
   FitPlan plan;
   plan.model = material_info(arguments.model).name;
@@ -59,6 +68,7 @@ FitPlan plan_of(const Arguments& arguments) {
   plan.left_out = arguments.left_out;
   plan.uncertainty = !arguments.no_uncertainty;
   plan.cross_validation = !arguments.no_cross_validation;
+  plan.refine = refinement_of(arguments.refine);
   plan.mesh_errors = arguments.mesh_errors;
   return plan;
 }
@@ -143,6 +153,9 @@ void print_start(const Arguments& arguments, const DataSet& data, const FitPlan&
   std::string unknowns;
   for (const Unknown& u : plan.unknowns) unknowns += (unknowns.empty() ? "" : ", ") + text_of(u);
   fmt::print("{}: {}\n", plan.model, unknowns.empty() ? "nothing is unknown" : unknowns);
+  if (plan.refine > 0)
+    fmt::print("simulated on {:.0f} tets, each of the mesh in {:.0f} (--refine {})\n",
+               e.mesh.tet_count() * std::pow(8, plan.refine), std::pow(8, plan.refine), plan.refine);
   if (folder.is_resumed()) fmt::print("resuming after {} iterations\n", folder.iterations_before());
   std::fflush(stdout);
 }
@@ -237,6 +250,9 @@ void add_choices(CLI::App* command, Arguments& a) {
       ->allow_extra_args(false);
   command->add_flag("--baselines", a.baselines,
                     "What is left out is also predicted by one modulus, per-example linear and strain-space moduli");
+  command->add_option("--refine", a.refine,
+                      "Simulates the body with every tet in 8, N times, while the material stays per tet of the data; "
+                      "auto: once up to 50000 tets");
   command->add_flag("--mesh-errors", a.mesh_errors,
                     "What the mesh gets wrong is computed on a finer one, and taken off the measurements");
   command->add_flag("--no-uncertainty", a.no_uncertainty, "No deviations, intervals and next poke");

@@ -15,6 +15,7 @@
 namespace aspic {
 namespace {
 
+constexpr int kMostTets = 5'000'000;  // of a refined mesh
 constexpr double kUsualYoung = 1e5, kUsualPoisson = 0.4;
 
 // "young=tets" in two.
@@ -55,6 +56,14 @@ void check_range(const std::string& quantity, double value) {
   const Range& range = scene_schema().key("material", quantity).range;
   if (!std::isfinite(value) || !range.contains(value))
     throw InvalidInput(quantity + " = " + number_text(value) + "; must be " + range.text());
+}
+
+void complete_refinement(FitPlan& plan, const TetMesh& mesh) {
+  const int tets = mesh.tet_count();
+  if (plan.refine < 0) plan.refine = 8L * tets <= kAffordableTets ? 1 : 0;
+  if (tets * std::pow(8.0, plan.refine) > kMostTets)
+    throw InvalidInput("--refine " + std::to_string(plan.refine) + " would simulate " + std::to_string(tets) + " x 8^" +
+                       std::to_string(plan.refine) + " tets; " + std::to_string(kMostTets) + " are the most");
 }
 
 }  // namespace
@@ -131,6 +140,7 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
                                .guess = 0});
   for (Unknown& u : plan.unknowns)
     if (u.guess == 0) u.guess = usual_value(u.quantity, plan.model, experiment);
+  complete_refinement(plan, experiment.mesh);
   const std::vector<std::string> groups = groups_of(experiment);
   for (const std::string& group : plan.left_out)
     if (!has(groups, group))
@@ -160,6 +170,7 @@ std::string text_of(const FitPlan& plan) {
   add("tolerance", number_text(plan.fit.tolerance));
   add("max_iterations", std::to_string(plan.fit.max_iterations));
   for (const std::string& group : plan.left_out) add("leave_out." + group, "true");
+  add("refine", std::to_string(plan.refine));
   add("mesh_errors", plan.mesh_errors ? "true" : "false");
   add("equilibrium.tolerance", number_text(plan.equilibrium.tolerance));
   return text;

@@ -21,6 +21,7 @@ struct FitPlan {
   EquilibriumOptions equilibrium;
   std::vector<std::string> left_out;  // groups of cases that are predicted, not fitted
   bool uncertainty = true, cross_validation = true;
+  int refine = 0;  // the body is simulated on the mesh of the data with every tet in 8, so often; < 0: see completed()
   bool mesh_errors = false;  // what the mesh gets wrong is computed on a finer one and taken off the measurements
 };
 
@@ -28,6 +29,9 @@ struct FitPlan {
 Unknown parse_unknown(const std::string& text);
 std::string text_of(const Unknown& unknown);
 std::pair<std::string, double> parse_known(const std::string& text);  // "poisson=0.45"
+
+// Refinement that was left open: once where that makes at most so many tets.
+inline constexpr int kAffordableTets = 50'000;
 
 // The plan with everything filled in that the data and the model decide. Throws InvalidInput for names that the model
 // or the data do not have.

@@ -37,11 +37,11 @@ bool is_over(const FitReport& report) { return is_success(report.status) || repo
 
 // A model with its unknowns, its prior and its memory: what one fit takes.
 struct Stage {
-  Stage(const Experiment& experiment, const FitPlan& plan, std::vector<Unknown> unknowns, const FitMemory& memory,
-        const std::string& name, const std::string& fingerprint)
-      : map(experiment.mesh, plan.model, known_parameters(plan, experiment), std::move(unknowns)),
-        prior(make_regularizer(experiment.mesh, map, plan.belief)),
-        misfit(experiment, map, plan.equilibrium) {
+  Stage(const Experiment& data, const Experiment& simulated, const FitPlan& plan, std::vector<Unknown> unknowns,
+        const FitMemory& memory, const std::string& name, const std::string& fingerprint)
+      : map(data.mesh, plan.model, known_parameters(plan, data), std::move(unknowns)),
+        prior(make_regularizer(data.mesh, map, plan.belief)),
+        misfit(simulated, map, plan.equilibrium) {
     if (memory.folder.empty()) return;
     const ModelState state{[this] { return misfit.state(); },
                            [this](std::span<const double> x) { misfit.set_state(x); }};
@@ -66,10 +66,12 @@ class MaterialFit {
         plan_(completed(plan, data.experiment)),
         memory_(memory),
         witness_(witness),
-        experiment_(data.experiment),
-        fitted_(without_groups(data.experiment, plan_.left_out)) {
+        simulated_(refined(data.experiment, plan_.refine)),
+        experiment_(simulated_),
+        fitted_(without_groups(simulated_, plan_.left_out)) {
     if (!memory.folder.empty()) fingerprint_ = fingerprint_of(data.experiment) + "\n" + text_of(plan_);
     outcome_.plan = plan_;
+    outcome_.simulated_tets = simulated_.mesh.tet_count();
   }
 
   FitOutcome run() {
@@ -95,7 +97,7 @@ class MaterialFit {
       std::vector<Unknown> unknowns = as_single_values(plan_.unknowns);
       for (Unknown& u : unknowns)
         if (u.quantity == "young") u.guess *= factor;
-      Stage stage(fitted_, plan_, std::move(unknowns), memory_, name + suffix(factor), fingerprint_);
+      Stage stage(data_.experiment, fitted_, plan_, std::move(unknowns), memory_, name + suffix(factor), fingerprint_);
       const FitReport report = fit_stage(FitStage::uniform, stage, options);
       outcome_.uniform = outcome_.report = report;
       if (report.p.empty() || report.status == Status::undefined) {
@@ -156,15 +158,15 @@ class MaterialFit {
       return plan_.mesh_errors = false;
     }
     begin(FitStage::mesh_errors, "what the mesh gets wrong, by one of eight times as many tets");
-    MeshErrors errors = mesh_errors(data_.experiment, plan_.model, material_, plan_.equilibrium);
+    MeshErrors errors = mesh_errors(simulated_, plan_.model, material_, plan_.equilibrium);
     if (errors.cases.empty()) {
       outcome_.warnings.push_back("what the mesh gets wrong could not be computed: " + errors.failure);
       return plan_.mesh_errors = false;
     }
     errors_ = std::move(errors.cases);
-    experiment_ = without_mesh_errors(data_.experiment, {errors_, {}});
+    experiment_ = without_mesh_errors(simulated_, {errors_, {}});
     fitted_ = without_groups(experiment_, plan_.left_out);
-    outcome_.mesh_error = relative_size(data_.experiment, errors_);
+    outcome_.mesh_error = relative_size(simulated_, errors_);
     return true;
   }
 
@@ -202,7 +204,7 @@ class MaterialFit {
     std::vector<double> start;
     for (int pass = 0;; ++pass) {
       const std::string name = pass == 0 ? "fit" : "fit_corrected" + std::to_string(pass);
-      last.emplace(fitted_, plan_, plan_.unknowns, memory_, name, fingerprint_);
+      last.emplace(data_.experiment, fitted_, plan_, plan_.unknowns, memory_, name, fingerprint_);
       outcome_.report = fit_stage(FitStage::field, *last, plan_.fit, start);
       const std::vector<double>& p = outcome_.report.p;
       if (!plan_.mesh_errors || pass == kPasses || !is_success(outcome_.report.status)) break;
@@ -246,14 +248,14 @@ class MaterialFit {
     if (!plan_.uncertainty || !may_go_on()) return;
     begin(FitStage::uncertainty, "what the data do not say");
     outcome_.posterior =
-        posterior(stage.model(), *stage.prior, outcome_.report.weight, stage.map, fitted_.mesh, outcome_.report.p);
+        posterior(stage.model(), *stage.prior, outcome_.report.weight, stage.map, mesh(), outcome_.report.p);
     add_warnings(outcome_.posterior->warnings);
   }
 
   // The material of p, its values for people, and what it predicts for the cases that were fitted.
   void describe(Stage& stage, std::span<const double> p) {
     const Posterior* belief = outcome_.posterior && outcome_.posterior->ok ? &*outcome_.posterior : nullptr;
-    outcome_.quantities = fitted_quantities(stage.map, fitted_.mesh, p, belief);
+    outcome_.quantities = fitted_quantities(stage.map, mesh(), p, belief);
     outcome_.material = fitted_material(data_, stage.map, p, outcome_.quantities);
     outcome_.counts = stage.misfit.counts();
     outcome_.cases.resize(data_.experiment.cases.size());
@@ -331,7 +333,8 @@ class MaterialFit {
         std::any_of(fitted_.cases.begin(), fitted_.cases.end(), [](const LoadCase& c) { return c.tip.has_value(); });
     if (!outcome_.posterior || !outcome_.posterior->ok || !has_tip || !may_go_on()) return;
     begin(FitStage::next_poke, "where a poke would tell most");
-    NextPoke next = next_poke(fitted_, stage.map, *outcome_.posterior, outcome_.report.p, {}, plan_.equilibrium);
+    NextPoke next =
+        next_poke(fitted_, mesh(), stage.map, *outcome_.posterior, outcome_.report.p, {}, plan_.equilibrium);
     add_warnings(next.warnings);
     if (!next.candidates.empty() && next.candidates.front().ok) outcome_.next_poke = next.candidates.front();
   }
@@ -349,10 +352,13 @@ class MaterialFit {
     outcome_.warnings.insert(outcome_.warnings.end(), more.begin(), more.end());
   }
 
+  const TetMesh& mesh() const { return data_.experiment.mesh; }  // of the material
+
   const DataSet& data_;
   FitPlan plan_;
   const FitMemory& memory_;
   const FitWitness& witness_;
+  Experiment simulated_;                      // on its mesh
   Experiment experiment_;                     // without what the mesh gets wrong
   Experiment fitted_;                         // and without what is left out
   std::vector<MeshError> errors_;             // of each case; empty: not known

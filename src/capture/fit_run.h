@@ -58,6 +58,7 @@ struct FitOutcome {
   std::string failure;       // why there is no material; empty: there is one
   bool interrupted = false;  // the material is what was reached until then
   int unknowns = 0, residuals = 0;
+  int simulated_tets = 0;  // those of the data, or more (FitPlan::refine)
   Misfit::Counts counts;
 
   bool has_material() const { return failure.empty(); }

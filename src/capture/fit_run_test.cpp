@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "capture/fit_folder.h"
 #include "capture/poked_block_test.h"
+#include "fit/refined_experiment.h"
 #include "io/atomic_file.h"
 #include "io/folder_test.h"
 
@@ -100,6 +101,53 @@ TEST(FitRun, PredictsWhatWasLeftOut) {
   EXPECT_EQ(outcome.held_out->groups.size(), 2u);
   EXPECT_LT(outcome.held_out->position_error, 0.02);
   EXPECT_LT(outcome.held_out->force_error, 0.05);
+}
+
+// Measured on a mesh of twice as many cells: simulated so, the material of the data's tets is exact.
+TEST(FitRun, SimulatesOnAFinerMeshThanItFits) {
+  DataSet data = block();
+  const Experiment fine = refined(data.experiment);
+  FitPlan plan = quick_plan();
+  const ParameterMap map(
+      data.experiment.mesh, plan.model,
+      std::vector<MaterialParameters>(data.experiment.mesh.tets.size(), {lame_from_young_poisson(1e4, 0.4), {}}),
+      {{.quantity = "young", .spread = Spread::regions}});
+  Misfit model(fine, map);
+  std::vector<double> r(static_cast<size_t>(model.residual_count()));
+  ASSERT_TRUE(model.evaluate(std::vector<double>{std::log(kSoftLayer), std::log(kStiffLayer)}, r)) << model.failure();
+  for (size_t c = 0; c < fine.cases.size(); ++c) {
+    const CasePrediction& prediction = model.prediction(static_cast<int>(c));
+    for (size_t i = 0; i < prediction.markers.size(); ++i)
+      data.experiment.cases[c].positions[i].position = prediction.markers[i];
+    data.experiment.cases[c].force = prediction.wrench.force;
+  }
+  const double without = young(fit_material(data, plan, {}, {})).rows.at(0).value;
+  EXPECT_GT(std::abs(without / kSoftLayer - 1), 0.03) << "the mesh alone is too coarse for this test to tell anything";
+  plan.refine = 1;
+  plan.uncertainty = plan.cross_validation = true;
+  plan.left_out = {"poke 3"};
+  const FitOutcome outcome = fit_material(data, plan, {}, {});
+  ASSERT_TRUE(outcome.has_material()) << outcome.failure;
+  EXPECT_EQ(outcome.simulated_tets, 8 * data.experiment.mesh.tet_count());
+  EXPECT_NEAR(young(outcome).rows.at(0).value, kSoftLayer, 1e-3 * kSoftLayer);
+  EXPECT_NEAR(young(outcome).rows.at(1).value, kStiffLayer, 1e-3 * kStiffLayer);
+  EXPECT_EQ(outcome.material.mesh.tet_count(), data.experiment.mesh.tet_count());
+  EXPECT_THAT(young(outcome).deviation, testing::SizeIs(data.experiment.mesh.tets.size()));
+  EXPECT_LT(outcome.held_out->force_error, 0.01);
+  EXPECT_TRUE(outcome.next_poke);
+}
+
+TEST(FitRun, RefinesUnaskedWhereThatIsCheap) {
+  FitPlan plan = quick_plan();
+  EXPECT_EQ(completed(plan, block().experiment).refine, 0) << "a plan says what it wants";
+  plan.refine = -1;
+  EXPECT_EQ(completed(plan, block().experiment).refine, 1);
+  Experiment large = block().experiment;
+  large.mesh.tets.resize(kAffordableTets / 8 + 1);
+  large.mesh.region.resize(large.mesh.tets.size());
+  EXPECT_EQ(completed(plan, large).refine, 0);
+  plan.refine = 6;
+  EXPECT_THAT(message_of([&] { completed(plan, block().experiment); }), HasSubstr("are the most"));
 }
 
 class FitMemoryTest : public FolderTest {

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "fit/load_case.h"
+#include "fit/refined_experiment.h"
 
 namespace aspic {
 
@@ -19,15 +20,17 @@ struct Misfit::Impl {
   };
 
   Impl(const Experiment& e, const ParameterMap& m, const EquilibriumOptions& options) : experiment(e), map(m) {
-    const std::vector<MaterialParameters> guess = map.parameters(map.guess());
+    const std::vector<MaterialParameters> guess = parameters_at(map.guess());
     for (const LoadCase& load : experiment.cases) {
       Case& c = cases.emplace_back();
       c.body = std::make_unique<LoadedBody>(experiment, load, map.material(), guess, options);
       c.first = residual_count;
       residual_count += c.body->residual_count();
     }
-    theta_size = static_cast<size_t>(map.parameters_per_tet()) * experiment.mesh.tet_count();
-    dtheta.resize(theta_size);
+    per_tet = map.parameters_per_tet();
+    parts = experiment.mesh.tet_count() / map.tet_count();
+    dtheta.resize(static_cast<size_t>(per_tet) * map.tet_count());
+    dtheta_of_parts.resize(dtheta.size() * parts);
     dp.resize(map.size());
     if (cases.empty()) throw InvalidInput("there is no load case to fit");
   }
@@ -48,14 +51,42 @@ struct Misfit::Impl {
     }
   }
 
+  std::vector<MaterialParameters> parameters_at(std::span<const double> p) const {
+    return for_parts(map.parameters(p), experiment.mesh.tet_count());
+  }
+
+  // The change of what each tet that is simulated is made of.
+  const std::vector<double>& theta_tangent(std::span<const double> direction) {
+    map.multiply(linear_p, direction, dtheta);
+    parallel_chunks(map.tet_count(), [&](int first, int last) {
+      for (int t = first; t < last; ++t)
+        for (int part = 0; part < parts; ++part)
+          std::copy_n(dtheta.begin() + static_cast<ptrdiff_t>(per_tet) * t, per_tet,
+                      dtheta_of_parts.begin() + static_cast<ptrdiff_t>(per_tet) * (parts * t + part));
+    });
+    return dtheta_of_parts;
+  }
+
+  // dtheta = the sum over all cases and over the parts of each tet
+  void sum_theta_adjoints() {
+    parallel_chunks(map.tet_count(), [&](int first, int last) {
+      std::fill(dtheta.begin() + static_cast<ptrdiff_t>(per_tet) * first,
+                dtheta.begin() + static_cast<ptrdiff_t>(per_tet) * last, 0.0);
+      for (const Case& c : cases)
+        for (int t = first * parts; t < last * parts; ++t)
+          for (int k = 0; k < per_tet; ++k)
+            dtheta[static_cast<size_t>(per_tet) * (t / parts) + k] += c.thetabar[static_cast<size_t>(per_tet) * t + k];
+    });
+  }
+
   bool evaluate(std::span<const double> p, std::span<double> r) {
-    const std::vector<MaterialParameters> parameters = map.parameters(p);
+    const std::vector<MaterialParameters> parameters = parameters_at(p);
     if (is_linearized) {
       for (size_t i = 0; i < dp.size(); ++i) dp[i] = p[i] - linear_p[i];
-      map.multiply(linear_p, dp, dtheta);
+      const std::vector<double>& tangent = theta_tangent(dp);
       for_each_case([&](Case& c) {
         c.start.resize(3 * experiment.mesh.rest.size());
-        c.ok = c.body->solve(parameters, c.body->predict(dtheta, c.start) ? c.start : std::span<const double>());
+        c.ok = c.body->solve(parameters, c.body->predict(tangent, c.start) ? c.start : std::span<const double>());
       });
     } else if (has_solved) {
       for_each_case([&](Case& c) { c.ok = c.body->solve(parameters, {}); });
@@ -106,22 +137,18 @@ struct Misfit::Impl {
 
   void multiply(std::span<const double> direction, std::span<double> dr) {
     ASPIC_CHECK(is_linearized);
-    map.multiply(linear_p, direction, dtheta);
-    for_each_case([&](Case& c) { c.ok = c.body->multiply(dtheta, dr.subspan(c.first, c.body->residual_count())); });
+    const std::vector<double>& tangent = theta_tangent(direction);
+    for_each_case([&](Case& c) { c.ok = c.body->multiply(tangent, dr.subspan(c.first, c.body->residual_count())); });
     mark_unless_ok(dr);
   }
 
   void multiply_transposed(std::span<const double> w, std::span<double> pbar) {
     ASPIC_CHECK(is_linearized);
     for_each_case([&](Case& c) {
-      c.thetabar.assign(theta_size, 0.0);
+      c.thetabar.assign(dtheta_of_parts.size(), 0.0);
       c.ok = c.body->add_transposed(w.subspan(c.first, c.body->residual_count()), c.thetabar);
     });
-    std::fill(dtheta.begin(), dtheta.end(), 0.0);
-    parallel_chunks(static_cast<int>(theta_size), [&](int first, int last) {
-      for (const Case& c : cases)
-        for (int i = first; i < last; ++i) dtheta[i] += c.thetabar[i];
-    });
+    sum_theta_adjoints();
     std::fill(pbar.begin(), pbar.end(), 0.0);
     map.add_transposed(linear_p, dtheta, pbar);
     mark_unless_ok(pbar);
@@ -150,11 +177,11 @@ struct Misfit::Impl {
   const ParameterMap& map;
   std::vector<Case> cases;
   int residual_count = 0;
-  size_t theta_size = 0;
+  int per_tet = 2, parts = 1;  // parameters of a tet; tets that are simulated by tets of the map
   bool has_solved = false, is_linearized = false;
   std::vector<double> accepted_p, linear_p;  // of the last successful evaluation, and of the Jacobian
   std::vector<MaterialParameters> accepted_parameters;
-  std::vector<double> dp, dtheta;  // scratch
+  std::vector<double> dp, dtheta, dtheta_of_parts;  // scratch
   std::string failure;
 };
 

@@ -60,7 +60,8 @@ struct CasePrediction {
 
 class Misfit : public LeastSquares {
  public:
-  // Refers to both. Throws InvalidInput for a case that no residual comes from.
+  // Refers to both. The experiment's mesh is that of the map, or one where each of its tets is in the same number of
+  // consecutive parts: a part has the material of its tet. Throws InvalidInput for a case that no residual comes from.
   Misfit(const Experiment& experiment, const ParameterMap& map, const EquilibriumOptions& options = {});
   ~Misfit() override;
 

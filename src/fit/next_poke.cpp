@@ -117,8 +117,9 @@ void set_words(const ParameterMap& map, const TetMesh& mesh, const Posterior& po
                     words_of_change(what, posterior.deviation[unknown][t], candidate.deviation[unknown][t]);
 }
 
-void judge(const Experiment& experiment, const ParameterMap& map, Posterior& posterior, std::span<const double> p,
-           const NextPokeOptions& options, const EquilibriumOptions& equilibrium, PokeCandidate& candidate) {
+void judge(const Experiment& experiment, const TetMesh& mesh, const ParameterMap& map, Posterior& posterior,
+           std::span<const double> p, const NextPokeOptions& options, const EquilibriumOptions& equilibrium,
+           PokeCandidate& candidate) {
   Experiment one = subset(experiment, [](const LoadCase&) { return false; });
   one.cases = {candidate.load};
   try {
@@ -140,7 +141,7 @@ void judge(const Experiment& experiment, const ParameterMap& map, Posterior& pos
     candidate.failure = error.what();
     return;
   }
-  set_words(map, experiment.mesh, posterior, candidate);
+  set_words(map, mesh, posterior, candidate);
   candidate.ok = true;
 }
 
@@ -162,15 +163,17 @@ std::vector<double> spread_gain(const TetMesh& mesh, const std::vector<PokeCandi
 
 }  // namespace
 
-NextPoke next_poke(const Experiment& experiment, const ParameterMap& map, Posterior& posterior,
+NextPoke next_poke(const Experiment& experiment, const TetMesh& mesh, const ParameterMap& map, Posterior& posterior,
                    std::span<const double> p, const NextPokeOptions& options, const EquilibriumOptions& equilibrium) {
   ASPIC_CHECK(posterior.ok);
   const Instruments with = instruments(experiment, options);
   NextPoke result;
-  for (const PokeSite& site : poke_sites(experiment.mesh, experiment.fixed, with.tip.radius, options.sites)) {
-    PokeCandidate candidate{.vertex = site.vertex, .site = experiment.mesh.rest[site.vertex], .inward = site.inward};
+  std::vector<int> fixed = experiment.fixed;
+  std::erase_if(fixed, [&](int v) { return v >= mesh.vertex_count(); });  // a refined mesh begins with its vertices
+  for (const PokeSite& site : poke_sites(mesh, fixed, with.tip.radius, options.sites)) {
+    PokeCandidate candidate{.vertex = site.vertex, .site = mesh.rest[site.vertex], .inward = site.inward};
     candidate.load = load_at(experiment, with, candidate.site, candidate.inward);
-    judge(experiment, map, posterior, p, options, equilibrium, candidate);
+    judge(experiment, mesh, map, posterior, p, options, equilibrium, candidate);
     if (!candidate.ok) result.warnings.push_back(candidate.load.name + " could not be judged: " + candidate.failure);
     result.candidates.push_back(std::move(candidate));
   }
@@ -180,7 +183,7 @@ NextPoke next_poke(const Experiment& experiment, const ParameterMap& map, Poster
   std::ranges::stable_sort(result.candidates, [](const PokeCandidate& a, const PokeCandidate& b) {
     return a.ok != b.ok ? a.ok : a.gain > b.gain;
   });
-  result.gain = spread_gain(experiment.mesh, result.candidates);
+  result.gain = spread_gain(mesh, result.candidates);
   return result;
 }
 

@@ -37,8 +37,9 @@ struct NextPoke {
   std::vector<std::string> warnings;
 };
 
-// At the fit that `posterior` belongs to. Throws InvalidInput without a tip.
-NextPoke next_poke(const Experiment& experiment, const ParameterMap& map, Posterior& posterior,
+// At the fit that `posterior` belongs to. `mesh`: of the map; that of the experiment, or what it was refined from.
+// Throws InvalidInput without a tip.
+NextPoke next_poke(const Experiment& experiment, const TetMesh& mesh, const ParameterMap& map, Posterior& posterior,
                    std::span<const double> p, const NextPokeOptions& options = {},
                    const EquilibriumOptions& equilibrium = {});
 

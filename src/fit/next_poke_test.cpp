@@ -33,8 +33,8 @@ struct Study {
 TEST(NextPoke, ToldGainAndDeviationsAreThoseOfThePokeOnceItIsMade) {
   Study study;
   Posterior before = study.posterior_of(study.block.experiment);
-  const NextPoke next =
-      next_poke(study.block.experiment, study.map, before, study.p, {.sites = 5, .spectrum = {.dense = 600}});
+  const NextPoke next = next_poke(study.block.experiment, study.block.experiment.mesh, study.map, before, study.p,
+                                  {.sites = 5, .spectrum = {.dense = 600}});
   ASSERT_EQ(next.candidates.size(), 5u);
   for (const PokeCandidate& candidate : {next.candidates.front(), next.candidates.back()}) {
     ASSERT_TRUE(candidate.ok) << candidate.failure;
@@ -61,7 +61,8 @@ TEST(NextPoke, ToldGainAndDeviationsAreThoseOfThePokeOnceItIsMade) {
 TEST(NextPoke, IsWhereNothingIsKnownYet) {
   Study study;
   Posterior before = study.posterior_of(study.block.experiment);
-  const NextPoke next = next_poke(study.block.experiment, study.map, before, study.p, {.sites = 16});
+  const NextPoke next =
+      next_poke(study.block.experiment, study.block.experiment.mesh, study.map, before, study.p, {.sites = 16});
   ASSERT_FALSE(next.candidates.empty());
   const PokeCandidate& best = next.candidates.front();
   EXPECT_GE(best.site[0], 0.5 * PokedBlock::kSide);
@@ -80,9 +81,9 @@ TEST(NextPoke, IsWhereNothingIsKnownYet) {
 TEST(NextPoke, FewDirectionsTellNearlyAsMuchAsAll) {
   Study study;
   Posterior before = study.posterior_of(study.block.experiment);
-  const NextPoke all =
-      next_poke(study.block.experiment, study.map, before, study.p, {.sites = 6, .spectrum = {.dense = 600}});
-  const NextPoke few = next_poke(study.block.experiment, study.map, before, study.p,
+  const NextPoke all = next_poke(study.block.experiment, study.block.experiment.mesh, study.map, before, study.p,
+                                 {.sites = 6, .spectrum = {.dense = 600}});
+  const NextPoke few = next_poke(study.block.experiment, study.block.experiment.mesh, study.map, before, study.p,
                                  {.sites = 6, .spectrum = {.dense = 10, .max_rank = 24}});
   for (size_t i = 0; i < all.candidates.size(); ++i) {
     EXPECT_LE(few.candidates[i].gain, all.candidates[i].gain * (1 + 1e-6));
@@ -94,7 +95,8 @@ TEST(NextPoke, NeedsATip) {
   Study study;
   Posterior before = study.posterior_of(study.block.experiment);
   for (LoadCase& load : study.block.experiment.cases) load.tip.reset();
-  EXPECT_THROW(next_poke(study.block.experiment, study.map, before, study.p), InvalidInput);
+  EXPECT_THROW(next_poke(study.block.experiment, study.block.experiment.mesh, study.map, before, study.p),
+               InvalidInput);
 }
 
 TEST(PokeSites, LieOnTheFreeFlatSurfaceFarFromEachOther) {

@@ -199,6 +199,7 @@ ParameterMap::~ParameterMap() = default;
 ParameterMap::ParameterMap(ParameterMap&&) noexcept = default;
 
 int ParameterMap::size() const { return static_cast<int>(impl_->guess.size()); }
+int ParameterMap::tet_count() const { return static_cast<int>(impl_->known.size()); }
 int ParameterMap::parameters_per_tet() const { return impl_->per_tet; }
 const std::vector<Unknown>& ParameterMap::unknowns() const { return impl_->unknowns; }
 const std::string& ParameterMap::material() const { return impl_->material; }

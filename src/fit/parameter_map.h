@@ -32,7 +32,8 @@ class ParameterMap {
   ~ParameterMap();
   ParameterMap(ParameterMap&&) noexcept;
 
-  int size() const;                // number of unknowns
+  int size() const;  // number of unknowns
+  int tet_count() const;
   int parameters_per_tet() const;  // mu, lambda and the material's own
   const std::vector<Unknown>& unknowns() const;
   const std::string& material() const;

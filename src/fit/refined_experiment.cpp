@@ -145,13 +145,27 @@ void shift(Vec3d& value, Vec3d& deviation, const Vec3d& error) {
 
 Experiment refined(const Experiment& experiment) { return Refinement(experiment).take(); }
 
+Experiment refined(Experiment experiment, int times) {
+  for (int i = 0; i < times; ++i) experiment = refined(experiment);
+  return experiment;
+}
+
+std::vector<MaterialParameters> for_parts(std::span<const MaterialParameters> parameters, int tet_count) {
+  const int tets = static_cast<int>(parameters.size());
+  ASPIC_CHECK(tets > 0 && tet_count % tets == 0);
+  std::vector<MaterialParameters> result;
+  result.reserve(static_cast<size_t>(tet_count));
+  for (const MaterialParameters& p : parameters) result.insert(result.end(), static_cast<size_t>(tet_count / tets), p);
+  return result;
+}
+
 MeshErrors mesh_errors(const Experiment& experiment, const std::string& material,
                        std::span<const MaterialParameters> parameters, const EquilibriumOptions& options) {
   const Experiment fine = refined(experiment);
-  std::vector<MaterialParameters> fine_parameters;
-  for (const MaterialParameters& p : parameters) fine_parameters.insert(fine_parameters.end(), 8, p);
-  const Predictions on_mesh = predicted(experiment, material, parameters, options);
-  const Predictions on_fine = predicted(fine, material, fine_parameters, options);
+  const auto on = [&](const Experiment& e) {
+    return predicted(e, material, for_parts(parameters, e.mesh.tet_count()), options);
+  };
+  const Predictions on_mesh = on(experiment), on_fine = on(fine);
   MeshErrors errors{{}, on_mesh.failure.empty() ? on_fine.failure : on_mesh.failure};
   if (!errors.failure.empty()) return errors;
   for (size_t c = 0; c < on_mesh.cases.size(); ++c) {

@@ -13,6 +13,10 @@ namespace aspic {
 
 // Every tet in eight, the octahedron in its middle along its shortest diagonal.
 Experiment refined(const Experiment& experiment);
+Experiment refined(Experiment experiment, int times);
+
+// What the tets of a refined mesh are made of: its parts follow one another, tet by tet.
+std::vector<MaterialParameters> for_parts(std::span<const MaterialParameters> parameters, int tet_count);
 
 // Limit of fine meshes minus mesh of the fit, of what is predicted for a case.
 struct MeshError {
@@ -25,7 +29,7 @@ struct MeshErrors {
   std::string failure;           // why
 };
 
-// For a material, one set of parameters per tet.
+// For a material, one set of parameters per tet or per tet of the mesh that the experiment's was refined from.
 MeshErrors mesh_errors(const Experiment& experiment, const std::string& material,
                        std::span<const MaterialParameters> parameters, const EquilibriumOptions& options = {});
 
