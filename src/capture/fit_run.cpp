@@ -19,7 +19,9 @@ namespace fs = std::filesystem;
 
 constexpr int kTooFine = 20'000;  // tets, for a mesh of eight times as many
 constexpr int kPasses = 4;
-constexpr double kSettled = 1e-3;  // relative change of a value
+constexpr double kSettled = 1e-3;       // relative change of a value
+constexpr double kSettledField = 0.03;  // where there are more than kFewValues, which noise leaves open far more
+constexpr int kFewValues = 50;
 // Guesses that are tried when the first one is so soft that the loads crush the body.
 constexpr double kStiffer[] = {1, 10, 100, 0.1};
 constexpr double kUnexplained = 4;  // |r|^2 per reading: twice the standard deviations
@@ -202,15 +204,17 @@ class MaterialFit {
     begin(FitStage::field, "");
     std::optional<Stage> last;
     std::vector<double> start;
+    FitOptions options = plan_.fit;
     for (int pass = 0;; ++pass) {
       const std::string name = pass == 0 ? "fit" : "fit_corrected" + std::to_string(pass);
       last.emplace(data_.experiment, fitted_, plan_, plan_.unknowns, memory_, name, fingerprint_);
-      outcome_.report = fit_stage(FitStage::field, *last, plan_.fit, start);
+      outcome_.report = fit_stage(FitStage::field, *last, options, start);
       const std::vector<double>& p = outcome_.report.p;
       if (!plan_.mesh_errors || pass == kPasses || !is_success(outcome_.report.status)) break;
       double change = 0;
       for (size_t i = 0; i < start.size(); ++i) change = std::max(change, std::abs(p[i] - start[i]));
-      if (pass > 0 && change < kSettled) break;
+      if (pass > 0 && change < (last->map.size() > kFewValues ? kSettledField : kSettled)) break;
+      options.weight = outcome_.report.weight;
       start = p;
       material_ = last->map.parameters(p);
       last.reset();

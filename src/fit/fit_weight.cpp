@@ -19,6 +19,7 @@ constexpr double kStagnation = 0.02;  // of the logarithm of |r|^2 per factor e 
 constexpr double kRange = 1e12;       // between the first weight and the last
 constexpr double kSettled = 0.3;      // of the logarithm of the weight that the data support
 constexpr int kEvidenceTrials = 8;
+constexpr int kBestSeen = 64;  // directions that the weight is judged by: to about sqrt(2 / 64)
 
 // The weight at which prior and data pull equally along the steepest descent in the norm of the prior.
 std::optional<double> balanced_weight(FitRun& run, const FitPoint& at) {
@@ -181,7 +182,7 @@ Status fit_by_evidence(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod metho
     run.report.weights.push_back(trial_at(run, at));
     if (!run.linearize(at) || !data.linearize()) return Status::undefined;
     PriorGaussian before(run.prior(), run.weight, at.p);
-    const Spectrum s = spectrum(data, before);
+    const Spectrum s = spectrum(data, before, {.dense = kBestSeen, .max_rank = kBestSeen, .negligible = 1});
     if (!s.ok) return Status::undefined;
     const double factor = supported_weight(run.prior(), run.weight, at.p, s).factor;
     if (std::abs(std::log(factor)) < kSettled) {
