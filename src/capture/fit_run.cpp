@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "capture/fitted_values.h"
 #include "capture/surface_projection.h"
+#include "fit/common_errors.h"
 #include "fit/fit_run.h"
 #include "fit/refined_experiment.h"
 
@@ -17,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kTooFine = 20'000;  // tets, for a mesh of eight times as many
-constexpr int kPasses = 4;
+constexpr int kTooFine = 60'000;  // tets, for a mesh of eight times as many
+constexpr int kPasses = 8;
 constexpr double kSettled = 1e-3;       // relative change of a value
 constexpr double kSettledField = 0.03;  // where there are more than kFewValues, which noise leaves open far more
 constexpr int kFewValues = 50;
@@ -44,21 +45,21 @@ struct Stage {
       : map(data.mesh, plan.model, known_parameters(plan, data), std::move(unknowns)),
         prior(make_regularizer(data.mesh, map, plan.belief)),
         misfit(simulated, map, plan.equilibrium) {
-    if (memory.folder.empty()) return;
-    const ModelState state{[this] { return misfit.state(); },
-                           [this](std::span<const double> x) { misfit.set_state(x); }};
-    journal.emplace(misfit, state, memory.folder / name, fingerprint, memory.start);
+    if (!memory.folder.empty()) {
+      const ModelState state{[this] { return misfit.state(); },
+                             [this](std::span<const double> x) { misfit.set_state(x); }};
+      journal.emplace(misfit, state, memory.folder / name, fingerprint, memory.start);
+    }
+    with_layers.emplace(journal ? static_cast<LeastSquares&>(*journal) : misfit, misfit.residuals_by_case());
   }
 
-  LeastSquares& model() {
-    if (journal) return *journal;
-    return misfit;
-  }
+  LeastSquares& model() { return *with_layers; }
 
   ParameterMap map;
   std::unique_ptr<Regularizer> prior;
   Misfit misfit;
   std::optional<Journal> journal;
+  std::optional<WithUncertainLayers> with_layers;
 };
 
 class MaterialFit {
@@ -154,15 +155,18 @@ class MaterialFit {
   // False: they are not known, and the data remain as they are.
   bool take_off_mesh_errors() {
     if (!may_go_on()) return false;
-    if (fitted_.mesh.tet_count() > kTooFine) {
-      outcome_.warnings.push_back("what the mesh gets wrong was not computed: it has more than " +
-                                  std::to_string(kTooFine) + " tets");
+    if (simulated_.mesh.tet_count() > kTooFine) {
+      outcome_.warnings.push_back("--mesh-errors was NOT done: the mesh that is simulated has " +
+                                  std::to_string(simulated_.mesh.tet_count()) + " tets, and " +
+                                  std::to_string(kTooFine) +
+                                  " are the most; the material explains what the mesh gets wrong (a coarser mesh, or a "
+                                  "smaller --refine)");
       return plan_.mesh_errors = false;
     }
     begin(FitStage::mesh_errors, "what the mesh gets wrong, by one of eight times as many tets");
     MeshErrors errors = mesh_errors(simulated_, plan_.model, material_, plan_.equilibrium);
     if (errors.cases.empty()) {
-      outcome_.warnings.push_back("what the mesh gets wrong could not be computed: " + errors.failure);
+      outcome_.warnings.push_back("--mesh-errors was NOT done: on the finer mesh " + errors.failure);
       return plan_.mesh_errors = false;
     }
     errors_ = std::move(errors.cases);
@@ -210,10 +214,16 @@ class MaterialFit {
       last.emplace(data_.experiment, fitted_, plan_, plan_.unknowns, memory_, name, fingerprint_);
       outcome_.report = fit_stage(FitStage::field, *last, options, start);
       const std::vector<double>& p = outcome_.report.p;
-      if (!plan_.mesh_errors || pass == kPasses || !is_success(outcome_.report.status)) break;
+      if (!plan_.mesh_errors || !is_success(outcome_.report.status)) break;
       double change = 0;
       for (size_t i = 0; i < start.size(); ++i) change = std::max(change, std::abs(p[i] - start[i]));
       if (pass > 0 && change < (last->map.size() > kFewValues ? kSettledField : kSettled)) break;
+      if (pass == kPasses) {
+        outcome_.warnings.push_back("what the mesh gets wrong and the material do not settle: after " +
+                                    std::to_string(kPasses) + " rounds it still changes by " + std::to_string(change) +
+                                    " (of log E); a finer mesh (--refine) makes both smaller");
+        break;
+      }
       options.weight = outcome_.report.weight;
       start = p;
       material_ = last->map.parameters(p);
@@ -266,6 +276,7 @@ class MaterialFit {
     std::vector<double> r(static_cast<size_t>(stage.misfit.residual_count()));
     if (stage.journal) stage.journal->catch_up();
     const bool ok = stage.misfit.evaluate(p, r);
+    stage.with_layers->errors().apply(r);
     if (ok) warn_of_misfit(stage.misfit, r);
     int fitted = 0;
     for (size_t c = 0; c < outcome_.cases.size(); ++c) {

@@ -160,9 +160,12 @@ class FitMemoryTest : public FolderTest {
         .begin = {},
         .iterate = [&](FitStage, const FitIteration&, std::span<const double>) { return ++iterations < limit; },
         .go_on = {}};
-    return fit_material(block(), quick_plan({"young=handles:6"}), {memory, start}, witness);
+    FitPlan plan = quick_plan({"young=handles:6"});
+    plan.mesh_errors = mesh_errors;
+    return fit_material(block(), plan, {memory, start}, witness);
   }
   int iterations = 0;
+  bool mesh_errors = false;
 };
 
 TEST_F(FitMemoryTest, AnInterruptedFitGoesOnToTheSameBits) {
@@ -179,6 +182,21 @@ TEST_F(FitMemoryTest, AnInterruptedFitGoesOnToTheSameBits) {
     EXPECT_EQ(resumed.report.p, whole.report.p) << "interrupted after " << limit;
     EXPECT_EQ(*resumed.material.find("young"), *whole.material.find("young"));
     EXPECT_EQ(resumed.cases[1].wrench.force[1], whole.cases[1].wrench.force[1]);
+  }
+}
+
+TEST_F(FitMemoryTest, SoDoesOneThatTakesOffWhatTheMeshGetsWrong) {
+  mesh_errors = true;
+  const FitOutcome whole = fitted(path("whole"), JournalStart::anew, 10000);
+  ASSERT_TRUE(whole.has_material()) << whole.failure;
+  EXPECT_GT(whole.mesh_error, 0);
+  const int all = iterations;
+  for (const int limit : {all / 3, all - 1}) {
+    const fs::path memory = path("part" + std::to_string(limit));
+    EXPECT_TRUE(fitted(memory, JournalStart::anew, limit).interrupted);
+    const FitOutcome resumed = fitted(memory, JournalStart::resume, 10000);
+    EXPECT_EQ(iterations, all);
+    EXPECT_EQ(resumed.report.p, whole.report.p) << "interrupted after " << limit << " of " << all;
   }
 }
 

@@ -62,6 +62,20 @@ TEST_F(Recovery, OnACoarseMeshNeedsWhatThatGetsWrong) {
   EXPECT_NEAR(factor(made, fit), 1, 0.03);  // the truth has a ninth of the error itself
 }
 
+// Poked by a glued sphere on a mesh of four cells: what it gets wrong around the tip must not look like a layer of
+// another stiffness, and that like another E.
+TEST_F(Recovery, MeshErrorsMakeNoPokeWorse) {
+  SynthesisOptions options = bench(3, 0);
+  options.contact = TipContact::bonded;
+  options.mesh = make_box({{0, 0, 0}}, {{0.1, 0.1, 0.1}}, {5, 5, 5});
+  const Synthesis made = synthesize(block("2e4", 10), options);
+  FitPlan fit = plan("young=uniform");
+  const double without = std::abs(std::log(factor(made, fit)));
+  EXPECT_GT(without, 0.05);
+  fit.mesh_errors = true;
+  EXPECT_LT(std::abs(std::log(factor(made, fit))), without);
+}
+
 TEST_F(Recovery, OfTwoLayersAtOnePercentNoise) {
   const Scene scene = block("Z < 0.05 ? 6e4 : 2e4", 4);
   SynthesisOptions options = bench(4, 0.01);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/common_errors.h"
+
 namespace aspic {
 namespace {
 
@@ -101,7 +103,8 @@ CrossValidation cross_validate(const Experiment& experiment, const ParameterMap&
     const Experiment seen = subset(experiment, [&](const LoadCase& c) { return c.group != h.group; });
     const Experiment left_out = subset(experiment, [&](const LoadCase& c) { return c.group == h.group; });
     Misfit misfit(seen, map, equilibrium);
-    const FitReport report = fit(misfit, regularizer, fitted.p, options);
+    WithUncertainLayers data(misfit, misfit.residuals_by_case());
+    const FitReport report = fit(data, regularizer, fitted.p, options);
     h.p = report.p;
     if (is_success(report.status) || report.status == Status::iteration_limit)
       predict(left_out, map, equilibrium, h);

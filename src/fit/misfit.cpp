@@ -220,6 +220,12 @@ std::pair<int, int> Misfit::residuals_of(int c) const {
   return {impl_->cases[c].first, impl_->cases[c].body->residual_count()};
 }
 
+std::vector<std::pair<int, int>> Misfit::residuals_by_case() const {
+  std::vector<std::pair<int, int>> all;
+  for (int c = 0; c < impl_->case_count(); ++c) all.push_back(residuals_of(c));
+  return all;
+}
+
 std::string Misfit::what(int residual) const {
   int c = impl_->case_count() - 1;
   while (impl_->cases[c].first > residual) --c;

@@ -87,7 +87,8 @@ class Misfit : public LeastSquares {
 
   const CasePrediction& prediction(int c) const;  // by the last evaluate()
   std::pair<int, int> residuals_of(int c) const;  // first, count
-  std::string what(int residual) const;           // "poke 3, depth 2: marker 17, y"
+  std::vector<std::pair<int, int>> residuals_by_case() const;
+  std::string what(int residual) const;  // "poke 3, depth 2: marker 17, y"
   // Why the last evaluate(), linearize() or product failed, in words.
   const std::string& failure() const;
 

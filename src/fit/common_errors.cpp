@@ -1,0 +1,73 @@
+#include "fit/common_errors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit/columns.h"
+
+namespace aspic {
+
+void CommonErrors::Direction::take_off(std::span<double> r) const {
+  const std::span<double> part = r.subspan(static_cast<size_t>(first), unit.size());
+  add_scaled(-taken * dot(unit, part), unit, part);
+}
+
+// One after another: (I + n n')^(-1/2) = I - (1 - 1 / sqrt(1 + |n|^2)) n n' / |n|^2, n as those before leave it.
+void CommonErrors::add(int first, std::vector<double> n) {
+  std::vector<double> all(static_cast<size_t>(first) + n.size(), 0.0);
+  std::copy(n.begin(), n.end(), all.begin() + first);
+  for (const Direction& d : directions_)
+    if (d.first >= first && d.first + d.unit.size() <= all.size()) d.take_off(all);
+  std::copy(all.begin() + first, all.end(), n.begin());
+  const double length = std::sqrt(dot(n, n));
+  if (!(length > 0) || !std::isfinite(length)) return;
+  for (double& x : n) x /= length;
+  directions_.push_back({first, std::move(n), 1 - 1 / std::hypot(1, length)});
+}
+
+void CommonErrors::apply(std::span<double> r) const {
+  for (const Direction& d : directions_) d.take_off(r);
+}
+
+void CommonErrors::apply_transposed(std::span<double> w) const {
+  for (auto d = directions_.rbegin(); d != directions_.rend(); ++d) d->take_off(w);
+}
+
+bool WithUncertainLayers::evaluate(std::span<const double> p, std::span<double> r) {
+  if (!data_.evaluate(p, r)) return false;
+  if (!is_known_) learn();
+  errors_.apply(r);
+  return true;
+}
+
+void WithUncertainLayers::learn() {
+  is_known_ = true;
+  if (data_.nuisance_count() == 0 || !data_.linearize()) return;
+  std::vector<double> dr(static_cast<size_t>(residual_count()));
+  data_.nuisance(0, dr);
+  for (const auto& [first, count] : cases_) {
+    std::vector<double> n(dr.begin() + first, dr.begin() + first + count);
+    for (double& x : n) x *= kLayerDeviation;
+    errors_.add(first, std::move(n));
+  }
+}
+
+bool WithUncertainLayers::linearize() { return data_.linearize(); }
+
+void WithUncertainLayers::multiply(std::span<const double> dp, std::span<double> dr) {
+  data_.multiply(dp, dr);
+  errors_.apply(dr);
+}
+
+void WithUncertainLayers::multiply_transposed(std::span<const double> w, std::span<double> pbar) {
+  std::vector<double> own(w.begin(), w.end());
+  errors_.apply_transposed(own);
+  data_.multiply_transposed(own, pbar);
+}
+
+void WithUncertainLayers::nuisance(int k, std::span<double> dr) {
+  data_.nuisance(k, dr);
+  errors_.apply(dr);
+}
+
+}  // namespace aspic
