@@ -247,7 +247,7 @@ void add_choices(CLI::App* command, Arguments& a) {
   command->add_option("--smooth", a.smooth, "How neighbours differ: h1 little, tv at few edges, none: as they like")
       ->check(CLI::IsMember({"h1", "tv", "none"}));
   command->add_option("--weight", a.weight, "Of the smoothness and the prior against the data: auto or a number");
-  command->add_option("--rule", a.fit.weight_rule, "That chooses the weight: discrepancy, l_curve or prior")
+  command->add_option("--rule", a.fit.weight_rule, "That chooses the weight: discrepancy, evidence, l_curve or prior")
       ->check(CLI::IsMember(weight_rule_names()));
   command->add_option("--prior", a.prior_deviation, "How far log E may lie from its guess: a standard deviation; inf");
   command->add_option("--method", a.fit.method, "levenberg_marquardt, gauss_newton_cg or lbfgs")

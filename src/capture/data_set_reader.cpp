@@ -123,15 +123,16 @@ class DataSetReader {
       if (const auto [other, is_new] = marker_of_.try_emplace(name, index); !is_new)
         table.error("the marker '" + name + "' is in line " + std::to_string(data_.source.marker_line[other->second]) +
                     " already; give each its own name");
-      double gap = 0;
+      Vec3d gap{};
       data_.experiment.markers.push_back(marker(table, surface, gap));
       data_.marker_names.push_back(name);
-      data_.marker_gap.push_back(gap);
+      data_.marker_gap.push_back(norm(gap));
+      gap_.push_back(gap);
       data_.source.marker_line.push_back(table.line());
     }
   }
 
-  SurfacePoint marker(MeasuredTable& table, const SurfaceProjection& surface, double& gap) {
+  SurfacePoint marker(MeasuredTable& table, const SurfaceProjection& surface, Vec3d& gap) {
     if (!table.text("corner_1").empty()) return marker_in_triangle(table);
     if (const std::optional<int> vertex = table.integer("vertex")) return marker_at_vertex(table, *vertex);
     const std::optional<Vec3d> p = table.vector("", settings_.unit("length"));
@@ -140,10 +141,11 @@ class DataSetReader {
       return {};
     }
     const ProjectedPoint projected = surface.nearest(*p);
-    gap = projected.distance;
-    if (gap > kFarOff * size_)
-      table.error("the marker lies " + three_digits(gap) + " m off the surface of the body, whose size is " +
-                  three_digits(size_) + " m; " + unit_hint(surface, *p));
+    gap = *p - projected.position;
+    if (projected.distance > kFarOff * size_)
+      table.error("the marker lies " + three_digits(projected.distance) +
+                  " m off the surface of the body, whose size is " + three_digits(size_) + " m; " +
+                  unit_hint(surface, *p));
     return projected.point;
   }
 
@@ -297,7 +299,8 @@ class DataSetReader {
       table.error("this marker was given for this case in line " + std::to_string(first->second) + " already");
     const Value* usual = settings_["deviation"].find("position");
     const double all = usual ? usual->number() * length : 0;
-    data_.experiment.cases[c].positions.push_back({m, *p, sd ? *sd : Vec3d{{all, all, all}}});
+    // What counts is how it has moved since rest, where a mesh never lies exactly on the surface that was measured.
+    data_.experiment.cases[c].positions.push_back({m, *p - gap_[m], sd ? *sd : Vec3d{{all, all, all}}});
     data_.source.position_line[c].push_back(table.line());
   }
 
@@ -366,6 +369,7 @@ class DataSetReader {
   TetMesh user_mesh_;
   double size_ = 0;  // of the body [m]
   std::map<std::string, int> marker_of_;
+  std::vector<Vec3d> gap_;                             // of each marker at rest, from its point of the surface [m]
   std::map<int, std::pair<Triangle, int>> corner_of_;  // a triangle of each vertex of the surface, and which corner
   std::map<std::string, Tip> tips_;
   std::map<std::string, std::vector<Triangle>> patches_;

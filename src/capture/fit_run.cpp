@@ -22,7 +22,9 @@ namespace fs = std::filesystem;
 
 constexpr int kTooFine = 60'000;  // tets, for a mesh of eight times as many
 constexpr int kPasses = 8;
-constexpr double kSettled = 1e-3;  // relative change of a value
+constexpr double kSettled = 1e-3;       // relative change of a value
+constexpr double kSettledField = 0.03;  // where there are more than kFewValues, which noise leaves open far more
+constexpr int kFewValues = 50;
 // Guesses that are tried when the first one is so soft that the loads crush the body.
 constexpr double kStiffer[] = {1, 10, 100, 0.1};
 constexpr double kSoftest = 1e-2, kStiffest = 1e13;  // Young's moduli that a body can have [Pa]
@@ -223,21 +225,23 @@ class MaterialFit {
     begin(FitStage::field, "");
     std::optional<Stage> last;
     std::vector<double> start;
+    FitOptions options = plan_.fit;
     for (int pass = 0;; ++pass) {
       const std::string name = pass == 0 ? "fit" : "fit_corrected" + std::to_string(pass);
       last.emplace(data_.experiment, fitted_, plan_, plan_.unknowns, memory_, name, fingerprint_);
-      outcome_.report = fit_stage(FitStage::field, *last, plan_.fit, start);
+      outcome_.report = fit_stage(FitStage::field, *last, options, start);
       const std::vector<double>& p = outcome_.report.p;
       if (!plan_.mesh_errors || !is_success(outcome_.report.status)) break;
       double change = 0;
       for (size_t i = 0; i < start.size(); ++i) change = std::max(change, std::abs(p[i] - start[i]));
-      if (pass > 0 && change < kSettled) break;
+      if (pass > 0 && change < (last->map.size() > kFewValues ? kSettledField : kSettled)) break;
       if (pass == kPasses) {
         outcome_.warnings.push_back("what the mesh gets wrong and the material do not settle: after " +
                                     std::to_string(kPasses) + " rounds it still changes by " + std::to_string(change) +
                                     " (of log E); a finer mesh (--refine) makes both smaller");
         break;
       }
+      options.weight = outcome_.report.weight;
       start = p;
       material_ = last->map.parameters(p);
       last.reset();

@@ -29,8 +29,10 @@ struct NamedRule {
   const char* name;
   WeightRule rule;
 };
-constexpr NamedRule kRules[] = {
-    {"prior", fit_with_weight}, {"discrepancy", fit_by_discrepancy}, {"l_curve", fit_by_l_curve}};
+constexpr NamedRule kRules[] = {{"prior", fit_with_weight},
+                                {"discrepancy", fit_by_discrepancy},
+                                {"evidence", fit_by_evidence},
+                                {"l_curve", fit_by_l_curve}};
 
 template <class Named>
 const Named& named(std::span<const Named> all, const std::string& what, const std::string& name) {

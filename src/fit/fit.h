@@ -19,7 +19,7 @@ struct FitOptions {
   int max_inner = 100;               // of conjugate gradients, per iteration
   double max_step = 3;               // of any entry of p, per iteration: log E by 3, E by 20
   double weight = -1;                // of the regulariser; < 0: chosen by `weight_rule`
-  std::string weight_rule = "auto";  // "prior" (1), "discrepancy", "l_curve"; auto: prior for few unknowns
+  std::string weight_rule = "auto";  // weight_rule_names(); auto: "prior" (1) for few unknowns, else "discrepancy"
   double first_weight = 0;           // where a rule begins; 0: where the prior and the data are about as strong
   int starts = 1;                    // from how many guesses; the best is kept
   double scatter = 1.5;              // the largest change of p from the first guess to another

@@ -29,6 +29,8 @@ class FitRun {
   int start = 0;
   FitReport report;
 
+  LeastSquares& data() { return data_; }
+  Regularizer& prior() { return regularizer_; }
   int unknowns() const { return data_.unknowns(); }
   int residuals() const { return data_.residual_count(); }
   // False: r is not defined at p, or not finite.
@@ -77,9 +79,10 @@ Status fit_by_lbfgs(FitRun& run, FitPoint& at, FitGoal& goal);
 
 using FitMethod = Status (*)(FitRun&, FitPoint&, FitGoal&);
 
-// Choose the weight, and end at the p that belongs to it: so that |r|^2 is the number of residuals, or at the corner of
-// the curve of (log misfit, log roughness).
+// Choose the weight, and end at the p that belongs to it: so that |r|^2 is the number of residuals, so that the data
+// are most probable, or at the corner of the curve of (log misfit, log roughness).
 Status fit_by_discrepancy(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method);
+Status fit_by_evidence(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method);
 Status fit_by_l_curve(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method);
 
 // Towards d from `at`, backtracking where f falls too little or is not defined. False: no step was found.

@@ -259,6 +259,26 @@ TEST(Fit, SaysWhenTheModelCannotExplainTheData) {
   EXPECT_THAT(report.words, HasSubstr("stated too small"));
 }
 
+// The same, whether the search begins far above or far below.
+TEST(Fit, FindsTheWeightUnderWhichTheDataAreMostProbable) {
+  Bar bar;
+  CurvedModel model(bar.map.size(), 200, 0, 0.02);
+  model.blur(0.03);
+  model.observe(bar.truth(), 1);
+  const auto R = make_regularizer(bar.mesh, bar.map, {});
+  std::vector<double> found;
+  for (const double first : {1e-2, 1.0, 1e4}) {
+    const FitReport report =
+        fit(model, *R, bar.map.guess(), {.max_iterations = 300, .weight_rule = "evidence", .first_weight = first});
+    ASSERT_TRUE(is_success(report.status)) << report.words;
+    EXPECT_THAT(report.words, HasSubstr("most probable"));
+    EXPECT_LT(2 * report.misfit, 200 * 1.2);
+    found.push_back(report.weight);
+  }
+  EXPECT_NEAR(std::log(found[0] / found[2]), 0, 0.7);
+  EXPECT_NEAR(std::log(found[1] / found[2]), 0, 0.7);
+}
+
 TEST(Fit, FindsTheCornerOfTheLCurve) {
   Bar bar;
   CurvedModel model(bar.map.size(), 200, 0, 0.02);

@@ -1,12 +1,14 @@
-// How much to believe the prior, chosen from the data [Morozov 1966; Hansen 1998]: warm-started fits at falling
-// weights.
+// How much to believe the prior, chosen from the data [Morozov 1966; Hansen 1998; MacKay 1992]: fits at one weight
+// after another, each from the last.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <optional>
 
+#include "fit/evidence.h"
 #include "fit/fit_run.h"
+#include "fit/without_nuisances.h"
 
 namespace aspic {
 namespace {
@@ -15,6 +17,9 @@ constexpr double kLargestFall = 1.0 / 30;  // of the weight from one trial to th
 constexpr int kTrials = 24;
 constexpr double kStagnation = 0.02;  // of the logarithm of |r|^2 per factor e of the weight
 constexpr double kRange = 1e12;       // between the first weight and the last
+constexpr double kSettled = 0.3;      // of the logarithm of the weight that the data support
+constexpr int kEvidenceTrials = 8;
+constexpr int kBestSeen = 64;  // directions that the weight is judged by: to about sqrt(2 / 64)
 
 // The weight at which prior and data pull equally along the steepest descent in the norm of the prior.
 std::optional<double> balanced_weight(FitRun& run, const FitPoint& at) {
@@ -164,6 +169,29 @@ Status fit_by_discrepancy(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod me
   if (rule.is_met(at.misfit)) verdict = Discrepancy::Verdict::fits;
   run.report.words = words_of(verdict, 2 * at.misfit, run.residuals());
   return status;
+}
+
+Status fit_by_evidence(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method) {
+  const std::optional<double> balanced = balanced_weight(run, at);
+  if (!balanced) return Status::undefined;
+  run.weight = run.options.first_weight > 0 ? run.options.first_weight : 0.1 * *balanced;
+  WithoutNuisances data(run.data());
+  run.report.words = "the search for the weight that the data support did not settle";
+  for (int i = 0; i < kEvidenceTrials; ++i) {
+    if (const Status status = fit_loosely(run, at, goal, method); !is_success(status)) return status;
+    run.report.weights.push_back(trial_at(run, at));
+    if (!run.linearize(at) || !data.linearize()) return Status::undefined;
+    PriorGaussian before(run.prior(), run.weight, at.p);
+    const Spectrum s = spectrum(data, before, {.dense = kBestSeen, .max_rank = kBestSeen, .negligible = 1});
+    if (!s.ok) return Status::undefined;
+    const double factor = supported_weight(run.prior(), run.weight, at.p, s).factor;
+    if (std::abs(std::log(factor)) < kSettled) {
+      run.report.words = "the weight is the one under which the data are most probable";
+      break;
+    }
+    run.weight *= std::clamp(factor, kLargestFall, 1 / kLargestFall);
+  }
+  return method(run, at, goal);
 }
 
 Status fit_by_l_curve(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method) {

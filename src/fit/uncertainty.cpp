@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/check.h"
+#include "fit/evidence.h"
 #include "fit/field_words.h"
 #include "fit/principal_directions.h"
 #include "fit/without_nuisances.h"
@@ -73,31 +74,12 @@ void judge_noise(double misfit, int residuals, Posterior& result, Spectrum& s) {
   }
 }
 
-// -2 log of the probability of the data under `factor` times the weight of the fit [MacKay 1992], up to a constant:
-// along direction k they found the amplitude a = c (1 + d) / d, c being that of the fit, which scatters as
-// N(0, 1 / factor + 1 / d).
-double surprise(double factor, const Spectrum& s, std::span<const double> amplitudes) {
-  double sum = 0;
-  for (size_t k = 0; k < s.d.size(); ++k) {
-    if (!(s.d[k] > 1e-6)) continue;
-    const double a = amplitudes[k] * (1 + s.d[k]) / s.d[k], variance = 1 / factor + 1 / s.d[k];
-    sum += a * a / variance + std::log(variance * s.d[k]);
-  }
-  return sum;
-}
-
 void judge_weight(Regularizer& prior, double weight, std::span<const double> p, const Spectrum& s, Posterior& result) {
   if (!(weight > 0) || s.d.empty()) return;
-  std::vector<double> g(p.size(), 0.0);
-  prior.add_gradient(p, weight, g);
-  const std::vector<double> amplitudes = product_transposed(s.W, g);
-  constexpr double kRange = 14, kStep = 0.1;  // from e^-14 to e^14
-  double best = 1;
-  for (double x = -kRange; x <= kRange; x += kStep)
-    if (surprise(std::exp(x), s, amplitudes) < surprise(best, s, amplitudes)) best = std::exp(x);
+  const auto [best, gain] = supported_weight(prior, weight, p, s);
   result.suggested_weight = weight * best;
   constexpr double kClear = 8;  // by chance it is exceeded once in 200 times (chi^2 of one degree)
-  if (surprise(1, s, amplitudes) - surprise(best, s, amplitudes) < kClear) return;
+  if (gain < kClear) return;
   result.warnings.push_back(text(
       best < 1 ? "the weight of the regulariser, %.3g, is %.2g times larger than what the data support (%.3g): details "
                  "are lost and the deviations too small"

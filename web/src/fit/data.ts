@@ -188,7 +188,7 @@ export function groupCurve(fit: Fit, group: { cases: number[] }): GroupCurve {
   return {
     xLabel: pokes ? "depth" : pressed ? "pressure" : "acceleration of gravity",
     xUnit: pokes ? "m" : pressed ? "Pa" : "m/s²",
-    yLabel: forces ? "force" : "mean motion of markers",
+    yLabel: forces ? "force" : "mean motion",
     yUnit: forces ? "N" : "m",
     x: samples.map((s) => s.x),
     measured: samples.map((s) => s.measured),

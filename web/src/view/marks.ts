@@ -109,15 +109,16 @@ export function ring(ink: Ink, [x, y]: Point, radius: number, words: string): vo
   text(ink, words, x + radius + 0.4 * ink.em, y - radius);
 }
 
-// Vertices, and edges of tets, with labels that do not cover each other.
-export function highlights(ink: Ink, lens: Lens, marked: readonly Highlight[]): void {
+// Vertices, and edges of tets, with labels that do not cover each other and end left of `right`.
+export function highlights(ink: Ink, lens: Lens, marked: readonly Highlight[], right: number): void {
   const { em } = ink;
   const labels: (Box & { words: string; top: Point })[] = [];
   for (const { positions, text: words } of marked) {
     const top = outline(ink, lens, positions);
     if (!top || words === "") continue;
     const width = ink.context.measureText(words).width;
-    const x = Math.max(0.3 * em, Math.min(top[0] + 0.6 * em, lens.width - width - 0.3 * em));
+    const fits = top[0] + 0.9 * em + width < right;
+    const x = Math.max(0.3 * em, fits ? top[0] + 0.6 * em : Math.min(top[0] - 0.6 * em, right - 0.3 * em) - width);
     labels.push({ words, top, x, y: top[1] - 0.8 * em, width, height: 1.4 * em });
   }
   for (const { words, top, x, y } of apart(labels, 0.7 * em, lens.height - 0.7 * em)) {
@@ -150,10 +151,10 @@ export function axes(ink: Ink, lens: Lens): void {
 }
 
 // The colours of a field with ticks, at the right edge.
-export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange, map: MapName): void {
+export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange, map: MapName): number {
   const { em } = ink;
   const height = Math.min(16 * em, lens.height - 7 * em);
-  if (height < 3 * em) return;
+  if (height < 3 * em) return lens.width;
   const [left, top, width] = [lens.width - 2.1 * em, 3.2 * em, 1.1 * em];
   const title = `${field.label}${field.unit && ` [${unitText(field.unit)}]`}${range.log ? ", logarithmic" : ""}`;
   const values = range.log ? logTicks(range.low, range.high) : ticks(range.low, range.high, height / (2.6 * em));
@@ -169,6 +170,7 @@ export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange
     ink.context.fillRect(left - 0.35 * em, y - 0.5, 0.35 * em, 1);
     text(ink, words[i], left - 0.6 * em, y, "right");
   });
+  return lens.width - 0.4 * em - backed;
 }
 
 // Sets off what stands on it from the body behind.

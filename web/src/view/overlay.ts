@@ -74,10 +74,10 @@ export class Overlay {
     context.font = `${style.em}px ${style.font}`;
     const ink: marks.Ink = { context, em: style.em, text: style.text, halo: style.background, accent: style.accent };
     for (const { x, y, text } of what.labels) marks.label(ink, text, x, y);
-    marks.highlights(ink, lens, what.highlights);
+    const right = what.bar ? marks.colourBar(ink, lens, what.bar.field, what.bar.range, what.bar.map) : lens.width;
+    marks.highlights(ink, lens, what.highlights, right);
     if (what.axes) marks.axes(ink, lens);
     if (what.gridStep > 0) marks.gridNote(ink, lens, what.gridStep);
-    if (what.bar) marks.colourBar(ink, lens, what.bar.field, what.bar.range, what.bar.map);
     for (const dot of what.dots) marks.surfaceDot(ink, lens, dot.at, dot.normal, dot.ring);
     if (what.spring) marks.spring(ink, lens, what.spring.point, what.spring.target, what.spring.force);
     if (what.brush) marks.ring(ink, what.brush.at, what.brush.radius, what.brush.words);
