@@ -53,7 +53,9 @@ Ending settle(Scene& scene, int most = 60) {
     });
     EXPECT_TRUE(falls) << "step " << report.step << ": the energy rises between iterations";
     ending.fails = !is_success(report.status);
-    if (ending.fails) EXPECT_NE(explain(simulation, report).cause, "");
+    if (ending.fails) {
+      EXPECT_NE(explain(simulation, report).cause, "");
+    }
     ending.min_det_F = report.min_det_F;
     ending.is_relaxed = std::abs(report.potential_total) < 1e-2;
   }
@@ -78,11 +80,12 @@ const Start kStarts[] = {
 
 TEST(Robustness, MaterialsThatCannotBeTurnedInsideOutRefuseSuchAStart) {
   for (const MaterialInfo& info : materials())
-    if (info.barrier)
-      for (const Start& start : kStarts)
-        EXPECT_THAT(refusal(kFloating + body(kBox, "model = \"" + info.name + "\"", start.deform)),
-                    AllOf(HasSubstr("tets are inverted or flat"), HasSubstr("stable_neo_hookean")))
-            << info.name << ", " << start.name;
+    for (const Start& start : kStarts) {
+      if (!info.barrier) continue;
+      EXPECT_THAT(refusal(kFloating + body(kBox, "model = \"" + info.name + "\"", start.deform)),
+                  AllOf(HasSubstr("tets are inverted or flat"), HasSubstr("stable_neo_hookean")))
+          << info.name << ", " << start.name;
+    }
 }
 
 // Which of them keep a body that starts as a point, on a plane, at random places or mirrored: their remarks say so
@@ -320,7 +323,7 @@ TEST(Robustness, AStepThatDoubleRepresentsTooCoarselySaysSo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Numbers, Extremes, testing::ValuesIn(extremes()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& extreme) { return extreme.param.name; });
 
 }  // namespace
 }  // namespace aspic
