@@ -84,7 +84,7 @@ TEST(SceneDocument, ValueOutOfRangeIsNamedWithTheRemedy) {
   EXPECT_THAT(refusal(kBox + "material = { density = -5.0 }\n"), HasSubstr("density = -5.0"));
   EXPECT_THAT(refusal("[time]\nstep = nan\n" + kBox), HasSubstr("finite"));
   EXPECT_THAT(refusal("gravity = [0, inf, 0]\n" + kBox), HasSubstr("finite"));
-  EXPECT_THAT(refusal("[time]\nstep = 0\n" + kBox), HasSubstr("step = 0; must be > 0 (try 0.01)"));
+  EXPECT_THAT(refusal("[time]\nstep = 0\n" + kBox), HasSubstr("step = 0; must be > 0 and <= 1e+100 (try 0.01)"));
   EXPECT_THAT(refusal("[solver]\nline_search = { alpha_max = 1e9 }\n" + kBox), HasSubstr("(try 1e+06)"));
   EXPECT_THAT(refusal("[solver]\nline_search = { p = 0.99999 }\n" + kBox), HasSubstr("(try 0.99)"));
   EXPECT_THAT(refusal(kBox + "scale = -1\n"), HasSubstr("scale = -1"));

@@ -58,7 +58,7 @@ void add_time(Schema& s) {
              .accepts = kNumber,
              .unit = "s",
              .fallback = number_text(usual.h),
-             .range = kPositive,
+             .range = {.min = 0, .max = 1e100, .min_open = true},  // its square is finite
              .meaning = "length h of a time step",
              .reason = "resolves motions of a few hertz"},
             {.name = "duration",
