@@ -71,6 +71,21 @@ TEST(FitRun, WithoutAnyChoiceTheStiffnessOfEveryTetIsFitted) {
   EXPECT_EQ(outcome.unknowns, block().experiment.mesh.tet_count() + 1);
 }
 
+TEST(FitRun, DataThatSayNothingLeaveWhatWasBelieved) {
+  DataSet data = block();
+  for (LoadCase& load : data.experiment.cases) {
+    load.positions.clear();
+    load.force_deviation = {{1e3, 1e3, 1e3}};
+  }
+  FitPlan plan = quick_plan({"young=tets"});
+  plan.uncertainty = true;
+  const FitOutcome outcome = fit_material(data, plan, {}, {});
+  ASSERT_TRUE(outcome.posterior && outcome.posterior->ok) << outcome.failure;
+  EXPECT_LT(outcome.posterior->informed, 0.1);
+  for (const double deviation : outcome.posterior->deviation.front()) EXPECT_GT(deviation, 0.5);
+  EXPECT_THAT(outcome.warnings, ::testing::Contains(HasSubstr("say next to nothing")));
+}
+
 TEST(FitRun, TellsWhatIsNotKnown) {
   FitPlan plan = quick_plan();
   plan.uncertainty = true;
