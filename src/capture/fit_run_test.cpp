@@ -11,6 +11,7 @@
 #include "fit/refined_experiment.h"
 #include "io/atomic_file.h"
 #include "io/folder_test.h"
+#include "material/registry.h"
 
 namespace aspic {
 namespace {
@@ -84,6 +85,17 @@ TEST(FitRun, DataThatSayNothingLeaveWhatWasBelieved) {
   EXPECT_LT(outcome.posterior->informed, 0.1);
   for (const double deviation : outcome.posterior->deviation.front()) EXPECT_GT(deviation, 0.5);
   EXPECT_THAT(outcome.warnings, ::testing::Contains(HasSubstr("say next to nothing")));
+}
+
+TEST(FitRun, EveryModelBeginsInsideOfItsRanges) {
+  for (const MaterialInfo& info : materials()) {
+    FitPlan plan = quick_plan({"young=uniform"});
+    plan.model = info.name;
+    plan.known.clear();
+    plan.fit.max_iterations = 1;
+    if (info.extra.empty()) continue;
+    EXPECT_TRUE(fit_material(block(), plan, {}, {}).has_material()) << info.name;
+  }
 }
 
 TEST(FitRun, TellsWhatIsNotKnown) {
