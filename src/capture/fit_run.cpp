@@ -298,8 +298,8 @@ class MaterialFit {
     std::erase_if(outcome_.posterior->warnings,
                   [](const std::string& warning) { return warning.starts_with("the weight of the regulariser"); });
     outcome_.warnings.push_back(
-        "one value for the whole body explains the data: of how the stiffness varies they say next to nothing, and the "
-        "deviations are those of what was believed beforehand (--unknown young=uniform fits that value)");
+        "the data say next to nothing of how the stiffness varies: the deviations are those of what was believed "
+        "beforehand (--unknown young=uniform fits that value)");
   }
 
   // The material in parts, where it is wanted and the data allow it; else that of the field.
