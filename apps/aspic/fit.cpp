@@ -88,14 +88,24 @@ ExistingFit existing(const Arguments& arguments) {
   return arguments.force ? ExistingFit::overwrite : ExistingFit::refuse;
 }
 
-// What data would be fitted in vain.
-void refuse_errors(const DataSet& data, const fs::path& path) {
-  std::string text;
-  for (const DataFinding& finding : diagnose(data))
-    if (finding.severity == Severity::error)
-      text += fmt::format("{}{}: {}{}{}", text.empty() ? "" : "\n", finding.where, finding.what,
-                          finding.remedy.empty() ? "" : "; ", finding.remedy);
-  if (!text.empty()) throw InvalidInput(fmt::format("{}\n(aspic fit --check {} tells more)", text, path.string()));
+std::string words_of(const DataFinding& finding) {
+  return finding.where + ": " + finding.what + (finding.remedy.empty() ? "" : "; ") + finding.remedy;
+}
+
+// Refuses data that would be fitted in vain, and tells the worst of what is odd about others.
+void heed_findings(const DataSet& data, const fs::path& path) {
+  constexpr int kMostTold = 3;
+  std::string errors;
+  std::vector<std::string> warnings;
+  for (const DataFinding& finding : diagnose(data)) {
+    if (finding.severity == Severity::error) errors += (errors.empty() ? "" : "\n") + words_of(finding);
+    if (finding.severity == Severity::warning) warnings.push_back(words_of(finding));
+  }
+  if (!errors.empty()) throw InvalidInput(fmt::format("{}\n(aspic fit --check {} tells more)", errors, path.string()));
+  const int count = static_cast<int>(warnings.size());
+  for (int i = 0; i < std::min(count, kMostTold); ++i) fmt::print(stderr, "warning: {}\n", warnings[i]);
+  if (count > kMostTold)
+    fmt::print(stderr, "warning: and {} more: aspic fit --check {}\n", count - kMostTold, path.string());
 }
 
 // One fit, and everyone who listens to it.
@@ -202,7 +212,7 @@ int run(const Arguments& arguments) {
   if (arguments.out.extension() != ".vtu")
     throw InvalidInput(arguments.out.string() + ": a material is a .vtu file; choose such a name with -o");
   const DataSet data = read_data_set(arguments.data);
-  refuse_errors(data, arguments.data);
+  heed_findings(data, arguments.data);
   plan = completed(std::move(plan), data.experiment);
   const std::string options = "# aspic fit\ndata = \"" + fingerprint_of(data.experiment) + "\"\n" + text_of(plan);
   FitFolder folder = FitFolder::open(arguments.out, options, existing(arguments));

@@ -185,6 +185,23 @@ void read_cases(const CaptureSettings& settings, const CaseScope& scope, ErrorLi
   sort_cases(data);
 }
 
+double deviation_along(const LoadCase& load) {
+  const double size = load.force ? norm(*load.force) : 0;
+  if (!(size > 0)) return norm(load.force_deviation);
+  const Vec3d d = (1 / size) * *load.force;
+  const bool is_along_axis = load.tip && norm(cross(d, load.pose.axis)) < 1e-9 * norm(load.pose.axis);
+  double stated = 0, of_gauge = 0;
+  bool is_of_gauge = is_along_axis;
+  for (int i = 0; i < 3; ++i) {
+    const double variance = load.force_deviation[i] * load.force_deviation[i];
+    const double left = variance - std::pow(kForceAcross * size, 2) * std::max(0.0, 1 - d[i] * d[i]);
+    is_of_gauge &= left > -1e-12 * variance;
+    stated += d[i] * d[i] * variance;
+    of_gauge += d[i] * d[i] * std::max(left, 0.0);
+  }
+  return std::sqrt(is_of_gauge ? of_gauge : stated);
+}
+
 double load_size(const LoadCase& load) {
   if (load.tip) return norm(load.pose.center - load.touch.center);
   if (load.pressure != 0) return std::abs(load.pressure);

@@ -22,6 +22,10 @@ void read_cases(const CaptureSettings& settings, const CaseScope& scope, ErrorLi
 // How far the load of a case goes: the way of the tip [m], the pressure [Pa] or the gravity [m/s^2].
 double load_size(const LoadCase& load);
 
+// Standard deviation of the force along itself [N]. Not counted is how open a gauge of one axis leaves the force
+// across.
+double deviation_along(const LoadCase& load);
+
 // The axis of a tip that has turned since the touch.
 Vec3d turned_axis(const TipPose& touch, const Vec3d& rotation);
 

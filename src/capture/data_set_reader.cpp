@@ -359,8 +359,8 @@ class DataSetReader {
       chosen.insert(load.tip->stiffness);
     }
     for (const double k : chosen)
-      data_.notes.push_back("the layer of the tip has the stiffness " + number_text(k) +
-                            " Pa/m: far stiffer than the body, which seems to have E = " + number_text(E) + " Pa");
+      data_.notes.push_back("the layer of the tip has the stiffness " + three_digits(k) +
+                            " Pa/m: far stiffer than the body, which seems to have E = " + three_digits(E) + " Pa");
   }
 
   CaptureSettings settings_;

@@ -74,8 +74,9 @@ class ContentDiagnosis {
                      "poke at several sites: what is far from the tip stays unknown, and no group can be left out to "
                      "test the fit");
     const size_t unseen = experiment_.markers.size() - seen.size();
-    if (unseen > 0)
-      findings_.note(data_.source.markers, std::to_string(unseen) + " markers were never measured",
+    if (unseen > 0 && !seen.empty())
+      findings_.note(data_.source.markers,
+                     std::to_string(unseen) + (unseen == 1 ? " marker was" : " markers were") + " never measured",
                      "check that positions call them the same");
   }
 

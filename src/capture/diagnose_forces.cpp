@@ -95,7 +95,7 @@ class ForceDiagnosis {
       const Vec3d way = cases_[c].pose.center - cases_[c].touch.center;
       const double along = dot(way, *cases_[c].force);
       ++measured;
-      const double noise = 3 * norm(cases_[c].force_deviation);
+      const double noise = 3 * deviation_along(cases_[c]);
       if (along < -norm(way) * std::max(0.1 * norm(*cases_[c].force), noise)) against.push_back(c);
     }
     if (against.empty()) return;
@@ -154,7 +154,7 @@ class ForceDiagnosis {
   std::map<std::string, std::vector<size_t>> groups() const {
     std::map<std::string, std::vector<size_t>> groups;
     for (size_t c = 0; c < cases_.size(); ++c)
-      if (apparent_young(cases_[c]) && norm(*cases_[c].force) > 3 * norm(cases_[c].force_deviation))
+      if (apparent_young(cases_[c]) && norm(*cases_[c].force) > 3 * deviation_along(cases_[c]))
         groups[cases_[c].group].push_back(c);
     return groups;
   }
@@ -192,7 +192,7 @@ class ForceDiagnosis {
     for (size_t c = 1; c < cases_.size(); ++c) {
       const LoadCase &last = cases_[c - 1], &load = cases_[c];
       if (load.group != last.group || !load.force || !last.force || !load.tip || !last.tip) continue;
-      const double noise = 3 * (norm(load.force_deviation) + norm(last.force_deviation));
+      const double noise = 3 * (deviation_along(load) + deviation_along(last));
       const bool is_deeper = load_size(load) > 1.001 * load_size(last);
       if (is_deeper && norm(*load.force) < kFalling * norm(*last.force) - noise)
         findings_.warning(where(c),

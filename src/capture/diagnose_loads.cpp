@@ -121,6 +121,12 @@ class LoadDiagnosis {
       return;
     }
     const double gap = tip.shape == TipShape::sphere ? off - tip.radius : off;
+    if (tip.contact == TipContact::sliding && gap > std::max(kLoose * size_, load_size(load)))
+      return findings_.error(where_,
+                             "the tip touches nothing: it was " + three_digits(gap) +
+                                 " m away from the surface at the touch, and goes " + three_digits(load_size(load)) +
+                                 " m",
+                             "touch is the centre of the tip (of a disc: of its flat end) when it begins to touch");
     if (tip.contact == TipContact::sliding && gap > kLoose * size_)
       findings_.warning(where_,
                         "the tip was " + three_digits(gap) + " m away from the surface at the touch, and then goes " +

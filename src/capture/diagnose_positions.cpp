@@ -18,6 +18,7 @@ constexpr double kNoticeable = 0.05;  // of the largest motion of the case
 constexpr double kReach = 2;          // of a tip, in radii, within which the surface goes its way
 constexpr double kFar = 1;            // of the body's size: a motion that is none
 constexpr double kFarthest = 10;      // likewise, of a single marker: no fit stands that
+constexpr double kLever = 3;          // times the way of the tip: a motion of most markers that is no tip's
 constexpr double kFinest = 1e-9;      // of the body's size: a deviation that no instrument has
 
 // The markers nearest to each at rest, of those given.
@@ -109,6 +110,7 @@ class PositionDiagnosis {
     examine_gaps();
     if (!examine_units()) return;     // everything else would be said of each marker
     if (!examine_readings()) return;  // nor is there a sense in comparing them
+    if (!examine_way()) return;
     for (size_t c = 0; c < experiment_.cases.size(); ++c) examine_outliers(static_cast<int>(c));
     if (outliers_ > kMostListed)
       findings_.warning(data_.source.positions, std::to_string(outliers_ - kMostListed) + " more markers are outliers",
@@ -176,6 +178,51 @@ class PositionDiagnosis {
                         "check the unit of sd; leave it blank for 1 % of the largest motion");
       }
     }
+    return true;
+  }
+
+  // The median motion of the markers that a tip alone moves, each position read as use(position, place at rest) says.
+  template <class Use>
+  double usual_motion(const Use& use) const {
+    std::vector<double> motion;
+    for (const LoadCase& load : experiment_.cases)
+      for (const MarkerReading& r : load.positions) {
+        if (!is_by_tip_alone(load)) continue;
+        const Vec3d X = position(experiment_.markers[r.marker], experiment_.mesh.rest);
+        motion.push_back(norm(use(r.position, X) - X));
+      }
+    return median(motion);
+  }
+
+  static bool is_by_tip_alone(const LoadCase& load) {
+    return load.tip && load.pressure == 0 && norm(load.gravity) == 0;
+  }
+
+  // Most of a body goes less far than the tip that pushes it: else positions are not what they are taken for.
+  bool examine_way() {
+    std::vector<double> way, noise;
+    for (const LoadCase& load : experiment_.cases)
+      for (const MarkerReading& r : load.positions)
+        if (is_by_tip_alone(load)) {
+          way.push_back(load_size(load) + norm(load.pose.rotation) * size_);
+          noise.push_back(norm(r.deviation));
+        }
+    if (way.empty()) return true;
+    const double motion = usual_motion([](const Vec3d& x, const Vec3d&) { return x; });
+    if (motion <= kLever * (median(way) + median(noise))) return true;
+    const std::string what =
+        "markers move by " + three_digits(motion) + " m, the tip by " + three_digits(median(way)) + " m (medians)";
+    if (median(way) == 0)
+      return refuse(data_.source.positions, what, "say in cases.csv where the tip went: depth, or center");
+    if (usual_motion([](const Vec3d& x, const Vec3d& X) { return X + x; }) < motion / kLever)
+      return refuse(data_.source.positions, what, "these are motions; give places: add those of the markers at rest");
+    for (const auto& [i, j] : {std::pair{0, 1}, {0, 2}, {1, 2}})
+      if (usual_motion([i, j](Vec3d x, const Vec3d&) { return std::swap(x[i], x[j]), x; }) < motion / kLever)
+        return refuse(data_.source.positions, what,
+                      std::string("the columns ") + "xyz"[i] + " and " + "xyz"[j] + " seem to be swapped");
+    findings_.warning(
+        data_.source.positions, what,
+        "check the units and columns of positions, and that they share the coordinate system of the mesh");
     return true;
   }
 

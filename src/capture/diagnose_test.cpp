@@ -1,6 +1,7 @@
 // What is odd about measurements is told with its row and a remedy; what is well is not.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <numeric>
 
 #include "capture/capture_cases_test.h"
@@ -77,6 +78,63 @@ TEST(Diagnosis, ForcesOfTheBodyOnTheTipAreNoticed) {
   data = data_in_lines();
   for (LoadCase& load : data.experiment.cases) load.force = -1.0 * *load.force;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "against", "force_of = \"body\"")));
+}
+
+// As from the column `force`, which leaves the force across open.
+void measure_along_axis(LoadCase& load, double force) {
+  const Vec3d& a = load.pose.axis;
+  load.force = force * a;
+  for (int i = 0; i < 3; ++i)
+    load.force_deviation[i] = std::hypot(0.01, 0.3 * force * std::sqrt(std::max(0.0, 1 - a[i] * a[i])));
+}
+
+DataSet data_of_one_axis(const Vec3d& axis) {
+  DataSet data = data_in_lines();
+  for (LoadCase& load : data.experiment.cases) {
+    const double depth = load.touch.center[2] - load.pose.center[2];
+    load.touch.axis = load.pose.axis = axis;
+    load.pose.center = load.touch.center + depth * axis;
+    measure_along_axis(load, 170 * depth);
+  }
+  return data;
+}
+
+TEST(Diagnosis, ForcesOfAGaugeOfOneAxisAreExaminedLikeOthers) {
+  for (const Vec3d& axis : {Vec3d{{0, 0, -1}}, Vec3d{{0.48, 0.36, -0.8}}}) {
+    DataSet data = data_of_one_axis(axis);
+    EXPECT_THAT(diagnose(data), Each(Field(&DataFinding::severity, Severity::note)));
+    measure_along_axis(data.experiment.cases[1], -1);
+    EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:3", "against the way of the tip")));
+    measure_along_axis(data.experiment.cases[1], 0.2);
+    EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:3", "the force falls")));
+    measure_along_axis(data.experiment.cases[0], 500);
+    measure_along_axis(data.experiment.cases[1], 1000);
+    EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:2", "times as stiff here")));
+    for (LoadCase& load : data.experiment.cases) measure_along_axis(load, -1);
+    EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "against", "force_of = \"body\"")));
+  }
+}
+
+TEST(Diagnosis, PositionsThatNoTipExplainsAreErrors) {
+  const DataSet good = data_in_lines();
+  const auto with = [&](auto change) {
+    DataSet data = good;
+    for (LoadCase& load : data.experiment.cases)
+      for (MarkerReading& r : load.positions)
+        change(load, r, position(data.experiment.markers[r.marker], data.experiment.mesh.rest));
+    return diagnose(data);
+  };
+  EXPECT_THAT(with([](LoadCase&, MarkerReading& r, const Vec3d& X) { r.position = r.position - X; }),
+              Contains(finding(Severity::error, "positions.csv", "markers move by", "these are motions")));
+  EXPECT_THAT(with([](LoadCase&, MarkerReading& r, const Vec3d&) { std::swap(r.position[0], r.position[2]); }),
+              Contains(finding(Severity::error, "positions.csv", "markers move by", "x and z seem to be swapped")));
+  EXPECT_THAT(with([](LoadCase&, MarkerReading& r, const Vec3d&) { r.position[1] += 0.05; }),
+              Contains(finding(Severity::warning, "positions.csv", "markers move by", "coordinate system")));
+  EXPECT_THAT(with([](LoadCase& load, MarkerReading& r, const Vec3d&) {
+                load.pose = load.touch;
+                r.position[1] += 0.01;
+              }),
+              Contains(finding(Severity::error, "positions.csv", "the tip by 0 m", "where the tip went")));
 }
 
 TEST(Diagnosis, WithoutAnyForceOnlyRatiosCanBeKnown) {
@@ -188,6 +246,10 @@ TEST(Diagnosis, ATipThatTouchesNothingAndABodyThatNothingHoldsAreErrors) {
   DataSet data = data_in_lines();
   for (LoadCase& load : data.experiment.cases) load.touch.center[2] += 0.02;
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "touches nothing")));
+  data = data_in_lines();
+  for (LoadCase& load : data.experiment.cases)
+    load.tip->contact = TipContact::sliding, load.touch.center[2] += 0.02, load.pose.center[2] += 0.02;
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "cases.csv:2", "touches nothing", "begins to touch")));
   data = data_in_lines();
   data.experiment.fixed.clear();
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::error, "capture.toml", "go with the tip")));

@@ -44,11 +44,18 @@ bool is_known(const FitPlan& plan, const std::string& quantity) {
   return std::any_of(plan.known.begin(), plan.known.end(), [&](const auto& k) { return k.first == quantity; });
 }
 
+// A fit begins inside of the range, though what is usual may be its end (no growth, no share).
+double inside(const ExtraParameter& extra) {
+  const double margin = 0.1 * std::min(1.0, extra.max - extra.min);
+  return std::clamp(extra.fallback, extra.min + margin, extra.max - margin);
+}
+
 double usual_value(const std::string& quantity, const std::string& model, const Experiment& experiment) {
   if (quantity == "young") return apparent_young(experiment).value_or(kUsualYoung);
   if (quantity == "poisson") return kUsualPoisson;
   for (const ExtraParameter& extra : material_info(model).extra)
-    if (extra.name == quantity) return extra.fallback;
+    if (extra.name == quantity)
+      return extra.fallback > extra.min && extra.fallback < extra.max ? extra.fallback : inside(extra);
   return 0;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "capture/data_findings.h"
 #include "capture/fitted_values.h"
 #include "capture/surface_projection.h"
 #include "fit/common_errors.h"
@@ -28,6 +29,7 @@ constexpr int kFewValues = 50;
 // Guesses that are tried when the first one is so soft that the loads crush the body.
 constexpr double kStiffer[] = {1, 10, 100, 0.1};
 constexpr double kSoftest = 1e-2, kStiffest = 1e13;  // Young's moduli that a body can have [Pa]
+constexpr double kLearnt = 1;                        // directions that data tell, if they tell anything
 constexpr double kUnexplained = 4;                   // |r|^2 per reading: twice the standard deviations
 
 std::vector<Unknown> as_single_values(std::vector<Unknown> unknowns) {
@@ -130,7 +132,8 @@ class MaterialFit {
     const std::vector<LoadCase>& cases = data_.experiment.cases;
     const bool has_positions =
         std::any_of(cases.begin(), cases.end(), [](const LoadCase& c) { return !c.positions.empty(); });
-    return "the readings do not determine the stiffness: it ran to " + number_text(young) + " Pa; check the units of " +
+    return "the readings do not determine the stiffness: it ran to " + three_digits(young) +
+           " Pa; check the units of " +
            (has_positions ? "lengths and forces" : "lengths and forces, and state the positions of some markers") +
            ", and that loads and readings belong to the same body";
   }
@@ -283,7 +286,20 @@ class MaterialFit {
     begin(FitStage::uncertainty, "what the data do not say");
     outcome_.posterior =
         posterior(stage.model(), *stage.prior, outcome_.report.weight, stage.map, mesh(), outcome_.report.p);
+    believe_as_stated(stage);
     add_warnings(outcome_.posterior->warnings);
+  }
+
+  // Where the guess explains the data already, rules raise the weight, and what is believed would seem to be known.
+  void believe_as_stated(Stage& stage) {
+    const Posterior& belief = *outcome_.posterior;
+    if (!belief.ok || belief.informed >= kLearnt || plan_.fit.weight > 0 || outcome_.report.weight <= 1) return;
+    outcome_.posterior = posterior(stage.model(), *stage.prior, 1, stage.map, mesh(), outcome_.report.p);
+    std::erase_if(outcome_.posterior->warnings,
+                  [](const std::string& warning) { return warning.starts_with("the weight of the regulariser"); });
+    outcome_.warnings.push_back(
+        "the data say next to nothing of how the stiffness varies: the deviations are those of what was believed "
+        "beforehand (--unknown young=uniform fits that value)");
   }
 
   // The material in parts, where it is wanted and the data allow it; else that of the field.

@@ -11,6 +11,7 @@
 #include "fit/refined_experiment.h"
 #include "io/atomic_file.h"
 #include "io/folder_test.h"
+#include "material/registry.h"
 
 namespace aspic {
 namespace {
@@ -69,6 +70,32 @@ TEST(FitRun, WithoutAnyChoiceTheStiffnessOfEveryTetIsFitted) {
   EXPECT_EQ(outcome.quantities[0].rows.size(), 3u);
   EXPECT_EQ(outcome.quantities[1].name, "poisson");
   EXPECT_EQ(outcome.unknowns, block().experiment.mesh.tet_count() + 1);
+}
+
+TEST(FitRun, DataThatSayNothingLeaveWhatWasBelieved) {
+  DataSet data = block();
+  for (LoadCase& load : data.experiment.cases) {
+    load.positions.clear();
+    load.force_deviation = {{1e3, 1e3, 1e3}};
+  }
+  FitPlan plan = quick_plan({"young=tets"});
+  plan.uncertainty = true;
+  const FitOutcome outcome = fit_material(data, plan, {}, {});
+  ASSERT_TRUE(outcome.posterior && outcome.posterior->ok) << outcome.failure;
+  EXPECT_LT(outcome.posterior->informed, 0.1);
+  for (const double deviation : outcome.posterior->deviation.front()) EXPECT_GT(deviation, 0.5);
+  EXPECT_THAT(outcome.warnings, ::testing::Contains(HasSubstr("say next to nothing")));
+}
+
+TEST(FitRun, EveryModelBeginsInsideOfItsRanges) {
+  for (const MaterialInfo& info : materials()) {
+    FitPlan plan = quick_plan({"young=uniform"});
+    plan.model = info.name;
+    plan.known.clear();
+    plan.fit.max_iterations = 1;
+    if (info.extra.empty()) continue;
+    EXPECT_TRUE(fit_material(block(), plan, {}, {}).has_material()) << info.name;
+  }
 }
 
 TEST(FitRun, TellsWhatIsNotKnown) {
