@@ -3,7 +3,7 @@ find_package(Python3 COMPONENTS Interpreter)
 if(TARGET aspic_cli AND Python3_FOUND)
   set(cases Killed KilledFit NoRoom ReadOnly TimeLimit Signals Certificate SameBits)
   if(ASPIC_VIEWER)
-    list(APPEND cases KilledRender)
+    list(APPEND cases KilledRender SignalsToRender)
   endif()
   foreach(case ${cases})
     add_test(NAME crash.${case}

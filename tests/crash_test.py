@@ -363,6 +363,24 @@ class Signals(Crash):
             self.assertIn("the cases that were done", said)
             self.assertNotIn("error:", self.aspic("fit", "--check", "data").stdout)
 
+    def test_view_is_done(self):
+        for with_signal in self.CODES:
+            for what in (self.scene(), "run"):
+                if what == "run" and not (self.folder / "run").exists():
+                    self.aspic("run", self.scene(duration=0.02), "--out", "run")
+                got, said = self.signalled(with_signal, "ctrl-C ends it", "view", what, "--no-browser", stream="stdout")
+                self.assertEqual(got, 0, said)
+
+    def test_a_run_writes_its_report_and_says_how_to_go_on(self):
+        for with_signal, code in self.CODES.items():
+            shutil.rmtree(self.folder / "run", ignore_errors=True)
+            got, said = self.signalled(with_signal, '"step":3\\b', "run", self.scene(duration=20, cells="16, 4, 4"), "--out",
+                                       "run", "--json", stream="stdout")
+            self.assertEqual(got, code, said[-500:])
+            self.assertIn("--resume", said)
+            self.assertTrue((self.folder / "run/report.html").exists())
+            self.assertEqual(self.assert_readable("run"), len(self.steps("run")))
+
     def test_loading_ends_at_once(self):
         """Nothing is there to be kept, so the signal ends the program as it does by default."""
         self.beam("large.toml", 0.05, "60, 30, 30")
@@ -373,6 +391,25 @@ class Signals(Crash):
             process.communicate(timeout=20)
             self.assertEqual(process.returncode, -signal.SIGINT, arguments)
         self.assertFalse((self.folder / "out/large").exists())
+
+
+@unittest.skipUnless(shutil.which("chromium") and shutil.which("ffmpeg"), "chromium or ffmpeg is missing")
+class SignalsToRender(Crash):
+    def test_render_leaves_whole_pictures(self):
+        self.aspic("run", self.scene(duration=0.2), "--out", "run")
+        for with_signal, code in Signals.CODES.items():
+            shutil.rmtree(self.folder / "frames", ignore_errors=True)
+            process = self.start("render", "run", "-o", "frames", "--size", "80x60")
+            until = time.monotonic() + 60
+            while not [*self.folder.glob("frames/*.png")] and time.monotonic() < until:
+                time.sleep(0.002)
+            process.send_signal(with_signal)
+            process.communicate(timeout=60)
+            self.assertEqual(process.returncode, code)
+            pictures = [*self.folder.glob("frames/*.png")]
+            self.assertTrue(pictures)
+            for picture in pictures:
+                self.assertTrue(picture.read_bytes().endswith(b"IEND\xaeB`\x82"), picture)
 
 
 class Certificate(Crash):

@@ -174,6 +174,12 @@ class FitInterruption(FitCommand):
         self.assertTrue((self.folder / "part.vtu").exists())
         self.resume_and_compare()
 
+    def test_kill_does_so_too(self):
+        code, said = self.interrupt(signal.SIGTERM)
+        self.assertEqual(code, 143)
+        self.assertIn("the same command with --resume goes on", said)
+        self.assertTrue((self.folder / "part.vtu").exists())
+
     def test_kill_9_and_resume_give_the_same_bits(self):
         code, _ = self.interrupt(signal.SIGKILL)
         self.assertEqual(code, -signal.SIGKILL)

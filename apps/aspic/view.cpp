@@ -121,7 +121,7 @@ Examples:
   aspic view out/bunny                            a run that is done, as it was recorded
   aspic view beam.toml --port 8080 --no-browser   on another machine; on yours: ssh -L 8080:127.0.0.1:8080 THERE
 
-The address works on this machine only, with the token in it. Several pages may watch, one steers. Ctrl-C ends it.)");
+The address works on this machine only, with the token in it. Several pages may watch, one steers. Ctrl-C ends it, with exit code 0.)");
   command->add_option("INPUT", arguments->input, "Scene (.toml), mesh, or directory of a run")->required();
   command->add_option("--set", arguments->overrides, "Override a value: material.young=2e5; can be repeated")
       ->allow_extra_args(false);

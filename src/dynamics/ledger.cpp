@@ -6,6 +6,20 @@
 namespace aspic {
 namespace {
 
+// A sum as if made in twice the digits [Neumaier 1974]: the works of single vertices of a body that moves far cancel.
+class LongSum {
+ public:
+  void add(double term) {
+    const double sum = high_ + term;
+    low_ += std::abs(high_) >= std::abs(term) ? (high_ - sum) + term : (term - sum) + high_;
+    high_ = sum;
+  }
+  double value() const { return high_ + low_; }
+
+ private:
+  double high_ = 0, low_ = 0;
+};
+
 // V += sign * (energy of each load), and their sum.
 double add_load_energies(const Model& model, std::span<const double> x, double sign, std::vector<double>& V) {
   double sum = 0;
@@ -87,8 +101,8 @@ BoundedEnergies Ledger::add(const StepTools& tools, int order, const State& end,
   const double kinetic_before = kinetic_energy(*tools.model.mass, start.qdot, momentum_);
   tools.model.mass->multiply(forces.acceleration, Ma_);
 
-  double residual_squared = 0, reaction_work = 0, residual_work = 0;
-  double inertia_work = 0, gradient_work = 0, damping_work = 0, jump = 0;
+  double residual_squared = 0, jump = 0;
+  LongSum inertia, gradient, damping, reaction, residuals;
   bool pins_moved = false;
   for (size_t i = 0; i < n; ++i) {
     const double dx = end.q[i] - start.q[i];
@@ -96,12 +110,16 @@ BoundedEnergies Ledger::add(const StepTools& tools, int order, const State& end,
     const bool pinned = tools.pins.holds(static_cast<int>(i / 3));
     pins_moved |= pinned && dx != 0;
     jump += 0.5 * tools.h * tools.h * forces.acceleration[i] * Ma_[i];
-    (pinned ? reaction_work : residual_work) += r * dx;
     if (!pinned) residual_squared += r * r;
-    inertia_work += Ma_[i] * dx;
-    gradient_work += forces.gradient[i] * dx;
-    damping_work += forces.damping[i] * dx;
+    // The same products on both sides of the balance, so that no rounding but that of the sums can open it.
+    LongSum& rest = pinned ? reaction : residuals;
+    const auto add = [&](double work, LongSum& sum) { sum.add(work), rest.add(work); };
+    add(Ma_[i] * dx, inertia);
+    add(forces.gradient[i] * dx, gradient);
+    add(forces.damping[i] * dx, damping);
   }
+  const double reaction_work = reaction.value(), residual_work = residuals.value();
+  const double inertia_work = inertia.value(), gradient_work = gradient.value(), damping_work = damping.value();
 
   report.potential.clear();
   report.potential.reserve(tools.E.potential().size());

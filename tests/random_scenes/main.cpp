@@ -1,6 +1,7 @@
 // random_scenes [--seed FIRST] [--count N]: runs so many random scenes, each in a process of its own, so that one that
 // crashes or never ends does not end the others. What a scene owes is in judge.h. Prints the scenes at fault.
-//   --print SEED    the text of that scene; --run SEED: in this process, for a debugger
+//   --print SEED    the text of that scene; --run SEED: in this process, for a debugger; --file FILE: the same with a
+//                   scene that was printed, because a new material changes what a seed draws
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,6 +12,7 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 
 #include "base/error.h"
@@ -26,12 +28,10 @@ constexpr rlim_t kMostSeconds = 30;  // of the processor, for scenes that take h
 struct Arguments {
   uint64_t seed = 1, count = 1000;
   bool prints = false, runs = false, verbose = false;
+  std::filesystem::path file;  // instead of a seed
 };
 
-Judgement run_scene(uint64_t seed, const std::filesystem::path& folder) {
-  const std::string text = random_scene(seed);
-  const std::filesystem::path file = folder / "scene.toml";
-  std::ofstream(file, std::ios::binary) << text;
+Judgement run_file(const std::filesystem::path& file, const std::string& text) {
   try {
     Scene scene = load_scene(file);
     return judge(scene, text);
@@ -40,6 +40,19 @@ Judgement run_scene(uint64_t seed, const std::filesystem::path& folder) {
   } catch (const std::exception& e) {
     return {"exception", "", std::string("exception: ") + e.what()};
   }
+}
+
+Judgement run_scene(uint64_t seed, const std::filesystem::path& folder) {
+  const std::string text = random_scene(seed);
+  const std::filesystem::path file = folder / "scene.toml";
+  std::ofstream(file, std::ios::binary) << text;
+  return run_file(file, text);
+}
+
+Judgement run_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InvalidInput(file.string() + ": cannot be read");
+  return run_file(file, {std::istreambuf_iterator<char>(in), {}});
 }
 
 // "ending\ndetail\nfault" through a pipe; how the process ended where nothing comes.
@@ -113,9 +126,14 @@ Arguments read(int argc, char** argv) {
       arguments.verbose = true;
       continue;
     }
+    if (option == "--file" && i + 1 < argc) {
+      arguments.file = argv[++i];
+      continue;
+    }
     const bool takes_number = option == "--seed" || option == "--count" || option == "--print" || option == "--run";
     if (!takes_number || i + 1 == argc)
-      throw InvalidInput("usage: random_scenes [--seed FIRST] [--count N] [--verbose] | --print SEED | --run SEED");
+      throw InvalidInput(
+          "usage: random_scenes [--seed FIRST] [--count N] [--verbose] | --print SEED | --run SEED | --file FILE");
     const uint64_t number = std::strtoull(argv[++i], nullptr, 10);
     (option == "--count" ? arguments.count : arguments.seed) = number;
     arguments.prints |= option == "--print";
@@ -130,8 +148,8 @@ int run(const Arguments& arguments) {
       std::filesystem::temp_directory_path() / ("aspic_random_scenes_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   int code = 0;
-  if (arguments.runs) {
-    const Judgement judgement = run_scene(arguments.seed, folder);
+  if (arguments.runs || !arguments.file.empty()) {
+    const Judgement judgement = arguments.file.empty() ? run_scene(arguments.seed, folder) : run_file(arguments.file);
     std::printf("%s\n%s\n%s\n", judgement.ending.c_str(), judgement.detail.c_str(), judgement.fault.c_str());
     code = judgement.fault.empty() ? 0 : 1;
   } else {
