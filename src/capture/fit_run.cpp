@@ -53,10 +53,11 @@ struct Stage {
                              [this](std::span<const double> x) { misfit.set_state(x); }};
       journal.emplace(misfit, state, memory.folder / name, fingerprint, memory.start);
     }
-    with_layers.emplace(journal ? static_cast<LeastSquares&>(*journal) : misfit, misfit.residuals_by_case());
+    with_layers.emplace(recorded());
   }
 
   LeastSquares& model() { return *with_layers; }
+  LeastSquares& recorded() { return journal ? static_cast<LeastSquares&>(*journal) : misfit; }
 
   ParameterMap map;
   std::unique_ptr<Regularizer> prior;
@@ -281,8 +282,9 @@ class MaterialFit {
   void learn_uncertainty(Stage& stage) {
     if (!plan_.uncertainty || !may_go_on()) return;
     begin(FitStage::uncertainty, "what the data do not say");
+    WithUncertainLayers about_fit(stage.recorded());
     outcome_.posterior =
-        posterior(stage.model(), *stage.prior, outcome_.report.weight, stage.map, mesh(), outcome_.report.p);
+        posterior(about_fit, *stage.prior, outcome_.report.weight, stage.map, mesh(), outcome_.report.p);
     add_warnings(outcome_.posterior->warnings);
   }
 

@@ -127,7 +127,8 @@ TEST(Explanation, OfStaticsNamesWhatIsMissingWhenNothingHoldsTheBodyWhateverTheM
 TEST(Explanation, OfStaticsThatNothingHoldsIsReachedThroughEveryRetreat) {
   for (const char* method : {"newton", "newton_cg"}) {
     Model model = make_model(make_sphere(0.5, 0.6), {.young = 3e7, .poisson = 0.4, .gravity = {{-14, 26, 5}}});
-    SimulationOptions options{.integrator = "quasi_static", .solver = {.method = method, .definiteness = "progressive"}};
+    SimulationOptions options{.integrator = "quasi_static",
+                              .solver = {.method = method, .definiteness = "progressive"}};
     options.solver.minimize.max_iterations = 20;
     Simulation simulation = simulate(std::move(model), options);
     const StepReport report = simulation.step();
