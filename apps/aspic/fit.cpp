@@ -260,15 +260,17 @@ void add_choices(CLI::App* command, Arguments& a) {
       ->allow_extra_args(false);
   command->add_flag("--baselines", a.baselines,
                     "What is left out is also predicted by one modulus, per-example linear and strain-space moduli");
-  command->add_option("--parts", a.parts,
-                      "N or auto: a stiffness per tet is divided into parts of one value each, where these explain the "
-                      "data as well; off by default");
+  command->add_option(
+      "--parts", a.parts,
+      "N or auto: a stiffness per tet is divided into parts of one value each, where these explain the "
+      "data as well; groups that are cross-validated are predicted by fields all the same; off by default");
   command->add_option("--refine", a.refine,
                       "Simulates the body with every tet in 8, N times, while the material stays per tet of the data; "
                       "auto: once up to 50000 tets");
   command->add_flag("--mesh-errors", a.mesh_errors,
                     "What the mesh gets wrong is computed on a finer one, and taken off the measurements");
-  command->add_flag("--no-uncertainty", a.no_uncertainty, "No deviations, intervals and next poke");
+  command->add_flag("--no-uncertainty", a.no_uncertainty,
+                    "No deviations (nor those of parts), intervals and next poke");
   command->add_flag("--no-cross-validation", a.no_cross_validation, "No group is left out to be predicted");
 }
 
