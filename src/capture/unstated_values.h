@@ -1,0 +1,13 @@
+// What a data set leaves open, chosen from what it says; each choice is a note.
+#pragma once
+#include "capture/data_set.h"
+
+namespace aspic {
+
+// Standard deviations that are 0: a share of the largest motion, force and torque.
+void choose_deviations(DataSet& data);
+
+// The stiffness of the layers of tips, far above that of the body [Pa/m].
+void choose_layers(DataSet& data);
+
+}  // namespace aspic
