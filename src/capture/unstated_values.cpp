@@ -17,6 +17,10 @@ constexpr double kSoftLayer = 200;   // of a sliding one
 
 }  // namespace
 
+double layer_stiffness(const Tip& tip, double young) {
+  return (tip.contact == TipContact::bonded ? kLayer : kSoftLayer) * young / tip.radius;
+}
+
 void choose_deviations(DataSet& data) {
   Experiment& e = data.experiment;
   double motion = 0, force = 0, torque = 0;
@@ -51,7 +55,7 @@ void choose_layers(DataSet& data) {
   std::set<double> chosen;
   for (LoadCase& load : data.experiment.cases) {
     if (!load.tip || load.tip->stiffness > 0) continue;
-    load.tip->stiffness = (load.tip->contact == TipContact::bonded ? kLayer : kSoftLayer) * E / load.tip->radius;
+    load.tip->stiffness = layer_stiffness(*load.tip, E);
     chosen.insert(load.tip->stiffness);
   }
   for (const double k : chosen)

@@ -7,7 +7,10 @@ namespace aspic {
 // Standard deviations that are 0: a share of the largest motion, force and torque.
 void choose_deviations(DataSet& data);
 
-// The stiffness of the layers of tips, far above that of the body [Pa/m].
+// Of the layer of a tip on a body of a Young's modulus [Pa], far above that [Pa/m].
+double layer_stiffness(const Tip& tip, double young);
+
+// The stiffness of the layers of tips where it is 0, far above that of the body [Pa/m].
 void choose_layers(DataSet& data);
 
 }  // namespace aspic
