@@ -924,7 +924,7 @@ class Capture(Captured):
 
 
 class Fit(Captured):
-    QUICK = ("--refine", "0", "--no-uncertainty", "--no-cross-validation", "--known", "poisson=0.4")
+    QUICK = ("--no-mesh-errors", "--no-uncertainty", "--no-cross-validation", "--known", "poisson=0.4")
 
     def setUp(self):
         super().setUp()

@@ -54,7 +54,7 @@ class FitCommand(CommandLine):
         return (self.folder / name).read_bytes()
 
 
-QUICK = ("--refine", "0", "--unknown", "young=uniform", "--known", "poisson=0.4", "--no-uncertainty", "--no-cross-validation")
+QUICK = ("--no-mesh-errors", "--unknown", "young=uniform", "--known", "poisson=0.4", "--no-uncertainty", "--no-cross-validation")
 
 
 class Fit(FitCommand):
@@ -142,7 +142,7 @@ class Fit(FitCommand):
 class FitInterruption(FitCommand):
     """A fit with much to do is stopped after a few iterations, in three ways, and continued."""
 
-    OPTIONS = ("--refine", "0", "--unknown", "young=tets", "--known", "poisson=0.4", "--iterations", "12", "--allow-unconverged")
+    OPTIONS = ("--no-mesh-errors", "--unknown", "young=tets", "--known", "poisson=0.4", "--iterations", "12", "--allow-unconverged")
 
     def interrupt(self, with_signal):
         process = self.start("fit", "layers", *self.OPTIONS, "-o", "part.vtu", "-v")

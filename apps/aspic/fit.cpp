@@ -27,12 +27,13 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   fs::path data, out = "material.vtu";
-  std::string model = FitPlan().model, smooth = "h1", weight = "auto", refine = "auto", parts = "off";
+  std::string model = FitPlan().model, smooth = "h1", weight = "auto", parts = "off";
   std::vector<std::string> unknowns, known, left_out;
   FitOptions fit;
   double prior_deviation = RegularizerOptions().prior_deviation;
   int threads = 0;  // 0: not given
-  bool no_uncertainty = false, no_cross_validation = false, mesh_errors = false, baselines = false, check = false;
+  int refine = 0;
+  bool no_uncertainty = false, no_cross_validation = false, no_mesh_errors = false, baselines = false, check = false;
   bool force = false, resume = false, quiet = false, verbose = false, allow_unconverged = false;
 };
 
@@ -46,14 +47,6 @@ double weight_of(const std::string& text) {
   const double weight = parse_known("weight=" + text).second;
   if (weight < 0) throw InvalidInput("--weight " + text + ": a number >= 0 is needed, or auto");
   return weight;
-}
-
-int refinement_of(const std::string& text) {
-  if (text == "auto") return -1;
-  const double times = parse_known("refine=" + text).second;
-  if (times < 0 || times > 4 || times != std::floor(times))
-    throw InvalidInput("--refine " + text + ": 0 to 4 times are possible, or auto");
-  return static_cast<int>(times);
 }
 
 int parts_of(const std::string& text) {
@@ -77,9 +70,9 @@ FitPlan plan_of(const Arguments& arguments) {
   plan.left_out = arguments.left_out;
   plan.uncertainty = !arguments.no_uncertainty;
   plan.cross_validation = !arguments.no_cross_validation;
-  plan.refine = refinement_of(arguments.refine);
+  plan.refine = arguments.refine;
   plan.parts = parts_of(arguments.parts);
-  plan.mesh_errors = arguments.mesh_errors;
+  plan.mesh_errors = !arguments.no_mesh_errors;
   return plan;
 }
 
@@ -270,15 +263,18 @@ void add_choices(CLI::App* command, Arguments& a) {
       ->allow_extra_args(false);
   command->add_flag("--baselines", a.baselines,
                     "What is left out is also predicted by one modulus, per-example linear and strain-space moduli");
-  command->add_option("--parts", a.parts,
-                      "N or auto: a stiffness per tet is divided into parts of one value each, where these explain the "
-                      "data as well; off by default");
-  command->add_option("--refine", a.refine,
-                      "Simulates the body with every tet in 8, N times, while the material stays per tet of the data; "
-                      "auto: once up to 50000 tets");
-  command->add_flag("--mesh-errors", a.mesh_errors,
-                    "What the mesh gets wrong is computed on a finer one, and taken off the measurements");
-  command->add_flag("--no-uncertainty", a.no_uncertainty, "No deviations, intervals and next poke");
+  command->add_option(
+      "--parts", a.parts,
+      "N or auto: a stiffness per tet is divided into parts of one value each, where these explain the "
+      "data as well; groups that are cross-validated are predicted by fields all the same; off by default");
+  command
+      ->add_option("--refine", a.refine,
+                   "Simulates the body with every tet in 8, N times, while the material stays per tet of the data")
+      ->check(CLI::Range(0, 4));
+  command->add_flag("--no-mesh-errors", a.no_mesh_errors,
+                    "What the mesh gets wrong is not computed on a finer one and taken off the measurements");
+  command->add_flag("--no-uncertainty", a.no_uncertainty,
+                    "No deviations (nor those of parts), intervals and next poke");
   command->add_flag("--no-cross-validation", a.no_cross_validation, "No group is left out to be predicted");
 }
 

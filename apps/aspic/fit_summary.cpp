@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capture/fitted_values.h"
+
 namespace aspic::cli {
 namespace {
 
@@ -30,15 +32,6 @@ void print_values(std::FILE* stream, const FitOutcome& outcome) {
 
 // |r|^2 by the number of readings: 1 is as close as the standard deviations say.
 std::string closeness(double misfit, int residuals) { return fmt::format("{:.3g}", 2 * misfit / residuals); }
-
-void print_mesh(std::FILE* stream, const DataSet& data, const FitOutcome& outcome) {
-  const int tets = data.experiment.mesh.tet_count();
-  fmt::print(stream, "mesh       a material per tet of {}, simulated on {}{}", tets, outcome.simulated_tets,
-             outcome.plan.refine > 0 ? fmt::format(" (--refine {})", outcome.plan.refine) : " tets");
-  if (outcome.mesh_error >= 0)
-    fmt::print(stream, "; positions err by {} of the peak motion, which was taken off", percent(outcome.mesh_error));
-  fmt::print(stream, "\n");
-}
 
 void print_misfit(std::FILE* stream, const FitOutcome& outcome) {
   fmt::print(stream, "misfit     |r|^2 = {} per reading (1: as close as the standard deviations say)",
@@ -93,7 +86,7 @@ void print_fit(std::FILE* stream, const DataSet& data, const FitOutcome& outcome
   const FitReport& report = outcome.report;
   fmt::print(stream, "fit        {}: {} iterations, {} equilibria of {} cases; {}, weight {:.3g}\n", report.words,
              report.iterations, outcome.counts.equilibria, data.experiment.cases.size(), report.method, report.weight);
-  print_mesh(stream, data, outcome);
+  fmt::print(stream, "mesh       {}\n", words_of_mesh(outcome));
   print_misfit(stream, outcome);
   print_values(stream, outcome);
   print_parts(stream, outcome);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "capture/fitted_values.h"
 #include "io/base64.h"
 #include "io/gzip.h"
 #include "optimize/minimize.h"
@@ -118,6 +119,7 @@ class FitPack {
             {"interrupted", outcome_.interrupted},
             {"method", r.method},
             {"rule", outcome_.plan.fit.weight_rule},
+            {"mesh", words_of_mesh(outcome_)},
             {"iterations", r.iterations},
             {"weight", number(r.weight)},
             {"misfit", number(r.misfit)},

@@ -65,6 +65,7 @@ TEST(FitPage, HoldsWhatWasMeasuredAndFound) {
   EXPECT_EQ(head["model"], "neo_hookean");
   EXPECT_EQ(head["counts"]["tets"], 48);
   EXPECT_TRUE(head["fit"]["success"]);
+  EXPECT_EQ(head["fit"]["mesh"], "a material per tet of 48, simulated on 48 tets");
   EXPECT_EQ(head["history"][0]["misfit"], 7);
   ASSERT_EQ(head["quantities"].size(), 2u);
   EXPECT_EQ(head["quantities"][0]["rows"].size(), 2u);

@@ -1,16 +1,16 @@
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "base/error.h"
-#include "capture/apparent_stiffness.h"
 #include "capture/capture_schema.h"
 #include "capture/case_table.h"
 #include "capture/data_findings.h"
 #include "capture/data_set.h"
+#include "capture/patch_table.h"
 #include "capture/settings.h"
 #include "capture/surface_projection.h"
 #include "capture/units.h"
+#include "capture/unstated_values.h"
 #include "io/mesh_file.h"
 #include "scene/placement.h"
 #include "scene/selection.h"
@@ -22,10 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMostMarkers = 1'000'000, kMostReadings = 5'000'000;
-constexpr double kFarOff = 0.1;      // of the body's size: a marker this far off its surface is none of it
-constexpr double kDeviation = 0.01;  // of the largest motion or force, where no standard deviation is given
-constexpr double kLayer = 1e5;       // stiffness of a bonded tip's layer times the radius, over Young's modulus
-constexpr double kSoftLayer = 200;   // of a sliding one
+constexpr double kFarOff = 0.1;  // of the body's size: a marker this far off its surface is none of it
 
 void add_notes(const std::string& what, const std::vector<Finding>& findings, std::vector<std::string>& notes) {
   for (const Finding& f : findings) {
@@ -54,8 +51,8 @@ class DataSetReader {
     read_cases(settings_, {tips_, patches_, surface}, errors_, data_);
     read_positions();
     errors_.finish();
-    choose_deviations();
-    choose_layers();
+    choose_deviations(data_);
+    choose_layers(data_);
     return std::move(data_);
   }
 
@@ -221,8 +218,9 @@ class DataSetReader {
     const std::vector<Triangle> boundary = to_user(surface.triangles());
     for (const Value& p : patches->array()) {
       const Value* where = p.find("where");
-      std::vector<Triangle> triangles =
-          where ? select_triangles(*where, scope(), boundary) : listed_triangles(p["triangles"], boundary);
+      std::vector<Triangle> triangles = where ? select_triangles(*where, scope(), boundary)
+                                              : listed_triangles(settings_.files().find(p["triangles"]), p["triangles"],
+                                                                 boundary, errors_, data_.notes);
       for (Triangle& t : triangles)
         for (int& v : t) v = data_.numbering.vertex.from_user(v);
       if (!patches_.try_emplace(p["name"].text(), std::move(triangles)).second)
@@ -234,32 +232,6 @@ class DataSetReader {
   std::vector<Triangle> to_user(std::vector<Triangle> triangles) const {
     for (Triangle& t : triangles)
       for (int& v : t) v = data_.numbering.vertex.to_user(v);
-    return triangles;
-  }
-
-  // Of the boundary, outward oriented; the first corner may be any.
-  std::vector<Triangle> listed_triangles(const Value& name, const std::vector<Triangle>& boundary) {
-    std::set<Triangle> outward;
-    for (const Triangle& t : boundary)
-      for (int i = 0; i < 3; ++i) outward.insert({t[i], t[(i + 1) % 3], t[(i + 2) % 3]});
-    MeasuredTable table(settings_.files().find(name), {{"a", "b", "c"}, {}}, errors_, data_.notes);
-    std::vector<Triangle> triangles;
-    while (table.next()) {
-      Triangle t{};
-      bool is_whole = true;
-      for (int i = 0; i < 3; ++i) {
-        const std::optional<int> v = table.integer(std::string(1, "abc"[i]));
-        is_whole &= v.has_value();
-        t[i] = v.value_or(-1);
-      }
-      if (is_whole && !outward.contains(t) && outward.contains({t[0], t[2], t[1]})) std::swap(t[1], t[2]);
-      if (outward.contains(t)) {
-        triangles.push_back(t);
-      } else {
-        table.error("a, b, c are no triangle of the surface; they are its corners, vertices counted from 0");
-      }
-    }
-    if (triangles.empty() && errors_.is_empty()) throw error_at(name.place, "the table has no triangle");
     return triangles;
   }
 
@@ -290,7 +262,7 @@ class DataSetReader {
 
   void read_position(MeasuredTable& table, const std::map<std::string, int>& case_of,
                      std::map<std::pair<int, int>, int>& line_of) {
-    const int c = index_of(table, "case", case_of), m = index_of(table, "marker", marker_of_);
+    const int c = table.index_of("case", case_of), m = table.index_of("marker", marker_of_);
     const double length = settings_.unit("length");
     const std::optional<Vec3d> p = table.vector("", length);
     const std::optional<Vec3d> sd = table.deviation("sd", length);
@@ -302,65 +274,6 @@ class DataSetReader {
     // What counts is how it has moved since rest, where a mesh never lies exactly on the surface that was measured.
     data_.experiment.cases[c].positions.push_back({m, *p - gap_[m], sd ? *sd : Vec3d{{all, all, all}}});
     data_.source.position_line[c].push_back(table.line());
-  }
-
-  int index_of(MeasuredTable& table, const char* column, const std::map<std::string, int>& known) {
-    const std::string name = table.text(column);
-    if (name.empty() && known.size() == 1) return 0;
-    if (const auto found = known.find(name); found != known.end()) return found->second;
-    if (name.empty()) {
-      table.error(std::string("the column ") + column + " is blank or missing");
-      return -1;
-    }
-    std::vector<std::string> names;
-    for (const auto& [n, i] : known)
-      if (names.size() < 20) names.push_back(n);
-    table.error(std::string(column) + " = '" + name + "' is not in the table of " + column + "s" +
-                suggestion(name, names));
-    return -1;
-  }
-
-  // Where none is given: a share of the largest motion, force and torque.
-  void choose_deviations() {
-    Experiment& e = data_.experiment;
-    double motion = 0, force = 0, torque = 0;
-    for (const LoadCase& load : e.cases) {
-      for (const MarkerReading& r : load.positions)
-        motion = std::max(motion, norm(r.position - position(e.markers[r.marker], e.mesh.rest)));
-      if (load.force) force = std::max(force, norm(*load.force));
-      if (load.torque) torque = std::max(torque, norm(*load.torque));
-    }
-    bool chosen[3] = {};
-    const auto complete = [&](Vec3d& sd, double largest, int what) {
-      for (int i = 0; i < 3; ++i)
-        if (sd[i] == 0) sd[i] = largest > 0 ? kDeviation * largest : 1, chosen[what] = true;
-    };
-    for (LoadCase& load : e.cases) {
-      for (MarkerReading& r : load.positions) complete(r.deviation, motion, 0);
-      if (load.force) complete(load.force_deviation, force, 1);
-      if (load.torque) complete(load.torque_deviation, torque, 2);
-    }
-    const auto note = [&](int what, const char* name, double largest, const char* unit) {
-      if (chosen[what])
-        data_.notes.push_back(std::string("no standard deviation of ") + name + ": taken as 1 % of the largest, " +
-                              number_text(kDeviation * largest) + " " + unit + " (deviation in capture.toml sets it)");
-    };
-    note(0, "positions", motion, "m");
-    note(1, "forces", force, "N");
-    note(2, "torques", torque, "N m");
-  }
-
-  void choose_layers() {
-    const double E = apparent_young(data_.experiment).value_or(1e5);
-    std::set<double> chosen;
-    for (LoadCase& load : data_.experiment.cases) {
-      if (!load.tip || load.tip->stiffness > 0) continue;
-      load.tip->stiffness = (load.tip->contact == TipContact::bonded ? kLayer : kSoftLayer) * E / load.tip->radius;
-      chosen.insert(load.tip->stiffness);
-    }
-    for (const double k : chosen)
-      data_.notes.push_back("the layer of the tip has the stiffness " + three_digits(k) +
-                            " Pa/m: far stiffer than the body, which seems to have E = " + three_digits(E) + " Pa");
   }
 
   CaptureSettings settings_;
@@ -375,17 +288,7 @@ class DataSetReader {
   std::map<std::string, std::vector<Triangle>> patches_;
 };
 
-std::string line_in(const std::string& file, const std::vector<int>& lines, int i) {
-  return i < static_cast<int>(lines.size()) ? file + ":" + std::to_string(lines[i]) : file;
-}
-
 }  // namespace
-
-std::string DataSource::marker(int m) const { return line_in(markers, marker_line, m); }
-std::string DataSource::load_case(int c) const { return line_in(cases, case_line, c); }
-std::string DataSource::position(int c, int i) const {
-  return c < static_cast<int>(position_line.size()) ? line_in(positions, position_line[c], i) : positions;
-}
 
 DataSet read_data_set(const fs::path& path) { return DataSetReader(path).read(); }
 

@@ -65,9 +65,8 @@ void check_range(const std::string& quantity, double value) {
     throw InvalidInput(quantity + " = " + number_text(value) + "; must be " + range.text());
 }
 
-void complete_refinement(FitPlan& plan, const TetMesh& mesh) {
+void check_refinement(const FitPlan& plan, const TetMesh& mesh) {
   const int tets = mesh.tet_count();
-  if (plan.refine < 0) plan.refine = 8L * tets <= kAffordableTets ? 1 : 0;
   if (tets * std::pow(8.0, plan.refine) > kMostTets)
     throw InvalidInput("--refine " + std::to_string(plan.refine) + " would simulate " + std::to_string(tets) + " x 8^" +
                        std::to_string(plan.refine) + " tets; " + std::to_string(kMostTets) + " are the most");
@@ -147,7 +146,7 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
                                .guess = 0});
   for (Unknown& u : plan.unknowns)
     if (u.guess == 0) u.guess = usual_value(u.quantity, plan.model, experiment);
-  complete_refinement(plan, experiment.mesh);
+  check_refinement(plan, experiment.mesh);
   const std::vector<std::string> groups = groups_of(experiment);
   for (const std::string& group : plan.left_out)
     if (!has(groups, group))

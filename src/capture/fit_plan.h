@@ -21,7 +21,7 @@ struct FitPlan {
   EquilibriumOptions equilibrium;
   std::vector<std::string> left_out;  // groups of cases that are predicted, not fitted
   bool uncertainty = true, cross_validation = true;
-  int refine = 0;  // the body is simulated on the mesh of the data with every tet in 8, so often; < 0: see completed()
+  int refine = 0;  // the body is simulated on the mesh of the data with every tet in 8, so often
   // A stiffness that was fitted per tet is divided into so many parts of one value each, where that explains the data
   // as well as the field; < 0: as few as do, up to kMostParts; 0: not.
   int parts = 0;
@@ -32,9 +32,6 @@ struct FitPlan {
 Unknown parse_unknown(const std::string& text);
 std::string text_of(const Unknown& unknown);
 std::pair<std::string, double> parse_known(const std::string& text);  // "poisson=0.45"
-
-// Refinement that was left open: once where that makes at most so many tets.
-inline constexpr int kAffordableTets = 50'000;
 
 inline constexpr int kMostParts = 4;
 

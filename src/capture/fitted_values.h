@@ -1,6 +1,7 @@
 // What was fitted, as numbers for people and as a material for scenes.
 #pragma once
 #include <span>
+#include <string>
 #include <vector>
 
 #include "capture/fit_run.h"
@@ -14,5 +15,8 @@ std::vector<FittedQuantity> fitted_quantities(const ParameterMap& map, const Tet
 // By the user's numbers, with deviations and reductions beside the values.
 FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std::span<const double> p,
                                const std::vector<FittedQuantity>& quantities);
+
+// "a material per tet of 384, simulated on 3072 (--refine 1); positions err by ...".
+std::string words_of_mesh(const FitOutcome& outcome);
 
 }  // namespace aspic

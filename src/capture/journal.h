@@ -36,6 +36,7 @@ class Journal : public LeastSquares {
   void multiply_transposed(std::span<const double> w, std::span<double> pbar) override;
   int nuisance_count() const override { return model_.nuisance_count(); }
   void nuisance(int k, std::span<double> dr) override;
+  std::vector<std::pair<int, int>> residuals_by_case() const override { return model_.residuals_by_case(); }
 
   bool is_replaying() const { return position_ < end_; }
   // From here on nothing is written: what follows an interruption is no part of the fit.

@@ -107,4 +107,19 @@ std::optional<Vec3d> MeasuredTable::deviation(const std::string& name, double un
   return std::nullopt;
 }
 
+int MeasuredTable::index_of(const std::string& column, const std::map<std::string, int>& known) {
+  const std::string name = text(column);
+  if (name.empty() && known.size() == 1) return 0;
+  if (const auto found = known.find(name); found != known.end()) return found->second;
+  if (name.empty()) {
+    error("the column " + column + " is blank or missing");
+    return -1;
+  }
+  std::vector<std::string> names;
+  for (const auto& [n, i] : known)
+    if (names.size() < 20) names.push_back(n);
+  error(column + " = '" + name + "' is not in the table of " + column + "s" + suggestion(name, names));
+  return -1;
+}
+
 }  // namespace aspic

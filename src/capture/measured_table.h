@@ -52,6 +52,8 @@ class MeasuredTable {
   std::optional<Vec3d> vector(const std::string& prefix, double unit = 1);
   // Of one column for all directions, or of three: "force_sd", or "force_sd_x" and so on.
   std::optional<Vec3d> deviation(const std::string& name, double unit);
+  // Of a name in a column; blank means the only one. -1: it is not known, an error.
+  int index_of(const std::string& column, const std::map<std::string, int>& known);
 
  private:
   CsvReader csv_;

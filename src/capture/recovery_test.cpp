@@ -94,5 +94,22 @@ TEST_F(Recovery, OfTwoLayersAtOnePercentNoise) {
   EXPECT_LT(found.largest, 4 * deviation) << "four standard deviations: once in 16 000 times by chance";
 }
 
+// A stiffness per tet, of which nobody says how many parts there are nor where.
+TEST_F(Recovery, OfTwoPartsThatNobodyNamed) {
+  const Scene scene = block("Z < 0.05 ? 6e4 : 2e4", 4);
+  SynthesisOptions options = bench(4, 0.01);
+  options.mesh = to_user(scene.simulation.model().numbering, scene.simulation.model().mesh);
+  const Synthesis made = synthesize(scene, options);
+  FitPlan fit = plan("young=tets");
+  fit.parts = -1;
+  const FitOutcome outcome = fit_material(made.data, fit, {}, {});
+  ASSERT_TRUE(outcome.has_material()) << outcome.failure;
+  ASSERT_TRUE(outcome.parts && outcome.parts->are_kept);
+  ASSERT_EQ(outcome.parts->values.size(), 2u);
+  EXPECT_NEAR(outcome.parts->values[0], 2e4, 0.1 * 2e4);
+  EXPECT_NEAR(outcome.parts->values[1], 6e4, 0.2 * 6e4);
+  EXPECT_NEAR(outcome.parts->volume[0], 0.5, 0.1);
+}
+
 }  // namespace
 }  // namespace aspic

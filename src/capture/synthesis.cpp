@@ -10,19 +10,17 @@
 #include "capture/case_table.h"
 #include "capture/data_findings.h"
 #include "capture/judge.h"
+#include "capture/unstated_values.h"
 #include "fit/load_case.h"
 #include "fit/next_poke.h"
 #include "mesh/surface.h"
 #include "scene/tables.h"
-#include "scene/toml_reader.h"
 
 namespace aspic {
 namespace {
 
-constexpr double kTipRadius = 0.08;   // relative to the size of the body
-constexpr double kGravity = 9.81;     // [m/s^2]
-constexpr double kBondedLayer = 1e5;  // stiffness of a tip's layer times its radius, over Young's modulus
-constexpr double kSlidingLayer = 200;
+constexpr double kTipRadius = 0.08;       // relative to the size of the body
+constexpr double kGravity = 9.81;         // [m/s^2]
 constexpr double kLeastArm = 0.01;        // of a force about the centre of the tip, relative to its radius
 constexpr double kLeastDeviation = 1e-4;  // of exact data, relative to the largest motion or force
 
@@ -148,8 +146,7 @@ class Bench {
     if (static_cast<int>(sites.size()) < options_.pokes)
       result_.notes.push_back("only " + std::to_string(sites.size()) + " sites were found that a tip of radius " +
                               number_text(with.radius) + " m can poke");
-    with.stiffness =
-        (with.contact == TipContact::bonded ? kBondedLayer : kSlidingLayer) * young_around(sites) / with.radius;
+    with.stiffness = layer_stiffness(with, young_around(sites));
     for (size_t s = 0; s < sites.size(); ++s)
       for (int d = 1; d <= options_.depths; ++d)
         add_poke(with, truth_.mesh.rest[sites[s].vertex], sites[s].inward, static_cast<int>(s) + 1, d);
@@ -285,32 +282,6 @@ void check(const SynthesisOptions& o) {
 }
 
 }  // namespace
-
-FittedMaterial true_material(const Scene& scene) {
-  const Model& model = scene.simulation.model();
-  if (model.bodies.size() != 1)
-    throw InvalidInput(scene.name + ": has " + std::to_string(model.bodies.size()) +
-                       " bodies; a bench holds one: take the others out");
-  const Value body = read_toml(scene.resolved, scene.name).find("body")->array().front();
-  if (!body["elastic"].boolean())
-    throw InvalidInput(scene.name + ": the body is not elastic; there is no material to measure");
-  FittedMaterial truth;
-  truth.model = body["material"]["model"].text();
-  truth.mesh = to_user(model.numbering, model.mesh);
-  const MaterialInfo& info = material_info(truth.model);
-  std::vector<double> young, poisson;
-  std::vector<std::vector<double>> extra(info.extra.size());
-  for (const MaterialParameters& p : model.elasticity.front()->parameters()) {
-    young.push_back(young_modulus(p.lame));
-    poisson.push_back(poisson_ratio(p.lame));
-    for (size_t e = 0; e < extra.size(); ++e) extra[e].push_back(p.extra[e]);
-  }
-  const Renumbering& tet = model.numbering.tet;
-  truth.values = {{"young", tet.to_user(young)}, {"poisson", tet.to_user(poisson)}};
-  for (size_t e = 0; e < extra.size(); ++e) truth.values.emplace_back(info.extra[e].name, tet.to_user(extra[e]));
-  truth.values.emplace_back("density", tet.to_user(model.density));
-  return truth;
-}
 
 Synthesis synthesize(const Scene& scene, const SynthesisOptions& options, const SynthesisWitness& witness) {
   check(options);

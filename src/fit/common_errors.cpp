@@ -6,23 +6,42 @@
 #include "fit/columns.h"
 
 namespace aspic {
+namespace {
+
+constexpr double kRoundOff = 1e-10;
+
+}  // namespace
 
 void CommonErrors::Direction::take_off(std::span<double> r) const {
   const std::span<double> part = r.subspan(static_cast<size_t>(first), unit.size());
   add_scaled(-taken * dot(unit, part), unit, part);
 }
 
-// One after another: (I + n n')^(-1/2) = I - (1 - 1 / sqrt(1 + |n|^2)) n n' / |n|^2, n as those before leave it.
-void CommonErrors::add(int first, std::vector<double> n) {
+// n as those before leave it.
+std::vector<double> CommonErrors::beside_others(int first, const std::vector<double>& n) const {
   std::vector<double> all(static_cast<size_t>(first) + n.size(), 0.0);
   std::copy(n.begin(), n.end(), all.begin() + first);
   for (const Direction& d : directions_)
     if (d.first >= first && d.first + d.unit.size() <= all.size()) d.take_off(all);
-  std::copy(all.begin() + first, all.end(), n.begin());
+  return {all.begin() + first, all.end()};
+}
+
+// One after another: (I + n n')^(-1/2) = I - (1 - 1 / sqrt(1 + |n|^2)) n n' / |n|^2.
+void CommonErrors::add(int first, std::vector<double> n) {
+  n = beside_others(first, n);
   const double length = std::sqrt(dot(n, n));
   if (!(length > 0) || !std::isfinite(length)) return;
   for (double& x : n) x /= length;
   directions_.push_back({first, std::move(n), 1 - 1 / std::hypot(1, length)});
+}
+
+void CommonErrors::add_unbounded(std::vector<double> n) {
+  const double before = std::sqrt(dot(n, n));
+  n = beside_others(0, n);
+  const double length = std::sqrt(dot(n, n));
+  if (!(length > kRoundOff * before) || !std::isfinite(length)) return;
+  for (double& x : n) x /= length;
+  directions_.push_back({0, std::move(n), 1});
 }
 
 void CommonErrors::apply(std::span<double> r) const {
@@ -34,6 +53,7 @@ void CommonErrors::apply_transposed(std::span<double> w) const {
 }
 
 bool WithUncertainLayers::evaluate(std::span<const double> p, std::span<double> r) {
+  is_linearized_ = false;
   if (!data_.evaluate(p, r)) return false;
   if (!is_known_) learn();
   errors_.apply(r);
@@ -42,17 +62,21 @@ bool WithUncertainLayers::evaluate(std::span<const double> p, std::span<double> 
 
 void WithUncertainLayers::learn() {
   is_known_ = true;
-  if (data_.nuisance_count() == 0 || !data_.linearize()) return;
-  std::vector<double> dr(static_cast<size_t>(residual_count()));
-  data_.nuisance(0, dr);
-  for (const auto& [first, count] : cases_) {
-    std::vector<double> n(dr.begin() + first, dr.begin() + first + count);
-    for (double& x : n) x *= kLayerDeviation;
-    errors_.add(first, std::move(n));
+  if (data_.nuisance_count() == 0 || !linearize()) return;
+  std::vector<std::vector<double>> unbounded;
+  for (int k = 0; k < data_.nuisance_count(); ++k) {
+    std::vector<double>& dr = unbounded.emplace_back(static_cast<size_t>(residual_count()));
+    data_.nuisance(k, dr);
+    for (const auto& [first, count] : data_.residuals_by_case()) {
+      std::vector<double> n(dr.begin() + first, dr.begin() + first + count);
+      for (double& x : n) x *= kLayerDeviation;
+      errors_.add(first, std::move(n));
+    }
   }
+  for (std::vector<double>& n : unbounded) errors_.add_unbounded(std::move(n));
 }
 
-bool WithUncertainLayers::linearize() { return data_.linearize(); }
+bool WithUncertainLayers::linearize() { return is_linearized_ = is_linearized_ || data_.linearize(); }
 
 void WithUncertainLayers::multiply(std::span<const double> dp, std::span<double> dr) {
   data_.multiply(dp, dr);
@@ -63,11 +87,6 @@ void WithUncertainLayers::multiply_transposed(std::span<const double> w, std::sp
   std::vector<double> own(w.begin(), w.end());
   errors_.apply_transposed(own);
   data_.multiply_transposed(own, pbar);
-}
-
-void WithUncertainLayers::nuisance(int k, std::span<double> dr) {
-  data_.nuisance(k, dr);
-  errors_.apply(dr);
 }
 
 }  // namespace aspic

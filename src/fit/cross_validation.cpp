@@ -103,7 +103,7 @@ CrossValidation cross_validate(const Experiment& experiment, const ParameterMap&
     const Experiment seen = subset(experiment, [&](const LoadCase& c) { return c.group != h.group; });
     const Experiment left_out = subset(experiment, [&](const LoadCase& c) { return c.group == h.group; });
     Misfit misfit(seen, map, equilibrium);
-    WithUncertainLayers data(misfit, misfit.residuals_by_case());
+    WithUncertainLayers data(misfit);
     const FitReport report = fit(data, regularizer, fitted.p, options);
     h.p = report.p;
     if (is_success(report.status) || report.status == Status::iteration_limit)

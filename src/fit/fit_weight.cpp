@@ -8,7 +8,6 @@
 
 #include "fit/evidence.h"
 #include "fit/fit_run.h"
-#include "fit/without_nuisances.h"
 
 namespace aspic {
 namespace {
@@ -175,14 +174,13 @@ Status fit_by_evidence(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod metho
   const std::optional<double> balanced = balanced_weight(run, at);
   if (!balanced) return Status::undefined;
   run.weight = run.options.first_weight > 0 ? run.options.first_weight : 0.1 * *balanced;
-  WithoutNuisances data(run.data());
   run.report.words = "the search for the weight that the data support did not settle";
   for (int i = 0; i < kEvidenceTrials; ++i) {
     if (const Status status = fit_loosely(run, at, goal, method); !is_success(status)) return status;
     run.report.weights.push_back(trial_at(run, at));
-    if (!run.linearize(at) || !data.linearize()) return Status::undefined;
+    if (!run.linearize(at)) return Status::undefined;
     PriorGaussian before(run.prior(), run.weight, at.p);
-    const Spectrum s = spectrum(data, before, {.dense = kBestSeen, .max_rank = kBestSeen, .negligible = 1});
+    const Spectrum s = spectrum(run.data(), before, {.dense = kBestSeen, .max_rank = kBestSeen, .negligible = 1});
     if (!s.ok) return Status::undefined;
     const double factor = supported_weight(run.prior(), run.weight, at.p, s).factor;
     if (std::abs(std::log(factor)) < kSettled) {

@@ -79,6 +79,7 @@ class Misfit : public LeastSquares {
   // residuals say along it is no knowledge of how stiff the body is.
   int nuisance_count() const override;
   void nuisance(int k, std::span<double> dr) override;
+  std::vector<std::pair<int, int>> residuals_by_case() const override;
 
   // The equilibria of the last successful evaluate(), one case after another; empty before. A misfit that is given
   // them, evaluated and linearised at the same p goes on to the same bits.
@@ -87,8 +88,7 @@ class Misfit : public LeastSquares {
 
   const CasePrediction& prediction(int c) const;  // by the last evaluate()
   std::pair<int, int> residuals_of(int c) const;  // first, count
-  std::vector<std::pair<int, int>> residuals_by_case() const;
-  std::string what(int residual) const;  // "poke 3, depth 2: marker 17, y"
+  std::string what(int residual) const;           // "poke 3, depth 2: marker 17, y"
   // Why the last evaluate(), linearize() or product failed, in words.
   const std::string& failure() const;
 

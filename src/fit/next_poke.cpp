@@ -6,9 +6,9 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "fit/common_errors.h"
 #include "fit/cross_validation.h"
 #include "fit/field_words.h"
-#include "fit/without_nuisances.h"
 #include "mesh/surface.h"
 
 namespace aspic {
@@ -124,7 +124,7 @@ void judge(const Experiment& experiment, const TetMesh& mesh, const ParameterMap
   one.cases = {candidate.load};
   try {
     Misfit misfit(one, map, equilibrium);
-    WithoutNuisances data(misfit);
+    WithUncertainLayers data(misfit);
     std::vector<double> r(misfit.residual_count());
     if (!data.evaluate(p, r) || !data.linearize()) {
       candidate.failure = misfit.failure();

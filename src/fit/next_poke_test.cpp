@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "base/error.h"
+#include "fit/common_errors.h"
 #include "fit/poked_block_test.h"
 #include "mesh/generators.h"
 
@@ -26,7 +27,8 @@ struct Study {
   }
   Posterior posterior_of(const Experiment& experiment) {
     Misfit misfit(experiment, map);
-    return posterior(misfit, *prior, 1, map, experiment.mesh, p);
+    WithUncertainLayers data(misfit);
+    return posterior(data, *prior, 1, map, experiment.mesh, p);
   }
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/without_nuisances.h"
 #include "mesh/tet_shape.h"
 
 namespace aspic {
@@ -47,26 +46,24 @@ Parts find_parts(LeastSquares& model, const ParameterMap& map, const TetMesh& me
   double total = 0;
   for (int t = 0; t < tets; ++t) total += volumes.emplace_back(volume(mesh, t));
   Independent prior = one_by_one(map, unknown, volumes, total);
-  WithoutNuisances data(model);
   Parts parts{.p = std::vector<double>(p.begin(), p.end())};
   const std::span<double> z = std::span(parts.p).subspan(first, tets);
   std::vector<double> r(model.residual_count()), g(p.size());
   std::vector<double> levels = gathered_levels(z, volumes, count);
   if (static_cast<int>(levels.size()) < count) return parts;
   for (int pass = 0; pass < options.passes; ++pass) {
-    if (!data.evaluate(parts.p, r) || !data.linearize()) return parts;
-    data.project(r);
+    if (!model.evaluate(parts.p, r) || !model.linearize()) return parts;
     const double noise_factor = std::max(1.0, std::sqrt(dot(r, r) / static_cast<double>(r.size())));
     const bool is_last = pass + 1 == options.passes;
-    const Spectrum s = spectrum(data, prior, {.max_rank = is_last ? options.rank : options.rank / 4});
+    const Spectrum s = spectrum(model, prior, {.max_rank = is_last ? options.rank : options.rank / 4});
     if (!s.ok) return parts;
-    data.multiply_transposed(r, g);
+    model.multiply_transposed(r, g);
     parts.estimate = sample_parts(mesh, s, g, first, z, levels, noise_factor, options);
     levels = parts.estimate.levels;
     if (is_last) widen(parts.estimate, z);
     std::copy(parts.estimate.mean.begin(), parts.estimate.mean.end(), z.begin());
   }
-  parts.ok = data.evaluate(parts.p, r);
+  parts.ok = model.evaluate(parts.p, r);
   parts.squares = dot(r, r);
   return parts;
 }

@@ -8,7 +8,6 @@
 #include "fit/evidence.h"
 #include "fit/field_words.h"
 #include "fit/principal_directions.h"
-#include "fit/without_nuisances.h"
 
 namespace aspic {
 namespace {
@@ -143,17 +142,15 @@ double log_evidence(double misfit, double weight, double roughness, const Spectr
 
 }  // namespace
 
-Posterior posterior(LeastSquares& misfit, Regularizer& prior, double weight, const ParameterMap& map,
-                    const TetMesh& mesh, std::span<const double> p, const PosteriorOptions& options) {
-  ASPIC_CHECK(map.size() == static_cast<int>(p.size()) && misfit.unknowns() == map.size());
+Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const ParameterMap& map, const TetMesh& mesh,
+                    std::span<const double> p, const PosteriorOptions& options) {
+  ASPIC_CHECK(map.size() == static_cast<int>(p.size()) && data.unknowns() == map.size());
   Posterior result;
-  WithoutNuisances data(misfit);
-  std::vector<double> r(misfit.residual_count());
+  std::vector<double> r(data.residual_count());
   if (!data.evaluate(p, r) || !data.linearize()) {
     result.warnings.push_back("nothing is known of the uncertainty: at the fit no stable equilibrium was found");
     return result;
   }
-  data.project(r);
   warn_of_scale(data, map, result);
   PriorGaussian before(prior, weight, p);
   Spectrum s = spectrum(data, before, options.spectrum);
@@ -164,7 +161,7 @@ Posterior posterior(LeastSquares& misfit, Regularizer& prior, double weight, con
   const double roughness = prior.value(p), squares = dot(r, r);
   result.log_evidence = log_evidence(squares, weight, roughness, s);
   judge_weight(prior, weight, p, s, result);
-  judge_noise(squares, misfit.residual_count() - data.dropped(), result, s);
+  judge_noise(squares, data.residual_count(), result, s);
   result.informed = informed(s);
   result.belief = std::make_shared<PosteriorGaussian>(std::move(before), std::move(s));
   warn_of_rank(result);

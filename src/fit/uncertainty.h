@@ -43,9 +43,10 @@ struct Posterior {
   std::shared_ptr<PosteriorGaussian> belief;
 };
 
-// Evaluates and linearises `misfit` at the p of the fit. The posterior's `belief` refers to the prior.
-Posterior posterior(LeastSquares& misfit, Regularizer& prior, double weight, const ParameterMap& map,
-                    const TetMesh& mesh, std::span<const double> p, const PosteriorOptions& options = {});
+// Evaluates and linearises `data` at the p of the fit; with tips, a Misfit WithUncertainLayers, made for this. The
+// posterior's `belief` refers to the prior.
+Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const ParameterMap& map, const TetMesh& mesh,
+                    std::span<const double> p, const PosteriorOptions& options = {});
 
 inline constexpr double kDeviations95 = 1.959964;  // of a normal number, on both sides: 95 %
 

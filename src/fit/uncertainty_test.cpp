@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "fit/common_errors.h"
 #include "fit/field_words.h"
 #include "fit/linear_models_test.h"
 #include "mesh/generators.h"
@@ -165,7 +166,8 @@ TEST(Posterior, DoesNotTakeTheStiffnessOfAContactForAForce) {
   f.measure(3);
   EXPECT_FALSE(f.posterior().scale_is_unknown);
   f.data.nuisances = {-leak};  // scaling contact and body together changes nothing
-  const Posterior posterior = f.posterior();
+  WithUncertainLayers data(f.data);
+  const Posterior posterior = aspic::posterior(data, f.belief, 1, f.map, f.mesh, f.fit());
   EXPECT_TRUE(posterior.scale_is_unknown);
   EXPECT_LT(posterior.unseen[0].information, 0.5);
 }

@@ -112,7 +112,7 @@ function head(): FitHead {
     version: "1",
     model: "neo_hookean",
     counts: { vertices: 4, tets: 1, markers: 2, cases: 3, unknowns: 1, residuals: 12, equilibria: 9 },
-    fit: { words: "converged", success: true, interrupted: false, method: "lm", rule: "auto", iterations: 3, weight: 1, misfit: 6, roughness: 1, uniformMisfit: null, informed: null, noiseFactor: null },
+    fit: { words: "converged", success: true, interrupted: false, mesh: "a material per tet of 6, simulated on 6 tets", method: "lm", rule: "auto", iterations: 3, weight: 1, misfit: 6, roughness: 1, uniformMisfit: null, informed: null, noiseFactor: null },
     quantities: [],
     cases: [
       poke("a, 2", "a", 0.2, 0),

@@ -101,6 +101,6 @@ export class FitForm {
 
 function meshNote(capture: Capture | null): string[] {
   if (!capture || capture.tets === 0) return [];
-  if (capture.same_mesh) return ["Inverse crime: the fit has the very mesh that was measured, and looks better than it is."];
-  return [`Fitted on a coarser mesh of ${capture.tets} tets than the one measured: on the same one it would look better than it is.`];
+  if (capture.same_mesh) return ["Inverse crime: the fit has the very mesh that was measured, and looks better than it is. It is simulated on these tets, not on finer ones."];
+  return [`Fitted on a coarser mesh of ${capture.tets} tets than the one measured: on the same one it would look better than it is. It is simulated on these tets, and what they get wrong is taken off.`];
 }

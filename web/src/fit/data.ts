@@ -85,6 +85,7 @@ export interface FitHead {
     words: string;
     success: boolean;
     interrupted: boolean;
+    mesh: string;
     method: string;
     rule: string;
     iterations: number;

@@ -175,7 +175,7 @@ class FitReport {
     const { head } = this.fit;
     const [weights, history] = [weightChart(head), historyChart(head)];
     const { fit, counts } = head;
-    const facts = `${head.model}, ${fit.method}: ${fit.words} after ${plural(fit.iterations, "iteration")} and ${counts.equilibria} equilibria; ${counts.unknowns} unknowns, ${counts.residuals} readings, weight ${short(fit.weight, 3)}.`;
+    const facts = `${head.model}, ${fit.method}: ${fit.words} after ${plural(fit.iterations, "iteration")} and ${counts.equilibria} equilibria; ${counts.unknowns} unknowns, ${counts.residuals} readings, weight ${short(fit.weight, 3)}; ${fit.mesh}.`;
     return section(
       "How it was fitted",
       facts,

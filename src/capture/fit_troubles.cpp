@@ -1,0 +1,64 @@
+#include "capture/fit_troubles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "capture/data_findings.h"
+#include "capture/fitted_values.h"
+#include "fit/fit_run.h"
+#include "scene/value.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kSoftest = 1e-2, kStiffest = 1e13;  // Young's moduli that a body can have [Pa]
+constexpr double kUnexplained = 4;                   // |r|^2 per reading: twice the standard deviations
+
+}  // namespace
+
+std::string words_of_runaway(const DataSet& data, const MaterialParameters& material) {
+  const double young = young_modulus(material.lame);
+  if (young >= kSoftest && young <= kStiffest) return "";
+  const std::vector<LoadCase>& cases = data.experiment.cases;
+  const bool has_positions =
+      std::any_of(cases.begin(), cases.end(), [](const LoadCase& c) { return !c.positions.empty(); });
+  return "the readings do not determine the stiffness: it ran to " + three_digits(young) + " Pa; check the units of " +
+         (has_positions ? "lengths and forces" : "lengths and forces, and state the positions of some markers") +
+         ", and that loads and readings belong to the same body";
+}
+
+std::string words_of_failure(const DataSet& data, const FitReport& report, const std::string& why) {
+  const auto is_named = [&](const LoadCase& c) {
+    return why.starts_with(c.name + ",") || why.starts_with(c.name + ":");
+  };
+  const std::vector<LoadCase>& cases = data.experiment.cases;
+  const auto found = std::find_if(cases.begin(), cases.end(), is_named);
+  if (found == cases.end())
+    return report.words + (why.empty() ? "" : " (" + why + ")") + "; aspic fit --check tells which rows are odd";
+  return report.words + "\n" + data.source.load_case(static_cast<int>(found - cases.begin())) + ": " +
+         why.substr(0, why.find("; ")) + "; check its load and its pose, or take the row out";
+}
+
+std::string words_of_worst_row(const DataSet& data, const std::vector<std::string>& left_out, const Misfit& misfit,
+                               std::span<const double> r) {
+  const double count = static_cast<double>(r.size()), usual = inner_product(r, r) / count;
+  if (!(usual > std::max(kUnexplained, 1 + 5 * std::sqrt(2 / count)))) return "";
+  double worst = 0;
+  int worst_case = 0, fitted = 0;
+  for (size_t c = 0; c < data.experiment.cases.size(); ++c) {
+    if (is_left_out(left_out, data.experiment.cases[c])) continue;
+    const auto [first, number] = misfit.residuals_of(fitted++);
+    const std::span<const double> own = r.subspan(first, number);
+    const double mean = number > 0 ? inner_product(own, own) / number : 0;
+    if (mean > worst) worst = mean, worst_case = static_cast<int>(c);
+  }
+  return data.source.load_case(worst_case) + " ('" + data.experiment.cases[worst_case].name +
+         "') is explained worst: its readings are missed by " + std::to_string(std::lround(std::sqrt(worst))) +
+         " standard deviations; check this row, or state deviations that cover the errors of mesh and model";
+}
+
+bool is_left_out(const std::vector<std::string>& left_out, const LoadCase& c) {
+  return std::find(left_out.begin(), left_out.end(), c.group) != left_out.end();
+}
+
+}  // namespace aspic

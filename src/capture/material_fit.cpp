@@ -1,0 +1,189 @@
+#include "capture/material_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "capture/fit_troubles.h"
+
+namespace aspic {
+namespace {
+
+constexpr int kPasses = 8;
+constexpr double kSettled = 1e-3;       // relative change of a value
+constexpr double kSettledField = 0.03;  // where there are more than kFewValues, which noise leaves open far more
+constexpr int kFewValues = 50;
+// Guesses that are tried when the first one is so soft that the loads crush the body.
+constexpr double kStiffer[] = {1, 10, 100, 0.1};
+
+std::vector<Unknown> as_single_values(std::vector<Unknown> unknowns, double factor) {
+  for (Unknown& u : unknowns) {
+    u.spread = Spread::uniform, u.handles = 0;
+    if (u.quantity == "young") u.guess *= factor;
+  }
+  return unknowns;
+}
+
+std::string suffix(double factor) {
+  if (factor == 1) return "";
+  return factor > 1 ? "_stiffer" + std::to_string(std::lround(factor)) : "_softer";
+}
+
+double largest_change(const std::vector<double>& before, const std::vector<double>& after) {
+  double change = 0;
+  for (size_t i = 0; i < before.size(); ++i) change = std::max(change, std::abs(after[i] - before[i]));
+  return change;
+}
+
+bool has_failed(const FitReport& report) { return report.p.empty() || report.status == Status::undefined; }
+bool is_over(const FitReport& report) { return is_success(report.status) || report.status == Status::iteration_limit; }
+
+}  // namespace
+
+MaterialFit::MaterialFit(const DataSet& data, const FitPlan& plan, const FitMemory& memory, const FitWitness& witness)
+    : data_(data),
+      plan_(completed(plan, data.experiment)),
+      memory_(memory),
+      witness_(witness),
+      simulated_(data.experiment, plan_) {
+  if (!memory.folder.empty()) fingerprint_ = fingerprint_of(data.experiment) + "\n" + text_of(plan_);
+  outcome_.plan = plan_;
+  outcome_.simulated_tets = simulated_.mesh().tet_count();
+}
+
+FitOutcome MaterialFit::run() {
+  if (is_field() || plan_.mesh_errors) {
+    if (!fit_single_values("uniform")) return std::move(outcome_);
+    if (plan_.mesh_errors && take_off_mesh_errors() && !fit_single_values("uniform_corrected"))
+      return std::move(outcome_);
+    if (!is_field()) outcome_.uniform.reset();
+  }
+  fit_fields();
+  return std::move(outcome_);
+}
+
+bool MaterialFit::is_field() const {
+  return std::any_of(plan_.unknowns.begin(), plan_.unknowns.end(),
+                     [](const Unknown& u) { return u.spread != Spread::uniform; });
+}
+
+// One value per quantity explains most of the data, and is where the fields begin.
+bool MaterialFit::fit_single_values(const std::string& name) {
+  begin(FitStage::uniform, "one value for the whole body");
+  FitOptions options = plan_.fit;
+  options.method = options.weight_rule = "auto";
+  options.weight = -1;
+  for (const double factor : kStiffer) {
+    FitModel model(data_.experiment, simulated_.fitted(), plan_, as_single_values(plan_.unknowns, factor), memory_,
+                   name + suffix(factor), fingerprint_);
+    const FitReport report = fit_stage(FitStage::uniform, model, options);
+    outcome_.uniform = outcome_.report = report;
+    if (!has_failed(report)) return has_single_values(model, report);
+    outcome_.failure = words_of_failure(data_, report, model.misfit.failure());
+  }
+  return false;
+}
+
+bool MaterialFit::has_single_values(FitModel& model, const FitReport& report) {
+  for (size_t u = 0; u < plan_.unknowns.size(); ++u)
+    plan_.unknowns[u].guess = model.map.values(static_cast<int>(u), report.p).front();
+  material_ = model.map.parameters(report.p);
+  outcome_.failure = words_of_runaway(data_, material_.front());
+  if (!outcome_.failure.empty()) return false;
+  if (report.status != Status::interrupted) return true;
+  describe(model, report.p);
+  return false;
+}
+
+bool MaterialFit::take_off_mesh_errors() {
+  if (!may_go_on()) return false;
+  if (simulated_.is_too_large_for_mesh_errors()) {
+    add_warnings({"what the mesh gets wrong was NOT computed: the mesh that is simulated has " +
+                  std::to_string(simulated_.mesh().tet_count()) + " tets, and " +
+                  std::to_string(SimulatedData::kTooFine) +
+                  " are the most; the material explains what the mesh gets wrong (a coarser mesh, or a smaller "
+                  "--refine)"});
+    return plan_.mesh_errors = false;
+  }
+  begin(FitStage::mesh_errors, "what the mesh gets wrong, by one of eight times as many tets");
+  const std::string failure = simulated_.take_off_mesh_errors(plan_, material_);
+  if (!failure.empty()) {
+    add_warnings({"what the mesh gets wrong was NOT computed: on the finer mesh " + failure});
+    return plan_.mesh_errors = false;
+  }
+  outcome_.mesh_error = simulated_.mesh_error();
+  return true;
+}
+
+void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
+  std::vector<double> start;
+  FitOptions options = plan_.fit;
+  for (int pass = 0;; ++pass) {
+    const std::string name = pass == 0 ? "fit" : "fit_corrected" + std::to_string(pass);
+    model.emplace(data_.experiment, simulated_.fitted(), plan_, plan_.unknowns, memory_, name, fingerprint_);
+    outcome_.report = fit_stage(FitStage::field, *model, options, start);
+    const std::vector<double>& p = outcome_.report.p;
+    if (!plan_.mesh_errors || !is_success(outcome_.report.status)) return;
+    const double change = largest_change(start, p);
+    if (pass > 0 && change < (model->map.size() > kFewValues ? kSettledField : kSettled)) return;
+    if (pass == kPasses)
+      return add_warnings({"what the mesh gets wrong and the material do not settle: after " + std::to_string(kPasses) +
+                           " rounds it still changes by " + std::to_string(change) +
+                           " (of log E); a finer mesh (--refine) makes both smaller"});
+    options.weight = outcome_.report.weight;
+    start = p;
+    material_ = model->map.parameters(p);
+    model.reset();
+    take_off_mesh_errors();  // else the last ones stay
+  }
+}
+
+void MaterialFit::fit_fields() {
+  begin(FitStage::field, "");
+  std::optional<FitModel> last;
+  fit_until_mesh_errors_settle(last);
+  FitModel& model = *last;
+  const FitReport& report = outcome_.report;
+  if (has_failed(report) || report.status == Status::no_descent) {
+    outcome_.failure = words_of_failure(data_, report, model.misfit.failure());
+    return;
+  }
+  outcome_.failure = words_of_runaway(data_, model.map.parameters(report.p).front());
+  if (!outcome_.failure.empty()) return;
+  if (!is_over(report)) return describe(model, report.p);
+  learn_uncertainty(model);
+  const std::vector<double> p = divided(model);
+  describe(model, p);
+  predict_left_out(model.map, p);
+  if (!outcome_.interrupted) cross_validate_groups(model);
+  if (!outcome_.interrupted) find_next_poke(model);
+}
+
+FitReport MaterialFit::fit_stage(FitStage which, FitModel& model, const FitOptions& options,
+                                 const std::vector<double>& start) {
+  outcome_.unknowns = model.map.size();
+  outcome_.residuals = model.misfit.residual_count();
+  const auto observe = [&](const FitIteration& iteration, std::span<const double> p) {
+    if (!witness_.iterate || witness_.iterate(which, iteration, p)) return true;
+    outcome_.interrupted = true;
+    if (model.journal) model.journal->stop_writing();
+    return false;
+  };
+  FitReport report = fit(model.data(), *model.prior, start.empty() ? model.map.guess() : start, options, observe);
+  outcome_.counts = model.misfit.counts();
+  return report;
+}
+
+void MaterialFit::begin(FitStage stage, const std::string& what) {
+  if (witness_.begin) witness_.begin(stage, what);
+}
+
+bool MaterialFit::may_go_on() {
+  if (witness_.go_on && !witness_.go_on()) outcome_.interrupted = true;
+  return !outcome_.interrupted;
+}
+
+void MaterialFit::add_warnings(const std::vector<std::string>& more) {
+  outcome_.warnings.insert(outcome_.warnings.end(), more.begin(), more.end());
+}
+
+}  // namespace aspic

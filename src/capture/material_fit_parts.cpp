@@ -1,0 +1,59 @@
+#include <algorithm>
+#include <cmath>
+
+#include "capture/material_fit.h"
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+namespace {
+
+// What was believed of single tets beforehand remains.
+void set_deviations(const std::vector<double>& deviation, int unknown, Posterior& belief) {
+  for (size_t t = 0; t < deviation.size(); ++t) {
+    double& own = belief.deviation[unknown][t];
+    double& reduction = belief.reduction[unknown][t];
+    const double before = own * own / std::max(1 - reduction, 1e-12);
+    own = deviation[t];
+    reduction = std::clamp(1 - own * own / before, 0.0, 1.0);
+  }
+}
+
+double share_of_body(const TetMesh& mesh, const std::vector<double>& share) {
+  double part = 0, all = 0;
+  for (int t = 0; t < mesh.tet_count(); ++t) all += volume(mesh, t), part += volume(mesh, t) * share[t];
+  return part / all;
+}
+
+}  // namespace
+
+std::vector<double> MaterialFit::divided(FitModel& model) {
+  const FitReport& report = outcome_.report;
+  const auto young = std::find_if(plan_.unknowns.begin(), plan_.unknowns.end(),
+                                  [](const Unknown& u) { return u.quantity == "young" && u.spread == Spread::tets; });
+  if (plan_.parts == 0 || young == plan_.unknowns.end() || !may_go_on()) return report.p;
+  const int unknown = static_cast<int>(young - plan_.unknowns.begin());
+  FoundParts& found = outcome_.parts.emplace();
+  const int fewest = plan_.parts > 0 ? plan_.parts : 2, most = plan_.parts > 0 ? plan_.parts : kMostParts;
+  for (int count = fewest; count <= most && !found.are_kept && may_go_on(); ++count, ++found.tried) {
+    begin(FitStage::parts, std::to_string(count) + " parts");
+    const Parts parts = find_parts(model.data(), model.map, mesh(), report.p, unknown, count);
+    found.squares = parts.squares;
+    found.are_kept = are_as_good(parts, 2 * report.misfit, outcome_.residuals);
+    if (!found.are_kept) continue;
+    outcome_.report.misfit = parts.squares / 2;
+    return keep(parts, model.map, unknown, found);
+  }
+  return report.p;
+}
+
+std::vector<double> MaterialFit::keep(const Parts& parts, const ParameterMap& map, int unknown, FoundParts& found) {
+  const PartsEstimate& e = parts.estimate;
+  for (size_t k = 0; k < e.levels.size(); ++k) {
+    found.values.push_back(map.value(unknown, e.levels[k]));
+    found.volume.push_back(share_of_body(mesh(), e.share[k]));
+  }
+  if (outcome_.posterior && outcome_.posterior->ok) set_deviations(e.deviation, unknown, *outcome_.posterior);
+  return parts.p;
+}
+
+}  // namespace aspic

@@ -1,0 +1,134 @@
+#include <algorithm>
+#include <limits>
+
+#include "capture/fit_troubles.h"
+#include "capture/fitted_values.h"
+#include "capture/material_fit.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kLearnt = 1;  // directions that data tell, if they tell anything
+
+// The prediction that r is counted of: with layers as stiff as the readings say. `measured` without what the mesh gets
+// wrong is `fitted`.
+void put_layers_in(std::span<const double> r, const LoadCase& measured, const LoadCase& fitted, CasePrediction& shown) {
+  auto residual = r.begin();
+  const auto put = [&](const Vec3d& reading, const Vec3d& deviation, Vec3d& to) {
+    for (int i = 0; i < 3; ++i) to[i] = reading[i] + *residual++ * deviation[i];
+  };
+  for (size_t k = 0; k < fitted.positions.size(); ++k)
+    put(measured.positions[k].position, fitted.positions[k].deviation, shown.markers[k]);
+  if (fitted.force) put(*measured.force, fitted.force_deviation, shown.wrench.force);
+  if (fitted.torque) put(*measured.torque, fitted.torque_deviation, shown.wrench.torque);
+}
+
+}  // namespace
+
+void MaterialFit::learn_uncertainty(FitModel& model) {
+  if (!plan_.uncertainty || !may_go_on()) return;
+  begin(FitStage::uncertainty, "what the data do not say");
+  const FitReport& report = outcome_.report;
+  WithUncertainLayers about_fit(model.recorded());
+  outcome_.posterior = posterior(about_fit, *model.prior, report.weight, model.map, mesh(), report.p);
+  // Where the guess explains the data already, rules raise the weight, and what is believed would seem to be known.
+  const bool is_learnt = !outcome_.posterior->ok || outcome_.posterior->informed >= kLearnt;
+  if (!is_learnt && plan_.fit.weight <= 0 && report.weight > 1) {
+    outcome_.posterior = posterior(about_fit, *model.prior, 1, model.map, mesh(), report.p);
+    std::erase_if(outcome_.posterior->warnings,
+                  [](const std::string& warning) { return warning.starts_with("the weight of the regulariser"); });
+    add_warnings({"the data say next to nothing of how the stiffness varies: the deviations are those of what was "
+                  "believed beforehand (--unknown young=uniform fits that value)"});
+  }
+  add_warnings(outcome_.posterior->warnings);
+}
+
+// The material of p, its values for people, and what it predicts for the cases that were fitted.
+void MaterialFit::describe(FitModel& model, std::span<const double> p) {
+  const Posterior* belief = outcome_.posterior && outcome_.posterior->ok ? &*outcome_.posterior : nullptr;
+  outcome_.quantities = fitted_quantities(model.map, mesh(), p, belief);
+  outcome_.material = fitted_material(data_, model.map, p, outcome_.quantities);
+  outcome_.counts = model.misfit.counts();
+  outcome_.cases.resize(data_.experiment.cases.size());
+  std::vector<double> r(static_cast<size_t>(model.misfit.residual_count()));
+  if (model.journal) model.journal->catch_up();
+  const bool ok = model.misfit.evaluate(p, r);
+  model.with_layers->errors().apply(r);
+  if (ok)
+    if (const std::string words = words_of_worst_row(data_, plan_.left_out, model.misfit, r); !words.empty())
+      add_warnings({words});
+  int fitted = 0;
+  for (size_t c = 0; c < outcome_.cases.size(); ++c) {
+    CaseOutcome& outcome = outcome_.cases[c];
+    outcome.left_out = is_left_out(plan_.left_out, data_.experiment.cases[c]);
+    if (outcome.left_out) continue;
+    const auto [first, count] = model.misfit.residuals_of(fitted);
+    const LoadCase& load = simulated_.fitted().cases[fitted];
+    CasePrediction prediction = model.misfit.prediction(fitted++);
+    if (!ok) continue;
+    put_layers_in(std::span(r).subspan(first, count), data_.experiment.cases[c], load, prediction);
+    outcome.ok = true;
+    outcome.markers = std::move(prediction.markers);
+    outcome.wrench = prediction.wrench;
+  }
+}
+
+// The cases of a group as a material predicts them.
+void MaterialFit::predict_group(const std::string& group, const ParameterMap& map, std::span<const double> p,
+                                const UsePrediction& use) {
+  const Experiment part = subset(simulated_.all(), [&](const LoadCase& c) { return c.group == group; });
+  Misfit misfit(part, map, plan_.equilibrium);
+  std::vector<double> r(static_cast<size_t>(misfit.residual_count()));
+  if (!misfit.evaluate(p, r)) return add_warnings({"'" + group + "' could not be predicted: " + misfit.failure()});
+  int own = 0;
+  for (size_t c = 0; c < data_.experiment.cases.size(); ++c)
+    if (data_.experiment.cases[c].group == group)
+      use(outcome_.cases[c], simulated_.on_finer_mesh(c, misfit.prediction(own++)));
+}
+
+void MaterialFit::predict_left_out(const ParameterMap& map, std::span<const double> p) {
+  for (const std::string& group : plan_.left_out)
+    predict_group(group, map, p, [](CaseOutcome& outcome, const CasePrediction& prediction) {
+      outcome.ok = outcome.has_held_out = true;
+      outcome.markers = outcome.held_out_markers = prediction.markers;
+      outcome.wrench = outcome.held_out_wrench = prediction.wrench;
+    });
+}
+
+void MaterialFit::cross_validate_groups(FitModel& model) {
+  if (!plan_.cross_validation || !may_go_on()) return;
+  // A fit stops at its deadline: that comes when the witness wants no more.
+  const WallClock clock = [&] { return may_go_on() ? 0.0 : std::numeric_limits<double>::infinity(); };
+  FitOptions options = plan_.fit;
+  options.deadline = Deadline(clock, 1);
+  const auto observe = [&](int group, int groups, const std::string& name) {
+    begin(FitStage::cross_validation,
+          "'" + name + "' is left out (" + std::to_string(group + 1) + " of " + std::to_string(groups) + ")");
+    return may_go_on();
+  };
+  CrossValidation held_out = cross_validate(simulated_.fitted(), model.map, *model.prior, outcome_.report, options,
+                                            plan_.equilibrium, observe);
+  if (outcome_.interrupted) return;  // the last group is not to be trusted
+  add_warnings(held_out.warnings);
+  for (const HeldOut& group : held_out.groups)
+    if (group.ok)
+      predict_group(group.group, model.map, group.p, [](CaseOutcome& outcome, const CasePrediction& prediction) {
+        outcome.has_held_out = true;
+        outcome.held_out_markers = prediction.markers;
+        outcome.held_out_wrench = prediction.wrench;
+      });
+  outcome_.held_out = std::move(held_out);
+}
+
+void MaterialFit::find_next_poke(FitModel& model) {
+  const std::vector<LoadCase>& cases = simulated_.fitted().cases;
+  const bool has_tip = std::any_of(cases.begin(), cases.end(), [](const LoadCase& c) { return c.tip.has_value(); });
+  if (!outcome_.posterior || !outcome_.posterior->ok || !has_tip || !may_go_on()) return;
+  begin(FitStage::next_poke, "where a poke would tell most");
+  NextPoke next =
+      next_poke(simulated_.fitted(), mesh(), model.map, *outcome_.posterior, outcome_.report.p, {}, plan_.equilibrium);
+  add_warnings(next.warnings);
+  if (!next.candidates.empty() && next.candidates.front().ok) outcome_.next_poke = next.candidates.front();
+}
+
+}  // namespace aspic

@@ -1,0 +1,49 @@
+#include "capture/simulated_data.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "capture/surface_projection.h"
+
+namespace aspic {
+
+SimulatedData::SimulatedData(const Experiment& data, const FitPlan& plan)
+    : left_out_(plan.left_out),
+      simulated_(refined(data, plan.refine)),
+      corrected_(simulated_),
+      fitted_(without_groups(simulated_, left_out_)) {}
+
+bool SimulatedData::is_too_large_for_mesh_errors() const { return mesh().tet_count() > kTooFine; }
+
+std::string SimulatedData::take_off_mesh_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material) {
+  MeshErrors errors = mesh_errors(simulated_, plan.model, material, plan.equilibrium);
+  if (errors.cases.empty()) return errors.failure;
+  errors_ = std::move(errors.cases);
+  corrected_ = without_mesh_errors(simulated_, {errors_, {}});
+  fitted_ = without_groups(corrected_, left_out_);
+  return "";
+}
+
+double SimulatedData::mesh_error() const {
+  double sum = 0, largest = 0;
+  int count = 0;
+  for (size_t c = 0; c < errors_.size(); ++c)
+    for (size_t k = 0; k < errors_[c].markers.size(); ++k, ++count) {
+      const MarkerReading& reading = simulated_.cases[c].positions[k];
+      const Vec3d motion = reading.position - position(simulated_.markers[reading.marker], mesh().rest);
+      sum += dot(errors_[c].markers[k], errors_[c].markers[k]);
+      largest = std::max(largest, dot(motion, motion));
+    }
+  return largest > 0 ? std::sqrt(sum / count / largest) : -1;
+}
+
+CasePrediction SimulatedData::on_finer_mesh(size_t c, const CasePrediction& prediction) const {
+  CasePrediction finer = prediction;
+  if (errors_.empty()) return finer;
+  for (size_t k = 0; k < finer.markers.size(); ++k) finer.markers[k] = finer.markers[k] + errors_[c].markers[k];
+  finer.wrench.force = finer.wrench.force + errors_[c].wrench.force;
+  finer.wrench.torque = finer.wrench.torque + errors_[c].wrench.torque;
+  return finer;
+}
+
+}  // namespace aspic

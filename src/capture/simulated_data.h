@@ -1,0 +1,37 @@
+// The measurements as a fit sees them: on the mesh that is simulated, without what that mesh gets wrong, and without
+// the groups that are left out.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "capture/fit_plan.h"
+#include "fit/misfit.h"
+#include "fit/refined_experiment.h"
+
+namespace aspic {
+
+class SimulatedData {
+ public:
+  static constexpr int kTooFine = 60'000;  // tets, for a mesh of eight times as many
+
+  SimulatedData(const Experiment& data, const FitPlan& plan);
+
+  const TetMesh& mesh() const { return simulated_.mesh; }
+  const Experiment& all() const { return corrected_; }
+  const Experiment& fitted() const { return fitted_; }
+
+  bool is_too_large_for_mesh_errors() const;
+  // Takes off what the mesh gets wrong for a material; why that is not known, and nothing changes, or nothing.
+  std::string take_off_mesh_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material);
+  // Of the positions, root mean square over the largest motion; < 0: not known.
+  double mesh_error() const;
+  // Case c as a finer mesh would have it.
+  CasePrediction on_finer_mesh(size_t c, const CasePrediction& prediction) const;
+
+ private:
+  std::vector<std::string> left_out_;
+  Experiment simulated_, corrected_, fitted_;
+  std::vector<MeshError> errors_;  // of each case; empty: not known
+};
+
+}  // namespace aspic

@@ -1,0 +1,66 @@
+#include "capture/unstated_values.h"
+
+#include <algorithm>
+#include <set>
+
+#include "capture/apparent_stiffness.h"
+#include "capture/data_findings.h"
+#include "capture/surface_projection.h"
+#include "scene/tables.h"
+
+namespace aspic {
+namespace {
+
+constexpr double kDeviation = 0.01;  // of the largest motion or force, where no standard deviation is given
+constexpr double kLayer = 1e5;       // stiffness of a bonded tip's layer times the radius, over Young's modulus
+constexpr double kSoftLayer = 200;   // of a sliding one
+
+}  // namespace
+
+double layer_stiffness(const Tip& tip, double young) {
+  return (tip.contact == TipContact::bonded ? kLayer : kSoftLayer) * young / tip.radius;
+}
+
+void choose_deviations(DataSet& data) {
+  Experiment& e = data.experiment;
+  double motion = 0, force = 0, torque = 0;
+  for (const LoadCase& load : e.cases) {
+    for (const MarkerReading& r : load.positions)
+      motion = std::max(motion, norm(r.position - position(e.markers[r.marker], e.mesh.rest)));
+    if (load.force) force = std::max(force, norm(*load.force));
+    if (load.torque) torque = std::max(torque, norm(*load.torque));
+  }
+  bool chosen[3] = {};
+  const auto complete = [&](Vec3d& sd, double largest, int what) {
+    for (int i = 0; i < 3; ++i)
+      if (sd[i] == 0) sd[i] = largest > 0 ? kDeviation * largest : 1, chosen[what] = true;
+  };
+  for (LoadCase& load : e.cases) {
+    for (MarkerReading& r : load.positions) complete(r.deviation, motion, 0);
+    if (load.force) complete(load.force_deviation, force, 1);
+    if (load.torque) complete(load.torque_deviation, torque, 2);
+  }
+  const auto note = [&](int what, const char* name, double largest, const char* unit) {
+    if (chosen[what])
+      data.notes.push_back(std::string("no standard deviation of ") + name + ": taken as 1 % of the largest, " +
+                           number_text(kDeviation * largest) + " " + unit + " (deviation in capture.toml sets it)");
+  };
+  note(0, "positions", motion, "m");
+  note(1, "forces", force, "N");
+  note(2, "torques", torque, "N m");
+}
+
+void choose_layers(DataSet& data) {
+  const double E = apparent_young(data.experiment).value_or(1e5);
+  std::set<double> chosen;
+  for (LoadCase& load : data.experiment.cases) {
+    if (!load.tip || load.tip->stiffness > 0) continue;
+    load.tip->stiffness = layer_stiffness(*load.tip, E);
+    chosen.insert(load.tip->stiffness);
+  }
+  for (const double k : chosen)
+    data.notes.push_back("the layer of the tip has the stiffness " + three_digits(k) +
+                         " Pa/m: far stiffer than the body, which seems to have E = " + three_digits(E) + " Pa");
+}
+
+}  // namespace aspic
