@@ -37,8 +37,9 @@ void MaterialFit::learn_uncertainty(FitModel& model) {
     outcome_.posterior = posterior(about_fit, *model.prior, 1, model.map, mesh(), report.p);
     std::erase_if(outcome_.posterior->warnings,
                   [](const std::string& warning) { return warning.starts_with("the weight of the regulariser"); });
-    add_warnings({"the data say next to nothing of how the stiffness varies: the deviations are those of what was "
-                  "believed beforehand (--unknown young=uniform fits that value)"});
+    add_warnings(
+        {"the data say next to nothing of how the stiffness varies: the deviations are those of what was "
+         "believed beforehand (--unknown young=uniform fits that value)"});
   }
   add_warnings(outcome_.posterior->warnings);
 }
