@@ -21,8 +21,7 @@ double mean_of(const FittedMaterial& truth, const std::string& quantity) {
   return sum / volumes;
 }
 
-// Young's modulus of every tet is fitted; all else is known. What a coarser mesh gets wrong is taken off; it is not
-// refined, for the fit would take ten times as long and could not be watched.
+// Young's modulus of every tet is fitted; all else is known. What a coarser mesh gets wrong is taken off.
 FitPlan plan_for(const Bench& bench) {
   FitPlan plan{.model = bench.truth().model};
   plan.unknowns = {{.quantity = "young", .spread = Spread::tets, .handles = 0, .guess = 0}};
