@@ -37,6 +37,7 @@ test("a range without width has one tick, and one that is not finite none", () =
 test("logarithmic ticks are powers of ten, with 2 and 5 where these are few", () => {
   assert.deepEqual(logTicks(1, 1000), [1, 10, 100, 1000]);
   assert.deepEqual(logTicks(1, 50), [1, 2, 5, 10, 20, 50]);
+  assert.deepEqual(logTicks(20.1, 38.5), [25, 30, 35]);
   assert.deepEqual(logTicks(-1, 10), []);
 });
 

@@ -69,7 +69,7 @@ export function ticks(low: number, high: number, count: number): number[] {
   return Array.from({ length: Math.max(0, Math.min(50, last - first + 1)) }, (_, i) => (first + i) * step);
 }
 
-// Powers of ten inside [low, high]; with 2 and 5 between them when these are few.
+// Powers of ten inside [low, high]; with 2 and 5 between them when these are few, and evenly apart where none are left.
 export function logTicks(low: number, high: number): number[] {
   if (!(low > 0) || !(high > low)) return [];
   const decades = Math.log10(high / low);
@@ -81,7 +81,7 @@ export function logTicks(low: number, high: number): number[] {
       const tick = factor * 10 ** k;
       if (k % every === 0 && tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9)) found.push(tick);
     }
-  return found;
+  return found.length < 2 ? ticks(low, high, 4) : found;
 }
 
 // The least of 1, 2, 5 times a power of ten that is not below x.
