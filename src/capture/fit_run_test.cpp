@@ -87,6 +87,29 @@ TEST(FitRun, DataThatSayNothingLeaveWhatWasBelieved) {
   EXPECT_THAT(outcome.warnings, ::testing::Contains(HasSubstr("say next to nothing")));
 }
 
+// What the report draws leaves the errors that the misfit counts, also where the layers explain a part of the forces.
+TEST(FitRun, ShowsThePredictionThatTheMisfitCounts) {
+  DataSet data = block();
+  for (LoadCase& load : data.experiment.cases) load.force = 1.2 * *load.force;
+  FitPlan plan = quick_plan({"young=uniform"});
+  plan.left_out = {"poke 2"};
+  const FitOutcome outcome = fit_material(data, plan, {}, {});
+  ASSERT_TRUE(outcome.has_material()) << outcome.failure;
+  double squares = 0;
+  const auto add = [&](const Vec3d& shown, const Vec3d& measured, const Vec3d& deviation) {
+    for (int i = 0; i < 3; ++i) squares += std::pow((shown[i] - measured[i]) / deviation[i], 2);
+  };
+  for (size_t c = 0; c < outcome.cases.size(); ++c) {
+    const LoadCase& load = data.experiment.cases[c];
+    if (outcome.cases[c].left_out) continue;
+    for (size_t k = 0; k < load.positions.size(); ++k)
+      add(outcome.cases[c].markers[k], load.positions[k].position, load.positions[k].deviation);
+    add(outcome.cases[c].wrench.force, *load.force, load.force_deviation);
+  }
+  EXPECT_GT(outcome.report.misfit, 100);
+  EXPECT_NEAR(squares, 2 * outcome.report.misfit, 1e-6 * squares);
+}
+
 TEST(FitRun, EveryModelBeginsInsideOfItsRanges) {
   for (const MaterialInfo& info : materials()) {
     FitPlan plan = quick_plan({"young=uniform"});
