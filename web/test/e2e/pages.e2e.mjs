@@ -5,7 +5,8 @@ import { test } from "node:test";
 import { assertSameBits, kPatience, openPage, openSession, pressAndWait, startProgram, steering, theBrowser, until } from "./harness.mjs";
 
 const program = await startProgram("scenes/cantilever.toml");
-const kLostSocket = /WebSocket connection to .* failed/;
+// What the browser says of a connection that breaks, also in the moment in which the page sends.
+const kLostSocket = /WebSocket connection to .* failed|WebSocket is already in CLOSING or CLOSED state/;
 
 test("a second page watches, takes the steering, and hands it over when it closes", async () => {
   const one = await openSession(program);
