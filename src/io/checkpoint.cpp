@@ -133,6 +133,7 @@ void keep_as(const fs::path& path, const fs::path& kept) {
   }
   fs::rename(fresh, kept, error);
   if (error) throw InvalidInput(kept.string() + ": cannot be written: " + error.message());
+  fs::remove(fresh, error);  // rename leaves both names where they are names of one file
 }
 
 }  // namespace

@@ -95,6 +95,15 @@ TEST_F(CheckpointFile, ADamagedNewestFallsBackToThePreviousWithANote) {
               HasSubstr("no readable checkpoint"));
 }
 
+// A program that is killed after the first of two checkpoints was kept leaves both names to one file.
+TEST_F(CheckpointFile, LeavesNothingBesideTheTwo) {
+  write_checkpoint(path("c.bin"), sample(1));
+  std::filesystem::create_hard_link(path("c.bin"), path("c.previous.bin"));
+  write_checkpoint(path("c.bin"), sample(2));
+  EXPECT_FALSE(std::filesystem::exists(path("c.previous.bin.new")));
+  EXPECT_EQ(read_newest_checkpoint(path("c.bin")).checkpoint.integer("step"), 2);
+}
+
 TEST_F(CheckpointFile, FingerprintsAreThoseOfFnv1a) {
   EXPECT_EQ(fingerprint(""), "cbf29ce484222325");  // the reference values of FNV-1a, 64 bits
   EXPECT_EQ(fingerprint("a"), "af63dc4c8601ec8c");
