@@ -17,6 +17,14 @@ test("notches go on from what was asked for, however late the program tells it",
   assert.equal(asked.last(3), 3);
 });
 
+test("what is told differs from what was asked for in the last digits", () => {
+  const asked = new AskedDepths();
+  asked.ask(0.005007513224813856, 0);
+  asked.ask(0.005462741699796928, 0);
+  asked.hear(0.005007513224813852);
+  assert.equal(asked.last(0.005007513224813852), 0.005462741699796928);
+});
+
 test("another's depth, and another tip, count", () => {
   const asked = new AskedDepths();
   asked.ask(1, 0);

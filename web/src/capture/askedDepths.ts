@@ -1,3 +1,6 @@
+// The program computes the depth anew, so that it tells what was asked for but for the last digits.
+const isSame = (a: number, b: number): boolean => Math.abs(a - b) <= 1e-9 * Math.max(Math.abs(a), Math.abs(b));
+
 // The depths that were asked for and that the program has not told yet: the next notch goes on from the last of them, not
 // from the older one that is still on its way.
 export class AskedDepths {
@@ -11,9 +14,9 @@ export class AskedDepths {
 
   // What the program tells; null: there is no tip. A depth that nobody asked for here is somebody else's, and counts.
   hear(told: number | null): void {
-    const at = told === null ? -1 : this.pending.lastIndexOf(told);
+    const at = told === null ? -1 : this.pending.map((depth) => isSame(depth, told)).lastIndexOf(true);
     if (at >= 0) this.pending = this.pending.slice(at + 1);
-    else if (told !== this.before) this.pending = [];
+    else if (told === null || !isSame(told, this.before)) this.pending = [];
     if (told !== null) this.before = told;
   }
 
