@@ -125,6 +125,21 @@ build() {
   fi
 }
 
+# run_tests CTEST-ARGUMENTS...: those of the build folder; in a pipe only the failures and the summary are shown.
+run_tests() {
+  set -- ctest --test-dir "$build_dir" --output-on-failure --no-tests=error -j "$(nproc)" "$@"
+  if [ -t 1 ]; then
+    "$@" --progress
+    return
+  fi
+  mkdir -p "$log_dir"
+  say "Running the tests ..."
+  tests_log=$log_dir/${build_dir##*/}-tests
+  { "$@" && echo 0 >"$tests_log.status" || echo $? >"$tests_log.status"; } |
+    tee "$tests_log.log" | grep -v -e '^ *Start ' -e ' Passed ' || true
+  return "$(cat "$tests_log.status")"
+}
+
 # The default scene's mesh: the Stanford bunny of the npm package `bunny` (public domain), about 3 000 vertices.
 bunny_package=bunny@1.0.1
 bunny_size=0.53 # in units of the file, in which the bunny is 10 wide
