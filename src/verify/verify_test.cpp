@@ -48,10 +48,11 @@ void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.check << " w
 class WrongSubject : public testing::TestWithParam<Wrong> {};
 
 TEST_P(WrongSubject, FailsTheCheck) {
-  const auto& [key, name, instead] = GetParam();
-  const auto check = std::find_if(checks().begin(), checks().end(), [&](const Check& c) { return c.key() == key; });
-  ASSERT_NE(check, checks().end()) << key;
-  EXPECT_FALSE(run_check(*check, {.quick = true, .instead = {{name, instead}}}).passes()) << key;
+  const Wrong& wrong = GetParam();
+  const auto check =
+      std::find_if(checks().begin(), checks().end(), [&](const Check& c) { return c.key() == wrong.check; });
+  ASSERT_NE(check, checks().end()) << wrong.check;
+  EXPECT_FALSE(run_check(*check, {.quick = true, .instead = {{wrong.name, wrong.instead}}}).passes()) << wrong.check;
 }
 
 std::string wrong_name(const testing::TestParamInfo<Wrong>& info) {
