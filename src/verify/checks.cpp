@@ -8,6 +8,7 @@ const std::vector<Check>& checks() {
     std::vector<Check> list;
     add_material_checks(list);
     add_derivative_checks(list);
+    add_point_checks(list);
     add_invariant_checks(list);
     add_momentum_checks(list);
     add_patch_checks(list);

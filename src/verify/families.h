@@ -8,6 +8,7 @@ namespace aspic::verify {
 
 void add_material_checks(std::vector<Check>& checks);
 void add_derivative_checks(std::vector<Check>& checks);
+void add_point_checks(std::vector<Check>& checks);
 void add_invariant_checks(std::vector<Check>& checks);
 void add_patch_checks(std::vector<Check>& checks);
 void add_integrator_checks(std::vector<Check>& checks);
