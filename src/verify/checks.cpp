@@ -16,7 +16,9 @@ const std::vector<Check>& checks() {
     add_order_checks(list);
     add_bending_checks(list);
     add_solid_checks(list);
+    add_cylinder_checks(list);
     add_vibration_checks(list);
+    add_column_checks(list);
     return list;
   }();
   return all;

@@ -6,7 +6,7 @@
 
 #include "mesh/generators.h"
 #include "verify/families.h"
-#include "verify/sphere_reference.h"
+#include "verify/radial_reference.h"
 #include "verify/statics.h"
 
 namespace aspic::verify {
