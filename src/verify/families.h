@@ -18,6 +18,7 @@ void add_cylinder_checks(std::vector<Check>& checks);
 void add_vibration_checks(std::vector<Check>& checks);
 void add_bending_checks(std::vector<Check>& checks);
 void add_column_checks(std::vector<Check>& checks);
+void add_cook_checks(std::vector<Check>& checks);
 void add_solid_checks(std::vector<Check>& checks);
 
 }  // namespace aspic::verify
