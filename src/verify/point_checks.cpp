@@ -80,8 +80,9 @@ void check_edges(const Subject& subject, Findings& found) {
   }
 }
 
-// psi(F + F S) as a function of S, so that a step is small beside every stretch; psi(S) where F = 0.
-Differentiable around(const Law& taken, const Mat3d& F) {
+// psi(F + F S) as a function of S, so that a step is small beside every stretch; psi(S) where F = 0. The derivatives
+// are those of `taken`.
+Differentiable around(const Law& own, const Law& taken, const Mat3d& F) {
   const Mat3d A = squared_norm(F) > 0 ? F : identity3<double>();
   const auto matrix = [](std::span<const double> s) {
     Mat3d S;
@@ -89,7 +90,7 @@ Differentiable around(const Law& taken, const Mat3d& F) {
     return S;
   };
   const auto at = [=](std::span<const double> s) { return F + A * matrix(s); };
-  return {[=, &taken](std::span<const double> s) { return taken.psi(at(s)); },
+  return {[=, &own](std::span<const double> s) { return own.psi(at(s)); },
           [=, &taken](std::span<const double> s, std::span<double> g) {
             const Mat3d P = transpose(A) * taken.pk1(at(s));
             std::copy(P.a, P.a + 9, g.begin());
@@ -113,7 +114,7 @@ void check_slopes(const Subject& subject, Findings& found) {
     for (const auto& [kind, states] : by_kind(own.states)) {
       double order = NAN, smallest = 0;  // the lowest order, the largest of the smallest errors
       for (const Mat3d& F : states) {
-        const DerivativeReport report = check_derivatives(around(taken, F), here, {.length = 0.1});
+        const DerivativeReport report = check_derivatives(around(own, taken, F), here, {.length = 0.1});
         for (const DerivativeCheck* check : {&report.gradient, &report.hessian}) {
           smallest = std::fmax(smallest, check->smallest_error);
           order = std::fmin(order, check->order);
