@@ -159,7 +159,7 @@ Curve angle_curve(const std::string& label, const Twist& twist) {
 
 void check_large_twist(const Subject& subject, Findings& found) {
   const Column base{
-      subject.quick ? 2 : 6,        5e-4, 105, subject.stiffness, subject.taken_for("neo_hookean_isochoric"),
+      subject.quick ? 4 : 6,        5e-4, 105, subject.stiffness, subject.taken_for("neo_hookean_isochoric"),
       subject.taken_for("midpoint")};
   const Twist twist = twisted(base);
   Column slower = base, mirrored = base;
@@ -172,9 +172,14 @@ void check_large_twist(const Subject& subject, Findings& found) {
                      "the midpoint rule conserves it to order 2; half a millisecond is 1/700 of a swing");
   found.expect("the same with steps twice as long, ratio", coarse.energy_error / twist.energy_error, 4, 1,
                "order 2; the next term of the error");
-  found.expect("no tet is inverted at the end of a step", twist.least_det_F > 0, 1, 0, "yes or no");
-  found.expect("the top has turned by more than half a turn",
-               *std::max_element(twist.angle.begin(), twist.angle.end()) > std::numbers::pi, 1, 0, "yes or no");
+  found.expect("smallest det F of all tets and steps", twist.least_det_F, 1, 0.3,
+               "no tet comes near to inversion; with K / mu = 9.7 volumes change less than shapes");
+  const double speed = std::sqrt(kYoung / (2 * (1 + kPoisson)) * kTorsion / (kDensity * kPolar));
+  const double w = std::numbers::pi * speed / (2 * kLength);
+  found.expect(
+      "largest turn of the top, over that of small turns",
+      *std::max_element(twist.angle.begin(), twist.angle.end()) * w / base.spin, 1, 0.15,
+      "linear tets at nu = 0.45 are too stiff, by less the finer they are, and nearly a whole turn is not small");
   found.expect_small("what a quarter turn changes", asymmetry(mesh, twist.q, twist.q, {{0, 1, 0, -1, 0, 0, 0, 0, 1}}),
                      1e-9, "each solve leaves 1e-12 of the forces", "m");
   found.expect_small("the motion with the opposite spin against the mirror image",
@@ -183,8 +188,6 @@ void check_large_twist(const Subject& subject, Findings& found) {
   Plot plot{"turn of the top", "time [s]", "angle [rad]", Scales::linear, {}};
   plot.curves.push_back(angle_curve(std::to_string(base.n) + " cells across", twist));
   Curve line{"small turns, Saint-Venant", {}, {}, CurveStyle::dashed};
-  const double speed = std::sqrt(kYoung / (2 * (1 + kPoisson)) * kTorsion / (kDensity * kPolar));
-  const double w = std::numbers::pi * speed / (2 * kLength);
   for (const double t : twist.time) line.x.push_back(t), line.y.push_back(base.spin / w * std::sin(w * t));
   plot.curves.push_back(line);
   found.plots.push_back(plot);
