@@ -153,8 +153,20 @@ double asymmetry(const TetMesh& mesh, const std::vector<double>& q, const std::v
   return most;
 }
 
-Curve angle_curve(const std::string& label, const Twist& twist) {
-  return {label, twist.time, twist.angle, CurveStyle::line};
+// w of the swing of small turns [1/s].
+double swing_rate() {
+  const double speed = std::sqrt(kYoung / (2 * (1 + kPoisson)) * kTorsion / (kDensity * kPolar));
+  return std::numbers::pi * speed / (2 * kLength);
+}
+
+Plot turn_plot(const Column& c, const Twist& twist) {
+  Curve line{"small turns, Saint-Venant", twist.time, {}, CurveStyle::dashed};
+  for (const double t : twist.time) line.y.push_back(c.spin / swing_rate() * std::sin(swing_rate() * t));
+  return {"turn of the top",
+          "time [s]",
+          "angle [rad]",
+          Scales::linear,
+          {{std::to_string(c.n) + " cells across", twist.time, twist.angle, CurveStyle::line}, line}};
 }
 
 void check_large_twist(const Subject& subject, Findings& found) {
@@ -174,23 +186,16 @@ void check_large_twist(const Subject& subject, Findings& found) {
                "order 2; the next term of the error");
   found.expect("smallest det F of all tets and steps", twist.least_det_F, 1, 0.3,
                "no tet comes near to inversion; with K / mu = 9.7 volumes change less than shapes");
-  const double speed = std::sqrt(kYoung / (2 * (1 + kPoisson)) * kTorsion / (kDensity * kPolar));
-  const double w = std::numbers::pi * speed / (2 * kLength);
   found.expect(
       "largest turn of the top, over that of small turns",
-      *std::max_element(twist.angle.begin(), twist.angle.end()) * w / base.spin, 1, 0.15,
+      *std::max_element(twist.angle.begin(), twist.angle.end()) * swing_rate() / base.spin, 1, 0.15,
       "linear tets at nu = 0.45 are too stiff, by less the finer they are, and nearly a whole turn is not small");
   found.expect_small("what a quarter turn changes", asymmetry(mesh, twist.q, twist.q, {{0, 1, 0, -1, 0, 0, 0, 0, 1}}),
                      1e-9, "each solve leaves 1e-12 of the forces", "m");
   found.expect_small("the motion with the opposite spin against the mirror image",
                      asymmetry(mesh, twist.q, other.q, {{-1, 0, 0, 0, 1, 0, 0, 0, 1}}), 1e-9,
                      "each solve leaves 1e-12 of the forces", "m");
-  Plot plot{"turn of the top", "time [s]", "angle [rad]", Scales::linear, {}};
-  plot.curves.push_back(angle_curve(std::to_string(base.n) + " cells across", twist));
-  Curve line{"small turns, Saint-Venant", {}, {}, CurveStyle::dashed};
-  for (const double t : twist.time) line.x.push_back(t), line.y.push_back(base.spin / w * std::sin(w * t));
-  plot.curves.push_back(line);
-  found.plots.push_back(plot);
+  found.plots.push_back(turn_plot(base, twist));
 }
 
 }  // namespace
