@@ -41,7 +41,17 @@ td:not([class]) { min-width: 12rem; }
 figure { margin: 0; flex: 1 1 22rem; min-width: 0; }
 figure svg, figure img { display: block; max-width: 100%; height: auto; margin: 0 auto; }
 figcaption { color: #555; font-size: .9rem; margin-top: .3rem; }
+@media screen and (max-width: 44rem) {
+  body { padding: 1.5rem 1rem 3rem; } h1 { font-size: 1.6rem; } h1, h2, p, a { overflow-wrap: anywhere; }
+  .scroll { overflow-x: visible; } table, tbody { display: block; } thead { display: none; }
+  tr { display: flex; flex-wrap: wrap; gap: .1rem 1rem; padding: .5rem 0; border-bottom: 1px solid #ececec; }
+  td { padding: 0; border: 0; overflow-wrap: anywhere; } td:not([class]) { flex: 1 1 13rem; min-width: 0; }
+  td:empty { display: none; }
+  td[data-label]::before { content: attr(data-label) "\00a0 "; color: #666; font-size: .85em; }
+  figure { flex-basis: 100%; } pre { white-space: pre-wrap; overflow-wrap: anywhere; }
+}
 @media screen and (prefers-color-scheme: dark) {
+  tr { border-bottom-color: #2b2f34; } td[data-label]::before { color: #a0a5ab; }
   body { color: #ddd; background: #16181b; }
   h2 { border-top-color: #33373c; } .subtitle, figcaption { color: #a0a5ab; } nav ol { color: #8a9097; }
   a { color: #6cb6ff; } pre { background: #1f2226; border-color: #33373c; }
@@ -50,7 +60,10 @@ figcaption { color: #555; font-size: .9rem; margin-top: .3rem; }
   .neutral { background: #33373c; color: #ccc; }
   figure svg { filter: invert(.92) hue-rotate(180deg); }
 }
-@media print { body { max-width: none; padding: 0; } figure, table, pre { break-inside: avoid; } }
+@media print {
+  html { font-size: 12px; } body { max-width: none; padding: 0; } figure, tr, pre { break-inside: avoid; }
+  h2 { break-after: avoid; } .scroll { overflow: visible; } a { color: inherit; }
+}
 )";
 
 std::string escaped(std::string_view text) {
@@ -164,11 +177,18 @@ void ReportPage::table(const std::vector<std::string>& header, const std::vector
     body_ += fmt::format("<th{}>{}</th>", numbers ? " class=\"number\"" : "", escaped(header[column]));
   }
   body_ += "</tr></thead>\n<tbody>\n";
+  // In a narrow window the head of the table makes way for names beside the cells.
+  const auto label = [&header](size_t column) {
+    const bool has = column < header.size() && !header[column].empty();
+    return has ? fmt::format(" data-label=\"{}\"", escaped(header[column])) : "";
+  };
   for (const auto& row : rows) {
     body_ += "<tr>";
-    for (const Cell& cell : row)
-      body_ += fmt::format("<td{}>{}</td>", cell_class(cell.text),
-                           cell.verdict ? badge(*cell.verdict, cell.text) : escaped(cell.text));
+    for (size_t column = 0; column < row.size(); ++column) {
+      const auto& [text, verdict] = row[column];
+      body_ += fmt::format("<td{}{}>{}</td>", cell_class(text), label(column),
+                           verdict ? badge(*verdict, text) : escaped(text));
+    }
     body_ += "</tr>\n";
   }
   body_ += "</tbody></table></div>\n";

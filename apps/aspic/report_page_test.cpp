@@ -32,7 +32,7 @@ TEST_F(Report, VerdictsAreBadges) {
   page.table({"what", "error"}, {{{"passed", Verdict::pass}, {"1.5e-3"}}, {{"failed", Verdict::fail}, {"2"}}});
   EXPECT_THAT(page.html(), HasSubstr("<span class=\"badge pass\">passed</span>"));
   EXPECT_THAT(page.html(), HasSubstr("<span class=\"badge fail\">failed</span>"));
-  EXPECT_THAT(page.html(), HasSubstr("<td class=\"number\">1.5e-3</td>"));
+  EXPECT_THAT(page.html(), HasSubstr("<td class=\"number\" data-label=\"error\">1.5e-3</td>"));
 }
 
 TEST_F(Report, PicturesAreInsideWithNamesOfTheirOwn) {

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "material/states_test.h"
+#include "material/states.h"
 
 namespace aspic {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "material/states_test.h"
+#include "material/states.h"
 
 namespace aspic {
 namespace {

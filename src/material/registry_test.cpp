@@ -7,7 +7,7 @@
 
 #include "material/from_energy.h"
 #include "material/list.h"
-#include "material/states_test.h"
+#include "material/states.h"
 
 namespace aspic {
 namespace {

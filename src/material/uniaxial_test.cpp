@@ -1,7 +1,7 @@
 // Uniaxial stress with free lateral faces: small-strain moduli and reference values at large strain.
 #include <gtest/gtest.h>
 
-#include "material/states_test.h"
+#include "material/states.h"
 #include "verify/uniaxial.h"
 
 namespace aspic {

@@ -1,31 +1,14 @@
-// Bending of slender and of plane bodies: the elastica, Cook's membrane.
+// Bending of slender bodies: the elastica.
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "energy/linear_load.h"
-#include "mesh/surface.h"
 #include "verify/families.h"
 #include "verify/layers.h"
 #include "verify/statics.h"
 
 namespace aspic::verify {
 namespace {
-
-// `traction` [Pa] over all boundary triangles whose corners satisfy `is_loaded`.
-std::vector<double> traction_on(const TetMesh& mesh, const std::function<bool(const Vec3d&)>& is_loaded,
-                                const Vec3d& traction) {
-  std::vector<double> force(3 * mesh.rest.size());
-  for (const Triangle& triangle : boundary_triangles(mesh, 0, mesh.tet_count()))
-    if (std::all_of(triangle.begin(), triangle.end(), [&](int v) { return is_loaded(mesh.rest[v]); }))
-      add_traction(mesh.rest, triangle, traction, force);
-  return force;
-}
-
-Vec3d position(const Simulation& simulation, int v) {
-  const double* q = &simulation.state().q[3 * v];
-  return {{q[0], q[1], q[2]}};
-}
 
 // P L^2 / (E I) and the drop of the tip over L.
 struct TipLoad {
@@ -63,7 +46,7 @@ std::vector<double> drops(int n, const std::string& material, const std::vector<
   for (const TipLoad& row : loads) {
     while (simulation.steps_taken() == 0 || kLoads[simulation.steps_taken() - 1] < row.load)
       take_steps(simulation, 1, "elastica");
-    found.push_back(-position(simulation, tip)[1]);
+    found.push_back(-simulation.state().q[3 * tip + 1]);
   }
   return found;
 }
@@ -101,40 +84,6 @@ void check_elastica(const Subject& subject, Findings& found) {
   found.plots.push_back(plot);
 }
 
-double cook(int n, const std::string& material) {
-  const double thickness = 48.0 / n;
-  const TetMesh mesh = make_layer(n, n, thickness, [](double x, double y) {
-    return std::array{48 * x, 44 * x + y * (44 - 28 * x)};
-  });
-  Model model = make_model(mesh, {.material = material, .young = 250, .poisson = 0.3, .gravity = {}});
-  model.pins.push_back({"wall", vertices_where(mesh, [](const Vec3d& X) { return X[0] < 1e-9; }), {}});
-  model.loads.push_back(make_plane_hold(mesh, 1e5 * 250));
-  // 100 per unit of thickness over an edge of 16.
-  model.loads.push_back(
-      make_growing_load(traction_on(mesh, [](const Vec3d& X) { return X[0] > 48 - 1e-9; }, {{0, 100.0 / 16, 0}})));
-  const std::vector<int> corner =
-      vertices_where(mesh, [](const Vec3d& X) { return X[0] > 48 - 1e-9 && std::abs(X[1] - 52) < 1e-9; });
-  const Simulation simulation = equilibrium(std::move(model), 2, "Cook's membrane", 1e-9);
-  double sum = 0;
-  for (const int v : corner) sum += position(simulation, v)[1] - 52;
-  return sum / static_cast<double>(corner.size());
-}
-
-void check_cook(const Subject& subject, Findings& found) {
-  const std::vector<int> cells = subject.quick ? std::vector<int>{8, 16, 32} : std::vector<int>{8, 16, 32, 64, 128};
-  Curve curve{"linear tets", {}, {}}, limit{"7.638", {}, {}, CurveStyle::dashed};
-  for (const int n : cells) {
-    curve.x.push_back(n), curve.y.push_back(cook(n, subject.taken_for("neo_hookean_log")));
-    limit.x.push_back(n), limit.y.push_back(7.638);
-  }
-  const Extrapolation found_limit = extrapolate(curve.y);
-  found.expect("u_y at (48, 52), limit of the last three meshes", found_limit.limit, 7.638, subject.quick ? 0.12 : 0.02,
-               "the reference has four digits; the order, which is estimated too, is that of a corner");
-  found.expect("its order", found_limit.order, 1.5, 0.5,
-               "between 1.3, that of the singular corner of the clamped edge, and 2, that of the rest");
-  found.plots.push_back({"Cook's membrane", "cells along an edge", "u_y at (48, 52)", Scales::linear, {curve, limit}});
-}
-
 }  // namespace
 
 void add_bending_checks(std::vector<Check>& checks) {
@@ -146,13 +95,6 @@ void add_bending_checks(std::vector<Check>& checks) {
                     "The elastica, by elliptic integrals",
                     {"Bisshopp1945"},
                     check_elastica});
-  checks.push_back({"statics",
-                    "cook",
-                    "Cook's membrane at finite strain",
-                    "Plane strain, neo_hookean_log, E = 250, nu = 0.3, a load of 100 on the right edge.",
-                    "7.638, a converged value from outside this program for Cook's geometry with this material",
-                    {"Cook1974"},
-                    check_cook});
 }
 
 }  // namespace aspic::verify

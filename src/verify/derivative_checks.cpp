@@ -24,6 +24,7 @@ void check_differences(const Subject& subject, Findings& found) {
     return moved;
   });
   Plot plot = error_plot();
+  Findings orders;  // after the errors
   for (const MaterialInfo& info : materials()) {
     const std::string taken = subject.taken_for(info.name);
     auto V = make_tet_elasticity(taken, mesh, 0,
@@ -37,11 +38,12 @@ void check_differences(const Subject& subject, Findings& found) {
       found.expect_small(info.name + ": smallest error of the " + name, check->smallest_error, 1e-6,
                          "where the error h^2 of the difference meets its round-off 1e-16 / h");
       if (!std::isnan(check->order))  // a quadratic energy has no error but round-off
-        found.expect(info.name + ": order of the error of the " + name, check->order, 2, 0.2,
-                     "a line fitted over the decades before round-off");
+        orders.expect(info.name + ": order of the error of the " + name, check->order, 2, 0.2,
+                      "a line fitted over the decades before round-off");
     }
     plot.curves.push_back({info.name, report.hessian.step, report.hessian.error});
   }
+  found.rows.insert(found.rows.end(), orders.rows.begin(), orders.rows.end());
   found.plots.push_back(plot);
 }
 

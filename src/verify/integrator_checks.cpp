@@ -80,9 +80,9 @@ void check_euler_energies(const Subject& subject, Findings& found) {
 
 void check_free_fall(const Subject& subject, Findings& found) {
   for (const std::string& integrator : integrators_in_time()) {
-    found.expect_small(integrator + ": distance from the closed form after 20 steps",
-                       free_fall_error(subject.taken_for(integrator), expected_fall(integrator, kFallSteps)), 1e-12,
-                       "round-off of 20 solves for positions of 1 m", "m");
+    found.expect_small(integrator + ": distance from the closed form after 10 steps",
+                       free_fall_error(subject.taken_for(integrator), expected_fall(integrator, kFallSteps)), 1e-13,
+                       "round-off of 10 solves for positions of 1 m", "m");
   }
 }
 

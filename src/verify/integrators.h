@@ -22,7 +22,7 @@ Oscillation measured_oscillation(const std::string& integrator);
 
 // The fall of a free body after n steps, over g h^2.
 double expected_fall(const std::string& integrator, int n);
-inline constexpr int kFallSteps = 20;
+inline constexpr int kFallSteps = 10;
 // The largest difference to it of any vertex of a soft box after kFallSteps steps of 0.01 s [m].
 double free_fall_error(const std::string& integrator, double expected);
 

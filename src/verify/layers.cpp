@@ -7,35 +7,38 @@ namespace {
 
 class PlaneHold : public Energy {
  public:
-  PlaneHold(const TetMesh& mesh, double stiffness, int axis) : stiffness_(stiffness), axis_(axis) {
-    for (const Vec3d& X : mesh.rest) z_.push_back(X[axis]);
+  PlaneHold(const TetMesh& mesh, double stiffness, int axis, std::vector<int> vertices)
+      : stiffness_(stiffness), axis_(axis), vertices_(std::move(vertices)) {
+    for (const int v : vertices_) z_.push_back(mesh.rest[v][axis]);
   }
   std::string_view name() const override { return "plane_hold"; }
   double value(Positions x) const override {
     double V = 0;
-    for (size_t v = 0; v < z_.size(); ++v)
-      V += stiffness_ / 2 * (x[3 * v + axis_] - z_[v]) * (x[3 * v + axis_] - z_[v]);
+    for (size_t k = 0; k < z_.size(); ++k) V += stiffness_ / 2 * distance(x, k) * distance(x, k);
     return V;
   }
   void add_gradient(Positions x, double scale, std::span<double> g) const override {
-    for (size_t v = 0; v < z_.size(); ++v) g[3 * v + axis_] += scale * stiffness_ * (x[3 * v + axis_] - z_[v]);
+    for (size_t k = 0; k < z_.size(); ++k) g[3 * vertices_[k] + axis_] += scale * stiffness_ * distance(x, k);
   }
   int add_hessian(Positions, double scale, const Projection&, BlockSparse& H) const override {
-    for (size_t v = 0; v < z_.size(); ++v)
-      H.block[H.pattern->diagonal(static_cast<int>(v))](axis_, axis_) += scale * stiffness_;
+    for (const int v : vertices_) H.block[H.pattern->diagonal(v)](axis_, axis_) += scale * stiffness_;
     return 0;
   }
 
  private:
+  double distance(Positions x, size_t k) const { return x[3 * vertices_[k] + axis_] - z_[k]; }
+
   double stiffness_;  // [N/m]
   int axis_;
+  std::vector<int> vertices_;
   std::vector<double> z_;
 };
 
 }  // namespace
 
-std::unique_ptr<Energy> make_plane_hold(const TetMesh& mesh, double stiffness, int axis) {
-  return std::make_unique<PlaneHold>(mesh, stiffness, axis);
+std::unique_ptr<Energy> make_plane_hold(const TetMesh& mesh, double stiffness, int axis, std::vector<int> vertices) {
+  if (vertices.empty()) vertices = vertices_where(mesh, [](const Vec3d&) { return true; });
+  return std::make_unique<PlaneHold>(mesh, stiffness, axis, std::move(vertices));
 }
 
 TetMesh make_layer(int length, int height, double thickness,

@@ -70,7 +70,7 @@ void take_steps(Simulation& simulation, int count, const std::string& what) {
   }
 }
 
-double largest(const std::vector<double>& values) {
+double largest(std::span<const double> values) {
   double most = 0;
   for (const double x : values) {
     if (std::isnan(x)) return x;
@@ -79,7 +79,7 @@ double largest(const std::vector<double>& values) {
   return most;
 }
 
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+double largest_difference(std::span<const double> a, std::span<const double> b) {
   ASPIC_CHECK(a.size() == b.size());
   std::vector<double> d(a.size());
   for (size_t i = 0; i < a.size(); ++i) d[i] = a[i] - b[i];

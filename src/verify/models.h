@@ -1,6 +1,7 @@
 // Small models that several checks and tests share, and steps that must succeed.
 #pragma once
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ Simulation simulate(Model model, SimulationOptions options = {});  // from rest
 // Throws std::runtime_error, naming `what`, when one of the steps does not converge.
 void take_steps(Simulation& simulation, int count, const std::string& what);
 
-double largest(const std::vector<double>& values);  // absolute value; NaN when there is one
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b);  // of entries; same sizes
+double largest(std::span<const double> values);  // absolute value; NaN when there is one
+double largest_difference(std::span<const double> a, std::span<const double> b);  // of entries; same sizes
 
 }  // namespace aspic::verify

@@ -105,7 +105,7 @@ class Eigenproblem {
 
 }  // namespace
 
-std::vector<double> frequencies(const Model& model, int count) {
+std::vector<Mode> modes(const Model& model, int count) {
   const Eigenproblem problem(model);
   Vectors X = problem.start(2 * count + 2);
   Vector before(count, 0.0);
@@ -116,10 +116,18 @@ std::vector<double> frequencies(const Model& model, int count) {
     for (int k = 0; k < count; ++k) change = std::fmax(change, std::abs(values[k] / before[k] - 1));
     before = values;
     if (change > 1e-9) continue;
-    for (double& value : values) value = std::sqrt(value) / (2 * std::numbers::pi);
-    return values;
+    std::vector<Mode> found;
+    for (int k = 0; k < count; ++k)
+      found.push_back({std::sqrt(values[k]) / (2 * std::numbers::pi), X[X.size() - 1 - k]});
+    return found;
   }
   throw std::runtime_error("the natural frequencies did not converge");
+}
+
+std::vector<double> frequencies(const Model& model, int count) {
+  std::vector<double> found;
+  for (const Mode& mode : modes(model, count)) found.push_back(mode.frequency);
+  return found;
 }
 
 }  // namespace aspic::verify

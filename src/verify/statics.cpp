@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "energy/linear_load.h"
 #include "mesh/surface.h"
 
 namespace aspic::verify {
@@ -61,6 +62,15 @@ Vec3d sum_over(const std::vector<int>& vertices, const std::vector<double>& valu
 
 std::unique_ptr<Energy> make_growing_load(std::vector<double> force, std::function<double(double time)> factor) {
   return std::make_unique<GrowingLoad>(std::move(force), std::move(factor));
+}
+
+std::vector<double> traction_on(const TetMesh& mesh, const std::function<bool(const Vec3d&)>& is_loaded,
+                                const Vec3d& traction) {
+  std::vector<double> force(3 * mesh.rest.size());
+  for (const Triangle& triangle : boundary_triangles(mesh, 0, mesh.tet_count()))
+    if (std::all_of(triangle.begin(), triangle.end(), [&](int v) { return is_loaded(mesh.rest[v]); }))
+      add_traction(mesh.rest, triangle, traction, force);
+  return force;
 }
 
 Extrapolation extrapolate(const std::vector<double>& values) {

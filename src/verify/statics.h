@@ -23,6 +23,11 @@ Vec3d sum_over(const std::vector<int>& vertices, const std::vector<double>& valu
 std::unique_ptr<Energy> make_growing_load(
     std::vector<double> force, std::function<double(double time)> factor = [](double t) { return t; });
 
+// The forces of `traction` [Pa] over all boundary triangles whose corners satisfy `is_loaded`: 3 numbers per vertex
+// [N].
+std::vector<double> traction_on(const TetMesh& mesh, const std::function<bool(const Vec3d&)>& is_loaded,
+                                const Vec3d& traction);
+
 // What a sequence of values tends to whose errors are C h^p, h halved from each to the next: of the last three.
 struct Extrapolation {
   double order, limit;

@@ -1,4 +1,4 @@
-// Deformation gradients that every material is tested at.
+// Deformation gradients that every material is judged at, and constants for it.
 #pragma once
 #include <cmath>
 #include <random>
@@ -39,27 +39,28 @@ inline Mat3d random_deformation(std::mt19937& random) {
   return random_rotation(random) * (identity3<double>() + 0.2 * random_matrix(random));
 }
 
-// States where psi is finite and twice differentiable. Barriers have J > 0; where R is used, F has no kink.
+// States where psi is finite and twice differentiable. Barriers have J > 0; where R is used, F has no kink. The part of
+// a name before a comma is its kind.
 template <class M>
 std::vector<NamedState> smooth_states() {
   std::mt19937 random(7);
   const Mat3d I = identity3<double>();
-  std::vector<NamedState> states = {{"rest", I}, {"rotated rest", random_rotation(random)}};
-  for (int i = 0; i < 20; ++i) states.push_back({"random " + std::to_string(i), random_deformation(random)});
+  std::vector<NamedState> states = {{"F = I", I}, {"F = I, rotated", random_rotation(random)}};
+  for (int i = 0; i < 20; ++i) states.push_back({"random, " + std::to_string(i), random_deformation(random)});
   states.push_back({"equal singular values", 0.7 * random_rotation(random)});
-  states.push_back({"two equal singular values", random_rotation(random) * diagonal(1.5, 0.8, 0.8)});
+  states.push_back({"equal singular values, two", random_rotation(random) * diagonal(1.5, 0.8, 0.8)});
   const Mat3d A = random_deformation(random);
-  states.push_back({"small, J = 1e-8", std::cbrt(1e-8 / determinant(A)) * A});
+  states.push_back({"J = 1e-8, small", std::cbrt(1e-8 / determinant(A)) * A});
   if (!std::is_same_v<M, Fung>) {  // its exponential overflows in these
-    states.push_back({"flat, J = 1e-8", {{1, 0, 0, 0.25, 1, 0, -0.5, 0.125, 1e-8}}});
+    states.push_back({"J = 1e-8, flat", {{1, 0, 0, 0.25, 1, 0, -0.5, 0.125, 1e-8}}});
     states.push_back({"|F| = 1e6", 1e6 / std::sqrt(squared_norm(A)) * A});
   }
   if (M::info().barrier) return states;
-  states.push_back({"inverted", random_rotation(random) * diagonal(1.2, 0.9, -0.5) * random_rotation(random)});
-  states.push_back({"inverted, |F| = 1e6", 1e6 * (random_rotation(random) * diagonal(0.9, 0.4, -0.1))});
+  states.push_back({"J < 0, inverted", random_rotation(random) * diagonal(1.2, 0.9, -0.5) * random_rotation(random)});
+  states.push_back({"|F| = 1e6, inverted", 1e6 * (random_rotation(random) * diagonal(0.9, 0.4, -0.1))});
   if (!std::is_same_v<M, Arap> && !std::is_same_v<M, Corotated>) {
     states.push_back({"F = 0", 0.0 * I});
-    states.push_back({"mirror image", diagonal(1, 1, -1)});
+    states.push_back({"J < 0, mirror image", diagonal(1, 1, -1)});
   }
   return states;
 }
