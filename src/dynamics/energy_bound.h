@@ -23,7 +23,7 @@ struct BoundedEnergies {
   double allowed = 0;    // the right side
   double reached = 0;    // V_(t+1) + 1/2 |v_(t+1) - v_t|_M^2
   double magnitude = 0;  // of the sums that these were made of
-  double round_off = 0;  // of 1/2 |v_(t+1) - v_t|_M^2, whose velocities are differences of positions
+  double round_off = 0;  // of velocities, which are differences of positions, and of strains beside 1
 };
 
 // `accepted`: the minimiser's E divided by h^2 [J].

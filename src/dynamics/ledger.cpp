@@ -7,8 +7,8 @@
 namespace aspic {
 namespace {
 
-// A few units in the last place of a position.
-constexpr double kPositionRoundOff = 8 * std::numeric_limits<double>::epsilon();
+// A few units in the last place: of a position, and of a strain energy beside the modulus that it is a difference of.
+constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();
 
 // A sum as if made in twice the digits [Neumaier 1974]: the works of single vertices of a body that moves far cancel.
 class LongSum {
@@ -133,7 +133,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
     const bool pinned = tools.pins.holds(static_cast<int>(i / 3));
     pins_moved |= pinned && dx != 0;
     jump += 0.5 * tools.h * tools.h * forces.acceleration[i] * Ma_[i];
-    round_off += kPositionRoundOff * std::abs(end.q[i] * Ma_[i]);
+    round_off += kRoundOff * std::abs(end.q[i] * Ma_[i]);
     if (!pinned) residual_squared += r * r;
     // The same products on both sides of the balance, so that no rounding but that of the sums can open it.
     LongSum& rest = pinned ? reaction : residuals;
@@ -174,7 +174,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   BoundedEnergies bounded = {.allowed = potential_before + kinetic_before + target,
                              .reached = report.potential_total + jump,
                              .magnitude = magnitude,
-                             .round_off = round_off};
+                             .round_off = round_off + kRoundOff * tools.E.growth_stiffness()};
   if (pins_moved && integrator.is_backward_euler()) allow_moved_pins(tools, end, bounded, report);
   return bounded;
 }
