@@ -150,6 +150,41 @@ TEST(EnergyBound, HoldsInEveryPartOfADividedStep) {
   }
 }
 
+// A terrace of the potential: 0 for x < 0, the height from there on, for each vertex.
+class Terrace : public Energy {
+ public:
+  explicit Terrace(double height /* [J] */) : height_(height) {}
+  std::string_view name() const override { return "terrace"; }
+  double value(Positions x) const override {
+    double sum = 0;
+    for (size_t i = 0; i < x.size(); i += 3) sum += x[i] < 0 ? 0 : height_;
+    return sum;
+  }
+  void add_gradient(Positions, double, std::span<double>) const override {}
+  int add_hessian(Positions, double, const Projection&, BlockSparse&) const override { return 0; }
+
+ private:
+  double height_;
+};
+
+// The bound is no bound of kinetic + potential energy where E is not convex: what jumps over an edge within a step keeps
+// its velocity and gains the height. The ledger tells, as a negative loss.
+TEST(EnergyBound, HoldsWhereABodyJumpsOntoATerraceThoughItsEnergyGrows) {
+  Model model = make_model(make_box({{-2, 0, 0}}, {{-1, 1, 1}}, {1, 1, 1}), {.gravity = {}});
+  const double height = 1;
+  model.loads.push_back(std::make_unique<Terrace>(height));
+  State state = at_rest(model.mesh);
+  for (size_t i = 0; i < state.qdot.size(); i += 3) state.qdot[i] = 5;
+  Simulation simulation(std::move(model), std::move(state), {.h = 1, .solver = {}});
+  const double before = energy(simulation);
+  const StepReport report = simulation.step();
+  const double gain = 8 * height;
+  EXPECT_EQ(report.energy_bound, EnergyBound::holds);
+  EXPECT_NEAR(report.kinetic + report.potential_total - before, gain, 1e-9 * before);
+  EXPECT_NEAR(report.numerical_loss, -gain, 1e-9 * before);
+  EXPECT_NEAR(report.energy_slack, before - gain, 1e-9 * before);
+}
+
 // Velocities are differences of positions: far from the origin and in short steps they are known to fewer digits.
 TEST(EnergyBound, KnowsTheRoundOffOfPositions) {
   for (const double offset : {0.0, 1e3, 1e6})

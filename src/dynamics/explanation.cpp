@@ -183,7 +183,8 @@ class Explainer {
                               " s are longer than the " + text(stable.h) + " s up to which it can be stable here";
     const std::string place = stable.is_damping
                                   ? " is damped most strongly: the damping allows no longer steps"
-                                  : " vibrates fastest, at " + text(1 / (std::numbers::pi * stable.h)) +
+                                  : " vibrates fastest, at " +
+                                        text((name == "rk4" ? std::numbers::sqrt2 : 1) / (std::numbers::pi * stable.h)) +
                                         " Hz: small, stiff or light tets";
     return {cause, vertex_name(model_, stable.vertex) + place,
             (name == "forward_euler" ? "" : "time.step = " + text(stable.h / 2) + " or less, or ") +

@@ -23,8 +23,7 @@ test("the worst rows come first, and ties in the order of time", () => {
   assert.deepEqual(order("min det F"), [3, 1, 2]);
   assert.deepEqual(order("ledger error [J]"), [2, 1, 3]);
   assert.deepEqual(order("step"), [1, 2, 3]);
-  assert.deepEqual(order("energy bound"), [2, 1, 3]);
-  assert.deepEqual(order("slack [J]"), [2, 1, 3]);
+  assert.deepEqual(order("energy bound [J]"), [2, 1, 3]);
   assert.deepEqual(order("decrement [J]"), [1, 2, 3]);
 });
 
@@ -46,9 +45,15 @@ test("totals name the worst steps; what nobody asked for does not count", () => 
   assert.equal(all.state?.state_hash, "0123456789abcdef");
 });
 
+test("the energy bound is told with its slack", () => {
+  const told = (row: StepRow): unknown => column("energy bound [J]").value(row);
+  assert.deepEqual(kSteps.map(told), ["holds by 2", "broken by 1", "–"]);
+  assert.equal(told(row(4, { energy_bound: "not_guaranteed", energy_slack: -3 })), "not guaranteed");
+});
+
 test("what is bad is marked as such", () => {
   const bad = (row: StepRow): string[] => kColumns.filter((column) => column.isBad?.(row)).map(({ title }) => title);
   assert.deepEqual(bad(kSteps[0]), []);
-  assert.deepEqual(bad(kSteps[1]), ["status", "residual / wanted", "energy bound"]);
+  assert.deepEqual(bad(kSteps[1]), ["status", "residual / wanted", "energy bound [J]"]);
   assert.deepEqual(bad(row(4, { min_det_F: -0.5 })), ["min det F"]);
 });

@@ -1,4 +1,5 @@
 // What a run's steps certify: who converged, how far off the others are, what the worst values are and where.
+import { short } from "../plots/numbers";
 import type { MaybeNumber, StepRow } from "../protocol";
 
 // Above 1 the step missed what was asked for; null: nothing was asked for.
@@ -16,12 +17,17 @@ export interface Column {
 
 const kUnknown = -Infinity;
 
-const kBounds = {
-  none: { words: "–", badness: 0 },
-  holds: { words: "holds", badness: 1 },
-  not_guaranteed: { words: "not guaranteed", badness: 2 },
-  broken: { words: "broken", badness: 3 },
-};
+function boundText(row: StepRow): string {
+  if (row.energy_bound === "none") return "–";
+  if (row.energy_bound === "not_guaranteed") return "not guaranteed";
+  return `${row.energy_bound} by ${short(Math.abs(row.energy_slack ?? 0))}`;
+}
+
+function boundBadness(row: StepRow): number {
+  if (row.energy_bound === "none") return kUnknown;
+  if (row.energy_bound === "holds") return -(row.energy_slack ?? 0);
+  return row.energy_bound === "broken" ? Infinity : Number.MAX_VALUE;
+}
 
 export const kColumns: Column[] = [
   { title: "step", meaning: "number of the time step", value: (row) => row.step },
@@ -73,17 +79,11 @@ export const kColumns: Column[] = [
     worse: (row) => (row.ledger_error === null ? Infinity : Math.abs(row.ledger_error)),
   },
   {
-    title: "energy bound",
-    meaning: "backward Euler's: potential energy + 1/2 |change of velocity|² in the mass is not above the energy before it, plus works",
-    value: (row) => kBounds[row.energy_bound].words,
-    worse: (row) => kBounds[row.energy_bound].badness,
+    title: "energy bound [J]",
+    meaning: "what backward Euler guarantees: V + 1/2 |change of velocity|² in the mass is not above the energy before, plus works",
+    value: boundText,
+    worse: boundBadness,
     isBad: (row) => row.energy_bound === "broken",
-  },
-  {
-    title: "slack [J]",
-    meaning: "by how much the energy bound holds",
-    value: (row) => row.energy_slack,
-    worse: (row) => (row.energy_slack === null ? kUnknown : -row.energy_slack),
   },
   {
     title: "state",
