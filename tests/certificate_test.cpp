@@ -167,8 +167,8 @@ class Terrace : public Energy {
   double height_;
 };
 
-// The bound is no bound of kinetic + potential energy where E is not convex: what jumps over an edge within a step keeps
-// its velocity and gains the height. The ledger tells, as a negative loss.
+// The bound is no bound of kinetic + potential energy where E is not convex: what jumps over an edge within a step
+// keeps its velocity and gains the height. The ledger tells, as a negative loss.
 TEST(EnergyBound, HoldsWhereABodyJumpsOntoATerraceThoughItsEnergyGrows) {
   Model model = make_model(make_box({{-2, 0, 0}}, {{-1, 1, 1}}, {1, 1, 1}), {.gravity = {}});
   const double height = 1;
@@ -194,8 +194,8 @@ TEST(EnergyBound, KnowsTheRoundOffOfPositions) {
       Simulation simulation = simulate(make_model(std::move(mesh), {.young = 1e5}), {.h = h, .solver = {}});
       for (int i = 0; i < 5; ++i) {
         const StepReport report = simulation.step();
-        EXPECT_NE(report.energy_bound, EnergyBound::broken)
-            << "offset " << offset << ", h = " << h << ", step " << report.step << " by " << -report.energy_slack << " J";
+        EXPECT_NE(report.energy_bound, EnergyBound::broken) << "offset " << offset << ", h = " << h << ", step "
+                                                            << report.step << " by " << -report.energy_slack << " J";
       }
     }
 }

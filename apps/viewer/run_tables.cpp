@@ -74,8 +74,8 @@ std::vector<StepRow> read_steps(const fs::path& file, int last_step, std::vector
     report.ledger_error = ledger_error();
     if (is_certified) {
       report.decrement = table.number(table.column("decrement"));
-      report.energy_bound = named(table.text(table.column("energy_bound")), EnergyBound::broken, "energy_bound", file,
-                                  report.step);
+      report.energy_bound =
+          named(table.text(table.column("energy_bound")), EnergyBound::broken, "energy_bound", file, report.step);
       report.energy_slack = table.number(table.column("energy_slack"));
     }
     if (is_hashed) report.state_hash = from_hex(table.text(table.column("state_hash")));

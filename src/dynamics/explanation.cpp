@@ -181,11 +181,11 @@ class Explainer {
           "shorten time.step, or use time.integrator = \"backward_euler\""};
     const std::string cause = "the explicit scheme " + name + " blew up: its steps of " + text(h) +
                               " s are longer than the " + text(stable.h) + " s up to which it can be stable here";
-    const std::string place = stable.is_damping
-                                  ? " is damped most strongly: the damping allows no longer steps"
-                                  : " vibrates fastest, at " +
-                                        text((name == "rk4" ? std::numbers::sqrt2 : 1) / (std::numbers::pi * stable.h)) +
-                                        " Hz: small, stiff or light tets";
+    const std::string place =
+        stable.is_damping ? " is damped most strongly: the damping allows no longer steps"
+                          : " vibrates fastest, at " +
+                                text((name == "rk4" ? std::numbers::sqrt2 : 1) / (std::numbers::pi * stable.h)) +
+                                " Hz: small, stiff or light tets";
     return {cause, vertex_name(model_, stable.vertex) + place,
             (name == "forward_euler" ? "" : "time.step = " + text(stable.h / 2) + " or less, or ") +
                 "time.integrator = \"backward_euler\"" +
@@ -214,10 +214,11 @@ class Explainer {
     if (std::all_of(model_.elasticity.begin(), model_.elasticity.end(),
                     [&](const auto& V) { return std::isfinite(V->value(x)); }))
       return {};
-    return {"the pins themselves press a tet flat or turn it inside out, however short the step; the material has no "
-            "energy there",
-            tet_name(model_, worst.tet) + ", whose corners are all pinned: " + text(worst.det_F) + " of its volume",
-            "material.model = \"stable_neo_hookean\", which bears it, or pins that stop earlier"};
+    return {
+        "the pins themselves press a tet flat or turn it inside out, however short the step; the material has no "
+        "energy there",
+        tet_name(model_, worst.tet) + ", whose corners are all pinned: " + text(worst.det_F) + " of its volume",
+        "material.model = \"stable_neo_hookean\", which bears it, or pins that stop earlier"};
   }
 
   Explanation undefined_start() const {

@@ -69,8 +69,8 @@ TEST(StableStep, IsThatOfADampedSpringInClosedForm) {
     Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}), {.young = 1e-6, .mass = MassKind::lumped});
     const double k = 1e4;
     for (int v = 0; v < model.mesh.vertex_count(); ++v)
-      model.loads.push_back(make_point_springs(
-          "spring", {{v, k * model.mass->vertex_mass()[v], [](double) { return Vec3d{}; }}}));
+      model.loads.push_back(
+          make_point_springs("spring", {{v, k * model.mass->vertex_mass()[v], [](double) { return Vec3d{}; }}}));
     if (c > 0) model.damping.push_back(make_rayleigh_damping(*model.mass, c, nullptr, 0));
     const StableStep stable = simulate(std::move(model)).stable_step();
     EXPECT_NEAR(stable.h, (std::sqrt(c * c + 4 * k) - c) / k, 1e-3 * stable.h) << c;

@@ -99,7 +99,8 @@ void Ledger::allow_moved_pins(const StepTools& tools, const State& end, BoundedE
   const State& start = tools.start;
   std::vector<double>& moved = residual_;
   double V = 0, D = 0, T = 0;
-  for (size_t i = 0; i < moved.size(); ++i) moved[i] = tools.pins.holds(static_cast<int>(i / 3)) ? end.q[i] : start.q[i];
+  for (size_t i = 0; i < moved.size(); ++i)
+    moved[i] = tools.pins.holds(static_cast<int>(i / 3)) ? end.q[i] : start.q[i];
   for (const Energy* term : tools.E.potential()) {
     const double value = term->value(moved);
     V += value, bounded.magnitude += std::abs(value);

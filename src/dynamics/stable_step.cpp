@@ -19,9 +19,7 @@ double product(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-double norm(std::span<const double> v) {
-  return std::sqrt(product(v, v));
-}
+double norm(std::span<const double> v) { return std::sqrt(product(v, v)); }
 
 int largest_vertex(std::span<const double> v) {
   int largest = -1;

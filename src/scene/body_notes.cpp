@@ -75,12 +75,14 @@ void note_weight(const PlacedBody& body, const Means& mean, const Vec3d& gravity
   if (!scene.find("pin") && !scene.find("spring")) return;  // it falls
   const double strain = mean.density * extent(body.mesh.rest, gravity) / mean.young;
   if (!(strain > kCrushed)) return;
-  const std::string crushed = "body '" + body.name() + "': its weight crushes it: density * gravity * height / young = " +
-                              rounded(strain) + ", where 1 is much; if ";
+  const std::string crushed = "body '" + body.name() +
+                              "': its weight crushes it: density * gravity * height / young = " + rounded(strain) +
+                              ", where 1 is much; if ";
   const Box box = bounding_box(body.mesh.rest);
   const double size = std::max({box.upper[0] - box.lower[0], box.upper[1] - box.lower[1], box.upper[2] - box.lower[2]});
   if (size > kLarge && strain < 1e3) {
-    notes.push_back(crushed + "its " + rounded(size) + " m were meant in mm, set body." + body.name() + ".scale = 0.001");
+    notes.push_back(crushed + "its " + rounded(size) + " m were meant in mm, set body." + body.name() +
+                    ".scale = 0.001");
     return;
   }
   double factor = 1e3;

@@ -71,8 +71,8 @@ struct Case {
   std::string bodies = kSagging;
   std::function<void(Model&, const Scales&)> amend = {};
   bool is_sensitive = false;  // the path amplifies round-off
-  std::string mesh = {};  // a file that the scene needs
-  int steps = 100;        // at most
+  std::string mesh = {};      // a file that the scene needs
+  int steps = 100;            // at most
 };
 inline void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
