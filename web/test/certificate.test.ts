@@ -51,6 +51,13 @@ test("the energy bound is told with its slack", () => {
   assert.equal(told(row(4, { energy_bound: "not_guaranteed", energy_slack: -3 })), "not guaranteed");
 });
 
+test("a state is told by its first digits, and whole by its tooltip", () => {
+  const state = column("state");
+  assert.equal(state.value(row(1, {})), "01234567");
+  assert.equal(state.whole?.(row(1, {})), "0123456789abcdef");
+  assert.equal(state.value(kSteps[2]), null);
+});
+
 test("what is bad is marked as such", () => {
   const bad = (row: StepRow): string[] => kColumns.filter((column) => column.isBad?.(row)).map(({ title }) => title);
   assert.deepEqual(bad(kSteps[0]), []);

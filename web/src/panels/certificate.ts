@@ -13,6 +13,7 @@ export interface Column {
   value: (row: StepRow) => MaybeNumber | string; // null: there is none
   worse?: (row: StepRow) => number; // larger is worse; without it the step's number decides
   isBad?: (row: StepRow) => boolean;
+  whole?: (row: StepRow) => string; // where the value is shortened
 }
 
 const kUnknown = -Infinity;
@@ -88,7 +89,8 @@ export const kColumns: Column[] = [
   {
     title: "state",
     meaning: "hash of positions and velocities at its end: the same on two machines as long as they agree in every bit",
-    value: (row) => row.state_hash,
+    value: (row) => row.state_hash?.slice(0, 8) ?? null,
+    whole: (row) => row.state_hash ?? "",
   },
 ];
 

@@ -69,7 +69,7 @@ class StepTable {
   private row(row: StepRow): HTMLElement {
     const cells = kColumns.map((column, i) => {
       const value = text(column.value(row));
-      if (i > 0) return element("td", { class: column.isBad?.(row) ? "bad" : "" }, value);
+      if (i > 0) return element("td", { class: column.isBad?.(row) ? "bad" : undefined, title: column.whole?.(row) }, value);
       const show = button({ text: value, title: `Show step ${value}` }, () => this.store.source.send({ do: "rewind", step: row.step }));
       return element("td", {}, show);
     });
