@@ -17,6 +17,8 @@ std::string text(double number) {
   return buffer.data();
 }
 
+double power_of_ten_above(double number) { return std::pow(10, std::ceil(std::log10(number))); }
+
 std::string point_text(std::span<const double> x, int vertex) {
   const size_t i = 3 * static_cast<size_t>(vertex);
   return "(" + text(x[i]) + ", " + text(x[i + 1]) + ", " + text(x[i + 2]) + ") m";
@@ -306,9 +308,10 @@ class Explainer {
     const bool is_relative = options.criterion == Criterion::scale || options.criterion == Criterion::first_gradient;
     const double reached = report_.residual * options.tolerance / report_.residual_threshold;
     if (is_relative && report_.residual_round_off == 0 && reached <= kNoise)
-      return {cause + ": round-off leaves " + text(reached) + " of the forces, and less is asked for",
+      return {cause + ": round-off leaves up to " + text(power_of_ten_above(reached)) +
+                  " of the forces, and less is asked for",
               "solver.tolerance = " + text(options.tolerance),
-              "solver.tolerance = " + text(std::max(1e-12, std::pow(10, std::ceil(std::log10(10 * reached)))))};
+              "solver.tolerance = " + text(std::max(1e-12, power_of_ten_above(10 * reached)))};
     if (report_.residual_threshold > 0 && report_.residual_threshold < report_.residual_round_off) {
       const double reachable = options.tolerance * 10 * report_.residual_round_off / report_.residual_threshold;
       const bool is_useful = options.criterion == Criterion::absolute || is_static() || reachable <= kLoosest;
