@@ -69,6 +69,15 @@ class Explain(Explanations):
         self.run_scene("--set", f"time.step={found[1]}", "--set", f"time.duration={400 * float(found[1])}")
         self.run_scene("--set", "time.integrator=" + re.search(r'time.integrator = ("\w+")', text)[1])
 
+    def test_forward_euler_whose_step_is_too_long(self):
+        self.scene(integrator="forward_euler", step=0.02, duration=2, young="1e6")
+        self.assert_cured(self.run_scene(code=3), "blew up", "vibrates fastest", change="time.integrator=")
+
+    def test_an_explicit_step_that_is_too_long_for_the_damping(self):
+        for integrator, damping in (("symplectic_euler", "stiffness = 0.05"), ("rk4", "viscosity = 5000")):
+            self.scene(integrator=integrator, step=0.0005, duration=0.3, body=f"damping = {{ {damping} }}")
+            self.assert_cured(self.run_scene(code=3), "longer than", "damped most strongly", change="time.step=")
+
     def test_poissons_ratio_too_near_one_half(self):
         self.scene(poisson="0.5")
         text = self.run_scene(code=2)
@@ -98,11 +107,26 @@ class Explain(Explanations):
         where = re.search(r'where = "([^"]+)"', text[text.index("try"):])[1]
         self.run_scene("--set", f'body.beam.pin.1.where="{where}"')
 
+    def test_a_pin_within_another(self):
+        self.scene(pins='[[body.pin]]\nname = "edge"\nwhere = "x < 1e-10"')
+        text = self.run_scene(code=2)
+        self.assertIn("remove pin 'edge'", text)
+        self.scene()
+        self.run_scene()
+
+    def test_lengths_in_millimetres(self):
+        scene = BODY.format(**USUAL).replace("[0.4, 0.1, 0.1]", "[400, 100, 100]")
+        self.write("scene.toml", scene)
+        self.assertNotIn("crushes", self.assert_cured(self.run_scene(), "400 m were meant in mm", change="body.beam.scale="))
+
     def test_pins_that_crush_an_element_to_nothing(self):
         # One cell, all of whose vertices are pinned: no step is short enough.
         self.scene(model="neo_hookean_log", pins='[[body.pin]]\nname = "press"\nwhere = "x > 1e-9"\n'
                    'motion = { keyframes = [{ time = 0, displacement = [0, 0, 0] }, { time = 0.02, displacement = [-0.21, 0, 0] }] }')
         self.assert_cured(self.run_scene(code=3), "pins themselves", "corners are all pinned", change="material.model=")
+        for integrator in ("midpoint", "symplectic_euler", "rk4"):
+            text = self.run_scene("--set", f"time.integrator={integrator}", "--set", "time.step=0.001", code=3)
+            self.assertIn("pins themselves", text)
 
     def test_an_element_of_no_volume(self):
         mesh = box_mesh().replace("\n1 1 1 0\n", "\n0.5 0.5 0.5 0\n")
@@ -139,8 +163,19 @@ class Explain(Explanations):
     def test_a_tolerance_below_round_off(self):
         self.scene(solver="[solver]\ntolerance = 1e-17")
         self.assertIn("round_off", self.run_scene())  # as good as converged, and called what it is
-        self.scene(solver='[solver]\ntolerance = 1e-17\nmethod = "lbfgs"\npreconditioner = "mass"')
-        self.assert_cured(self.run_scene(code=3), "without the Hessian", change="solver.preconditioner=")
+        for method in ('"lbfgs"\npreconditioner = "mass"', '"vertex_descent"'):
+            self.scene(solver=f'[solver]\ntolerance = 1e-17\nmethod = {method}')
+            self.assert_cured(self.run_scene(code=3), "round-off leaves", change="solver.tolerance=")
+        self.scene(solver='[solver]\ntolerance = 1e-17\nmethod = "gradient_descent"')
+        self.assert_cured(self.run_scene(code=3), "without the Hessian", change="solver.method=")
+
+    def test_an_adaptive_tolerance_below_round_off(self):
+        for integrator in ("backward_euler", "midpoint"):
+            self.scene(integrator=integrator)
+            text = self.run_scene("--set", "time.adaptive.tolerance=1e-15", code=3)
+            self.assertIn("16 digits", text)
+            found = re.search(CHANGE, text[text.index("remedy:"):])
+            self.run_scene("--set", f"{found[1]}={found[2]}")
 
     def test_what_is_no_number_in_a_field(self):
         self.write("rho.csv", "1000\n" * 11 + "nan\n" + "1000\n" * 12)

@@ -68,6 +68,15 @@ std::string status_text(const RunTotals& totals) {
   return text;
 }
 
+// A loss below this part of the energies is round-off.
+constexpr double kRoundOff = 1e-9;
+
+double largest_energy(const StepReport& report) {
+  double largest = std::max(report.kinetic, std::abs(report.pin_work));
+  for (const double V : report.potential) largest = std::max(largest, std::abs(V));
+  return largest;
+}
+
 void print_certificate(std::FILE* stream, const RunTotals& totals) {
   const StepReport& worst = *totals.worst;
   fmt::print(stream, "status     {}; worst: step {}, {}, residual {:.3g} N", status_text(totals), worst.step,
@@ -77,6 +86,9 @@ void print_certificate(std::FILE* stream, const RunTotals& totals) {
   if (totals.bounds_held + totals.bounds_broken > 0)
     fmt::print(stream, "energy     the bound of backward Euler held in {} of {} steps that have it\n",
                totals.bounds_held, totals.bounds_held + totals.bounds_broken);
+  if (totals.grew > 0)
+    fmt::print(stream, "           kinetic + potential grew by more than forces worked in {}, at most by {:.3g} J\n",
+               totals.grew, totals.most_grown);
 }
 
 }  // namespace
@@ -86,6 +98,10 @@ void RunTotals::add(const StepReport& report) {
   ++by_status[static_cast<size_t>(report.status)];
   bounds_held += report.energy_bound == EnergyBound::holds;
   bounds_broken += report.energy_bound == EnergyBound::broken;
+  if (report.energy_bound != EnergyBound::none && -report.numerical_loss > kRoundOff * largest_energy(report)) {
+    ++grew;
+    most_grown = std::max(most_grown, -report.numerical_loss);
+  }
   if (!worst || badness(report) > badness(*worst)) worst = report;
   if (report.status == Status::budget) {
     ++out_of_time;

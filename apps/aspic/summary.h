@@ -16,7 +16,9 @@ struct RunTotals {
   int out_of_time = 0;  // ended by solver.time_budget, which was asked for: not among the unconverged
   std::array<int, kStatusCount> by_status = {};
   int bounds_held = 0, bounds_broken = 0;  // of energy, where backward Euler guarantees one
-  std::optional<StepReport> worst;         // least of a success, then furthest from its threshold
+  int grew = 0;           // steps of those in which kinetic + potential energy grew by more than forces worked
+  double most_grown = 0;  // [J]
+  std::optional<StepReport> worst;  // least of a success, then furthest from its threshold
   long iterations = 0;
   long values = 0, gradients = 0, hessians = 0, factorizations = 0, products = 0, cycles = 0;
   int most_iterations = 0;

@@ -6,8 +6,10 @@
 #include <cstring>
 #include <map>
 #include <optional>
+#include <regex>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "io/atomic_file.h"
 #include "io/base64.h"
 #include "io/folder_test.h"
@@ -330,6 +332,27 @@ TEST_F(RunRecording, RefusesWhatIsDamagedNamingTheFile) {
   EXPECT_THAT(
       after([](const fs::path& d) { write_file(d / "scene.toml", read_file(d / "scene.toml") + "# changed\n"); }),
       HasSubstr("scene.toml was changed after the run began"));
+}
+
+TEST_F(RunRecording, HasTheCertificateOfEveryStepAndNoneWhereTheRunHasNone) {
+  const fs::path directory = run("run", "", 3);
+  Scene scene = load_scene(path("beam.toml"));
+  for (const Json& row : Decoded(recording(directory).text).head["steps"]) {
+    const StepReport report = scene.simulation.step();
+    EXPECT_EQ(row["state_hash"], hex_digits(report.state_hash));
+    EXPECT_EQ(row["energy_bound"], "holds");
+    EXPECT_EQ(row["energy_slack"], report.energy_slack);
+    EXPECT_EQ(row["decrement"], report.decrement);
+  }
+  // As earlier versions wrote it: the last four columns are newer.
+  std::string text = read_file(directory / "steps.csv");
+  text = std::regex_replace(text, std::regex("(,[^,\n]*){4}\n"), "\n");
+  write_file(directory / "steps.csv", text);
+  for (const Json& row : Decoded(recording(directory).text).head["steps"]) {
+    EXPECT_TRUE(row["state_hash"].is_null());
+    EXPECT_TRUE(row["energy_slack"].is_null());
+    EXPECT_EQ(row["energy_bound"], "none");
+  }
 }
 
 // Every byte of a table and of a frame: refused or shown, never a crash.

@@ -16,11 +16,18 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kPotential = "potential_", kTotal = "potential_total";
 
-Status status_named(const std::string& name, const fs::path& file, int step) {
-  for (int i = 0; i <= static_cast<int>(Status::inaccurate); ++i)
-    if (to_string(static_cast<Status>(i)) == name) return static_cast<Status>(i);
-  throw InvalidInput(file.string() + ": step " + std::to_string(step) + " has the unknown status '" + name +
+template <class Word>
+Word named(const std::string& name, Word last, const char* column, const fs::path& file, int step) {
+  for (int i = 0; i <= static_cast<int>(last); ++i)
+    if (to_string(static_cast<Word>(i)) == name) return static_cast<Word>(i);
+  throw InvalidInput(file.string() + ": step " + std::to_string(step) + " has the unknown " + column + " '" + name +
                      "'; was the run made by another version?");
+}
+
+std::uint64_t from_hex(const std::string& digits) {
+  std::uint64_t number = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), number, 16);
+  return number;
 }
 
 [[noreturn]] void fail_order(const fs::path& file, int step) {
@@ -43,13 +50,16 @@ std::vector<StepRow> read_steps(const fs::path& file, int last_step, std::vector
              numerical_loss = number("numerical_loss"), residual_work = number("residual_work"),
              ledger_error = number("ledger_error");
   const size_t step = table.column("step"), status = table.column("status"), iterations = table.column("iterations");
+  // Runs of earlier versions have none of these.
+  const bool is_certified = table.has("energy_bound") && table.has("energy_slack") && table.has("decrement");
+  const bool is_hashed = table.has("state_hash");
   std::vector<StepRow> steps;
   while (static_cast<int>(steps.size()) < last_step && table.next()) {
     StepReport& report = steps.emplace_back().report;
     report.step = table.integer(step);
     if (report.step != static_cast<int>(steps.size())) fail_order(file, report.step);
     report.time = time();
-    report.status = status_named(table.text(status), file, report.step);
+    report.status = named(table.text(status), Status::inaccurate, "status", file, report.step);
     report.iterations = table.integer(iterations);
     report.residual = residual();
     report.residual_threshold = threshold();
@@ -62,6 +72,13 @@ std::vector<StepRow> read_steps(const fs::path& file, int last_step, std::vector
     report.numerical_loss = numerical_loss();
     report.residual_work = residual_work();
     report.ledger_error = ledger_error();
+    if (is_certified) {
+      report.decrement = table.number(table.column("decrement"));
+      report.energy_bound =
+          named(table.text(table.column("energy_bound")), EnergyBound::broken, "energy_bound", file, report.step);
+      report.energy_slack = table.number(table.column("energy_slack"));
+    }
+    if (is_hashed) report.state_hash = from_hex(table.text(table.column("state_hash")));
   }
   if (static_cast<int>(steps.size()) < last_step)
     throw InvalidInput(file.string() + ": ends at step " + std::to_string(steps.size()) +

@@ -1,5 +1,7 @@
 #include "viewer/step_rows.h"
 
+#include "base/hash.h"
+
 namespace aspic::viewer {
 namespace {
 
@@ -8,6 +10,8 @@ size_t details_of(const StepRow& row) {
   for (const IterationRow& iteration : row.iterations) count += iteration.tried.size();
   return count;
 }
+
+bool has_slack(const StepReport& report) { return report.energy_bound != EnergyBound::none; }
 
 }  // namespace
 
@@ -52,6 +56,7 @@ Json to_json(const StepRow& row) {
           {"iterations", std::move(iterations)},
           {"residual", report.residual},
           {"threshold", report.residual_threshold},
+          {"decrement", report.decrement},
           {"min_det_F", report.min_det_F},
           {"kinetic", report.kinetic},
           {"potential", report.potential},
@@ -62,6 +67,9 @@ Json to_json(const StepRow& row) {
           {"numerical_loss", report.numerical_loss},
           {"residual_work", report.residual_work},
           {"ledger_error", report.ledger_error},
+          {"energy_bound", to_string(report.energy_bound)},
+          {"energy_slack", has_slack(report) ? Json(report.energy_slack) : Json()},
+          {"state_hash", report.state_hash ? Json(hex_digits(report.state_hash)) : Json()},
           {"seconds", report.seconds},
           {"words", to_json(row.why)}};
 }

@@ -101,9 +101,12 @@ double AdaptiveStep::error(const Pins& pins, double h) const {
 void AdaptiveStep::keep(Integrator& integrator, const StepTools& whole, Ledger& ledger, int first, int size,
                         StepReport& report) {
   const int half = size / 2;
-  ledger.add(tools_of_part(whole, now_, nullptr, first, half), integrator.order(), first_.end, first_.forces, report);
-  ledger.add(tools_of_part(whole, first_.end, nullptr, first + half, half), integrator.order(), second_.end,
-             second_.forces, report);
+  const auto enter = [&](const StepTools& tools, const Part& part) {
+    const BoundedEnergies bounded = ledger.add(tools, integrator, part.end, part.forces, report);
+    if (integrator.is_backward_euler()) judge(bounded, part.solve.work.value / (tools.h * tools.h), report);
+  };
+  enter(tools_of_part(whole, now_, nullptr, first, half), first_);
+  enter(tools_of_part(whole, first_.end, nullptr, first + half, half), second_);
   report.substeps += 2;
   for (const Part* part : {&first_, &second_}) {
     total_.threshold = std::max(total_.threshold, part->solve.threshold);

@@ -1,5 +1,7 @@
 #include "dynamics/energy_bound.h"
 
+#include <cmath>
+
 namespace aspic {
 namespace {
 
@@ -23,8 +25,8 @@ std::string_view to_string(EnergyBound bound) {
 }
 
 EnergyBound energy_bound(const BoundedEnergies& energies, double accepted) {
-  const double noise = kRoundOff * energies.magnitude;
-  if (energies.pins_moved || !(accepted <= energies.allowed + noise)) return EnergyBound::not_guaranteed;
+  const double noise = kRoundOff * energies.magnitude + energies.round_off;
+  if (!std::isfinite(energies.allowed) || !(accepted <= energies.allowed + noise)) return EnergyBound::not_guaranteed;
   return energies.reached <= energies.allowed + 2 * noise ? EnergyBound::holds : EnergyBound::broken;
 }
 

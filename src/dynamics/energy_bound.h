@@ -1,15 +1,18 @@
 // What backward Euler guarantees of every step, whatever its length. Its E at the new positions is not above E at the
 // old ones (v = 0), which says
 //   V_(t+1) + 1/2 |v_(t+1) - v_t|_M^2  <=  V_t + T_t + W,   W: the work of moving targets.
-// The left side comes from the ledger and E from the minimiser: a step that breaks the bound shows a wrong energy.
+// Pins that move are where they will be, and the rest of the body where it was, in the positions q_s with which E is
+// compared: with u = (q_s - q_t) / h, which is zero but for pins, the right side is
+//   V(q_s) + D(q_s) + 1/2 |u - v_t|_M^2,   D: the potential of damping; targets are where they end.
+// Both sides come from the ledger and E from the minimiser: a step that breaks the bound shows a wrong energy.
 #pragma once
 #include <string_view>
 
 namespace aspic {
 
 enum class EnergyBound {
-  none,            // another scheme, or a step that was divided or dropped
-  not_guaranteed,  // pins moved, or the minimiser ended above E at v = 0
+  none,            // another scheme, or a step that was dropped
+  not_guaranteed,  // the minimiser ended above E at q_s, or q_s has no energy
   holds,
   broken,
 };
@@ -17,10 +20,10 @@ std::string_view to_string(EnergyBound bound);
 
 // What the ledger knows of a step of backward Euler. [J]
 struct BoundedEnergies {
-  double allowed = 0;    // V_t + T_t + W
+  double allowed = 0;    // the right side
   double reached = 0;    // V_(t+1) + 1/2 |v_(t+1) - v_t|_M^2
   double magnitude = 0;  // of the sums that these were made of
-  bool pins_moved = false;
+  double round_off = 0;  // of velocities, which are differences of positions, and of strains beside 1
 };
 
 // `accepted`: the minimiser's E divided by h^2 [J].

@@ -17,6 +17,8 @@ std::string text(double number) {
   return buffer.data();
 }
 
+double power_of_ten_above(double number) { return std::pow(10, std::ceil(std::log10(number))); }
+
 std::string point_text(std::span<const double> x, int vertex) {
   const size_t i = 3 * static_cast<size_t>(vertex);
   return "(" + text(x[i]) + ", " + text(x[i + 1]) + ", " + text(x[i + 2]) + ") m";
@@ -85,6 +87,15 @@ double size_of(const TetMesh& mesh) {
     for (int r = 0; r < 3; ++r) low[r] = std::min(low[r], X[r]), high[r] = std::max(high[r], X[r]);
   return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}) / 2;
 }
+
+// Of its volume: a tet is crushed to nothing below it.
+constexpr double kCrushed = 1e-9;
+
+// Forces that are left over, beside those that balance, are round-off below this.
+constexpr double kNoise = 1e-11;
+
+// An adaptive tolerance below this asks for parts in which too few digits of the positions change.
+constexpr double kFinest = 1e-9;
 
 // A relative tolerance above this accepts what is no solution.
 constexpr double kLoosest = 1e-2;
@@ -157,6 +168,8 @@ class Explainer {
   }
 
   Explanation blow_up() const {
+    const Explanation pins = pressed_by_pins();
+    if (!pins.cause.empty()) return pins;
     const StableStep stable = simulation_.stable_step();
     const double h = simulation_.options().h;
     const std::string& name = simulation_.options().integrator;
@@ -168,15 +181,21 @@ class Explainer {
           "the explicit scheme " + name + " left the range of numbers",
           step_text() + " is below " + text(stable.h) + " s, where it is stable for small motions, but not for these",
           "shorten time.step, or use time.integrator = \"backward_euler\""};
-    return {"the explicit scheme " + name + " blew up: its steps of " + text(h) + " s are longer than the " +
-                text(stable.h) + " s up to which it can be stable here",
-            stable.vertex < 0 ? ""
-                              : vertex_name(model_, stable.vertex) + " vibrates fastest, at " +
-                                    text(1 / (std::numbers::pi * stable.h)) + " Hz: small, stiff or light tets",
-            "time.step = " + text(stable.h / 2) + " or less, or time.integrator = \"backward_euler\""};
+    const std::string cause = "the explicit scheme " + name + " blew up: its steps of " + text(h) +
+                              " s are longer than the " + text(stable.h) + " s up to which it can be stable here";
+    const std::string place =
+        stable.is_damping ? " is damped most strongly: the damping allows no longer steps"
+                          : " vibrates fastest, at " +
+                                text((name == "rk4" ? std::numbers::sqrt2 : 1) / (std::numbers::pi * stable.h)) +
+                                " Hz: small, stiff or light tets";
+    return {cause, vertex_name(model_, stable.vertex) + place,
+            (name == "forward_euler" ? "" : "time.step = " + text(stable.h / 2) + " or less, or ") +
+                "time.integrator = \"backward_euler\"" +
+                (name == "forward_euler" ? ", as forward_euler adds energy in shorter steps, too" : "")};
   }
 
-  Explanation undefined_start() const {
+  // The positions at the start of the step, with the pins where they are at its end.
+  std::vector<double> placed() const {
     std::vector<double> placed = x_;
     const std::vector<double>& start = simulation_.snapshot().start.q;
     for (const Pin& pin : model_.pins)
@@ -186,11 +205,28 @@ class Explainer {
         const Vec3d to = pin.motion({{start[i], start[i + 1], start[i + 2]}}, report_.time);
         for (int r = 0; r < 3; ++r) placed[i + r] = to[r];
       }
-    const WorstTet worst = most_squashed(model_.mesh, placed);
-    if (!(worst.det_F > 0) && worst.tet >= 0 && is_pinned(worst.tet))
-      return {"the pins themselves turn a tet inside out, however short the step; the material has no energy there",
-              tet_name(model_, worst.tet) + ", whose corners are all pinned: " + text(worst.det_F) + " of its volume",
-              "material.model = \"stable_neo_hookean\", which bears it, or pins that stop earlier"};
+    return placed;
+  }
+
+  // Empty unless a tet whose corners are all pinned has no volume left, and its material no energy then.
+  Explanation pressed_by_pins() const {
+    const std::vector<double> x = placed();
+    const WorstTet worst = most_squashed(model_.mesh, x);
+    if (worst.tet < 0 || worst.det_F > kCrushed || !is_pinned(worst.tet)) return {};
+    if (std::all_of(model_.elasticity.begin(), model_.elasticity.end(),
+                    [&](const auto& V) { return std::isfinite(V->value(x)); }))
+      return {};
+    return {
+        "the pins themselves press a tet flat or turn it inside out, however short the step; the material has no "
+        "energy there",
+        tet_name(model_, worst.tet) + ", whose corners are all pinned: " + text(worst.det_F) + " of its volume",
+        "material.model = \"stable_neo_hookean\", which bears it, or pins that stop earlier"};
+  }
+
+  Explanation undefined_start() const {
+    const Explanation pins = pressed_by_pins();
+    if (!pins.cause.empty()) return pins;
+    const WorstTet worst = most_squashed(model_.mesh, placed());
     if (!(worst.det_F > 0) && worst.tet >= 0)
       return {"the pins move so far in one step that a tet is inverted, where the material has no energy",
               tet_name(model_, worst.tet) + ": " + text(worst.det_F) + " of its volume",
@@ -231,7 +267,14 @@ class Explainer {
     });
   }
 
+  Explanation too_fine() const {
+    return {"the parts of the step became so short that positions, which have 16 digits, hardly change in them",
+            "time.adaptive.tolerance = " + text(simulation_.options().adaptive.tolerance),
+            "time.adaptive.tolerance = 1e-06"};
+  }
+
   Explanation inaccurate() const {
+    if (simulation_.options().adaptive.tolerance < kFinest) return too_fine();
     return {"the error estimate of the smallest part of the step, time.step / 2^20, is above its share",
             "time.adaptive.tolerance = " + text(simulation_.options().adaptive.tolerance),
             "raise time.adaptive.tolerance; pins that jump cannot be resolved by shorter steps"};
@@ -259,6 +302,16 @@ class Explainer {
   Explanation iteration_limit() const {
     const std::string cause = "not converged after " + std::to_string(report_.iterations) + " iterations";
     const MinimizeOptions& options = solver_.minimize;
+    const double adaptive = simulation_.options().adaptive.tolerance;
+    if (adaptive > 0 && adaptive < kFinest) return too_fine();
+    // Methods without the Hessian do not know the round-off, but show it.
+    const bool is_relative = options.criterion == Criterion::scale || options.criterion == Criterion::first_gradient;
+    const double reached = report_.residual * options.tolerance / report_.residual_threshold;
+    if (is_relative && report_.residual_round_off == 0 && reached <= kNoise)
+      return {cause + ": round-off leaves up to " + text(power_of_ten_above(reached)) +
+                  " of the forces, and less is asked for",
+              "solver.tolerance = " + text(options.tolerance),
+              "solver.tolerance = " + text(std::max(1e-12, power_of_ten_above(10 * reached)))};
     if (report_.residual_threshold > 0 && report_.residual_threshold < report_.residual_round_off) {
       const double reachable = options.tolerance * 10 * report_.residual_round_off / report_.residual_threshold;
       const bool is_useful = options.criterion == Criterion::absolute || is_static() || reachable <= kLoosest;

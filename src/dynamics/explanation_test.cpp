@@ -29,6 +29,14 @@ Explanation first_failure(const SimulationOptions& options, Status wanted) {
   return first_failure(simulation, wanted);
 }
 
+Explanation blow_up(Model model, const char* integrator, double h) {
+  Simulation simulation = simulate(std::move(model), {.h = h, .integrator = integrator});
+  StepReport report;
+  for (int i = 0; i < 2000 && is_success(report.status); ++i) report = simulation.step();
+  EXPECT_EQ(report.status, Status::undefined);
+  return explain(simulation, report);
+}
+
 TEST(StableStep, SeparatesStepsThatSurviveFromStepsThatBlowUp) {
   for (const MassKind mass : {MassKind::consistent, MassKind::lumped}) {
     const double limit = simulate(beam(2, {.mass = mass})).stable_step().h;
@@ -55,7 +63,40 @@ TEST(StableStep, IsThatOfASpringInClosedForm) {
   EXPECT_EQ(stable.vertex, vertex);
 }
 
-TEST(StableStep, LeavesDampingOutAndKnowsTheScheme) {
+// x'' + c x' + k x = 0: symplectic Euler is stable up to h^2 k + 2 h c = 4.
+TEST(StableStep, IsThatOfADampedSpringInClosedForm) {
+  for (const double c : {0.0, 20.0, 1e4}) {
+    Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}), {.young = 1e-6, .mass = MassKind::lumped});
+    const double k = 1e4;
+    for (int v = 0; v < model.mesh.vertex_count(); ++v)
+      model.loads.push_back(
+          make_point_springs("spring", {{v, k * model.mass->vertex_mass()[v], [](double) { return Vec3d{}; }}}));
+    if (c > 0) model.damping.push_back(make_rayleigh_damping(*model.mass, c, nullptr, 0));
+    const StableStep stable = simulate(std::move(model)).stable_step();
+    EXPECT_NEAR(stable.h, (std::sqrt(c * c + 4 * k) - c) / k, 1e-3 * stable.h) << c;
+    EXPECT_EQ(stable.is_damping, c == 1e4) << c;
+  }
+}
+
+TEST(StableStep, OfADampedBodySeparatesStepsThatSurviveFromStepsThatBlowUp) {
+  const auto damped = [](double h) {
+    Model model = beam(2, {.young = 1e5});
+    model.damping.push_back(make_rayleigh_damping(*model.mass, 0, model.elasticity[0].get(), 0.02));
+    return simulate(std::move(model), {.h = h, .integrator = "symplectic_euler"});
+  };
+  const StableStep stable = damped(1e-3).stable_step();
+  EXPECT_TRUE(stable.is_damping);
+  const auto survives = [&](double h) {
+    Simulation simulation = damped(h);
+    for (int i = 0; i < 400; ++i)
+      if (!is_success(simulation.step().status)) return false;
+    return std::isfinite(simulation.kinetic_energy()) && simulation.kinetic_energy() < 1e6;
+  };
+  EXPECT_TRUE(survives(0.9 * stable.h)) << stable.h;
+  EXPECT_FALSE(survives(1.15 * stable.h)) << stable.h;
+}
+
+TEST(StableStep, StaysAsItIsAndKnowsTheScheme) {
   const auto damped = [](const char* integrator) {
     return simulate(damped_beam_with_moving_pins_and_targets(), {.h = 1e-6, .integrator = integrator});
   };
@@ -67,14 +108,53 @@ TEST(StableStep, LeavesDampingOutAndKnowsTheScheme) {
 }
 
 TEST(Explanation, OfAnExplicitBlowUpNamesTheStableStep) {
-  Simulation simulation = simulate(beam(2), {.h = 0.05, .integrator = "forward_euler"});
-  StepReport report;
-  for (int i = 0; i < 2000 && is_success(report.status); ++i) report = simulation.step();
-  ASSERT_EQ(report.status, Status::undefined);
-  const Explanation why = explain(simulation, report);
+  const Explanation why = blow_up(beam(2), "symplectic_euler", 0.05);
   EXPECT_THAT(why.cause, HasSubstr("blew up"));
-  EXPECT_THAT(why.place, HasSubstr("vertex"));
+  EXPECT_THAT(why.place, testing::AllOf(HasSubstr("vertex"), HasSubstr("vibrates fastest")));
   EXPECT_THAT(why.remedy, HasSubstr("time.step"));
+}
+
+TEST(Explanation, OfAnExplicitBlowUpTellsTheSameFrequencyWithEveryScheme) {
+  const auto frequency = [](const char* integrator) {
+    const std::string place = blow_up(beam(2), integrator, 0.05).place;
+    return place.substr(place.find("at "));
+  };
+  EXPECT_EQ(frequency("rk4"), frequency("symplectic_euler"));
+}
+
+// No step is short enough for it.
+TEST(Explanation, OfABlowUpOfForwardEulerAsksForAnotherScheme) {
+  const Explanation why = blow_up(beam(2), "forward_euler", 0.05);
+  EXPECT_THAT(why.cause, HasSubstr("blew up"));
+  EXPECT_THAT(why.remedy, testing::StartsWith("time.integrator"));
+}
+
+TEST(Explanation, OfAnExplicitBlowUpNamesTheDampingAtFault) {
+  Model model = beam(2, {.young = 1e5});
+  const double undamped = simulate(beam(2, {.young = 1e5})).stable_step().h;
+  model.damping.push_back(make_rayleigh_damping(*model.mass, 0, model.elasticity[0].get(), 0.5));
+  const Explanation why = blow_up(std::move(model), "symplectic_euler", 0.5 * undamped);
+  EXPECT_THAT(why.cause, HasSubstr("longer than"));
+  EXPECT_THAT(why.place, HasSubstr("damping"));
+}
+
+TEST(Explanation, OfAnExplicitBlowUpKnowsPinsThatCrush) {
+  Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}), {.material = "neo_hookean_log"});
+  Pin all{.name = "press", .motion = [](const Vec3d& X, double t) { return Vec3d{{X[0] * (1 - 10 * t), X[1], X[2]}}; }};
+  for (int v = 0; v < model.mesh.vertex_count(); ++v) all.vertices.push_back(v);
+  model.pins = {all};
+  EXPECT_THAT(blow_up(std::move(model), "symplectic_euler", 0.01).cause, HasSubstr("pins themselves"));
+}
+
+TEST(Explanation, OfATightToleranceKnowsTheRoundOffThatAMethodShows) {
+  for (const char* method : {"vertex_descent", "lbfgs"}) {
+    SimulationOptions tight{.solver = {.method = method}};
+    if (method == std::string("lbfgs")) tight.solver.preconditioner = "mass";
+    tight.solver.minimize.tolerance = 1e-18;
+    const Explanation why = first_failure(tight, Status::iteration_limit);
+    EXPECT_THAT(why.cause, HasSubstr("round-off")) << method;
+    EXPECT_THAT(why.remedy, HasSubstr("solver.tolerance = 1e-1")) << method;
+  }
 }
 
 TEST(Explanation, OfAnIterationLimitNamesTheParameterAtFault) {

@@ -36,6 +36,7 @@ class IncrementalPotential : public Objective {
   double gradient_unit() const override { return factor_; }  // g is a force times f
   double gradient_round_off() const override { return gradient_round_off_; }
   double value_round_off() const override { return value_round_off_; }
+  double growth_stiffness() const { return growth_stiffness_; }  // of V, see value_scale() [J]
 
   // What is known of the iterate at which a minimisation ended: nothing there need be evaluated again. Empty elsewhere.
   std::span<const double> known_values(std::span<const double> q) const;  // of the terms of V [J]

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace aspic {
 namespace {
+
+// A few units in the last place: of a position, and of a strain energy beside the modulus that it is a difference of.
+constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();
 
 // A sum as if made in twice the digits [Neumaier 1974]: the works of single vertices of a body that moves far cancel.
 class LongSum {
@@ -90,18 +94,38 @@ void Ledger::note_worst_vertex(const Pins& pins, StepReport& report) const {
   report.worst_residual = most;
 }
 
-BoundedEnergies Ledger::add(const StepTools& tools, int order, const State& end, const StepForces& forces,
-                            StepReport& report) {
+// The ledger is done with momentum_ and residual_ here.
+void Ledger::allow_moved_pins(const StepTools& tools, const State& end, BoundedEnergies& bounded, Work& work) {
+  const State& start = tools.start;
+  std::vector<double>& moved = residual_;
+  double V = 0, D = 0, T = 0;
+  for (size_t i = 0; i < moved.size(); ++i)
+    moved[i] = tools.pins.holds(static_cast<int>(i / 3)) ? end.q[i] : start.q[i];
+  for (const Energy* term : tools.E.potential()) {
+    const double value = term->value(moved);
+    V += value, bounded.magnitude += std::abs(value);
+  }
+  ++work.values;
+  tell_damping(tools.E, {start.q, tools.h, tools.end_time, start.q});
+  for (const Energy* term : tools.E.damping()) D += term->value(moved);
+  for (size_t i = 0; i < moved.size(); ++i) moved[i] = (moved[i] - start.q[i]) / tools.h - start.qdot[i];
+  T = kinetic_energy(*tools.model.mass, moved, momentum_);
+  bounded.allowed = V + D + T;
+  bounded.magnitude += D + T;
+}
+
+BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator, const State& end,
+                            const StepForces& forces, StepReport& report) {
   const State& start = tools.start;
   const size_t n = end.q.size();
   for (auto* v : {&Ma_, &momentum_, &residual_}) v->assign(n, 0.0);
   double potential_before = 0;
-  const double target = target_work(tools, order, end, potential_before, report);
+  const double target = target_work(tools, integrator.order(), end, potential_before, report);
   for (const double V : elastic_energies(tools.model, start.q, {}, report)) potential_before += V;
   const double kinetic_before = kinetic_energy(*tools.model.mass, start.qdot, momentum_);
   tools.model.mass->multiply(forces.acceleration, Ma_);
 
-  double residual_squared = 0, jump = 0;
+  double residual_squared = 0, jump = 0, round_off = 0;
   LongSum inertia, gradient, damping, reaction, residuals;
   bool pins_moved = false;
   for (size_t i = 0; i < n; ++i) {
@@ -110,6 +134,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, int order, const State& end,
     const bool pinned = tools.pins.holds(static_cast<int>(i / 3));
     pins_moved |= pinned && dx != 0;
     jump += 0.5 * tools.h * tools.h * forces.acceleration[i] * Ma_[i];
+    round_off += kRoundOff * std::abs(end.q[i] * Ma_[i]);
     if (!pinned) residual_squared += r * r;
     // The same products on both sides of the balance, so that no rounding but that of the sums can open it.
     LongSum& rest = pinned ? reaction : residuals;
@@ -147,10 +172,22 @@ BoundedEnergies Ledger::add(const StepTools& tools, int order, const State& end,
 
   double magnitude = report.kinetic + kinetic_before + jump + std::abs(potential_before);
   for (const double V : report.potential) magnitude += std::abs(V);
-  return {.allowed = potential_before + kinetic_before + target,
-          .reached = report.potential_total + jump,
-          .magnitude = magnitude,
-          .pins_moved = pins_moved};
+  BoundedEnergies bounded = {.allowed = potential_before + kinetic_before + target,
+                             .reached = report.potential_total + jump,
+                             .magnitude = magnitude,
+                             .round_off = round_off + kRoundOff * tools.E.growth_stiffness()};
+  if (pins_moved && integrator.is_backward_euler()) allow_moved_pins(tools, end, bounded, report);
+  return bounded;
+}
+
+void judge(const BoundedEnergies& bounded, double accepted, StepReport& report) {
+  const EnergyBound verdict = energy_bound(bounded, accepted);
+  const double slack = bounded.allowed - bounded.reached;
+  const bool is_first = report.energy_bound == EnergyBound::none;
+  report.energy_slack = is_first ? slack : std::min(report.energy_slack, slack);
+  if (is_first || verdict == EnergyBound::broken ||
+      (verdict == EnergyBound::not_guaranteed && report.energy_bound == EnergyBound::holds))
+    report.energy_bound = verdict;
 }
 
 }  // namespace aspic

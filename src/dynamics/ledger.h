@@ -22,7 +22,7 @@ class Ledger {
   // Adds the works of a step that started in tools.start, was acted on by `forces` and ended in `end` to the report,
   // whose energies become those of `end`. Moving targets then stand where they are at the end of the step. What it
   // returns is about a step of backward Euler.
-  BoundedEnergies add(const StepTools& tools, int order, const State& end, const StepForces& forces,
+  BoundedEnergies add(const StepTools& tools, const Integrator& integrator, const State& end, const StepForces& forces,
                       StepReport& report);
 
  private:
@@ -30,12 +30,18 @@ class Ledger {
   // `known`: those at q of all terms, the elastic ones first, or none.
   std::span<const double> elastic_energies(const Model& model, std::span<const double> q, std::span<const double> known,
                                            Work& work);
+  // Puts what E was at its start, divided by h^2, in place of V_t + T_t + W.
+  void allow_moved_pins(const StepTools& tools, const State& end, BoundedEnergies& bounded, Work& work);
   void note_worst_vertex(const Pins& pins, StepReport& report) const;
 
   std::vector<double> Ma_, momentum_, residual_;
   std::vector<double> early_, late_;      // of each load: what its target's motion adds to its energy
   std::vector<double> last_q_, elastic_;  // where the elastic energies were evaluated last, and one for each body
 };
+
+// Judges a step of backward Euler, or one more part of it, by the minimiser's E divided by h^2 [J]. Of parts the report
+// keeps the worst verdict and the smallest slack.
+void judge(const BoundedEnergies& bounded, double accepted, StepReport& report);
 
 // 1/2 qdot' M qdot [J]; `momentum` receives M qdot.
 double kinetic_energy(const MassMatrix& mass, std::span<const double> qdot, std::span<double> momentum);

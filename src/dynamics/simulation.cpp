@@ -101,8 +101,8 @@ struct Simulation::Impl {
       take_back(with, is_interrupted ? before.time : with.end_time, report);
     } else {
       if (!adaptive) {
-        const BoundedEnergies bounded = ledger.add(with, integrator->order(), state, forces, report);
-        if (integrator->is_backward_euler()) judge(bounded, solved, report);
+        const BoundedEnergies bounded = ledger.add(with, *integrator, state, forces, report);
+        if (integrator->is_backward_euler()) judge(bounded, solved.work.value / (options.h * options.h), report);
       }
       if (!is_finite(report)) {
         if (is_success(report.status)) report.status = Status::undefined;
@@ -120,11 +120,6 @@ struct Simulation::Impl {
     report.state_hash = state_hash(state, model.numbering.vertex);
     report.seconds = stopwatch.lap();
     return report;
-  }
-
-  void judge(const BoundedEnergies& bounded, const StepSolve& solved, StepReport& report) const {
-    report.energy_bound = energy_bound(bounded, solved.work.value / (options.h * options.h));
-    report.energy_slack = bounded.allowed - bounded.reached;
   }
 
   // A minimisation that stopped early leaves a state to go on from; a step divided for its accuracy does not.
@@ -150,7 +145,7 @@ struct Simulation::Impl {
     stand_at(time);
     forces.reset(state.q.size());
     for (const Energy* V : E->potential()) V->add_gradient(state.q, 1, forces.gradient);
-    ledger.add(stand_still, integrator->order(), state, forces, report);
+    ledger.add(stand_still, *integrator, state, forces, report);
   }
 
   void describe(const StepSolve& solved, StepReport& report) const {

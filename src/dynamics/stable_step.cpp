@@ -10,14 +10,16 @@ namespace aspic {
 namespace {
 
 constexpr int kIterations = 100;
-constexpr double kSettled = 1e-3;         // relative change of the frequency between two iterations
+constexpr double kSettled = 1e-3;         // relative change of h^2 between two iterations
 constexpr double kSolveTolerance = 1e-6;  // of M
 
-double norm(std::span<const double> v) {
+double product(std::span<const double> a, std::span<const double> b) {
   double sum = 0;
-  for (const double x : v) sum += x * x;
-  return std::sqrt(sum);
+  for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
 }
+
+double norm(std::span<const double> v) { return std::sqrt(product(v, v)); }
 
 int largest_vertex(std::span<const double> v) {
   int largest = -1;
@@ -38,28 +40,38 @@ StableStep stable_step(IncrementalPotential& E, const Model& model, const Pins& 
   const auto solver = make_linear_solver("auto");
   solver->analyze(E.pattern());
   if (!solver->factorize(M)) return {.h = 0};
-  for (Energy* D : E.damping()) D->begin_step({.start = x});  // h = 0: no damping
+  BlockSparse C(E.pattern());
+  for (Energy* D : E.damping()) {
+    D->begin_step({.start = x, .h = 1, .shape = x});
+    D->add_hessian(x, 1, {Definiteness::clamped}, C);
+    D->begin_step({.start = x});  // h = 0: no damping
+  }
   E.begin_step(x, 0, 1);
   const BlockSparse& K = E.hessian(x, {Definiteness::clamped});
 
   // Neighbours move against each other in the fastest vibration.
-  std::vector<double> u(x.size()), Ku(x.size());
+  std::vector<double> u(x.size()), Mu(x.size()), Ku(x.size()), Cu(x.size());
   for (size_t i = 0; i < u.size(); ++i) u[i] = std::cos(2.4 * static_cast<double>(i)) + 0.1;
   pins.set_zero(u);
-  double square = 0;  // of the angular frequency [1/s^2]
+  StableStep stable{.h = std::numeric_limits<double>::infinity()};
   for (int i = 0; i < kIterations && norm(u) > 0; ++i) {
     const double scale = 1 / norm(u);
     for (double& ui : u) ui *= scale;
+    M.multiply(u, Mu);
     K.multiply(u, Ku);
+    C.multiply(u, Cu);
+    const double m = product(u, Mu), k = product(u, Ku) / m, c = product(u, Cu) / m;
+    if (!(k > 0 || c > 0)) break;
+    // Where h^2 k + 2 h c = 4.
+    const double last = stable.h, h = 4 / (c + std::sqrt(c * c + 4 * k));
+    stable = {.h = h, .vertex = largest_vertex(u), .is_damping = 2 * c > h * k};
+    if (std::abs(h * h - last * last) <= kSettled * h * h) break;
+    for (size_t j = 0; j < u.size(); ++j) Ku[j] = h * h * Ku[j] + 2 * h * Cu[j];
     pins.set_zero(Ku);
     solver->solve(Ku, u, kSolveTolerance);
     pins.set_zero(u);
-    const double last = square;
-    square = norm(u);
-    if (std::abs(square - last) <= kSettled * square) break;
   }
-  return {.h = square > 0 ? 2 / std::sqrt(square) : std::numeric_limits<double>::infinity(),
-          .vertex = largest_vertex(u)};
+  return stable;
 }
 
 }  // namespace aspic

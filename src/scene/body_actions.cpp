@@ -64,8 +64,9 @@ void note_jump(const Motion& motion, const std::vector<Vec3d>& starts, const std
 }
 
 // What the second of two pins could select, so that none of the first's vertices is in it.
-std::string leave_out(const Value& first, const Value& second) {
+std::string leave_out(const Value& first, const Value& second, bool leaves_any) {
   const Value &a = first["where"], &b = second["where"];
+  if (!leaves_any) return "remove pin '" + second["name"].text() + "': all of its vertices are in other pins";
   if (!a.is_text() || !b.is_text()) return "let one of them leave it out";
   return "try where = \"(" + b.text() + ") && !(" + a.text() + ")\" in pin '" + second["name"].text() + "'";
 }
@@ -78,12 +79,13 @@ void add_pins(Builder& builder, const PlacedBody& body) {
     const std::string name = body.name() + "." + scene["name"].text();
     Pin pin{name, {}, make_motion(scene["motion"], starts)};
     note_jump(pin.motion, starts, "pin " + name, builder.notes);
+    const bool leaves_any = std::any_of(vertices.begin(), vertices.end(), [&](int v) { return !holder[v]; });
     for (const int v : vertices) {
       if (holder[v])
         throw error_at(scene["where"].place, "vertex " + std::to_string(v) + " of body '" + body.name() + "' at " +
                                                  point_text(body.mesh.rest[v]) + " is in pin '" +
                                                  (*holder[v])["name"].text() + "' and in pin '" + scene["name"].text() +
-                                                 "'; " + leave_out(*holder[v], scene));
+                                                 "'; " + leave_out(*holder[v], scene, leaves_any));
       holder[v] = &scene;
       pin.vertices.push_back(body.model_vertex(v));
     }

@@ -206,7 +206,7 @@ void note_locking(const std::vector<MaterialParameters>& parameters, const std::
   double highest = -1;
   for (const MaterialParameters& p : parameters) highest = std::max(highest, poisson_ratio(p.lame));
   if (highest > kLockingPoisson + 1e-9)
-    notes.push_back("body '" + body + "': Poisson's ratio reaches " + number_text(highest) +
+    notes.push_back("body '" + body + "': Poisson's ratio reaches " + number_text(std::round(1e9 * highest) / 1e9) +
                     "; linear tets lock above 0.45 and deform too little: set material.poisson = 0.45");
 }
 

@@ -15,6 +15,7 @@ constexpr double kFarFromOrigin = 1e8;  // in sizes of the body; half of the 16 
 constexpr double kCrushed = 3;          // rho g H / E: strain at the bottom of a column under its own weight
 constexpr double kDiamond = 1.2e12;     // [Pa]
 constexpr double kSoft = 1e7;           // [Pa] above it few bodies are soft
+constexpr double kLarge = 20;           // [m] above it, lengths may have been meant in millimetres
 
 void note_inverted(const PlacedBody& body, std::vector<std::string>& notes) {
   const TetMesh start{body.start, body.mesh.tets, {}};
@@ -74,11 +75,20 @@ void note_weight(const PlacedBody& body, const Means& mean, const Vec3d& gravity
   if (!scene.find("pin") && !scene.find("spring")) return;  // it falls
   const double strain = mean.density * extent(body.mesh.rest, gravity) / mean.young;
   if (!(strain > kCrushed)) return;
+  const std::string crushed = "body '" + body.name() +
+                              "': its weight crushes it: density * gravity * height / young = " + rounded(strain) +
+                              ", where 1 is much; if ";
+  const Box box = bounding_box(body.mesh.rest);
+  const double size = std::max({box.upper[0] - box.lower[0], box.upper[1] - box.lower[1], box.upper[2] - box.lower[2]});
+  if (size > kLarge && strain < 1e3) {
+    notes.push_back(crushed + "its " + rounded(size) + " m were meant in mm, set body." + body.name() +
+                    ".scale = 0.001");
+    return;
+  }
   double factor = 1e3;
   while (factor < 1e9 && strain > factor) factor *= 1e3;
   const char* unit = factor == 1e3 ? "kPa" : factor == 1e6 ? "MPa" : "GPa";
-  notes.push_back("body '" + body.name() + "': its weight crushes it: density * gravity * height / young = " +
-                  rounded(strain) + ", where 1 is much; if " + rounded(mean.young) + " was meant in " + unit +
+  notes.push_back(crushed + rounded(mean.young) + " was meant in " + unit +
                   ", set material.young = " + rounded(factor * mean.young));
 }
 

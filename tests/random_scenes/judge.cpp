@@ -80,6 +80,8 @@ class Judge {
     }
     is_success(report.status) ? judge_success(report) : judge_failure(report);
     judge_ledger(report);
+    if (report.energy_bound == EnergyBound::broken)
+      fault("the energy bound is broken by " + shortest(-report.energy_slack) + " J", report);
     if (simulation_.options().integrator == "backward_euler") judge_descent(before, report);
   }
 

@@ -165,6 +165,7 @@ export interface StepRow {
   iterations: IterationRow[];
   residual: MaybeNumber; // [N]
   threshold: MaybeNumber;
+  decrement: MaybeNumber; // [J]
   min_det_F: MaybeNumber;
   kinetic: MaybeNumber; // [J], also below
   potential: MaybeNumber[];
@@ -175,6 +176,9 @@ export interface StepRow {
   numerical_loss: MaybeNumber;
   residual_work: MaybeNumber;
   ledger_error: MaybeNumber;
+  energy_bound: "none" | "not_guaranteed" | "holds" | "broken"; // what backward Euler guarantees
+  energy_slack: MaybeNumber; // by how much it holds; null without one [J]
+  state_hash: string | null; // of positions and velocities at its end
   seconds: number; // wall time
   words: { cause: string; place: string; remedy: string } | null; // why it did not converge
 }

@@ -3,16 +3,16 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { excess, kColumns, listed, totals } from "../src/panels/certificate";
 import type { StepRow } from "../src/protocol";
+import { stepRow } from "./rowsOfSteps";
 
 function row(step: number, values: Partial<StepRow>): StepRow {
-  const usual = { status: "converged", success: true, residual: 0.1, threshold: 1, min_det_F: 0.9, ledger_error: 0, iterations: [] };
-  return { step, ...usual, ...values } as unknown as StepRow;
+  return stepRow({ step, residual: 0.1, threshold: 1, min_det_F: 0.9, ...values });
 }
 
 const kSteps = [
-  row(1, { residual: 0.5, min_det_F: 0.2 }),
-  row(2, { residual: 3, status: "iteration_limit", success: false, ledger_error: -7 }),
-  row(3, { residual: null, threshold: 0, min_det_F: null }),
+  row(1, { residual: 0.5, min_det_F: 0.2, energy_slack: 2, decrement: 3, state_hash: "1111111111111111" }),
+  row(2, { residual: 3, status: "iteration_limit", success: false, ledger_error: -7, energy_bound: "broken", energy_slack: -1 }),
+  row(3, { residual: null, threshold: 0, min_det_F: null, energy_bound: "none", energy_slack: null, state_hash: null }),
 ];
 const column = (title: string): (typeof kColumns)[number] => kColumns.find((c) => c.title === title)!;
 
@@ -23,6 +23,8 @@ test("the worst rows come first, and ties in the order of time", () => {
   assert.deepEqual(order("min det F"), [3, 1, 2]);
   assert.deepEqual(order("ledger error [J]"), [2, 1, 3]);
   assert.deepEqual(order("step"), [1, 2, 3]);
+  assert.deepEqual(order("energy bound [J]"), [2, 1, 3]);
+  assert.deepEqual(order("decrement [J]"), [1, 2, 3]);
 });
 
 test("only steps that did not converge are listed when asked for", () => {
@@ -37,4 +39,28 @@ test("totals name the worst steps; what nobody asked for does not count", () => 
   assert.equal(all.largestError?.step, 2);
   assert.equal(excess(kSteps[2]), null);
   assert.equal(totals([]).worstExcess, null);
+  assert.equal(all.held, 1);
+  assert.equal(all.bounded, 2);
+  assert.equal(all.smallestSlack?.step, 2);
+  assert.equal(all.state?.state_hash, "0123456789abcdef");
+});
+
+test("the energy bound is told with its slack", () => {
+  const told = (row: StepRow): unknown => column("energy bound [J]").value(row);
+  assert.deepEqual(kSteps.map(told), ["holds by 2", "broken by 1", "–"]);
+  assert.equal(told(row(4, { energy_bound: "not_guaranteed", energy_slack: -3 })), "not guaranteed");
+});
+
+test("a state is told by its first digits, and whole by its tooltip", () => {
+  const state = column("state");
+  assert.equal(state.value(row(1, {})), "01234567");
+  assert.equal(state.whole?.(row(1, {})), "0123456789abcdef");
+  assert.equal(state.value(kSteps[2]), null);
+});
+
+test("what is bad is marked as such", () => {
+  const bad = (row: StepRow): string[] => kColumns.filter((column) => column.isBad?.(row)).map(({ title }) => title);
+  assert.deepEqual(bad(kSteps[0]), []);
+  assert.deepEqual(bad(kSteps[1]), ["status", "residual / wanted", "energy bound [J]"]);
+  assert.deepEqual(bad(row(4, { min_det_F: -0.5 })), ["min det F"]);
 });

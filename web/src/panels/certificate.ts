@@ -1,4 +1,5 @@
 // What a run's steps certify: who converged, how far off the others are, what the worst values are and where.
+import { short } from "../plots/numbers";
 import type { MaybeNumber, StepRow } from "../protocol";
 
 // Above 1 the step missed what was asked for; null: nothing was asked for.
@@ -9,11 +10,25 @@ export function excess(row: StepRow): MaybeNumber {
 export interface Column {
   title: string;
   meaning: string;
-  value: (row: StepRow) => MaybeNumber | string;
+  value: (row: StepRow) => MaybeNumber | string; // null: there is none
   worse?: (row: StepRow) => number; // larger is worse; without it the step's number decides
+  isBad?: (row: StepRow) => boolean;
+  whole?: (row: StepRow) => string; // where the value is shortened
 }
 
 const kUnknown = -Infinity;
+
+function boundText(row: StepRow): string {
+  if (row.energy_bound === "none") return "–";
+  if (row.energy_bound === "not_guaranteed") return "not guaranteed";
+  return `${row.energy_bound} by ${short(Math.abs(row.energy_slack ?? 0))}`;
+}
+
+function boundBadness(row: StepRow): number {
+  if (row.energy_bound === "none") return kUnknown;
+  if (row.energy_bound === "holds") return -(row.energy_slack ?? 0);
+  return row.energy_bound === "broken" ? Infinity : Number.MAX_VALUE;
+}
 
 export const kColumns: Column[] = [
   { title: "step", meaning: "number of the time step", value: (row) => row.step },
@@ -23,6 +38,7 @@ export const kColumns: Column[] = [
     meaning: "how its minimisation ended; converged and round_off are success",
     value: (row) => row.status,
     worse: (row) => (row.success ? 0 : 1),
+    isBad: (row) => !row.success,
   },
   {
     title: "residual [N]",
@@ -36,6 +52,13 @@ export const kColumns: Column[] = [
     meaning: "above 1: more is left than was asked for",
     value: excess,
     worse: (row) => excess(row) ?? kUnknown,
+    isBad: (row) => (excess(row) ?? 0) > 1,
+  },
+  {
+    title: "decrement [J]",
+    meaning: "what the direction of the last iteration promised to gain: how far the step was from its minimum",
+    value: (row) => row.decrement,
+    worse: (row) => row.decrement ?? kUnknown,
   },
   {
     title: "iterations",
@@ -48,12 +71,26 @@ export const kColumns: Column[] = [
     meaning: "the smallest volume of a tet, relative to its rest; below 0: inverted",
     value: (row) => row.min_det_F,
     worse: (row) => (row.min_det_F === null ? Infinity : -row.min_det_F),
+    isBad: (row) => (row.min_det_F ?? 1) <= 0,
   },
   {
     title: "ledger error [J]",
     meaning: "the part of the energy's change that nothing accounts for",
     value: (row) => row.ledger_error,
     worse: (row) => (row.ledger_error === null ? Infinity : Math.abs(row.ledger_error)),
+  },
+  {
+    title: "energy bound [J]",
+    meaning: "what backward Euler guarantees: V + 1/2 |change of velocity|² in the mass is not above the energy before, plus works",
+    value: boundText,
+    worse: boundBadness,
+    isBad: (row) => row.energy_bound === "broken",
+  },
+  {
+    title: "state",
+    meaning: "hash of positions and velocities at its end: the same on two machines as long as they agree in every bit",
+    value: (row) => row.state_hash?.slice(0, 8) ?? null,
+    whole: (row) => row.state_hash ?? "",
   },
 ];
 
@@ -76,6 +113,10 @@ export interface Totals {
   worstExcess: StepRow | null;
   smallestVolume: StepRow | null;
   largestError: StepRow | null;
+  bounded: number; // steps whose energy bound was judged
+  held: number; // of these
+  smallestSlack: StepRow | null;
+  state: StepRow | null; // the last one with a hash
 }
 
 export function totals(steps: readonly StepRow[]): Totals {
@@ -91,5 +132,9 @@ export function totals(steps: readonly StepRow[]): Totals {
     worstExcess: worst(excess),
     smallestVolume: worst((row) => (row.min_det_F === null ? null : -row.min_det_F)),
     largestError: worst((row) => (row.ledger_error === null ? null : Math.abs(row.ledger_error))),
+    bounded: steps.filter((row) => row.energy_bound === "holds" || row.energy_bound === "broken").length,
+    held: steps.filter((row) => row.energy_bound === "holds").length,
+    smallestSlack: worst((row) => (row.energy_slack === null ? null : -row.energy_slack)),
+    state: steps.reduce<StepRow | null>((found, row) => (row.state_hash ? row : found), null),
   };
 }

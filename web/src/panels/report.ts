@@ -69,13 +69,10 @@ class StepTable {
   private row(row: StepRow): HTMLElement {
     const cells = kColumns.map((column, i) => {
       const value = text(column.value(row));
-      if (i > 0) return element("td", {}, value);
+      if (i > 0) return element("td", { class: column.isBad?.(row) ? "bad" : undefined, title: column.whole?.(row) }, value);
       const show = button({ text: value, title: `Show step ${value}` }, () => this.store.source.send({ do: "rewind", step: row.step }));
       return element("td", {}, show);
     });
-    if (!row.success) cells[2].className = "bad";
-    if ((excess(row) ?? 0) > 1) cells[5].className = "bad";
-    if ((row.min_det_F ?? 1) <= 0) cells[7].className = "bad";
     return element("tr", {}, ...cells);
   }
 }
@@ -95,6 +92,9 @@ function drawTotals(list: HTMLElement, steps: readonly StepRow[]): void {
     entry("largest residual / wanted", at(all.worstExcess, excess)),
     entry("smallest det F", at(all.smallestVolume, (row) => row.min_det_F)),
     entry("largest ledger error [J]", at(all.largestError, (row) => row.ledger_error)),
+    ...(all.bounded ? [entry("energy bound", `held in ${all.held} of ${all.bounded}`, all.held < all.bounded ? "bad" : "good")] : []),
+    ...(all.bounded ? [entry("smallest slack [J]", at(all.smallestSlack, (row) => row.energy_slack))] : []),
+    ...(all.state ? [entry(`state after step ${all.state.step}`, all.state.state_hash ?? "")] : []),
   );
 }
 

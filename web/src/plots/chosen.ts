@@ -231,7 +231,8 @@ export class Chosen extends Emitter<Events> {
 function unfinished(step: number, time: number, iterations: IterationRow[]): StepRow {
   const unknown = { residual: null, threshold: null, min_det_F: null, kinetic: null, mouse_work: null, probe_work: null, pin_work: null };
   const more = { damping_loss: null, numerical_loss: null, residual_work: null, ledger_error: null, potential: [] };
-  return { step, time, status: "under way", success: true, iterations, ...unknown, ...more, seconds: 0, words: null };
+  const certificate = { decrement: null, energy_bound: "none" as const, energy_slack: null, state_hash: null };
+  return { step, time, status: "under way", success: true, iterations, ...unknown, ...more, ...certificate, seconds: 0, words: null };
 }
 
 const known = new WeakMap<Page, Chosen>();
