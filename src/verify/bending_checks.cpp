@@ -38,7 +38,7 @@ std::vector<double> drops(int n, const std::string& material, const std::vector<
         return step == 0 ? 0.0 : kLoads.at(step - 1);
       }));
   const int tip =
-      vertices_where(model.mesh, [n](const Vec3d& X) { return X[0] > 1 - 1e-9 && std::abs(X[1]) < 1e-9; }).at(0);
+      vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 1 - 1e-9 && std::abs(X[1]) < 1e-9; }).at(0);
   SimulationOptions options{.h = 1, .integrator = "quasi_static", .solver = {}};
   options.solver.minimize.tolerance = 1e-13;  // bending is soft beside the moduli that forces are judged by
   Simulation simulation = simulate(std::move(model), options);
