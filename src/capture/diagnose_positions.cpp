@@ -217,7 +217,7 @@ class PositionDiagnosis {
     if (usual_motion([](const Vec3d& x, const Vec3d& X) { return X + x; }) < motion / kLever)
       return refuse(data_.source.positions, what, "these are motions; give places: add those of the markers at rest");
     for (const auto& [i, j] : {std::pair{0, 1}, {0, 2}, {1, 2}})
-      if (usual_motion([i, j](Vec3d x, const Vec3d&) { return std::swap(x[i], x[j]), x; }) < motion / kLever)
+      if (usual_motion([i = i, j = j](Vec3d x, const Vec3d&) { return std::swap(x[i], x[j]), x; }) < motion / kLever)
         return refuse(data_.source.positions, what,
                       std::string("the columns ") + "xyz"[i] + " and " + "xyz"[j] + " seem to be swapped");
     findings_.warning(
