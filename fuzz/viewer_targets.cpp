@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using viewer::Json;
 
-constexpr size_t kMostMessages = 16;
+constexpr size_t kMostMessages = 8;
 constexpr double kFewTets = 100;
 
 // Whatever a page is told can be read by it, and what is refused can be shown.

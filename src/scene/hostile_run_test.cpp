@@ -88,6 +88,12 @@ TEST(HostileScene, IsQuotedInOneLine) {
   }
 }
 
+TEST(HostileScene, HasAtMostTenThousandBodies) {
+  std::string bodies;
+  for (int i = 0; i < 10001; ++i) bodies += "[[body]]\nshape = { box = { upper = [1, 1, 1], cells = [1, 1, 1] } }\n";
+  EXPECT_THAT(refusal(bodies), HasSubstr("10001 bodies; at most 10000 are simulated"));
+}
+
 TEST(HostileScene, TablesHaveLinesOfAtMostAMebibyte) {
   const TestFolder folder;
   const fs::path file = folder.write("values.csv", std::string(size_t{1} << 21, ','));

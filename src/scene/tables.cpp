@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kLongestLine = size_t{1} << 20;
+constexpr size_t kMostBeyond = 100000;  // lines that are too many are counted up to here, for the message
 
 // The words of a line, without its separators.
 std::vector<std::string_view> words_of(std::string_view line) {
@@ -131,12 +132,13 @@ std::vector<double> read_number_table(const fs::path& path, size_t columns, size
                          " are needed for each of the " + std::to_string(rows) + " lines");
     for (const std::string_view word : words) {
       if (!parse_finite(word, number)) throw InvalidInput(where + shown(word) + " is not a finite number");
-      if (count < rows) values.push_back(number);
+      values.push_back(number);
     }
-    ++count;
+    if (++count > kMostBeyond + rows) break;
   }
   if (count != rows)
-    throw error_at(place, path.string() + " has " + std::to_string(count) + " lines of numbers; one for " + row +
+    throw error_at(place, path.string() + " has " + (count > kMostBeyond + rows ? "at least " : "") +
+                              std::to_string(count) + " lines of numbers; one for " + row +
                               " is needed, " + std::to_string(rows) + " in all");
   return values;
 }
