@@ -27,7 +27,7 @@ void refuse_links(const std::filesystem::path& folder, FunctionRef<bool(const st
   namespace fs = std::filesystem;
   std::error_code error;
   for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    if (!fs::is_symlink(entry->symlink_status()) || (entry.depth() == 0 && !counts(entry->path()))) continue;
+    if (!fs::is_symlink(entry->symlink_status()) || !counts(entry->path())) continue;
     throw InvalidInput(entry->path().string() +
                        ": is a link, and results would go where it leads; put a copy in its place, or let the whole "
                        "folder be a link");

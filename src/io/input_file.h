@@ -12,8 +12,7 @@ std::ifstream open_input(const std::filesystem::path& path);  // throws InvalidI
 std::ifstream try_open_input(const std::filesystem::path& path);
 
 // Before writing into a folder that may come from others. Throws InvalidInput where something in it, or in a folder in
-// it, is a link: what is written there would go where it leads. `counts` says which entries of the folder itself
-// matter.
+// it, is a link that counts: what is written there would go where it leads.
 void refuse_links(const std::filesystem::path& folder, FunctionRef<bool(const std::filesystem::path&)> counts);
 
 }  // namespace aspic

@@ -74,7 +74,7 @@ bool is_name_of_run(const fs::path& file) {
   const RunLayout layout("");
   for (const fs::path& known : {layout.scene(), layout.steps(), layout.iterations(), layout.timings(),
                                 layout.checkpoint(), previous_checkpoint(layout.checkpoint()), layout.index(),
-                                layout.usd(), layout.report(), layout.frames(), layout.skins(), fs::path("inputs")})
+                                layout.usd(), layout.report(), layout.frames(), layout.skins()})
     if (name == known.filename()) return true;
   return name.starts_with("trace") || is_unfinished(file);
 }
@@ -124,7 +124,10 @@ bool RunLayout::holds_run() const {
 }
 
 void RunLayout::refuse_links() const {
-  aspic::refuse_links(root_, [](const fs::path& file) { return is_name_of_run(file); });
+  // What lies in inputs is replaced before a run begins, and not written to afterwards.
+  aspic::refuse_links(root_, [&](const fs::path& file) {
+    return file.parent_path() == root_ ? is_name_of_run(file) : file.parent_path().filename() != "inputs";
+  });
 }
 
 bool RunLayout::is_barely_begun() const {

@@ -138,8 +138,8 @@ std::vector<double> read_number_table(const fs::path& path, size_t columns, size
   }
   if (count != rows)
     throw error_at(place, path.string() + " has " + (count > kMostBeyond + rows ? "at least " : "") +
-                              std::to_string(count) + " lines of numbers; one for " + row +
-                              " is needed, " + std::to_string(rows) + " in all");
+                              std::to_string(count) + " lines of numbers; one for " + row + " is needed, " +
+                              std::to_string(rows) + " in all");
   return values;
 }
 
