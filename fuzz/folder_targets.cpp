@@ -12,9 +12,11 @@
 #include "io/mesh_file.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
+#include "run_files.h"
 #include "scene/material_file.h"
 #include "scene/run_directory.h"
 #include "scene/scene.h"
+#include "scene/tables.h"
 #include "several_files.h"
 #include "targets.h"
 
@@ -22,8 +24,6 @@ namespace aspic::fuzz {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kMostTets = 300;
 
 TetMesh small_box() { return make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}); }
 
@@ -45,28 +45,6 @@ fs::path folder_with_meshes() {
   return folder;
 }
 
-SceneOptions small_scenes() {
-  return {.mesher = "/nonexistent", .limit = {.tets = kMostTets, .why = "are fuzzed", .counts_files = true}};
-}
-
-// Puts each file of the text into the folder and removes them at the end.
-class Files {
- public:
-  Files(const fs::path& folder, std::string_view bytes, const std::vector<std::string>& allowed) {
-    for (const auto& [name, contents] : split_files(bytes, allowed))
-      put_file(paths_.emplace_back(folder / name), contents);
-  }
-  Files(const Files&) = delete;
-  Files& operator=(const Files&) = delete;
-  ~Files() {
-    std::error_code ignored;
-    for (const fs::path& path : paths_) fs::remove(path, ignored);
-  }
-
- private:
-  std::vector<fs::path> paths_;
-};
-
 // Asks what a fit asks, of a model that is the identity.
 class Identity : public LeastSquares {
  public:
@@ -83,10 +61,6 @@ class Identity : public LeastSquares {
   }
 };
 
-void make_checkpoint_right(const fs::path& path, std::string_view fingerprint) {
-  if (fs::exists(path)) put_file(path, with_right_checksum(with_fingerprint(read_file(path), fingerprint)));
-}
-
 }  // namespace
 
 void scene(std::string_view bytes) {
@@ -96,6 +70,8 @@ void scene(std::string_view bytes) {
   require(built.simulation.model().mesh.tet_count() <= kMostTets, "the limit of tets holds");
   require(built.steps >= 0, "the number of steps is none or more");
   for (const double q : built.simulation.state().q) require(std::isfinite(q), "positions are finite");
+  require_printable(built.notes);
+  for (const BodyRange& body : built.simulation.model().bodies) require_printable({body.name});
 }
 
 void material(std::string_view bytes) {
@@ -115,7 +91,9 @@ void data_set(std::string_view bytes) {
   const Files files(folder, bytes,
                     {"capture.toml", "markers.csv", "cases.csv", "positions.csv", "rest.msh", "patch.csv"});
   const DataSet data = read_data_set(folder);
-  diagnose(data);
+  for (const DataFinding& finding : diagnose(data)) require_printable({finding.where, finding.what, finding.remedy});
+  require_printable(data.notes);
+  for (const LoadCase& measured : data.experiment.cases) require_printable({measured.name});
   for (const SurfacePoint& marker : data.experiment.markers)
     for (const int v : marker.vertices) require(v >= 0 && v < data.experiment.mesh.vertex_count(), "markers lie on it");
 }
@@ -144,19 +122,22 @@ void journal(std::string_view bytes) {
 }
 
 void run_folder(std::string_view bytes) {
-  static const std::string kScene =
-      "[time]\nduration = 0.1\nstep = 0.01\n[[body]]\nname = \"a\"\nshape = { box = { lower = [0, 0, 0], "
-      "upper = [1, 1, 1], cells = [1, 1, 1] } }\n";
+  static const Folder begun = begun_run(0);
   const fs::path run = folder_of_process() / "run";
-  fs::remove_all(run);
-  put_file(folder_of_process() / "scene.toml", kScene);
-  { RunDirectory::create(run, load_scene(folder_of_process() / "scene.toml"), ExistingRun::overwrite); }
+  begun.restore(run);
   const Files files(run, bytes,
                     {"checkpoint.bin", "steps.csv", "iterations.csv", "timings.csv", "scene.toml", "run.pvd"});
   Scene again = load_scene(scene_of_run(run), small_scenes());
   make_checkpoint_right(run / "checkpoint.bin", fingerprint(again.resolved));
   RunDirectory resumed = RunDirectory::resume(run, again);
   require(again.simulation.steps_taken() >= 0, "a run that goes on has taken no negative number of steps");
+}
+
+void values(std::string_view bytes) {
+  const fs::path path = folder_of_process() / "values.csv";
+  put_file(path, bytes);
+  const size_t columns = bytes.empty() ? 1 : 1 + static_cast<unsigned char>(bytes[0]) % 3;
+  require(read_number_table(path, columns, 2, "a tet", {}).size() == 2 * columns, "a table has the size that it needs");
 }
 
 }  // namespace aspic::fuzz

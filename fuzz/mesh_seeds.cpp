@@ -43,6 +43,8 @@ std::vector<Seed> mesh_seeds() {
       {"gmsh", "surface_binary", gmsh_bytes(surface, FileEncoding::binary)},
       {"medit", "tets", medit_text(tets)},
       {"medit", "surface", medit_text(surface)},
+      {"doctor", "tets", medit_text(tets)},
+      {"doctor", "surface", off_text(surface)},
       {"tetgen", "tets", pair.node + "====\n" + pair.ele},
       {"obj", "surface", obj_text(surface)},
       {"off", "surface", off_text(surface)},

@@ -10,6 +10,8 @@
 #include "io/stl.h"
 #include "io/tetgen.h"
 #include "io/vtu.h"
+#include "mesh/doctor.h"
+#include "mesh/surface.h"
 #include "targets.h"
 
 namespace aspic::fuzz {
@@ -33,9 +35,14 @@ void require_valid(const MeshContent& mesh) {
   require(mesh.region.empty() || mesh.region.size() == mesh.tets.size(), "each tet has its region");
 }
 
+void require_printable(const std::vector<Finding>& findings) {
+  for (const Finding& finding : findings) fuzz::require_printable({finding.name, finding.message, finding.remedy});
+}
+
 void require_lengths(const std::vector<Field>& fields, size_t items) {
   for (const Field& field : fields)
     require(field.values.size() == items * static_cast<size_t>(field.components), "a field has a value per item");
+  for (const Field& field : fields) fuzz::require_printable({field.name});
 }
 
 }  // namespace
@@ -61,6 +68,28 @@ void vtu(std::string_view bytes) {
   require(grid.mesh.tets.empty() || grid.triangles.triangles.empty(), "tets or triangles");
   require_lengths(grid.point_fields, std::max(grid.mesh.rest.size(), grid.triangles.vertices.size()));
   require_lengths(grid.cell_fields, std::max(grid.mesh.tets.size(), grid.triangles.triangles.size()));
+}
+
+void doctor(std::string_view bytes) {
+  constexpr size_t kMost = 2000;  // elements
+  if (bytes.starts_with("OFF")) {
+    MeshContent content = parse_off("file", bytes);
+    TriMesh surface{std::move(content.vertices), std::move(content.triangles)};
+    if (surface.triangles.size() > kMost) return;
+    require_printable(diagnose(surface));
+    fuzz::require_printable(repair(surface));
+    require_indices(surface.triangles, surface.vertices.size());
+    require_printable(diagnose(surface));
+    return;
+  }
+  MeshContent content = parse_medit("file", bytes);
+  TetMesh mesh{std::move(content.vertices), std::move(content.tets), std::move(content.region)};
+  if (mesh.tets.size() > kMost) return;
+  require_printable(diagnose(mesh));
+  quality(mesh);
+  fuzz::require_printable(repair(mesh));
+  require_indices(mesh.tets, mesh.rest.size());
+  boundary_surface(mesh);
 }
 
 }  // namespace aspic::fuzz

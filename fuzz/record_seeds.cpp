@@ -114,6 +114,8 @@ std::vector<Seed> scene_seeds() {
       {"scene", "torus",
        with_body("shape = { torus = { major_radius = 1, minor_radius = 0.3, size = 0.6 } }\nmaterial = { "
                  "model = \"stvk\", young = \"1e5 * (1 + X)\" }")},
+      {"values", "one", "young\n1e5\n2e5\n"},
+      {"values", "three", "# three\n1, 2, 3\n4; 5; 6\n"},
       {"scene", "fill", with_body("mesh = \"skin.obj\"\nmesh_size = 0.5")},
   };
 }

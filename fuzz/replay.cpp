@@ -14,32 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Target kTargets[] = {
-    {"gmsh", gmsh},
-    {"medit", medit},
-    {"tetgen", tetgen},
-    {"vtu", vtu},
-    {"obj", obj},
-    {"off", off},
-    {"ply", ply},
-    {"stl", stl},
-    {"gzip", gzip},
-    {"base64", base64},
-    {"xml", xml},
-    {"csv", csv},
-    {"material", material},
-    {"checkpoint", checkpoint},
-    {"point_cache", point_cache},
-    {"run_folder", run_folder},
-    {"journal", journal},
-    {"data_set", data_set},
-    {"curves", curves},
-    {"toml", toml},
-    {"scene", scene},
-    {"expression", expression},
-    {"overrides", overrides},
-};
-
 std::vector<fs::path> files_of(int count, char** arguments) {
   std::vector<fs::path> files;
   for (int i = 0; i < count; ++i)
@@ -57,10 +31,10 @@ std::vector<fs::path> files_of(int count, char** arguments) {
 int main(int count, char** arguments) {
   using namespace aspic::fuzz;
   const std::string name = count > 1 ? arguments[1] : "";
-  const auto target = std::find_if(std::begin(kTargets), std::end(kTargets), [&](auto& t) { return t.name == name; });
-  if (count < 3 || target == std::end(kTargets)) {
+  const Target* target = target_named(name);
+  if (count < 3 || !target) {
     std::fprintf(stderr, "usage: replay TARGET FILE|FOLDER ...\nTargets:");
-    for (const Target& t : kTargets) std::fprintf(stderr, " %s", std::string(t.name).c_str());
+    for (const Target& t : targets()) std::fprintf(stderr, " %s", std::string(t.name).c_str());
     std::fprintf(stderr, "\n");
     return 2;
   }

@@ -1,5 +1,5 @@
-// Writes the seeds of all targets into a folder, each small: "seeds FOLDER". Meshes come from the library's writers and
-// from the examples of its tests.
+// Writes the seeds of all targets, each small, and the dictionaries that the library knows: "seeds fuzz" into
+// fuzz/corpus and fuzz/dictionaries. Meshes come from the library's writers and from the examples of its tests.
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -21,9 +21,13 @@ void write_seeds(const std::filesystem::path& folder, const std::vector<Seed>& s
 int main(int count, char** arguments) {
   using namespace aspic::fuzz;
   if (count != 2) {
-    std::fprintf(stderr, "usage: seeds FOLDER\n");
+    std::fprintf(stderr, "usage: seeds FOLDER, for example fuzz\n");
     return 2;
   }
-  for (const auto seeds : {mesh_seeds, vtu_seeds, part_seeds, record_seeds, scene_seeds})
-    write_seeds(arguments[1], seeds());
+  const std::filesystem::path folder = arguments[1];
+  for (const auto seeds : {mesh_seeds, vtu_seeds, part_seeds, record_seeds, scene_seeds, viewer_seeds})
+    write_seeds(folder / "corpus", seeds());
+  std::filesystem::create_directories(folder / "dictionaries");
+  for (const Dictionary& dictionary : dictionaries())
+    aspic::write_file(folder / "dictionaries" / (dictionary.target + ".dict"), dictionary.text);
 }

@@ -14,5 +14,12 @@ std::vector<Seed> vtu_seeds();
 std::vector<Seed> part_seeds();
 std::vector<Seed> record_seeds();
 std::vector<Seed> scene_seeds();
+std::vector<Seed> viewer_seeds();
+
+struct Dictionary {
+  std::string target, text;  // as libFuzzer reads it
+};
+
+std::vector<Dictionary> dictionaries();
 
 }  // namespace aspic::fuzz

@@ -39,6 +39,16 @@ void put_file(const fs::path& path, std::string_view bytes) {
   std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
+Files::Files(const fs::path& folder, std::string_view bytes, const std::vector<std::string>& allowed) {
+  for (const auto& [name, contents] : split_files(bytes, allowed))
+    put_file(paths_.emplace_back(folder / name), contents);
+}
+
+Files::~Files() {
+  std::error_code ignored;
+  for (const fs::path& path : paths_) fs::remove(path, ignored);
+}
+
 const fs::path& folder_of_process() {
   static const TemporaryFolder folder;
   return folder.path();

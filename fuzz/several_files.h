@@ -18,6 +18,18 @@ std::string joined_files(const std::vector<std::pair<std::string, std::string>>&
 // Without fsync: nothing here needs to outlive the process.
 void put_file(const std::filesystem::path& path, std::string_view bytes);
 
+// Puts each file of such a text into a folder, and removes them at the end.
+class Files {
+ public:
+  Files(const std::filesystem::path& folder, std::string_view bytes, const std::vector<std::string>& allowed);
+  Files(const Files&) = delete;
+  Files& operator=(const Files&) = delete;
+  ~Files();
+
+ private:
+  std::vector<std::filesystem::path> paths_;
+};
+
 // A folder of this process, for a target that needs files.
 const std::filesystem::path& folder_of_process();
 

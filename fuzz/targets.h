@@ -1,9 +1,11 @@
 // What the fuzzers feed: one function per reader of files that others wrote. Each takes any bytes, and either reads
 // them or throws InvalidInput; anything else that happens is a fault. What was read is checked for what the rest of the
-// library relies on.
+// library relies on, and whatever is said of it for what a terminal can be shown.
 #pragma once
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace aspic::fuzz {
 
@@ -23,6 +25,7 @@ void obj(std::string_view bytes);
 void off(std::string_view bytes);
 void ply(std::string_view bytes);
 void stl(std::string_view bytes);
+void doctor(std::string_view bytes);  // OFF or Medit, examined and repaired
 // Parts of files.
 void gzip(std::string_view bytes);
 void base64(std::string_view bytes);
@@ -31,21 +34,32 @@ void csv(std::string_view bytes);
 // Runs and fits.
 void checkpoint(std::string_view bytes);
 void point_cache(std::string_view bytes);
-void run_folder(std::string_view bytes);  // files in one text, see several_files.h
+void run_folder(std::string_view bytes);     // files in one text, see several_files.h
+void run_recording(std::string_view bytes);  // of the files of a run
 void journal(std::string_view bytes);
 void material(std::string_view bytes);
 void data_set(std::string_view bytes);  // files in one text
 void curves(std::string_view bytes);
 // Scenes.
 void toml(std::string_view bytes);
-void scene(std::string_view bytes);  // built, with at most a few hundred tets
+void scene(std::string_view bytes);   // built, with at most a few hundred tets
+void values(std::string_view bytes);  // a table of numbers per element
 void expression(std::string_view bytes);
 void overrides(std::string_view bytes);  // one per line
 
-// Calls `feed` and returns what InvalidInput said, which is what a reader should throw; empty: it was read.
+// The viewer's page.
+void page_text(std::string_view bytes);  // addresses, heads of messages, recorded sessions
+void session(std::string_view bytes);    // messages to a session, one per line
+
+std::span<const Target> targets();
+const Target* target_named(std::string_view name);  // null: there is none
+
+// Calls `feed` and returns what InvalidInput said, which is what a reader should throw; empty: it was read. The message
+// must be a few lines that a terminal can be shown.
 std::string attempt(Feed feed, std::string_view bytes);
 
 // Ends the program when a target's promise does not hold, in every build.
 void require(bool holds, const char* what);
+void require_printable(const std::vector<std::string>& texts);  // what is told beside: notes, names
 
 }  // namespace aspic::fuzz

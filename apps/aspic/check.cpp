@@ -10,6 +10,7 @@
 #include "aspic/check_derivatives.h"
 #include "aspic/commands.h"
 #include "base/error.h"
+#include "base/printable.h"
 #include "io/mesh_file.h"
 #include "mesh/doctor.h"
 #include "scene/scene.h"
@@ -88,14 +89,14 @@ std::string counts(const TriMesh& mesh) {
 
 template <class Mesh>
 int check_mesh(const Arguments& arguments, Mesh mesh) {
-  fmt::print("{}: {}\n", arguments.input.string(), counts(mesh));
+  fmt::print("{}: {}\n", printable(arguments.input.string()), counts(mesh));
   std::vector<Finding> findings = examine(mesh);
   if (arguments.repair) {
     const std::vector<std::string> actions = repair(mesh);
     fmt::print("\nrepair: {}\n",
                actions.empty() ? "nothing could be done" : fmt::format("{}", fmt::join(actions, "\n  ")));
     write_mesh(arguments.output, mesh);
-    fmt::print("{}: {}\n", arguments.output.string(), counts(mesh));
+    fmt::print("{}: {}\n", printable(arguments.output.string()), counts(mesh));
     findings = examine(mesh);
   }
   return has_errors(findings) ? exit_bad_input : exit_done;
@@ -119,7 +120,7 @@ int check_scene(const Arguments& arguments) {
   }
   const Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides, .mesher = {}});
   const Model& model = scene.simulation.model();
-  fmt::print("{}: {} steps, {} bodies, {}\n", arguments.input.string(), scene.steps, model.bodies.size(),
+  fmt::print("{}: {} steps, {} bodies, {}\n", printable(arguments.input.string()), scene.steps, model.bodies.size(),
              counts(model.mesh));
   for (const std::string& note : scene.notes) fmt::print("note: {}\n", note);
   bool wrong = false;

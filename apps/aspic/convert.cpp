@@ -7,6 +7,7 @@
 
 #include "aspic/commands.h"
 #include "base/error.h"
+#include "base/printable.h"
 #include "io/mesh_file.h"
 #include "mesh/surface.h"
 
@@ -40,14 +41,14 @@ const MeshFormat& format_of(const fs::path& path) {
 template <class Mesh>
 int write(const Arguments& arguments, const Mesh& mesh, const std::string& what) {
   write_mesh(arguments.out, mesh, arguments.binary ? FileEncoding::binary : FileEncoding::ascii);
-  fmt::print("{}: {}{}\n", arguments.out.string(), what, describe(mesh));
+  fmt::print("{}: {}{}\n", printable(arguments.out.string()), what, describe(mesh));
   return exit_done;
 }
 
 int convert(const Arguments& arguments) {
   const MeshFormat& format = format_of(arguments.out);
   const auto mesh = read_mesh(arguments.in);
-  fmt::print("{}: {}\n", arguments.in.string(), std::visit([](const auto& m) { return describe(m); }, mesh));
+  fmt::print("{}: {}\n", printable(arguments.in.string()), std::visit([](const auto& m) { return describe(m); }, mesh));
 
   if (const auto* tets = std::get_if<TetMesh>(&mesh)) {
     if (format.writes_tets && !arguments.surface) return write(arguments, *tets, "");

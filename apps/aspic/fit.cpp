@@ -15,6 +15,7 @@
 #include "aspic/interrupt.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/printable.h"
 #include "capture/fit_folder.h"
 #include "capture/fit_run.h"
 #include "material/registry.h"
@@ -88,17 +89,19 @@ std::string words_of(const DataFinding& finding) {
 // Refuses data that would be fitted in vain, and tells the worst of what is odd about others.
 void heed_findings(const DataSet& data, const fs::path& path) {
   constexpr int kMostTold = 3;
-  std::string errors;
-  std::vector<std::string> warnings;
+  std::vector<std::string> errors, warnings;
   for (const DataFinding& finding : diagnose(data)) {
-    if (finding.severity == Severity::error) errors += (errors.empty() ? "" : "\n") + words_of(finding);
+    if (finding.severity == Severity::error) errors.push_back(words_of(finding));
     if (finding.severity == Severity::warning) warnings.push_back(words_of(finding));
   }
-  if (!errors.empty()) throw InvalidInput(fmt::format("{}\n(aspic fit --check {} tells more)", errors, path.string()));
+  if (!errors.empty()) {
+    errors.push_back(fmt::format("(aspic fit --check {} tells more)", path.string()));
+    throw InvalidInput(errors);
+  }
   const int count = static_cast<int>(warnings.size());
   for (int i = 0; i < std::min(count, kMostTold); ++i) fmt::print(stderr, "warning: {}\n", warnings[i]);
   if (count > kMostTold)
-    fmt::print(stderr, "warning: and {} more: aspic fit --check {}\n", count - kMostTold, path.string());
+    fmt::print(stderr, "warning: and {} more: aspic fit --check {}\n", count - kMostTold, printable(path.string()));
 }
 
 // One fit, and everyone who listens to it.

@@ -13,6 +13,7 @@
 #include "aspic/commands.h"
 #include "aspic/plot.h"
 #include "base/error.h"
+#include "base/printable.h"
 #include "capture/test_curves.h"
 #include "io/csv_reader.h"
 #include "io/text_scanner.h"
@@ -233,7 +234,7 @@ int fit_curves(const CurveFitRequest& request) {
   std::vector<Fitted> all;
   for (const std::filesystem::path& file : request.files)
     for (const std::string& material : request.materials) {
-      Fitted fitted{.data = file.stem().string(), .curves = chosen(file, request.tests), .fit = {}};
+      Fitted fitted{.data = printable(file.stem().string()), .curves = chosen(file, request.tests), .fit = {}};
       CurveFitOptions options = request.options;
       options.material = material;
       fitted.fit = aspic::fit_curves(fitted.curves, options);

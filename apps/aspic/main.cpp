@@ -12,6 +12,7 @@
 
 #include "aspic/commands.h"
 #include "base/error.h"
+#include "base/printable.h"
 
 namespace aspic::cli {
 namespace {
@@ -73,7 +74,7 @@ int report_parse_error(const CLI::App& app, const CLI::ParseError& error, const 
     return exit_done;
   }
   const std::string meant = arguments.empty() ? "" : hint(app, arguments);
-  fmt::print(stderr, "error: {}\n", meant.empty() ? error.what() : meant);
+  fmt::print(stderr, "error: {}\n", printable(meant.empty() ? error.what() : meant));
   const auto chosen = app.get_subcommands();
   fmt::print(stderr, "'aspic {}--help' tells what is possible.\n", chosen.empty() ? "" : chosen[0]->get_name() + " ");
   return exit_bad_input;
@@ -133,7 +134,7 @@ int main(int argc, char** argv) {
       return cli::exit_bad_input;
     }
     fmt::print(stderr, "internal error: {}\nThis should not happen; please report it with the command and its input.\n",
-               error.what());
+               printable(error.what()));
   }
   return cli::exit_internal_error;
 }

@@ -16,8 +16,10 @@
 #include "base/deadline.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/printable.h"
 #include "dynamics/explanation.h"
 #include "dynamics/state_hash.h"
+#include "io/input_file.h"
 #include "scene/run_directory.h"
 #include "scene/scene.h"
 #include "scene/trace.h"
@@ -95,7 +97,7 @@ RunDirectory open_directory(const Arguments& arguments, Scene& scene) {
 
 // How many of the steps that a resumed run keeps did not converge: the exit code is that of the whole run.
 int unconverged_before(const fs::path& directory, int steps) {
-  std::ifstream file(directory / "steps.csv");
+  std::ifstream file = open_input(directory / "steps.csv");
   std::string line;
   std::getline(file, line);  // step,time,status,...
   int count = 0;
@@ -187,7 +189,7 @@ class Runner {
       fmt::print(stderr, "warning: no landscape {0}:{1}: the run has no iteration {1} of step {0}\n", at.step,
                  at.iteration);
     draw_landscapes();
-    if (!arguments_.quiet) fmt::print(human_, "trace      {}\n", trace_->folder().string());
+    if (!arguments_.quiet) fmt::print(human_, "trace      {}\n", printable(trace_->folder().string()));
   }
 
   void draw_landscapes() const {

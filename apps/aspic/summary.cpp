@@ -11,6 +11,7 @@
 
 #include "aspic/progress.h"
 #include "base/hash.h"
+#include "base/printable.h"
 
 namespace aspic::cli {
 namespace {
@@ -46,10 +47,10 @@ std::string step_duration_text(double seconds) {
 }
 
 void print_results(std::FILE* stream, const std::filesystem::path& directory) {
-  fmt::print(stream, "results    {}\n", directory.string());
+  fmt::print(stream, "results    {}\n", printable(directory.string()));
   for (const Viewer& viewer : kViewers) {
     for (const auto& file : files(directory / viewer.folder, viewer.extension)) {
-      fmt::print(stream, "           {}\n", fmt::format(fmt::runtime(viewer.advice), file.string()));
+      fmt::print(stream, "           {}\n", fmt::format(fmt::runtime(viewer.advice), printable(file.string())));
     }
   }
 }
@@ -157,7 +158,7 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
   fmt::print(stream, "state      {} after step {}\n", hex_digits(end.state_hash), end.steps_taken);
   print_results(stream, end.directory);
   if (end.interrupted || end.time_limit > 0) {
-    fmt::print(stream, "continue   aspic run {} --resume\n", end.directory.string());
+    fmt::print(stream, "continue   aspic run {} --resume\n", printable(end.directory.string()));
   }
 }
 

@@ -27,12 +27,12 @@ std::string first_indices(const std::vector<int>& indices) {
 }
 
 void check(const std::filesystem::path& path, const TriMesh& mesh) {
-  std::string errors;
+  std::vector<std::string> errors;
   for (const Finding& finding : diagnose(mesh)) {
     if (finding.severity != Severity::error) continue;
-    errors += (errors.empty() ? "" : "\n") + path.string() + ": " + finding.message;
-    if (!finding.indices.empty()) errors += " [" + first_indices(finding.indices) + "]";
-    errors += "; " + finding.remedy;
+    std::string& error = errors.emplace_back(path.string() + ": " + finding.message);
+    if (!finding.indices.empty()) error += " [" + first_indices(finding.indices) + "]";
+    error += "; " + finding.remedy;
   }
   if (!errors.empty()) throw InvalidInput(errors);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/printable.h"
 
 namespace aspic::viewer {
 namespace {
@@ -14,11 +15,7 @@ constexpr int kDeepest = 12;        // of a message
 constexpr size_t kMostTexts = 200;  // of a list
 constexpr size_t kLongest = 4096;   // [bytes]
 
-std::string shown(const Json& value) {
-  std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
-  if (text.size() > 60) text = text.substr(0, 57) + "...";
-  return text;
-}
+std::string shown(const Json& value) { return shortened(value.dump(-1, ' ', true, Json::error_handler_t::replace)); }
 
 bool is_finite_number(const Json& value) { return value.is_number() && std::isfinite(value.get<double>()); }
 
@@ -141,8 +138,8 @@ std::vector<int> Arguments::indices(const char* key, int count) {
 void Arguments::finish() const {
   for (const auto& [key, unused] : object_.items())
     if (!known_.count(key))
-      throw InvalidInput(fmt::format("{}: unknown member '{}'{}", name_, key.substr(0, 40),
-                                     suggestion(key.substr(0, 40), {known_.begin(), known_.end()})));
+      throw InvalidInput(fmt::format("{}: unknown member '{}'{}", name_, shortened(key, 40),
+                                     suggestion(key, {known_.begin(), known_.end()})));
 }
 
 }  // namespace aspic::viewer

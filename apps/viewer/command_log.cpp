@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <ranges>
 
 #include "base/error.h"
 
@@ -98,7 +97,7 @@ void CommandLog::rewind(int step, int b) {
     again.push_back({step + 1, b, event->command});
   }
   events_.erase(undone, events_.end());
-  for (const Event& event : std::views::reverse(again)) add(event);
+  for (auto event = again.rbegin(); event != again.rend(); ++event) add(*event);
 }
 
 void CommandLog::forget_side_b() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <set>
 #include <span>
@@ -42,7 +43,11 @@ Known known(const RunLayout& layout, const std::string& scene_text) {
     throw InvalidInput(layout.root().string() +
                        ": scene.toml was changed after the run began; put back the one that "
                        "the run was computed with, or run again");
-  Known result{checkpoint.array("frame_times"), static_cast<int>(checkpoint.integer("steps_taken"))};
+  const int64_t steps = checkpoint.integer("steps_taken");
+  if (steps < 0 || steps > std::numeric_limits<int>::max())
+    throw InvalidInput(layout.root().string() + ": the checkpoint counts " + std::to_string(steps) +
+                       " steps; it is damaged");
+  Known result{checkpoint.array("frame_times"), static_cast<int>(steps)};
   if (result.frame_times.empty()) throw InvalidInput(layout.root().string() + ": the checkpoint counts no frame");
   return result;
 }

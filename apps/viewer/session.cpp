@@ -73,7 +73,11 @@ std::unique_ptr<ShownSide> Session::Impl::loaded(const std::string& name, const 
                                                  const std::vector<std::string>& overrides) {
   Busy busy(options);
   return std::make_unique<ShownSide>(
-      ShownSide{name, {}, Side(load_steered(path, overrides, busy.announce()), options.timeline_bytes), {}, 0});
+      ShownSide{name,
+                {},
+                Side(load_steered(path, overrides, busy.announce(), options.most_tets), options.timeline_bytes),
+                {},
+                0});
 }
 
 void Session::Impl::show_surface(ShownSide& shown) {

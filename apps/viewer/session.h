@@ -42,6 +42,7 @@ struct Lesson {
 struct SessionOptions {
   std::vector<Lesson> lessons = {};
   size_t timeline_bytes = size_t{256} << 20;                   // what rewinding may hold, per side
+  double most_tets = 1e18;                                     // per side; fewer where the memory is smaller
   std::function<void(const std::string& what)> announce = {};  // before something that takes a while; "" after it
 };
 

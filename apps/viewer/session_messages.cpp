@@ -1,5 +1,6 @@
 #include "viewer/session_messages.h"
 
+#include "base/printable.h"
 #include "mesh/box_tree.h"
 #include "viewer/picture.h"
 #include "viewer/scene_json.h"
@@ -126,7 +127,7 @@ Json state_of(const ShownSide& shown) {
 }
 
 Message refusal(const Json& id, const std::string& why) {
-  return text({{"kind", "refused"}, {"id", id}, {"why", why}});
+  return text({{"kind", "refused"}, {"id", id}, {"why", printable(why)}});
 }
 
 }  // namespace aspic::viewer

@@ -208,7 +208,7 @@ Side::Change Side::prepared(const std::string& override_text, const Announce& an
     if (const auto conflict = find_conflict(options)) throw InvalidInput(conflict->reason);
     return change;
   }
-  change.reloaded = load_steered(steered_.path, change.overrides, announce);
+  change.reloaded = load_steered(steered_.path, change.overrides, announce, steered_.most_tets);
   if (change.reloaded->scene.simulation.model().mesh.vertex_count() != model().mesh.vertex_count())
     throw InvalidInput(fmt::format("{} changes the mesh; load the scene anew with it", override_text));
   change.reloaded->tip->set(resting_poke(), time());

@@ -25,8 +25,9 @@ void require_file(const fs::path& path) {
 }
 
 // What is simulated now stays until the other scene is there, and both sides of a comparison have tets.
-TetLimit tets_that_fit() {
+TetLimit tets_that_fit(double most) {
   const double share = 0.25 * static_cast<double>(free_memory());
+  if (most * kBytesPerTet < share) return {.tets = most, .why = "are allowed here", .counts_files = true};
   return {.tets = std::floor(share / kBytesPerTet),
           .why = fmt::format("fit into the {:.1f} GB that a session may take here, a quarter of the free memory",
                              share / 1e9),
@@ -35,7 +36,8 @@ TetLimit tets_that_fit() {
 
 }  // namespace
 
-SteeredScene load_steered(const fs::path& path, const std::vector<std::string>& overrides, const Announce& announce) {
+SteeredScene load_steered(const fs::path& path, const std::vector<std::string>& overrides, const Announce& announce,
+                          double most_tets) {
   require_file(path);
   GrabSpring* mouse = nullptr;
   HeldTip* tip = nullptr;
@@ -50,10 +52,10 @@ SteeredScene load_steered(const fs::path& path, const std::vector<std::string>& 
     mouse_load = model.loads.size();
     model.loads.push_back(std::move(spring));
   };
-  Scene scene =
-      load_scene(path, {.overrides = overrides, .announce = announce, .limit = tets_that_fit(), .amend = amend});
+  Scene scene = load_scene(
+      path, {.overrides = overrides, .announce = announce, .limit = tets_that_fit(most_tets), .amend = amend});
   Table document = read_scene_document(scene.resolved, path.string());
-  return {std::move(scene), mouse, mouse_load, tip, tip_load, std::move(document), path, overrides};
+  return {std::move(scene), mouse, mouse_load, tip, tip_load, std::move(document), path, overrides, most_tets};
 }
 
 bool is_of_solver_alone(const std::string& key) {

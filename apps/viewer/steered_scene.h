@@ -20,11 +20,12 @@ struct SteeredScene {
   Table document;  // complete
   std::filesystem::path path;
   std::vector<std::string> overrides;
+  double most_tets;
 };
 
-// Throws InvalidInput.
+// Throws InvalidInput: for more tets than `most_tets`, too, or than fit into a quarter of the free memory.
 SteeredScene load_steered(const std::filesystem::path& path, const std::vector<std::string>& overrides,
-                          const Announce& announce);
+                          const Announce& announce, double most_tets);
 
 // A new value for a key of [solver] that no more than the solver depends on needs nothing to be loaded again.
 bool is_of_solver_alone(const std::string& key);

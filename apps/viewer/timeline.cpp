@@ -1,7 +1,6 @@
 #include "viewer/timeline.h"
 
 #include <algorithm>
-#include <ranges>
 
 #include "base/check.h"
 
@@ -53,9 +52,9 @@ const Moment* Timeline::find(int step) const {
 }
 
 const Moment* Timeline::at_time(double time, double tolerance) const {
-  for (const Moment& moment : std::views::reverse(moments_)) {
-    if (moment.state.time < time - tolerance) return nullptr;
-    if (moment.state.time <= time + tolerance) return &moment;
+  for (auto moment = moments_.rbegin(); moment != moments_.rend(); ++moment) {
+    if (moment->state.time < time - tolerance) return nullptr;
+    if (moment->state.time <= time + tolerance) return &*moment;
   }
   return nullptr;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/printable.h"
+
 namespace aspic {
 namespace {
 
@@ -21,7 +23,18 @@ size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+std::string lines_of(const std::vector<std::string>& messages) {
+  std::string lines;
+  for (const std::string& message : messages)
+    lines += (lines.empty() ? "" : "\n") + elided(message, InvalidInput::kLongestMessage);
+  return lines;
+}
+
 }  // namespace
+
+InvalidInput::InvalidInput(std::string_view message) : std::runtime_error(elided(message, kLongestMessage)) {}
+
+InvalidInput::InvalidInput(const std::vector<std::string>& messages) : std::runtime_error(lines_of(messages)) {}
 
 std::string nearest_name(std::string_view word, const std::vector<std::string>& known) {
   if (word.size() > 64) return "";  // no typing error is that long

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "capture/capture_schema.h"
 #include "capture/case_table.h"
 #include "capture/data_findings.h"
@@ -53,6 +54,8 @@ class DataSetReader {
     errors_.finish();
     choose_deviations(data_);
     choose_layers(data_);
+    data_.name = printable(data_.name);
+    for (std::string& note : data_.notes) note = printable(note);
     return std::move(data_);
   }
 

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
+#include "io/input_file.h"
 
 namespace aspic {
 namespace {
@@ -79,6 +80,7 @@ FitFolder FitFolder::open(const fs::path& material, const std::string& options, 
   folder.path_ = fs::path(material).replace_extension(".fit");
   const fs::path& path = folder.path_;
   const bool is_begun = fs::exists(options_file(path)), is_unfinished = !journals(path).empty();
+  if (existing != ExistingFit::refuse) refuse_links(path, [](const fs::path&) { return true; });
   if (existing == ExistingFit::resume) {
     if (!is_begun) throw InvalidInput(path.string() + ": no such fit to resume; start it without --resume");
     if (!is_unfinished)

@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "io/checkpoint.h"
+#include "io/input_file.h"
 #include "scene/scene_files.h"
 
 namespace aspic {
@@ -53,7 +54,7 @@ Journal::Journal(LeastSquares& model, ModelState state, fs::path stem, const std
     throw InvalidInput(journal_path_.string() + ": has " + std::to_string(out_.size()) + " bytes where " +
                        std::to_string(end_) + " are needed" + kRemedy);
   out_.truncate(end_);
-  in_.open(journal_path_, std::ios::binary);
+  in_ = open_input(journal_path_);
   resumed_p_ = saved.array("p");
   resumed_state_ = saved.array("state");
   is_behind_ = end_ > 0;

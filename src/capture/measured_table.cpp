@@ -4,21 +4,27 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/printable.h"
 
 namespace aspic {
 namespace {
 
-constexpr int kMostErrors = 10;  // the first ones explain the rest
+constexpr size_t kMostErrors = 10;  // the first ones explain the rest
 
 }  // namespace
 
 void ErrorList::add(const std::string& error) {
-  if (++count_ <= kMostErrors) text_ += (text_.empty() ? "" : "\n") + error;
+  if (lines_.size() < kMostErrors) {
+    lines_.push_back(error);
+  } else {
+    ++further_;
+  }
 }
 
 void ErrorList::finish() const {
-  if (count_ > kMostErrors) throw InvalidInput(text_ + "\nand " + std::to_string(count_ - kMostErrors) + " more");
-  if (count_ > 0) throw InvalidInput(text_);
+  std::vector<std::string> lines = lines_;
+  if (further_ > 0) lines.push_back("and " + std::to_string(further_) + " more");
+  if (!lines.empty()) throw InvalidInput(lines);
 }
 
 MeasuredTable::MeasuredTable(const std::filesystem::path& path, const ColumnNames& names, ErrorList& errors,
@@ -58,8 +64,8 @@ std::optional<double> MeasuredTable::number(std::string_view column, double unit
   if (found == index_.end() || csv_.is_blank(found->second)) return std::nullopt;
   const std::optional<double> value = csv_.try_number(found->second);
   if (value && std::isfinite(*value)) return *value * unit;
-  error(csv_.columns()[found->second] + " = '" + csv_.text(found->second).substr(0, 40) +
-        "' is no finite number; correct it, or leave the cell blank where nothing was measured");
+  error(csv_.columns()[found->second] + " = " + shown(csv_.text(found->second)) +
+        " is no finite number; correct it, or leave the cell blank where nothing was measured");
   return std::nullopt;
 }
 

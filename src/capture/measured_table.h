@@ -18,12 +18,12 @@ namespace aspic {
 class ErrorList {
  public:
   void add(const std::string& error);
-  bool is_empty() const { return count_ == 0; }
+  bool is_empty() const { return lines_.empty(); }
   void finish() const;  // throws InvalidInput when there is any
 
  private:
-  std::string text_;
-  int count_ = 0;
+  std::vector<std::string> lines_;
+  int further_ = 0;
 };
 
 struct ColumnNames {

@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "capture/capture_schema.h"
 #include "capture/units.h"
-#include "io/atomic_file.h"
 #include "scene/toml_reader.h"
 
 namespace aspic {
@@ -31,7 +30,7 @@ fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.
 
 CaptureSettings::CaptureSettings(const fs::path& path)
     : file_(settings_file(path)), folder_(folder_of(file_)), files_(folder_, false) {
-  document_ = read_toml(read_file(file_), file_.string());
+  document_ = read_toml(read_toml_text(file_), file_.string());
   check_and_complete(document_, file_.string(), capture_schema(), "capture");
 }
 

@@ -127,8 +127,7 @@ class TetTerm : public Base {
  private:
   // Tets [first, first + count), neighbours near each other.
   static std::vector<int> locality_order(const TetMesh& mesh, int first, size_t count) {
-    const std::vector<Vec3d> center = centroids(mesh);
-    std::vector<int> order = morton_order(std::span(center).subspan(first, count));
+    std::vector<int> order = morton_order(centroids(mesh, first, count));
     for (int& tet : order) tet += first;
     return order;
   }

@@ -4,6 +4,8 @@
 #include <charconv>
 
 #include "base/error.h"
+#include "base/printable.h"
+#include "io/input_file.h"
 
 namespace aspic {
 namespace {
@@ -30,6 +32,11 @@ std::vector<std::string> split(std::string_view line, char separator) {
   return cells;
 }
 
+void make_printable(std::vector<std::string>& cells) {
+  for (std::string& cell : cells)
+    if (!is_printable(cell)) cell = printable(cell);
+}
+
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 std::string trimmed(const std::string& text) {
@@ -46,10 +53,7 @@ bool parse(const std::string& text, Number& value) {
 }  // namespace
 
 CsvReader::CsvReader(const std::filesystem::path& path, CsvOrigin origin)
-    : path_(path), in_(path, std::ios::binary), origin_(origin) {
-  std::error_code error;
-  if (!in_ || std::filesystem::is_directory(path, error))
-    throw InvalidInput(path.string() + ": cannot be read; check the name and the permissions");
+    : path_(path), in_(open_input(path)), origin_(origin) {
   if (!read_line()) throw InvalidInput(path.string() + ": is empty; a table begins with the names of its columns");
   columns_ = cells_;
 }
@@ -77,6 +81,7 @@ bool CsvReader::read_line() {
   if (origin_ == CsvOrigin::aspic) {
     if (!read_text(line)) return false;
     cells_ = split(line, separator_);
+    make_printable(cells_);
     return true;
   }
   do {
@@ -86,6 +91,7 @@ bool CsvReader::read_line() {
   if (columns_.empty()) choose_separator(line);
   cells_ = split(line, separator_);
   for (std::string& cell : cells_) cell = trimmed(cell);
+  make_printable(cells_);
   while (!columns_.empty() && cells_.size() > columns_.size() && cells_.back().empty()) cells_.pop_back();
   return true;
 }
@@ -142,8 +148,8 @@ int CsvReader::integer(size_t column) const {
 }
 
 void CsvReader::fail(size_t column, const char* expected) const {
-  throw InvalidInput(path_.string() + ":" + std::to_string(line_) + ": " + columns_[column] + " = '" +
-                     cells_[column].substr(0, 40) + "' is not " + expected);
+  throw InvalidInput(path_.string() + ":" + std::to_string(line_) + ": " + columns_[column] + " = " +
+                     shown(cells_[column]) + " is not " + expected);
 }
 
 }  // namespace aspic

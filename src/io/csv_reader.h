@@ -14,6 +14,7 @@ namespace aspic {
 // with # are skipped; the last line needs no line break; a byte order mark is no part of the first name.
 enum class CsvOrigin { aspic, foreign };
 
+// Cells and names are printable (base/printable.h), whatever the bytes of the file.
 class CsvReader {
  public:
   // Throws InvalidInput when it cannot be read.

@@ -56,6 +56,15 @@ TEST_F(CsvReading, GivesBackWhatWasWrittenToTheSameBits) {
   EXPECT_FALSE(table.next());
 }
 
+TEST_F(CsvReading, ShowsWhatATerminalWouldObeyByItsBytes) {
+  CsvReader table = reader(
+      "step,e\x1b[31m\n1,b\xfc"
+      "chse\n");
+  EXPECT_EQ(table.columns(), (std::vector<std::string>{"step", "e\\x1B[31m"}));
+  ASSERT_TRUE(table.next());
+  EXPECT_EQ(table.text(1), "b\\xFCchse");
+}
+
 TEST_F(CsvReading, ATornLastLineIsNoRow) {
   CsvReader table = reader("step,energy\n1,2\n2,3");
   EXPECT_TRUE(table.next());

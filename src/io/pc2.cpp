@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "io/input_file.h"
 #include "io/number_text.h"
 
 namespace aspic {
@@ -25,7 +26,7 @@ std::string head(int points, int samples) {
 }
 
 std::string bytes_at(const std::filesystem::path& path, uint64_t offset, uint64_t size) {
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in = open_input(path);
   std::string bytes(size, '\0');
   in.seekg(static_cast<std::streamoff>(offset));
   in.read(bytes.data(), static_cast<std::streamsize>(size));
@@ -86,7 +87,7 @@ void Pc2File::write_count() {
   file_.write_at(kCountOffset, count);
 }
 
-Pc2Reader::Pc2Reader(const std::filesystem::path& path) : path_(path), in_(path, std::ios::binary) {
+Pc2Reader::Pc2Reader(const std::filesystem::path& path) : path_(path), in_(open_input(path)) {
   std::string bytes(kHeadSize, '\0');
   in_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (!in_) throw InvalidInput(path.string() + ": cannot be read, or is too short for a point cache");

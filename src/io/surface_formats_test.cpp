@@ -79,7 +79,7 @@ TEST(Ply, ErrorsNameTheLine) {
   EXPECT_THAT(error<parse_ply>(small_ply(vertices + faces + vertices, "0 0 0\n3 0 0 0\n0 0 0\n")),
               HasSubstr("a second element 'vertex'"));
   EXPECT_THAT(error<parse_ply>(small_ply("element b\001d 9\nproperty float x\n", "")),
-              HasSubstr("a:6: the number of elements 'b?d' is 9"));
+              HasSubstr("a:6: the number of elements 'b\\x01d' is 9"));
 }
 
 TEST(Ply, AnElementWithoutPropertiesTakesNoTimeWhateverItsCount) {

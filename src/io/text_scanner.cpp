@@ -41,14 +41,6 @@ std::optional<int64_t> parse_integer(std::string_view word) {
   return value;
 }
 
-std::string shown(std::string_view word) {
-  constexpr size_t kLongest = 40;
-  std::string text(word.substr(0, kLongest));
-  for (char& c : text)
-    if (c < ' ' || c > '~') c = '?';
-  return "'" + text + (word.size() > kLongest ? "...'" : "'");
-}
-
 TextScanner::TextScanner(std::string file, std::string_view text, char comment)
     : file_(std::move(file)), text_(text), comment_(comment) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // of UTF-8, which some editors write

@@ -6,14 +6,13 @@
 #include <string>
 #include <string_view>
 
+#include "base/printable.h"
+
 namespace aspic {
 
 // The whole of `word` as a number; nothing when it is not one, or not finite, or out of range.
 std::optional<double> parse_number(std::string_view word);
 std::optional<int64_t> parse_integer(std::string_view word);
-
-// A word as an error message shows it: quoted, shortened, without control characters.
-std::string shown(std::string_view word);
 
 class TextScanner {
  public:

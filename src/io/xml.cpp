@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/error.h"
+#include "base/printable.h"
 
 namespace aspic {
 namespace {
@@ -108,7 +109,7 @@ class Parser {
     const size_t start = position_ + 1;
     const size_t end = document_.find(document_[position_], start);
     if (end == std::string_view::npos) fail("the value of attribute " + name + " is not closed");
-    std::string value = unescaped(document_.substr(start, end - start));
+    std::string value = printable(unescaped(document_.substr(start, end - start)));
     advance(end + 1 - position_);
     return {std::move(name), std::move(value)};
   }

@@ -131,7 +131,8 @@ void examine_faces(const TetMesh& mesh, Findings& findings) {
 
 // Tets whose centroid lies inside another one: not every overlap shows in this way, but a doubled part does.
 std::vector<int> overlapping_tets(const TetMesh& mesh) {
-  constexpr double kInside = 1e-6;  // smallest barycentric weight that counts
+  constexpr double kInside = 1e-6;    // smallest barycentric weight that counts
+  constexpr size_t kMostNear = 4096;  // of a few tets: a pile of them would be compared in all pairs
   std::vector<Box> boxes(mesh.tets.size());
   const std::vector<Vec3d> centres = centroids(mesh);
   for (size_t t = 0; t < boxes.size(); ++t)
@@ -150,7 +151,7 @@ std::vector<int> overlapping_tets(const TetMesh& mesh) {
     near.clear();
     tree.for_each_overlap(here, [&](int other) {
       near.push_back(other);
-      return true;
+      return near.size() < kMostNear;
     });
     for (const int t : tets)
       is_held[t] = std::any_of(near.begin(), near.end(), [&](int other) {

@@ -97,10 +97,12 @@ std::vector<int> order_by(const Code& code, std::span<const Vec3d> points) {
 std::vector<int> morton_order(std::span<const Vec3d> points) { return order_by(morton_code, points); }
 std::vector<int> hilbert_order(std::span<const Vec3d> points) { return order_by(hilbert_code, points); }
 
-std::vector<Vec3d> centroids(const TetMesh& mesh) {
+std::vector<Vec3d> centroids(const TetMesh& mesh) { return centroids(mesh, 0, mesh.tets.size()); }
+
+std::vector<Vec3d> centroids(const TetMesh& mesh, int first, size_t count) {
   std::vector<Vec3d> centres;
-  centres.reserve(mesh.tets.size());
-  for (const auto& [a, b, c, d] : mesh.tets)
+  centres.reserve(count);
+  for (const auto& [a, b, c, d] : std::span(mesh.tets).subspan(static_cast<size_t>(first), count))
     centres.push_back(0.25 * ((mesh.rest[a] + mesh.rest[b]) + (mesh.rest[c] + mesh.rest[d])));
   return centres;
 }

@@ -13,6 +13,7 @@ std::vector<int> morton_order(std::span<const Vec3d> points);
 // The same along the Hilbert curve, whose neighbours are neighbours in space too: it makes no leaps.
 std::vector<int> hilbert_order(std::span<const Vec3d> points);
 
-std::vector<Vec3d> centroids(const TetMesh& mesh);  // at rest [m]
+std::vector<Vec3d> centroids(const TetMesh& mesh);                           // of the tets at rest [m]
+std::vector<Vec3d> centroids(const TetMesh& mesh, int first, size_t count);  // of some of them
 
 }  // namespace aspic

@@ -10,6 +10,8 @@
 namespace aspic {
 namespace {
 
+constexpr long kMostCompared = 100'000'000;  // seconds
+
 // Turned so that the vertices common to both come first, in the same order; how many there are.
 int align(Triangle& s, Triangle& t) {
   int common = 0;
@@ -31,25 +33,42 @@ class Search {
       for (int& v : triangle) v = first[v];
     for (size_t t = 0; t < triangles_.size(); ++t)
       if (!is_degenerate(corners(triangles_[t]))) usable_.push_back(static_cast<int>(t));
+    leave_out_repeated();
   }
 
-  std::vector<std::array<int, 2>> pairs(int most) const {
+  SelfIntersections pairs(int most) const {
     std::vector<Box> boxes(usable_.size());
     for (size_t i = 0; i < usable_.size(); ++i)
       for (int v : triangles_[usable_[i]]) boxes[i].add(vertices_[v]);
     const BoxTree tree(boxes);
     std::vector<std::array<int, 2>> found;
-    for (int i = 0; i < static_cast<int>(usable_.size()); ++i)
+    long compared = 0;
+    const auto goes_on = [&] { return static_cast<int>(found.size()) < most && compared < kMostCompared; };
+    for (int i = 0; i < static_cast<int>(usable_.size()) && goes_on(); ++i)
       tree.for_each_overlap(boxes[i], [&](int j) {
-        if (j < i && static_cast<int>(found.size()) < most && intersect(usable_[j], usable_[i]))
-          found.push_back({usable_[j], usable_[i]});
-        return static_cast<int>(found.size()) < most;
+        ++compared;
+        if (j < i && intersect(usable_[j], usable_[i])) found.push_back({usable_[j], usable_[i]});
+        return goes_on();
       });
+    const bool is_complete = goes_on();
     std::sort(found.begin(), found.end());
-    return found;
+    return {std::move(found), is_complete};
   }
 
  private:
+  // Each with the corners of an earlier one, in whatever order: a pile of them would be compared in all pairs.
+  void leave_out_repeated() {
+    const auto sorted = [this](int t) {
+      Triangle triangle = triangles_[t];
+      std::sort(triangle.begin(), triangle.end());
+      return triangle;
+    };
+    std::stable_sort(usable_.begin(), usable_.end(), [&](int s, int t) { return sorted(s) < sorted(t); });
+    const auto is_same = [&](int s, int t) { return sorted(s) == sorted(t); };
+    usable_.erase(std::unique(usable_.begin(), usable_.end(), is_same), usable_.end());
+    std::sort(usable_.begin(), usable_.end());
+  }
+
   TriangleCorners corners(const Triangle& t) const { return {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]}; }
 
   bool intersect(int i, int j) const {
@@ -73,6 +92,6 @@ class Search {
 
 }  // namespace
 
-std::vector<std::array<int, 2>> self_intersections(const TriMesh& mesh, int most) { return Search(mesh).pairs(most); }
+SelfIntersections self_intersections(const TriMesh& mesh, int most) { return Search(mesh).pairs(most); }
 
 }  // namespace aspic

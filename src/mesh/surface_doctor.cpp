@@ -55,7 +55,14 @@ void examine_edges(const TriMesh& mesh, const SurfaceTopology& surface, Findings
 }
 
 void examine_intersections(const TriMesh& mesh, Findings& findings) {
-  const std::vector<std::array<int, 2>> pairs = self_intersections(mesh);
+  const auto [pairs, is_complete] = self_intersections(mesh);
+  if (!is_complete)
+    findings.add_general({Severity::warning,
+                          "crowded_triangles",
+                          "so many triangles overlap in one place that not all pairs of them were compared",
+                          "remove what lies on top of other parts where the surface was made",
+                          {},
+                          false});
   if (pairs.empty()) return;
   std::vector<int> triangles;
   for (const auto& pair : pairs) triangles.insert(triangles.end(), pair.begin(), pair.end());

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/free_memory.h"
+#include "base/printable.h"
 #include "io/mesh_file.h"
 #include "io/tetrahedralise.h"
 #include "mesh/doctor.h"
@@ -176,7 +177,7 @@ void check_size(const fs::path& path, const MeshLoader& loader) {
 }  // namespace
 
 void MeshLoader::tell(const std::string& what) const {
-  if (announce) announce(what);
+  if (announce) announce(printable(what));
 }
 
 void MeshLoader::tell_if_many(int tet_count, const std::string& what) const {

@@ -11,6 +11,8 @@
 namespace aspic {
 namespace {
 
+constexpr size_t kMostBodies = 10000;
+
 void put_first(Table& table, const std::string& key, Value value) {
   table.members.insert(table.members.begin(), Member{key, value.place, std::move(value)});
 }
@@ -130,6 +132,9 @@ void complete_scene(Table& document) {
   Value& list = *document.find("body");
   Array& bodies = list.array();
   if (bodies.empty()) throw error_at(list.place, "body = []; at least one is needed");
+  if (bodies.size() > kMostBodies)
+    throw error_at(list.place, std::to_string(bodies.size()) + " bodies; at most " + std::to_string(kMostBodies) +
+                                   " are simulated (make one mesh of those that are alike)");
   name_tables(bodies, body_name);
   for (Value& body : bodies) {
     complete_material(*body.table().find("material"));

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
 #include "io/vtu.h"
@@ -45,6 +46,7 @@ void make_room(const RunLayout& layout, const Scene& scene, ExistingRun existing
   if (existing == ExistingRun::refuse) {
     throw InvalidInput(name + ": holds a run already; --force replaces it, --resume continues it");
   }
+  layout.refuse_links();
   std::vector<fs::path> needed;  // a run may be repeated from the inputs that lie in it
   for (const auto& [_, source] : scene.input_files) needed.push_back(source);
   layout.remove_run(needed);
@@ -138,8 +140,13 @@ std::string first_difference(const std::string& here, const std::string& in_run)
     const bool has_a = !!std::getline(ours, a), has_b = !!std::getline(theirs, b);
     if (!has_a && !has_b) return ": it was changed after the run began";
     if (a != b || has_a != has_b)
-      return std::string(":").append(std::to_string(line)).append(": '").append(a).append("' now, '").append(b) +
-             "' in the run";
+      return std::string(":")
+                 .append(std::to_string(line))
+                 .append(": ")
+                 .append(shown(a))
+                 .append(" now, ")
+                 .append(shown(b)) +
+             " in the run";
   }
 }
 
@@ -225,6 +232,7 @@ RunDirectory RunDirectory::resume(const fs::path& path, Scene& scene) {
   auto impl = std::make_unique<Impl>(RunLayout(path), scene);
   const RunLayout& layout = impl->layout;
   if (!layout.holds_run()) throw InvalidInput(path.string() + ": holds no run to continue");
+  layout.refuse_links();
   if (!fs::exists(layout.checkpoint()) && !fs::exists(previous_checkpoint(layout.checkpoint())))
     throw InvalidInput(path.string() +
                        ": the run was ended before its first checkpoint, so nothing is lost; start it with --force");

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
+#include "io/input_file.h"
 #include "scene/run_directory_tables.h"
 
 namespace aspic {
@@ -67,6 +68,17 @@ std::vector<fs::path> trace_folders(const fs::path& root) {
   return folders;
 }
 
+// Directly in the folder of a run.
+bool is_name_of_run(const fs::path& file) {
+  const std::string name = file.filename().string();
+  const RunLayout layout("");
+  for (const fs::path& known : {layout.scene(), layout.steps(), layout.iterations(), layout.timings(),
+                                layout.checkpoint(), previous_checkpoint(layout.checkpoint()), layout.index(),
+                                layout.usd(), layout.report(), layout.frames(), layout.skins()})
+    if (name == known.filename()) return true;
+  return name.starts_with("trace") || is_unfinished(file);
+}
+
 template <class Condition>
 std::vector<fs::path> files_in(const fs::path& folder, Condition is_wanted) {
   std::error_code error;
@@ -106,9 +118,16 @@ fs::path RunLayout::trace(int first_step) const {
 }
 
 bool RunLayout::holds_run() const {
-  std::ifstream in(steps());
-  std::string head;
-  return std::getline(in, head) && head.starts_with(kStepsHead);
+  std::ifstream in = try_open_input(steps());
+  std::string head(std::string_view(kStepsHead).size(), '\0');
+  return in.read(head.data(), static_cast<std::streamsize>(head.size())) && head == kStepsHead;
+}
+
+void RunLayout::refuse_links() const {
+  // What lies in inputs is replaced before a run begins, and not written to afterwards.
+  aspic::refuse_links(root_, [&](const fs::path& file) {
+    return file.parent_path() == root_ ? is_name_of_run(file) : file.parent_path().filename() != "inputs";
+  });
 }
 
 bool RunLayout::is_barely_begun() const {

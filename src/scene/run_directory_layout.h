@@ -30,6 +30,8 @@ class RunLayout {
 
   bool holds_run() const;        // a steps.csv with the head that runs write
   bool is_barely_begun() const;  // nothing but what a run that was killed at once had begun to write
+  // Throws InvalidInput where a file or folder that a run writes is a link: its target is none of the run's.
+  void refuse_links() const;
   // Every file of the run, its inputs included, except those in `needed`.
   void remove_run(const std::vector<std::filesystem::path>& needed) const;
   void remove_frames_from(int first) const;  // of bodies and skins

@@ -8,23 +8,12 @@
 #include "scene/mesh_scene.h"
 #include "scene/scene_builder.h"
 #include "scene/scene_document.h"
+#include "scene/toml_reader.h"
 
 namespace aspic {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::uintmax_t kMaxSceneBytes = 16 << 20;  // lists of vertices make scenes long, but not that long
-
-std::string scene_text(const fs::path& path) {
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(path, error);
-  if (!error && size > kMaxSceneBytes)
-    throw InvalidInput(path.string() + ": " + std::to_string(size) +
-                       " bytes; a scene has at most 16 MiB (put numbers "
-                       "per element into CSV files)");
-  return read_file(path);
-}
 
 void copy_file(const fs::path& source, const fs::path& target) {
   std::error_code error;
@@ -36,7 +25,7 @@ void copy_file(const fs::path& source, const fs::path& target) {
 
 Scene load_scene(const fs::path& path, const SceneOptions& options) {
   if (path.extension() == ".toml") {
-    SceneSource source{read_scene_document(scene_text(path), path.string(), options.overrides),
+    SceneSource source{read_scene_document(read_toml_text(path), path.string(), options.overrides),
                        path.stem().string(),
                        path.string(),
                        {},

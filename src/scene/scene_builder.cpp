@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "dynamics/integrator.h"
 #include "scene/body_actions.h"
 #include "scene/body_material.h"
@@ -88,8 +89,9 @@ class SceneBuilder {
     const int steps = steps_of(*source_.document.find("time"));
     put_in_order(source_.document);
     std::string resolved = to_toml(source_.document);
+    for (std::string& note : source_.notes) note = printable(note);
     try {
-      return {source_.name,
+      return {printable(source_.name),
               std::move(resolved),
               std::move(source_.notes),
               Simulation(std::move(model_), std::move(state), options),

@@ -72,6 +72,7 @@ fs::path SceneFiles::find(const Value& name) const {
                                    "file there, or give it on the command line with --set");
   }
   if (fs::is_directory(full, error)) throw error_at(name.place, shown + " is a folder; a file is needed");
+  if (fs::exists(full, error)) throw error_at(name.place, shown + " is not a regular file; copy it to one");
   const std::string nearest = nearest_name(full.filename().string(), names_in(full.parent_path()));
   throw error_at(name.place, shown + " does not exist (looked for " + full.lexically_normal().string() + ")" +
                                  (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));

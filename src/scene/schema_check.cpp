@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "scene/expression.h"
 #include "scene/schema.h"
 #include "scene/toml_reader.h"
@@ -94,7 +95,7 @@ class Checker {
   }
 
   void finish() const {
-    if (!errors_.empty()) throw InvalidInput(join(errors_, "\n"));
+    if (!errors_.empty()) throw InvalidInput(errors_);
   }
 
  private:
@@ -174,6 +175,7 @@ class Checker {
   void check_choice(const Value& value, const Key& key) {
     if (key.choices.empty()) {
       if (value.text().empty()) wrong(value, key, "must not be empty");
+      if (!is_printable(value.text())) wrong(value, key, "must be UTF-8 without control characters");
       return;
     }
     if (std::find(key.choices.begin(), key.choices.end(), value.text()) != key.choices.end()) return;

@@ -15,6 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr size_t kLongestLine = size_t{1} << 20;
+constexpr size_t kMostBeyond = 100000;  // lines that are too many are counted up to here, for the message
+
 // The words of a line, without its separators.
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
@@ -115,9 +118,10 @@ std::vector<double> read_number_table(const fs::path& path, size_t columns, size
     const std::string_view line(text.data() + begin, end - begin);
     begin = end + 1;
     ++line_number;
+    const std::string where = path.string() + ":" + std::to_string(line_number) + ": ";
+    if (line.size() > kLongestLine) throw InvalidInput(where + "is no line of a table: it is too long");
     const std::vector<std::string_view> words = words_of(line);
     if (words.empty() || words[0].starts_with('#')) continue;
-    const std::string where = path.string() + ":" + std::to_string(line_number) + ": ";
     double number = 0;
     const bool is_header = may_be_header && std::isalpha(static_cast<unsigned char>(words[0][0])) &&
                            !parse_finite(words[0], number) && words[0] != "nan" && words[0] != "inf";
@@ -127,15 +131,15 @@ std::vector<double> read_number_table(const fs::path& path, size_t columns, size
       throw InvalidInput(where + std::to_string(words.size()) + " numbers; " + std::to_string(columns) +
                          " are needed for each of the " + std::to_string(rows) + " lines");
     for (const std::string_view word : words) {
-      if (!parse_finite(word, number))
-        throw InvalidInput(where + toml_string(shortened(std::string(word))) + " is not a finite number");
+      if (!parse_finite(word, number)) throw InvalidInput(where + shown(word) + " is not a finite number");
       values.push_back(number);
     }
-    ++count;
+    if (++count > kMostBeyond + rows) break;
   }
   if (count != rows)
-    throw error_at(place, path.string() + " has " + std::to_string(count) + " lines of numbers; one for " + row +
-                              " is needed, " + std::to_string(rows) + " in all");
+    throw error_at(place, path.string() + " has " + (count > kMostBeyond + rows ? "at least " : "") +
+                              std::to_string(count) + " lines of numbers; one for " + row + " is needed, " +
+                              std::to_string(rows) + " in all");
   return values;
 }
 

@@ -18,6 +18,7 @@
 #include <cctype>
 
 #include "base/error.h"
+#include "io/atomic_file.h"
 
 namespace aspic {
 namespace {
@@ -97,6 +98,16 @@ void forget_lines(Value& value) {
 }
 
 }  // namespace
+
+std::string read_toml_text(const std::filesystem::path& path) {
+  constexpr std::uintmax_t kMost = 16 << 20;
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (!error && size > kMost)
+    throw InvalidInput(path.string() + ": " + std::to_string(size) +
+                       " bytes; at most 16 MiB are read (put numbers per element into CSV files)");
+  return read_file(path);
+}
 
 Table read_toml(const std::string& text, const std::string& source) {
   const auto name = std::make_shared<const std::string>(source);

@@ -1,11 +1,14 @@
 // TOML text to a tree of values with places; the only file that knows the TOML library.
 #pragma once
-#include <memory>
+#include <filesystem>
 #include <string>
 
 #include "scene/value.h"
 
 namespace aspic {
+
+// Of a file of at most 16 MiB: lists of vertices make scenes long, but not that long. Throws InvalidInput.
+std::string read_toml_text(const std::filesystem::path& path);
 
 // Throws InvalidInput "source:line:column: reason". Dates and times have no use in a scene and are refused.
 Table read_toml(const std::string& text, const std::string& source);

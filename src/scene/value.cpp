@@ -138,11 +138,6 @@ std::string inline_toml(const Value& value) {
   return out.empty() ? "{}" : out + " }";
 }
 
-std::string shortened(const std::string& text) {
-  constexpr size_t kLongest = 60;
-  return text.size() <= kLongest ? text : text.substr(0, kLongest - 3) + "...";
-}
-
 std::string type_name(const Value& value) {
   const char* names[] = {"a boolean", "an integer", "a number", "a string", "an array", "a table"};
   return names[value.data.index()];

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "math/small.h"
 
 namespace aspic {
@@ -68,8 +69,7 @@ std::string number_text(double value);
 std::string point_text(const Vec3d& X);          // "(0.5, 1, 0)"
 std::string toml_string(std::string_view text);  // a TOML string
 std::string inline_toml(const Value& value);
-std::string shortened(const std::string& text);  // for messages: at most 60 characters
-std::string type_name(const Value& value);       // "a number"
+std::string type_name(const Value& value);  // "a number"
 
 // A document with [tables] for the tables of the top level and [[tables]] for arrays of tables of the first levels.
 std::string to_toml(const Table& document);

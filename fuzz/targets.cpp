@@ -1,0 +1,48 @@
+#include "targets.h"
+
+#include <algorithm>
+#include <array>
+
+namespace aspic::fuzz {
+
+std::span<const Target> targets() {
+  static constexpr auto kTargets = std::to_array<Target>({
+      {"gmsh", gmsh},
+      {"medit", medit},
+      {"tetgen", tetgen},
+      {"vtu", vtu},
+      {"obj", obj},
+      {"off", off},
+      {"ply", ply},
+      {"stl", stl},
+      {"doctor", doctor},
+      {"gzip", gzip},
+      {"base64", base64},
+      {"xml", xml},
+      {"csv", csv},
+      {"checkpoint", checkpoint},
+      {"point_cache", point_cache},
+      {"run_folder", run_folder},
+      {"run_recording", run_recording},
+      {"journal", journal},
+      {"material", material},
+      {"data_set", data_set},
+      {"curves", curves},
+      {"toml", toml},
+      {"scene", scene},
+      {"values", values},
+      {"expression", expression},
+      {"overrides", overrides},
+      {"page_text", page_text},
+      {"session", session},
+  });
+  return kTargets;
+}
+
+const Target* target_named(std::string_view name) {
+  const std::span<const Target> all = targets();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Target& target) { return target.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace aspic::fuzz
