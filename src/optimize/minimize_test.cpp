@@ -77,6 +77,48 @@ TEST(Minimize, AnIndefiniteHessianIsProjectedOnDemandAndRefusedWhenExact) {
   EXPECT_GT(report.projected_hessians, 0);
 }
 
+// Clamped, the negative eigenvalue is almost zero and the step along it endless; its absolute value is a scale.
+TEST(Minimize, OnDemandTakesAbsoluteEigenvaluesWhereClampedOnesOvershoot) {
+  std::vector<int> trials;
+  const auto count = [&](const Iteration& iteration) { return trials.push_back(iteration.trials), true; };
+  for (const auto definiteness : {NewtonDefiniteness::clamped, NewtonDefiniteness::on_demand}) {
+    TwoBump f;
+    std::vector<double> x = {-0.2, 1, 0};
+    trials.clear();
+    EXPECT_EQ(Minimizer().minimize(f, *newton(definiteness), x, tight(), count).status, Status::converged);
+    EXPECT_EQ(trials.front() > 10, definiteness == NewtonDefiniteness::clamped) << trials.front();
+    EXPECT_NEAR(x[0], -std::sqrt(0.5), 1e-8);
+  }
+  EXPECT_EQ(trials.front(), 1);
+}
+
+// Not a number beyond a distance of two.
+class Island : public Rosenbrock {
+ public:
+  double value(std::span<const double> x) override {
+    const double E = x[0] * x[0] + x[1] * x[1] < 4 ? Rosenbrock::value(x) : NAN;
+    met_nan = met_nan || std::isnan(E);
+    return E;
+  }
+  bool met_nan = false;
+};
+
+TEST(Minimize, TheLineSearchNeverAcceptsWhatIsNotANumber) {
+  Island f;
+  GradientDescent direction;
+  std::vector<double> x = {-0.8, 0.6, 0};
+  MinimizeOptions options = tight();
+  options.max_iterations = 20;
+  options.line_search.alpha_max = 1e4;
+  Minimizer().minimize(f, direction, x, options, [&](const LiveIteration& iteration) {
+    for (const Trial& trial : iteration.tried) EXPECT_FALSE(trial.accepted && std::isnan(trial.value));
+    EXPECT_TRUE(std::isfinite(iteration.value));
+    return true;
+  });
+  EXPECT_TRUE(f.met_nan);
+  EXPECT_LT(x[0] * x[0] + x[1] * x[1], 4);
+}
+
 TEST(Minimize, TheIterationLimitIsNotSuccess) {
   Rosenbrock f;
   std::vector<double> x = {-0.8, 0.6, 0};

@@ -12,9 +12,11 @@
 namespace aspic {
 namespace {
 
-constexpr double kRoundOff = 1e-9;  // of the energies that are added, and of the forces that balance
-// Of forces that are made anew from differences of positions, and of energies that cancel in a body at rest.
-constexpr double kLastDigits = 1e-11;
+constexpr double kRoundOff = 1e-9;     // of the energies that are added, and of the forces that balance
+constexpr double kLastDigits = 1e-11;  // of energies that cancel in a body at rest
+// The residual of the report is made anew from differences of velocities: so many times the round-off of one
+// evaluation.
+constexpr double kNoise = 10;
 constexpr int kMostParts = 300;  // of all the adaptive steps of a scene
 
 bool is_finite(std::span<const double> v) {
@@ -86,8 +88,7 @@ class Judge {
   void judge_success(const StepReport& report) {
     if (!std::isfinite(report.kinetic) || !std::isfinite(report.potential_total))
       fault("the energy is not finite", report);
-    const double scale = report.residual_threshold / simulation_.options().solver.minimize.tolerance;
-    const double allowed = 1.01 * report.residual_threshold + 1000 * report.residual_round_off + kLastDigits * scale;
+    const double allowed = 1.01 * report.residual_threshold + kNoise * report.residual_round_off;
     if (report.residual_threshold > 0 && report.status == Status::converged && report.residual > allowed)
       fault("residual " + shortest(report.residual) + " N, threshold " + shortest(report.residual_threshold) +
                 " N, round-off " + shortest(report.residual_round_off) + " N",
