@@ -77,21 +77,6 @@ TEST(Minimize, AnIndefiniteHessianIsProjectedOnDemandAndRefusedWhenExact) {
   EXPECT_GT(report.projected_hessians, 0);
 }
 
-// Clamped, the negative eigenvalue is almost zero and the step along it endless; its absolute value is a scale.
-TEST(Minimize, OnDemandTakesAbsoluteEigenvaluesWhereClampedOnesOvershoot) {
-  std::vector<int> trials;
-  const auto count = [&](const Iteration& iteration) { return trials.push_back(iteration.trials), true; };
-  for (const auto definiteness : {NewtonDefiniteness::clamped, NewtonDefiniteness::on_demand}) {
-    TwoBump f;
-    std::vector<double> x = {-0.2, 1, 0};
-    trials.clear();
-    EXPECT_EQ(Minimizer().minimize(f, *newton(definiteness), x, tight(), count).status, Status::converged);
-    EXPECT_EQ(trials.front() > 10, definiteness == NewtonDefiniteness::clamped) << trials.front();
-    EXPECT_NEAR(x[0], -std::sqrt(0.5), 1e-8);
-  }
-  EXPECT_EQ(trials.front(), 1);
-}
-
 // Not a number beyond a distance of two.
 class Island : public Rosenbrock {
  public:

@@ -79,10 +79,24 @@ class Judge {
     for (size_t body = 0; body < barriers_.size(); ++body) {
       const double det_F = simulation_.model().elasticity[body]->min_det_F(state.q);
       if (barriers_[body] && !(det_F > 0)) fault("det F = " + shortest(det_F), report);
+      if (barriers_[body] && is_inside_out(body)) fault("a tet is inside out", report);
     }
     is_success(report.status) ? judge_success(report) : judge_failure(report);
     judge_ledger(report);
     if (simulation_.options().integrator == "backward_euler") judge_descent(before, report);
+  }
+
+  // By the volumes of the tets, whatever the materials say of det F.
+  bool is_inside_out(size_t body) const {
+    const Model& model = simulation_.model();
+    TetMesh now = model.mesh;
+    for (size_t i = 0; i < 3 * now.rest.size(); ++i)
+      now.rest[i / 3][static_cast<int>(i % 3)] = simulation_.state().q[i];
+    const double noise = kRoundOff * std::max(1.0, distance());
+    const int first = model.bodies[body].first_tet, end = first + model.bodies[body].tet_count;
+    for (int t = first; t < end; ++t)
+      if (volume(now, t) < -noise * volume(model.mesh, t)) return true;
+    return false;
   }
 
   void judge_success(const StepReport& report) {
