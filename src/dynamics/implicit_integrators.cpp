@@ -110,7 +110,7 @@ class QuasiStatic : public Integrator {
     solve.add(report);
     add_work(lead, solve.work);
     if (!judges_direction(tools.options.criterion)) solve.threshold = report.threshold;
-    solve.round_off = report.gradient_round_off;
+    solve.round_off = tools.E.gradient_noise(end.q);
     solve.decrement = report.decrement;
     std::fill(end.qdot.begin(), end.qdot.end(), 0.0);
     forces.add(tools.E, 1, end.q, {}, solve.work);

@@ -148,6 +148,13 @@ double IncrementalPotential::gradient_round_off_at(std::span<const double> q) {
   return kEpsilon * *std::max_element(largest_.begin(), largest_.end()) * std::sqrt(stiffness);
 }
 
+double IncrementalPotential::gradient_noise(std::span<const double> q) const {
+  double size = 0;
+  for (const double qi : q) size = std::max(size, std::abs(qi));
+  const double at_rest = kEpsilon * size * std::hypot(inertia_ * mass_norm_, factor_ * rest_stiffness_);
+  return std::max(gradient_round_off_, at_rest) + kEpsilon * gradient_scale_;
+}
+
 const BlockSparse* IncrementalPotential::metric() {
   if (!metric_) {
     metric_.emplace(pattern_);
@@ -240,6 +247,10 @@ void IncrementalPotential::measure(const TetMesh& mesh) {
   for (int v = 0; v < pattern_.rows(); ++v)
     pattern_.rest_modulus[v] = trace(H_.block[pattern_.diagonal(v)]) / pattern_.rest_modulus[v];
   growth_stiffness_ = dot(growth, term_);
+  for (int v = 0; v < pattern_.rows(); ++v) {
+    rest_stiffness_ = std::hypot(rest_stiffness_, std::sqrt(squared_norm(H_.block[pattern_.diagonal(v)])));
+    mass_norm_ = std::hypot(mass_norm_, std::sqrt(3.0) * model_.mass->vertex_mass()[v]);
+  }
   model_.mass->multiply(growth, term_);
   growth_inertia_ = dot(growth, term_);
   std::fill(term_.begin(), term_.end(), 0.0);

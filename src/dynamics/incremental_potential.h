@@ -38,6 +38,10 @@ class IncrementalPotential : public Objective {
   double value_round_off() const override { return value_round_off_; }
   double growth_stiffness() const { return growth_stiffness_; }  // of V, see value_scale() [J]
 
+  // The part of |g| at q, where the gradient was evaluated last, that is noise: of positions, by the stiffness of the
+  // last Hessian or of the body at rest, and of the sum of forces.
+  double gradient_noise(std::span<const double> q) const;
+
   // What is known of the iterate at which a minimisation ended: nothing there need be evaluated again. Empty elsewhere.
   std::span<const double> known_values(std::span<const double> q) const;  // of the terms of V [J]
   // gradient += weight dV/dx, damping += weight dD/dx [N]; false where they are not known.
@@ -75,6 +79,7 @@ class IncrementalPotential : public Objective {
   Parts last_, of_iterate_;      // of what was evaluated last, wherever that was
   double inertia_ = 1, factor_ = 1;
   double growth_stiffness_ = 0, growth_inertia_ = 0, radius_ = 0;
+  double rest_stiffness_ = 0, mass_norm_ = 0;  // of the diagonal blocks [N/m] and [kg]
   int projected_elements_ = 0;
   double gradient_scale_ = 0, gradient_round_off_ = 0, value_round_off_ = 0;
   // Scratch. offset: w (q - q~). term: one term's gradient; zero between terms. largest: |q| by chunks.

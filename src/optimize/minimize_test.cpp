@@ -77,6 +77,33 @@ TEST(Minimize, AnIndefiniteHessianIsProjectedOnDemandAndRefusedWhenExact) {
   EXPECT_GT(report.projected_hessians, 0);
 }
 
+// Not a number beyond a distance of two.
+class Island : public Rosenbrock {
+ public:
+  double value(std::span<const double> x) override {
+    const double E = x[0] * x[0] + x[1] * x[1] < 4 ? Rosenbrock::value(x) : NAN;
+    met_nan = met_nan || std::isnan(E);
+    return E;
+  }
+  bool met_nan = false;
+};
+
+TEST(Minimize, TheLineSearchNeverAcceptsWhatIsNotANumber) {
+  Island f;
+  GradientDescent direction;
+  std::vector<double> x = {-0.8, 0.6, 0};
+  MinimizeOptions options = tight();
+  options.max_iterations = 20;
+  options.line_search.alpha_max = 1e4;
+  Minimizer().minimize(f, direction, x, options, [&](const LiveIteration& iteration) {
+    for (const Trial& trial : iteration.tried) EXPECT_FALSE(trial.accepted && std::isnan(trial.value));
+    EXPECT_TRUE(std::isfinite(iteration.value));
+    return true;
+  });
+  EXPECT_TRUE(f.met_nan);
+  EXPECT_LT(x[0] * x[0] + x[1] * x[1], 4);
+}
+
 TEST(Minimize, TheIterationLimitIsNotSuccess) {
   Rosenbrock f;
   std::vector<double> x = {-0.8, 0.6, 0};

@@ -11,7 +11,8 @@
 
 namespace aspic {
 
-// on_demand: exact first; clamped only when the exact Hessian turns out indefinite or its direction of no use.
+// on_demand: exact first; clamped only when the exact Hessian turns out indefinite or its direction of no use; absolute
+// where a full step along that overshoots, and for a while after that.
 // progressive: exact first; then clamped where the residual is largest, and further around, as far as it takes.
 enum class NewtonDefiniteness { exact, clamped, absolute, on_demand, progressive };
 std::string_view to_string(NewtonDefiniteness definiteness);
@@ -33,6 +34,9 @@ class Newton : public SearchDirection {
  private:
   friend std::unique_ptr<Newton> make_newton_cg(NewtonDefiniteness definiteness);
 
+  bool solve_on_demand(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,
+                       std::span<double> d, DirectionReport& report);
+  bool overshoots(Objective& E, std::span<const double> x, std::span<const double> d, DirectionReport& report);
   bool solve_progressively(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,
                            std::span<double> d, DirectionReport& report);
   bool solve(Objective& E, std::span<const double> x, const Projection& projection, std::span<const double> g,
@@ -56,7 +60,10 @@ class Newton : public SearchDirection {
   double gradient_norm_ = 0;
   bool used_kept_ = false;      // for the last direction
   bool cautious_next_ = false;  // after a retreat: project, or more than before
-  bool clamped_ = false;        // on_demand: the last direction
+  bool clamped_ = false;        // on_demand: the last direction, or it is absolute
+  int absolute_left_ = 0;       // on_demand: the next so many Hessians that are not exact are absolute
+  int absolute_span_ = 0;       // and how many will be when a direction overshoots again
+  std::vector<double> ahead_;
 };
 
 // Truncated Newton: conjugate gradients that stop where they meet negative curvature and keep what they have, so that

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "optimize/minimize.h"
 #include "optimize/test_functions.h"
 
@@ -75,6 +77,23 @@ TEST(Newton, ForgetsItsHessianWhereItIsOfNoUseAndBetweenMinimisations) {
   EXPECT_EQ(hessians(), 0);
   direction->begin();
   EXPECT_EQ(hessians(), 1);
+}
+
+// Clamped, the negative eigenvalue is almost zero and the step along it endless; its absolute value is a scale.
+TEST(Newton, OnDemandTakesAbsoluteEigenvaluesWhereClampedOnesOvershoot) {
+  std::vector<int> trials;
+  const auto count = [&](const Iteration& iteration) { return trials.push_back(iteration.trials), true; };
+  for (const auto definiteness : {NewtonDefiniteness::clamped, NewtonDefiniteness::on_demand}) {
+    TwoBump f;
+    Newton direction(make_linear_solver("block_jacobi"), definiteness);
+    const MinimizeOptions options{.tolerance = 1e-10, .criterion = Criterion::absolute};
+    std::vector<double> x = {-0.2, 1, 0};
+    trials.clear();
+    EXPECT_EQ(Minimizer().minimize(f, direction, x, options, count).status, Status::converged);
+    EXPECT_EQ(trials.front() > 10, definiteness == NewtonDefiniteness::clamped) << trials.front();
+    EXPECT_NEAR(x[0], -std::sqrt(0.5), 1e-8);
+  }
+  EXPECT_EQ(trials.front(), 1);
 }
 
 }  // namespace
