@@ -1,91 +1,21 @@
 #include "dynamics/explanation.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
+#include "dynamics/explanation_places.h"
 #include "material/registry.h"
 
 namespace aspic {
 namespace {
 
-std::string text(double number) {
-  std::array<char, 32> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.3g", number);
-  return buffer.data();
-}
-
-double power_of_ten_above(double number) { return std::pow(10, std::ceil(std::log10(number))); }
-
-std::string point_text(std::span<const double> x, int vertex) {
-  const size_t i = 3 * static_cast<size_t>(vertex);
-  return "(" + text(x[i]) + ", " + text(x[i + 1]) + ", " + text(x[i + 2]) + ") m";
-}
-
-// "vertex 12", "vertex 12 of body 'arm'": by the numbers of the body's own mesh. `index` is the user's.
-std::string named(const Model& model, const char* kind, int index, int BodyRange::*first, int BodyRange::*count) {
-  for (const BodyRange& body : model.bodies) {
-    const int own = index - body.*first;
-    if (own < 0 || own >= body.*count) continue;
-    const std::string name = std::string(kind) + " " + std::to_string(own);
-    return model.bodies.size() > 1 ? name + " of body '" + body.name + "'" : name;
-  }
-  return std::string(kind) + " " + std::to_string(index);
-}
-std::string vertex_name(const Model& model, int vertex) {
-  return named(model, "vertex", model.numbering.vertex.to_user(vertex), &BodyRange::first_vertex,
-               &BodyRange::vertex_count);
-}
-std::string tet_name(const Model& model, int tet) {
-  return named(model, "tet", model.numbering.tet.to_user(tet), &BodyRange::first_tet, &BodyRange::tet_count);
-}
-
-double signed_volume(const TetMesh& mesh, int tet, std::span<const double> x) {
-  const auto corner = [&](int v) {
-    const size_t i = 3 * static_cast<size_t>(mesh.tets[tet][v]);
-    return Vec3d{{x[i], x[i + 1], x[i + 2]}};
-  };
-  const Vec3d a = corner(0);
-  return determinant(from_columns(corner(1) - a, corner(2) - a, corner(3) - a)) / 6;
-}
-
-struct WorstTet {
-  int tet = -1;
-  double det_F = INFINITY;
-};
-
-WorstTet most_squashed(const TetMesh& mesh, std::span<const double> x) {
-  std::vector<double> rest;
-  for (const Vec3d& X : mesh.rest) rest.insert(rest.end(), {X[0], X[1], X[2]});
-  WorstTet worst;
-  for (int t = 0; t < mesh.tet_count(); ++t) {
-    const double det_F = signed_volume(mesh, t, x) / signed_volume(mesh, t, rest);
-    if (!(det_F >= worst.det_F)) worst = {t, det_F};
-  }
-  return worst;
-}
-
-std::string squashed_place(const Model& model, std::span<const double> x) {
-  const WorstTet worst = most_squashed(model.mesh, x);
-  if (worst.tet < 0) return "";
-  return tet_name(model, worst.tet) + (worst.det_F > 0 ? " is squeezed most: " : " is inverted: ") + text(worst.det_F) +
-         " of its volume";
-}
+using namespace places;  // NOLINT(google-build-using-namespace)
 
 std::string residual_place(const Model& model, const StepReport& report, std::span<const double> x) {
   if (report.worst_vertex < 0) return "";
   return vertex_name(model, report.worst_vertex) + " at " + point_text(x, report.worst_vertex) + " is furthest from " +
          "balance: " + text(report.worst_residual) + " N are left over";
-}
-
-// Half of the longest edge of the bounding box. [m]
-double size_of(const TetMesh& mesh) {
-  Vec3d low{{INFINITY, INFINITY, INFINITY}}, high{{-INFINITY, -INFINITY, -INFINITY}};
-  for (const Vec3d& X : mesh.rest)
-    for (int r = 0; r < 3; ++r) low[r] = std::min(low[r], X[r]), high[r] = std::max(high[r], X[r]);
-  return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}) / 2;
 }
 
 // Of its volume: a tet is crushed to nothing below it.

@@ -2,6 +2,9 @@
 // modulus and the density, times that go with them. Every step takes the same iterations to the same result.
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <regex>
+
 #include "energy/grab_spring.h"
 #include "energy/held_tip.h"
 #include "scene/scaling_cases_test.h"
