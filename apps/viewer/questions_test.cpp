@@ -211,7 +211,7 @@ TEST(Questions, AboutTheStepUnderWay) {
 }
 
 TEST(Questions, AboutAnIterationAreGivenUpWhenSomethingElseIsToBeDone) {
-  Side side(load_steered(Page::scene_file(kBeam), {}, {}), size_t{1} << 20);
+  Side side(load_steered(Page::scene_file(kBeam), {}, {}, 1e18), size_t{1} << 20);
   side.step([] { return true; });
   const std::vector<double> q = side.simulation().state().q;
   for (const int patience : {0, 1, 50, 500}) {  // before, within the curve, and within the slice
