@@ -11,6 +11,14 @@ namespace {
 
 constexpr int kMostLines = 12;
 
+}  // namespace
+
+void require(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "broken promise: %s\n", what);
+  std::abort();
+}
+
 void require_message(std::string_view message) {
   require(!message.empty(), "a refusal says why");
   int lines = 0;
@@ -22,14 +30,6 @@ void require_message(std::string_view message) {
     message.remove_prefix(is_last ? end : end + 1);
   }
   require(lines <= kMostLines, "a refusal has a few lines");
-}
-
-}  // namespace
-
-void require(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "broken promise: %s\n", what);
-  std::abort();
 }
 
 void require_printable(const std::vector<std::string>& texts) {

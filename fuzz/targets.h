@@ -60,6 +60,7 @@ std::string attempt(Feed feed, std::string_view bytes);
 
 // Ends the program when a target's promise does not hold, in every build.
 void require(bool holds, const char* what);
+void require_message(std::string_view message);                 // of a refusal: a few lines that can be shown
 void require_printable(const std::vector<std::string>& texts);  // what is told beside: notes, names
 
 }  // namespace aspic::fuzz

@@ -30,7 +30,7 @@ void require_messages(const viewer::Messages& messages) {
     if (message.is_binary) continue;
     const Json json = Json::parse(message.bytes, nullptr, false);
     require(json.is_object() && json.contains("kind"), "a message to a page is JSON of a kind");
-    if (json["kind"] == "refused") require_printable({json["why"].get<std::string>()});
+    if (json["kind"] == "refused") require_message(json["why"].get<std::string>());
   }
 }
 

@@ -127,7 +127,7 @@ Json state_of(const ShownSide& shown) {
 }
 
 Message refusal(const Json& id, const std::string& why) {
-  return text({{"kind", "refused"}, {"id", id}, {"why", printable(why)}});
+  return text({{"kind", "refused"}, {"id", id}, {"why", printable_lines(why)}});
 }
 
 }  // namespace aspic::viewer

@@ -65,6 +65,15 @@ bool is_printable(std::string_view text) {
 
 std::string printable(std::string_view text) { return beginning(text, std::string::npos); }
 
+std::string printable_lines(std::string_view text) {
+  std::string lines;
+  for (size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+    lines += printable(text.substr(0, end)) + '\n';
+    text.remove_prefix(end + 1);
+  }
+  return lines + printable(text);
+}
+
 std::string shortened(std::string_view text, size_t most) {
   std::string_view rest = text;
   std::string whole = beginning(rest, most);

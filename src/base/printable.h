@@ -13,6 +13,7 @@ bool is_printable(std::string_view text);
 
 // The same text where it is printable, and \xNN for each byte of the rest.
 std::string printable(std::string_view text);
+std::string printable_lines(std::string_view text);  // line breaks stay
 
 // Printable and at most `most` bytes long [> 3]: the end is left out for "...", or, of `elided` text, the middle.
 std::string shortened(std::string_view text, size_t most = 60);

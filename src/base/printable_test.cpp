@@ -50,6 +50,11 @@ TEST(Printable, ShowsWhatTurnsOrBreaksALineByItsBytes) {
             "b");  // U+2028: a new line
 }
 
+TEST(Printable, KeepsTheBreaksOfLines) {
+  EXPECT_EQ(printable_lines("a\x1b\n\nb\t"), "a\\x1B\n\nb\\x09");
+  EXPECT_EQ(printable_lines("a\n"), "a\n");
+}
+
 TEST(Printable, HoldsForEveryPairOfBytes) {
   for (int a = 0; a < 256; ++a)
     for (int b = 0; b < 256; ++b) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "dynamics/explanation_places.h"
 #include "material/registry.h"
@@ -21,8 +20,8 @@ std::string residual_place(const Model& model, const StepReport& report, std::sp
 // Of its volume: a tet is crushed to nothing below it.
 constexpr double kCrushed = 1e-9;
 
-// Forces that are left over, beside those that balance, are round-off below this.
-constexpr double kNoise = 1e-11;
+// Forces that are left over are round-off up to so many times what that is estimated to be.
+constexpr double kNearRoundOff = 1000;
 
 // An adaptive tolerance below this asks for parts in which too few digits of the positions change.
 constexpr double kFinest = 1e-9;
@@ -115,10 +114,8 @@ class Explainer {
                               " s are longer than the " + text(stable.h) + " s up to which it can be stable here";
     const std::string place =
         stable.is_damping ? " is damped most strongly: the damping allows no longer steps"
-                          : " vibrates fastest, at " +
-                                text((name == "rk4" ? std::numbers::sqrt2 : 1) / (std::numbers::pi * stable.h)) +
-                                " Hz: small, stiff or light tets";
-    return {cause, vertex_name(model_, stable.vertex) + place,
+                          : " vibrates fastest, at " + text(stable.frequency) + " Hz: small, stiff or light tets";
+    return {cause, stable.vertex < 0 ? "" : vertex_name(model_, stable.vertex) + place,
             (name == "forward_euler" ? "" : "time.step = " + text(stable.h / 2) + " or less, or ") +
                 "time.integrator = \"backward_euler\"" +
                 (name == "forward_euler" ? ", as forward_euler adds energy in shorter steps, too" : "")};
@@ -234,18 +231,11 @@ class Explainer {
     const MinimizeOptions& options = solver_.minimize;
     const double adaptive = simulation_.options().adaptive.tolerance;
     if (adaptive > 0 && adaptive < kFinest) return too_fine();
-    // Methods without the Hessian do not know the round-off, but show it.
-    const bool is_relative = options.criterion == Criterion::scale || options.criterion == Criterion::first_gradient;
-    const double reached = report_.residual * options.tolerance / report_.residual_threshold;
-    if (is_relative && report_.residual_round_off == 0 && reached <= kNoise)
-      return {cause + ": round-off leaves up to " + text(power_of_ten_above(reached)) +
-                  " of the forces, and less is asked for",
-              "solver.tolerance = " + text(options.tolerance),
-              "solver.tolerance = " + text(std::max(1e-12, power_of_ten_above(10 * reached)))};
-    if (report_.residual_threshold > 0 && report_.residual_threshold < report_.residual_round_off) {
-      const double reachable = options.tolerance * 10 * report_.residual_round_off / report_.residual_threshold;
+    const double threshold = report_.residual_threshold, round_off = report_.residual_round_off;
+    if (threshold > 0 && threshold < round_off && report_.residual <= kNearRoundOff * round_off) {
+      const double reachable = power_of_ten_above(options.tolerance * 10 * round_off / threshold);
       const bool is_useful = options.criterion == Criterion::absolute || is_static() || reachable <= kLoosest;
-      return {cause + ": round-off alone is " + text(report_.residual_round_off) + " N, and less is asked for",
+      return {cause + ": round-off alone is " + text(round_off) + " N, and less is asked for",
               is_useful ? "solver.tolerance = " + text(options.tolerance) : step_text(),
               is_useful
                   ? "solver.tolerance = " + text(reachable)

@@ -146,7 +146,7 @@ TEST(Explanation, OfAnExplicitBlowUpKnowsPinsThatCrush) {
   EXPECT_THAT(blow_up(std::move(model), "symplectic_euler", 0.01).cause, HasSubstr("pins themselves"));
 }
 
-TEST(Explanation, OfATightToleranceKnowsTheRoundOffThatAMethodShows) {
+TEST(Explanation, OfATightToleranceTellsRoundOffFromSlowness) {
   for (const char* method : {"vertex_descent", "lbfgs"}) {
     SimulationOptions tight{.solver = {.method = method}};
     if (method == std::string("lbfgs")) tight.solver.preconditioner = "mass";
@@ -155,6 +155,9 @@ TEST(Explanation, OfATightToleranceKnowsTheRoundOffThatAMethodShows) {
     EXPECT_THAT(why.cause, HasSubstr("round-off")) << method;
     EXPECT_THAT(why.remedy, HasSubstr("solver.tolerance = 1e-1")) << method;
   }
+  SimulationOptions slow{.solver = {.method = "gradient_descent"}};
+  slow.solver.minimize.tolerance = 1e-18;
+  EXPECT_THAT(first_failure(slow, Status::iteration_limit).cause, HasSubstr("without the Hessian"));
 }
 
 TEST(Explanation, OfAnIterationLimitNamesTheParameterAtFault) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "linalg/linear_solver.h"
@@ -64,7 +65,10 @@ StableStep stable_step(IncrementalPotential& E, const Model& model, const Pins& 
     if (!(k > 0 || c > 0)) break;
     // Where h^2 k + 2 h c = 4.
     const double last = stable.h, h = 4 / (c + std::sqrt(c * c + 4 * k));
-    stable = {.h = h, .vertex = largest_vertex(u), .is_damping = 2 * c > h * k};
+    stable = {.h = h,
+              .vertex = largest_vertex(u),
+              .frequency = std::sqrt(k) / (2 * std::numbers::pi),
+              .is_damping = 2 * c > h * k};
     if (std::abs(h * h - last * last) <= kSettled * h * h) break;
     for (size_t j = 0; j < u.size(); ++j) Ku[j] = h * h * Ku[j] + 2 * h * Cu[j];
     pins.set_zero(Ku);

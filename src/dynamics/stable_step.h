@@ -9,6 +9,7 @@ namespace aspic {
 struct StableStep {
   double h = 0;             // up to which the scheme is stable [s]; infinite without stiffness
   int vertex = -1;          // which that motion moves most
+  double frequency = 0;     // of that motion without damping [Hz]
   bool is_damping = false;  // it is damping, more than stiffness, that allows no longer steps
 };
 

@@ -26,12 +26,19 @@ std::ifstream open_input(const std::filesystem::path& path) {
 void refuse_links(const std::filesystem::path& folder, FunctionRef<bool(const std::filesystem::path&)> counts) {
   namespace fs = std::filesystem;
   std::error_code error;
-  for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    if (!fs::is_symlink(entry->symlink_status()) || !counts(entry->path())) continue;
-    throw InvalidInput(entry->path().string() +
-                       ": is a link, and results would go where it leads; put a copy in its place, or let the whole "
-                       "folder be a link");
+  if (!fs::exists(folder, error)) return;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path& path = entry->path();
+    if (!counts(path)) continue;
+    const fs::file_status status = fs::symlink_status(path, error);
+    if (fs::is_symlink(status))
+      throw InvalidInput(path.string() +
+                         ": is a link, and results would go where it leads; put a copy in its place, or let the whole "
+                         "folder be a link");
+    if (fs::is_directory(status)) refuse_links(path, counts);
   }
+  if (error)  // what cannot be listed may hold links all the same
+    throw InvalidInput(folder.string() + ": cannot be listed: " + error.message() + "; check the permissions");
 }
 
 }  // namespace aspic

@@ -11,8 +11,9 @@ std::ifstream open_input(const std::filesystem::path& path);  // throws InvalidI
 // The same, but the stream has failed where the file is missing or not regular.
 std::ifstream try_open_input(const std::filesystem::path& path);
 
-// Before writing into a folder that may come from others. Throws InvalidInput where something in it, or in a folder in
-// it, is a link that counts: what is written there would go where it leads.
+// Before writing into a folder that may come from others. Throws InvalidInput where something that counts in it, or in
+// a folder in it that counts, is a link: what is written there would go where it leads. So it does where such a folder
+// cannot be listed.
 void refuse_links(const std::filesystem::path& folder, FunctionRef<bool(const std::filesystem::path&)> counts);
 
 }  // namespace aspic

@@ -145,6 +145,7 @@ std::vector<int> overlapping_tets(const TetMesh& mesh) {
     return is_inside && std::abs(signed_volume(X)) > flat_volume(X);
   };
   std::vector<char> is_held(mesh.tets.size(), 0);
+  // False where too many are near all of these, and each must be examined alone.
   const auto examine = [&](std::span<const int> tets, std::vector<int>& near) {
     Box here;
     for (const int t : tets) here.add(centres[t]);
@@ -153,15 +154,21 @@ std::vector<int> overlapping_tets(const TetMesh& mesh) {
       near.push_back(other);
       return near.size() < kMostNear;
     });
+    if (near.size() == kMostNear && tets.size() > 1) return false;
     for (const int t : tets)
       is_held[t] = std::any_of(near.begin(), near.end(), [&](int other) {
         return other != t && boxes[other].contains(centres[t]) && holds(other, centres[t]);
       });
+    return true;
   };
   parallel_chunks(mesh.tet_count(), [&](int first, int last) {
     constexpr int kTogether = 16;  // neighbours share the way through the tree
     std::vector<int> near;
-    for (int i = first; i < last; i += kTogether) examine(tree.items().subspan(i, std::min(kTogether, last - i)), near);
+    for (int i = first; i < last; i += kTogether) {
+      const auto tets = tree.items().subspan(i, std::min(kTogether, last - i));
+      if (examine(tets, near)) continue;
+      for (size_t k = 0; k < tets.size(); ++k) examine(tets.subspan(k, 1), near);
+    }
   });
   std::vector<int> overlapping;
   for (int t = 0; t < mesh.tet_count(); ++t)

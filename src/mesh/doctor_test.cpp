@@ -98,6 +98,16 @@ TEST(DoctorOfTets, FindsRepeatedTets) {
   EXPECT_EQ(mesh.tets, box().tets);
 }
 
+TEST(DoctorOfTets, FindsADoubledTetBesideAPileOfOthers) {
+  TetMesh mesh;
+  for (const double x : {0.0, 100.0})
+    for (const Vec3d& X : {Vec3d{{0, 0, 0}}, Vec3d{{1, 0, 0}}, Vec3d{{0, 1, 0}}, Vec3d{{0, 0, 1}}})
+      mesh.rest.push_back(X + Vec3d{{x, x, x}});
+  mesh.tets.assign(4104, {0, 1, 2, 3});
+  mesh.tets.insert(mesh.tets.end(), 2, {4, 5, 6, 7});
+  EXPECT_THAT(found(mesh, "overlapping_tets").indices, testing::IsSupersetOf({4104, 4105}));
+}
+
 TEST(DoctorOfTets, FindsTetsFoldedOntoTheirNeighbour) {
   TetMesh mesh;
   mesh.rest = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}, {{0.1, 0.1, 0.7}}};

@@ -59,6 +59,16 @@ TEST_F(HostileRun, IsNotReplacedThroughLinks) {
   EXPECT_TRUE(fs::exists(elsewhere / "body_000000.vtu"));
 }
 
+TEST_F(HostileRun, IsKnownByItsOwnNamesWhateverItsFolderIsCalled) {
+  fs::rename(run_, path("inputs"));
+  run_ = path("inputs") / "";
+  fs::create_directory(run_ / "mine");
+  fs::create_symlink(path("cube.toml"), run_ / "mine" / "link");
+  EXPECT_EQ(resumed(), "");
+  moved_out("steps.csv");
+  EXPECT_THAT(resumed(), HasSubstr("steps.csv: is a link"));
+}
+
 TEST_F(HostileRun, HasItsTableWithinOneReadOfTheHead) {
   fs::resize_file(run_ / "steps.csv", 0);
   fs::resize_file(run_ / "steps.csv", std::uintmax_t{1} << 40);  // nothing but zeros, and no line break

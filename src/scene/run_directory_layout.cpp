@@ -125,9 +125,8 @@ bool RunLayout::holds_run() const {
 
 void RunLayout::refuse_links() const {
   // What lies in inputs is replaced before a run begins, and not written to afterwards.
-  aspic::refuse_links(root_, [&](const fs::path& file) {
-    return file.parent_path() == root_ ? is_name_of_run(file) : file.parent_path().filename() != "inputs";
-  });
+  aspic::refuse_links(root_,
+                      [&](const fs::path& file) { return is_name_of_run(*file.lexically_relative(root_).begin()); });
 }
 
 bool RunLayout::is_barely_begun() const {

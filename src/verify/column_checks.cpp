@@ -136,7 +136,7 @@ Twist twisted(const Column& c) {
   return twist;
 }
 
-// The largest distance between q and the positions that `moved` says of the images of its vertices.
+// The largest difference of a coordinate between `other` and what `motion`, which maps the mesh to itself, makes of q.
 double asymmetry(const TetMesh& mesh, const std::vector<double>& q, const std::vector<double>& other,
                  const Mat3d& motion) {
   std::map<std::array<long, 3>, size_t> numbers;

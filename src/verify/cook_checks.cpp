@@ -78,8 +78,7 @@ void check_split(const Subject& subject, Findings& found) {
 void add_cook_checks(std::vector<Check>& checks) {
   const std::string reference =
       "Biquadratic quadrilaterals on a graded grid, which share nothing with the tets. With the volumetric energy of "
-      "the "
-      "source they give its 14.74";
+      "the source they give its 14.74";
   checks.push_back(
       {"statics",
        "cook",

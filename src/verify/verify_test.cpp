@@ -60,10 +60,9 @@ TEST_P(WrongSubject, FailsTheCheck) {
   Subject subject{.quick = true, .instead = {{wrong.name, wrong.instead}}};
   if (wrong.name == "stiffness") subject = {.quick = true, .instead = {}, .stiffness = std::stod(wrong.instead)};
   const Findings found = run_check(*check, subject);
-  EXPECT_TRUE(std::any_of(found.rows.begin(), found.rows.end(), [&](const Row& r) {
-    return !r.passes() && r.quantity.find(wrong.row) != std::string::npos;
-  })) << wrong.check
-      << " " << wrong.row;
+  EXPECT_TRUE(std::any_of(found.rows.begin(), found.rows.end(),
+                          [&](const Row& r) { return !r.passes() && r.quantity.find(wrong.row) != std::string::npos; }))
+      << wrong.check << " " << wrong.row;
 }
 
 std::string wrong_name(const testing::TestParamInfo<Wrong>& info) {

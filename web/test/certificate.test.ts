@@ -42,6 +42,8 @@ test("totals name the worst steps; what nobody asked for does not count", () => 
   assert.equal(all.held, 1);
   assert.equal(all.bounded, 2);
   assert.equal(all.smallestSlack?.step, 2);
+  const noGuarantee = row(4, { energy_bound: "not_guaranteed", energy_slack: -3 });
+  assert.equal(totals([...kSteps, noGuarantee]).smallestSlack?.step, 2);
   assert.equal(all.state?.state_hash, "0123456789abcdef");
 });
 

@@ -18,6 +18,11 @@ export interface Column {
 
 const kUnknown = -Infinity;
 
+// The energy bound was judged; slack alone is known of steps that have no guarantee, too.
+function isBounded(row: StepRow): boolean {
+  return row.energy_bound === "holds" || row.energy_bound === "broken";
+}
+
 function boundText(row: StepRow): string {
   if (row.energy_bound === "none") return "–";
   if (row.energy_bound === "not_guaranteed") return "not guaranteed";
@@ -132,9 +137,9 @@ export function totals(steps: readonly StepRow[]): Totals {
     worstExcess: worst(excess),
     smallestVolume: worst((row) => (row.min_det_F === null ? null : -row.min_det_F)),
     largestError: worst((row) => (row.ledger_error === null ? null : Math.abs(row.ledger_error))),
-    bounded: steps.filter((row) => row.energy_bound === "holds" || row.energy_bound === "broken").length,
+    bounded: steps.filter(isBounded).length,
     held: steps.filter((row) => row.energy_bound === "holds").length,
-    smallestSlack: worst((row) => (row.energy_slack === null ? null : -row.energy_slack)),
+    smallestSlack: worst((row) => (isBounded(row) ? -(row.energy_slack ?? 0) : null)),
     state: steps.reduce<StepRow | null>((found, row) => (row.state_hash ? row : found), null),
   };
 }
