@@ -1,4 +1,5 @@
-// Feeds files to a target without a fuzzer, in any build: "replay gmsh FILE|FOLDER ...".
+// Feeds files to a target without a fuzzer, in any build: "replay gmsh FILE|FOLDER ...". "replay --list" tells the
+// targets.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -31,11 +32,13 @@ std::vector<fs::path> files_of(int count, char** arguments) {
 int main(int count, char** arguments) {
   using namespace aspic::fuzz;
   const std::string name = count > 1 ? arguments[1] : "";
+  if (name == "--list") {
+    for (const Target& target : targets()) std::printf("%s\n", std::string(target.name).c_str());
+    return 0;
+  }
   const Target* target = target_named(name);
   if (count < 3 || !target) {
-    std::fprintf(stderr, "usage: replay TARGET FILE|FOLDER ...\nTargets:");
-    for (const Target& t : targets()) std::fprintf(stderr, " %s", std::string(t.name).c_str());
-    std::fprintf(stderr, "\n");
+    std::fprintf(stderr, "usage: replay TARGET FILE|FOLDER ...; replay --list tells the targets\n");
     return 2;
   }
   const std::vector<fs::path> files = files_of(count - 2, arguments + 2);

@@ -125,6 +125,15 @@ build() {
   fi
 }
 
+# preset NAME: the build folder of a preset, configured anew where that was with other settings.
+preset() {
+  build_dir=$root/build/$1
+  recipe=$build_dir/preset.json
+  cmp -s "$root/CMakePresets.json" "$recipe" && [ -f "$build_dir/build.ninja" ] && return
+  (cd "$root" && logged "configure-$1" cmake --fresh --preset "$1") || die "the preset $1 could not be configured"
+  cp "$root/CMakePresets.json" "$recipe"
+}
+
 # run_tests CTEST-ARGUMENTS...: those of the build folder; in a pipe only the failures and the summary are shown.
 run_tests() {
   set -- ctest --test-dir "$build_dir" --output-on-failure --no-tests=error -j "$(nproc)" "$@"
