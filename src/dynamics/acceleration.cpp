@@ -1,6 +1,7 @@
 #include "dynamics/acceleration.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace aspic {
 namespace {
@@ -37,6 +38,9 @@ bool Acceleration::solve(const StepTools& tools, double time, std::span<const do
   tools.model.mass->multiply(acc, scratch_);
   for (size_t i = 0; i < n; ++i) force_[i] = -gradient_[i] - damping_[i] - scratch_[i];
   tools.pins.set_zero(force_);
+  double squared = 0;
+  for (const double f : force_) squared += f * f;
+  noise_ = kSolveTolerance * std::sqrt(squared);
   const SolveReport solved = solve_mass(tools, force_, scratch_);
   work.add(solved);
   tools.pins.set_zero(scratch_);

@@ -22,6 +22,9 @@ class Acceleration {
   bool solve(const StepTools& tools, double time, std::span<const double> q, std::span<const double> v,
              DampingDifference difference, double weight, std::span<double> acc, StepForces& forces, Work& work);
 
+  // What the solve with the mass matrix may have left of the force, which is all that it leaves of M acc + G + C. [N]
+  double noise() const { return noise_; }
+
  private:
   void add_damping(const StepTools& tools, std::span<const double> q, std::span<const double> v, double h,
                    double scale);
@@ -31,6 +34,7 @@ class Acceleration {
   std::optional<BlockSparse> M_;
   std::vector<double> gradient_, damping_, drift_, force_, scratch_;
   bool factorized_ = false;
+  double noise_ = 0;
 };
 
 }  // namespace aspic

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "dynamics/models_test.h"
 #include "linalg/linear_solver.h"
@@ -39,6 +41,17 @@ TEST(Allocations, ASteadyStepMakesNoneWithAnyIntegrator) {
   for (const std::string& integrator : integrator_names()) {
     expect_steady_steps_to_allocate_only_their_report(
         {.h = is_explicit(integrator) ? 5e-5 : 0.01, .integrator = integrator, .solver = {}});
+  }
+}
+
+TEST(Allocations, PinsThatBeginToMoveMakeNone) {
+  Model model = damped_beam_with_moving_pins_and_targets(4);
+  model.pins.back().motion = [](const Vec3d& X, double t) { return X + Vec3d{{0, std::max(0.0, t - 0.035), 0}}; };
+  Simulation simulation = simulate(std::move(model), {.solver = {}});  // h = 0.01
+  for (int i = 0; i < 6; ++i) {
+    const test::AllocationCounter counter;
+    const StepReport report = simulation.step();
+    EXPECT_TRUE(i < 2 || counter.count() == 2) << "step " << report.step << ": " << counter.count();
   }
 }
 

@@ -1,12 +1,15 @@
 #include "dynamics/energy_bound.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "dynamics/step_report.h"
 
 namespace aspic {
 namespace {
 
 // Sums of a million terms of one size, rounded at random, err by a thousand units in the last place.
-constexpr double kRoundOff = 1e-12;
+constexpr double kSumRoundOff = 1e-12;
 
 }  // namespace
 
@@ -25,9 +28,19 @@ std::string_view to_string(EnergyBound bound) {
 }
 
 EnergyBound energy_bound(const BoundedEnergies& energies, double accepted) {
-  const double noise = kRoundOff * energies.magnitude + energies.round_off;
+  const double noise = kSumRoundOff * energies.magnitude + energies.round_off;
   if (!std::isfinite(energies.allowed) || !(accepted <= energies.allowed + noise)) return EnergyBound::not_guaranteed;
   return energies.reached <= energies.allowed + 2 * noise ? EnergyBound::holds : EnergyBound::broken;
+}
+
+void judge(const BoundedEnergies& bounded, double accepted, StepReport& report) {
+  const EnergyBound verdict = energy_bound(bounded, accepted);
+  const double slack = bounded.allowed - bounded.reached;
+  const bool is_first = report.energy_bound == EnergyBound::none;
+  report.energy_slack = is_first ? slack : std::min(report.energy_slack, slack);
+  if (is_first || verdict == EnergyBound::broken ||
+      (verdict == EnergyBound::not_guaranteed && report.energy_bound == EnergyBound::holds))
+    report.energy_bound = verdict;
 }
 
 }  // namespace aspic

@@ -10,6 +10,8 @@
 
 namespace aspic {
 
+struct StepReport;
+
 enum class EnergyBound {
   none,            // another scheme, or a step that was dropped
   not_guaranteed,  // the minimiser ended above E at q_s, or q_s has no energy
@@ -28,5 +30,9 @@ struct BoundedEnergies {
 
 // `accepted`: the minimiser's E divided by h^2 [J].
 EnergyBound energy_bound(const BoundedEnergies& energies, double accepted);
+
+// Judges a step of backward Euler, or one more part of it, by the minimiser's E divided by h^2 [J]. Of parts the report
+// keeps the worst verdict and the smallest slack.
+void judge(const BoundedEnergies& bounded, double accepted, StepReport& report);
 
 }  // namespace aspic

@@ -8,7 +8,7 @@ namespace aspic {
 namespace {
 
 // A few units in the last place: of a position, and of a strain energy beside the modulus that it is a difference of.
-constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();
+constexpr double kLastDigits = 8 * std::numeric_limits<double>::epsilon();
 
 // A sum as if made in twice the digits [Neumaier 1974]: the works of single vertices of a body that moves far cancel.
 class LongSum {
@@ -94,22 +94,20 @@ void Ledger::note_worst_vertex(const Pins& pins, StepReport& report) const {
   report.worst_residual = most;
 }
 
-// The ledger is done with momentum_ and residual_ here.
 void Ledger::allow_moved_pins(const StepTools& tools, const State& end, BoundedEnergies& bounded, Work& work) {
   const State& start = tools.start;
-  std::vector<double>& moved = residual_;
   double V = 0, D = 0, T = 0;
-  for (size_t i = 0; i < moved.size(); ++i)
-    moved[i] = tools.pins.holds(static_cast<int>(i / 3)) ? end.q[i] : start.q[i];
+  for (size_t i = 0; i < moved_.size(); ++i)
+    moved_[i] = tools.pins.holds(static_cast<int>(i / 3)) ? end.q[i] : start.q[i];
   for (const Energy* term : tools.E.potential()) {
-    const double value = term->value(moved);
+    const double value = term->value(moved_);
     V += value, bounded.magnitude += std::abs(value);
   }
   ++work.values;
   tell_damping(tools.E, {start.q, tools.h, tools.end_time, start.q});
-  for (const Energy* term : tools.E.damping()) D += term->value(moved);
-  for (size_t i = 0; i < moved.size(); ++i) moved[i] = (moved[i] - start.q[i]) / tools.h - start.qdot[i];
-  T = kinetic_energy(*tools.model.mass, moved, momentum_);
+  for (const Energy* term : tools.E.damping()) D += term->value(moved_);
+  for (size_t i = 0; i < moved_.size(); ++i) moved_[i] = (moved_[i] - start.q[i]) / tools.h - start.qdot[i];
+  T = kinetic_energy(*tools.model.mass, moved_, momentum_);
   bounded.allowed = V + D + T;
   bounded.magnitude += D + T;
 }
@@ -119,6 +117,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   const State& start = tools.start;
   const size_t n = end.q.size();
   for (auto* v : {&Ma_, &momentum_, &residual_}) v->assign(n, 0.0);
+  moved_.resize(n);  // before any pin moves: a later step allocates nothing
   double potential_before = 0;
   const double target = target_work(tools, integrator.order(), end, potential_before, report);
   for (const double V : elastic_energies(tools.model, start.q, {}, report)) potential_before += V;
@@ -134,7 +133,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
     const bool pinned = tools.pins.holds(static_cast<int>(i / 3));
     pins_moved |= pinned && dx != 0;
     jump += 0.5 * tools.h * tools.h * forces.acceleration[i] * Ma_[i];
-    round_off += kRoundOff * std::abs(end.q[i] * Ma_[i]);
+    round_off += kLastDigits * std::abs(end.q[i] * Ma_[i]);
     if (!pinned) residual_squared += r * r;
     // The same products on both sides of the balance, so that no rounding but that of the sums can open it.
     LongSum& rest = pinned ? reaction : residuals;
@@ -175,19 +174,9 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   BoundedEnergies bounded = {.allowed = potential_before + kinetic_before + target,
                              .reached = report.potential_total + jump,
                              .magnitude = magnitude,
-                             .round_off = round_off + kRoundOff * tools.E.growth_stiffness()};
+                             .round_off = round_off + kLastDigits * tools.E.growth_stiffness()};
   if (pins_moved && integrator.is_backward_euler()) allow_moved_pins(tools, end, bounded, report);
   return bounded;
-}
-
-void judge(const BoundedEnergies& bounded, double accepted, StepReport& report) {
-  const EnergyBound verdict = energy_bound(bounded, accepted);
-  const double slack = bounded.allowed - bounded.reached;
-  const bool is_first = report.energy_bound == EnergyBound::none;
-  report.energy_slack = is_first ? slack : std::min(report.energy_slack, slack);
-  if (is_first || verdict == EnergyBound::broken ||
-      (verdict == EnergyBound::not_guaranteed && report.energy_bound == EnergyBound::holds))
-    report.energy_bound = verdict;
 }
 
 }  // namespace aspic

@@ -35,13 +35,10 @@ class Ledger {
   void note_worst_vertex(const Pins& pins, StepReport& report) const;
 
   std::vector<double> Ma_, momentum_, residual_;
+  std::vector<double> moved_;             // the positions with which E is compared where pins move, then u - v_t
   std::vector<double> early_, late_;      // of each load: what its target's motion adds to its energy
   std::vector<double> last_q_, elastic_;  // where the elastic energies were evaluated last, and one for each body
 };
-
-// Judges a step of backward Euler, or one more part of it, by the minimiser's E divided by h^2 [J]. Of parts the report
-// keeps the worst verdict and the smallest slack.
-void judge(const BoundedEnergies& bounded, double accepted, StepReport& report);
 
 // 1/2 qdot' M qdot [J]; `momentum` receives M qdot.
 double kinetic_energy(const MassMatrix& mass, std::span<const double> qdot, std::span<double> momentum);

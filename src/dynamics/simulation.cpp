@@ -258,8 +258,8 @@ void Simulation::set_pins(std::vector<Pin> pins) {
 bool Simulation::is_implicit() const { return impl_->integrator->is_implicit(); }
 
 StableStep Simulation::stable_step() const {
-  StableStep stable = aspic::stable_step(*impl_->E, impl_->model, *impl_->pins, impl_->start.q);
-  if (impl_->options.integrator == "rk4") stable.h *= std::sqrt(2.0);  // |w h| <= 2 sqrt(2) [Hairer1996]
+  const StableStep stable =
+      aspic::stable_step(*impl_->E, impl_->model, *impl_->pins, impl_->start.q, impl_->options.integrator);
   impl_->stand_at(impl_->state.time);
   return stable;
 }

@@ -1,6 +1,7 @@
 #include "dynamics/stable_step.h"
 
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 #include <vector>
@@ -32,9 +33,83 @@ int largest_vertex(std::span<const double> v) {
   return largest;
 }
 
+// M^-1 (h^2 K + weight h C), whose largest eigenvalue belongs to the motion that is sought.
+class PowerIteration {
+ public:
+  PowerIteration(const BlockSparse& M, const BlockSparse& C, const BlockSparse& K, const Pins& pins,
+                 LinearSolver& solver)
+      : M_(M), C_(C), K_(K), pins_(pins), solver_(solver) {}
+
+  StableStep run(size_t size, double weight, bool is_rk4) {
+    for (auto* v : {&u_, &Mu_, &Ku_, &Cu_}) v->resize(size);
+    // Neighbours move against each other in the fastest vibration.
+    for (size_t i = 0; i < size; ++i) u_[i] = std::cos(2.4 * static_cast<double>(i)) + 0.1;
+    pins_.set_zero(u_);
+    StableStep stable{.h = std::numeric_limits<double>::infinity()};
+    double last = stable.h;
+    for (int i = 0; i < kIterations && norm(u_) > 0; ++i) {
+      const auto [c, k] = quotients();
+      if (!(k > 0 || c > 0)) break;
+      const double h = symplectic_euler_limit(c, k);
+      stable = {.h = is_rk4 ? rk4_limit(c, k) : h,
+                .vertex = largest_vertex(u_),
+                .frequency = std::sqrt(k) / (2 * std::numbers::pi),
+                .is_damping = is_rk4 ? c * c > 4 * k : 2 * c > h * k};
+      if (std::abs(h * h - last * last) <= kSettled * h * h) break;
+      last = h;
+      multiply(h * h, weight * h);
+    }
+    return stable;
+  }
+
+ private:
+  struct Quotients {
+    double c, k;
+  };
+  Quotients quotients() {
+    const double scale = 1 / norm(u_);
+    for (double& ui : u_) ui *= scale;
+    M_.multiply(u_, Mu_);
+    K_.multiply(u_, Ku_);
+    C_.multiply(u_, Cu_);
+    const double m = product(u_, Mu_);
+    return {product(u_, Cu_) / m, product(u_, Ku_) / m};
+  }
+  void multiply(double stiffness, double damping) {
+    for (size_t j = 0; j < u_.size(); ++j) Ku_[j] = stiffness * Ku_[j] + damping * Cu_[j];
+    pins_.set_zero(Ku_);
+    solver_.solve(Ku_, u_, kSolveTolerance);
+    pins_.set_zero(u_);
+  }
+
+  const BlockSparse &M_, &C_, &K_;
+  const Pins& pins_;
+  LinearSolver& solver_;
+  std::vector<double> u_, Mu_, Ku_, Cu_;
+};
+
 }  // namespace
 
-StableStep stable_step(IncrementalPotential& E, const Model& model, const Pins& pins, std::span<const double> x) {
+// h^2 k + 2 h c = 4.
+double symplectic_euler_limit(double c, double k) { return 4 / (c + std::sqrt(c * c + 4 * k)); }
+
+// The faster root decides: the slower one of two real ones lies nearer to zero.
+double rk4_limit(double c, double k) {
+  const std::complex<double> root = -(c + std::sqrt(std::complex<double>(c * c - 4 * k))) / 2.0;
+  const double rate = std::abs(root);
+  if (rate == 0) return std::numeric_limits<double>::infinity();
+  const auto grows = [&](double s) {
+    const std::complex<double> z = s * root / rate;
+    return std::abs(1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0)))) > 1 + 1e-14;
+  };
+  double low = 2.5, high = low;  // stable in all of the left half of the disc of this radius
+  while (!grows(high)) low = high, high += 0.01;
+  for (int i = 0; i < 40; ++i) (grows((low + high) / 2) ? high : low) = (low + high) / 2;
+  return low / rate;
+}
+
+StableStep stable_step(IncrementalPotential& E, const Model& model, const Pins& pins, std::span<const double> x,
+                       std::string_view integrator) {
   BlockSparse M(E.pattern());
   model.mass->add_to(1, M);
   pins.set_identity(M);
@@ -48,34 +123,12 @@ StableStep stable_step(IncrementalPotential& E, const Model& model, const Pins& 
     D->begin_step({.start = x});  // h = 0: no damping
   }
   E.begin_step(x, 0, 1);
-  const BlockSparse& K = E.hessian(x, {Definiteness::clamped});
-
-  // Neighbours move against each other in the fastest vibration.
-  std::vector<double> u(x.size()), Mu(x.size()), Ku(x.size()), Cu(x.size());
-  for (size_t i = 0; i < u.size(); ++i) u[i] = std::cos(2.4 * static_cast<double>(i)) + 0.1;
-  pins.set_zero(u);
-  StableStep stable{.h = std::numeric_limits<double>::infinity()};
-  for (int i = 0; i < kIterations && norm(u) > 0; ++i) {
-    const double scale = 1 / norm(u);
-    for (double& ui : u) ui *= scale;
-    M.multiply(u, Mu);
-    K.multiply(u, Ku);
-    C.multiply(u, Cu);
-    const double m = product(u, Mu), k = product(u, Ku) / m, c = product(u, Cu) / m;
-    if (!(k > 0 || c > 0)) break;
-    // Where h^2 k + 2 h c = 4.
-    const double last = stable.h, h = 4 / (c + std::sqrt(c * c + 4 * k));
-    stable = {.h = h,
-              .vertex = largest_vertex(u),
-              .frequency = std::sqrt(k) / (2 * std::numbers::pi),
-              .is_damping = 2 * c > h * k};
-    if (std::abs(h * h - last * last) <= kSettled * h * h) break;
-    for (size_t j = 0; j < u.size(); ++j) Ku[j] = h * h * Ku[j] + 2 * h * Cu[j];
-    pins.set_zero(Ku);
-    solver->solve(Ku, u, kSolveTolerance);
-    pins.set_zero(u);
-  }
-  return stable;
+  PowerIteration iteration(M, C, E.hessian(x, {Definiteness::clamped}), pins, *solver);
+  const bool is_rk4 = integrator == "rk4";
+  const StableStep stable = iteration.run(x.size(), 2, is_rk4);
+  if (!is_rk4 || E.damping().empty()) return stable;
+  const StableStep fastest = iteration.run(x.size(), 0, is_rk4);
+  return fastest.h < stable.h ? fastest : stable;
 }
 
 }  // namespace aspic

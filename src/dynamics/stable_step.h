@@ -1,10 +1,15 @@
 // How long a step an explicit scheme survives.
 #pragma once
 #include <span>
+#include <string_view>
 
 #include "dynamics/incremental_potential.h"
 
 namespace aspic {
+
+// The longest step with which a scheme bears x'' + c x' + k x = 0 [s]; infinite where c = k = 0. [1/s, 1/s^2]
+double symplectic_euler_limit(double c, double k);
+double rk4_limit(double c, double k);  // |R(h lambda)| <= 1, R = 1 + z + z^2/2 + z^3/6 + z^4/24 [Hairer 1996]
 
 struct StableStep {
   double h = 0;             // up to which the scheme is stable [s]; infinite without stiffness
@@ -13,9 +18,12 @@ struct StableStep {
   bool is_damping = false;  // it is damping, more than stiffness, that allows no longer steps
 };
 
-// Of symplectic Euler for small motions about the positions x: the h at which 4 is the largest eigenvalue of
-// M^-1 (h^2 K + 2 h C), by power iteration; a few per cent too long at most. Without damping, C = 0, that is 2 /
-// (highest angular frequency). Overwrites what E and the damping terms were told by begin_step.
-StableStep stable_step(IncrementalPotential& E, const Model& model, const Pins& pins, std::span<const double> x);
+// Of rk4, or else of symplectic Euler, for small motions about the positions x, by power iteration. That of symplectic
+// Euler is the h at which 4 is the largest eigenvalue of M^-1 (h^2 K + 2 h C); a few per cent too long at most. That of
+// rk4 is the lower one of what the motion found so and the fastest vibration bear: with damping the scheme may bear
+// still less. Without damping, C = 0, they are 2 and sqrt(8) / (highest angular frequency). Overwrites what E and the
+// damping terms were told by begin_step.
+StableStep stable_step(IncrementalPotential& E, const Model& model, const Pins& pins, std::span<const double> x,
+                       std::string_view integrator);
 
 }  // namespace aspic

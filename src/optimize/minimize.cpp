@@ -138,7 +138,7 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
   const bool judges_gradient = !at.judges_direction();
   const InnerAccuracy accuracy = {options.max_forcing,
                                   judges_gradient ? 0.5 * report.threshold / report.gradient_norm : 0,
-                                  options.deadline.earlier_by(cost_.to_finish())};
+                                  options.deadline.earlier_by(cost_.to_finish()), at.value.E};
   LineSearchOptions line_search = options.line_search;
   line_search.deadline = options.deadline.earlier_by(cost_.gradient);
   const double begin = options.deadline.now();

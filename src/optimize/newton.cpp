@@ -93,18 +93,18 @@ bool Newton::compute(Objective& E, std::span<const double> x, std::span<const do
   clamped_ = cautious;
   if (!clamped_ && solve(E, x, {first_choice(definiteness_)}, g, forcing, d, report)) return true;
   if (definiteness_ != NewtonDefiniteness::on_demand || is_late(report)) return false;
-  return solve_on_demand(E, x, g, forcing, d, report);
+  return solve_on_demand(E, x, accuracy.value, g, forcing, d, report);
 }
 
 // Where elements are inverted or far from their volume, negative eigenvalues are as large as positive ones. Clamped,
 // they leave a direction that reaches too far; their absolute values hold it back [Chen2024Filtering]. Elsewhere those
 // are too stiff.
-bool Newton::solve_on_demand(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,
-                             std::span<double> d, DirectionReport& report) {
+bool Newton::solve_on_demand(Objective& E, std::span<const double> x, std::optional<double> value,
+                             std::span<const double> g, double forcing, std::span<double> d, DirectionReport& report) {
   clamped_ = report.projected = true;
   if (absolute_left_ == 0) {
     if (!solve(E, x, {Definiteness::clamped}, g, forcing, d, report)) return false;
-    if (is_late(report) || !overshoots(E, x, d, report)) return true;
+    if (is_late(report) || !overshoots(E, x, value, d, report)) return true;
     absolute_left_ = absolute_span_;
     absolute_span_ *= 2;
   }
@@ -113,13 +113,14 @@ bool Newton::solve_on_demand(Objective& E, std::span<const double> x, std::span<
 }
 
 // Whether E rises along the whole of d, or the part of it that terms of E allow.
-bool Newton::overshoots(Objective& E, std::span<const double> x, std::span<const double> d, DirectionReport& report) {
+bool Newton::overshoots(Objective& E, std::span<const double> x, std::optional<double> value, std::span<const double> d,
+                        DirectionReport& report) {
   const double reach = std::min(1.0, E.max_step(x, d));
   ahead_.resize(x.size());
   for (size_t i = 0; i < x.size(); ++i) ahead_[i] = x[i] + reach * d[i];
-  report.values += 2;
+  report.values += value ? 1 : 2;
   const double there = E.value(ahead_);
-  return !(there <= E.value(x));
+  return !(there <= (value ? *value : E.value(x)));
 }
 
 bool Newton::retreat() {

@@ -1,6 +1,7 @@
 // Newton's method: minimise the quadratic approximation, H d = -g.
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "linalg/linear_solver.h"
@@ -34,9 +35,10 @@ class Newton : public SearchDirection {
  private:
   friend std::unique_ptr<Newton> make_newton_cg(NewtonDefiniteness definiteness);
 
-  bool solve_on_demand(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,
-                       std::span<double> d, DirectionReport& report);
-  bool overshoots(Objective& E, std::span<const double> x, std::span<const double> d, DirectionReport& report);
+  bool solve_on_demand(Objective& E, std::span<const double> x, std::optional<double> value, std::span<const double> g,
+                       double forcing, std::span<double> d, DirectionReport& report);
+  bool overshoots(Objective& E, std::span<const double> x, std::optional<double> value, std::span<const double> d,
+                  DirectionReport& report);
   bool solve_progressively(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,
                            std::span<double> d, DirectionReport& report);
   bool solve(Objective& E, std::span<const double> x, const Projection& projection, std::span<const double> g,

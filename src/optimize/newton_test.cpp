@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "optimize/minimize.h"
 #include "optimize/test_functions.h"
@@ -94,6 +95,49 @@ TEST(Newton, OnDemandTakesAbsoluteEigenvaluesWhereClampedOnesOvershoot) {
     EXPECT_NEAR(x[0], -std::sqrt(0.5), 1e-8);
   }
   EXPECT_EQ(trials.front(), 1);
+}
+
+class CountedTwoBump : public TwoBump {
+ public:
+  double value(std::span<const double> x) override { return ++values, TwoBump::value(x); }
+  int values = 0;
+};
+
+// The minimiser knows E where it is: to look ahead costs one evaluation, and all are counted.
+TEST(Newton, LooksAheadWithOneEvaluation) {
+  const std::vector<double> x = {-0.2, 1, 0};
+  const auto evaluations = [&](bool is_known) {
+    CountedTwoBump f;
+    Newton direction(make_linear_solver("block_jacobi"));
+    std::vector<double> g(3), d(3);
+    f.gradient(x, g);
+    DirectionReport report;
+    InnerAccuracy accuracy;
+    if (is_known) accuracy.value = f.TwoBump::value(x);
+    direction.begin();
+    EXPECT_TRUE(direction.compute(f, x, g, accuracy, d, report));
+    EXPECT_TRUE(report.projected);
+    EXPECT_EQ(report.values, f.values);
+    return std::pair(f.values, d);
+  };
+  const auto known = evaluations(true), unknown = evaluations(false);
+  EXPECT_EQ(known.first, 1);
+  EXPECT_EQ(unknown.first, 2);
+  EXPECT_EQ(known.second, unknown.second);
+
+  CountedTwoBump f;
+  Newton direction(make_linear_solver("block_jacobi"));
+  std::vector<double> y = x;
+  int trials = 0, ahead = 0;
+  const auto count = [&](const Iteration& iteration) {
+    trials += iteration.trials, ahead += iteration.direction.values;
+    return true;
+  };
+  const MinimizeReport report = Minimizer().minimize(f, direction, y, {.criterion = Criterion::absolute}, count);
+  EXPECT_GT(ahead, 0);
+  EXPECT_EQ(ahead, report.projected_hessians);
+  EXPECT_EQ(f.values, 1 + trials + ahead);
+  EXPECT_EQ(report.values, f.values);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Where to go next: the open slot "d = ?" of the minimisation loop.
 #pragma once
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,12 +21,13 @@ struct DirectionReport : Work {
   double hessian_seconds = 0, factorize_seconds = 0, solve_seconds = 0;  // wall time
 };
 
-// Relative residuals between which an inner solve may choose: as loose as the method bears, and no tighter than is
-// enough for the end of the minimisation [Kelley 1995, eq. 6.20].
+// What the minimiser asks and knows. Relative residuals between which an inner solve may choose: as loose as the method
+// bears, and no tighter than is enough for the end of the minimisation [Kelley 1995, eq. 6.20].
 struct InnerAccuracy {
   double loosest = 0.1;
   double enough = 0;
-  Deadline deadline = {};  // of the computation: a solve that can be stopped by then is, and d is what it has
+  Deadline deadline = {};            // of the computation: a solve that can be stopped by then is, and d is what it has
+  std::optional<double> value = {};  // E(x), where it is known
 };
 
 class SearchDirection {

@@ -11,7 +11,7 @@ namespace aspic::verify {
 // What is verified, and how closely.
 struct Subject {
   bool quick = false;                          // fewer and coarser cases: seconds in place of minutes
-  std::map<std::string, std::string> instead;  // materials and integrators that are replaced: to see checks fail
+  std::map<std::string, std::string> instead;  // materials, integrators, cuts: to see checks fail
   double stiffness = 1;  // multiplies the moduli where all materials are alike, at small strains: for the same purpose
 
   std::string taken_for(const std::string& name) const;  // the name itself, unless it is replaced

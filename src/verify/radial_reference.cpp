@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <stdexcept>
 
 #include "verify/uniaxial.h"
 
@@ -45,12 +46,13 @@ class Radial {
   std::vector<Point> with_free_end(const std::function<std::vector<Point>(Real slope)>& start, Real before,
                                    Real slope) const {
     Real f_before = stress(start(before).back());
-    for (int i = 0; i < 50 && std::abs(slope - before) > 1e-12L; ++i) {
+    for (int i = 0; i < 50; ++i) {
+      if (std::abs(slope - before) <= 1e-12L) return start(slope);
       const Real f = stress(start(slope).back());
       const Real next = slope - f * (slope - before) / (f - f_before);
       before = slope, f_before = f, slope = next;
     }
-    return start(slope);
+    throw std::runtime_error("the reference of a body of one radius did not converge");
   }
 
  private:

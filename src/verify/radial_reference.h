@@ -12,7 +12,8 @@ struct Inflation {
 };
 
 // Rest radii a and b; the inner radius becomes `inner`, the outside is free. Shooting with principal_energy and the
-// classical Runge-Kutta method, to about 1e-8; E = 1 Pa.
+// classical Runge-Kutta method, to about 1e-8; E = 1 Pa. Throws
+// std::runtime_error where the secant method does not converge.
 Inflation inflated_sphere(const std::string& material, double poisson, double a, double b, double inner);
 
 struct Torsion {

@@ -102,6 +102,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"vibration/twisting_column", "midpoint", "backward_euler", "ratio"},
         Wrong{"vibration/twisting_column", "neo_hookean_isochoric", "arap", "det F"},
         Wrong{"vibration/twisting_column", "stiffness", "100", "largest turn"},
+        Wrong{"vibration/twisting_column", "five", "kuhn", "quarter turn"},
+        Wrong{"vibration/twisting_column", "five", "kuhn", "mirror"},
         Wrong{"statics/elastica", "neo_hookean_log", "linear"},
         Wrong{"statics/hollow_sphere", "neo_hookean_log", "corotated"}, Wrong{"statics/half_space", "linear", "arap"},
         Wrong{"vibration/tapered_membrane", "neo_hookean_log", "arap"},
@@ -129,6 +131,14 @@ TEST(TwistedCylinder, TendsToRivlinsSolution) {
   EXPECT_NEAR(torsion.torque, pi / 2 * mu, 5e-3);
   EXPECT_NEAR(torsion.force, -pi / 4 * mu, 5e-3);
   EXPECT_NEAR(torsion.radius(1), 1, 5e-3);
+}
+
+// Far too much is asked for.
+TEST(RadialReference, ThrowsWhereItDoesNotConverge) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(inflated_sphere("neo_hookean_log", 0.3, 1, 2, nan), std::runtime_error);
+  EXPECT_THROW(inflated_sphere("neo_hookean_log", 0.3, 1, 2, 1e-3), std::runtime_error);
+  EXPECT_THROW(twisted_cylinder("neo_hookean_log", 0.3, 1e3), std::runtime_error);
 }
 
 Check made_of(std::function<void(const Subject&, Findings&)> run) {
