@@ -104,7 +104,7 @@ bool Newton::solve_on_demand(Objective& E, std::span<const double> x, std::optio
   clamped_ = report.projected = true;
   if (absolute_left_ == 0) {
     if (!solve(E, x, {Definiteness::clamped}, g, forcing, d, report)) return false;
-    if (is_late(report) || !overshoots(E, x, value, d, report)) return true;
+    if (!value || is_late(report) || !overshoots(E, x, *value, d, report)) return true;
     absolute_left_ = absolute_span_;
     absolute_span_ *= 2;
   }
@@ -113,14 +113,13 @@ bool Newton::solve_on_demand(Objective& E, std::span<const double> x, std::optio
 }
 
 // Whether E rises along the whole of d, or the part of it that terms of E allow.
-bool Newton::overshoots(Objective& E, std::span<const double> x, std::optional<double> value, std::span<const double> d,
+bool Newton::overshoots(Objective& E, std::span<const double> x, double value, std::span<const double> d,
                         DirectionReport& report) {
   const double reach = std::min(1.0, E.max_step(x, d));
   ahead_.resize(x.size());
   for (size_t i = 0; i < x.size(); ++i) ahead_[i] = x[i] + reach * d[i];
-  report.values += value ? 1 : 2;
-  const double there = E.value(ahead_);
-  return !(there <= (value ? *value : E.value(x)));
+  ++report.values;
+  return !(E.value(ahead_) <= value);
 }
 
 bool Newton::retreat() {

@@ -37,7 +37,7 @@ class Newton : public SearchDirection {
 
   bool solve_on_demand(Objective& E, std::span<const double> x, std::optional<double> value, std::span<const double> g,
                        double forcing, std::span<double> d, DirectionReport& report);
-  bool overshoots(Objective& E, std::span<const double> x, std::optional<double> value, std::span<const double> d,
+  bool overshoots(Objective& E, std::span<const double> x, double value, std::span<const double> d,
                   DirectionReport& report);
   bool solve_progressively(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,
                            std::span<double> d, DirectionReport& report);

@@ -27,7 +27,7 @@ struct InnerAccuracy {
   double loosest = 0.1;
   double enough = 0;
   Deadline deadline = {};            // of the computation: a solve that can be stopped by then is, and d is what it has
-  std::optional<double> value = {};  // E(x), where it is known
+  std::optional<double> value = {};  // E(x), where steps are judged by E
 };
 
 class SearchDirection {
