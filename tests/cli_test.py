@@ -635,7 +635,7 @@ class Verify(CommandLine):
     def test_rows_say_what_was_measured_against_what_and_why(self):
         text = self.verify("--only", "free_fall", "--only", "numbering")
         self.assertRegex(text, r"pass  backward_euler: distance from the closed form .* \+- 1e-13 m")
-        self.assertIn("(round-off of 20 solves", text)
+        self.assertIn("(round-off of 10 solves", text)
         self.assertEqual([check["check"] for check in self.results()], ["invariants/numbering", "integrators/free_fall"])
         for check in self.results():
             self.assertTrue(check["passes"] and check["rows"])

@@ -136,9 +136,8 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
   const MinimizeOptions& options = at.options;
   MinimizeReport& report = at.report;
   const bool judges_gradient = !at.judges_direction();
-  InnerAccuracy accuracy = {options.max_forcing,
-                                  judges_gradient ? 0.5 * report.threshold / report.gradient_norm : 0,
-                                  options.deadline.earlier_by(cost_.to_finish())};
+  InnerAccuracy accuracy = {options.max_forcing, judges_gradient ? 0.5 * report.threshold / report.gradient_norm : 0,
+                            options.deadline.earlier_by(cost_.to_finish())};
   if (options.line_search.test != DecreaseTest::none) accuracy.value = at.value.E;
   LineSearchOptions line_search = options.line_search;
   line_search.deadline = options.deadline.earlier_by(cost_.gradient);
