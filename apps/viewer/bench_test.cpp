@@ -199,7 +199,8 @@ TEST(Bench, WhatACoarserMeshGetsWrongIsTakenOff) {
 
 TEST(Bench, StiffnessIsLookedAtOnALogarithmicScale) {
   Page page(kBlock);
-  for (const Json& field : page.scene()["fields"]) EXPECT_EQ(field["log"], field["name"] == "young") << field;
+  const Json scene = page.scene();
+  for (const Json& field : scene["fields"]) EXPECT_EQ(field["log"], field["name"] == "young") << field;
 }
 
 TEST(Bench, AStoppedFitKeepsWhatItReached) {

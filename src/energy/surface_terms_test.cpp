@@ -224,6 +224,27 @@ TEST(Probe, ASlidingDiscPressesWithItsDepth) {
   EXPECT_GT(expected, -50 * 0.03 * 3.14159265358979 * 0.04);  // a rounded rim presses less
 }
 
+// From the air to more than the depth at which the layer is no longer soft.
+TEST(Probe, PressedIntoTheBodyItsEnergyIsTheWorkOfItsForce) {
+  for (const Case& c : {kCases[2], kCases[3]}) {
+    const auto V = probe(c);
+    const std::vector<double> x = rest();
+    constexpr int kSteps = 400;
+    const Vec3d down = {{0, 0, -0.02 / kSteps}};
+    TipPose pose = {c.touch.center + Vec3d{{0, 0, c.tip.shape == TipShape::sphere ? 0.001 : 0.0}}, {{0, 0, -1}}, {}};
+    double work = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      pose.center = pose.center + 0.5 * down;
+      V->set_pose(pose);
+      work += dot(V->wrench(x).force, down);
+      pose.center = pose.center + 0.5 * down;
+    }
+    V->set_pose(pose);
+    EXPECT_GT(V->value(x), 0) << c.name;
+    EXPECT_NEAR(V->value(x), work, 1e-3 * work) << c.name;
+  }
+}
+
 TEST(Probe, ProjectedHessiansArePositiveSemidefiniteWhereTheExactOneIsNot) {
   const std::vector<double> x = deformed(0.02);
   for (const Case& c : {kCases[2], kCases[3]}) {

@@ -120,13 +120,14 @@ struct SplineLaw {
   template <std::size_t N>
   static void add_growths(const std::string& name, const std::string& of, const ConvexSpline<N>& spline,
                           std::vector<ExtraParameter>& list) {
+    const std::string meaning = "growth of the slope in " + of + " about ";
     for (std::size_t i = 1; i <= N; ++i) {
       std::string knot = std::to_string(spline.knots[i]);
       knot.erase(knot.find_last_not_of('0') + 1);
       if (knot.back() == '.') knot.pop_back();
       list.push_back({.name = name + std::to_string(i),
                       .unit = "1",
-                      .meaning = "growth of the slope in " + of + " about " + knot,
+                      .meaning = meaning + knot,
                       .fallback = 0,
                       .min = 0,
                       .max = 1e3});

@@ -1,6 +1,8 @@
 // Every method on Rosenbrock's function, and the parts that methods are made of.
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -90,6 +92,35 @@ TEST(NonlinearCG, EndsAfterAsManyIterationsAsAQuadraticHasEigenvalues) {
   options.criterion = Criterion::first_gradient;
   const auto method = make_search_direction({.method = "nonlinear_cg", .preconditioner = "none"});
   EXPECT_EQ(Minimizer().minimize(f, *method, x, options).iterations, 3);
+}
+
+// H <- (I - rho s y') H (I - rho y s') + rho s s' for each of the last eight steps, from H = (s.y / y.y) I of the last
+// [Nocedal and Wright 2006, eq. 7.16 and 7.20].
+TEST(LBFGS, IsTheRecursionOfItsMatrices) {
+  for (int steps = 1; steps <= 10; ++steps) {
+    Quadratic f;
+    const auto method = make_search_direction({.method = "lbfgs", .preconditioner = "none"});
+    std::vector<double> x(3), g(3), d(3);
+    std::vector<Eigen::Vector3d> places, gradients;
+    DirectionReport report;
+    for (int k = 0; k <= steps; ++k) {
+      x = {std::cos(k), std::sin(2.0 * k), std::cos(3.0 * k)};
+      f.gradient(x, g);
+      ASSERT_TRUE(method->compute(f, x, g, {}, d, report));
+      places.emplace_back(x.data()), gradients.emplace_back(g.data());
+    }
+    const auto change = [&](const auto& of, int k) { return Eigen::Vector3d(of[k] - of[k - 1]); };
+    const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
+    Eigen::Matrix3d H =
+        change(places, steps).dot(change(gradients, steps)) / change(gradients, steps).squaredNorm() * I;
+    for (int k = std::max(1, steps - 7); k <= steps; ++k) {
+      const Eigen::Vector3d s = change(places, k), y = change(gradients, k);
+      const double rho = 1 / s.dot(y);
+      H = (I - rho * s * y.transpose()) * H * (I - rho * y * s.transpose()) + rho * s * s.transpose();
+    }
+    const Eigen::Vector3d expected = -H * gradients.back();
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(d[i], expected[i], 1e-11) << "after " << steps << " steps";
+  }
 }
 
 TEST(Preconditioner, OfTheHessianMakesAQuadraticRoundInOneStepAndIsMadeOncePerMinimisation) {

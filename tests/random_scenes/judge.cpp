@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -88,16 +89,20 @@ class Judge {
     if (simulation_.options().integrator == "backward_euler") judge_descent(before, report);
   }
 
-  // By the volumes of the tets, whatever the materials say of det F.
+  // By the volumes of the tets, whatever the materials say of det F: that is a sum of products of three entries of F,
+  // so that its sign is round-off in a needle of ten thousand times its length.
   bool is_inside_out(size_t body) const {
     const Model& model = simulation_.model();
     TetMesh now = model.mesh;
     for (size_t i = 0; i < 3 * now.rest.size(); ++i)
       now.rest[i / 3][static_cast<int>(i % 3)] = simulation_.state().q[i];
     const double noise = kRoundOff * std::max(1.0, distance());
+    const double eps = std::numeric_limits<double>::epsilon();
     const int first = model.bodies[body].first_tet, end = first + model.bodies[body].tet_count;
-    for (int t = first; t < end; ++t)
-      if (volume(now, t) < -noise * volume(model.mesh, t)) return true;
+    for (int t = first; t < end; ++t) {
+      const double stretch = std::sqrt(squared_norm(edge_matrix(now, t) * inverse(edge_matrix(model.mesh, t))));
+      if (volume(now, t) < -(noise + eps * stretch * stretch * stretch) * volume(model.mesh, t)) return true;
+    }
     return false;
   }
 

@@ -194,15 +194,17 @@ TEST(Lessons, TheRecordedMousePullsTheBody) {
   EXPECT_EQ(opened.rows("a").size(), 150u);
 }
 
-TEST(Lessons, TheSameMouseMakesExplicitAndLinearisedSchemesExplode) {
-  for (const std::string part : {"explicit", "linearised"}) {
-    Opened opened("33-34_explosion_" + part);
-    opened.play(1000);
-    EXPECT_TRUE(opened.converged("a")) << part;
-    EXPECT_EQ(opened.rows("a").size(), 60u) << part;  // it goes on where the other one has ended
-    EXPECT_GT(opened.largest_energy("b"), 1e3 * opened.largest_energy("a")) << part;
-  }
+class Explosion : public testing::TestWithParam<std::string> {};
+
+TEST_P(Explosion, IsThatOfTheOtherSchemeUnderTheSameMouse) {
+  Opened opened("33-34_explosion_" + GetParam());
+  opened.play(1000);
+  EXPECT_TRUE(opened.converged("a"));
+  EXPECT_EQ(opened.rows("a").size(), 60u);  // it goes on where the other one has ended
+  EXPECT_GT(opened.largest_energy("b"), 1e3 * opened.largest_energy("a"));
 }
+
+INSTANTIATE_TEST_SUITE_P(Lessons, Explosion, testing::Values("explicit", "linearised"));
 
 TEST(Lessons, GradientDescentTakesMoreIterations) {
   Opened opened("38-42_gradient_descent_a step of a body");
