@@ -39,7 +39,7 @@ void make_room(const RunLayout& layout, const Scene& scene, ExistingRun existing
   std::error_code error;
   if (!fs::exists(layout.root(), error)) return create_folder(layout.root());
   if (!fs::is_directory(layout.root(), error)) throw InvalidInput(name + ": is a file; results need a directory");
-  if (fs::is_empty(layout.root(), error) || layout.is_barely_begun()) return;
+  if (layout.is_barely_begun()) return layout.remove_unfinished();
   if (!layout.holds_run()) {
     throw InvalidInput(name + ": is not empty and holds no run; choose another directory, or empty this one");
   }

@@ -261,6 +261,14 @@ TEST_F(RunResults, AnotherSceneIsRefusedWithTheLineThatDiffers) {
   EXPECT_THAT(message, HasSubstr(":2: 'young = 2e5' now, 'young = 1e5' in the run"));
 }
 
+TEST_F(RunResults, WhatARunKilledAtOnceHadBegunToWriteIsGone) {
+  run_whole(path("whole"), {});
+  fs::create_directories(path("run/frames"));
+  std::ofstream(path("run/.aspic-1-0")) << "unfinished";
+  run_whole(path("run"), {});
+  EXPECT_EQ(contents(path("run")), contents(path("whole")));
+}
+
 TEST_F(RunResults, AnExistingRunIsOnlyReplacedWhenAsked) {
   run_whole(path("run"), {});
   const auto before = contents(path("run"));
