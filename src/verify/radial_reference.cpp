@@ -49,6 +49,7 @@ class Radial {
     for (int i = 0; i < 50; ++i) {
       if (std::abs(slope - before) <= 1e-12L) return start(slope);
       const Real f = stress(start(slope).back());
+      if (!std::isfinite(f)) break;
       const Real next = slope - f * (slope - before) / (f - f_before);
       before = slope, f_before = f, slope = next;
     }
