@@ -7,7 +7,6 @@ if(TARGET bench_common)
   # Aspic and the obvious program agree with the reference displacement of the beam; sanitizers make Eigen too slow.
   if(NOT ASPIC_SANITIZE)
     add_test(NAME bench.beam COMMAND bench_beam 7 --threads 1,2)
-    set_tests_properties(bench.beam PROPERTIES TIMEOUT 300)
   endif()
   add_test(NAME bench.bent_beam COMMAND bench_beam 2 --bent --naive 0 --quiet)
   add_test(NAME bench.characters COMMAND bench_characters torus --detail tiny --steps 2 --csv characters.csv)

@@ -4,5 +4,4 @@ if(NOT ASPIC_SANITIZE AND NOT ASPIC_COVERAGE)
            COMMAND ${CMAKE_COMMAND} -DBUILD=${CMAKE_BINARY_DIR} -DSOURCE=${CMAKE_CURRENT_SOURCE_DIR}/installed_example
                    -DWORK=${CMAKE_BINARY_DIR}/installed_package -DGENERATOR=${CMAKE_GENERATOR}
                    -P ${CMAKE_CURRENT_SOURCE_DIR}/installed_example/check.cmake)
-  set_tests_properties(installed_package PROPERTIES TIMEOUT 300)
 endif()

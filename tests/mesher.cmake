@@ -2,5 +2,4 @@
 if(TARGET aspic-mesh)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
   add_test(NAME mesher COMMAND Python3::Interpreter ${CMAKE_SOURCE_DIR}/tests/mesher_test.py $<TARGET_FILE:aspic-mesh>)
-  set_tests_properties(mesher PROPERTIES TIMEOUT 300)
 endif()

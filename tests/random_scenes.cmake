@@ -6,7 +6,6 @@ add_executable(random_scenes ${CMAKE_CURRENT_LIST_DIR}/random_scenes/main.cpp
 target_link_libraries(random_scenes PRIVATE aspic aspic_build)
 target_include_directories(random_scenes PRIVATE ${CMAKE_SOURCE_DIR}/src ${CMAKE_CURRENT_LIST_DIR})
 add_test(NAME random_scenes COMMAND random_scenes --seed 1 --count 1000)
-set_tests_properties(random_scenes PROPERTIES TIMEOUT 600)
 # A body that nothing holds flies 5e14 times its size away, where all sums are round-off: its ledger still closes.
 add_test(NAME random_scenes.far_away
          COMMAND random_scenes --file ${CMAKE_CURRENT_LIST_DIR}/random_scenes/far_away.toml)

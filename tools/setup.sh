@@ -134,9 +134,10 @@ preset() {
   cp "$root/CMakePresets.json" "$recipe"
 }
 
-# run_tests CTEST-ARGUMENTS...: those of the build folder; in a pipe only the failures and the summary are shown.
+# run_tests CTEST-ARGUMENTS...: those of the build folder, each for at most half an hour; in a pipe only the failures and the
+# summary are shown.
 run_tests() {
-  set -- ctest --test-dir "$build_dir" --output-on-failure --no-tests=error -j "$(nproc)" "$@"
+  set -- ctest --test-dir "$build_dir" --output-on-failure --no-tests=error --timeout 1800 -j "$(nproc)" "$@"
   if [ -t 1 ]; then
     "$@" --progress
     return
