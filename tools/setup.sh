@@ -12,7 +12,7 @@ mesher_packages="libcgal-dev"
 viewer_programs="nodejs:node npm"
 viewer_packages="libboost-dev"
 case "${ASPIC_VIEWER-}" in 0 | OFF) viewer_programs= viewer_packages= ;; esac
-test_programs="python3 chromium"
+test_programs="python3 chromium ffmpeg"
 test_packages="libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libsuitesparse-dev python3-meshio"
 bench_packages="libbenchmark-dev"
 fuzz_programs="clang:clang++" # with libFuzzer and its sanitizers, which clang recommends and we name
