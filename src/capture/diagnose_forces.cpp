@@ -10,11 +10,11 @@
 namespace aspic {
 namespace {
 
-constexpr double kSoftest = 50, kStiffest = 1.5e7;  // [Pa] Young's moduli of bodies that one pokes
-constexpr double kUnlike = 30;                      // ratio of apparent moduli within one body that is no tissue's
-constexpr double kFalling = 0.8;                    // a force that falls below this share of the last, going deeper
-constexpr double kLargest = 1e9, kFinest = 1e-12;   // [N] of bodies that one pokes, and of their deviations
-constexpr int kEnough = 6;                          // forces that tell how a gauge rounds
+constexpr double kSoftestPoked = 50, kStiffestPoked = 1.5e7;  // [Pa] Young's moduli of bodies that one pokes
+constexpr double kUnlike = 30;                          // ratio of apparent moduli within one body that is no tissue's
+constexpr double kFalling = 0.8;                        // a force that falls below this share of the last, going deeper
+constexpr double kLargest = 1e9, kFinestForce = 1e-12;  // [N] of bodies that one pokes, and of their deviations
+constexpr int kEnough = 6;                              // forces that tell how a gauge rounds
 
 class ForceDiagnosis {
  public:
@@ -66,7 +66,7 @@ class ForceDiagnosis {
       if (!(norm(*load.force) < kLargest))
         return refuse(where(c), "the force is larger than " + three_digits(kLargest) + " N",
                       "correct it, or leave it blank");
-      if (std::min({sd[0], sd[1], sd[2]}) < kFinest)
+      if (std::min({sd[0], sd[1], sd[2]}) < kFinestForce)
         return refuse(where(c),
                       "the force has a standard deviation of " + three_digits(std::min({sd[0], sd[1], sd[2]})) +
                           " N: no gauge is so exact",
@@ -114,13 +114,13 @@ class ForceDiagnosis {
     if (!E) return;
     const std::string says =
         "by force, depth and radius of the tip, Young's modulus is about " + three_digits(*E) + " Pa";
-    if (*E >= kSoftest && *E <= kStiffest)
+    if (*E >= kSoftestPoked && *E <= kStiffestPoked)
       return findings_.note(data_.source.cases, says,
                             "if that is far from what the body feels like, check units: force and length");
     std::string remedy = "check units: force and length";
     for (const std::string& unit : unit_names("force")) {
       const double other = *E * unit_in_si("force", unit);
-      if (unit != "N" && other > kSoftest && other < kStiffest) {
+      if (unit != "N" && other > kSoftestPoked && other < kStiffestPoked) {
         remedy = "if forces are in " + unit + ", set units = { force = \"" + unit + "\" }: it would be " +
                  three_digits(other) + " Pa";
         if (unit == "mN" || unit == "g" || unit == "kN") break;

@@ -11,15 +11,15 @@ namespace aspic {
 namespace {
 
 constexpr int kNeighbours = 12;
-constexpr size_t kMostListed = 5;     // of one kind; the rest is counted
-constexpr double kOffSurface = 0.02;  // of the body's size
-constexpr double kSuspicious = 6;     // times what neighbours differ by
-constexpr double kNoticeable = 0.05;  // of the largest motion of the case
-constexpr double kReach = 2;          // of a tip, in radii, within which the surface goes its way
-constexpr double kFar = 1;            // of the body's size: a motion that is none
-constexpr double kFarthest = 10;      // likewise, of a single marker: no fit stands that
-constexpr double kLever = 3;          // times the way of the tip: a motion of most markers that is no tip's
-constexpr double kFinest = 1e-9;      // of the body's size: a deviation that no instrument has
+constexpr size_t kMostListed = 5;         // of one kind; the rest is counted
+constexpr double kOffSurface = 0.02;      // of the body's size
+constexpr double kSuspicious = 6;         // times what neighbours differ by
+constexpr double kNoticeable = 0.05;      // of the largest motion of the case
+constexpr double kReach = 2;              // of a tip, in radii, within which the surface goes its way
+constexpr double kFar = 1;                // of the body's size: a motion that is none
+constexpr double kFarthest = 10;          // likewise, of a single marker: no fit stands that
+constexpr double kLever = 3;              // times the way of the tip: a motion of most markers that is no tip's
+constexpr double kFinestPosition = 1e-9;  // of the body's size: a deviation that no instrument has
 
 // The markers nearest to each at rest, of those given.
 std::vector<std::vector<int>> neighbours(const std::vector<Vec3d>& X) {
@@ -172,7 +172,7 @@ class PositionDiagnosis {
           return refuse(where, who + " is far outside of the body, whose size is " + three_digits(size_) + " m",
                         "correct its place, or leave the row out");
         const double finest = std::min({r.deviation[0], r.deviation[1], r.deviation[2]});
-        if (finest < kFinest * size_)
+        if (finest < kFinestPosition * size_)
           return refuse(where,
                         who + " has a standard deviation of " + three_digits(finest) + " m: no instrument is so exact",
                         "check the unit of sd; leave it blank for 1 % of the largest motion");

@@ -20,7 +20,7 @@ namespace aspic {
 namespace {
 
 constexpr double kTipRadius = 0.08;       // relative to the size of the body
-constexpr double kGravity = 9.81;         // [m/s^2]
+constexpr double kUsualGravity = 9.81;    // [m/s^2]
 constexpr double kLeastArm = 0.01;        // of a force about the centre of the tip, relative to its radius
 constexpr double kLeastDeviation = 1e-4;  // of exact data, relative to the largest motion or force
 
@@ -169,7 +169,7 @@ class Bench {
     for (size_t g = 0; g < options_.gravity.size(); ++g) {
       LoadCase load;
       load.name = load.group = "gravity " + std::to_string(g + 1);
-      load.gravity = (kGravity / norm(options_.gravity[g])) * options_.gravity[g];
+      load.gravity = (kUsualGravity / norm(options_.gravity[g])) * options_.gravity[g];
       add_case(std::move(load), {}, {});
     }
   }

@@ -7,7 +7,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kGravity = 9.80665;  // standard gravity [m/s^2], by which scales turn forces into masses
+constexpr double kStandardGravity = 9.80665;  // standard gravity [m/s^2], by which scales turn forces into masses
 
 struct Unit {
   const char* quantity;
@@ -24,9 +24,9 @@ constexpr Unit kUnits[] = {
     {"force", "N", 1},
     {"force", "mN", 1e-3},
     {"force", "kN", 1e3},
-    {"force", "g", 1e-3 * kGravity},
-    {"force", "kg", kGravity},
-    {"force", "lbf", 0.45359237 * kGravity},
+    {"force", "g", 1e-3 * kStandardGravity},
+    {"force", "kg", kStandardGravity},
+    {"force", "lbf", 0.45359237 * kStandardGravity},
     {"torque", "N m", 1},
     {"torque", "N cm", 1e-2},
     {"torque", "N mm", 1e-3},
@@ -42,7 +42,7 @@ constexpr Unit kUnits[] = {
     {"pressure", "mmHg", 133.322387415},
     {"pressure", "psi", 6894.757293168361},
     {"gravity", "m/s^2", 1},
-    {"gravity", "g", kGravity},
+    {"gravity", "g", kStandardGravity},
 };
 
 std::string_view kind_of(std::string_view quantity) { return quantity == "mesh" ? "length" : quantity; }

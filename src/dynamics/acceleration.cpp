@@ -6,7 +6,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kSolveTolerance = 1e-12;  // the mass matrix is well conditioned
+constexpr double kAccelerationTolerance = 1e-12;  // the mass matrix is well conditioned
 
 }  // namespace
 
@@ -40,7 +40,7 @@ bool Acceleration::solve(const StepTools& tools, double time, std::span<const do
   tools.pins.set_zero(force_);
   double squared = 0;
   for (const double f : force_) squared += f * f;
-  noise_ = kSolveTolerance * std::sqrt(squared);
+  noise_ = kAccelerationTolerance * std::sqrt(squared);
   const SolveReport solved = solve_mass(tools, force_, scratch_);
   work.add(solved);
   tools.pins.set_zero(scratch_);
@@ -62,7 +62,7 @@ SolveReport Acceleration::solve_mass(const StepTools& tools, std::span<const dou
     solver_->analyze(tools.E.pattern());
     factorized_ = solver_->factorize(*M_);
   }
-  return factorized_ ? solver_->solve(force, acc, kSolveTolerance) : SolveReport{};
+  return factorized_ ? solver_->solve(force, acc, kAccelerationTolerance) : SolveReport{};
 }
 
 }  // namespace aspic

@@ -12,8 +12,8 @@ namespace aspic {
 namespace {
 
 constexpr int kIterations = 100;
-constexpr double kSettled = 1e-3;         // relative change of h^2 between two iterations
-constexpr double kSolveTolerance = 1e-6;  // of M
+constexpr double kSettled = 1e-3;             // relative change of h^2 between two iterations
+constexpr double kPowerStepTolerance = 1e-6;  // of M
 
 double product(std::span<const double> a, std::span<const double> b) {
   double sum = 0;
@@ -78,7 +78,7 @@ class PowerIteration {
   void multiply(double stiffness, double damping) {
     for (size_t j = 0; j < u_.size(); ++j) Ku_[j] = stiffness * Ku_[j] + damping * Cu_[j];
     pins_.set_zero(Ku_);
-    solver_.solve(Ku_, u_, kSolveTolerance);
+    solver_.solve(Ku_, u_, kPowerStepTolerance);
     pins_.set_zero(u_);
   }
 

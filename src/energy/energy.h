@@ -10,6 +10,7 @@
 namespace aspic {
 
 using Positions = std::span<const double>;  // x, 3 per vertex [m]
+inline Vec3d point(Positions x, int vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
 
 // A step, or a stage of one: what an integrator says is a step from `start` that takes h, so that (x - start) / h is
 // the velocity.

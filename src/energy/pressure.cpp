@@ -9,8 +9,6 @@
 namespace aspic {
 namespace {
 
-Vec3d point(Positions x, int vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
-
 // The matrix of a -> q x a, added to a 3x3 part of K.
 void add_cross(Mat9d& K, int i, int j, const Vec3d& q) {
   for (int r = 0; r < 3; ++r) {

@@ -22,7 +22,6 @@ constexpr int kMostCutsAfar = 64;    // of an edge of a triangle that only a tip
 
 using Corners = std::array<Vec3d, 3>;
 
-Vec3d point(Positions x, int vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
 std::string text(double value) { return (std::ostringstream() << value).str(); }
 double norm(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 Corners corners_of(Positions x, const Triangle& t) { return {point(x, t[0]), point(x, t[1]), point(x, t[2])}; }

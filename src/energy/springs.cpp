@@ -8,8 +8,6 @@
 namespace aspic {
 namespace {
 
-Vec3d point(Positions x, int vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
-
 void add_at(std::span<double> g, int vertex, double scale, const Vec3d& v) {
   for (int r = 0; r < 3; ++r) g[3 * vertex + r] += scale * v[r];
 }

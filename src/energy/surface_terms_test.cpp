@@ -18,37 +18,37 @@
 namespace aspic {
 namespace {
 
-const TetMesh& mesh() {
+const TetMesh& box_mesh() {
   static const TetMesh box = make_box({{0, 0, 0}}, {{1, 0.8, 0.6}}, {4, 3, 3});
   return box;
 }
 
 const std::vector<Triangle>& surface() {
-  static const std::vector<Triangle> triangles = boundary_triangles(mesh(), 0, mesh().tet_count());
+  static const std::vector<Triangle> triangles = boundary_triangles(box_mesh(), 0, box_mesh().tet_count());
   return triangles;
 }
 
-const BlockPattern& pattern() {  // that of tets
+const BlockPattern& box_pattern() {  // that of tets
   static const BlockPattern of_tets = [] {
     const MaterialInfo& info = material_info("neo_hookean");
-    const std::vector<MaterialParameters> parameters(mesh().tet_count(), {lame_from_young_poisson(1, 0.3), {}});
+    const std::vector<MaterialParameters> parameters(box_mesh().tet_count(), {lame_from_young_poisson(1, 0.3), {}});
     Couplings couplings;
-    make_tet_elasticity(info.name, mesh(), 0, parameters)->add_couplings(couplings);
-    return make_pattern(mesh().vertex_count(), couplings);
+    make_tet_elasticity(info.name, box_mesh(), 0, parameters)->add_couplings(couplings);
+    return make_pattern(box_mesh().vertex_count(), couplings);
   }();
   return of_tets;
 }
 
-std::vector<double> rest() {
+std::vector<double> box_at_rest() {
   std::vector<double> x;
-  for (const Vec3d& X : mesh().rest) x.insert(x.end(), {X[0], X[1], X[2]});
+  for (const Vec3d& X : box_mesh().rest) x.insert(x.end(), {X[0], X[1], X[2]});
   return x;
 }
 
-std::vector<double> deformed(double amount, unsigned seed = 3) {
+std::vector<double> shaken(double amount, unsigned seed = 3) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-amount, amount);
-  std::vector<double> x = rest();
+  std::vector<double> x = box_at_rest();
   for (double& xi : x) xi += uniform(random);
   return x;
 }
@@ -73,18 +73,18 @@ const Case kCases[] = {
     {"sliding disc", {TipShape::disc, TipContact::sliding, 0.2, 50}, kFlatTouch, kFlatPose},
 };
 std::unique_ptr<Probe> probe(const Case& c) {
-  auto V = make_probe(mesh(), surface(), c.tip, c.touch);
+  auto V = make_probe(box_mesh(), surface(), c.tip, c.touch);
   V->set_pose(c.pose);
-  V->bind(pattern());
+  V->bind(box_pattern());
   return V;
 }
 
-void expect_vertex_systems_to_be_parts(Energy& V, const std::vector<double>& x, const std::string& what) {
-  const int n = mesh().vertex_count();
+void expect_systems_of_vertices(Energy& V, const std::vector<double>& x, const std::string& what) {
+  const int n = box_mesh().vertex_count();
   ASSERT_TRUE(V.prepare_vertex_systems(n)) << what;
   std::vector<double> whole(x.size());
   V.add_gradient(x, 2, whole);
-  BlockSparse H(pattern());
+  BlockSparse H(box_pattern());
   V.add_hessian(x, 2, {Definiteness::exact}, H);
   std::vector<int> all(n);
   std::iota(all.begin(), all.end(), 0);
@@ -96,30 +96,30 @@ void expect_vertex_systems_to_be_parts(Energy& V, const std::vector<double>& x, 
   for (const Mat3d& block : H.block) entry = std::max(entry, std::sqrt(squared_norm(block)));
   for (int v = 0; v < n; ++v) {
     for (int r = 0; r < 3; ++r) EXPECT_NEAR(g[v][r], whole[3 * v + r], 1e-13 * force) << what;
-    EXPECT_LE(std::sqrt(squared_norm(blocks[v] - H.block[pattern().diagonal(v)])), 1e-13 * entry) << what;
+    EXPECT_LE(std::sqrt(squared_norm(blocks[v] - H.block[box_pattern().diagonal(v)])), 1e-13 * entry) << what;
   }
 }
 
 TEST(Probe, DerivativesAreThoseOfTheEnergy) {
   for (const Case& c : kCases) {
     const auto V = probe(c);
-    const std::vector<double> x = deformed(0.02);
+    const std::vector<double> x = shaken(0.02);
     ASSERT_GT(V->touched_points(x), 10) << c.name;
-    const DerivativeReport report = check_derivatives(differentiable(*V, pattern()), x, {.length = 0.02});
+    const DerivativeReport report = check_derivatives(differentiable(*V, box_pattern()), x, {.length = 0.02});
     EXPECT_TRUE(report.gradient.passed) << c.name << ": " << report.gradient.smallest_error;
     EXPECT_TRUE(report.hessian.passed) << c.name << ": " << report.hessian.smallest_error;
-    expect_vertex_systems_to_be_parts(*V, x, c.name);
+    expect_systems_of_vertices(*V, x, c.name);
   }
 }
 
 TEST(Probe, ItsForceIsTheOppositeOfWhatTheBodyFeelsAndItsTorqueTheMoment) {
   for (const Case& c : kCases) {
     const auto V = probe(c);
-    const std::vector<double> x = deformed(0.02);
+    const std::vector<double> x = shaken(0.02);
     std::vector<double> g(x.size());
     V->add_gradient(x, 1, g);
     Vec3d force{}, torque{};
-    for (int v = 0; v < mesh().vertex_count(); ++v) {
+    for (int v = 0; v < box_mesh().vertex_count(); ++v) {
       const Vec3d f = {{-g[3 * v], -g[3 * v + 1], -g[3 * v + 2]}};
       const Vec3d arm = Vec3d{{x[3 * v], x[3 * v + 1], x[3 * v + 2]}} - c.pose.center;
       force = force + f;
@@ -135,7 +135,7 @@ TEST(Probe, ItsForceIsTheOppositeOfWhatTheBodyFeelsAndItsTorqueTheMoment) {
 TEST(Probe, ProductsOfTheWrenchAreItsDerivativesAndTransposesOfEachOther) {
   for (const Case& c : kCases) {
     const auto V = probe(c);
-    const std::vector<double> x = deformed(0.02), dx = deformed(0.1, 5);
+    const std::vector<double> x = shaken(0.02), dx = shaken(0.1, 5);
     const Wrench product = V->wrench_product(x, dx);
     const double h = 1e-6;
     std::vector<double> forth = x, back = x;
@@ -162,7 +162,7 @@ TEST(Probe, ABondedTipThatMovesWithTheBodyPullsNothing) {
     moved.rotation = {{0, 0, std::acos(0.0)}};
     V->set_pose(moved);
     std::vector<double> x;
-    for (const Vec3d& X : mesh().rest) {
+    for (const Vec3d& X : box_mesh().rest) {
       const Vec3d y = quarter_turn * X + Vec3d{{3, -2, 1}};
       x.insert(x.end(), {y[0], y[1], y[2]});
     }
@@ -175,7 +175,7 @@ TEST(Probe, MovedAndTurnedWithTheBodyItsEnergyStaysAndItsForceTurns) {
   const Mat3d quarter_turn = {0, 1, 0, -1, 0, 0, 0, 0, 1};
   for (const Case& c : {kCases[2], kCases[3]}) {
     const auto V = probe(c);
-    const std::vector<double> x = deformed(0.02);
+    const std::vector<double> x = shaken(0.02);
     std::vector<double> turned(x.size());
     for (size_t i = 0; i < x.size(); i += 3)
       turned[i] = 4 - x[i + 1], turned[i + 1] = x[i], turned[i + 2] = x[i + 2] - 1;
@@ -200,7 +200,7 @@ TEST(Probe, AFootprintHasTheAreaOfTheTip) {
     TipPose moved = kCases[i].touch;
     moved.center[0] += 0.01;
     V->set_pose(moved);
-    EXPECT_NEAR(V->wrench(rest()).force[0], 50 * 0.01 * areas[i], 0.02 * 50 * 0.01 * areas[i]) << kCases[i].name;
+    EXPECT_NEAR(V->wrench(box_at_rest()).force[0], 50 * 0.01 * areas[i], 0.02 * 50 * 0.01 * areas[i]) << kCases[i].name;
   }
 }
 
@@ -218,7 +218,7 @@ TEST(Probe, ASlidingDiscPressesWithItsDepth) {
     const double stress = c.tip.stiffness * (d < 0 ? 0 : d < e ? d * d / (2 * e) : d - e / 2);
     expected -= 2 * 3.14159265358979 * r * 0.25 / kRings * stress * slope[2];
   }
-  const Wrench w = V->wrench(rest());
+  const Wrench w = V->wrench(box_at_rest());
   EXPECT_NEAR(w.force[2], expected, 0.03 * std::abs(expected));  // points are a quarter of the radius apart
   EXPECT_NEAR(w.force[0], 0, 0.03 * std::abs(expected));
   EXPECT_GT(expected, -50 * 0.03 * 3.14159265358979 * 0.04);  // a rounded rim presses less
@@ -228,7 +228,7 @@ TEST(Probe, ASlidingDiscPressesWithItsDepth) {
 TEST(Probe, PressedIntoTheBodyItsEnergyIsTheWorkOfItsForce) {
   for (const Case& c : {kCases[2], kCases[3]}) {
     const auto V = probe(c);
-    const std::vector<double> x = rest();
+    const std::vector<double> x = box_at_rest();
     constexpr int kSteps = 400;
     const Vec3d down = {{0, 0, -0.02 / kSteps}};
     TipPose pose = {c.touch.center + Vec3d{{0, 0, c.tip.shape == TipShape::sphere ? 0.001 : 0.0}}, {{0, 0, -1}}, {}};
@@ -246,11 +246,11 @@ TEST(Probe, PressedIntoTheBodyItsEnergyIsTheWorkOfItsForce) {
 }
 
 TEST(Probe, ProjectedHessiansArePositiveSemidefiniteWhereTheExactOneIsNot) {
-  const std::vector<double> x = deformed(0.02);
+  const std::vector<double> x = shaken(0.02);
   for (const Case& c : {kCases[2], kCases[3]}) {
     const auto V = probe(c);
     for (const Definiteness kind : {Definiteness::exact, Definiteness::clamped, Definiteness::absolute}) {
-      BlockSparse H(pattern());
+      BlockSparse H(box_pattern());
       const int projected = V->add_hessian(x, 1, {kind}, H);
       EXPECT_EQ(projected > 0, kind != Definiteness::exact) << c.name;
       double least = 0;
@@ -277,8 +277,8 @@ TEST(Probe, ATipInTheAirDoesNothing) {
     TipPose away = c.pose;
     away.center[2] += 0.5;
     V->set_pose(away);
-    EXPECT_EQ(V->touched_points(rest()), 0);
-    EXPECT_EQ(V->value(rest()), 0);
+    EXPECT_EQ(V->touched_points(box_at_rest()), 0);
+    EXPECT_EQ(V->value(box_at_rest()), 0);
   }
 }
 
@@ -288,10 +288,10 @@ TEST(Probe, RefusesATipThatTouchesNothingAndOneWithoutSizeOrLayer) {
   EXPECT_THROW(probe(c), InvalidInput);
   for (Tip bad : {Tip{.radius = 0, .stiffness = 1}, Tip{.radius = 0.1, .stiffness = 0},
                   Tip{.radius = NAN, .stiffness = 1}, Tip{.radius = 1e-3, .stiffness = 1}})
-    EXPECT_THROW(make_probe(mesh(), surface(), bad, kTouch), InvalidInput);
+    EXPECT_THROW(make_probe(box_mesh(), surface(), bad, kTouch), InvalidInput);
   TipPose without_axis = kTouch;
   without_axis.axis = {};
-  EXPECT_THROW(make_probe(mesh(), surface(), kCases[0].tip, without_axis), InvalidInput);
+  EXPECT_THROW(make_probe(box_mesh(), surface(), kCases[0].tip, without_axis), InvalidInput);
 }
 
 TEST(TipDepth, OfADiscIsTwiceDifferentiableAcrossItsRim) {
@@ -312,27 +312,27 @@ TEST(TipDepth, OfADiscIsTwiceDifferentiableAcrossItsRim) {
 std::vector<Triangle> top() {
   std::vector<Triangle> triangles;
   for (const Triangle& t : surface())
-    if (std::ranges::all_of(t, [](int v) { return mesh().rest[v][2] > 0.6 - 1e-9; })) triangles.push_back(t);
+    if (std::ranges::all_of(t, [](int v) { return box_mesh().rest[v][2] > 0.6 - 1e-9; })) triangles.push_back(t);
   return triangles;
 }
 
 TEST(Pressure, DerivativesAreThoseOfTheEnergy) {
   for (const double p : {3.0, -3.0}) {
-    const auto V = make_pressure(mesh(), top(), p);
-    V->bind(pattern());
-    const std::vector<double> x = deformed(0.05);
-    const DerivativeReport report = check_derivatives(differentiable(*V, pattern()), x, {.length = 0.3});
+    const auto V = make_pressure(box_mesh(), top(), p);
+    V->bind(box_pattern());
+    const std::vector<double> x = shaken(0.05);
+    const DerivativeReport report = check_derivatives(differentiable(*V, box_pattern()), x, {.length = 0.3});
     EXPECT_TRUE(report.gradient.passed) << report.gradient.smallest_error;
     EXPECT_TRUE(report.hessian.passed) << report.hessian.smallest_error;
-    expect_vertex_systems_to_be_parts(*V, x, "pressure");
+    expect_systems_of_vertices(*V, x, "pressure");
   }
 }
 
 TEST(Pressure, OnAClosedSurfaceIsPressureTimesVolumeAndHasNoResultant) {
-  const auto V = make_pressure(mesh(), surface(), 3);
-  const std::vector<double> x = deformed(0.05);
+  const auto V = make_pressure(box_mesh(), surface(), 3);
+  const std::vector<double> x = shaken(0.05);
   double volume = 0;  // of the deformed body
-  for (const Tet& tet : mesh().tets) {
+  for (const Tet& tet : box_mesh().tets) {
     const auto at = [&](int k) { return Vec3d{{x[3 * tet[k]], x[3 * tet[k] + 1], x[3 * tet[k] + 2]}}; };
     volume += determinant(from_columns(at(1) - at(0), at(2) - at(0), at(3) - at(0))) / 6;
   }
@@ -350,8 +350,8 @@ TEST(Pressure, OnAClosedSurfaceIsPressureTimesVolumeAndHasNoResultant) {
 }
 
 TEST(Pressure, OnAPatchThatMovesAlongItsNormalIsTheForceOnItsArea) {
-  const auto V = make_pressure(mesh(), top(), 3);
-  std::vector<double> x = rest();
+  const auto V = make_pressure(box_mesh(), top(), 3);
+  std::vector<double> x = box_at_rest();
   for (size_t i = 2; i < x.size(); i += 3) x[i] *= 0.9;
   EXPECT_NEAR(V->swept_volume(x), -0.06 * 0.8, 1e-15);
   std::vector<double> g(x.size());
@@ -362,14 +362,14 @@ TEST(Pressure, OnAPatchThatMovesAlongItsNormalIsTheForceOnItsArea) {
 }
 
 TEST(Pressure, InsideAPatchItFollowsTheSurface) {
-  const auto V = make_pressure(mesh(), top(), 3);
-  const std::vector<double> x = deformed(0.05);
+  const auto V = make_pressure(box_mesh(), top(), 3);
+  const std::vector<double> x = shaken(0.05);
   const auto at = [&](int v) { return Vec3d{{x[3 * v], x[3 * v + 1], x[3 * v + 2]}}; };
   std::vector<double> g(x.size());
   V->add_gradient(x, -1, g);
   int inner = 0;
-  for (int v = 0; v < mesh().vertex_count(); ++v) {
-    const Vec3d& X = mesh().rest[v];
+  for (int v = 0; v < box_mesh().vertex_count(); ++v) {
+    const Vec3d& X = box_mesh().rest[v];
     if (X[2] < 0.6 - 1e-9 || X[0] < 1e-9 || X[0] > 1 - 1e-9 || X[1] < 1e-9 || X[1] > 0.8 - 1e-9) continue;
     ++inner;
     Vec3d force{};  // -p dA / 3 of each triangle around
@@ -382,15 +382,15 @@ TEST(Pressure, InsideAPatchItFollowsTheSurface) {
 }
 
 TEST(Pressure, ItsProjectedHessianIsPositiveSemidefinite) {
-  const auto V = make_pressure(mesh(), top(), 3);
-  V->bind(pattern());
-  const std::vector<double> x = deformed(0.05);
+  const auto V = make_pressure(box_mesh(), top(), 3);
+  V->bind(box_pattern());
+  const std::vector<double> x = shaken(0.05);
   for (const Definiteness kind : {Definiteness::exact, Definiteness::clamped, Definiteness::absolute}) {
-    BlockSparse H(pattern());
+    BlockSparse H(box_pattern());
     V->add_hessian(x, 1, {kind}, H);
     double least = 0;
     for (unsigned seed = 0; seed < 100; ++seed) {
-      std::vector<double> d = deformed(1, seed), Hd(x.size());
+      std::vector<double> d = shaken(1, seed), Hd(x.size());
       H.multiply(d, Hd);
       least = std::min(least, std::inner_product(d.begin(), d.end(), Hd.begin(), 0.0));
     }

@@ -21,14 +21,14 @@
 namespace aspic {
 namespace {
 
-const TetMesh& mesh() {
+const TetMesh& small_mesh() {
   static const TetMesh box = make_box({{0, 0, 0}}, {{1, 0.8, 0.6}}, {3, 2, 2});  // 72 tets: no multiple of 7 lanes
   return box;
 }
 
-std::vector<MaterialParameters> heterogeneous(const MaterialInfo& info) {
+std::vector<MaterialParameters> heterogeneous_parameters(const MaterialInfo& info) {
   std::vector<MaterialParameters> parameters;
-  for (int t = 0; t < mesh().tet_count(); ++t) {
+  for (int t = 0; t < small_mesh().tet_count(); ++t) {
     MaterialParameters p{lame_from_young_poisson(1 + 0.1 * t, 0.1 + 0.004 * t), {}};
     for (size_t k = 0; k < info.extra.size(); ++k) p.extra[k] = info.extra[k].fallback;
     parameters.push_back(p);
@@ -40,7 +40,7 @@ std::vector<double> deformed(double amount, unsigned seed = 3) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-amount, amount);
   std::vector<double> x;
-  for (const Vec3d& X : mesh().rest)
+  for (const Vec3d& X : small_mesh().rest)
     for (int r = 0; r < 3; ++r) x.push_back((1 + 0.1 * r) * X[r] + 0.2 * X[(r + 1) % 3] + uniform(random));
   return x;
 }
@@ -74,7 +74,7 @@ void expect_vertex_systems_to_be_parts(Energy& V, const BlockPattern& pattern, c
 BlockPattern pattern_of(Energy& V) {
   Couplings couplings;
   V.add_couplings(couplings);
-  const BlockPattern pattern = make_pattern(mesh().vertex_count(), couplings);
+  const BlockPattern pattern = make_pattern(small_mesh().vertex_count(), couplings);
   V.bind(pattern);
   return pattern;
 }
@@ -98,18 +98,19 @@ void expect_consistent(Energy& V, const std::vector<double>& x, const std::strin
 
 TEST(TetElasticity, DerivativesAreThoseOfTheEnergyForEveryMaterial) {
   for (const MaterialInfo& info : materials()) {
-    auto V = make_tet_elasticity(info.name, mesh(), 0, heterogeneous(info));
+    auto V = make_tet_elasticity(info.name, small_mesh(), 0, heterogeneous_parameters(info));
     expect_consistent(*V, deformed(0.03), info.name);
   }
 }
 
 TEST(GrabSpring, DerivativesAreThoseOfTheEnergy) {
   GrabSpring V;
-  V.set({.vertices = mesh().tets[5], .weights = {0.1, -0.2, 0.6, 0.5}, .stiffness = 30, .to = {{1, 2, 3}}}, 0);
-  const auto tets = make_tet_elasticity("neo_hookean", mesh(), 0, heterogeneous(material_info("neo_hookean")));
+  V.set({.vertices = small_mesh().tets[5], .weights = {0.1, -0.2, 0.6, 0.5}, .stiffness = 30, .to = {{1, 2, 3}}}, 0);
+  const auto tets =
+      make_tet_elasticity("neo_hookean", small_mesh(), 0, heterogeneous_parameters(material_info("neo_hookean")));
   Couplings couplings;  // the spring lives on those of its tet
   tets->add_couplings(couplings);
-  const BlockPattern pattern = make_pattern(mesh().vertex_count(), couplings);
+  const BlockPattern pattern = make_pattern(small_mesh().vertex_count(), couplings);
   V.bind(pattern);
   const std::vector<double> x = deformed(0.03);
   const DerivativeReport report = check_derivatives(differentiable(V, pattern), x, {.length = 0.3});
@@ -137,33 +138,33 @@ TEST(GrabSpring, WithoutStiffnessIsNothing) {
 
 TEST(TetElasticity, InternalForcesSumToZeroForEveryMaterial) {
   for (const MaterialInfo& info : materials()) {
-    const auto V = make_tet_elasticity(info.name, mesh(), 0, heterogeneous(info));
-    std::vector<double> g(3 * mesh().rest.size());
+    const auto V = make_tet_elasticity(info.name, small_mesh(), 0, heterogeneous_parameters(info));
+    std::vector<double> g(3 * small_mesh().rest.size());
     V->add_gradient(deformed(0.03), 1, g);
     double sum[3] = {0, 0, 0}, largest = 0;
     for (size_t i = 0; i < g.size(); ++i) sum[i % 3] += g[i], largest = std::max(largest, std::abs(g[i]));
-    for (const double s : sum) EXPECT_LT(std::abs(s), 1e-13 * largest * mesh().rest.size()) << info.name;
+    for (const double s : sum) EXPECT_LT(std::abs(s), 1e-13 * largest * small_mesh().rest.size()) << info.name;
   }
 }
 
 TEST(TetElasticity, NeitherRenumberingNorMirroringChangesTheEnergy) {
   const MaterialInfo& info = material_info("neo_hookean_log");
-  const auto parameters = heterogeneous(info);
+  const auto parameters = heterogeneous_parameters(info);
   const std::vector<double> x = deformed(0.02);
-  const double V = make_tet_elasticity(info.name, mesh(), 0, parameters)->value(x);
+  const double V = make_tet_elasticity(info.name, small_mesh(), 0, parameters)->value(x);
 
-  TetMesh shuffled = mesh();
+  TetMesh shuffled = small_mesh();
   std::vector<double> moved(x.size());
   const int n = shuffled.vertex_count();
   for (int v = 0; v < n; ++v) {
-    shuffled.rest[(7 * v + 3) % n] = mesh().rest[v];  // 7 does not divide n = 36
+    shuffled.rest[(7 * v + 3) % n] = small_mesh().rest[v];  // 7 does not divide n = 36
     for (int r = 0; r < 3; ++r) moved[3 * ((7 * v + 3) % n) + r] = x[3 * v + r];
   }
   for (Tet& tet : shuffled.tets)
     for (int& v : tet) v = (7 * v + 3) % n;
   EXPECT_NEAR(make_tet_elasticity(info.name, shuffled, 0, parameters)->value(moved), V, 1e-12 * V);
 
-  TetMesh mirrored = mesh();
+  TetMesh mirrored = small_mesh();
   std::vector<double> reflected = x;
   for (Vec3d& X : mirrored.rest) X[0] = -X[0];
   for (Tet& tet : mirrored.tets) std::swap(tet[0], tet[1]);
@@ -173,7 +174,7 @@ TEST(TetElasticity, NeitherRenumberingNorMirroringChangesTheEnergy) {
 
 TEST(TetElasticity, ABarrierMaterialIsInfiniteWhenATetIsInverted) {
   const MaterialInfo& info = material_info("neo_hookean_log");
-  const auto V = make_tet_elasticity(info.name, mesh(), 0, heterogeneous(info));
+  const auto V = make_tet_elasticity(info.name, small_mesh(), 0, heterogeneous_parameters(info));
   std::vector<double> x = deformed(0);
   for (size_t i = 0; i < x.size(); i += 3) x[i] = -x[i];
   EXPECT_EQ(V->value(x), INFINITY);
@@ -203,7 +204,7 @@ TEST(TetElasticity, ProjectedHessiansArePositiveSemidefiniteWhereTheExactOneIsNo
   for (double& xi : x) xi *= 0.5;  // squeezed
   for (const MaterialInfo& info : materials()) {
     if (info.barrier || info.name == "linear") continue;  // a barrier is infinite there; linear is always definite
-    const auto V = make_tet_elasticity(info.name, mesh(), 0, heterogeneous(info));
+    const auto V = make_tet_elasticity(info.name, small_mesh(), 0, heterogeneous_parameters(info));
     const Eigen::VectorXd exact = eigenvalues(*V, x, Definiteness::exact);
     ASSERT_LT(exact.minCoeff(), -1e-3 * exact.maxCoeff()) << info.name << ": the state is too tame";
     for (const Definiteness definiteness : {Definiteness::clamped, Definiteness::absolute}) {
@@ -215,16 +216,16 @@ TEST(TetElasticity, ProjectedHessiansArePositiveSemidefiniteWhereTheExactOneIsNo
 
 TEST(TetElasticity, TheClampedHessianOfADefiniteStateIsTheExactOne) {
   for (const MaterialInfo& info : materials()) {
-    const auto V = make_tet_elasticity(info.name, mesh(), 0, heterogeneous(info));
+    const auto V = make_tet_elasticity(info.name, small_mesh(), 0, heterogeneous_parameters(info));
     std::vector<double> rest;
-    for (const Vec3d& X : mesh().rest) rest.insert(rest.end(), {X[0], X[1], X[2]});
+    for (const Vec3d& X : small_mesh().rest) rest.insert(rest.end(), {X[0], X[1], X[2]});
     EXPECT_LT((eigenvalues(*V, rest, Definiteness::exact) - eigenvalues(*V, rest, Definiteness::clamped)).norm(), 1e-7)
         << info.name;
   }
 }
 
 TEST(StrainRateDamping, DerivativesAreThoseOfTheDissipationAndRotationCostsNothing) {
-  auto D = make_strain_rate_damping(mesh(), 0, std::vector<double>(mesh().tet_count(), 2.0));
+  auto D = make_strain_rate_damping(small_mesh(), 0, std::vector<double>(small_mesh().tet_count(), 2.0));
   const std::vector<double> start = deformed(0.02);
   D->begin_step({start, 0.1, 0.1});
   expect_consistent(*D, deformed(0.05, 9), "strain rate");
@@ -238,9 +239,9 @@ TEST(StrainRateDamping, DerivativesAreThoseOfTheDissipationAndRotationCostsNothi
 }
 
 TEST(RayleighDamping, DerivativesAreThoseOfTheDissipation) {
-  MassMatrix mass(mesh(), std::vector<double>(mesh().tet_count(), 3.0), MassKind::consistent);
+  MassMatrix mass(small_mesh(), std::vector<double>(small_mesh().tet_count(), 3.0), MassKind::consistent);
   const MaterialInfo& info = material_info("neo_hookean");
-  const auto V = make_tet_elasticity(info.name, mesh(), 0, heterogeneous(info));
+  const auto V = make_tet_elasticity(info.name, small_mesh(), 0, heterogeneous_parameters(info));
   auto D = make_rayleigh_damping(mass, 0.3, V.get(), 0.2);
   const BlockPattern pattern = pattern_of(*D);
   V->bind(pattern);
@@ -250,29 +251,29 @@ TEST(RayleighDamping, DerivativesAreThoseOfTheDissipation) {
 }
 
 TEST(Springs, DerivativesAreThoseOfTheEnergy) {
-  auto edges = make_springs("edges", edge_springs(mesh(), 0, mesh().tet_count(), 4));
+  auto edges = make_springs("edges", edge_springs(small_mesh(), 0, small_mesh().tet_count(), 4));
   expect_consistent(*edges, deformed(0.05), "edge springs");
   auto points = make_point_springs("points", {{4, 2.5, [](double t) { return Vec3d{{t, 1, 2}}; }}});
   points->begin_step({{}, 0.1, 0.7});
   expect_consistent(*points, deformed(0.05), "point springs");
-  std::vector<double> x(3 * mesh().rest.size(), 0.0);
+  std::vector<double> x(3 * small_mesh().rest.size(), 0.0);
   EXPECT_NEAR(points->value(x), 2.5 / 2 * (0.49 + 1 + 4), 1e-14);
 }
 
 TEST(Springs, AreRelaxedAtRestAndOnePerEdge) {
-  const std::vector<Spring> springs = edge_springs(mesh(), 0, mesh().tet_count(), 4);
+  const std::vector<Spring> springs = edge_springs(small_mesh(), 0, small_mesh().tet_count(), 4);
   std::vector<double> rest;
-  for (const Vec3d& X : mesh().rest) rest.insert(rest.end(), {X[0], X[1], X[2]});
+  for (const Vec3d& X : small_mesh().rest) rest.insert(rest.end(), {X[0], X[1], X[2]});
   EXPECT_NEAR(make_springs("edges", springs)->value(rest), 0, 1e-25);
   // Euler's formula for a ball: V - E + F - T = 1, with 2 F = 4 T + boundary faces.
-  const int tets = mesh().tet_count();
-  const int boundary = static_cast<int>(boundary_triangles(mesh(), 0, tets).size());
-  EXPECT_EQ(static_cast<int>(springs.size()), mesh().vertex_count() + (4 * tets + boundary) / 2 - tets - 1);
+  const int tets = small_mesh().tet_count();
+  const int boundary = static_cast<int>(boundary_triangles(small_mesh(), 0, tets).size());
+  EXPECT_EQ(static_cast<int>(springs.size()), small_mesh().vertex_count() + (4 * tets + boundary) / 2 - tets - 1);
 }
 
 TEST(LinearLoad, GravityOfTheBodyIsItsWeight) {
-  std::vector<double> force(3 * mesh().rest.size(), 0.0);
-  for (int t = 0; t < mesh().tet_count(); ++t) add_body_force(mesh(), t, {{0, -2, 0}}, force);
+  std::vector<double> force(3 * small_mesh().rest.size(), 0.0);
+  for (int t = 0; t < small_mesh().tet_count(); ++t) add_body_force(small_mesh(), t, {{0, -2, 0}}, force);
   double sum = 0;
   for (size_t i = 1; i < force.size(); i += 3) sum += force[i];
   EXPECT_NEAR(sum, -2 * 1 * 0.8 * 0.6, 1e-14);
@@ -281,9 +282,9 @@ TEST(LinearLoad, GravityOfTheBodyIsItsWeight) {
 }
 
 TEST(LinearLoad, APressureOnAClosedSurfaceHasNoResultant) {
-  std::vector<double> force(3 * mesh().rest.size(), 0.0);
-  for (const Triangle& triangle : boundary_triangles(mesh(), 0, mesh().tet_count())) {
-    const auto& X = mesh().rest;
+  std::vector<double> force(3 * small_mesh().rest.size(), 0.0);
+  for (const Triangle& triangle : boundary_triangles(small_mesh(), 0, small_mesh().tet_count())) {
+    const auto& X = small_mesh().rest;
     const Vec3d n = cross(X[triangle[1]] - X[triangle[0]], X[triangle[2]] - X[triangle[0]]);
     add_traction(X, triangle, (-1 / std::sqrt(dot(n, n))) * n, force);
   }
@@ -293,10 +294,11 @@ TEST(LinearLoad, APressureOnAClosedSurfaceHasNoResultant) {
 }
 
 TEST(MassMatrix, ConsistentAndLumpedGiveTheSameMassAndMomentum) {
-  const std::vector<double> density(mesh().tet_count(), 5.0);
-  const MassMatrix consistent(mesh(), density, MassKind::consistent), lumped(mesh(), density, MassKind::lumped);
+  const std::vector<double> density(small_mesh().tet_count(), 5.0);
+  const MassMatrix consistent(small_mesh(), density, MassKind::consistent),
+      lumped(small_mesh(), density, MassKind::lumped);
   EXPECT_NEAR(consistent.total(), 5 * 0.48, 1e-13);
-  const std::vector<double> ones(3 * mesh().rest.size(), 1.0);
+  const std::vector<double> ones(3 * small_mesh().rest.size(), 1.0);
   std::vector<double> a(ones.size()), b(ones.size());
   consistent.multiply(ones, a);
   lumped.multiply(ones, b);
@@ -304,9 +306,9 @@ TEST(MassMatrix, ConsistentAndLumpedGiveTheSameMassAndMomentum) {
 }
 
 TEST(MassMatrix, TheConsistentOneIntegratesSquaresOfLinearFieldsExactly) {
-  const MassMatrix mass(mesh(), std::vector<double>(mesh().tet_count(), 1.0), MassKind::consistent);
-  std::vector<double> x(3 * mesh().rest.size(), 0.0), Mx(x.size());
-  for (int v = 0; v < mesh().vertex_count(); ++v) x[3 * v] = mesh().rest[v][0];
+  const MassMatrix mass(small_mesh(), std::vector<double>(small_mesh().tet_count(), 1.0), MassKind::consistent);
+  std::vector<double> x(3 * small_mesh().rest.size(), 0.0), Mx(x.size());
+  for (int v = 0; v < small_mesh().vertex_count(); ++v) x[3 * v] = small_mesh().rest[v][0];
   mass.multiply(x, Mx);
   double integral = 0;
   for (size_t i = 0; i < x.size(); ++i) integral += x[i] * Mx[i];
@@ -315,7 +317,7 @@ TEST(MassMatrix, TheConsistentOneIntegratesSquaresOfLinearFieldsExactly) {
 
 TEST(MassMatrix, MeasuresDistancesAsItMultiplies) {
   for (const MassKind kind : {MassKind::consistent, MassKind::lumped}) {
-    const MassMatrix mass(mesh(), std::vector<double>(mesh().tet_count(), 2.0), kind);
+    const MassMatrix mass(small_mesh(), std::vector<double>(small_mesh().tet_count(), 2.0), kind);
     const std::vector<double> x = deformed(0.1), y = deformed(0.1, 5);
     std::vector<double> d(x.size()), Md(x.size());
     for (size_t i = 0; i < x.size(); ++i) d[i] = x[i] - y[i];
@@ -328,7 +330,7 @@ TEST(MassMatrix, MeasuresDistancesAsItMultiplies) {
 
 TEST(MassMatrix, SystemsOfSingleVerticesArePartsOfTheWhole) {
   for (const MassKind kind : {MassKind::consistent, MassKind::lumped}) {
-    const MassMatrix mass(mesh(), std::vector<double>(mesh().tet_count(), 1.0), kind);
+    const MassMatrix mass(small_mesh(), std::vector<double>(small_mesh().tet_count(), 1.0), kind);
     const std::vector<double> x = deformed(0.1), origin = deformed(0.1, 5);
     std::vector<double> offset(x.size()), whole(x.size()), unit(x.size(), 0.0), column(x.size());
     for (size_t i = 0; i < x.size(); ++i) offset[i] = x[i] - origin[i];
@@ -350,10 +352,10 @@ TEST(MassMatrix, SystemsOfSingleVerticesArePartsOfTheWhole) {
 }
 
 TEST(MassMatrix, AddedIntoAMatrixItIsTheSameOperator) {
-  MassMatrix mass(mesh(), std::vector<double>(mesh().tet_count(), 1.0), MassKind::consistent);
+  MassMatrix mass(small_mesh(), std::vector<double>(small_mesh().tet_count(), 1.0), MassKind::consistent);
   Couplings couplings;
   mass.add_couplings(couplings);
-  const BlockPattern pattern = make_pattern(mesh().vertex_count(), couplings);
+  const BlockPattern pattern = make_pattern(small_mesh().vertex_count(), couplings);
   mass.bind(pattern);
   BlockSparse H(pattern);
   mass.add_to(2, H);

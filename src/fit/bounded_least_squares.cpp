@@ -5,21 +5,16 @@
 #include <limits>
 
 #include "base/check.h"
+#include "fit/columns.h"
 
 namespace aspic {
 namespace {
 
-constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-12, kLargestDamping = 1e16;
+constexpr double kFirstBoxDamping = 1e-3, kLeastBoxDamping = 1e-12, kLargestBoxDamping = 1e16;
 constexpr double kNegligible = 1e-24;    // part of the |r|^2 of the guess: exact data are met to round-off
 constexpr double kUndetermined = 1e-13;  // a pivot below this part of its diagonal entry
 
 using Vector = std::vector<double>;
-
-double squared_norm(std::span<const double> x) {
-  double sum = 0;
-  for (const double xi : x) sum += xi * xi;
-  return sum;
-}
 
 // A small symmetric matrix, row by row.
 class Square {
@@ -146,7 +141,7 @@ class Run {
     Vector r(static_cast<size_t>(m_));
     if (!evaluate(p, r, fit)) return fit;
     const double negligible = kNegligible * squared_norm(r);
-    double damping = kFirstDamping;
+    double damping = kFirstBoxDamping;
     while (fit.iterations < options_.max_iterations && !fit.is_converged) {
       if (squared_norm(r) <= negligible) fit.is_converged = true;
       if (fit.is_converged || !linearize(r)) break;
@@ -204,7 +199,7 @@ class Run {
   // Moves p and r; false: no damping helps.
   bool step(Vector& p, Vector& r, double& damping, BoundedFit& fit) {
     const double before = squared_norm(r);
-    for (; damping < kLargestDamping; damping *= 4) {
+    for (; damping < kLargestBoxDamping; damping *= 4) {
       const Square A = normal_matrix(free_, damping);
       Vector g, lower, upper, d;
       for (const int i : free_) {
@@ -224,7 +219,7 @@ class Run {
       if (!evaluate(q, trial, fit) || !(squared_norm(trial) < before)) continue;
       const bool good = before - squared_norm(trial) > 0.5 * decrease;
       p = q, r = trial;
-      damping = good ? std::fmax(kLeastDamping, damping / 9) : damping;
+      damping = good ? std::fmax(kLeastBoxDamping, damping / 9) : damping;
       return true;
     }
     return false;

@@ -1,5 +1,6 @@
 // Tall matrices: some hundred columns of many rows.
 #pragma once
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,8 @@ class Columns {
 };
 
 double dot(std::span<const double> x, std::span<const double> y);
+inline double squared_norm(std::span<const double> x) { return dot(x, x); }
+inline double norm(std::span<const double> x) { return std::sqrt(dot(x, x)); }
 void add_scaled(double s, std::span<const double> x, std::span<double> y);  // y += s x
 
 std::vector<double> product_transposed(const Columns& A, std::span<const double> v);               // A' v

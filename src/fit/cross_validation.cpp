@@ -15,13 +15,6 @@ std::vector<std::string> groups_of(const Experiment& experiment) {
   return groups;
 }
 
-Vec3d at_rest(const Experiment& experiment, int marker) {
-  const SurfacePoint& point = experiment.markers[marker];
-  Vec3d X{};
-  for (int i = 0; i < 3; ++i) X = X + point.weights[i] * experiment.mesh.rest[point.vertices[i]];
-  return X;
-}
-
 double squared_length(const Vec3d& v) { return dot(v, v); }
 
 // Sums of squares first, see finish().
@@ -30,7 +23,8 @@ void add_case(const Experiment& experiment, const LoadCase& measured, const Case
     const MarkerReading& reading = measured.positions[i];
     const double error = squared_length(predicted.markers[i] - reading.position);
     h.peak_motion =
-        std::max(h.peak_motion, std::sqrt(squared_length(reading.position - at_rest(experiment, reading.marker))));
+        std::max(h.peak_motion,
+                 std::sqrt(squared_length(reading.position - at_rest(experiment, experiment.markers[reading.marker]))));
     h.largest_error = std::max(h.largest_error, std::sqrt(error));
     h.position_error += error;
     h.position_noise += squared_length(reading.deviation);

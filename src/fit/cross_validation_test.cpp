@@ -11,9 +11,9 @@ using test::PokedBlock;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-struct Study {
+struct HeldOutStudy {
   PokedBlock block;
-  explicit Study(double noise = 0.01) {
+  explicit HeldOutStudy(double noise = 0.01) {
     for (const PokedBlock::Site& site : PokedBlock::sites())
       for (const double depth : {0.003, 0.006}) block.add_poke(site, depth, noise);
   }
@@ -41,7 +41,7 @@ struct Study {
 };
 
 TEST(CrossValidation, OfTheRightModelLeavesTheNoise) {
-  Study study;
+  HeldOutStudy study;
   study.measure(study.halves(1));
   const CrossValidation result = study.validate(study.block.map({{.spread = Spread::uniform, .guess = 1e4}}));
   ASSERT_EQ(result.groups.size(), 4u);
@@ -61,7 +61,7 @@ TEST(CrossValidation, OfTheRightModelLeavesTheNoise) {
 }
 
 TEST(CrossValidation, TellsAModelThatIsTooSimple) {
-  Study study(0.005);
+  HeldOutStudy study(0.005);
   study.measure(study.halves(4));
   const CrossValidation uniform = study.validate(study.block.map({{.spread = Spread::uniform, .guess = 1e4}}));
   const CrossValidation handles =
@@ -71,7 +71,7 @@ TEST(CrossValidation, TellsAModelThatIsTooSimple) {
 }
 
 TEST(CrossValidation, ReportsAGroupThatCannotBePredicted) {
-  Study study;
+  HeldOutStudy study;
   study.measure(study.halves(1));
   for (LoadCase& load : study.block.experiment.cases)  // through the table
     if (load.group == "left") load.pose.center[2] = -5;

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <random>
 
 #include "base/error.h"
+#include "fit/columns.h"
+#include "fit/formatted.h"
 
 namespace aspic {
 namespace {
@@ -16,21 +17,10 @@ constexpr double kPowers = 100;          // a range over more than this is looke
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-std::string text(double x) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.6g", x);
-  return buffer;
-}
-
 double largest(const std::vector<double>& x) {
   double most = 0;
   for (const double xi : x) most = std::fmax(most, std::abs(xi));
   return most;
-}
-double squared_norm(const std::vector<double>& x) {
-  double sum = 0;
-  for (const double xi : x) sum += xi * xi;
-  return sum;
 }
 
 void check(const TestCurve& curve) {
@@ -41,7 +31,7 @@ void check(const TestCurve& curve) {
   for (size_t i = 0; i < curve.stretch.size(); ++i) {
     const bool positive = curve.deformation == Deformation::simple_shear || curve.stretch[i] > 0;
     if (!std::isfinite(curve.stretch[i]) || !positive || std::abs(curve.stretch[i]) > 1e3)
-      throw InvalidInput(where + "point " + std::to_string(i + 1) + " has the stretch " + text(curve.stretch[i]) +
+      throw InvalidInput(where + "point " + std::to_string(i + 1) + " has the stretch " + six_digits(curve.stretch[i]) +
                          "; give length over rest length, 1 at rest");
     if (!std::isfinite(curve.stress[i]))
       throw InvalidInput(where + "point " + std::to_string(i + 1) + " has no finite stress");
@@ -97,7 +87,7 @@ CurveMisfit::CurveMisfit(const std::vector<TestCurve>& curves, const CurveFitOpt
   if (curves.empty()) throw InvalidInput("there is no curve to fit");
   for (const TestCurve& curve : curves) check(curve);
   if (!(options.poisson > -1 && options.poisson < 0.5))
-    throw InvalidInput("poisson = " + text(options.poisson) + " must lie between -1 and 0.5 (try 0.49)");
+    throw InvalidInput("poisson = " + six_digits(options.poisson) + " must lie between -1 and 0.5 (try 0.49)");
   std::vector<std::string> names;
   for (const ExtraParameter& extra : info_.extra) names.push_back(extra.name);
   for (const std::string& held : options.held)
@@ -260,8 +250,8 @@ CurveFit fit_curves(const std::vector<TestCurve>& curves, const CurveFitOptions&
 std::string scene_line(const CurveFit& fit) {
   std::string line = "material = { model = \"" + fit.material + "\"";
   for (const FittedParameter& f : fit.fitted) {
-    line += ", " + f.name + " = " + text(f.value);
-    if (f.name == "young") line += ", poisson = " + text(fit.poisson);
+    line += ", " + f.name + " = " + six_digits(f.value);
+    if (f.name == "young") line += ", poisson = " + six_digits(fit.poisson);
   }
   return line + " }";
 }

@@ -2,23 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "base/check.h"
 #include "dynamics/incremental_potential.h"
 #include "dynamics/integrator.h"
 #include "fit/elastic_parameters.h"
 #include "linalg/auto_solver.h"
+#include "mesh/findings.h"
 #include "optimize/newton.h"
 
 namespace aspic {
 namespace {
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 std::string words(const MinimizeReport& report) {
   const std::string status(to_string(report.status));

@@ -15,11 +15,6 @@ namespace {
 // inside the support of a function, and some overlap.
 constexpr double kReach = 2.5;
 
-Vec3d centroid(const TetMesh& mesh, int t) {
-  const auto& [a, b, c, d] = mesh.tets[t];
-  return 0.25 * (mesh.rest[a] + mesh.rest[b] + mesh.rest[c] + mesh.rest[d]);
-}
-
 struct Centres {
   std::vector<Vec3d> at;
   double radius = 0;  // the largest distance of a point from the nearest centre

@@ -9,8 +9,6 @@
 namespace aspic {
 namespace {
 
-Vec3d centroid(const TetCorners& X) { return 0.25 * (X[0] + X[1] + X[2] + X[3]); }
-
 std::vector<GroupedElement<3>> faces_of(const TetMesh& mesh) {
   return grouped_elements<3>(mesh.vertex_count(), [&](const auto& visit) {
     for (int t = 0; t < mesh.tet_count(); ++t) {

@@ -5,20 +5,17 @@
 #include <cstdio>
 #include <map>
 
+#include "mesh/tet_shape.h"
+
 namespace aspic {
 namespace {
 
 constexpr double kLittle = 0.2;  // part of a sum of squares that is not worth a word
 
-std::string number(double x, const char* format = "%.3g") {
+std::string number_words(double x, const char* format = "%.3g") {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, format, x == 0 ? 0.0 : x);
   return buffer;
-}
-
-Vec3d centroid(const TetMesh& mesh, int t) {
-  const Tet& v = mesh.tets[t];
-  return 0.25 * (mesh.rest[v[0]] + mesh.rest[v[1]] + mesh.rest[v[2]] + mesh.rest[v[3]]);
 }
 
 double size(const TetMesh& mesh) {
@@ -82,7 +79,7 @@ std::string words_of_field(const TetMesh& mesh, const Unknown& unknown, std::spa
 }  // namespace
 
 std::string words_of_point(const Vec3d& x) {
-  return "(" + number(x[0]) + ", " + number(x[1]) + ", " + number(x[2]) + ") m";
+  return "(" + number_words(x[0]) + ", " + number_words(x[1]) + ", " + number_words(x[2]) + ") m";
 }
 
 std::string words_of_place(const TetMesh& mesh, std::span<const double> field) {
@@ -98,7 +95,8 @@ std::string words_of_place(const TetMesh& mesh, std::span<const double> field) {
   for (int i = 0; i < 3; ++i)
     if (std::abs(x[i]) < negligible) x[i] = 0;
   const double part = fourth > 0 ? second * second / (fourth * total) : 1;
-  return "around " + words_of_point(x) + " (" + number(100 * part, part < 0.1 ? "%.1g" : "%.2g") + " % of the body)";
+  return "around " + words_of_point(x) + " (" + number_words(100 * part, part < 0.1 ? "%.1g" : "%.2g") +
+         " % of the body)";
 }
 
 std::string words_of_direction(const TetMesh& mesh, const ParameterMap& map, std::span<const double> dp) {

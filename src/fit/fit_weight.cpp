@@ -2,12 +2,12 @@
 // after another, each from the last.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 
 #include "fit/evidence.h"
 #include "fit/fit_run.h"
+#include "mesh/findings.h"
 
 namespace aspic {
 namespace {
@@ -59,12 +59,6 @@ WeightTrial trial_at(const FitRun& run, const FitPoint& at) { return {run.weight
 bool go_to(FitRun& run, FitPoint& at, const WeightTrial& trial) {
   run.weight = trial.weight;
   return at.p == trial.p || run.evaluate(trial.p, at);
-}
-
-std::string text(double x) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.3g", x);
-  return buffer;
 }
 
 // The weight where |r|^2 = the number of residuals, from what was tried.
@@ -131,7 +125,7 @@ double curvature(const WeightTrial& a, const WeightTrial& b, const WeightTrial& 
 }
 
 std::string words_of(Discrepancy::Verdict verdict, double squares, int residuals) {
-  const std::string found = "|r|^2 = " + text(squares) + " of " + std::to_string(residuals) + " residuals";
+  const std::string found = "|r|^2 = " + number(squares) + " of " + std::to_string(residuals) + " residuals";
   switch (verdict) {
     case Discrepancy::Verdict::fits:
       return "the weight leaves " + found;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kNames = {"uniaxial", "equibiaxial", "planar", "simple_shear"};
 
-constexpr int kMaxIterations = 100;
+constexpr int kMaxStretchIterations = 100;
 constexpr double kLargestStep = 0.3;   // of ln t in one iteration
 constexpr double kTolerance = 1e-13;   // of ln t
 constexpr double kMostStretch = 1e12;  // further away no state is looked for
@@ -70,7 +70,7 @@ Mat3<Dual<double>> stress_and_rate(const Mat3d& F, const Mat3d& dF, const Materi
 template <class M>
 bool find_free_stretch(const Kinematics& body, const MaterialParameters& m, double& t) {
   const int axis = body.free_axis();
-  for (int i = 0; i < kMaxIterations; ++i) {
+  for (int i = 0; i < kMaxStretchIterations; ++i) {
     const Mat3<Dual<double>> P = stress_and_rate<M>(body.F(t), t * body.dF_dt(), m, -1);
     const double traction = P(axis, axis).value, slope = P(axis, axis).rate;
     const double rate = traction + slope;  // of t P_tt / t by ln t

@@ -4,6 +4,7 @@
 
 #include "energy/linear_load.h"
 #include "energy/pressure.h"
+#include "fit/columns.h"
 #include "mesh/surface.h"
 
 namespace aspic {
@@ -11,15 +12,9 @@ namespace {
 
 constexpr int kMaxHalvings = 12;
 
-TipPose between(const TipPose& a, const TipPose& b, double part) {
+TipPose mixed(const TipPose& a, const TipPose& b, double part) {
   const auto mix = [part](const Vec3d& x, const Vec3d& y) { return (1 - part) * x + part * y; };
   return {mix(a.center, b.center), mix(a.axis, b.axis), mix(a.rotation, b.rotation)};
-}
-
-double norm(std::span<const double> x) {
-  double sum = 0;
-  for (const double xi : x) sum += xi * xi;
-  return std::sqrt(sum);
 }
 
 }  // namespace
@@ -42,7 +37,7 @@ IncrementalBody::IncrementalBody(const Experiment& experiment, const LoadCase& l
 
 bool IncrementalBody::go_to(double part) {
   for (ScaledLoad* load : scaled_) load->set_factor(part);
-  if (probe_) probe_->set_pose(between(load_.touch, load_.pose, part));
+  if (probe_) probe_->set_pose(mixed(load_.touch, load_.pose, part));
   if (!balance()) {
     failure_ = load_.name + ", at " + std::to_string(std::lround(100 * part)) +
                " % of the load: the forces of the increment do not balance";

@@ -77,7 +77,7 @@ void make_curvature(FitRun& run, const FitPoint& at, Curvature& A) {
   }
 }
 
-struct Damping {
+struct MarquardtDamping {
   double value = kFirstDamping, growth = 2;
 
   void reward(double ratio) {
@@ -104,7 +104,7 @@ Status levenberg_marquardt(FitRun& run, FitPoint& at, FitGoal& goal) {
   const size_t n = at.p.size();
   Curvature A(run.unknowns());
   std::vector<double> g(n), d(n), p(n);
-  Damping damping;
+  MarquardtDamping damping;
   for (;;) {
     if (run.is_late()) return Status::budget;
     if (!run.linearize(at)) return Status::undefined;

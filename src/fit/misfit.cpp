@@ -11,6 +11,12 @@
 
 namespace aspic {
 
+Vec3d at_rest(const Experiment& experiment, const SurfacePoint& point) {
+  Vec3d X{};
+  for (int i = 0; i < 3; ++i) X = X + point.weights[i] * experiment.mesh.rest[point.vertices[i]];
+  return X;
+}
+
 struct Misfit::Impl {
   struct Case {
     std::unique_ptr<LoadedBody> body;

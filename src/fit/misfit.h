@@ -50,6 +50,8 @@ struct Experiment {
   std::vector<LoadCase> cases;  // of a group one after another, from the smallest load on
 };
 
+Vec3d at_rest(const Experiment& experiment, const SurfacePoint& point);
+
 // What is predicted for one case.
 struct CasePrediction {
   std::vector<double> x;       // of the vertices [m]

@@ -16,7 +16,7 @@ using taylor::dot;
 using taylor::norm;
 using taylor::Numbers;
 
-const EquilibriumOptions kExact{.tolerance = 1e-14, .adjoint_tolerance = 1e-13};
+const EquilibriumOptions kMisfitExact{.tolerance = 1e-14, .adjoint_tolerance = 1e-13};
 
 // A block of gel of 8 cm on a table, poked from above at two sites and two depths, pressed from the side, and hung.
 struct Gel {
@@ -75,7 +75,7 @@ struct Gel {
 
   // Readings as if a body of this material had been measured, and noise of `noise` standard deviations.
   void measure(const ParameterMap& map, const std::vector<double>& p, double noise) {
-    Misfit truth(experiment, map, kExact);
+    Misfit truth(experiment, map, kMisfitExact);
     std::vector<double> r(truth.residual_count());
     ASSERT_TRUE(truth.evaluate(p, r)) << truth.failure();
     Numbers numbers;
@@ -103,7 +103,7 @@ struct Gel {
   }
 };
 
-std::vector<double> moved(std::span<const double> p, const std::vector<double>& dp, double eps) {
+std::vector<double> stepped(std::span<const double> p, const std::vector<double>& dp, double eps) {
   std::vector<double> result(p.begin(), p.end());
   for (size_t i = 0; i < result.size(); ++i) result[i] += eps * dp[i];
   return result;
@@ -112,9 +112,9 @@ std::vector<double> moved(std::span<const double> p, const std::vector<double>& 
 TEST(Misfit, IsZeroForTheMaterialThatWasMeasuredAndNotForOthers) {
   Gel gel;
   const ParameterMap map = gel.map();
-  const std::vector<double> truth = moved(map.guess(), Numbers(3)(map.size()), 0.5);
+  const std::vector<double> truth = stepped(map.guess(), Numbers(3)(map.size()), 0.5);
   gel.measure(map, truth, 0);
-  Misfit misfit(gel.experiment, map, kExact);
+  Misfit misfit(gel.experiment, map, kMisfitExact);
   std::vector<double> r(misfit.residual_count());
   ASSERT_TRUE(misfit.evaluate(map.guess(), r)) << misfit.failure();
   EXPECT_GT(norm(r), 10);
@@ -127,8 +127,8 @@ TEST(Misfit, JacobianHasTaylorSlope2) {
     Gel gel;
     const ParameterMap map = gel.map(material);
     gel.measure(map, std::vector<double>(map.guess().begin(), map.guess().end()), 1);
-    Misfit misfit(gel.experiment, map, kExact);
-    const std::vector<double> p = moved(map.guess(), Numbers(4)(map.size()), 0.3);
+    Misfit misfit(gel.experiment, map, kMisfitExact);
+    const std::vector<double> p = stepped(map.guess(), Numbers(4)(map.size()), 0.3);
     std::vector<double> r(misfit.residual_count()), dr(r.size());
     ASSERT_TRUE(misfit.evaluate(p, r)) << misfit.failure();
     ASSERT_TRUE(misfit.linearize()) << misfit.failure();
@@ -137,7 +137,7 @@ TEST(Misfit, JacobianHasTaylorSlope2) {
     taylor::expect_slope_2(
         [&](double eps) {
           std::vector<double> at(r.size());
-          EXPECT_TRUE(misfit.evaluate(moved(p, dp, eps), at)) << misfit.failure();
+          EXPECT_TRUE(misfit.evaluate(stepped(p, dp, eps), at)) << misfit.failure();
           return at;
         },
         dr, 0.1, material);
@@ -148,13 +148,13 @@ TEST(Misfit, TransposedProductIsTheTransposeAlsoAfterOtherPointsWereTried) {
   Gel gel;
   const ParameterMap map = gel.map();
   gel.measure(map, std::vector<double>(map.guess().begin(), map.guess().end()), 1);
-  Misfit misfit(gel.experiment, map, kExact);
+  Misfit misfit(gel.experiment, map, kMisfitExact);
   std::vector<double> r(misfit.residual_count()), dr(r.size()), again(r.size()), pbar(map.size());
   ASSERT_TRUE(misfit.evaluate(map.guess(), r));
   ASSERT_TRUE(misfit.linearize());
   const std::vector<double> dp = Numbers(6)(map.size()), w = Numbers(7)(r.size());
   misfit.multiply(dp, dr);
-  ASSERT_TRUE(misfit.evaluate(moved(map.guess(), dp, 0.4), again));
+  ASSERT_TRUE(misfit.evaluate(stepped(map.guess(), dp, 0.4), again));
   misfit.multiply(dp, again);
   EXPECT_EQ(dr, again);
   misfit.multiply_transposed(w, pbar);
@@ -173,7 +173,7 @@ TEST(Misfit, BitsDoNotDependOnTheNumberOfThreads) {
     ASSERT_TRUE(misfit.evaluate(map.guess(), r));
     ASSERT_TRUE(misfit.linearize());
     misfit.multiply_transposed(r, pbar);
-    ASSERT_TRUE(misfit.evaluate(moved(map.guess(), Numbers(6)(map.size()), 0.2), r));
+    ASSERT_TRUE(misfit.evaluate(stepped(map.guess(), Numbers(6)(map.size()), 0.2), r));
     r.insert(r.end(), pbar.begin(), pbar.end());
     results.push_back(r);
   }
@@ -190,7 +190,7 @@ TEST(Misfit, StartsFromTheTangentSoThatASmallStepTakesFewIterations) {
   ASSERT_TRUE(misfit.evaluate(map.guess(), r));
   ASSERT_TRUE(misfit.linearize());
   const Misfit::Counts before = misfit.counts();
-  ASSERT_TRUE(misfit.evaluate(moved(map.guess(), Numbers(6)(map.size()), 0.01), r));
+  ASSERT_TRUE(misfit.evaluate(stepped(map.guess(), Numbers(6)(map.size()), 0.01), r));
   const Misfit::Counts after = misfit.counts();
   const long cases = static_cast<long>(gel.experiment.cases.size());
   EXPECT_EQ(after.equilibria - before.equilibria, cases);
@@ -235,7 +235,7 @@ TEST(Misfit, OnARefinedMeshHasDerivativesPerTetOfTheMap) {
   gel.experiment.cases.resize(1);
   const ParameterMap map = gel.map();
   const Experiment fine = refined(gel.experiment);
-  Misfit misfit(fine, map, kExact);
+  Misfit misfit(fine, map, kMisfitExact);
   const std::vector<double> p(map.guess().begin(), map.guess().end()), dp = Numbers(7)(map.size()),
                                                                        w = Numbers(8)(misfit.residual_count());
   std::vector<double> r(w.size()), above = r, below = r, dr = r, back(p.size());
@@ -244,7 +244,8 @@ TEST(Misfit, OnARefinedMeshHasDerivativesPerTetOfTheMap) {
   misfit.multiply_transposed(w, back);
   EXPECT_NEAR(dot(w, dr), dot(back, dp), 1e-8 * norm(w) * norm(dr));
   const double h = 1e-4;
-  ASSERT_TRUE(misfit.evaluate(moved(p, dp, h), above) && misfit.evaluate(moved(p, dp, -h), below)) << misfit.failure();
+  ASSERT_TRUE(misfit.evaluate(stepped(p, dp, h), above) && misfit.evaluate(stepped(p, dp, -h), below))
+      << misfit.failure();
   for (size_t i = 0; i < r.size(); ++i) EXPECT_NEAR((above[i] - below[i]) / (2 * h), dr[i], 1e-5 * norm(dr));
 }
 

@@ -10,11 +10,10 @@
 #include "fit/cross_validation.h"
 #include "fit/field_words.h"
 #include "mesh/surface.h"
+#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {
-
-double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -47,12 +46,6 @@ Instruments instruments(const Experiment& experiment, const NextPokeOptions& opt
   if (!(result.depth > 0)) throw InvalidInput("how deep the next poke is to go is not known (give its depth)");
   result.position = median(position), result.force = median(force), result.torque = median(torque);
   return result;
-}
-
-Vec3d at_rest(const Experiment& experiment, const SurfacePoint& point) {
-  Vec3d X{};
-  for (int i = 0; i < 3; ++i) X = X + point.weights[i] * experiment.mesh.rest[point.vertices[i]];
-  return X;
 }
 
 LoadCase load_at(const Experiment& experiment, const Instruments& with, const Vec3d& site, const Vec3d& inward) {

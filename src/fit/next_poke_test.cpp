@@ -14,13 +14,13 @@ using test::PokedBlock;
 using testing::HasSubstr;
 
 // Poked on the left only.
-struct Study {
+struct PokeStudy {
   PokedBlock block{{4, 3, 2}};
   ParameterMap map = block.map();
   std::unique_ptr<Regularizer> prior = make_regularizer(block.experiment.mesh, map, {.prior_deviation = 1});
   std::vector<double> p{map.guess().begin(), map.guess().end()};
 
-  Study() {
+  PokeStudy() {
     block.add_poke(PokedBlock::sites()[0], 0.005, 0.02);
     std::mt19937_64 random(3);
     block.measure(map, p, random);
@@ -33,7 +33,7 @@ struct Study {
 };
 
 TEST(NextPoke, ToldGainAndDeviationsAreThoseOfThePokeOnceItIsMade) {
-  Study study;
+  PokeStudy study;
   Posterior before = study.posterior_of(study.block.experiment);
   const NextPoke next = next_poke(study.block.experiment, study.block.experiment.mesh, study.map, before, study.p,
                                   {.sites = 5, .spectrum = {.dense = 600}});
@@ -61,7 +61,7 @@ TEST(NextPoke, ToldGainAndDeviationsAreThoseOfThePokeOnceItIsMade) {
 }
 
 TEST(NextPoke, IsWhereNothingIsKnownYet) {
-  Study study;
+  PokeStudy study;
   Posterior before = study.posterior_of(study.block.experiment);
   const NextPoke next =
       next_poke(study.block.experiment, study.block.experiment.mesh, study.map, before, study.p, {.sites = 16});
@@ -81,7 +81,7 @@ TEST(NextPoke, IsWhereNothingIsKnownYet) {
 }
 
 TEST(NextPoke, FewDirectionsTellNearlyAsMuchAsAll) {
-  Study study;
+  PokeStudy study;
   Posterior before = study.posterior_of(study.block.experiment);
   const NextPoke all = next_poke(study.block.experiment, study.block.experiment.mesh, study.map, before, study.p,
                                  {.sites = 6, .spectrum = {.dense = 600}});
@@ -94,7 +94,7 @@ TEST(NextPoke, FewDirectionsTellNearlyAsMuchAsAll) {
 }
 
 TEST(NextPoke, NeedsATip) {
-  Study study;
+  PokeStudy study;
   Posterior before = study.posterior_of(study.block.experiment);
   for (LoadCase& load : study.block.experiment.cases) load.tip.reset();
   EXPECT_THROW(next_poke(study.block.experiment, study.block.experiment.mesh, study.map, before, study.p),

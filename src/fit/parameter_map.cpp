@@ -1,11 +1,11 @@
 #include "fit/parameter_map.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "base/check.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "fit/formatted.h"
 #include "fit/quantity_scale.h"
 
 namespace aspic {
@@ -31,12 +31,6 @@ struct Fitted {
   }
 };
 
-std::string text(double x) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.6g", x);
-  return buffer;
-}
-
 // E = mu (3 la + 2 mu) / (la + mu) and nu from and to mu and lambda.
 struct Elastic {
   double young, poisson;
@@ -55,8 +49,8 @@ struct Range {
 
 void check_guess(const Unknown& u, const Range& range) {
   if (u.guess > range.lower && u.guess < range.upper) return;
-  throw InvalidInput("the guess of '" + u.quantity + "' is " + text(u.guess) + "; it must lie between " +
-                     text(range.lower) + " and " + text(range.upper) + ", and not at an end");
+  throw InvalidInput("the guess of '" + u.quantity + "' is " + six_digits(u.guess) + "; it must lie between " +
+                     six_digits(range.lower) + " and " + six_digits(range.upper) + ", and not at an end");
 }
 
 // A range over several powers of ten is looked at by its logarithm.
@@ -70,7 +64,7 @@ QuantityScale scale_of(const ExtraParameter& extra) {
 void set_quantity(const Unknown& u, const MaterialInfo& info, Fitted& f) {
   if (u.quantity == "young") {
     if (!(u.guess > 0 && u.guess < 1e300))
-      throw InvalidInput("the guess of 'young' is " + text(u.guess) + " Pa; it must be positive");
+      throw InvalidInput("the guess of 'young' is " + six_digits(u.guess) + " Pa; it must be positive");
     return;
   }
   if (u.quantity == "poisson") {

@@ -31,7 +31,7 @@ std::vector<MaterialParameters> known(const TetMesh& mesh, double extra = 0.25) 
   return std::vector<MaterialParameters>(mesh.tets.size(), {lame_from_young_poisson(2e5, 0.3), {extra}});
 }
 
-std::vector<double> noise(size_t n, unsigned seed) {
+std::vector<double> numbers(size_t n, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
   std::vector<double> v(n);
@@ -156,7 +156,7 @@ TEST_P(ParameterMapDerivatives, AgreeWithDifferencesToSecondOrder) {
   const ParameterMap map(mesh, GetParam().material, known(mesh), GetParam().unknowns);
   const int n = map.parameters_per_tet();
   std::vector<double> p(map.guess().begin(), map.guess().end());
-  const std::vector<double> shift = noise(p.size(), 1), dp = noise(p.size(), 2);
+  const std::vector<double> shift = numbers(p.size(), 1), dp = numbers(p.size(), 2);
   for (size_t i = 0; i < p.size(); ++i) p[i] += 0.3 * shift[i];
   const auto theta = [&](double h) {
     std::vector<double> q = p, flat;
@@ -191,10 +191,10 @@ TEST_P(ParameterMapDerivatives, TransposeIsTheTranspose) {
   const TetMesh mesh = two_layers();
   const ParameterMap map(mesh, GetParam().material, known(mesh), GetParam().unknowns);
   std::vector<double> p(map.guess().begin(), map.guess().end());
-  const std::vector<double> shift = noise(p.size(), 1), dp = noise(p.size(), 2);
+  const std::vector<double> shift = numbers(p.size(), 1), dp = numbers(p.size(), 2);
   for (size_t i = 0; i < p.size(); ++i) p[i] += 0.3 * shift[i];
   const size_t count = mesh.tets.size() * map.parameters_per_tet();
-  const std::vector<double> w = noise(count, 3);
+  const std::vector<double> w = numbers(count, 3);
   std::vector<double> dtheta(count), pbar(p.size(), 0.0);
   map.multiply(p, dp, dtheta);
   map.add_transposed(p, w, pbar);

@@ -4,11 +4,10 @@
 
 #include "fit/next_poke.h"
 #include "mesh/surface.h"
+#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {
-
-double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
 struct Patch {
   Vec3d center{}, area{};  // outward, of length area [m^2]

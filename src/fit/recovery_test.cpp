@@ -13,26 +13,26 @@
 namespace aspic {
 namespace {
 
-constexpr double kSide = 0.1, kYoung = 2e4;  // [m], [Pa]
+constexpr double kCubeSide = 0.1, kCubeYoung = 2e4;  // [m], [Pa]
 
 // A cube that stands on the ground, pushed down by a tip at two places, each to two depths.
 Experiment poked_cube() {
   Experiment e;
-  TetMesh& mesh = e.mesh = make_box({{0, 0, 0}}, {{kSide, kSide, kSide}}, {3, 3, 4});
+  TetMesh& mesh = e.mesh = make_box({{0, 0, 0}}, {{kCubeSide, kCubeSide, kCubeSide}}, {3, 3, 4});
   e.density.assign(mesh.tets.size(), 1000);
   for (int v = 0; v < mesh.vertex_count(); ++v)
     if (mesh.rest[v][2] == 0) e.fixed.push_back(v);
   for (const auto& [a, b, c, d] : mesh.tets)
-    mesh.region.push_back(mesh.rest[a][2] + mesh.rest[b][2] + mesh.rest[c][2] + mesh.rest[d][2] < 2 * kSide);
+    mesh.region.push_back(mesh.rest[a][2] + mesh.rest[b][2] + mesh.rest[c][2] + mesh.rest[d][2] < 2 * kCubeSide);
   for (const Triangle& t : boundary_triangles(mesh, 0, mesh.tet_count()))
     if (mesh.rest[t[0]][2] + mesh.rest[t[1]][2] + mesh.rest[t[2]][2] > 0) e.markers.push_back({t, {0.3, 0.3, 0.4}});
   for (const double x : {0.03, 0.06})
     for (const double depth : {0.004, 0.008}) {
       LoadCase load{.name = "poke", .group = "at " + std::to_string(x)};
       load.tip = Tip{TipShape::disc, TipContact::bonded, 0.02, 1e8};
-      load.touch.center = {{x, 0.05, kSide}};
+      load.touch.center = {{x, 0.05, kCubeSide}};
       load.pose = load.touch;
-      load.pose.center = {{x + depth / 4, 0.05, kSide - depth}};
+      load.pose.center = {{x + depth / 4, 0.05, kCubeSide - depth}};
       load.force = Vec3d{};
       load.force_deviation = {{0.01, 0.01, 0.01}};
       for (size_t m = 0; m < e.markers.size(); ++m)
@@ -43,16 +43,17 @@ Experiment poked_cube() {
 }
 
 ParameterMap map_of(const Experiment& e, std::vector<Unknown> unknowns, const std::string& material = "neo_hookean") {
-  return ParameterMap(e.mesh, material,
-                      std::vector<MaterialParameters>(e.mesh.tets.size(), {lame_from_young_poisson(kYoung, 0.4), {4}}),
-                      std::move(unknowns));
+  return ParameterMap(
+      e.mesh, material,
+      std::vector<MaterialParameters>(e.mesh.tets.size(), {lame_from_young_poisson(kCubeYoung, 0.4), {4}}),
+      std::move(unknowns));
 }
 
-const EquilibriumOptions kExact{.tolerance = 1e-13};
+const EquilibriumOptions kSynthetic{.tolerance = 1e-13};
 
 // Readings as a body with these unknowns would give them, with noise of so many standard deviations.
 void measure(Experiment& e, const ParameterMap& map, const std::vector<double>& p, double noise = 0) {
-  Misfit body(e, map, kExact);
+  Misfit body(e, map, kSynthetic);
   std::vector<double> r(body.residual_count());
   ASSERT_TRUE(body.evaluate(p, r)) << body.failure();
   std::mt19937 random(1);
@@ -70,26 +71,27 @@ void measure(Experiment& e, const ParameterMap& map, const std::vector<double>& 
 }
 
 FitReport fitted(const Experiment& e, const ParameterMap& map, FitOptions options) {
-  Misfit misfit(e, map, kExact);
+  Misfit misfit(e, map, kSynthetic);
   const auto prior = make_regularizer(e.mesh, map, {});
   return fit(misfit, *prior, map.guess(), options);
 }
 
 TEST(Recovery, FindsOneModulusAgainFromExactData) {
   Experiment e = poked_cube();
-  const ParameterMap map = map_of(e, {{"young", Spread::uniform, 0, 3 * kYoung}});
-  measure(e, map, {std::log(kYoung)});
+  const ParameterMap map = map_of(e, {{"young", Spread::uniform, 0, 3 * kCubeYoung}});
+  measure(e, map, {std::log(kCubeYoung)});
   const FitReport report = fitted(e, map, {.tolerance = 1e-10, .weight = 0});
   EXPECT_TRUE(is_success(report.status)) << report.words;
-  EXPECT_NEAR(map.values(0, report.p)[0], kYoung, 1e-6 * kYoung);
+  EXPECT_NEAR(map.values(0, report.p)[0], kCubeYoung, 1e-6 * kCubeYoung);
 }
 
 TEST(Recovery, FindsModulusRatioAndStiffeningAgainFromExactData) {
   Experiment e = poked_cube();
-  const ParameterMap map = map_of(
-      e,
-      {{"young", Spread::uniform, 0, 0.5 * kYoung}, {"poisson", Spread::uniform, 0, 0.3}, {"b", Spread::uniform, 0, 1}},
-      "fung");
+  const ParameterMap map = map_of(e,
+                                  {{"young", Spread::uniform, 0, 0.5 * kCubeYoung},
+                                   {"poisson", Spread::uniform, 0, 0.3},
+                                   {"b", Spread::uniform, 0, 1}},
+                                  "fung");
   std::vector<double> truth(map.guess().begin(), map.guess().end());
   truth[0] += 0.8, truth[1] += 0.5, truth[2] += 1;
   measure(e, map, truth);
@@ -100,8 +102,8 @@ TEST(Recovery, FindsModulusRatioAndStiffeningAgainFromExactData) {
 
 TEST(Recovery, FindsTwoLayersAgainFromExactData) {
   Experiment e = poked_cube();
-  const ParameterMap map = map_of(e, {{"young", Spread::regions, 0, kYoung}});
-  const std::vector<double> truth{std::log(0.4 * kYoung), std::log(4 * kYoung)};
+  const ParameterMap map = map_of(e, {{"young", Spread::regions, 0, kCubeYoung}});
+  const std::vector<double> truth{std::log(0.4 * kCubeYoung), std::log(4 * kCubeYoung)};
   measure(e, map, truth);
   const FitReport report = fitted(e, map, {.tolerance = 1e-10, .weight = 0});
   EXPECT_TRUE(is_success(report.status)) << report.words;
@@ -110,9 +112,9 @@ TEST(Recovery, FindsTwoLayersAgainFromExactData) {
 
 TEST(Recovery, OfAFieldLeavesTheNoiseAndTellsTheStiffLayer) {
   Experiment e = poked_cube();
-  const ParameterMap map = map_of(e, {{"young", Spread::tets, 0, kYoung}});
+  const ParameterMap map = map_of(e, {{"young", Spread::tets, 0, kCubeYoung}});
   std::vector<double> truth;
-  for (int region : e.mesh.region) truth.push_back(std::log(region == 1 ? 4 * kYoung : 0.7 * kYoung));
+  for (int region : e.mesh.region) truth.push_back(std::log(region == 1 ? 4 * kCubeYoung : 0.7 * kCubeYoung));
   measure(e, map, truth, 1);
   const FitReport report = fitted(e, map, {});
   ASSERT_TRUE(is_success(report.status)) << report.words;
@@ -120,8 +122,8 @@ TEST(Recovery, OfAFieldLeavesTheNoiseAndTellsTheStiffLayer) {
   EXPECT_NEAR(2 * report.misfit / residuals, 1, 0.1);
   double mean[2] = {}, count[2] = {};
   for (size_t t = 0; t < truth.size(); ++t) mean[e.mesh.region[t]] += report.p[t], ++count[e.mesh.region[t]];
-  EXPECT_NEAR(mean[0] / count[0], std::log(0.7 * kYoung), 0.3);
-  EXPECT_NEAR(mean[1] / count[1], std::log(4 * kYoung), 0.4);
+  EXPECT_NEAR(mean[0] / count[0], std::log(0.7 * kCubeYoung), 0.3);
+  EXPECT_NEAR(mean[1] / count[1], std::log(4 * kCubeYoung), 0.4);
 }
 
 TEST(LoadContinuation, KeepsTheSmallestLoadsOfEachGroup) {
@@ -136,11 +138,11 @@ TEST(LoadContinuation, KeepsTheSmallestLoadsOfEachGroup) {
 TEST(LoadContinuation, EndsWhereAFitToAllLoadsDoes) {
   Experiment e = poked_cube();
   const ParameterMap map =
-      map_of(e, {{"young", Spread::uniform, 0, 0.2 * kYoung}, {"b", Spread::uniform, 0, 1}}, "fung");
-  measure(e, map, {std::log(kYoung), std::log(5)}, 1);
+      map_of(e, {{"young", Spread::uniform, 0, 0.2 * kCubeYoung}, {"b", Spread::uniform, 0, 1}}, "fung");
+  measure(e, map, {std::log(kCubeYoung), std::log(5)}, 1);
   const auto prior = make_regularizer(e.mesh, map, {});
   std::vector<size_t> cases;
-  const FitReport by_loads = fit_by_loads(e, map, *prior, map.guess(), {.tolerance = 1e-8}, kExact, {},
+  const FitReport by_loads = fit_by_loads(e, map, *prior, map.guess(), {.tolerance = 1e-8}, kSynthetic, {},
                                           [&](const Experiment& part) { cases.push_back(part.cases.size()); });
   EXPECT_EQ(cases, (std::vector<size_t>{2, 4}));
   ASSERT_TRUE(is_success(by_loads.status)) << by_loads.words;

@@ -9,13 +9,12 @@
 #include "base/parallel.h"
 #include "fit/load_case.h"
 #include "mesh/surface.h"
+#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {
 
 constexpr double kRichardson = 4.0 / 3;  // 1 / (1 - 1/2^2)
-
-double norm(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
 class Refinement {
  public:
@@ -55,11 +54,11 @@ class Refinement {
     // Opposite corners of the octahedron, and the four others around them.
     const std::array<std::array<int, 6>, 3> ways = {
         {{ab, cd, ac, bc, bd, ad}, {ac, bd, ab, bc, cd, ad}, {ad, bc, ab, bd, cd, ac}}};
-    const auto length = [&](const std::array<int, 6>& way) {
-      return norm(fine_.mesh.rest[way[0]] - fine_.mesh.rest[way[1]]);
+    const auto diagonal = [&](const std::array<int, 6>& way) {
+      return length(fine_.mesh.rest[way[0]] - fine_.mesh.rest[way[1]]);
     };
     const auto& way = *std::min_element(
-        ways.begin(), ways.end(), [&](const auto& p, const auto& q) { return length(p) < length(q) * (1 - 1e-9); });
+        ways.begin(), ways.end(), [&](const auto& p, const auto& q) { return diagonal(p) < diagonal(q) * (1 - 1e-9); });
     for (int k = 0; k < 4; ++k) add({way[0], way[1], way[2 + k], way[2 + (k + 1) % 4]}, t);
   }
 
@@ -138,7 +137,7 @@ Predictions predicted(const Experiment& experiment, const std::string& material,
 
 void shift(Vec3d& value, Vec3d& deviation, const Vec3d& error) {
   value = value - error;
-  for (int i = 0; i < 3; ++i) deviation[i] = std::hypot(deviation[i], kUncertain * norm(error));
+  for (int i = 0; i < 3; ++i) deviation[i] = std::hypot(deviation[i], kUncertain * length(error));
 }
 
 }  // namespace

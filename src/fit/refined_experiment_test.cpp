@@ -12,7 +12,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kYoung = 1e4;
+constexpr double kColumnYoung = 1e4;
 
 // A column that stands on z = 0 and sags; markers on its top and sides.
 Experiment column(int cells) {
@@ -40,7 +40,7 @@ Vec3d place(const SurfacePoint& p, const TetMesh& mesh) {
 }
 
 std::vector<MaterialParameters> material(const Experiment& e) {
-  return std::vector<MaterialParameters>(e.mesh.tets.size(), {lame_from_young_poisson(kYoung, 0.3), {}});
+  return std::vector<MaterialParameters>(e.mesh.tets.size(), {lame_from_young_poisson(kColumnYoung, 0.3), {}});
 }
 
 // The mean sag of the corners of the top, which every mesh has.

@@ -76,13 +76,13 @@ TEST(FieldRoughness, OfAJumpIsBoundedForTotalVariationOnly) {
   EXPECT_NEAR(FieldRoughness(fine, 10).value(field(fine, jump)), value, 0.15 * value);
 }
 
-struct Case {
+struct Regularization {
   std::string name;
   std::vector<Unknown> unknowns;
   RegularizerOptions options;
 };
 
-class Regularizers : public testing::TestWithParam<Case> {
+class Regularizers : public testing::TestWithParam<Regularization> {
  protected:
   TetMesh mesh_ = [] {
     TetMesh mesh = box(3);
@@ -200,12 +200,13 @@ TEST_P(Regularizers, IsLeastAtTheGuess) {
   for (double gi : g) EXPECT_NEAR(gi, 0, 1e-12);
 }
 
-const std::vector<Unknown> kAll = {
+const std::vector<Unknown> kEverySpread = {
     {"young", Spread::tets, 0, 1e5}, {"poisson", Spread::regions, 0, 0.4}, {"b", Spread::handles, 6, 2}};
 INSTANTIATE_TEST_SUITE_P(Of, Regularizers,
-                         testing::Values(Case{"H1", kAll, {}},
-                                         Case{"TotalVariation", kAll, {Smoothness::total_variation, 3}},
-                                         Case{"PriorAlone", kAll, {Smoothness::none, 1}}),
+                         testing::Values(Regularization{"H1", kEverySpread, {}},
+                                         Regularization{
+                                             "TotalVariation", kEverySpread, {Smoothness::total_variation, 3}},
+                                         Regularization{"PriorAlone", kEverySpread, {Smoothness::none, 1}}),
                          [](const auto& each) { return each.param.name; });
 
 TEST(Regularizer, SpreadsTheMeanOfAFieldByTheDeviation) {

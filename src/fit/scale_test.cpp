@@ -15,7 +15,7 @@ namespace {
 using namespace testing_models;
 
 constexpr double kSize = 0.1;  // of the cube [m]
-const EquilibriumOptions kExact{.tolerance = 1e-13, .adjoint_tolerance = 1e-13};
+const EquilibriumOptions kScaleExact{.tolerance = 1e-13, .adjoint_tolerance = 1e-13};
 
 std::vector<MaterialParameters> uneven(int tets, double factor) {
   std::vector<MaterialParameters> parameters;
@@ -24,27 +24,21 @@ std::vector<MaterialParameters> uneven(int tets, double factor) {
   return parameters;
 }
 
-Model cube(const Vec3d& gravity = {}) {
+Model gel_cube(const Vec3d& gravity = {}) {
   Model model = make_model(make_box({{0, 0, 0}}, {{kSize, kSize, kSize}}, {4, 4, 4}),
                            {.material = "stable_neo_hookean", .young = 1e4, .poisson = 0.45, .gravity = gravity});
   model.pins.push_back({"floor", vertices_where(model.mesh, [](const Vec3d& X) { return X[2] < 1e-9; }), {}});
   return model;
 }
 
-double largest_difference(std::span<const double> x, std::span<const double> y) {
-  double largest = 0;
-  for (size_t i = 0; i < x.size(); ++i) largest = std::max(largest, std::abs(x[i] - y[i]));
-  return largest;
-}
-
-std::vector<double> solved(Equilibrium& body, double factor) {
+std::vector<double> solved_with_factor(Equilibrium& body, double factor) {
   body.set_parameters(uneven(body.model().mesh.tet_count(), factor));
   EXPECT_TRUE(is_success(body.solve().status)) << body.failure();
   return {body.x().begin(), body.x().end()};
 }
 
 TEST(Scale, OfAllModuliMovesNothingWhereOnlyPositionsArePrescribed) {
-  Model model = cube();
+  Model model = gel_cube();
   const auto pushed = [](const Vec3d& X) {
     return X[2] > kSize - 1e-9 && std::abs(X[0] - kSize / 2) < 0.03 && std::abs(X[1] - kSize / 2) < 0.03;
   };
@@ -52,20 +46,20 @@ TEST(Scale, OfAllModuliMovesNothingWhereOnlyPositionsArePrescribed) {
                           return X + Vec3d{{0.01, 0.005, -0.02}};
                         }});
   const std::vector<double> rest = at_rest(model.mesh).q;
-  Equilibrium body(std::move(model), rest, kExact);
-  const std::vector<double> x = solved(body, 1);
+  Equilibrium body(std::move(model), rest, kScaleExact);
+  const std::vector<double> x = solved_with_factor(body, 1);
   const double motion = largest_difference(x, rest);
   EXPECT_GT(motion, 0.019);
   body.set_x(rest);
-  EXPECT_LT(largest_difference(solved(body, 10), x), 1e-10 * motion);
+  EXPECT_LT(largest_difference(solved_with_factor(body, 10), x), 1e-10 * motion);
 }
 
 TEST(Scale, IsSeenWhereThereIsAWeight) {
-  Model model = cube({{0, 0, -9.81}});
+  Model model = gel_cube({{0, 0, -9.81}});
   const std::vector<double> rest = at_rest(model.mesh).q;
-  Equilibrium body(std::move(model), rest, kExact);
-  const std::vector<double> x = solved(body, 1);
-  EXPECT_GT(largest_difference(solved(body, 10), x), 0.5 * largest_difference(x, rest));
+  Equilibrium body(std::move(model), rest, kScaleExact);
+  const std::vector<double> x = solved_with_factor(body, 1);
+  EXPECT_GT(largest_difference(solved_with_factor(body, 10), x), 0.5 * largest_difference(x, rest));
 }
 
 struct Poked {
@@ -74,7 +68,7 @@ struct Poked {
   std::unique_ptr<Equilibrium> body;
 
   explicit Poked(double layer) {
-    Model model = cube();
+    Model model = gel_cube();
     const Tip tip{.shape = TipShape::disc, .radius = 0.025, .stiffness = layer * 1e4 / 0.025};
     const TipPose touch{.center = {{kSize / 2, kSize / 2, kSize}}};
     auto term = make_probe(model.mesh, boundary_triangles(model.mesh, 0, model.mesh.tet_count()), tip, touch);
@@ -82,13 +76,13 @@ struct Poked {
     probe->set_pose({.center = touch.center + Vec3d{{0.002, 0, -0.008}}, .rotation = {{0, 0.1, 0}}});
     model.loads.push_back(std::move(term));
     rest = at_rest(model.mesh).q;
-    body = std::make_unique<Equilibrium>(std::move(model), rest, kExact);
+    body = std::make_unique<Equilibrium>(std::move(model), rest, kScaleExact);
   }
 };
 
 TEST(Scale, OfAllModuliAndOfTheProbesLayerMovesNothing) {
   Poked soft(100), stiff(1000);  // the layer ten times stiffer
-  const std::vector<double> x = solved(*soft.body, 1), y = solved(*stiff.body, 10);
+  const std::vector<double> x = solved_with_factor(*soft.body, 1), y = solved_with_factor(*stiff.body, 10);
   const double motion = largest_difference(x, soft.rest);
   EXPECT_LT(largest_difference(y, x), 1e-10 * motion);
   // The force tells: it is ten times larger.
@@ -101,8 +95,8 @@ TEST(Scale, OfAllModuliAndOfTheProbesLayerMovesNothing) {
 TEST(Scale, LeaksThroughTheLayer) {
   for (const double layer : {1e2, 1e3, 1e4}) {
     Poked poked(layer);
-    const std::vector<double> x = solved(*poked.body, 1);
-    const double leak = largest_difference(solved(*poked.body, 2), x) / largest_difference(x, poked.rest);
+    const std::vector<double> x = solved_with_factor(*poked.body, 1);
+    const double leak = largest_difference(solved_with_factor(*poked.body, 2), x) / largest_difference(x, poked.rest);
     EXPECT_GT(leak, 1e-3) << layer;
     EXPECT_LT(leak, 0.1) << layer;
   }
@@ -111,7 +105,7 @@ TEST(Scale, LeaksThroughTheLayer) {
 // dx/dlog E + dx/dlog k = 0, exactly.
 TEST(Scale, AndTheLayersStiffnessHaveOppositeTangents) {
   Poked poked(100);
-  const std::vector<double> x = solved(*poked.body, 1);
+  const std::vector<double> x = solved_with_factor(*poked.body, 1);
   ASSERT_TRUE(poked.body->factorize());
   std::vector<double> dtheta, by_young(x.size()), force(x.size(), 0.0), by_layer(x.size());
   for (const MaterialParameters& m : uneven(poked.body->model().mesh.tet_count(), 1))

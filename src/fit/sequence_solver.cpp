@@ -4,22 +4,14 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "fit/columns.h"
 #include "linalg/auto_solver.h"
 
 namespace aspic {
 namespace {
 
-constexpr size_t kRemembered = 6;   // solutions: more cost as many products as they save
-constexpr int kMaxIterations = 50;  // with a factor of another matrix
-
-double dot(std::span<const double> a, std::span<const double> b) {
-  return parallel_sum(static_cast<int>(a.size()), [&](int first, int last) {
-    double sum = 0;
-    for (int i = first; i < last; ++i) sum += a[i] * b[i];
-    return sum;
-  });
-}
-double norm(std::span<const double> a) { return std::sqrt(dot(a, a)); }
+constexpr size_t kRemembered = 6;     // solutions: more cost as many products as they save
+constexpr int kMaxCgIterations = 50;  // with a factor of another matrix
 
 // y += s x
 void add(double s, std::span<const double> x, std::span<double> y) {
@@ -48,7 +40,7 @@ class KeptFactor : public ApproximateInverse {
 
 SequenceSolver::SequenceSolver(const std::string& linear, double tolerance)
     : solver_(make_linear_solver(linear)),
-      by_factor_(std::make_unique<KeptFactor>(*solver_), kMaxIterations),
+      by_factor_(std::make_unique<KeptFactor>(*solver_), kMaxCgIterations),
       tolerance_(tolerance) {}
 
 void SequenceSolver::begin() {

@@ -27,14 +27,14 @@ Eigen::MatrixXd covariance(Gaussian& g) {
   return C;
 }
 
-struct Case {
+struct SpectrumCase {
   const char* name;
   int unknowns, residuals;
   SpectrumOptions options;
 };
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const SpectrumCase& c, std::ostream* out) { *out << c.name; }
 
-class Spectra : public testing::TestWithParam<Case> {
+class Spectra : public testing::TestWithParam<SpectrumCase> {
  protected:
   static constexpr double kWeight = 2;
   test::LinearModel data = test::averages(GetParam().unknowns, GetParam().residuals, 30, 5);
@@ -84,9 +84,11 @@ TEST_P(Spectra, GiveThePosterior) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, Spectra,
-                         testing::Values(Case{"dense by tangents", 60, 90, {}}, Case{"dense by adjoints", 60, 20, {}},
-                                         Case{"rows", 120, 40, {.dense = 50}}, Case{"sampled", 300, 200, {.dense = 50}},
-                                         Case{"sampled to the end", 90, 60, {.dense = 10, .negligible = 0}}));
+                         testing::Values(SpectrumCase{"dense by tangents", 60, 90, {}},
+                                         SpectrumCase{"dense by adjoints", 60, 20, {}},
+                                         SpectrumCase{"rows", 120, 40, {.dense = 50}},
+                                         SpectrumCase{"sampled", 300, 200, {.dense = 50}},
+                                         SpectrumCase{"sampled to the end", 90, 60, {.dense = 10, .negligible = 0}}));
 
 TEST(Spectrum, DenseTakesTheCheaperSideOfTheJacobian) {
   test::LinearModel tall = test::averages(20, 50, 1, 1), wide = test::averages(50, 20, 1, 1);

@@ -17,10 +17,10 @@ constexpr double kLeastPoisson = -0.9, kLargestPoisson = 0.495;
 double distance(const Mat3d& a, const Mat3d& b) { return std::sqrt(squared_norm(a - b)); }
 
 // A small square system with two right-hand sides, by elimination with pivots from the rows.
-struct Columns {
+struct StrainColumns {
   double log_young, poisson;
 };
-void solve(std::vector<double>& A, std::vector<Columns>& b) {
+void solve(std::vector<double>& A, std::vector<StrainColumns>& b) {
   const size_t n = b.size();
   for (size_t k = 0; k < n; ++k) {
     size_t pivot = k;
@@ -95,13 +95,13 @@ StrainSpaceModuli::StrainSpaceModuli(const TetMesh& mesh, std::span<const Strain
   for (int t = 0; t < mesh.tet_count(); ++t) {
     const Mat3d rest_inverse = inverse(edge_matrix(mesh, t));
     std::vector<Mat3d> strains;
-    std::vector<Columns> b;
+    std::vector<StrainColumns> b;
     for (const StrainExample& example : examples) {
       strains.push_back(corotated_strain(deformation_gradient(mesh, rest_inverse, t, example.x)));
       b.push_back({std::log(example.young[t]), example.poisson[t]});
     }
-    const auto by_young = [](const Columns& p, const Columns& q) { return p.log_young < q.log_young; };
-    const auto by_poisson = [](const Columns& p, const Columns& q) { return p.poisson < q.poisson; };
+    const auto by_young = [](const StrainColumns& p, const StrainColumns& q) { return p.log_young < q.log_young; };
+    const auto by_poisson = [](const StrainColumns& p, const StrainColumns& q) { return p.poisson < q.poisson; };
     const auto [soft, stiff] = std::minmax_element(b.begin(), b.end(), by_young);
     const auto [least, largest] = std::minmax_element(b.begin(), b.end(), by_poisson);
     Tet tet{{},

@@ -2,22 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "base/check.h"
 #include "fit/evidence.h"
 #include "fit/field_words.h"
+#include "fit/formatted.h"
 #include "fit/principal_directions.h"
 
 namespace aspic {
 namespace {
-
-template <class... Numbers>
-std::string text(const char* format, Numbers... numbers) {
-  char buffer[512];
-  std::snprintf(buffer, sizeof buffer, format, numbers...);
-  return buffer;
-}
 
 // |J e|^2 for a common shift of log E: the stiffness of everything times a factor.
 double information_of_scale(LeastSquares& data, const ParameterMap& map, int young) {
@@ -60,13 +53,13 @@ void judge_noise(double misfit, int residuals, Posterior& result, Spectrum& s) {
   if (misfit > upper) {
     result.applied_factor = result.noise_factor;
     for (double& d : s.d) d /= result.noise_factor * result.noise_factor;
-    result.warnings.push_back(
-        text("the fit misses the measurements %.3g times further than their standard deviations allow: these are too "
-             "small, the weight of the regulariser is too large, or the model cannot do what the body does; all "
-             "deviations are raised by that factor",
-             result.noise_factor));
+    result.warnings.push_back(formatted(
+        "the fit misses the measurements %.3g times further than their standard deviations allow: these are too "
+        "small, the weight of the regulariser is too large, or the model cannot do what the body does; all "
+        "deviations are raised by that factor",
+        result.noise_factor));
   } else if (misfit < lower) {
-    result.warnings.push_back(text(
+    result.warnings.push_back(formatted(
         "the fit is %.3g times nearer to the measurements than their standard deviations say: these are too large, "
         "or noise was fitted (a larger weight); the deviations are left as they are",
         1 / std::max(result.noise_factor, 1e-300)));
@@ -79,7 +72,7 @@ void judge_weight(Regularizer& prior, double weight, std::span<const double> p, 
   result.suggested_weight = weight * best;
   constexpr double kClear = 8;  // by chance it is exceeded once in 200 times (chi^2 of one degree)
   if (gain < kClear) return;
-  result.warnings.push_back(text(
+  result.warnings.push_back(formatted(
       best < 1 ? "the weight of the regulariser, %.3g, is %.2g times larger than what the data support (%.3g): details "
                  "are lost and the deviations too small"
                : "the weight of the regulariser, %.3g, is %.2g times smaller than what the data support (%.3g): noise "
@@ -91,10 +84,10 @@ void warn_of_rank(Posterior& result) {
   constexpr double kMuch = 3;  // deviations twice too large
   const Spectrum& s = result.belief->spectrum();
   if (s.missed > kMuch)
-    result.warnings.push_back(
-        text("only the %d best seen directions were looked at; each of the others may be known %.2g times better than "
-             "is shown, none worse",
-             s.W.count(), std::sqrt(1 + s.missed)));
+    result.warnings.push_back(formatted(
+        "only the %d best seen directions were looked at; each of the others may be known %.2g times better than "
+        "is shown, none worse",
+        s.W.count(), std::sqrt(1 + s.missed)));
 }
 
 void tell_seen(const ParameterMap& map, const TetMesh& mesh, int count, Posterior& result) {
@@ -184,8 +177,8 @@ std::string words_of_interval(const Unknown& unknown, const Interval& interval) 
   const char* name = is_pressure ? " Pa" : "";
   for (const auto& [size, prefixed] : {std::pair{1e3, " kPa"}, {1e6, " MPa"}, {1e9, " GPa"}})
     if (is_pressure && interval.upper >= size) unit = size, name = prefixed;
-  return text("%s between %.3g and %.3g%s", unknown.quantity.c_str(), interval.lower / unit, interval.upper / unit,
-              name);
+  return formatted("%s between %.3g and %.3g%s", unknown.quantity.c_str(), interval.lower / unit, interval.upper / unit,
+                   name);
 }
 
 }  // namespace aspic

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 
+#include "io/blank.h"
+
 namespace aspic {
 namespace {
 
@@ -15,8 +17,6 @@ constexpr std::array<int8_t, 256> make_values() {
   return values;
 }
 constexpr std::array<int8_t, 256> kValues = make_values();
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 }  // namespace
 

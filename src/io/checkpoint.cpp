@@ -17,9 +17,9 @@ namespace fs = std::filesystem;
 // Layout: magic, uint32 byte order mark, uint32 version, uint64 size of the whole file; the fingerprint; uint64 number
 // of integers, each a name and an int64; uint64 number of arrays, each a name, a uint64 length and doubles; CRC-32 of
 // everything before it. A name is a uint64 length and its characters.
-constexpr std::string_view kMagic("ASPICCHK", 8);
-constexpr uint32_t kByteOrderMark = 0x01020304, kVersion = 1;
-constexpr size_t kHeadSize = 24, kChecksumSize = 4;
+constexpr std::string_view kCheckpointMagic("ASPICCHK", 8);
+constexpr uint32_t kWordOrderMark = 0x01020304, kVersion = 1;
+constexpr size_t kCheckpointHeadSize = 24, kChecksumSize = 4;
 
 uint32_t checksum(std::string_view bytes) {
   return static_cast<uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
@@ -44,10 +44,10 @@ std::string encoded(const Checkpoint& checkpoint) {
     append_bytes(body, uint64_t{values.size()});
     body.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
   }
-  std::string bytes(kMagic);
-  append_bytes(bytes, kByteOrderMark);
+  std::string bytes(kCheckpointMagic);
+  append_bytes(bytes, kWordOrderMark);
   append_bytes(bytes, kVersion);
-  append_bytes(bytes, uint64_t{kHeadSize + body.size() + kChecksumSize});
+  append_bytes(bytes, uint64_t{kCheckpointHeadSize + body.size() + kChecksumSize});
   bytes += body;
   append_bytes(bytes, checksum(bytes));
   return bytes;
@@ -77,14 +77,14 @@ class Decoder {
   [[noreturn]] void fail(const std::string& what) const { throw InvalidInput(path_.string() + ": " + what); }
 
   void check_head() {
-    if (!whole_.starts_with(kMagic)) fail("is no checkpoint");
-    rest_.remove_prefix(kMagic.size());
-    if (number<uint32_t>() != kByteOrderMark) fail("was written on a machine of another byte order, or is damaged");
+    if (!whole_.starts_with(kCheckpointMagic)) fail("is no checkpoint");
+    rest_.remove_prefix(kCheckpointMagic.size());
+    if (number<uint32_t>() != kWordOrderMark) fail("was written on a machine of another byte order, or is damaged");
     if (const auto version = number<uint32_t>(); version != kVersion) {
       fail("is a checkpoint of version " + std::to_string(version) + "; this program reads version " +
            std::to_string(kVersion));
     }
-    if (const auto size = number<uint64_t>(); size != whole_.size() || size < kHeadSize + kChecksumSize) {
+    if (const auto size = number<uint64_t>(); size != whole_.size() || size < kCheckpointHeadSize + kChecksumSize) {
       fail("is cut short or damaged: " + std::to_string(whole_.size()) + " bytes instead of " + std::to_string(size));
     }
     uint32_t stored;

@@ -17,7 +17,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(place, from.size(), to);
 }
 
-std::string error(const std::string& contents) {
+std::string gmsh_error(const std::string& contents) {
   try {
     parse_gmsh("a.msh", contents);
   } catch (const InvalidInput& e) {
@@ -60,35 +60,37 @@ TEST(Gmsh, QuadranglesAreSplitWhereThereAreNoTets) {
 
 TEST(Gmsh, WhatWouldLoseASolidIsRefusedByName) {
   const std::string tets10 = replaced(gmsh_22_text(), "5 4 4 9 2 1 -1 2 4 8 9", "5 11 2 9 2 1 2 4 8 9 1 2 4 8 9");
-  EXPECT_THAT(error(tets10),
+  EXPECT_THAT(gmsh_error(tets10),
               HasSubstr("a.msh:24: the mesh has 10-node tets (second order), which are not read; export it"));
-  EXPECT_THAT(error(replaced(gmsh_41_text(), "3 2 4 1\n9 20 30 40 50", "3 2 6 1\n9 20 30 40 50 10 20")),
+  EXPECT_THAT(gmsh_error(replaced(gmsh_41_text(), "3 2 4 1\n9 20 30 40 50", "3 2 6 1\n9 20 30 40 50 10 20")),
               HasSubstr("6-node prisms"));
-  EXPECT_THAT(error(replaced(gmsh_22_text(), "5 4 4 9", "5 77 4 9")), HasSubstr("element type 77 is unknown"));
+  EXPECT_THAT(gmsh_error(replaced(gmsh_22_text(), "5 4 4 9", "5 77 4 9")), HasSubstr("element type 77 is unknown"));
 }
 
 TEST(Gmsh, SecondOrderTrianglesAreSkippedBesideTetsOnly) {
   const std::string text = replaced(gmsh_22_text(), "3 2 2 1 1 1 2 4", "3 9 2 1 1 1 2 4 1 2 4");
   EXPECT_EQ(parse_gmsh("a.msh", text).tets.size(), 2u);
-  EXPECT_THAT(error("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 1 1 0\n$EndNodes\n"
-                    "$Elements\n1\n1 9 0 1 2 3 1 2 3\n$EndElements\n"),
+  EXPECT_THAT(gmsh_error("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 1 1 0\n$EndNodes\n"
+                         "$Elements\n1\n1 9 0 1 2 3 1 2 3\n$EndElements\n"),
               HasSubstr("6-node triangles (second order)"));
 }
 
 TEST(Gmsh, ErrorsNameTheLineOrTheByte) {
-  EXPECT_THAT(error(replaced(gmsh_22_text(), "4 0 1 0", "4 0 nan 0")),
+  EXPECT_THAT(gmsh_error(replaced(gmsh_22_text(), "4 0 1 0", "4 0 nan 0")),
               HasSubstr("a.msh:13: a node's coordinate is 'nan'"));
-  EXPECT_THAT(error(replaced(gmsh_22_text(), "\n6\n1 0", "\n7\n1 0")), HasSubstr("a.msh:17: the tag of a node"));
-  EXPECT_THAT(error(replaced(gmsh_22_text(), "\n6\n1 0", "\n5\n1 0")), HasSubstr("'20' where '$EndNodes' should be"));
-  EXPECT_THAT(error(replaced(gmsh_22_text(), "\n6\n1 0", "\n2000000000\n1 0")), HasSubstr("has room for at most"));
-  EXPECT_THAT(error(replaced(gmsh_22_text(), "1 1 2 4 8\n", "1 1 2 4 3\n")),
+  EXPECT_THAT(gmsh_error(replaced(gmsh_22_text(), "\n6\n1 0", "\n7\n1 0")), HasSubstr("a.msh:17: the tag of a node"));
+  EXPECT_THAT(gmsh_error(replaced(gmsh_22_text(), "\n6\n1 0", "\n5\n1 0")),
+              HasSubstr("'20' where '$EndNodes' should be"));
+  EXPECT_THAT(gmsh_error(replaced(gmsh_22_text(), "\n6\n1 0", "\n2000000000\n1 0")), HasSubstr("has room for at most"));
+  EXPECT_THAT(gmsh_error(replaced(gmsh_22_text(), "1 1 2 4 8\n", "1 1 2 4 3\n")),
               HasSubstr("a.msh:23: an element names node 3"));
-  EXPECT_THAT(error(replaced(gmsh_22_text(), "\n8 0 0 1", "\n2 0 0 1")), HasSubstr("two nodes have the tag 2"));
-  EXPECT_THAT(error(replaced(gmsh_22_text(), "2.2 0 8", "4 0 8")), HasSubstr("a.msh:2: version 4.0 is not read"));
-  EXPECT_THAT(error(replaced(gmsh_41_text(), "3 1 0 2\n", "3 1 0 1\n")), HasSubstr("a.msh:"));
-  EXPECT_THAT(error(gmsh_41_binary().substr(0, 300)), HasSubstr("a.msh: byte "));
-  EXPECT_THAT(error(replaced(gmsh_41_text(), "$Entities", "$PartitionedEntities")), HasSubstr("partitioned"));
-  EXPECT_THAT(error("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Elements\n0\n$EndElements\n"), HasSubstr("before $Nodes"));
+  EXPECT_THAT(gmsh_error(replaced(gmsh_22_text(), "\n8 0 0 1", "\n2 0 0 1")), HasSubstr("two nodes have the tag 2"));
+  EXPECT_THAT(gmsh_error(replaced(gmsh_22_text(), "2.2 0 8", "4 0 8")), HasSubstr("a.msh:2: version 4.0 is not read"));
+  EXPECT_THAT(gmsh_error(replaced(gmsh_41_text(), "3 1 0 2\n", "3 1 0 1\n")), HasSubstr("a.msh:"));
+  EXPECT_THAT(gmsh_error(gmsh_41_binary().substr(0, 300)), HasSubstr("a.msh: byte "));
+  EXPECT_THAT(gmsh_error(replaced(gmsh_41_text(), "$Entities", "$PartitionedEntities")), HasSubstr("partitioned"));
+  EXPECT_THAT(gmsh_error("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Elements\n0\n$EndElements\n"),
+              HasSubstr("before $Nodes"));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ using testing::HasSubstr;
 
 MeshContent parse(const char* text) { return parse_obj("a.obj", text); }
 
-std::string error(const char* text) {
+std::string obj_error(const char* text) {
   try {
     parse(text);
   } catch (const InvalidInput& e) {
@@ -54,15 +54,16 @@ TEST(Obj, FacesMayPrecedeTheirVertices) {
 }
 
 TEST(Obj, ErrorsNameFileLineValueAndRemedy) {
-  EXPECT_EQ(error("v 0 0 0\nv 0 x 0\n"), "a.obj:2: a vertex coordinate is 'x'; it must be a finite number");
-  EXPECT_EQ(error("v 0 0 0\nv nan 0 0\n"), "a.obj:2: a vertex coordinate is 'nan'; it must be a finite number");
-  EXPECT_EQ(error("v 0 0 0\nv 1e999 0 0\n"), "a.obj:2: a vertex coordinate is '1e999'; it must be a finite number");
-  EXPECT_THAT(error("v 0 0\nv 1 0 0\n"), HasSubstr("a.obj:1: the line ends where a vertex coordinate should follow"));
-  EXPECT_THAT(error((kSquare + "f 1 2 5\nf 1 2 3\n").c_str()), HasSubstr("a.obj:5: a corner names vertex 5"));
-  EXPECT_THAT(error((kSquare + "f 1 2 -5\n").c_str()), HasSubstr("a.obj:5: a corner names vertex -5 of 4"));
-  EXPECT_THAT(error((kSquare + "f 0 1 2\n").c_str()), HasSubstr("vertices count from 1"));
-  EXPECT_THAT(error((kSquare + "f 1 2\n").c_str()), HasSubstr("a.obj:5: a face has fewer than three corners"));
-  EXPECT_THAT(error("vertex 1 2 3\n"), HasSubstr("a.obj:1: unknown statement 'vertex'"));
+  EXPECT_EQ(obj_error("v 0 0 0\nv 0 x 0\n"), "a.obj:2: a vertex coordinate is 'x'; it must be a finite number");
+  EXPECT_EQ(obj_error("v 0 0 0\nv nan 0 0\n"), "a.obj:2: a vertex coordinate is 'nan'; it must be a finite number");
+  EXPECT_EQ(obj_error("v 0 0 0\nv 1e999 0 0\n"), "a.obj:2: a vertex coordinate is '1e999'; it must be a finite number");
+  EXPECT_THAT(obj_error("v 0 0\nv 1 0 0\n"),
+              HasSubstr("a.obj:1: the line ends where a vertex coordinate should follow"));
+  EXPECT_THAT(obj_error((kSquare + "f 1 2 5\nf 1 2 3\n").c_str()), HasSubstr("a.obj:5: a corner names vertex 5"));
+  EXPECT_THAT(obj_error((kSquare + "f 1 2 -5\n").c_str()), HasSubstr("a.obj:5: a corner names vertex -5 of 4"));
+  EXPECT_THAT(obj_error((kSquare + "f 0 1 2\n").c_str()), HasSubstr("vertices count from 1"));
+  EXPECT_THAT(obj_error((kSquare + "f 1 2\n").c_str()), HasSubstr("a.obj:5: a face has fewer than three corners"));
+  EXPECT_THAT(obj_error("vertex 1 2 3\n"), HasSubstr("a.obj:1: unknown statement 'vertex'"));
 }
 
 TEST(Obj, NumbersBelowTheSmallestDoubleAreZero) { EXPECT_EQ(parse("v 1e-999 +2 -1E-400").vertices[0][0], 0); }

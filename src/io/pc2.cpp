@@ -12,11 +12,11 @@
 namespace aspic {
 namespace {
 
-constexpr std::string_view kMagic("POINTCACHE2\0", 12);
-constexpr uint64_t kHeadSize = 32, kPointsOffset = 16, kCountOffset = 28;
+constexpr std::string_view kPc2Magic("POINTCACHE2\0", 12);
+constexpr uint64_t kPc2HeadSize = 32, kPointsOffset = 16, kCountOffset = 28;
 
 std::string head(int points, int samples) {
-  std::string bytes(kMagic);
+  std::string bytes(kPc2Magic);
   append_bytes(bytes, int32_t{1});
   append_bytes(bytes, static_cast<int32_t>(points));
   append_bytes(bytes, 0.0f);  // start [frames]
@@ -49,10 +49,10 @@ Pc2File Pc2File::resume(const std::filesystem::path& path, int points, int sampl
   cache.file_ = OutputFile::open_existing(path);
   cache.points_ = points;
   cache.samples_ = samples;
-  if (cache.file_.size() < kHeadSize || bytes_at(path, 0, kCountOffset) != head(points, 0).substr(0, kCountOffset)) {
+  if (cache.file_.size() < kPc2HeadSize || bytes_at(path, 0, kCountOffset) != head(points, 0).substr(0, kCountOffset)) {
     throw InvalidInput(path.string() + ": is no point cache of " + std::to_string(points) + " points");
   }
-  const uint64_t size = kHeadSize + static_cast<uint64_t>(samples) * cache.sample_size();
+  const uint64_t size = kPc2HeadSize + static_cast<uint64_t>(samples) * cache.sample_size();
   if (cache.file_.size() < size) {
     throw InvalidInput(path.string() + ": holds fewer than the " + std::to_string(samples) +
                        " samples of the checkpoint; the run cannot be continued");
@@ -75,7 +75,7 @@ void Pc2File::append(std::span<const double> x) {
 std::vector<float> Pc2File::sample(int index) const {
   ASPIC_CHECK(index >= 0 && index < samples_);
   const std::string bytes =
-      bytes_at(file_.path(), kHeadSize + static_cast<uint64_t>(index) * sample_size(), sample_size());
+      bytes_at(file_.path(), kPc2HeadSize + static_cast<uint64_t>(index) * sample_size(), sample_size());
   std::vector<float> x(3 * static_cast<size_t>(points_));
   std::memcpy(x.data(), bytes.data(), bytes.size());
   return x;
@@ -88,7 +88,7 @@ void Pc2File::write_count() {
 }
 
 Pc2Reader::Pc2Reader(const std::filesystem::path& path) : path_(path), in_(open_input(path)) {
-  std::string bytes(kHeadSize, '\0');
+  std::string bytes(kPc2HeadSize, '\0');
   in_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (!in_) throw InvalidInput(path.string() + ": cannot be read, or is too short for a point cache");
   const auto integer = [&](size_t at) {
@@ -101,7 +101,7 @@ Pc2Reader::Pc2Reader(const std::filesystem::path& path) : path_(path), in_(open_
   if (points_ < 0 || samples_ < 0 || bytes != head(points_, samples_))
     throw InvalidInput(path.string() + ": is no point cache of version 1 with one sample per frame");
   in_.seekg(0, std::ios::end);
-  const uint64_t whole = in_ ? (static_cast<uint64_t>(in_.tellg()) - kHeadSize) / 12 : 0;  // points of all samples
+  const uint64_t whole = in_ ? (static_cast<uint64_t>(in_.tellg()) - kPc2HeadSize) / 12 : 0;  // points of all samples
   if (static_cast<uint64_t>(points_) * static_cast<uint64_t>(samples_) > whole)
     throw InvalidInput(path.string() + ": the point cache is cut short: its head counts " + std::to_string(samples_) +
                        " samples of " + std::to_string(points_) + " points");
@@ -110,7 +110,7 @@ Pc2Reader::Pc2Reader(const std::filesystem::path& path) : path_(path), in_(open_
 std::vector<float> Pc2Reader::sample(int index) {
   ASPIC_CHECK(index >= 0 && index < samples_);
   std::vector<float> x(3 * static_cast<size_t>(points_));
-  in_.seekg(static_cast<std::streamoff>(kHeadSize + 4 * x.size() * static_cast<uint64_t>(index)));
+  in_.seekg(static_cast<std::streamoff>(kPc2HeadSize + 4 * x.size() * static_cast<uint64_t>(index)));
   in_.read(reinterpret_cast<char*>(x.data()), static_cast<std::streamsize>(4 * x.size()));
   if (!in_) throw InvalidInput(path_.string() + ": sample " + std::to_string(index) + " cannot be read");
   return x;

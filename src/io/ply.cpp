@@ -36,9 +36,9 @@ class TextSource {
 };
 
 // Values of the two binary variants.
-class ByteSource {
+class PlyByteSource {
  public:
-  ByteSource(const std::string& file, std::string_view contents, size_t begin, std::endian order)
+  PlyByteSource(const std::string& file, std::string_view contents, size_t begin, std::endian order)
       : bytes_(file, contents, begin, order) {}
   static size_t least_bytes(PlyScalar type) { return size(type); }
 
@@ -183,7 +183,7 @@ MeshContent parse_ply(const std::string& file, std::string_view contents) {
   const PlyHeader header = parse_ply_header(file, contents);
   if (header.format == PlyFormat::ascii) return PlyReader(header, TextSource(file, contents, header.end)).read();
   const std::endian order = header.format == PlyFormat::binary_big_endian ? std::endian::big : std::endian::little;
-  return PlyReader(header, ByteSource(file, contents, header.end, order)).read();
+  return PlyReader(header, PlyByteSource(file, contents, header.end, order)).read();
 }
 
 std::string ply_bytes(const TriMesh& mesh, FileEncoding encoding) {

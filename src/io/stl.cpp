@@ -14,7 +14,7 @@
 namespace aspic {
 namespace {
 
-constexpr size_t kHeader = 80, kCount = 4, kTriangle = 50;  // [bytes] of binary STL
+constexpr size_t kHeaderSize = 80, kCountSize = 4, kTriangleSize = 50;  // [bytes] of binary STL
 
 struct PointHash {
   size_t operator()(const std::array<double, 3>& point) const {
@@ -137,7 +137,7 @@ std::string text_of(const TriMesh& mesh) {
 
 std::string bytes_of(const std::string& file, const TriMesh& mesh) {
   std::string bytes = "binary STL by Aspic";
-  bytes.resize(kHeader, '\0');
+  bytes.resize(kHeaderSize, '\0');
   append_bytes(bytes, static_cast<uint32_t>(mesh.triangles.size()));
   const auto append_floats = [&](const Vec3d& point) {
     for (const double coordinate : point.a) append_bytes(bytes, static_cast<float>(coordinate));
@@ -164,14 +164,14 @@ MeshContent parse_stl(const std::string& file, std::string_view contents) {
   const size_t first = contents.find_first_not_of(" \t\r\n");
   std::string space;
   const bool says_solid = first != contents.npos && lower(contents.substr(first, 5), space) == "solid";
-  if (contents.size() >= kHeader + kCount) {
-    ByteCursor bytes(file, contents, kHeader);
+  if (contents.size() >= kHeaderSize + kCountSize) {
+    ByteCursor bytes(file, contents, kHeaderSize);
     const auto count = bytes.read<uint32_t>("the number of triangles");
-    if (contents.size() - kHeader - kCount == kTriangle * uint64_t{count})
-      return parse_binary(bytes, bytes.checked_count(count, "the number of triangles", kTriangle));
+    if (contents.size() - kHeaderSize - kCountSize == kTriangleSize * uint64_t{count})
+      return parse_binary(bytes, bytes.checked_count(count, "the number of triangles", kTriangleSize));
     if (!says_solid)
       bytes.fail("the file says " + std::to_string(count) + " triangles, which takes " +
-                 std::to_string(kHeader + kCount + kTriangle * uint64_t{count}) + " bytes, but it has " +
+                 std::to_string(kHeaderSize + kCountSize + kTriangleSize * uint64_t{count}) + " bytes, but it has " +
                  std::to_string(contents.size()) + "; it is damaged or no STL file, get a complete copy");
   }
   if (!says_solid)

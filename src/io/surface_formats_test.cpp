@@ -16,7 +16,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 template <MeshContent (*parse)(const std::string&, std::string_view)>
-std::string error(const std::string& contents) {
+std::string surface_error(const std::string& contents) {
   try {
     parse("a", contents);
   } catch (const InvalidInput& e) {
@@ -32,14 +32,15 @@ TEST(Off, PolygonsAreFannedAndColoursSkipped) {
 }
 
 TEST(Off, ErrorsNameTheLine) {
-  EXPECT_THAT(error<parse_off>("OFF\n3 1 0\n0 0 0\n1 0 0\n1 1\n3 0 1 2\n"), HasSubstr("a:5: the line ends where"));
-  EXPECT_THAT(error<parse_off>("OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 3\n"),
+  EXPECT_THAT(surface_error<parse_off>("OFF\n3 1 0\n0 0 0\n1 0 0\n1 1\n3 0 1 2\n"),
+              HasSubstr("a:5: the line ends where"));
+  EXPECT_THAT(surface_error<parse_off>("OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 3\n"),
               HasSubstr("a:6: a corner of a face is 3; it must be from 0 to 2"));
-  EXPECT_THAT(error<parse_off>("OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n2 0 1\n"),
+  EXPECT_THAT(surface_error<parse_off>("OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n2 0 1\n"),
               HasSubstr("a:6: a face has fewer than three"));
-  EXPECT_THAT(error<parse_off>("OFF BINARY\n"), HasSubstr("binary OFF is not read"));
-  EXPECT_THAT(error<parse_off>("4OFF\n"), HasSubstr("not three-dimensional"));
-  EXPECT_THAT(error<parse_off>("ply\n"), HasSubstr("a:1: found 'ply' where 'OFF' should be"));
+  EXPECT_THAT(surface_error<parse_off>("OFF BINARY\n"), HasSubstr("binary OFF is not read"));
+  EXPECT_THAT(surface_error<parse_off>("4OFF\n"), HasSubstr("not three-dimensional"));
+  EXPECT_THAT(surface_error<parse_off>("ply\n"), HasSubstr("a:1: found 'ply' where 'OFF' should be"));
 }
 
 TEST(Ply, TextAndBothByteOrdersGiveCoordinatesAndFannedFaces) {
@@ -61,24 +62,25 @@ std::string small_ply(const std::string& header, const std::string& body) {
 TEST(Ply, ErrorsNameTheLine) {
   const std::string vertices = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
   const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
-  EXPECT_THAT(error<parse_ply>(small_ply(vertices, "0 inf 0\n")), HasSubstr("a:8: a vertex coordinate is 'inf'"));
-  EXPECT_THAT(error<parse_ply>(small_ply(vertices + faces, "0 0 0\n3 0 0 1\n")),
+  EXPECT_THAT(surface_error<parse_ply>(small_ply(vertices, "0 inf 0\n")),
+              HasSubstr("a:8: a vertex coordinate is 'inf'"));
+  EXPECT_THAT(surface_error<parse_ply>(small_ply(vertices + faces, "0 0 0\n3 0 0 1\n")),
               HasSubstr("a:11: a corner of a face is 1, but there are 1"));
-  EXPECT_THAT(error<parse_ply>(small_ply(vertices + faces, "0 0 0\n-3 0 0 0\n")),
+  EXPECT_THAT(surface_error<parse_ply>(small_ply(vertices + faces, "0 0 0\n-3 0 0 0\n")),
               HasSubstr("the length of a list is -3"));
-  EXPECT_THAT(error<parse_ply>(small_ply("element vertex 1\nproperty float x\nproperty float y\n", "0 0\n")),
+  EXPECT_THAT(surface_error<parse_ply>(small_ply("element vertex 1\nproperty float x\nproperty float y\n", "0 0\n")),
               HasSubstr("no property 'z'"));
-  EXPECT_THAT(error<parse_ply>(small_ply(
+  EXPECT_THAT(surface_error<parse_ply>(small_ply(
                   "element vertex 9000000000\nproperty float x\nproperty float y\nproperty float z\n", "0 0 0\n")),
               HasSubstr("has room for at most"));
-  EXPECT_THAT(error<parse_ply>(small_ply("element vertex 1\nproperty flaot x\n", "")),
+  EXPECT_THAT(surface_error<parse_ply>(small_ply("element vertex 1\nproperty flaot x\n", "")),
               HasSubstr("a:4: the type of a property is 'flaot' (did you mean 'float'?)"));
-  EXPECT_THAT(
-      error<parse_ply>(small_ply(vertices + "element tristrips 1\nproperty list int int vertex_indices\n", "0 0 0\n")),
-      HasSubstr("triangle strips"));
-  EXPECT_THAT(error<parse_ply>(small_ply(vertices + faces + vertices, "0 0 0\n3 0 0 0\n0 0 0\n")),
+  EXPECT_THAT(surface_error<parse_ply>(
+                  small_ply(vertices + "element tristrips 1\nproperty list int int vertex_indices\n", "0 0 0\n")),
+              HasSubstr("triangle strips"));
+  EXPECT_THAT(surface_error<parse_ply>(small_ply(vertices + faces + vertices, "0 0 0\n3 0 0 0\n0 0 0\n")),
               HasSubstr("a second element 'vertex'"));
-  EXPECT_THAT(error<parse_ply>(small_ply("element b\001d 9\nproperty float x\n", "")),
+  EXPECT_THAT(surface_error<parse_ply>(small_ply("element b\001d 9\nproperty float x\n", "")),
               HasSubstr("a:6: the number of elements 'b\\x01d' is 9"));
 }
 
@@ -94,16 +96,17 @@ TEST(Stl, CornersAtOnePlaceBecomeOneVertex) {
 }
 
 TEST(Stl, ErrorsNameTheLineOrTheSize) {
-  EXPECT_THAT(error<parse_stl>("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0\nvertex 1 0 0\n"),
+  EXPECT_THAT(surface_error<parse_stl>("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0\nvertex 1 0 0\n"),
               HasSubstr("a:5: a vertex coordinate is 'vertex'"));
-  EXPECT_THAT(error<parse_stl>("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n"),
-              HasSubstr("a:6: found 'endloop' where 'vertex' should be"));
-  EXPECT_THAT(error<parse_stl>(binary_stl("exported") + "x"),
+  EXPECT_THAT(
+      surface_error<parse_stl>("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n"),
+      HasSubstr("a:6: found 'endloop' where 'vertex' should be"));
+  EXPECT_THAT(surface_error<parse_stl>(binary_stl("exported") + "x"),
               HasSubstr("says 2 triangles, which takes 184 bytes, but it has 185"));
-  EXPECT_THAT(error<parse_stl>("v 0 0 0"), HasSubstr("is this an STL file?"));
+  EXPECT_THAT(surface_error<parse_stl>("v 0 0 0"), HasSubstr("is this an STL file?"));
   std::string infinite = binary_stl("exported");
   infinite.replace(84 + 12, 4, raw(std::numeric_limits<float>::infinity()));
-  EXPECT_THAT(error<parse_stl>(infinite), HasSubstr("a: byte 100: a vertex coordinate is infinite"));
+  EXPECT_THAT(surface_error<parse_stl>(infinite), HasSubstr("a: byte 100: a vertex coordinate is infinite"));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+bool is_blank_in_line(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
 // std::from_chars takes no leading plus.
 std::string_view without_plus(std::string_view word) {
@@ -56,7 +56,7 @@ bool TextScanner::is_continued_line() const {
 void TextScanner::skip_blanks() {
   for (; position_ < text_.size(); ++position_) {
     const char c = text_[position_];
-    if (is_blank(c)) continue;
+    if (is_blank_in_line(c)) continue;
     if (c == '\\' && is_continued_line()) {
       position_ = text_.find('\n', position_);
     } else if (c == comment_ && comment_ != kNoComments) {
@@ -99,7 +99,8 @@ std::string_view TextScanner::word(std::string_view what) {
     fail("the file ends where " + std::string(what) + " should follow; it is cut short, get a complete copy");
   for (; position_ < text_.size(); ++position_) {
     const char c = text_[position_];
-    if (is_blank(c) || c == '\n' || (c == comment_ && comment_ != kNoComments) || (c == '\\' && is_continued_line()))
+    if (is_blank_in_line(c) || c == '\n' || (c == comment_ && comment_ != kNoComments) ||
+        (c == '\\' && is_continued_line()))
       break;
   }
   return text_.substr(word_begin_, position_ - word_begin_);

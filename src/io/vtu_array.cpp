@@ -18,9 +18,9 @@ namespace {
 constexpr size_t kMaxDeflateRatio = 1032;  // no deflate stream expands further [zlib, technical details]
 
 // The bytes behind an array: plain or base64, read from front to back.
-class ByteSource {
+class ArrayByteSource {
  public:
-  ByteSource(std::string_view text, bool base64) : text_(text), base64_(base64) {}
+  ArrayByteSource(std::string_view text, bool base64) : text_(text), base64_(base64) {}
 
   bool can_hold(size_t count) const { return count <= spare_.size() + (base64_ ? text_.size() / 4 * 3 : text_.size()); }
 
@@ -48,7 +48,7 @@ class ByteSource {
 
 class ArrayReader {
  public:
-  ArrayReader(const VtkFile& file, const XmlElement& array, ByteSource source, bool is_appended)
+  ArrayReader(const VtkFile& file, const XmlElement& array, ArrayByteSource source, bool is_appended)
       : file_(file), array_(array), source_(std::move(source)), is_appended_(is_appended) {}
 
   // An array of <AppendedData> counts towards what all of them may take of it.
@@ -120,7 +120,7 @@ class ArrayReader {
 
   const VtkFile& file_;
   const XmlElement& array_;
-  ByteSource source_;
+  ArrayByteSource source_;
   bool is_appended_;
 };
 
@@ -161,11 +161,12 @@ std::vector<Number> parse_ascii(const VtkFile& file, const XmlElement& array, si
 
 std::string array_bytes(const VtkFile& file, const XmlElement& array, size_t size) {
   const std::string* format = array.attribute("format");
-  if (format && *format == "binary") return ArrayReader(file, array, ByteSource(array.text, true), false).read(size);
+  if (format && *format == "binary")
+    return ArrayReader(file, array, ArrayByteSource(array.text, true), false).read(size);
   if (!format || *format != "appended") fail_at(file, array, "its format is not ascii, binary or appended");
   if (!file.has_appended) fail_at(file, array, "its data is missing: the file has no <AppendedData>");
   const int64_t offset = count_attribute(file, array, "offset", 0, static_cast<int64_t>(file.appended.size()));
-  const ByteSource source(file.appended.substr(static_cast<size_t>(offset)), file.appended_base64);
+  const ArrayByteSource source(file.appended.substr(static_cast<size_t>(offset)), file.appended_base64);
   return ArrayReader(file, array, source, true).read(size);
 }
 

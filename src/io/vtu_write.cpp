@@ -98,13 +98,13 @@ void append_file_fields(const std::vector<Field>& fields, std::string& text) {
 }
 
 void append_cells(const std::vector<Tet>& tets, std::string& text) {
-  constexpr uint8_t kTet = 10;
+  constexpr uint8_t kVtkTet = 10;
   const std::span<const int> corners(tets.empty() ? nullptr : tets.front().data(), 4 * tets.size());
   std::vector<int64_t> offsets(tets.size());
   for (size_t i = 0; i < tets.size(); ++i) offsets[i] = 4 * static_cast<int64_t>(i + 1);
   append_array("Int32", "connectivity", 1, bytes_of<int32_t>(corners), text);
   append_array("Int64", "offsets", 1, bytes_of<int64_t>(std::span<const int64_t>(offsets)), text);
-  append_array("UInt8", "types", 1, std::string(tets.size(), static_cast<char>(kTet)), text);
+  append_array("UInt8", "types", 1, std::string(tets.size(), static_cast<char>(kVtkTet)), text);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include "math/polar3.h"
 
-namespace aspic {
+namespace aspic::dual_tests {
 namespace {
 
 using D = Dual<double>;
@@ -62,4 +62,4 @@ TEST(Dual, TheClosestRotationHasItsFirstAndSecondRates) {
 }
 
 }  // namespace
-}  // namespace aspic
+}  // namespace aspic::dual_tests

@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace aspic {
+namespace aspic::jet_tests {
 namespace {
 
 // f(x, y) of the first two variables, with its derivatives by hand.
@@ -94,4 +94,4 @@ TEST(Jet, OverPackGivesInEachLaneTheJetOverDouble) {
 }
 
 }  // namespace
-}  // namespace aspic
+}  // namespace aspic::jet_tests

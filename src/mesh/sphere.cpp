@@ -16,9 +16,10 @@ constexpr double kGolden = std::numbers::phi;
 constexpr double kCorners[12][3] = {{-1, kGolden, 0}, {1, kGolden, 0}, {-1, -kGolden, 0}, {1, -kGolden, 0},
                                     {0, -1, kGolden}, {0, 1, kGolden}, {0, -1, -kGolden}, {0, 1, -kGolden},
                                     {kGolden, 0, -1}, {kGolden, 0, 1}, {-kGolden, 0, -1}, {-kGolden, 0, 1}};
-constexpr int kFaces[20][3] = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                               {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                               {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+constexpr int kIcosahedronFaces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                          {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                          {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                          {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
 
 using Weights = std::array<int, 3>;  // of the corners of a face; their sum is the shell, 0 at the centre
 
@@ -27,7 +28,7 @@ class Ball {
   Ball(double radius, int shells) : radius_(radius), shells_(shells) {}
 
   TetMesh mesh() {
-    for (const auto& face : kFaces)
+    for (const auto& face : kIcosahedronFaces)
       for (int i = 0; i < shells_; ++i)
         for (int j = 0; i + j < shells_; ++j)
           for (int k = 0; i + j + k < shells_; ++k) add_cells(face, {i, j, k});

@@ -4,15 +4,13 @@
 
 #include "base/check.h"
 #include "mesh/grouped_elements.h"
+#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {
 
-// Corners of the face opposite each corner, counter-clockwise seen from outside a positively oriented tet.
-constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-
 Triangle corners(const Tet& tet, int face) {
-  return {tet[kFaces[face][0]], tet[kFaces[face][1]], tet[kFaces[face][2]]};
+  return {tet[kTetFaces[face][0]], tet[kTetFaces[face][1]], tet[kTetFaces[face][2]]};
 }
 
 }  // namespace

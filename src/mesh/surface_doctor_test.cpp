@@ -17,7 +17,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TetMesh box() { return make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}); }
+TetMesh cube_of_tets() { return make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}); }
 TriMesh ball() { return boundary_surface(make_sphere(1, 0.3)).surface; }
 
 TriMesh joined(TriMesh a, const TriMesh& b, const Vec3d& offset) {
@@ -28,7 +28,8 @@ TriMesh joined(TriMesh a, const TriMesh& b, const Vec3d& offset) {
 }
 
 TEST(DoctorOfSurfaces, FindsNothingWrongWithCleanOnes) {
-  for (const TetMesh& mesh : {box(), make_sphere(1, 0.2), make_cylinder(0.5, 2, 0.2), make_torus(1, 0.3, 0.1)}) {
+  for (const TetMesh& mesh :
+       {cube_of_tets(), make_sphere(1, 0.2), make_cylinder(0.5, 2, 0.2), make_torus(1, 0.3, 0.1)}) {
     TriMesh surface = boundary_surface(mesh).surface;
     EXPECT_THAT(names(diagnose(surface)), IsEmpty());
     for (Vec3d& x : surface.vertices) x = turned(x) + Vec3d{{0.3, 0.1, 0.7}};  // flat faces are no longer exactly flat

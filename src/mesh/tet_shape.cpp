@@ -11,7 +11,6 @@ namespace {
 
 constexpr int kEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 constexpr int kOppositeEdges[6][2] = {{2, 3}, {3, 1}, {1, 2}, {0, 3}, {2, 0}, {0, 1}};
-constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
 }  // namespace
 
@@ -61,7 +60,7 @@ double squared_distance(const TetCorners& X, const std::array<double, 4>& w, con
   bool is_outside = false;
   for (int corner = 0; corner < 4; ++corner) {
     if (w[corner] >= 0) continue;  // p is not beyond the face opposite to this corner
-    const auto& [a, b, c] = kFaces[corner];
+    const auto& [a, b, c] = kTetFaces[corner];
     const Vec3d away = p - nearest_point(p, X[a], X[b], X[c]);
     nearest = is_outside ? std::min(nearest, dot(away, away)) : dot(away, away);
     is_outside = true;

@@ -14,6 +14,12 @@ inline TetCorners corners(const TetMesh& mesh, int tet) {
   return {mesh.rest[a], mesh.rest[b], mesh.rest[c], mesh.rest[d]};
 }
 
+// Corners of the face opposite each corner, counter-clockwise seen from outside a positively oriented tet.
+inline constexpr int kTetFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+inline Vec3d centroid(const TetCorners& X) { return 0.25 * ((X[0] + X[1]) + (X[2] + X[3])); }
+inline Vec3d centroid(const TetMesh& mesh, int tet) { return centroid(corners(mesh, tet)); }
+
 inline double length(const Vec3d& x) { return std::sqrt(dot(x, x)); }
 
 inline double signed_volume(const TetCorners& X) {

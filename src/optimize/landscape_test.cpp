@@ -22,10 +22,10 @@ void look_at_first_iteration(Direction&& direction, const Look& look) {
   });
 }
 
-Newton newton() { return Newton(make_linear_solver("cholesky")); }
+Newton direct_newton() { return Newton(make_linear_solver("cholesky")); }
 
 TEST(Landscape, TheCurveTouchesItsQuadraticModelToThirdOrder) {
-  look_at_first_iteration(newton(), [](const LiveIteration& iteration) {
+  look_at_first_iteration(direct_newton(), [](const LiveIteration& iteration) {
     for (const CurvePoint& point : curve_along(iteration, 1e-4, 201))
       EXPECT_LE(std::abs(point.value - point.model),
                 (std::abs(iteration.value) + 200) * std::pow(std::abs(point.alpha), 3) * 10 + 1e-9)
@@ -62,7 +62,7 @@ TEST(Landscape, AnAcceptedStepMuchShorterThanTheFirstTrialHasSamplesAroundIt) {
 
 // At (s, t) = (1, 0) stands the end of the full step, where the model of Newton's method has its minimum.
 TEST(Landscape, TheSliceHoldsTheIterateAndTheMinimumOfTheModel) {
-  look_at_first_iteration(newton(), [](const LiveIteration& iteration) {
+  look_at_first_iteration(direct_newton(), [](const LiveIteration& iteration) {
     const Slice slice = slice_through(iteration, 41);
     const SlicePoint* lowest = &slice.point[0];
     for (const SlicePoint& point : slice.point) {
@@ -86,7 +86,7 @@ TEST(Landscape, TheSliceOfGradientDescentIsAPlane) {
 }
 
 TEST(Landscape, LookingCanBeGivenUp) {
-  look_at_first_iteration(newton(), [](const LiveIteration& iteration) {
+  look_at_first_iteration(direct_newton(), [](const LiveIteration& iteration) {
     int asked = 0;
     const auto goes_on = [&] { return ++asked < 10; };
     EXPECT_TRUE(slice_through(iteration, 41, goes_on).point.empty());
@@ -100,7 +100,7 @@ TEST(Landscape, LookingChangesNoBitOfTheMinimisation) {
   const auto minimum = [](bool look) {
     Rosenbrock f;
     std::vector<double> x = {-0.8, 0.6, 0};
-    Newton direction = newton();
+    Newton direction = direct_newton();
     Minimizer().minimize(f, direction, x, {}, [&](const LiveIteration& iteration) {
       if (look) slice_through(iteration), curve_along(iteration, 1e-4);
       return true;

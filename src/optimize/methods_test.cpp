@@ -66,9 +66,9 @@ TEST(Methods, GradientDescentIsThatOfTheLectureIfNotPreconditioned) {
 }
 
 // f = x' A x / 2 with the eigenvalues 1, 10 and 100.
-class Quadratic : public Objective {
+class Parabola : public Objective {
  public:
-  Quadratic() : pattern_(make_pattern(1, {})), H_(pattern_) { H_.block[0] = {{1, 0, 0, 0, 10, 0, 0, 0, 100}}; }
+  Parabola() : pattern_(make_pattern(1, {})), H_(pattern_) { H_.block[0] = {{1, 0, 0, 0, 10, 0, 0, 0, 100}}; }
   double value(std::span<const double> x) override { return (x[0] * x[0] + 10 * x[1] * x[1] + 100 * x[2] * x[2]) / 2; }
   void gradient(std::span<const double> x, std::span<double> g) override {
     g[0] = x[0], g[1] = 10 * x[1], g[2] = 100 * x[2];
@@ -85,7 +85,7 @@ class Quadratic : public Objective {
 };
 
 TEST(NonlinearCG, EndsAfterAsManyIterationsAsAQuadraticHasEigenvalues) {
-  Quadratic f;
+  Parabola f;
   std::vector<double> x = {1, 1, 1};
   MinimizeOptions options;
   options.tolerance = 1e-6;  // steps by differences of gradients are right to seven digits
@@ -98,7 +98,7 @@ TEST(NonlinearCG, EndsAfterAsManyIterationsAsAQuadraticHasEigenvalues) {
 // [Nocedal and Wright 2006, eq. 7.16 and 7.20].
 TEST(LBFGS, IsTheRecursionOfItsMatrices) {
   for (int steps = 1; steps <= 10; ++steps) {
-    Quadratic f;
+    Parabola f;
     const auto method = make_search_direction({.method = "lbfgs", .preconditioner = "none"});
     std::vector<double> x(3), g(3), d(3);
     std::vector<Eigen::Vector3d> places, gradients;
@@ -125,7 +125,7 @@ TEST(LBFGS, IsTheRecursionOfItsMatrices) {
 
 TEST(Preconditioner, OfTheHessianMakesAQuadraticRoundInOneStepAndIsMadeOncePerMinimisation) {
   for (const std::string method : {"gradient_descent", "nonlinear_cg", "lbfgs"}) {
-    Quadratic f;
+    Parabola f;
     std::vector<double> x = {1, 1, 1};
     MinimizeOptions options;
     options.tolerance = 1e-6;
@@ -161,7 +161,7 @@ TEST(Preconditioner, IsKeptUntilTheNextMinimisationBegins) {
 }
 
 TEST(ModelStep, LeadsToTheMinimumOfAParabolaAndGoesOnWhereThereIsNone) {
-  Quadratic f;
+  Parabola f;
   ModelStep step;
   DirectionReport report;
   const std::vector<double> x = {1, 1, 1}, p = {0, 0, -2};

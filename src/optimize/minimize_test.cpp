@@ -20,7 +20,7 @@ MinimizeOptions tight() {
   return options;
 }
 
-std::unique_ptr<Newton> newton(NewtonDefiniteness definiteness = NewtonDefiniteness::on_demand) {
+std::unique_ptr<Newton> newton_with(NewtonDefiniteness definiteness = NewtonDefiniteness::on_demand) {
   return std::make_unique<Newton>(make_linear_solver("block_jacobi"), definiteness);
 }
 
@@ -28,7 +28,7 @@ TEST(Minimize, NewtonFindsTheMinimumOfRosenbrockFromBothSides) {
   for (const double x0 : {-0.8, 0.9, -1.5}) {
     Rosenbrock f;
     std::vector<double> x = {x0, 0.6, 0};
-    const MinimizeReport report = Minimizer().minimize(f, *newton(), x, tight());
+    const MinimizeReport report = Minimizer().minimize(f, *newton_with(), x, tight());
     EXPECT_EQ(report.status, Status::converged);
     EXPECT_NEAR(x[0], 1, 1e-8);
     EXPECT_NEAR(x[1], 1, 1e-8);
@@ -60,7 +60,7 @@ TEST(Minimize, NewtonWithoutLineSearchOvershoots) {
   options.line_search.test = DecreaseTest::none;
   bool rose = false;
   double last = f.value(x);
-  Minimizer().minimize(f, *newton(), x, options, [&](const Iteration& iteration) {
+  Minimizer().minimize(f, *newton_with(), x, options, [&](const Iteration& iteration) {
     rose = rose || iteration.value > last;
     last = iteration.value;
     return true;
@@ -71,8 +71,8 @@ TEST(Minimize, NewtonWithoutLineSearchOvershoots) {
 TEST(Minimize, AnIndefiniteHessianIsProjectedOnDemandAndRefusedWhenExact) {
   Rosenbrock f;
   std::vector<double> x = {0, 1, 0};  // the Hessian there has one negative eigenvalue
-  EXPECT_EQ(Minimizer().minimize(f, *newton(NewtonDefiniteness::exact), x, tight()).status, Status::no_descent);
-  const MinimizeReport report = Minimizer().minimize(f, *newton(), x, tight());
+  EXPECT_EQ(Minimizer().minimize(f, *newton_with(NewtonDefiniteness::exact), x, tight()).status, Status::no_descent);
+  const MinimizeReport report = Minimizer().minimize(f, *newton_with(), x, tight());
   EXPECT_EQ(report.status, Status::converged);
   EXPECT_GT(report.projected_hessians, 0);
 }
@@ -109,7 +109,7 @@ TEST(Minimize, TheIterationLimitIsNotSuccess) {
   std::vector<double> x = {-0.8, 0.6, 0};
   MinimizeOptions options = tight();
   options.max_iterations = 2;
-  const MinimizeReport report = Minimizer().minimize(f, *newton(), x, options);
+  const MinimizeReport report = Minimizer().minimize(f, *newton_with(), x, options);
   EXPECT_EQ(report.status, Status::iteration_limit);
   EXPECT_FALSE(is_success(report.status));
   EXPECT_EQ(report.iterations, 2);
@@ -118,14 +118,14 @@ TEST(Minimize, TheIterationLimitIsNotSuccess) {
 TEST(Minimize, AStartThatIsNotFiniteIsUndefined) {
   Rosenbrock f;
   std::vector<double> x = {NAN, 0, 0};
-  EXPECT_EQ(Minimizer().minimize(f, *newton(), x, tight()).status, Status::undefined);
+  EXPECT_EQ(Minimizer().minimize(f, *newton_with(), x, tight()).status, Status::undefined);
 }
 
 TEST(Minimize, TheObserverCanStopIt) {
   Rosenbrock f;
   std::vector<double> x = {-0.8, 0.6, 0};
-  const MinimizeReport report =
-      Minimizer().minimize(f, *newton(), x, tight(), [](const Iteration& iteration) { return iteration.index < 3; });
+  const MinimizeReport report = Minimizer().minimize(f, *newton_with(), x, tight(),
+                                                     [](const Iteration& iteration) { return iteration.index < 3; });
   EXPECT_EQ(report.status, Status::interrupted);
   EXPECT_EQ(report.iterations, 4);
 }
@@ -169,7 +169,7 @@ TEST(Minimize, TheToleranceIsRelativeToWhatTheCriterionNames) {
     MinimizeOptions options;
     options.tolerance = 0.5;
     options.criterion = criterion;
-    return Minimizer().minimize(f, *newton(), x, options).threshold;
+    return Minimizer().minimize(f, *newton_with(), x, options).threshold;
   };
   EXPECT_EQ(threshold(Criterion::absolute), 0.5);
   EXPECT_EQ(threshold(Criterion::scale), 0.5);  // of a plain function the scale is 1
@@ -236,7 +236,7 @@ class TwoWells : public PlanarFunction {
 TEST(Minimize, AShortDirectionNearASaddleIsNoConvergence) {
   for (const bool truncated : {false, true}) {
     TwoWells f;
-    const auto direction = truncated ? make_newton_cg() : newton(NewtonDefiniteness::on_demand);
+    const auto direction = truncated ? make_newton_cg() : newton_with(NewtonDefiniteness::on_demand);
     std::vector<double> x = {1e-12, 0, 0};
     MinimizeOptions options;
     options.criterion = Criterion::velocity;
@@ -270,7 +270,7 @@ TEST(Minimize, ADeadlineEndsItWhereverItIs) {
     options.deadline = Deadline(clock, seconds);
     double last_alpha = 1;
     int last_trials = 0;
-    const MinimizeReport report = Minimizer().minimize(f, *newton(), x, options, [&](const Iteration& iteration) {
+    const MinimizeReport report = Minimizer().minimize(f, *newton_with(), x, options, [&](const Iteration& iteration) {
       last_alpha = iteration.alpha;
       last_trials = iteration.trials;
       return true;

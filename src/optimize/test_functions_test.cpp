@@ -13,7 +13,7 @@
 namespace aspic {
 namespace {
 
-MinimizeOptions tight() {
+MinimizeOptions long_and_tight() {
   MinimizeOptions options;
   options.tolerance = 1e-10;
   options.max_iterations = 200;
@@ -37,7 +37,7 @@ TEST(TestFunctions, NewtonFindsEachMinimumFromItsUsualStart) {
     const auto f = make_test_function(info.name);
     Newton newton(make_linear_solver("cholesky"));
     std::vector<double> x = {info.start[0], info.start[1], 0};
-    const MinimizeReport report = Minimizer().minimize(*f, newton, x, tight());
+    const MinimizeReport report = Minimizer().minimize(*f, newton, x, long_and_tight());
     EXPECT_TRUE(is_success(report.status)) << info.name << ": " << to_string(report.status);
     EXPECT_NEAR(x[0], info.minimizer[0], 1e-9) << info.name;
     EXPECT_NEAR(x[1], info.minimizer[1], 1e-9) << info.name;
@@ -48,7 +48,7 @@ TEST(TestFunctions, NewtonNeedsOneIterationOnAQuadratic) {
   Quadratic f(1e4, 1.1);
   Newton newton(make_linear_solver("cholesky"));
   std::vector<double> x = {1.2, 0.9, 0};
-  EXPECT_EQ(Minimizer().minimize(f, newton, x, tight()).iterations, 1);
+  EXPECT_EQ(Minimizer().minimize(f, newton, x, long_and_tight()).iterations, 1);
 }
 
 TEST(TestFunctions, TheQuadraticHasItsConditionAndItsAxes) {

@@ -8,6 +8,7 @@
 #include "energy/rayleigh_damping.h"
 #include "energy/springs.h"
 #include "mesh/surface.h"
+#include "mesh/tet_shape.h"
 #include "scene/expression.h"
 #include "scene/motion.h"
 #include "scene/placement.h"

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "mesh/tet_shape.h"
 #include "scene/material_file.h"
 #include "scene/placement.h"
 #include "scene/schema.h"
@@ -22,7 +23,7 @@ constexpr double kElsewhere = 0.5;  // diagonals of the material's mesh: what is
 // Without elasticity a body still has its term, of zero stiffness, so that det F is watched.
 const char* const kModelOfNothing = "neo_hookean";
 
-std::string rounded(double length) {
+std::string four_digits(double length) {
   std::ostringstream text;
   text << std::setprecision(4) << length;
   return text.str();
@@ -159,7 +160,7 @@ class FromFile {
   }
 
   static std::string text(const Vec3d& X) {
-    return "(" + rounded(X[0]) + ", " + rounded(X[1]) + ", " + rounded(X[2]) + ")";
+    return "(" + four_digits(X[0]) + ", " + four_digits(X[1]) + ", " + four_digits(X[2]) + ")";
   }
   static std::string text(const Box& box) { return text(box.lower) + " to " + text(box.upper); }
 
@@ -171,7 +172,7 @@ class FromFile {
     if (!(sampling_.farthest > kElsewhere * std::sqrt(dot(diagonal, diagonal)))) return;
     const std::string& frame = table_.find("frame")->text();
     throw error_at(place_, file_ + " has a mesh from " + text(own) + "; body '" + body_.name() + "' lies from " +
-                               text(other) + " in the frame '" + frame + "', up to " + rounded(sampling_.farthest) +
+                               text(other) + " in the frame '" + frame + "', up to " + four_digits(sampling_.farthest) +
                                " m away from it (try another `frame`: mesh, scaled or placed; is one in mm?)");
   }
 
@@ -182,7 +183,7 @@ class FromFile {
                        "; each takes the values of the tet there in which its centroid lies";
     if (sampling_.outside > 0)
       note += ", " + std::to_string(sampling_.outside) + " of the nearest one, from which they are up to " +
-              rounded(sampling_.farthest) + " m away";
+              four_digits(sampling_.farthest) + " m away";
     notes.push_back(note);
   }
 

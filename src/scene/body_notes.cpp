@@ -64,7 +64,7 @@ double extent(const std::vector<Vec3d>& X, const Vec3d& direction) {
   return high - low;
 }
 
-std::string rounded(double x) {
+std::string three_digits(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", x);
   return text;
@@ -76,20 +76,20 @@ void note_weight(const PlacedBody& body, const Means& mean, const Vec3d& gravity
   const double strain = mean.density * extent(body.mesh.rest, gravity) / mean.young;
   if (!(strain > kCrushed)) return;
   const std::string crushed = "body '" + body.name() +
-                              "': its weight crushes it: density * gravity * height / young = " + rounded(strain) +
+                              "': its weight crushes it: density * gravity * height / young = " + three_digits(strain) +
                               ", where 1 is much; if ";
   const Box box = bounding_box(body.mesh.rest);
   const double size = std::max({box.upper[0] - box.lower[0], box.upper[1] - box.lower[1], box.upper[2] - box.lower[2]});
   if (size > kLarge && strain < 1e3) {
-    notes.push_back(crushed + "its " + rounded(size) + " m were meant in mm, set body." + body.name() +
+    notes.push_back(crushed + "its " + three_digits(size) + " m were meant in mm, set body." + body.name() +
                     ".scale = 0.001");
     return;
   }
   double factor = 1e3;
   while (factor < 1e9 && strain > factor) factor *= 1e3;
   const char* unit = factor == 1e3 ? "kPa" : factor == 1e6 ? "MPa" : "GPa";
-  notes.push_back(crushed + rounded(mean.young) + " was meant in " + unit +
-                  ", set material.young = " + rounded(factor * mean.young));
+  notes.push_back(crushed + three_digits(mean.young) + " was meant in " + unit +
+                  ", set material.young = " + three_digits(factor * mean.young));
 }
 
 void note_diamond(const PlacedBody& body, const Means& mean, std::vector<std::string>& notes) {
@@ -99,9 +99,9 @@ void note_diamond(const PlacedBody& body, const Means& mean, std::vector<std::st
   double factor = 1e3;
   while (factor < 1e9 && mean.young / factor > kSoft) factor *= 1e3;
   notes.push_back("body '" + body.name() + "': stiffer than diamond (1.2e12 Pa), it rings at " +
-                  rounded(std::sqrt(mean.young / mean.density) / (2 * length)) + " Hz; if " + rounded(mean.young) +
-                  " Pa is " + rounded(factor) +
-                  " times too much, set material.young = " + rounded(mean.young / factor));
+                  three_digits(std::sqrt(mean.young / mean.density) / (2 * length)) + " Hz; if " +
+                  three_digits(mean.young) + " Pa is " + three_digits(factor) +
+                  " times too much, set material.young = " + three_digits(mean.young / factor));
 }
 
 // At a thousandth and at a thousand times its size, a body should have more energy than at rest.

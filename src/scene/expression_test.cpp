@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 
 double value(const std::string& text, Vec3d X = {{0.25, 0.5, 2}}) { return Expression(text).at(X); }
 
-std::string refusal(const std::string& text, ExpressionVariables variables = ExpressionVariables::position) {
+std::string formula_refusal(const std::string& text, ExpressionVariables variables = ExpressionVariables::position) {
   try {
     Expression(text, variables).at({{0, 0, 0}});
   } catch (const InvalidInput& e) {
@@ -42,7 +42,7 @@ TEST(Expression, KnowsThePositionInEitherCase) {
 TEST(Expression, KnowsTheTimeOnlyWhereThereIsOne) {
   const Expression moving("X + t", ExpressionVariables::position_and_time);
   EXPECT_EQ(moving.at({{1, 0, 0}}, 0.5), 1.5);
-  EXPECT_THAT(refusal("X + t"), HasSubstr("'t' has no meaning here"));
+  EXPECT_THAT(formula_refusal("X + t"), HasSubstr("'t' has no meaning here"));
 }
 
 TEST(Expression, HoldsWhereAPredicateIsTrue) {
@@ -70,36 +70,37 @@ TEST(Expression, CallsItsFunctions) {
 }
 
 TEST(Expression, RefusesWhatIsNotFinite) {
-  EXPECT_THAT(refusal("1 / X"), ::testing::AllOf(HasSubstr("1 / X"), HasSubstr("inf"), HasSubstr("(0, 0, 0)")));
-  EXPECT_THAT(refusal("sqrt(X - 1)"), HasSubstr("nan"));
-  EXPECT_THAT(refusal("max()"), ::testing::Not(""));
+  EXPECT_THAT(formula_refusal("1 / X"), ::testing::AllOf(HasSubstr("1 / X"), HasSubstr("inf"), HasSubstr("(0, 0, 0)")));
+  EXPECT_THAT(formula_refusal("sqrt(X - 1)"), HasSubstr("nan"));
+  EXPECT_THAT(formula_refusal("max()"), ::testing::Not(""));
 }
 
 TEST(Expression, NamesColumnAndNearestName) {
-  EXPECT_THAT(refusal("1 + sqt(X)"), ::testing::AllOf(HasSubstr("column 5"), HasSubstr("did you mean 'sqrt'?")));
-  EXPECT_THAT(refusal("X +"), HasSubstr("ends too early"));
-  EXPECT_THAT(refusal("(X + 1"), HasSubstr("parenthesis"));
-  EXPECT_THAT(refusal("X + * 2"), HasSubstr("column 5"));
-  EXPECT_THAT(refusal("  "), HasSubstr("empty"));
+  EXPECT_THAT(formula_refusal("1 + sqt(X)"),
+              ::testing::AllOf(HasSubstr("column 5"), HasSubstr("did you mean 'sqrt'?")));
+  EXPECT_THAT(formula_refusal("X +"), HasSubstr("ends too early"));
+  EXPECT_THAT(formula_refusal("(X + 1"), HasSubstr("parenthesis"));
+  EXPECT_THAT(formula_refusal("X + * 2"), HasSubstr("column 5"));
+  EXPECT_THAT(formula_refusal("  "), HasSubstr("empty"));
 }
 
 TEST(Expression, HasNoSideEffectsAndNoStrings) {
-  EXPECT_THAT(refusal("X = 3"), ::testing::AllOf(HasSubstr("column 3"), HasSubstr("'=='")));
-  EXPECT_THAT(refusal("X == 3, Y"), HasSubstr("one value"));
-  EXPECT_THAT(refusal("1, 2"), HasSubstr("one value"));
-  EXPECT_THAT(refusal("\"a\""), HasSubstr("unexpected character"));
-  EXPECT_THAT(refusal("X; Y"), HasSubstr("unexpected character ';'"));
-  EXPECT_THAT(refusal("X += 2"), ::testing::Not(""));
+  EXPECT_THAT(formula_refusal("X = 3"), ::testing::AllOf(HasSubstr("column 3"), HasSubstr("'=='")));
+  EXPECT_THAT(formula_refusal("X == 3, Y"), HasSubstr("one value"));
+  EXPECT_THAT(formula_refusal("1, 2"), HasSubstr("one value"));
+  EXPECT_THAT(formula_refusal("\"a\""), HasSubstr("unexpected character"));
+  EXPECT_THAT(formula_refusal("X; Y"), HasSubstr("unexpected character ';'"));
+  EXPECT_THAT(formula_refusal("X += 2"), ::testing::Not(""));
 }
 
 TEST(Expression, IsBoundedInLengthAndDepth) {
   std::string sum = "1";
   while (sum.size() + 2 <= kMaxExpressionLength) sum += "+1";
   EXPECT_EQ(value(sum), 500);
-  EXPECT_THAT(refusal(sum + "+1"), HasSubstr("at most 1000"));
+  EXPECT_THAT(formula_refusal(sum + "+1"), HasSubstr("at most 1000"));
   const auto nested = [](int n) { return std::string(n, '(') + "1" + std::string(n, ')'); };
   EXPECT_EQ(value(nested(kMaxExpressionDepth)), 1);
-  EXPECT_THAT(refusal(nested(kMaxExpressionDepth + 1)), HasSubstr("open parentheses"));
+  EXPECT_THAT(formula_refusal(nested(kMaxExpressionDepth + 1)), HasSubstr("open parentheses"));
 }
 
 TEST(Expression, DoesNotDependOnTheLocale) {
@@ -110,7 +111,7 @@ TEST(Expression, DoesNotDependOnTheLocale) {
   };
   const std::locale before = std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
   const double sum = value("1.5 + 0.25 + 1000");
-  const std::string refused = refusal("1/X");
+  const std::string refused = formula_refusal("1/X");
   std::locale::global(before);
   EXPECT_EQ(sum, 1001.75);
   EXPECT_THAT(refused, HasSubstr("(0, 0, 0)"));

@@ -9,6 +9,7 @@
 #include "io/vtu.h"
 #include "material/registry.h"
 #include "mesh/locate.h"
+#include "mesh/tet_shape.h"
 #include "scene/schema.h"
 #include "scene/tables.h"
 #include "scene/value.h"

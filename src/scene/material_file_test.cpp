@@ -1,5 +1,6 @@
 // Materials that were fitted: their files, and scenes that are made of them.
 #include "scene/material_file.h"
+#include "mesh/tet_shape.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -16,7 +16,7 @@ constexpr double kSag = 0.05;                    // rho g H / E: strain of the b
 constexpr double kPull = 0.25;                   // sideways displacement of the top / height
 
 // The number with one significant digit: a default that can be read and said.
-double rounded(double x) {
+double one_digit(double x) {
   const double unit = std::pow(10.0, std::floor(std::log10(x)));
   return std::round(x / unit) * unit;
 }
@@ -64,7 +64,7 @@ Defaults defaults_for(const std::filesystem::path& path, const std::vector<Vec3d
   const Box box = bounding_box(X);
   const double height = box.upper[1] - box.lower[1], extent = largest_extent(file_box);
   const double density = 1000, g = 9.81;
-  const double young = rounded(density * g * std::max(height, 1e-9) / kSag);
+  const double young = one_digit(density * g * std::max(height, 1e-9) / kSag);
   const double base = base_fraction(X, box);
   const std::string pull =
       number_text(kPull * height) + " * ((Y - " + number_text(box.lower[1]) + ") / " + number_text(height) + ")^2";

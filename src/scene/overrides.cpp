@@ -15,7 +15,7 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
-std::vector<std::string> words_of(const std::string& path) {
+std::vector<std::string> key_words(const std::string& path) {
   std::vector<std::string> words;
   size_t begin = 0;
   while (true) {
@@ -129,7 +129,7 @@ void apply_override(Table& document, const std::string& text) {
   if (equals == std::string::npos) throw InvalidInput(source + ": KEY=VALUE is expected, for example time.step=0.005");
   if (trimmed(text.substr(equals + 1)).empty())
     throw InvalidInput(source + ": a value is missing after '=', for example time.step=0.005");
-  Assignment assignment{words_of(text.substr(0, equals)), value_of(trimmed(text.substr(equals + 1)), source)};
+  Assignment assignment{key_words(text.substr(0, equals)), value_of(trimmed(text.substr(equals + 1)), source)};
   if (std::count(assignment.words.begin(), assignment.words.end(), "") > 0)
     throw InvalidInput(source + ": a key is empty");
   const Schema& schema = scene_schema();

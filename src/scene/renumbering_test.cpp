@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-constexpr int kSteps = 3;
+constexpr int kRenumberedSteps = 3;
 constexpr double kTolerance = 1e-10;  // [m], [m/s]: what solves to round-off leave of a difference in the order of sums
 
 // No two places of it are alike.
@@ -131,7 +131,7 @@ Numbering of_scene(const Numbering& bar_numbering) {
 fs::path run(const Files& files, const char* folder, const std::string& options = "") {
   Scene scene = load_scene(files.scene(options));
   RunDirectory directory = RunDirectory::create(files.folder / folder, scene, ExistingRun::refuse);
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kRenumberedSteps; ++i) {
     const StepReport report = scene.simulation.step();
     EXPECT_TRUE(is_success(report.status));
     directory.on_step(report, scene.simulation);
@@ -224,7 +224,7 @@ TEST_F(Renumbered, SkinsMoveAlike) {
   const fs::path a = run(plain, "run"), b = run(other, "run");
   Pc2File one = Pc2File::resume(a / "skins/skin_box.pc2", read_tri_mesh(plain.folder / "skin.obj").vertex_count(), 4);
   Pc2File two = Pc2File::resume(b / "skins/skin_box.pc2", read_tri_mesh(plain.folder / "skin.obj").vertex_count(), 4);
-  for (int frame = 0; frame <= kSteps; ++frame) {
+  for (int frame = 0; frame <= kRenumberedSteps; ++frame) {
     const auto x = one.sample(frame), y = two.sample(frame);
     ASSERT_EQ(x.size(), y.size());
     for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], y[i], 1e-6);
@@ -235,7 +235,8 @@ TEST_F(Renumbered, ABoundaryGoesWithItsBody) {
   const BoundarySurface boundary = boundary_surface(bar());
   const fs::path results = run(plain, "run");
   EXPECT_EQ(read_tri_mesh(results / "skins/skin_bar.obj").triangles, boundary.surface.triangles);
-  const auto skin = Pc2File::resume(results / "skins/skin_bar.pc2", boundary.surface.vertex_count(), 4).sample(kSteps);
+  const auto skin =
+      Pc2File::resume(results / "skins/skin_bar.pc2", boundary.surface.vertex_count(), 4).sample(kRenumberedSteps);
   const Vtu frame = read_vtu(results / "frames/body_000003.vtu");
   for (size_t i = 0; i < boundary.tet_vertex.size(); ++i)
     for (int r = 0; r < 3; ++r)
@@ -244,7 +245,7 @@ TEST_F(Renumbered, ABoundaryGoesWithItsBody) {
 
 TEST_F(Renumbered, TablesAgree) {
   Scene one = load_scene(plain.scene()), two = load_scene(other.scene());
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kRenumberedSteps; ++i) {
     const StepReport x = one.simulation.step(), y = two.simulation.step();
     EXPECT_EQ(x.iterations, y.iterations);
     EXPECT_NEAR(x.kinetic, y.kinetic, 1e-8 * x.kinetic);
@@ -280,7 +281,7 @@ TEST_F(Renumbered, AResumedRunHasTheBitsOfAnUninterruptedOne) {
   Scene scene = load_scene(plain.scene());
   RunDirectory directory = RunDirectory::resume(part, scene);
   ASSERT_EQ(scene.simulation.steps_taken(), 1);
-  while (scene.simulation.steps_taken() < kSteps) {
+  while (scene.simulation.steps_taken() < kRenumberedSteps) {
     const StepReport report = scene.simulation.step();
     directory.on_step(report, scene.simulation);
   }

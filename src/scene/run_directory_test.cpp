@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-constexpr int kSteps = 7;
+constexpr int kRunSteps = 7;
 constexpr double kDensity = 1000;  // [kg/m^3]
 
 // A soft bar of 16 vertices, held at x = 0, that sags under gravity.
@@ -55,7 +55,7 @@ Scene sagging_scene(const OutputOptions& output = {.checkpoint_every = 0}, const
           .notes = {},
           .simulation = Simulation(std::move(model), std::move(state), options),
           .skins = {std::move(skin)},
-          .steps = kSteps,
+          .steps = kRunSteps,
           .output = output,
           .input_files = {},
           .generated_meshes = {}};
@@ -75,7 +75,7 @@ void run_to(RunDirectory& run, Simulation& simulation, int last_step) {
 void run_whole(const fs::path& path, const OutputOptions& output) {
   Scene scene = sagging_scene(output);
   RunDirectory run = RunDirectory::create(path, scene, ExistingRun::refuse);
-  run_to(run, scene.simulation, kSteps);
+  run_to(run, scene.simulation, kRunSteps);
   run.finish(scene.simulation);
 }
 
@@ -109,8 +109,8 @@ TEST_F(RunResults, HoldTheDocumentedFiles) {
                                             "frames/skin_soft_bar_000000.obj", "frames/skin_soft_bar_000001.obj",
                                             "frames/skin_soft_bar_000002.obj", "skins/skin_soft_bar.obj",
                                             "skins/skin_soft_bar.pc2"));
-  EXPECT_EQ(line_count(read_file(path("run/steps.csv"))), 1 + kSteps);
-  EXPECT_EQ(line_count(read_file(path("run/timings.csv"))), 1 + kSteps);
+  EXPECT_EQ(line_count(read_file(path("run/steps.csv"))), 1 + kRunSteps);
+  EXPECT_EQ(line_count(read_file(path("run/timings.csv"))), 1 + kRunSteps);
   EXPECT_THAT(read_file(path("run/steps.csv")), HasSubstr(",potential_elasticity,potential_gravity,potential_total,"));
   EXPECT_THAT(read_file(path("run/run.pvd")),
               HasSubstr("timestep=\"0.03\" group=\"\" part=\"0\" file=\"frames/body_000001.vtu\""));
@@ -149,7 +149,7 @@ TEST_F(RunResults, AnInterruptedRunContinuesToTheSameBytes) {
     const OutputOptions output{.every = every, .obj = true, .checkpoint_every = 0};
     const std::string whole = "whole" + std::to_string(every > 0);
     run_whole(path(whole), output);
-    for (int stop = 0; stop <= kSteps; ++stop) {
+    for (int stop = 0; stop <= kRunSteps; ++stop) {
       const fs::path torn = path("torn" + std::to_string(stop) + std::to_string(every > 0));
       {
         Scene scene = sagging_scene(output);
@@ -161,7 +161,7 @@ TEST_F(RunResults, AnInterruptedRunContinuesToTheSameBytes) {
       std::ofstream(torn / "frames" / ".aspic-1-1") << "unfinished";
       Scene scene = sagging_scene(output);
       RunDirectory run = RunDirectory::resume(torn, scene);
-      run_to(run, scene.simulation, kSteps);
+      run_to(run, scene.simulation, kRunSteps);
       run.finish(scene.simulation);
       EXPECT_EQ(contents(torn), contents(path(whole))) << "stopped after step " << stop << ", every " << every;
     }
@@ -177,7 +177,7 @@ TEST_F(RunResults, EveryIntegratorContinuesFromItsCheckpointToTheSameBits) {
     ways.push_back({.h = 4e-3, .integrator = integrator, .adaptive = {.tolerance = 1e-4}});
   for (const SimulationOptions& way : ways) {
     Scene whole = sagging_scene(output, way);
-    for (int i = 0; i < kSteps; ++i) whole.simulation.step();
+    for (int i = 0; i < kRunSteps; ++i) whole.simulation.step();
     {
       Scene scene = sagging_scene(output, way);
       RunDirectory run = RunDirectory::create(path("run"), scene, ExistingRun::overwrite);
@@ -187,7 +187,7 @@ TEST_F(RunResults, EveryIntegratorContinuesFromItsCheckpointToTheSameBits) {
     Scene scene = sagging_scene(output, way);
     RunDirectory run = RunDirectory::resume(path("run"), scene);
     EXPECT_EQ(scene.simulation.steps_taken(), 3);
-    run_to(run, scene.simulation, kSteps);
+    run_to(run, scene.simulation, kRunSteps);
     EXPECT_EQ(scene.simulation.state().q, whole.simulation.state().q) << way.integrator;
     EXPECT_EQ(scene.simulation.state().qdot, whole.simulation.state().qdot) << way.integrator;
   }
@@ -206,7 +206,7 @@ TEST_F(RunResults, FramesAfterTheLastCheckpointAreComputedAgain) {
   EXPECT_EQ(scene.simulation.steps_taken(), 0);
   EXPECT_FALSE(fs::exists(path("run/frames/body_000001.vtu")));
   EXPECT_EQ(line_count(read_file(path("run/steps.csv"))), 1);
-  run_to(run, scene.simulation, kSteps);
+  run_to(run, scene.simulation, kRunSteps);
   run.finish(scene.simulation);
   EXPECT_EQ(contents(path("run")), contents(path("whole")));
 }
@@ -216,7 +216,7 @@ TEST_F(RunResults, AFinishedRunResumesWithoutChange) {
   const auto before = contents(path("run"));
   Scene scene = sagging_scene();
   RunDirectory run = RunDirectory::resume(path("run"), scene);
-  EXPECT_EQ(scene.simulation.steps_taken(), kSteps);
+  EXPECT_EQ(scene.simulation.steps_taken(), kRunSteps);
   run.finish(scene.simulation);
   EXPECT_EQ(contents(path("run")), before);
 }
@@ -247,7 +247,7 @@ TEST_F(RunResults, ADamagedCheckpointFallsBackToTheOneBefore) {
   ASSERT_EQ(scene.notes.size(), 1u);
   EXPECT_THAT(scene.notes[0], HasSubstr("continuing from checkpoint.previous.bin"));
   EXPECT_EQ(read_newest_checkpoint(path("run/checkpoint.bin")).checkpoint.integer("steps_taken"), 3);
-  run_to(run, scene.simulation, kSteps);
+  run_to(run, scene.simulation, kRunSteps);
   run.finish(scene.simulation);
   EXPECT_EQ(contents(path("run")), contents(path("whole")));
 }

@@ -25,7 +25,7 @@ Table document(const std::string& text, const std::vector<std::string>& override
   return read_scene_document(text, "beam.toml", overrides);
 }
 
-std::string refusal(const std::string& text, const std::vector<std::string>& overrides = {}) {
+std::string document_refusal(const std::string& text, const std::vector<std::string>& overrides = {}) {
   try {
     document(text, overrides);
   } catch (const InvalidInput& e) {
@@ -42,15 +42,15 @@ TEST(SceneDocument, NeedsOnlyABody) {
   EXPECT_EQ((*scene.find("solver"))["line_search"]["p"].number(), 0.5);
   EXPECT_EQ(body(scene)["name"].text(), "body1");
   EXPECT_EQ(body(scene)["material"]["young"].number(), 1e5);
-  EXPECT_THAT(refusal("gravity = [0, 0, 0]\n"), HasSubstr("needs the key 'body'"));
-  EXPECT_THAT(refusal("body = []\n"), HasSubstr("at least one"));
+  EXPECT_THAT(document_refusal("gravity = [0, 0, 0]\n"), HasSubstr("needs the key 'body'"));
+  EXPECT_THAT(document_refusal("body = []\n"), HasSubstr("at least one"));
 }
 
 TEST(SceneDocument, CompletedTextReadsBackToItself) {
   const std::string text = "gravity = [0, -9.81, 1e-300]\n" + kBox +
                            "name = \"a\"\nmaterial = { model = \"neo_hookean\", shear = 0.1, bulk = 3 }\n"
                            "deform = { displacement = [0.1, \"X * \\\"\", 0] }\n";
-  EXPECT_THAT(refusal(text), HasSubstr("unexpected character"));
+  EXPECT_THAT(document_refusal(text), HasSubstr("unexpected character"));
   std::string good = text;
   good.replace(good.find("X * \\\""), 6, "X*Y");
   good += "[[body.pin]]\nwhere = { box = { lower = [0, 0, 0], upper = [1, 0.1, 1] } }\n";
@@ -61,97 +61,106 @@ TEST(SceneDocument, CompletedTextReadsBackToItself) {
 }
 
 TEST(SceneDocument, MisspeltKeyIsNamedWithPlaceValueAndNearestName) {
-  EXPECT_EQ(refusal(kBox + "material = { yuong = 2e5 }\n"),
+  EXPECT_EQ(document_refusal(kBox + "material = { yuong = 2e5 }\n"),
             "beam.toml:3:14: unknown key yuong = 2e+05 in material (did you mean 'young'?)");
-  EXPECT_THAT(refusal("[tim]\nstep = 1\n" + kBox), AllOf(StartsWith("beam.toml:1:"), HasSubstr("'time'")));
-  EXPECT_THAT(refusal(kBox + "duration = 3\n"), HasSubstr("belongs to time"));
+  EXPECT_THAT(document_refusal("[tim]\nstep = 1\n" + kBox), AllOf(StartsWith("beam.toml:1:"), HasSubstr("'time'")));
+  EXPECT_THAT(document_refusal(kBox + "duration = 3\n"), HasSubstr("belongs to time"));
 }
 
 TEST(SceneDocument, WrongTypeIsNamedWithWhatIsExpected) {
-  EXPECT_EQ(refusal("[time]\nstep = \"fast\"\n" + kBox),
+  EXPECT_EQ(document_refusal("[time]\nstep = \"fast\"\n" + kBox),
             "beam.toml:2:8: step = \"fast\"; this is a string; expected is a number [s]");
-  EXPECT_THAT(refusal("gravity = [0, -9.81]\n" + kBox),
+  EXPECT_THAT(document_refusal("gravity = [0, -9.81]\n" + kBox),
               AllOf(StartsWith("beam.toml:1:11"), HasSubstr("three numbers [m/s^2]")));
-  EXPECT_THAT(refusal("[solver]\nmax_iterations = 2.5\n" + kBox), HasSubstr("an integer"));
-  EXPECT_THAT(refusal("[output]\nobj = 1\n" + kBox), HasSubstr("true or false"));
-  EXPECT_THAT(refusal("time = 1979-05-27\n" + kBox), HasSubstr("date"));
+  EXPECT_THAT(document_refusal("[solver]\nmax_iterations = 2.5\n" + kBox), HasSubstr("an integer"));
+  EXPECT_THAT(document_refusal("[output]\nobj = 1\n" + kBox), HasSubstr("true or false"));
+  EXPECT_THAT(document_refusal("time = 1979-05-27\n" + kBox), HasSubstr("date"));
 }
 
 TEST(SceneDocument, ValueOutOfRangeIsNamedWithTheRemedy) {
-  EXPECT_EQ(refusal(kBox + "material = { poisson = 0.5 }\n"),
+  EXPECT_EQ(document_refusal(kBox + "material = { poisson = 0.5 }\n"),
             "beam.toml:3:24: poisson = 0.5; must be > -1 and < 0.5 (try 0.485)");
-  EXPECT_THAT(refusal(kBox + "material = { density = 0 }\n"), HasSubstr("must be > 0"));
-  EXPECT_THAT(refusal(kBox + "material = { density = -5.0 }\n"), HasSubstr("density = -5.0"));
-  EXPECT_THAT(refusal("[time]\nstep = nan\n" + kBox), HasSubstr("finite"));
-  EXPECT_THAT(refusal("gravity = [0, inf, 0]\n" + kBox), HasSubstr("finite"));
-  EXPECT_THAT(refusal("[time]\nstep = 0\n" + kBox), HasSubstr("step = 0; must be > 0 and <= 1e+100 (try 0.01)"));
-  EXPECT_THAT(refusal("[solver]\nline_search = { alpha_max = 1e9 }\n" + kBox), HasSubstr("(try 1e+06)"));
-  EXPECT_THAT(refusal("[solver]\nline_search = { p = 0.99999 }\n" + kBox), HasSubstr("(try 0.99)"));
-  EXPECT_THAT(refusal(kBox + "scale = -1\n"), HasSubstr("scale = -1"));
+  EXPECT_THAT(document_refusal(kBox + "material = { density = 0 }\n"), HasSubstr("must be > 0"));
+  EXPECT_THAT(document_refusal(kBox + "material = { density = -5.0 }\n"), HasSubstr("density = -5.0"));
+  EXPECT_THAT(document_refusal("[time]\nstep = nan\n" + kBox), HasSubstr("finite"));
+  EXPECT_THAT(document_refusal("gravity = [0, inf, 0]\n" + kBox), HasSubstr("finite"));
+  EXPECT_THAT(document_refusal("[time]\nstep = 0\n" + kBox),
+              HasSubstr("step = 0; must be > 0 and <= 1e+100 (try 0.01)"));
+  EXPECT_THAT(document_refusal("[solver]\nline_search = { alpha_max = 1e9 }\n" + kBox), HasSubstr("(try 1e+06)"));
+  EXPECT_THAT(document_refusal("[solver]\nline_search = { p = 0.99999 }\n" + kBox), HasSubstr("(try 0.99)"));
+  EXPECT_THAT(document_refusal(kBox + "scale = -1\n"), HasSubstr("scale = -1"));
 }
 
 TEST(SceneDocument, UnknownChoiceNamesTheNearest) {
-  EXPECT_THAT(refusal(kBox + "material = { model = \"neo_hokean\" }\n"), HasSubstr("did you mean 'neo_hookean'?"));
-  EXPECT_THAT(refusal("[time]\nintegrator = \"backward_eular\"\n" + kBox), HasSubstr("'backward_euler'"));
-  EXPECT_THAT(refusal("[solver]\nmethod = \"newtn\"\n" + kBox), HasSubstr("'newton'"));
+  EXPECT_THAT(document_refusal(kBox + "material = { model = \"neo_hokean\" }\n"),
+              HasSubstr("did you mean 'neo_hookean'?"));
+  EXPECT_THAT(document_refusal("[time]\nintegrator = \"backward_eular\"\n" + kBox), HasSubstr("'backward_euler'"));
+  EXPECT_THAT(document_refusal("[solver]\nmethod = \"newtn\"\n" + kBox), HasSubstr("'newton'"));
 }
 
 TEST(SceneDocument, AlternativesExcludeEachOther) {
-  EXPECT_THAT(refusal(kBox + "material = { young = 1e5, mu = 3 }\n"),
+  EXPECT_THAT(document_refusal(kBox + "material = { young = 1e5, mu = 3 }\n"),
               AllOf(StartsWith("beam.toml:3:"), HasSubstr("mu = 3.0 excludes young"), HasSubstr("lambda, mu")));
-  EXPECT_THAT(refusal(kBox + "material = { mu = 3 }\n"), HasSubstr("needs the key 'lambda'"));
-  EXPECT_THAT(refusal(kBox + "material = { mu = 3, lambda = -2 }\n"), HasSubstr("lambda = -2; must be > -2/3 mu = -2"));
-  EXPECT_THAT(refusal(kBox + "mesh = \"a.msh\"\n"), HasSubstr("excludes"));
-  EXPECT_THAT(refusal("[[body]]\nmesh_size = 1\n"), HasSubstr("needs the key 'mesh'"));
-  EXPECT_THAT(refusal(kBox + "deform = { hash = \"x\" }\n"), HasSubstr("needs the key 'file'"));
-  EXPECT_THAT(refusal(kBox + "material = { young = { name = \"E\" } }\n"), HasSubstr("needs the key 'file'"));
-  EXPECT_THAT(refusal(kBox + "material = { hash = \"x\" }\n"), HasSubstr("needs the key 'file'"));
-  EXPECT_THAT(refusal("[[body]]\nname = \"a\"\n"), HasSubstr("body needs one of: mesh, mesh_size | shape"));
-  EXPECT_THAT(refusal(kBox + "[[body.pin]]\nwhere = { lowest = 0.1, highest = 0.1 }\n"), HasSubstr("excludes lowest"));
+  EXPECT_THAT(document_refusal(kBox + "material = { mu = 3 }\n"), HasSubstr("needs the key 'lambda'"));
+  EXPECT_THAT(document_refusal(kBox + "material = { mu = 3, lambda = -2 }\n"),
+              HasSubstr("lambda = -2; must be > -2/3 mu = -2"));
+  EXPECT_THAT(document_refusal(kBox + "mesh = \"a.msh\"\n"), HasSubstr("excludes"));
+  EXPECT_THAT(document_refusal("[[body]]\nmesh_size = 1\n"), HasSubstr("needs the key 'mesh'"));
+  EXPECT_THAT(document_refusal(kBox + "deform = { hash = \"x\" }\n"), HasSubstr("needs the key 'file'"));
+  EXPECT_THAT(document_refusal(kBox + "material = { young = { name = \"E\" } }\n"), HasSubstr("needs the key 'file'"));
+  EXPECT_THAT(document_refusal(kBox + "material = { hash = \"x\" }\n"), HasSubstr("needs the key 'file'"));
+  EXPECT_THAT(document_refusal("[[body]]\nname = \"a\"\n"), HasSubstr("body needs one of: mesh, mesh_size | shape"));
+  EXPECT_THAT(document_refusal(kBox + "[[body.pin]]\nwhere = { lowest = 0.1, highest = 0.1 }\n"),
+              HasSubstr("excludes lowest"));
 }
 
 TEST(SceneDocument, SeveralErrorsAreReportedTogether) {
-  const std::string text = refusal("[time]\nstep = -1\nduraton = 3\n" + kBox + "velocity = 1\n");
+  const std::string text = document_refusal("[time]\nstep = -1\nduraton = 3\n" + kBox + "velocity = 1\n");
   EXPECT_THAT(text, AllOf(HasSubstr("beam.toml:2:"), HasSubstr("beam.toml:3:"), HasSubstr("beam.toml:6:")));
 }
 
 TEST(SceneDocument, SyntaxErrorsHaveAPlace) {
-  EXPECT_THAT(refusal("gravity = [0, 0\n"), StartsWith("beam.toml:"));
-  EXPECT_THAT(refusal("gravity = [0, }\n"), StartsWith("beam.toml:1:15: "));
-  EXPECT_THAT(refusal("gravity = \n"), StartsWith("beam.toml:1:"));
+  EXPECT_THAT(document_refusal("gravity = [0, 0\n"), StartsWith("beam.toml:"));
+  EXPECT_THAT(document_refusal("gravity = [0, }\n"), StartsWith("beam.toml:1:15: "));
+  EXPECT_THAT(document_refusal("gravity = \n"), StartsWith("beam.toml:1:"));
 }
 
 // toml++ tells the compiler that these letters cannot stand there.
 TEST(SceneDocument, LettersBeyondAsciiOutsideOfStringsAreNamed) {
   for (const std::string letter : {"\u00e4", "\u048f", "\u1680", "\u2028", "\U0001f41f"}) {
-    EXPECT_THAT(refusal(letter + " = 1\n" + kBox), StartsWith("beam.toml:1:")) << letter;
-    EXPECT_THAT(refusal("[[body" + letter + "]]\n"), StartsWith("beam.toml:1:")) << letter;
+    EXPECT_THAT(document_refusal(letter + " = 1\n" + kBox), StartsWith("beam.toml:1:")) << letter;
+    EXPECT_THAT(document_refusal("[[body" + letter + "]]\n"), StartsWith("beam.toml:1:")) << letter;
   }
 }
 
 TEST(SceneDocument, FormulasAreCheckedWhereTheyStand) {
-  EXPECT_THAT(refusal(kBox + "material = { young = \"1e5 * foo\" }\n"),
+  EXPECT_THAT(document_refusal(kBox + "material = { young = \"1e5 * foo\" }\n"),
               AllOf(StartsWith("beam.toml:3:22"), HasSubstr("'foo'")));
-  EXPECT_THAT(refusal(kBox + "[[body.pin]]\nwhere = \"y >\"\n"), StartsWith("beam.toml:4:9"));
-  EXPECT_EQ(refusal(kBox + "[[body.pin]]\nwhere = \"y>0\"\nmotion = { displacement = [0, \"sin(t)\", 0] }\n"), "");
+  EXPECT_THAT(document_refusal(kBox + "[[body.pin]]\nwhere = \"y >\"\n"), StartsWith("beam.toml:4:9"));
+  EXPECT_EQ(document_refusal(kBox + "[[body.pin]]\nwhere = \"y>0\"\nmotion = { displacement = [0, \"sin(t)\", 0] }\n"),
+            "");
 }
 
 TEST(SceneDocument, NamesAreUniqueAndPlain) {
-  EXPECT_THAT(refusal(kBox + "name = \"a\"\n" + kBox + "name = \"a\"\n"),
+  EXPECT_THAT(document_refusal(kBox + "name = \"a\"\n" + kBox + "name = \"a\"\n"),
               AllOf(StartsWith("beam.toml:6:"), HasSubstr("taken by beam.toml:3:")));
-  EXPECT_THAT(refusal(kBox + "name = \"../a\"\n"), HasSubstr("letters, digits"));
+  EXPECT_THAT(document_refusal(kBox + "name = \"../a\"\n"), HasSubstr("letters, digits"));
   const Table scene = document("[[body]]\nmesh = \"meshes/fat cat.msh\"\n" + kBox);
   EXPECT_EQ(body(scene, 0)["name"].text(), "fat_cat");
   EXPECT_EQ(body(scene, 1)["name"].text(), "body2");
 }
 
 TEST(SceneDocument, DegenerateGeometryIsRefused) {
-  EXPECT_THAT(refusal("[[body]]\nshape = { box = { upper = [1, 0, 1], cells = [1, 1, 1] } }\n"), HasSubstr("upper"));
-  EXPECT_THAT(refusal("[[body]]\nshape = { box = { upper = [1, 1, 1], cells = [1, 1] } }\n"), HasSubstr("cells"));
-  EXPECT_THAT(refusal("[[body]]\nshape = { box = { upper = [1, 1, 1], cells = [1, 0, 1] } }\n"), HasSubstr("cells"));
-  EXPECT_THAT(refusal(kBox + "rotate = { axis = [0, 0, 0], angle_deg = 3 }\n"), HasSubstr("direction"));
-  EXPECT_THAT(refusal(kBox + "[[body.pin]]\nwhere = \"all\"\nmotion = { keyframes = [{ time = 1, displacement = [0, 0, "
-                             "0] }, { time = 1, displacement = [0, 0, 0] }] }\n"),
+  EXPECT_THAT(document_refusal("[[body]]\nshape = { box = { upper = [1, 0, 1], cells = [1, 1, 1] } }\n"),
+              HasSubstr("upper"));
+  EXPECT_THAT(document_refusal("[[body]]\nshape = { box = { upper = [1, 1, 1], cells = [1, 1] } }\n"),
+              HasSubstr("cells"));
+  EXPECT_THAT(document_refusal("[[body]]\nshape = { box = { upper = [1, 1, 1], cells = [1, 0, 1] } }\n"),
+              HasSubstr("cells"));
+  EXPECT_THAT(document_refusal(kBox + "rotate = { axis = [0, 0, 0], angle_deg = 3 }\n"), HasSubstr("direction"));
+  EXPECT_THAT(document_refusal(
+                  kBox + "[[body.pin]]\nwhere = \"all\"\nmotion = { keyframes = [{ time = 1, displacement = [0, 0, "
+                         "0] }, { time = 1, displacement = [0, 0, 0] }] }\n"),
               HasSubstr("later than the one before"));
 }
 
@@ -186,20 +195,21 @@ TEST(Override, AMeshTakesThePlaceOfAShapeAndASphereThatOfABox) {
 }
 
 TEST(Override, ErrorsNameTheOverride) {
-  EXPECT_EQ(refusal(kBox, {"material.yuong=2e5"}),
+  EXPECT_EQ(document_refusal(kBox, {"material.yuong=2e5"}),
             "--set material.yuong=2e5: unknown key yuong = 2e+05 in material (did you mean 'young'?)");
-  EXPECT_THAT(refusal(kBox, {"time.step=-1"}), StartsWith("--set time.step=-1: step = -1"));
-  EXPECT_THAT(refusal(kBox, {"time.step=fast"}), StartsWith("--set time.step=fast: step = \"fast\"; this is a string"));
-  EXPECT_THAT(refusal(kBox, {"tme.step=1"}), HasSubstr("did you mean 'time'?"));
-  EXPECT_THAT(refusal(kBox, {"integrator=forward_euler"}), HasSubstr("did you mean 'time.integrator'?"));
-  EXPECT_THAT(refusal(kBox, {"time.step"}), HasSubstr("KEY=VALUE"));
-  EXPECT_THAT(refusal(kBox, {"time..step=1"}), HasSubstr("empty"));
-  EXPECT_THAT(refusal(kBox, {"body.buny.scale=2"}), HasSubstr("unknown key or name 'buny'"));
-  EXPECT_THAT(refusal(kBox, {"body.pin.where=\"y < 0\""}), HasSubstr("no pin"));
-  EXPECT_THAT(refusal(kBox, {"gravity=[0, 1"}), StartsWith("--set gravity=[0, 1: "));
-  EXPECT_THAT(refusal(kBox, {"velocity=[Y, 0, 0]"}), HasSubstr("texts in lists and tables need quotes"));
-  EXPECT_THAT(refusal(kBox, {"time.step="}), HasSubstr("a value is missing after '='"));
-  EXPECT_THAT(refusal(kBox, {"gravity=[0, 0, 0]\ntime=3"}), StartsWith("--set gravity"));
+  EXPECT_THAT(document_refusal(kBox, {"time.step=-1"}), StartsWith("--set time.step=-1: step = -1"));
+  EXPECT_THAT(document_refusal(kBox, {"time.step=fast"}),
+              StartsWith("--set time.step=fast: step = \"fast\"; this is a string"));
+  EXPECT_THAT(document_refusal(kBox, {"tme.step=1"}), HasSubstr("did you mean 'time'?"));
+  EXPECT_THAT(document_refusal(kBox, {"integrator=forward_euler"}), HasSubstr("did you mean 'time.integrator'?"));
+  EXPECT_THAT(document_refusal(kBox, {"time.step"}), HasSubstr("KEY=VALUE"));
+  EXPECT_THAT(document_refusal(kBox, {"time..step=1"}), HasSubstr("empty"));
+  EXPECT_THAT(document_refusal(kBox, {"body.buny.scale=2"}), HasSubstr("unknown key or name 'buny'"));
+  EXPECT_THAT(document_refusal(kBox, {"body.pin.where=\"y < 0\""}), HasSubstr("no pin"));
+  EXPECT_THAT(document_refusal(kBox, {"gravity=[0, 1"}), StartsWith("--set gravity=[0, 1: "));
+  EXPECT_THAT(document_refusal(kBox, {"velocity=[Y, 0, 0]"}), HasSubstr("texts in lists and tables need quotes"));
+  EXPECT_THAT(document_refusal(kBox, {"time.step="}), HasSubstr("a value is missing after '='"));
+  EXPECT_THAT(document_refusal(kBox, {"gravity=[0, 0, 0]\ntime=3"}), StartsWith("--set gravity"));
 }
 
 TEST(SceneDocument, MutatedScenesAreReadOrRefused) {
@@ -224,7 +234,7 @@ TEST(SceneDocument, MutatedScenesAreReadOrRefused) {
         text[at] = c;
       }
     }
-    refused += !refusal(text).empty();  // anything but InvalidInput ends the test
+    refused += !document_refusal(text).empty();  // anything but InvalidInput ends the test
   }
   EXPECT_GT(refused, 1000);
   EXPECT_LT(refused, 3000);
@@ -258,11 +268,11 @@ TEST(Schema, AlternativesNameExistingKeys) {
 TEST(SceneDocument, KeysThatAreNestedWithoutEndAreRefused) {
   std::string key = "a";
   for (int i = 0; i < 100'000; ++i) key += ".a";
-  EXPECT_THAT(refusal("[" + key + "]\n"), HasSubstr(":1:1: a key of more than 32 parts"));
-  EXPECT_THAT(refusal("\n" + key + " = 1\n"), HasSubstr(":2:1: a key of more than 32 parts"));
-  EXPECT_THAT(refusal("b = { " + key + " = 1 }\n"), HasSubstr("a key of more than 32 parts"));
+  EXPECT_THAT(document_refusal("[" + key + "]\n"), HasSubstr(":1:1: a key of more than 32 parts"));
+  EXPECT_THAT(document_refusal("\n" + key + " = 1\n"), HasSubstr(":2:1: a key of more than 32 parts"));
+  EXPECT_THAT(document_refusal("b = { " + key + " = 1 }\n"), HasSubstr("a key of more than 32 parts"));
   const std::string dots(100, '.');
-  EXPECT_THAT(refusal("# " + dots + "\nnome = \"" + dots + "\"\n"), HasSubstr("unknown key nome"));
+  EXPECT_THAT(document_refusal("# " + dots + "\nnome = \"" + dots + "\"\n"), HasSubstr("unknown key nome"));
 }
 
 }  // namespace

@@ -4,9 +4,6 @@
 namespace aspic {
 namespace {
 
-const Range kPositive{.min = 0, .min_open = true};
-const Range kNotNegative{.min = 0};
-
 void add_damping(Schema& s) {
   s.sections.push_back({"damping", "damping = { ... } in a [[body]]", "What dissipates besides the integrator."});
   add_keys(s, "damping",

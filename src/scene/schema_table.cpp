@@ -11,9 +11,6 @@
 namespace aspic {
 namespace {
 
-const Range kPositive{.min = 0, .min_open = true};
-const Range kNotNegative{.min = 0};
-
 const char* const kIntegrators =
     "the scheme that takes a step (formulas, orders, energies: [integrators](integrators.md)). Implicit, a "
     "minimisation "

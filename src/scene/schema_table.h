@@ -6,6 +6,9 @@
 
 namespace aspic {
 
+inline const Range kPositive{.min = 0, .min_open = true};
+inline const Range kNotNegative{.min = 0};
+
 inline void add_key(Schema& schema, const char* section, Key key) {
   key.section = section;
   schema.keys.push_back(std::move(key));

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "base/error.h"
+#include "mesh/tet_shape.h"
 #include "scene/expression.h"
 #include "scene/placement.h"
 #include "scene/tables.h"

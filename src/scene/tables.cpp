@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "io/atomic_file.h"
 #include "io/vtu.h"
+#include "mesh/tet_shape.h"
 #include "scene/expression.h"
 
 namespace aspic {
@@ -141,11 +142,6 @@ std::vector<double> read_number_table(const fs::path& path, size_t columns, size
                               std::to_string(count) + " lines of numbers; one for " + row + " is needed, " +
                               std::to_string(rows) + " in all");
   return values;
-}
-
-Vec3d centroid(const TetMesh& mesh, int tet) {
-  const auto& [a, b, c, d] = mesh.tets[tet];
-  return 0.25 * ((mesh.rest[a] + mesh.rest[b]) + (mesh.rest[c] + mesh.rest[d]));
 }
 
 std::vector<double> tet_values(Table& table, const Key& key, const TetMesh& mesh, SceneFiles& files,

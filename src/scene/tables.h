@@ -21,6 +21,4 @@ std::vector<double> read_number_table(const std::filesystem::path& path, size_t 
 std::vector<double> tet_values(Table& table, const Key& key, const TetMesh& mesh, SceneFiles& files,
                                const std::string& stem);
 
-Vec3d centroid(const TetMesh& mesh, int tet);
-
 }  // namespace aspic

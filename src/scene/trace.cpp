@@ -10,27 +10,27 @@
 namespace aspic {
 namespace {
 
-const std::vector<std::string> kIterationColumns = {"step",
-                                                    "solve",
-                                                    "iteration",
-                                                    "value",
-                                                    "gradient_norm",
-                                                    "decrement",
-                                                    "alpha",
-                                                    "trials",
-                                                    "retreats",
-                                                    "gradients",
-                                                    "hessians",
-                                                    "projected",
-                                                    "projected_elements",
-                                                    "factorizations",
-                                                    "linear_iterations",
-                                                    "products",
-                                                    "cycles"};
+const std::vector<std::string> kTracedIterationColumns = {"step",
+                                                          "solve",
+                                                          "iteration",
+                                                          "value",
+                                                          "gradient_norm",
+                                                          "decrement",
+                                                          "alpha",
+                                                          "trials",
+                                                          "retreats",
+                                                          "gradients",
+                                                          "hessians",
+                                                          "projected",
+                                                          "projected_elements",
+                                                          "factorizations",
+                                                          "linear_iterations",
+                                                          "products",
+                                                          "cycles"};
 const std::vector<std::string> kTrialColumns = {"step",  "solve", "iteration", "trial",   "alpha",
                                                 "value", "bound", "by_slope",  "accepted"};
-const std::vector<std::string> kTimingColumns = {"step",      "solve",        "iteration",   "hessian",
-                                                 "factorize", "solve_linear", "line_search", "gradient"};
+const std::vector<std::string> kTracedTimingColumns = {"step",      "solve",        "iteration",   "hessian",
+                                                       "factorize", "solve_linear", "line_search", "gradient"};
 
 CsvRow row_of(int step, int solve, int iteration) {
   CsvRow row;
@@ -120,9 +120,9 @@ Trace::Trace(std::filesystem::path folder, TraceOptions options)
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (error) throw InvalidInput(folder_.string() + ": cannot be created: " + error.message());
-  iterations_ = CsvFile::create(folder_ / "iterations.csv", kIterationColumns);
+  iterations_ = CsvFile::create(folder_ / "iterations.csv", kTracedIterationColumns);
   trials_ = CsvFile::create(folder_ / "trials.csv", kTrialColumns);
-  timings_ = CsvFile::create(folder_ / "timings.csv", kTimingColumns);
+  timings_ = CsvFile::create(folder_ / "timings.csv", kTracedTimingColumns);
   json_ = OutputFile::create(folder_ / "trace.jsonl");
 }
 

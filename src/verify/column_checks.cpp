@@ -70,12 +70,12 @@ struct Column {
   std::string material, integrator;
   BoxCut cut;
 };
-constexpr double kYoung = 17e6, kPoisson = 0.45, kDensity = 1100, kEnd = 0.1;  // [Pa], [1], [kg/m^3], [s]
+constexpr double kColumnYoung = 17e6, kColumnPoisson = 0.45, kDensity = 1100, kEnd = 0.1;  // [Pa], [1], [kg/m^3], [s]
 
 Simulation column(const Column& c) {
   Model model = make_model(column_mesh(c.n, c.cut), {.material = c.material,
-                                                     .young = c.stiffness * kYoung,
-                                                     .poisson = kPoisson,
+                                                     .young = c.stiffness * kColumnYoung,
+                                                     .poisson = kColumnPoisson,
                                                      .density = kDensity,
                                                      .mass = MassKind::lumped,
                                                      .gravity = {}});
@@ -156,7 +156,7 @@ double asymmetry(const TetMesh& mesh, const std::vector<double>& q, const std::v
 
 // w of the swing of small turns [1/s].
 double swing_rate() {
-  const double speed = std::sqrt(kYoung / (2 * (1 + kPoisson)) * kTorsion / (kDensity * kPolar));
+  const double speed = std::sqrt(kColumnYoung / (2 * (1 + kColumnPoisson)) * kTorsion / (kDensity * kPolar));
   return std::numbers::pi * speed / (2 * kLength);
 }
 

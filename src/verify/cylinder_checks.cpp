@@ -9,7 +9,7 @@
 namespace aspic::verify {
 namespace {
 
-constexpr double kPoisson = 0.3, kTwist = 1, kHeight = 0.5;  // of a cylinder of radius 1 [1], [rad/m], [m]
+constexpr double kCylinderPoisson = 0.3, kTwist = 1, kHeight = 0.5;  // of a cylinder of radius 1 [1], [rad/m], [m]
 
 struct Twisted {
   double torque, force, outer;  // of the ends on the cylinder; radius of the side at half its height
@@ -20,7 +20,7 @@ Twisted twisted(int rings, const std::string& material, const Torsion& exact) {
   const auto at_height = [&mesh](double z) {
     return vertices_where(mesh, [z](const Vec3d& X) { return std::abs(X[2] - z) < 1e-9; });
   };
-  Model model = make_model(mesh, {.material = material, .young = 1, .poisson = kPoisson, .gravity = {}});
+  Model model = make_model(mesh, {.material = material, .young = 1, .poisson = kCylinderPoisson, .gravity = {}});
   const auto motion = [&exact](const Vec3d& X, double t) {
     const double R = std::hypot(X[0], X[1]), stretch = R > 0 ? exact.radius(R) / R : 1;
     const double angle = t * kTwist * X[2], c = std::cos(angle), s = std::sin(angle);
@@ -49,7 +49,7 @@ void check_cylinder(const Subject& subject, Findings& found) {
   std::vector<std::string> names = {"neo_hookean_log"};
   if (!subject.quick) names.insert(names.end(), {"stable_neo_hookean", "mooney_rivlin"});
   for (const std::string& material : names) {
-    const Torsion exact = twisted_cylinder(material, kPoisson, kTwist);
+    const Torsion exact = twisted_cylinder(material, kCylinderPoisson, kTwist);
     std::vector<double> torque, force, outer;
     for (const int n : rings) {
       const Twisted one = twisted(n, subject.taken_for(material), exact);

@@ -12,7 +12,7 @@
 namespace aspic::verify {
 namespace {
 
-constexpr double kYoung = 1e7;  // [Pa], with 1000 kg/m^3: waves of 100 m/s
+constexpr double kLayerYoung = 1e7;  // [Pa], with 1000 kg/m^3: waves of 100 m/s
 
 Model clamped_layer(TetMesh mesh, const std::string& material, double young, double poisson, double density) {
   const auto wall = vertices_where(mesh, [](const Vec3d& X) { return X[0] < 1e-9; });
@@ -56,11 +56,11 @@ void check_bar(const Subject& subject, Findings& found) {
     TetMesh mesh = make_box({{0, 0, 0}}, {{1, 0.02, 0.02}}, {n, 1, 1});
     const auto wall = vertices_where(mesh, [](const Vec3d& X) { return X[0] < 1e-9; });
     Model model =
-        make_model(mesh, {.material = material, .young = subject.stiffness * kYoung, .poisson = 0, .gravity = {}});
+        make_model(mesh, {.material = material, .young = subject.stiffness * kLayerYoung, .poisson = 0, .gravity = {}});
     model.pins.push_back({"wall", wall, {}});
     // Held sideways: this bar does not bend.
-    model.loads.push_back(make_plane_hold(mesh, 1e3 * kYoung));
-    model.loads.push_back(make_plane_hold(mesh, 1e3 * kYoung, 1));
+    model.loads.push_back(make_plane_hold(mesh, 1e3 * kLayerYoung));
+    model.loads.push_back(make_plane_hold(mesh, 1e3 * kLayerYoung, 1));
     by_mesh.push_back(frequencies(model, 2));
   }
   expect_limits(found, {"first", "second"}, {25, 75}, {1e-4, 1e-3}, by_mesh,
@@ -78,7 +78,7 @@ void check_beam(const Subject& subject, Findings& found) {
   const std::vector<std::string> names = {"first", "second", "third"};
   const std::vector<int> cells = subject.quick ? std::vector<int>{4, 8} : std::vector<int>{4, 8, 16};
   for (const int n : cells)
-    by_mesh.push_back(frequencies(strip(n, subject.taken_for("neo_hookean_log"), subject.stiffness * kYoung), 3));
+    by_mesh.push_back(frequencies(strip(n, subject.taken_for("neo_hookean_log"), subject.stiffness * kLayerYoung), 3));
   for (size_t k = 0; k < names.size(); ++k) {
     Curve curve{names[k], {}, {}};
     for (size_t i = 0; i < cells.size(); ++i) {

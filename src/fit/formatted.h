@@ -1,0 +1,17 @@
+// Numbers in messages, as printf writes them.
+#pragma once
+#include <cstdio>
+#include <string>
+
+namespace aspic {
+
+template <class... Numbers>
+std::string formatted(const char* format, Numbers... numbers) {
+  char buffer[512];
+  std::snprintf(buffer, sizeof buffer, format, numbers...);
+  return buffer;
+}
+
+inline std::string six_digits(double x) { return formatted("%.6g", x); }
+
+}  // namespace aspic
