@@ -8,7 +8,7 @@
 namespace aspic::bench {
 
 Model make_model(TetMesh mesh_to_take, const Substance& substance, std::vector<int> clamped) {
-  constexpr double kGravity = -9.81;  // [m/s^2]
+  constexpr double kDownwards = -9.81;  // [m/s^2]
   Model model;
   model.mesh = std::move(mesh_to_take);
   const TetMesh& mesh = model.mesh;
@@ -21,7 +21,7 @@ Model make_model(TetMesh mesh_to_take, const Substance& substance, std::vector<i
       make_tet_elasticity(substance.material, mesh, 0, std::vector<MaterialParameters>(mesh.tet_count(), parameters)));
 
   std::vector<double> weight(3 * mesh.vertex_count());
-  for (int t = 0; t < mesh.tet_count(); ++t) add_body_force(mesh, t, {0, substance.density * kGravity, 0}, weight);
+  for (int t = 0; t < mesh.tet_count(); ++t) add_body_force(mesh, t, {0, substance.density * kDownwards, 0}, weight);
   model.loads.push_back(make_linear_load("gravity", std::move(weight)));
 
   Pin& clamp = model.pins.emplace_back();

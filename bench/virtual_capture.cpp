@@ -9,6 +9,7 @@
 #include "mesh/generators.h"
 #include "mesh/numbering.h"
 #include "mesh/surface.h"
+#include "mesh/tet_shape.h"
 
 namespace aspic::bench {
 namespace {
@@ -32,12 +33,6 @@ const std::array<Site, 9> kSites = {{{{0.3, 0.3, 1}, {0, 0, -1}},
 TetMesh cube(double side, int cells) {
   const TetMesh mesh = make_box({0, 0, 0}, {side, side, side}, {cells, cells, cells});
   return from_user(locality_numbering(mesh), mesh);
-}
-
-Vec3d centroid(const TetMesh& mesh, int t) {
-  Vec3d sum{};
-  for (int v : mesh.tets[t]) sum = sum + 0.25 * mesh.rest[v];
-  return sum;
 }
 
 bool is_in_ball(const VirtualCapture& setup, const Vec3d& X) {

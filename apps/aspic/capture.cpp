@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct CaptureArguments {
   fs::path input, out, mesh;
   std::vector<std::string> overrides, gravity;
   std::string tip = "sphere", contact = "bonded";
@@ -52,7 +52,7 @@ Vec3d direction(const std::string& text) {
   return list.vector();
 }
 
-SynthesisOptions bench_options(const Arguments& arguments) {
+SynthesisOptions bench_options(const CaptureArguments& arguments) {
   SynthesisOptions bench = arguments.bench;
   read_tip(arguments.tip, bench);
   if (arguments.contact != "bonded" && arguments.contact != "sliding")
@@ -65,7 +65,7 @@ SynthesisOptions bench_options(const Arguments& arguments) {
   return bench;
 }
 
-fs::path folder_of(const Arguments& arguments, const std::string& name) {
+fs::path folder_of(const CaptureArguments& arguments, const std::string& name) {
   const fs::path folder = arguments.out.empty() ? fs::path("out") / (name + "_data") : arguments.out;
   std::error_code error;
   if (!arguments.force && fs::exists(folder / "capture.toml", error))
@@ -82,7 +82,7 @@ void show(const SynthesisStep& step) {
   std::fflush(stdout);
 }
 
-int capture(const Arguments& arguments) {
+int capture(const CaptureArguments& arguments) {
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   const SynthesisOptions bench = bench_options(arguments);
   const Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides});
@@ -127,7 +127,7 @@ then: aspic fit out/pillow_data --check, and without --check
 
 Exit codes: 0 done, 2 bad input, 3 some case has no equilibrium and was left out, 130 interrupted by ctrl-C,
 143 by kill: the cases that were done are written.)");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<CaptureArguments>();
   SynthesisOptions& b = a->bench;
   command->add_option("scene", a->input, "The scene or mesh to measure")->required();
   command->add_option("-o,--out", a->out, "The folder of the data set; default: out/NAME_data");

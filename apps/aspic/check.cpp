@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct CheckArguments {
   fs::path input, output, plot;
   std::vector<std::string> overrides;
   double tolerance = 1e-6;  // of derivatives
@@ -88,7 +88,7 @@ std::string counts(const TriMesh& mesh) {
 }
 
 template <class Mesh>
-int check_mesh(const Arguments& arguments, Mesh mesh) {
+int check_mesh(const CheckArguments& arguments, Mesh mesh) {
   fmt::print("{}: {}\n", printable(arguments.input.string()), counts(mesh));
   std::vector<Finding> findings = examine(mesh);
   if (arguments.repair) {
@@ -113,7 +113,7 @@ TetMesh body_mesh(const TetMesh& all, const BodyRange& body) {
   return mesh;
 }
 
-int check_scene(const Arguments& arguments) {
+int check_scene(const CheckArguments& arguments) {
   if (arguments.repair) {
     throw InvalidInput(
         fmt::format("{}: --repair works on a mesh file; name the mesh of the scene instead", arguments.input.string()));
@@ -133,7 +133,7 @@ int check_scene(const Arguments& arguments) {
   return wrong ? exit_bad_input : exit_done;
 }
 
-int check(const Arguments& arguments) {
+int check(const CheckArguments& arguments) {
   if (arguments.derivatives) {
     if (arguments.repair) throw InvalidInput("--repair and --derivatives exclude each other");
     const Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides, .mesher = {}});
@@ -147,7 +147,7 @@ int check(const Arguments& arguments) {
 }  // namespace
 
 void add_check(CLI::App& app, Action& action) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<CheckArguments>();
   CLI::App* command = app.add_subcommand("check", "Says what is wrong or suspicious about a scene or a mesh");
   command->footer(
       "\nExamples:\n  aspic check bunny.mesh\n  aspic check scenes/bunny.toml\n"

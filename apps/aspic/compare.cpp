@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct CompareArguments {
   fs::path input, out;
   std::vector<std::string> methods, overrides;
   int step = 1, threads = 0;
@@ -48,7 +48,7 @@ void create(const fs::path& folder) {
   if (error) throw InvalidInput(folder.string() + ": cannot be created: " + error.message());
 }
 
-int compare(const Arguments& arguments) {
+int compare(const CompareArguments& arguments) {
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides, .mesher = {}});
   const fs::path folder = arguments.out.empty() ? fs::path("out") / ("compare_" + scene.name) : arguments.out;
@@ -87,7 +87,7 @@ int compare(const Arguments& arguments) {
 }  // namespace
 
 void add_compare(CLI::App& app, Action& action) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<CompareArguments>();
   CLI::App* command = app.add_subcommand("compare", "Solves one step of a scene by several methods");
   command->footer(R"(
 A method is NAME[:OPTION...], where an option is a definiteness, a preconditioner or a linear solver:

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct ConvertArguments {
   fs::path in, out;
   bool surface = false, binary = false;
 };
@@ -39,13 +39,13 @@ const MeshFormat& format_of(const fs::path& path) {
 }
 
 template <class Mesh>
-int write(const Arguments& arguments, const Mesh& mesh, const std::string& what) {
+int write(const ConvertArguments& arguments, const Mesh& mesh, const std::string& what) {
   write_mesh(arguments.out, mesh, arguments.binary ? FileEncoding::binary : FileEncoding::ascii);
   fmt::print("{}: {}{}\n", printable(arguments.out.string()), what, describe(mesh));
   return exit_done;
 }
 
-int convert(const Arguments& arguments) {
+int convert(const ConvertArguments& arguments) {
   const MeshFormat& format = format_of(arguments.out);
   const auto mesh = read_mesh(arguments.in);
   fmt::print("{}: {}\n", printable(arguments.in.string()), std::visit([](const auto& m) { return describe(m); }, mesh));
@@ -78,7 +78,7 @@ std::string format_table() {
 }  // namespace
 
 void add_convert(CLI::App& app, Action& action) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ConvertArguments>();
   CLI::App* command = app.add_subcommand("convert", "Writes a mesh in another format, told by the file name");
   command->footer([] {
     return "\nExamples:\n  aspic convert bunny.msh bunny.vtu\n  aspic convert bunny.mesh bunny.obj    the boundary\n" +

@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct FitArguments {
   fs::path data, out = "material.vtu";
   std::string model = FitPlan().model, smooth = "h1", weight = "auto", parts = "off";
   std::vector<std::string> unknowns, known, left_out;
@@ -59,7 +59,7 @@ int parts_of(const std::string& text) {
   return static_cast<int>(count);
 }
 
-FitPlan plan_of(const Arguments& arguments) {
+FitPlan plan_of(const FitArguments& arguments) {
   FitPlan plan;
   plan.model = material_info(arguments.model).name;
   for (const std::string& text : arguments.unknowns) plan.unknowns.push_back(parse_unknown(text));
@@ -77,7 +77,7 @@ FitPlan plan_of(const Arguments& arguments) {
   return plan;
 }
 
-ExistingFit existing(const Arguments& arguments) {
+ExistingFit existing(const FitArguments& arguments) {
   if (arguments.resume) return ExistingFit::resume;
   return arguments.force ? ExistingFit::overwrite : ExistingFit::refuse;
 }
@@ -107,7 +107,7 @@ void heed_findings(const DataSet& data, const fs::path& path) {
 // One fit, and everyone who listens to it.
 class Fitter {
  public:
-  Fitter(const Arguments& arguments, const DataSet& data, const FitPlan& plan, FitFolder& folder)
+  Fitter(const FitArguments& arguments, const DataSet& data, const FitPlan& plan, FitFolder& folder)
       : arguments_(arguments), data_(data), plan_(plan), folder_(folder), residuals_(residual_count(data, plan)) {
     if (!arguments.quiet) progress_.emplace(stdout, arguments.verbose);
   }
@@ -150,7 +150,7 @@ class Fitter {
     return false;
   }
 
-  const Arguments& arguments_;
+  const FitArguments& arguments_;
   const DataSet& data_;
   const FitPlan& plan_;
   FitFolder& folder_;
@@ -160,7 +160,7 @@ class Fitter {
   std::vector<FitIteration> history_;
 };
 
-void print_start(const Arguments& arguments, const DataSet& data, const FitPlan& plan, const FitFolder& folder) {
+void print_start(const FitArguments& arguments, const DataSet& data, const FitPlan& plan, const FitFolder& folder) {
   for (const std::string& note : data.notes) fmt::print("note: {}\n", note);
   const Experiment& e = data.experiment;
   fmt::print("{}: {} vertices, {} tets, {} markers, {} cases in {} groups; {} threads; into {}\n", data.name,
@@ -177,7 +177,7 @@ void print_start(const Arguments& arguments, const DataSet& data, const FitPlan&
 }
 
 // The way back into a scene.
-void print_use(const Arguments& arguments, bool is_whole) {
+void print_use(const FitArguments& arguments, bool is_whole) {
   if (arguments.quiet) return;
   fmt::print("material   {0}; in a scene: material = {{ file = {1} }}\n", arguments.out.string(),
              toml_string(arguments.out.string()));
@@ -185,7 +185,7 @@ void print_use(const Arguments& arguments, bool is_whole) {
     fmt::print("           it is what was reached; the same command with --resume goes on, to the same bits\n");
 }
 
-int exit_code(const Arguments& arguments, const FitOutcome& outcome) {
+int exit_code(const FitArguments& arguments, const FitOutcome& outcome) {
   if (interrupt_signal()) return exit_signal + interrupt_signal();
   if (!outcome.has_material()) return exit_unconverged;
   return is_success(outcome.report.status) || arguments.allow_unconverged ? exit_done : exit_unconverged;
@@ -196,7 +196,7 @@ fs::path truth_beside(const fs::path& data) {
   return (fs::is_directory(data) ? data : data.parent_path()) / "truth.vtu";
 }
 
-int run(const Arguments& arguments) {
+int run(const FitArguments& arguments) {
   if (arguments.data.extension() == ".csv")
     throw InvalidInput(arguments.data.string() + ": a data set is a folder; curves are fitted by: aspic fit-curves " +
                        arguments.data.string());
@@ -240,7 +240,7 @@ std::vector<std::string> model_names() {
   return names;
 }
 
-void add_choices(CLI::App* command, Arguments& a) {
+void add_choices(CLI::App* command, FitArguments& a) {
   command->add_option("--model", a.model, "Energy density (aspic materials); neo_hookean by default")
       ->check(CLI::IsMember(model_names()));
   command
@@ -284,7 +284,7 @@ void add_choices(CLI::App* command, Arguments& a) {
 }  // namespace
 
 void add_fit(CLI::App& app, Action& action) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<FitArguments>();
   CLI::App* command = app.add_subcommand("fit", "Fits a material to measurements, with its uncertainty");
   command->footer(R"(
 Examples:

@@ -1,7 +1,6 @@
 #include "aspic/fit_progress.h"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,14 +9,6 @@
 
 namespace aspic::cli {
 namespace {
-
-constexpr double kLineInterval = 10;  // in a pipe [s]
-
-size_t terminal_width(std::FILE* stream) {
-  winsize size{};
-  const bool known = ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return known ? size.ws_col : 80;
-}
 
 std::string stage_text(FitStage stage) {
   switch (stage) {

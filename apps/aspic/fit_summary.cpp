@@ -10,7 +10,7 @@
 namespace aspic::cli {
 namespace {
 
-std::string percent(double part) { return fmt::format("{:.2g} %", 100 * part); }
+std::string two_digit_percent(double part) { return fmt::format("{:.2g} %", 100 * part); }
 
 std::string interval_text(const ValueRow& row, const std::string& unit) {
   if (!row.interval) return "";
@@ -51,7 +51,7 @@ void print_parts(std::FILE* stream, const FitOutcome& outcome) {
   }
   for (size_t k = 0; k < found.values.size(); ++k)
     fmt::print(stream, "{:<10} {:<10} in {} of the body\n", k == 0 ? "parts" : "", value_text(found.values[k], "Pa"),
-               percent(found.volume[k]));
+               two_digit_percent(found.volume[k]));
 }
 
 void print_held_out(std::FILE* stream, const FitOutcome& outcome) {
@@ -59,9 +59,10 @@ void print_held_out(std::FILE* stream, const FitOutcome& outcome) {
   const CrossValidation& all = *outcome.held_out;
   std::string text;
   if (all.position_error >= 0)
-    text += fmt::format("positions within {} of the peak motion", percent(all.position_error));
+    text += fmt::format("positions within {} of the peak motion", two_digit_percent(all.position_error));
   if (all.force_error >= 0)
-    text += fmt::format("{}forces within {} of the peak force", text.empty() ? "" : ", ", percent(all.force_error));
+    text += fmt::format("{}forces within {} of the peak force", text.empty() ? "" : ", ",
+                        two_digit_percent(all.force_error));
   if (text.empty()) return;
   fmt::print(stream, "held out   each group predicted from the others: {} (root mean square)\n", text);
   const auto worst = std::max_element(all.groups.begin(), all.groups.end(), [](const HeldOut& a, const HeldOut& b) {
@@ -69,7 +70,7 @@ void print_held_out(std::FILE* stream, const FitOutcome& outcome) {
   });
   if (all.groups.size() > 1 && worst->ok)
     fmt::print(stream, "           worst: '{}', positions {}, forces {}\n", worst->group,
-               percent(worst->relative_position_error()), percent(worst->relative_force_error()));
+               two_digit_percent(worst->relative_position_error()), two_digit_percent(worst->relative_force_error()));
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace lecture;
 
-struct Arguments {
+struct LectureArguments {
   std::string page;
   fs::path mesh, out = fs::path("out") / "lecture";
   int threads = 0;
@@ -60,7 +60,7 @@ Result run_one(const Demonstration& demonstration, const Stage& stage, const fs:
   return {&demonstration, std::move(sheet), stopwatch.lap()};
 }
 
-int run_page(int page, const Arguments& arguments) {
+int run_page(int page, const LectureArguments& arguments) {
   if (const std::string reason = reason_for_none(page); !reason.empty()) {
     fmt::print("page {}: {}: {}\n", page, is_unavailable(page) ? "not available" : "nothing to check", reason);
     return is_unavailable(page) ? exit_bad_input : exit_done;
@@ -80,7 +80,7 @@ int run_page(int page, const Arguments& arguments) {
   return passes ? exit_done : exit_unconverged;
 }
 
-int run_all(const Arguments& arguments) {
+int run_all(const LectureArguments& arguments) {
   const Stage stage(arguments.mesh, arguments.out / "meshes");
   fmt::print("{}\n", stage.mesh_note());
   std::vector<Result> results;
@@ -106,7 +106,7 @@ int run_all(const Arguments& arguments) {
   return passes ? exit_done : exit_unconverged;
 }
 
-int run(const Arguments& arguments) {
+int run(const LectureArguments& arguments) {
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   if (arguments.page.empty()) {
     list_pages();
@@ -118,7 +118,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_lecture(CLI::App& app, Action& action) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<LectureArguments>();
   CLI::App* command = app.add_subcommand("lecture", "The lecture's pages as demonstrations judged by numbers");
   command->footer(R"(
 Examples:

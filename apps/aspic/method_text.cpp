@@ -10,10 +10,6 @@
 namespace aspic::cli {
 namespace {
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 void set_option(const std::string& option, SolverOptions& solver) {
   if (contains(definiteness_names(), option)) {
     solver.definiteness = option;
@@ -31,6 +27,10 @@ void set_option(const std::string& option, SolverOptions& solver) {
 }
 
 }  // namespace
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
 
 SolverOptions method_named(const std::string& text, const SolverOptions& base) {
   SolverOptions solver;

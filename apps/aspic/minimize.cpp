@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct MinimizeArguments {
   std::string function, expression, start;
   std::string criterion = "scale", test = "textbook";
   SolverOptions solver;
@@ -46,7 +46,7 @@ Planar parse_start(const std::string& text) {
   return p;
 }
 
-Problem problem_of(const Arguments& arguments) {
+Problem problem_of(const MinimizeArguments& arguments) {
   if (arguments.function.empty() == arguments.expression.empty())
     throw InvalidInput("name one function (see aspic minimize --list), or give --expression \"...\"");
   Problem problem;
@@ -93,7 +93,7 @@ std::string json_row(const IterationRecord& record) {
   return line.dump();
 }
 
-Minimization minimize(const Problem& problem, const Arguments& arguments) {
+Minimization minimize(const Problem& problem, const MinimizeArguments& arguments) {
   SolverOptions solver = arguments.solver;
   solver.minimize.criterion = criterion_named(arguments.criterion);
   solver.minimize.line_search.test = decrease_test_named(arguments.test);
@@ -200,7 +200,7 @@ int list() {
   return exit_done;
 }
 
-int run(const Arguments& arguments) {
+int run(const MinimizeArguments& arguments) {
   if (arguments.list) return list();
   for (const fs::path& picture : {arguments.plot, arguments.model})
     if (!picture.empty()) require_drawable(picture);
@@ -223,7 +223,7 @@ int run(const Arguments& arguments) {
   return code;
 }
 
-void add_solver_options(CLI::App* command, Arguments& arguments) {
+void add_solver_options(CLI::App* command, MinimizeArguments& arguments) {
   SolverOptions& solver = arguments.solver;
   MinimizeOptions& minimize = solver.minimize;
   minimize.max_iterations = 200;
@@ -246,7 +246,7 @@ void add_solver_options(CLI::App* command, Arguments& arguments) {
 }  // namespace
 
 void add_minimize(CLI::App& app, Action& action) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<MinimizeArguments>();
   CLI::App* command =
       app.add_subcommand("minimize", "Minimises a function of two variables with the simulation's own methods");
   command->footer(R"(

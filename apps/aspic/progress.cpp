@@ -12,15 +12,8 @@ namespace {
 
 constexpr double kRedrawInterval = 0.1;  // on a terminal [s]
 constexpr double kLongStep = 1;          // before its iterations are shown on a terminal [s]
-constexpr double kLineInterval = 10;     // in a pipe [s], and
-constexpr double kLineFraction = 0.05;   // of the whole run
+constexpr double kLineFraction = 0.05;   // of the whole run: lines in a pipe
 constexpr int kBarWidth = 20;
-
-size_t terminal_width(std::FILE* stream) {
-  winsize size{};
-  const bool known = ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return known ? size.ws_col : 80;
-}
 
 std::string step_text(const StepReport& report, int last) {
   return fmt::format("step {}/{}  t {:.4g} s  {} it  E {:.4g} J  {}", report.step, last, report.time, report.iterations,
@@ -28,6 +21,12 @@ std::string step_text(const StepReport& report, int last) {
 }
 
 }  // namespace
+
+size_t terminal_width(std::FILE* stream) {
+  winsize size{};
+  const bool known = ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : 80;
+}
 
 std::string duration_text(double seconds) {
   if (seconds < 9.95) return fmt::format("{:.1f} s", seconds);

@@ -8,6 +8,10 @@
 
 namespace aspic::cli {
 
+inline constexpr double kLineInterval = 10;  // between two lines in a pipe [s]
+
+size_t terminal_width(std::FILE* stream);  // [characters]; 80 where it is not known
+
 class Progress {
  public:
   Progress(std::FILE* stream, int first_step, int last_step);

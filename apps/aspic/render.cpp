@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct RenderArguments {
   fs::path run, out;
   std::string size = "1280x720", view = "isometric", colour;
   double fps = 30, speed = 1;
@@ -33,7 +33,7 @@ struct Arguments {
 
 constexpr size_t kMostBytes = 100'000'000;  // of the page: what a browser bears
 
-viewer::RenderOptions render_options(const Arguments& arguments) {
+viewer::RenderOptions render_options(const RenderArguments& arguments) {
   if (!std::isfinite(arguments.fps) || !std::isfinite(arguments.speed))
     throw InvalidInput("--fps and --speed: finite numbers are needed");
   viewer::RenderOptions options{.view = arguments.view,
@@ -100,7 +100,7 @@ class Folder : public Output {
 
 bool is_picture(const fs::path& path) { return path.extension() == ".png"; }
 
-std::unique_ptr<Output> open_output(const Arguments& arguments, const viewer::RenderOptions& options) {
+std::unique_ptr<Output> open_output(const RenderArguments& arguments, const viewer::RenderOptions& options) {
   const fs::path& out = arguments.out;
   if (is_picture(out)) return std::make_unique<OnePicture>(out);
   if (viewer::VideoFile::is_video(out)) {
@@ -113,7 +113,7 @@ std::unique_ptr<Output> open_output(const Arguments& arguments, const viewer::Re
   return std::make_unique<Folder>(out);
 }
 
-int render(const Arguments& arguments) {
+int render(const RenderArguments& arguments) {
   viewer::RenderOptions options = render_options(arguments);
   if (is_picture(arguments.out) && options.step < 0)
     throw InvalidInput(
@@ -147,7 +147,7 @@ int render(const Arguments& arguments) {
 }  // namespace
 
 void add_render(CLI::App& app, Action& action) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RenderArguments>();
   CLI::App* command = app.add_subcommand("render", "Draws a run as pictures or a video; needs no display");
   command->footer(R"(
 Examples:

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr double kMegabyte = 1e6;
 
-struct Arguments {
+struct ReportArguments {
   fs::path run, out;
   double max_size = viewer::ReportOptions().max_bytes / kMegabyte;
 };
@@ -33,7 +33,7 @@ std::string written(const fs::path& file, const viewer::Report& report) {
                      static_cast<double>(report.html.size()) / kMegabyte);
 }
 
-int report(const Arguments& arguments) {
+int report(const ReportArguments& arguments) {
   if (!fs::is_directory(arguments.run))
     throw InvalidInput(
         fmt::format("{}: is no directory of a run; aspic run writes one, out/NAME by default", arguments.run.string()));
@@ -65,7 +65,7 @@ void write_run_report(const fs::path& run, const Scene& scene, std::FILE* stream
 }
 
 void add_report(CLI::App& app, Action& action) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ReportArguments>();
   CLI::App* command = app.add_subcommand("report", "Makes one HTML file of a run: playback, plots, certificate, scene");
   command->footer(R"(
 Examples:

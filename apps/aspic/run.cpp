@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct RunArguments {
   fs::path input, out;
   std::vector<std::string> overrides, landscapes;
   int threads = 0, steps = 0;  // 0: not given
@@ -45,23 +45,23 @@ std::string explanation_text(const Explanation& why) {
   return text + fmt::format("\n  remedy: {}", why.remedy);
 }
 
-std::vector<LandscapeAt> landscapes(const Arguments& arguments) {
+std::vector<LandscapeAt> landscapes(const RunArguments& arguments) {
   std::vector<LandscapeAt> places;
   for (const std::string& text : arguments.landscapes) places.push_back(parse_landscape(text));
   return places;
 }
 
 // The directory to continue: the one named, or the one where a run of the input would have gone.
-fs::path directory_to_resume(const Arguments& arguments) {
+fs::path directory_to_resume(const RunArguments& arguments) {
   if (!arguments.out.empty()) return arguments.out;
   if (fs::is_directory(arguments.input)) return arguments.input;
   return fs::path("out") / arguments.input.stem();
 }
 
-std::FILE* human_stream(const Arguments& arguments) { return arguments.json ? stderr : stdout; }
+std::FILE* human_stream(const RunArguments& arguments) { return arguments.json ? stderr : stdout; }
 
 // Long preparations are seen: what is said comes before what it is about.
-void announce(const Arguments& arguments, const std::string& what) {
+void announce(const RunArguments& arguments, const std::string& what) {
   if (arguments.quiet) return;
   fmt::print(human_stream(arguments), "{} ...\n", what);
   std::fflush(human_stream(arguments));
@@ -69,7 +69,7 @@ void announce(const Arguments& arguments, const std::string& what) {
 
 constexpr int kManyTets = 300'000;  // whose frame takes a second to write
 
-Scene load(const Arguments& arguments) {
+Scene load(const RunArguments& arguments) {
   const Announce tell = [&](const std::string& what) { announce(arguments, what); };
   if (arguments.resume) {
     if (!arguments.overrides.empty()) {
@@ -88,7 +88,7 @@ Scene load(const Arguments& arguments) {
   return load_scene(arguments.input, {.overrides = arguments.overrides, .announce = tell});
 }
 
-RunDirectory open_directory(const Arguments& arguments, Scene& scene) {
+RunDirectory open_directory(const RunArguments& arguments, Scene& scene) {
   if (arguments.resume) return RunDirectory::resume(directory_to_resume(arguments), scene);
   const fs::path path = arguments.out.empty() ? fs::path("out") / scene.name : arguments.out;
   if (scene.simulation.model().mesh.tet_count() >= kManyTets) announce(arguments, "writing the first frame");
@@ -111,7 +111,7 @@ int unconverged_before(const fs::path& directory, int steps) {
 // Takes the steps of one run and tells everyone who listens.
 class Runner {
  public:
-  Runner(const Arguments& arguments, Scene& scene, RunDirectory& directory, const Deadline& limit)
+  Runner(const RunArguments& arguments, Scene& scene, RunDirectory& directory, const Deadline& limit)
       : arguments_(arguments),
         limit_(limit),
         scene_(scene),
@@ -221,7 +221,7 @@ class Runner {
     }
   }
 
-  const Arguments& arguments_;
+  const RunArguments& arguments_;
   const Deadline limit_;
   Scene& scene_;
   RunDirectory& directory_;
@@ -235,7 +235,7 @@ class Runner {
   std::string last_cause_;  // explained already
 };
 
-void print_start(std::FILE* stream, const Arguments& arguments, const Scene& scene, const fs::path& directory) {
+void print_start(std::FILE* stream, const RunArguments& arguments, const Scene& scene, const fs::path& directory) {
   const Simulation& simulation = scene.simulation;
   for (const std::string& note : scene.notes) fmt::print(stream, "note: {}\n", note);
   fmt::print(stream, "{}: {} vertices, {} tets; {}, {}; {} threads; into {}\n", scene.name,
@@ -245,14 +245,14 @@ void print_start(std::FILE* stream, const Arguments& arguments, const Scene& sce
   std::fflush(stream);
 }
 
-int exit_code(const Arguments& arguments, bool has_run_out, int unconverged) {
+int exit_code(const RunArguments& arguments, bool has_run_out, int unconverged) {
   if (interrupt_signal()) return exit_signal + interrupt_signal();
   if (has_run_out) return exit_time_limit;
   if (unconverged > 0 && !arguments.allow_unconverged) return exit_unconverged;
   return exit_done;
 }
 
-int run(const Arguments& arguments) {
+int run(const RunArguments& arguments) {
   const WallClock clock = steady_seconds;
   const Deadline limit = arguments.time_limit > 0 ? Deadline(clock, arguments.time_limit) : Deadline();
   if (arguments.threads > 0) set_thread_count(arguments.threads);
@@ -286,7 +286,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_run(CLI::App& app, Action& action) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "Simulates a scene, or a mesh with sensible defaults");
   command->footer(R"(
 Examples:

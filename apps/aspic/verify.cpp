@@ -1,5 +1,6 @@
 // `aspic verify`: problems whose answers are known.
 #include "aspic/verify.h"
+#include "aspic/method_text.h"
 
 #include <fmt/format.h>
 
@@ -21,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct VerifyArguments {
   std::vector<std::string> only, instead;
   fs::path out = fs::path("out") / "verify";
   bool list = false, quick = false;
@@ -45,10 +46,6 @@ std::vector<const verify::Check*> chosen(const std::vector<std::string>& words) 
   return found;
 }
 
-bool contains(const std::vector<std::string>& list, const std::string& name) {
-  return std::find(list.begin(), list.end(), name) != list.end();
-}
-
 // A material may stand for a material, an integrator for an integrator.
 void add_replacement(const std::string& text, verify::Subject& subject) {
   const size_t at = text.find('=');
@@ -66,7 +63,7 @@ void add_replacement(const std::string& text, verify::Subject& subject) {
                   text));
 }
 
-int run(const Arguments& arguments) {
+int run(const VerifyArguments& arguments) {
   const auto checks = chosen(arguments.only);
   if (arguments.list) {
     print_list(checks);
@@ -101,7 +98,7 @@ int verify_all(const std::vector<const verify::Check*>& checks, const verify::Su
 }
 
 void add_verify(CLI::App& app, Action& action) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<VerifyArguments>();
   CLI::App* command = app.add_subcommand("verify", "Problems whose answers are known, each judged by numbers");
   command->footer(R"(
 Examples:

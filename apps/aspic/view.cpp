@@ -27,7 +27,7 @@ using viewer::Role;
 using viewer::Server;
 using viewer::Session;
 
-struct Arguments {
+struct ViewArguments {
   fs::path input;
   std::vector<std::string> overrides;
   int port = 0, threads = 0;  // 0: any; all
@@ -71,7 +71,7 @@ int serve_until_interrupted(Server& server) {
   return exit_done;
 }
 
-int view_run(const Arguments& arguments) {
+int view_run(const ViewArguments& arguments) {
   if (!arguments.overrides.empty() || arguments.play)
     throw InvalidInput("--set and --play are for what is simulated; a run has been already");
   const viewer::Report report =
@@ -84,7 +84,7 @@ int view_run(const Arguments& arguments) {
   return serve_until_interrupted(server);
 }
 
-int view_scene(const Arguments& arguments) {
+int view_scene(const ViewArguments& arguments) {
   std::atomic<Server*> listener = nullptr;
   const auto announce = [&](const std::string& what) {
     if (Server* server = listener) return server->announce(what);
@@ -103,7 +103,7 @@ int view_scene(const Arguments& arguments) {
   return serve_until_interrupted(server);
 }
 
-int view(const Arguments& arguments) {
+int view(const ViewArguments& arguments) {
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   return fs::is_directory(arguments.input) ? view_run(arguments) : view_scene(arguments);
 }
@@ -111,7 +111,7 @@ int view(const Arguments& arguments) {
 }  // namespace
 
 void add_view(CLI::App& app, Action& action) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ViewArguments>();
   CLI::App* command = app.add_subcommand("view", "Shows a scene in the browser, live: to be seen, touched and changed");
   command->footer(R"(
 Examples:

@@ -11,9 +11,9 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr int kDeepest = 12;        // of a message
-constexpr size_t kMostTexts = 200;  // of a list
-constexpr size_t kLongest = 4096;   // [bytes]
+constexpr int kDeepestNesting = 12;  // of a message
+constexpr size_t kMostTexts = 200;   // of a list
+constexpr size_t kLongest = 4096;    // [bytes]
 
 std::string shown(const Json& value) { return shortened(value.dump(-1, ' ', true, Json::error_handler_t::replace)); }
 
@@ -26,12 +26,12 @@ Json parse_json(std::string_view text, size_t most) {
     throw InvalidInput(fmt::format("a message of {} bytes; at most {} are read", text.size(), most));
   bool is_deep = false;
   const auto note_depth = [&](int depth, Json::parse_event_t, Json&) {
-    is_deep = is_deep || depth > kDeepest;
+    is_deep = is_deep || depth > kDeepestNesting;
     return !is_deep;
   };
   try {
     Json value = Json::parse(text, note_depth);
-    if (is_deep) throw InvalidInput(fmt::format("a message nested deeper than {} levels", kDeepest));
+    if (is_deep) throw InvalidInput(fmt::format("a message nested deeper than {} levels", kDeepestNesting));
     return value;
   } catch (const Json::exception& e) {
     throw InvalidInput(fmt::format("not a message in JSON: {}", e.what()));

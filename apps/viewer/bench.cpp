@@ -42,12 +42,6 @@ TipPose between(const TipPose& from, const TipPose& to, double s) {
   return {(1 - s) * from.center + s * to.center, to.axis, to.rotation};
 }
 
-Vec3d centroid(const TetMesh& mesh, int t) {
-  Vec3d sum{};
-  for (const int v : mesh.tets[t]) sum = sum + 0.25 * mesh.rest[v];
-  return sum;
-}
-
 }  // namespace
 
 Bench::~Bench() = default;

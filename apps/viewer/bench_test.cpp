@@ -26,8 +26,6 @@ name = "table"
 where = "Z < 1e-6"
 )";
 
-double number(const Json& json) { return json.get<double>(); }
-
 Json poke(int sites, int depths) {
   return {{"do", "poke_all"}, {"sites", sites}, {"depths", depths}, {"depth", 0.006}, {"radius", 0.02}};
 }

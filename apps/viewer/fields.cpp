@@ -4,13 +4,12 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "energy/energy.h"
 #include "math/eigen3.h"
 #include "mesh/tet_shape.h"
 
 namespace aspic::viewer {
 namespace {
-
-Vec3d at(std::span<const double> x, int vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
 
 void evaluate_elasticity(const View& view, TetFields& fields) {
   const size_t tets = view.simulation.model().mesh.tets.size();
@@ -55,7 +54,7 @@ TetFields tet_fields_at(const View& view) {
 
 Mat3d deformation_gradient(const TetMesh& mesh, int tet, std::span<const double> x) {
   const auto [a, b, c, d] = mesh.tets[tet];
-  const Mat3d Ds = from_columns(at(x, b) - at(x, a), at(x, c) - at(x, a), at(x, d) - at(x, a));
+  const Mat3d Ds = from_columns(point(x, b) - point(x, a), point(x, c) - point(x, a), point(x, d) - point(x, a));
   return Ds * inverse(edge_matrix(mesh, tet));
 }
 

@@ -8,6 +8,7 @@
 #include "capture/fitted_values.h"
 #include "io/base64.h"
 #include "io/gzip.h"
+#include "mesh/tet_shape.h"
 #include "optimize/minimize.h"
 #include "viewer/page.h"
 #include "viewer/recording_code.h"
@@ -15,8 +16,8 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr std::string_view kBegin = "<script type=\"application/json\" id=\"fit\">\"", kEnd = "\"</script>";
-constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
+constexpr std::string_view kFitBegin = "<script type=\"application/json\" id=\"fit\">\"", kFitEnd = "\"</script>";
+constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 
 // JSON knows no infinity and no NaN: null.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
@@ -27,9 +28,7 @@ std::vector<float> floats(const std::vector<double>& values) { return {values.be
 void append(const Vec3d& v, std::vector<float>& list) {
   for (int i = 0; i < 3; ++i) list.push_back(static_cast<float>(v[i]));
 }
-void append_nothing(std::vector<float>& list) { list.insert(list.end(), 3, kNoNumber); }
-
-double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
+void append_nothing(std::vector<float>& list) { list.insert(list.end(), 3, kNotANumber); }
 
 class FitPack {
  public:
@@ -248,7 +247,7 @@ class FitPack {
 }  // namespace
 
 std::string fit_page(const DataSet& data, const FitOutcome& outcome, const std::vector<FitIteration>& history) {
-  return page_with(fmt::format("{}{}{}", kBegin, FitPack(data, outcome, history).text(), kEnd));
+  return page_with(fmt::format("{}{}{}", kFitBegin, FitPack(data, outcome, history).text(), kFitEnd));
 }
 
 }  // namespace aspic::viewer

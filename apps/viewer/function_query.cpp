@@ -18,7 +18,7 @@ namespace aspic::viewer {
 namespace {
 
 constexpr int kMostIterations = 500, kMostSamples = 101;
-constexpr double kFarthest = 1e6;  // of a start
+constexpr double kFarthestStart = 1e6;  // of a start
 
 struct Problem {
   std::unique_ptr<PlanarFunction> function;
@@ -113,7 +113,7 @@ Planar start_of(Arguments& question) {
   Planar start{};
   bool fits = value.is_array() && value.size() == 2;
   for (size_t i = 0; fits && i < 2; ++i) {
-    fits = value[i].is_number() && std::abs(value[i].get<double>()) <= kFarthest;
+    fits = value[i].is_number() && std::abs(value[i].get<double>()) <= kFarthestStart;
     if (fits) start[i] = value[i].get<double>();
   }
   if (!fits) refuse("function.start", value, "two numbers of size at most 1e6 are expected");

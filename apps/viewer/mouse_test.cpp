@@ -6,16 +6,6 @@
 namespace aspic::viewer {
 namespace {
 
-double number(const Json& json) { return json.get<double>(); }
-
-std::vector<double> vec(const Json& json) { return json.get<std::vector<double>>(); }
-
-double sum(const Json& list) {
-  double total = 0;
-  for (const Json& x : list) total += number(x);
-  return total;
-}
-
 TEST(Mouse, PullsTheBodyTowardsTheCursorWithStiffnessTimesDistance) {
   Page page;
   page.grab_end({1, 0.5, 0.1});

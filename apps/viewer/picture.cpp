@@ -13,7 +13,6 @@ static_assert(std::endian::native == std::endian::little, "messages are little-e
 
 constexpr uint32_t kGeometry = 1, kPicture = 2;
 constexpr size_t kGeometryHeader = 32, kPictureHeader = 48;
-constexpr uint32_t kNoVertex = 0xffffffff;
 
 // Writes values one after another into bytes of a known size.
 class Writer {

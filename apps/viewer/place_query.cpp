@@ -1,21 +1,21 @@
 #include "viewer/place_query.h"
 
+#include "energy/energy.h"
 #include "mesh/tet_shape.h"
+#include "viewer/scene_json.h"
 
 namespace aspic::viewer {
 namespace {
 
-Json json_of(const Vec3d& x) { return {x[0], x[1], x[2]}; }
 Json rows_of(const Mat3d& A) {
   Json rows = Json::array();
   for (int r = 0; r < 3; ++r) rows.push_back({A(r, 0), A(r, 1), A(r, 2)});
   return rows;
 }
-Vec3d at(std::span<const double> x, int vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
 
 Json corner_positions(const Side& side, int tet) {
   Json list = Json::array();
-  for (const int v : side.model().mesh.tets[tet]) list.push_back(json_of(at(side.view().x, v)));
+  for (const int v : side.model().mesh.tets[tet]) list.push_back(json_of(point(side.view().x, v)));
   return list;
 }
 
@@ -108,7 +108,7 @@ Json worst_reply(const Side& side) {
                      {"unit", "N"},
                      {"tet", -1},
                      {"vertex", model.numbering.vertex.to_user(last->report.worst_vertex)},
-                     {"positions", Json::array({json_of(at(side.view().x, last->report.worst_vertex))})}});
+                     {"positions", Json::array({json_of(point(side.view().x, last->report.worst_vertex))})}});
   return {{"items", std::move(items)}};
 }
 

@@ -10,8 +10,6 @@
 namespace aspic::viewer {
 namespace {
 
-std::vector<double> vec(const Json& json) { return json.get<std::vector<double>>(); }
-
 // The same scene without a page: what is shown must be this.
 struct Twin {
   Scene scene;

@@ -6,8 +6,6 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr uint32_t kNoVertex = 0xffffffff;
-
 RecordedSurface numbered(std::string name, Surface surface, const Numbering& numbering) {
   RecordedSurface recorded{.name = std::move(name), .surface = std::move(surface)};
   for (const int t : recorded.surface.tet) recorded.tet.push_back(static_cast<uint32_t>(numbering.tet.to_user(t)));

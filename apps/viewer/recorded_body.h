@@ -12,7 +12,7 @@ struct RecordedSurface {
   std::string name;              // "skin" or "cage"
   Surface surface;               // carried by the points: `carrier` has their numbers
   std::vector<uint32_t> tet;     // behind each triangle, by the user's numbers
-  std::vector<uint32_t> vertex;  // the user's number of each vertex; 0xffffffff for a point of a fine skin
+  std::vector<uint32_t> vertex;  // the user's number of each vertex; kNoVertex for a point of a fine skin
   std::vector<uint32_t> place;   // whose value each vertex has
 };
 

@@ -10,7 +10,7 @@ namespace aspic::viewer {
 namespace {
 
 constexpr double kLargestCode = 65535, kLargestValue = 254;
-constexpr uint8_t kNoNumber = 255;
+constexpr uint8_t kCodeOfNoNumber = 255;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 void pad(std::string& bytes) { bytes.append((4 - bytes.size() % 4) % 4, '\0'); }
@@ -93,7 +93,7 @@ void ValueCode::add(std::span<const float> values) {
   ranges_.push_back(min);
   ranges_.push_back(max);
   const double size = double{max} - double{min};
-  std::vector<uint8_t> codes(values.size(), kNoNumber);
+  std::vector<uint8_t> codes(values.size(), kCodeOfNoNumber);
   for (size_t i = 0; i < values.size(); ++i) {
     if (std::isfinite(values[i]))
       codes[i] = static_cast<uint8_t>(size > 0 ? std::lround(kLargestValue * ((double{values[i]} - min) / size)) : 0);

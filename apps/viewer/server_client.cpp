@@ -12,7 +12,7 @@ using boost::system::error_code;
 constexpr size_t kLongestMessage = size_t{16} << 20;  // from the page: a recorded session
 constexpr size_t kQueueBytes = size_t{64} << 20;      // to the page
 constexpr size_t kQueueMessages = 20'000;
-constexpr std::chrono::seconds kHandshake(10), kIdle(30), kGoodbye(2);
+constexpr std::chrono::seconds kHandshake(10), kIdle(30), kCloseHandshake(2);
 
 // A page that has gone, for whatever reason of the network, is no news.
 std::string reason(const error_code& error) {
@@ -89,7 +89,7 @@ void Client::close(const std::string& why) {
 
 // A page that does not even read the goodbye is cut off.
 void Client::give_up_later() {
-  patience_.expires_after(kGoodbye);
+  patience_.expires_after(kCloseHandshake);
   patience_.async_wait([self = shared_from_this()](const error_code& error) {
     if (!error) self->cut_off();
   });

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "mesh/tet_shape.h"
+#include "viewer/scene_json.h"
 #include "viewer/session_impl.h"
 #include "viewer/touch_place.h"
 
@@ -13,8 +14,6 @@ namespace {
 
 constexpr int kMostMarkers = 5'000, kMostSites = 200, kMostDepths = 20;
 constexpr size_t kMostCases = 1'000;
-
-Json json_of(const Vec3d& x) { return {x[0], x[1], x[2]}; }
 
 // What the body is at rest does not depend on these.
 bool is_of_the_body(const std::string& override_text) {

@@ -11,14 +11,14 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr double kFarthest = 1000;  // of a target, in sizes of the body
+constexpr double kFarthestTarget = 1000;  // of a target, in sizes of the body
 
 Vec3d target_of(Arguments& arguments, const Side& side) {
   const Vec3d target = arguments.vector("target");
   Box box;
   for (const Vec3d& X : side.model().mesh.rest) box.add(X);
   const Vec3d extent = box.upper - box.lower, away = target - 0.5 * (box.lower + box.upper);
-  const double reach = kFarthest * std::sqrt(dot(extent, extent));
+  const double reach = kFarthestTarget * std::sqrt(dot(extent, extent));
   if (!(dot(away, away) <= reach * reach))
     throw InvalidInput(fmt::format("target: further than {:g} m from the body; choose a nearer one", reach));
   return target;

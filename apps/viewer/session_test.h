@@ -26,6 +26,14 @@ name = "clamp"
 where = "x < 1e-6"
 )";
 
+inline double number(const Json& json) { return json.get<double>(); }
+inline std::vector<double> vec(const Json& json) { return json.get<std::vector<double>>(); }
+inline double sum(const Json& list) {
+  double total = 0;
+  for (const Json& x : list) total += number(x);
+  return total;
+}
+
 // The last message of a kind.
 inline Json last(const Messages& messages, const std::string& kind) {
   Json found;

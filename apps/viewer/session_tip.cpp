@@ -12,7 +12,7 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr double kDeepest = 10;  // of the body's size
+constexpr double kDeepestTip = 10;  // of the body's size
 
 double size_of(const Surface& surface) {
   Vec3d lower = surface.rest.front(), upper = lower;
@@ -54,7 +54,7 @@ Tip tip_of(Arguments& touch, const Model& model, const Surface& cage) {
       refuse("touch.contact", contact, "'bonded' or 'sliding' is expected");
     tip.contact = contact == "sliding" ? TipContact::sliding : TipContact::bonded;
   }
-  if (touch.has("radius")) tip.radius = positive(touch, "radius", kDeepest * size_of(cage));
+  if (touch.has("radius")) tip.radius = positive(touch, "radius", kDeepestTip * size_of(cage));
   tip.stiffness = touch.has("stiffness") ? positive(touch, "stiffness", 1e20) : usual_layer(model, tip.radius);
   return tip;
 }
@@ -91,7 +91,7 @@ void Session::Impl::press(Arguments& arguments) {
   const Vec3d shift = arguments.has("shift") ? arguments.vector("shift") : Vec3d{};
   arguments.finish();
   if (!a->side.touched()) throw InvalidInput("press: there is no tip; let it touch the body first");
-  const double most = kDeepest * size_of(a->surface);
+  const double most = kDeepestTip * size_of(a->surface);
   if (!(std::abs(depth) <= most && length(shift) <= most))
     throw InvalidInput(fmt::format("press: further than {:g} m; choose less", most));
   Json done = {{"do", "press"}, {"depth", depth}};

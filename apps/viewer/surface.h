@@ -10,6 +10,8 @@
 
 namespace aspic::viewer {
 
+inline constexpr uint32_t kNoVertex = 0xffffffff;  // the user's number of a point of a fine skin
+
 struct Surface {
   bool is_fine = false;  // a skin apart from the boundary of the tets
   std::vector<Vec3d> rest;

@@ -24,21 +24,13 @@ where = "Z < 1e-6"
 )";
 const double kYoung = 2e4;
 
-double number(const Json& json) { return json.get<double>(); }
-std::vector<double> vec(const Json& json) { return json.get<std::vector<double>>(); }
 double size(const Json& json) {
   const std::vector<double> v = vec(json);
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-double sum(const Json& list) {
-  double total = 0;
-  for (const Json& x : list) total += number(x);
-  return total;
-}
-
 // A triangle of the upper side, near its middle.
-int upper_triangle(Page& page) {
+int middle_triangle(Page& page) {
   const auto& g = page.geometry();
   int best = -1;
   double least = 1;
@@ -55,12 +47,12 @@ int upper_triangle(Page& page) {
 }
 
 Json touch_message(Page& page, const Json& further = Json::object()) {
-  Json message = {{"do", "touch"}, {"side", "a"}, {"triangle", upper_triangle(page)}, {"weights", {0.3, 0.3, 0.4}}};
+  Json message = {{"do", "touch"}, {"side", "a"}, {"triangle", middle_triangle(page)}, {"weights", {0.3, 0.3, 0.4}}};
   message.update(further);
   return message;
 }
 
-void expect_balance(Page& page) {
+void expect_balance_of_tip(Page& page) {
   for (size_t i = 1; i < page.rows().size(); ++i) {
     const Json &row = page.rows()[i], &before = page.rows()[i - 1];
     const double gain =
@@ -119,7 +111,7 @@ TEST(Tip, EnergiesBalanceWithItsWork) {
         EXPECT_NEAR(number(row["pin_work"]), 0, 1e-12);
       }
       EXPECT_GT(most, 0);
-      expect_balance(page);
+      expect_balance_of_tip(page);
     }
 }
 

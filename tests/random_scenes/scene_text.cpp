@@ -15,7 +15,7 @@ std::string shortest(double x) {
 
 namespace {
 
-std::string quoted(const std::string& text) { return "\"" + text + "\""; }
+std::string in_quotes(const std::string& text) { return "\"" + text + "\""; }
 
 class SceneText {
  public:
@@ -36,7 +36,7 @@ class SceneText {
   void line(const std::string& key, const std::string& value) { text_ += key + " = " + value + "\n"; }
   void choice(double probability, const std::string& key, std::initializer_list<const char*> names) {
     const std::string chosen = draw_.one_of(names);
-    if (draw_.chance(probability)) line(key, quoted(chosen));
+    if (draw_.chance(probability)) line(key, in_quotes(chosen));
   }
   std::string metres(double low, double high) { return shortest(length_ * std::stod(draw_.number(low, high))); }
   std::string metres3(double size) {
@@ -57,7 +57,7 @@ class SceneText {
       integrator_ = draw_.one_of({"backward_euler", "backward_euler", "backward_euler", "bdf2", "tr_bdf2", "midpoint",
                                   "trapezoid", "quasi_static", "linearly_implicit_euler"});
     }
-    line("integrator", quoted(integrator_));
+    line("integrator", in_quotes(integrator_));
     if (integrator_ != "bdf2" && integrator_ != "quasi_static" && draw_.chance(0.05))
       line("adaptive", "{ tolerance = " + draw_.size(1e-3, 1e-1) + " }");
   }
@@ -71,7 +71,7 @@ class SceneText {
     const std::string method = is_newton
                                    ? draw_.one_of({"newton", "newton", "newton_cg"})
                                    : draw_.one_of({"lbfgs", "nonlinear_cg", "gradient_descent", "vertex_descent"});
-    line("method", quoted(method));
+    line("method", in_quotes(method));
     if (is_newton) {
       choice(0.6, "definiteness", {"on_demand", "progressive", "clamped", "absolute", "exact"});
       if (method == "newton") choice(0.4, "linear", {"cholesky", "multigrid", "block_jacobi"});
@@ -94,12 +94,12 @@ class SceneText {
     line("line_search", "{ alpha_max = " + draw_.one_of<std::string>({"1", "0.5", "2", "1e6"}) +
                             ", c = " + draw_.one_of<std::string>({"1e-4", "0.1", "0.45", "0.9"}) +
                             ", p = " + draw_.number(0.1, 0.9) +
-                            ", test = " + quoted(draw_.one_of({"textbook", "textbook", "slide", "none"})) + " }");
+                            ", test = " + in_quotes(draw_.one_of({"textbook", "textbook", "slide", "none"})) + " }");
   }
 
   void body(int index, int count) {
     text_ += "[[body]]\n";
-    line("name", quoted("body" + std::to_string(index)));
+    line("name", in_quotes("body" + std::to_string(index)));
     shape();
     if (draw_.chance(0.1)) {  // slivers
       line("scale", "[1, " + draw_.size(1e-6, 1) + ", " + draw_.size(1e-3, 1e3) + "]");
@@ -140,17 +140,17 @@ class SceneText {
 
   void material(bool is_elastic) {
     std::string density = draw_.chance(0.2) ? draw_.size(1e-3, 1e6) : "1000";
-    if (draw_.chance(0.05)) density = quoted("Y > 0.1 ? 1e6 : 1");
+    if (draw_.chance(0.05)) density = in_quotes("Y > 0.1 ? 1e6 : 1");
     if (!is_elastic) return line("material", "{ density = " + density + " }");
     const std::vector<MaterialInfo>& all = materials();
     const std::string& model = all[draw_.integer(0, static_cast<int>(all.size()) - 1)].name;
     std::string young = shortest(std::round(young_));
-    if (draw_.chance(0.1)) young = quoted("X > " + metres(0, 1) + " ? " + young + " : " + draw_.size(1, 1e12));
+    if (draw_.chance(0.1)) young = in_quotes("X > " + metres(0, 1) + " ? " + young + " : " + draw_.size(1, 1e12));
     const std::string poisson = draw_.chance(0.1)
                                     ? draw_.one_of<std::string>({"0.4999", "0.499", "0.0", "-0.9", "-0.3"})
                                 : draw_.chance(0.5) ? "0.3"
                                                     : draw_.number(0, 0.49);
-    line("material", "{ model = " + quoted(model) + ", young = " + young + ", poisson = " + poisson +
+    line("material", "{ model = " + in_quotes(model) + ", young = " + young + ", poisson = " + poisson +
                          ", density = " + density + " }");
   }
 
@@ -160,7 +160,7 @@ class SceneText {
     const auto random = [&](const std::string& size) {
       std::string value = "[";
       for (const char* axis : {"2e4*Y", "3e4*Z", "5e4*(Y+Z)"})
-        value += quoted(size + "*" + wobble + axis + "/" + shortest(length_) + ")") + (axis[0] == '5' ? "]" : ", ");
+        value += in_quotes(size + "*" + wobble + axis + "/" + shortest(length_) + ")") + (axis[0] == '5' ? "]" : ", ");
       return value;
     };
     switch (draw_.integer(0, 6)) {

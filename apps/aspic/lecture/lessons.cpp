@@ -18,7 +18,7 @@ using nlohmann::json;
 using viewer::Lesson;
 
 // Where the cursor is at which time, from where it grabbed the highest point of the body.
-struct Drag {
+struct RecordedDrag {
   struct Key {
     double time;   // [s]
     Vec3d offset;  // [m]
@@ -40,7 +40,7 @@ struct Staging {
   Shape shape = Shape::real_mesh;
   std::vector<std::string> overrides = {};
   std::vector<Lesson::Comparison> comparison = {};
-  std::optional<Drag> drag = {};
+  std::optional<RecordedDrag> drag = {};
   json function = nullptr;
 };
 
@@ -49,7 +49,7 @@ json question(const char* name, double x, double y, json settings) {
 }
 
 // The cursor's way of pages 33 and 34, as in scenes/lecture/33_mouse.toml.
-Drag wild_drag() {
+RecordedDrag wild_drag() {
   return {.keys = {{0, {{0, 0, 0}}},
                    {0.07, {{0.5, -0.1, 0}}},
                    {0.14, {{-0.5, 0.1, 0.3}}},
@@ -62,7 +62,7 @@ Drag wild_drag() {
 }
 
 // The cursor's way of page 25, as in scenes/lecture/25_drag.toml.
-Drag slow_drag() {
+RecordedDrag slow_drag() {
   return {.keys = {{0, {{0, 0, 0}}}, {0.3, {{0.25, 0, 0}}}, {0.5, {{0.25, 0.1, 0.1}}}, {0.8, {{0, 0, 0.1}}}},
           .until = 1.5};
 }
@@ -228,10 +228,11 @@ const std::vector<Staging>& stagings() {
   return list;
 }
 
-Vec3d offset_at(const Drag& drag, double time) {
-  const auto next = std::find_if(drag.keys.begin(), drag.keys.end(), [&](const Drag::Key& k) { return k.time > time; });
+Vec3d offset_at(const RecordedDrag& drag, double time) {
+  const auto next =
+      std::find_if(drag.keys.begin(), drag.keys.end(), [&](const RecordedDrag::Key& k) { return k.time > time; });
   if (next == drag.keys.end()) return drag.keys.back().offset;
-  const Drag::Key& last = *(next - 1);
+  const RecordedDrag::Key& last = *(next - 1);
   const double part = (time - last.time) / (next->time - last.time);
   return (1 - part) * last.offset + part * next->offset;
 }
@@ -239,7 +240,7 @@ Vec3d offset_at(const Drag& drag, double time) {
 json to_json(const Vec3d& x) { return {x[0], x[1], x[2]}; }
 
 // The recorded mouse: it grabs the highest point, moves once in every step and lets go.
-std::string recording_of(const Drag& drag, const std::filesystem::path& path,
+std::string recording_of(const RecordedDrag& drag, const std::filesystem::path& path,
                          const std::vector<std::string>& overrides) {
   const Scene scene = load_scene(path, {.overrides = overrides});
   const viewer::Surface surface = viewer::boundary_of(scene.simulation.model());
