@@ -15,10 +15,10 @@
 #include "base/stopwatch.h"
 
 namespace aspic::cli {
+namespace lecture {
 namespace {
 
 namespace fs = std::filesystem;
-using namespace lecture;
 
 struct LectureArguments {
   std::string page;
@@ -116,9 +116,10 @@ int run(const LectureArguments& arguments) {
 }
 
 }  // namespace
+}  // namespace lecture
 
 void add_lecture(CLI::App& app, Action& action) {
-  const auto arguments = std::make_shared<LectureArguments>();
+  const auto arguments = std::make_shared<lecture::LectureArguments>();
   CLI::App* command = app.add_subcommand("lecture", "The lecture's pages as demonstrations judged by numbers");
   command->footer(R"(
 Examples:
@@ -135,7 +136,7 @@ is not available, or bad input, 3 something does not hold.)");
   command->add_option("--out", arguments->out, "Folder of data, pictures and summary")->capture_default_str();
   command->add_option("--threads", arguments->threads, "Threads; all cores by default; the result is the same")
       ->check(CLI::Range(1, 1024));
-  command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
+  command->callback([arguments, &action] { action = [arguments] { return lecture::run(*arguments); }; });
 }
 
 }  // namespace aspic::cli

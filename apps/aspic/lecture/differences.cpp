@@ -13,8 +13,6 @@
 namespace aspic::cli::lecture {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
 // A motion of all vertices whose derivatives are known: x_r = X_r cos(w_r t) + X_(r+1) sin(w_r t).
 struct KnownMotion {
   const TetMesh& mesh;

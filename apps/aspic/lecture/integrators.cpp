@@ -13,7 +13,6 @@
 namespace aspic::cli::lecture {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kStiffness = 100, kStep = 0.01;  // [N/m], [s]
 
 // Four masses of 1 kg, each on a spring to where it rests: w = 10 rad/s.

@@ -1,12 +1,15 @@
 // A scene run to an end, and what its steps reported.
 #pragma once
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "aspic/lecture/open_step.h"
 #include "dynamics/step_report.h"
 
 namespace aspic::cli::lecture {
+
+inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();  // for bounds of round-off
 
 struct Run {
   std::vector<StepReport> reports;

@@ -15,8 +15,6 @@
 namespace aspic::cli::lecture {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
 // Another objective in other units: E / unit, over the same x.
 class Rescaled : public Objective {
  public:
