@@ -9,6 +9,34 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
 
+# A unit is some files of one folder, compiled as one: headers are read once per unit.
+set(unit_size 8)
+set(CMAKE_UNITY_BUILD ${ASPIC_UNITY})
+set(CMAKE_UNITY_BUILD_BATCH_SIZE ${unit_size})
+
+# group_by_folder(TARGET SOURCES...): none of the target's units mixes folders; sources not named are compiled alone.
+function(group_by_folder target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+  set(folders)
+  foreach(source ${ARGN})
+    cmake_path(GET source PARENT_PATH path)
+    cmake_path(GET path FILENAME folder)
+    list(APPEND folders ${folder})
+    list(APPEND in_${folder} ${source})
+  endforeach()
+  list(REMOVE_DUPLICATES folders)
+  foreach(folder ${folders})
+    list(LENGTH in_${folder} count)
+    math(EXPR units "(${count} + ${unit_size} - 1) / ${unit_size}")
+    set(index 0)
+    foreach(source ${in_${folder}})
+      math(EXPR unit "${index} * ${units} / ${count} + 1")
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder}${unit})
+      math(EXPR index "${index} + 1")
+    endforeach()
+  endforeach()
+endfunction()
+
 find_program(CCACHE ccache)
 if(CCACHE)  # clones of the project share what they have compiled
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} ${CCACHE})
@@ -26,6 +54,9 @@ target_compile_options(aspic_build INTERFACE ${ASPIC_ARCH} -ffp-contract=fast -f
                                              -Wno-missing-field-initializers)  # {.a = 1}: the rest has defaults
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # false alarms inside the headers of GCC 12
   target_compile_options(aspic_build INTERFACE -Wno-maybe-uninitialized -Wno-restrict)
+endif()
+if(ASPIC_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # takes the files of a unit for headers
+  target_compile_options(aspic_build INTERFACE -Wno-subobject-linkage)
 endif()
 if(ASPIC_WERROR)
   target_compile_options(aspic_build INTERFACE -Werror)
