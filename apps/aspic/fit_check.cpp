@@ -27,7 +27,7 @@ std::string_view word(Severity severity) {
 double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
 // The cases of each group, in the order of the data.
-std::vector<std::vector<const LoadCase*>> groups_of(const Experiment& experiment) {
+std::vector<std::vector<const LoadCase*>> cases_by_group(const Experiment& experiment) {
   std::vector<std::vector<const LoadCase*>> groups;
   for (const LoadCase& load : experiment.cases) {
     if (groups.empty() || groups.back().front()->group != load.group) groups.emplace_back();
@@ -38,7 +38,7 @@ std::vector<std::vector<const LoadCase*>> groups_of(const Experiment& experiment
 
 Chart force_against_depth(const Experiment& experiment) {
   Chart chart{"Force against depth", {"depth [mm]"}, {"force [N]"}, {}};
-  for (const auto& group : groups_of(experiment)) {
+  for (const auto& group : cases_by_group(experiment)) {
     Series series{group.front()->group, {0}, {0}, SeriesStyle::line_and_points};
     for (const LoadCase* load : group) {
       if (!load->tip || !load->force) continue;
@@ -53,7 +53,7 @@ Chart force_against_depth(const Experiment& experiment) {
 // Of the case with the largest load of each group.
 Chart motion_against_distance(const Experiment& experiment) {
   Chart chart{"Motion of the markers", {"distance from the touch at rest [mm]"}, {"motion [mm]"}, {}};
-  for (const auto& group : groups_of(experiment)) {
+  for (const auto& group : cases_by_group(experiment)) {
     const LoadCase& load = *group.back();
     if (load.positions.empty() || chart.series.size() == kMostSeries) continue;
     Series series{load.name, {}, {}, SeriesStyle::points};
@@ -92,7 +92,7 @@ void print_content(const DataSet& data) {
   fmt::print(
       "{}: {} vertices, {} tets, {} vertices fixed; {} markers; {} cases in {} groups with {} positions, {} forces\n",
       data.name, e.mesh.vertex_count(), e.mesh.tet_count(), e.fixed.size(), e.markers.size(), e.cases.size(),
-      groups_of(e).size(), positions, forces);
+      cases_by_group(e).size(), positions, forces);
   for (const std::string& note : data.notes) fmt::print("note: {}\n", note);
 }
 

@@ -157,7 +157,7 @@ std::string in_words(const Minimization& done) {
 }
 
 // Norms go through abs, which takes the sign from what is not a number.
-void print_summary(const Problem& problem, const Minimization& done) {
+void print_minimum(const Problem& problem, const Minimization& done) {
   const MinimizeReport& report = done.report;
   fmt::print("{:>4} {:>13.6g} {:>13.6g} {:>15.8g} {:>10.3g}\n\n", report.iterations, done.end[0], done.end[1],
              report.value, std::abs(report.gradient_norm));
@@ -210,7 +210,7 @@ int run(const MinimizeArguments& arguments) {
   if (arguments.json)
     print_json_summary(problem, done);
   else
-    print_summary(problem, done);
+    print_minimum(problem, done);
   if (done.report.status == Status::interrupted) return exit_signal + interrupt_signal();
   const int code = is_success(done.report.status) ? exit_done : exit_unconverged;
   if (!arguments.model.empty()) draw_model(arguments.model, problem, done, arguments.iteration);

@@ -41,7 +41,7 @@ Chart chart_of(const verify::Plot& plot) {
 }
 
 // JSON has no NaN: what could not be computed is null.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 Json to_json(const Verification& result) {
   const verify::Check& check = *result.check;
@@ -50,9 +50,9 @@ Json to_json(const Verification& result) {
                {"seconds", result.seconds},    {"rows", Json::array()}};
   for (const verify::Row& row : result.findings.rows)
     json["rows"].push_back({{"quantity", row.quantity},
-                            {"measured", number(row.measured)},
-                            {"reference", number(row.reference)},
-                            {"tolerance", number(row.tolerance)},
+                            {"measured", number_json(row.measured)},
+                            {"reference", number_json(row.reference)},
+                            {"tolerance", number_json(row.tolerance)},
                             {"unit", row.unit},
                             {"reason", row.reason},
                             {"passes", row.passes()}});
@@ -79,7 +79,7 @@ void add_overview(ReportPage& page, const std::vector<Verification>& results) {
   page.table({"", "check", "rows", "name"}, rows);
 }
 
-void add_check(ReportPage& page, const Verification& result, const std::vector<Figure>& figures) {
+void add_judged(ReportPage& page, const Verification& result, const std::vector<Figure>& figures) {
   page.heading(result.check->title);
   page.verdict(result.findings.passes() ? Verdict::pass : Verdict::fail, result.findings.passes() ? "pass" : "fail",
                fmt::format("{:.1f} s", result.seconds));
@@ -127,7 +127,7 @@ void write_verification(const fs::path& folder, const std::vector<Verification>&
       draws = false;
       fmt::print(stderr, "note: no plots in the page: {}\n", error.what());
     }
-    add_check(page, result, figures);
+    add_judged(page, result, figures);
   }
   page.write(folder / "index.html");
   Json json = {{"what", how}, {"checks", Json::array()}};

@@ -54,7 +54,8 @@ TetFields tet_fields_at(const View& view) {
 
 Mat3d deformation_gradient(const TetMesh& mesh, int tet, std::span<const double> x) {
   const auto [a, b, c, d] = mesh.tets[tet];
-  const Mat3d Ds = from_columns(point(x, b) - point(x, a), point(x, c) - point(x, a), point(x, d) - point(x, a));
+  const Mat3d Ds = from_columns(aspic::point(x, b) - aspic::point(x, a), aspic::point(x, c) - aspic::point(x, a),
+                                aspic::point(x, d) - aspic::point(x, a));
   return Ds * inverse(edge_matrix(mesh, tet));
 }
 

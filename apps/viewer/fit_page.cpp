@@ -20,8 +20,8 @@ constexpr std::string_view kFitBegin = "<script type=\"application/json\" id=\"f
 constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 
 // JSON knows no infinity and no NaN: null.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-Json vector(const Vec3d& v) { return {number(v[0]), number(v[1]), number(v[2])}; }
+Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+Json vector(const Vec3d& v) { return {number_json(v[0]), number_json(v[1]), number_json(v[2])}; }
 
 std::vector<float> floats(const std::vector<double>& values) { return {values.begin(), values.end()}; }
 
@@ -64,7 +64,7 @@ class FitPack {
     for (const Vec3d& X : mesh.rest) append(X, points);
     std::vector<uint32_t> tets, fixed;
     for (const Tet& tet : mesh.tets) tets.insert(tets.end(), tet.begin(), tet.end());
-    for (const SurfacePoint& marker : data_.experiment.markers) {
+    for (const aspic::SurfacePoint& marker : data_.experiment.markers) {
       Vec3d X{};
       for (int k = 0; k < 3; ++k) X = X + marker.weights[k] * data_.experiment.mesh.rest[marker.vertices[k]];
       append(X, markers);
@@ -113,20 +113,21 @@ class FitPack {
 
   Json fit_json() const {
     const FitReport& r = outcome_.report;
-    return {{"words", r.words},
-            {"success", is_success(r.status)},
-            {"interrupted", outcome_.interrupted},
-            {"method", r.method},
-            {"rule", outcome_.plan.fit.weight_rule},
-            {"mesh", words_of_mesh(outcome_)},
-            {"iterations", r.iterations},
-            {"weight", number(r.weight)},
-            {"misfit", number(r.misfit)},
-            {"roughness", number(r.roughness)},
-            {"uniformMisfit", outcome_.uniform ? number(outcome_.uniform->misfit) : Json()},
-            {"informed", outcome_.posterior && outcome_.posterior->ok ? number(outcome_.posterior->informed) : Json()},
-            {"noiseFactor",
-             outcome_.posterior && outcome_.posterior->ok ? number(outcome_.posterior->noise_factor) : Json()}};
+    return {
+        {"words", r.words},
+        {"success", is_success(r.status)},
+        {"interrupted", outcome_.interrupted},
+        {"method", r.method},
+        {"rule", outcome_.plan.fit.weight_rule},
+        {"mesh", words_of_mesh(outcome_)},
+        {"iterations", r.iterations},
+        {"weight", number_json(r.weight)},
+        {"misfit", number_json(r.misfit)},
+        {"roughness", number_json(r.roughness)},
+        {"uniformMisfit", outcome_.uniform ? number_json(outcome_.uniform->misfit) : Json()},
+        {"informed", outcome_.posterior && outcome_.posterior->ok ? number_json(outcome_.posterior->informed) : Json()},
+        {"noiseFactor",
+         outcome_.posterior && outcome_.posterior->ok ? number_json(outcome_.posterior->noise_factor) : Json()}};
   }
 
   Json quantities() const {
@@ -135,9 +136,9 @@ class FitPack {
       Json rows = Json::array();
       for (const ValueRow& row : q.rows)
         rows.push_back({{"where", row.where},
-                        {"value", number(row.value)},
-                        {"lower", row.interval ? number(row.interval->lower) : Json()},
-                        {"upper", row.interval ? number(row.interval->upper) : Json()}});
+                        {"value", number_json(row.value)},
+                        {"lower", row.interval ? number_json(row.interval->lower) : Json()},
+                        {"upper", row.interval ? number_json(row.interval->upper) : Json()}});
       list.push_back({{"name", q.name},
                       {"unit", q.unit},
                       {"isLog", q.name == "young"},
@@ -196,15 +197,15 @@ class FitPack {
       groups.push_back({{"group", g.group},
                         {"ok", g.ok},
                         {"failure", g.failure},
-                        {"peakMotion", number(g.peak_motion)},
-                        {"positionError", number(g.position_error)},
-                        {"positionNoise", number(g.position_noise)},
-                        {"peakForce", number(g.peak_force)},
-                        {"forceError", number(g.force_error)},
-                        {"forceNoise", number(g.force_noise)}});
+                        {"peakMotion", number_json(g.peak_motion)},
+                        {"positionError", number_json(g.position_error)},
+                        {"positionNoise", number_json(g.position_noise)},
+                        {"peakForce", number_json(g.peak_force)},
+                        {"forceError", number_json(g.force_error)},
+                        {"forceNoise", number_json(g.force_noise)}});
     return {{"groups", groups},
-            {"position", number(outcome_.held_out->position_error)},
-            {"force", number(outcome_.held_out->force_error)}};
+            {"position", number_json(outcome_.held_out->position_error)},
+            {"force", number_json(outcome_.held_out->force_error)}};
   }
 
   Json history() const {
@@ -212,18 +213,20 @@ class FitPack {
     for (const FitIteration& i : history_)
       list.push_back({{"iteration", i.index},
                       {"start", i.start},
-                      {"weight", number(i.weight)},
-                      {"misfit", number(i.misfit)},
-                      {"roughness", number(i.roughness)},
-                      {"objective", number(i.objective)},
-                      {"decrement", number(i.decrement)}});
+                      {"weight", number_json(i.weight)},
+                      {"misfit", number_json(i.misfit)},
+                      {"roughness", number_json(i.roughness)},
+                      {"objective", number_json(i.objective)},
+                      {"decrement", number_json(i.decrement)}});
     return list;
   }
 
   Json weights() const {
     Json list = Json::array();
     for (const WeightTrial& w : outcome_.report.weights)
-      list.push_back({{"weight", number(w.weight)}, {"misfit", number(w.misfit)}, {"roughness", number(w.roughness)}});
+      list.push_back({{"weight", number_json(w.weight)},
+                      {"misfit", number_json(w.misfit)},
+                      {"roughness", number_json(w.roughness)}});
     return list;
   }
 
@@ -234,7 +237,7 @@ class FitPack {
             {"inward", vector(poke.inward)},
             {"radius", poke.load.tip ? poke.load.tip->radius : 0.0},
             {"depth", length(poke.load.pose.center - poke.load.touch.center)},
-            {"gain", number(poke.gain)},
+            {"gain", number_json(poke.gain)},
             {"words", poke.words}};
   }
 

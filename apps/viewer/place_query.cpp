@@ -15,7 +15,7 @@ Json rows_of(const Mat3d& A) {
 
 Json corner_positions(const Side& side, int tet) {
   Json list = Json::array();
-  for (const int v : side.model().mesh.tets[tet]) list.push_back(json_of(point(side.view().x, v)));
+  for (const int v : side.model().mesh.tets[tet]) list.push_back(json_of(aspic::point(side.view().x, v)));
   return list;
 }
 
@@ -108,7 +108,7 @@ Json worst_reply(const Side& side) {
                      {"unit", "N"},
                      {"tet", -1},
                      {"vertex", model.numbering.vertex.to_user(last->report.worst_vertex)},
-                     {"positions", Json::array({json_of(point(side.view().x, last->report.worst_vertex))})}});
+                     {"positions", Json::array({json_of(aspic::point(side.view().x, last->report.worst_vertex))})}});
   return {{"items", std::move(items)}};
 }
 

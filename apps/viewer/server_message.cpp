@@ -4,12 +4,10 @@
 
 namespace aspic::viewer {
 
-using nlohmann::json;
-
 MessageHead parse_head(std::string_view text) {
   // Of what lies deeper than the members of the message nothing is kept.
-  const auto is_shallow = [](int depth, json::parse_event_t, const json&) { return depth <= 1; };
-  const json message = json::parse(text, is_shallow, /*allow_exceptions=*/false);
+  const auto is_shallow = [](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) { return depth <= 1; };
+  const nlohmann::json message = nlohmann::json::parse(text, is_shallow, /*allow_exceptions=*/false);
   MessageHead head{.id = "null"};
   if (!message.is_object()) return head;
   const auto text_of = [&](const char* key) {

@@ -33,7 +33,7 @@ Aim aim_of(std::string_view command) {
   return command == "press" ? Aim::tip : Aim::none;
 }
 
-std::string refusal(const std::string& id, const std::string& why) {
+std::string refusal_text(const std::string& id, const std::string& why) {
   return fmt::format(R"({{"kind":"refused","id":{},"why":{}}})", id, nlohmann::json(why).dump());
 }
 
@@ -103,7 +103,7 @@ void Room::receive(PageId id, std::string text) {
   const MessageHead head = parse_head(text);
   if (!head.is_message) complain("a page sent what is no message of the viewer's protocol; it was refused");
   if (text.size() > kLongestCommand && head.does != "replay")
-    return send(*page, refusal(head.id, "this message is longer than 1 MiB"));
+    return send(*page, refusal_text(head.id, "this message is longer than 1 MiB"));
   if (head.does == "take") return take(*page, head.id);
   if (text.empty()) text = " ";  // refused like any other text that is no message
   const bool steers = steers_ == id;
@@ -115,7 +115,7 @@ void Room::receive(PageId id, std::string text) {
                                           .urgency = urgency,
                                           .is_question = head.does.empty(),
                                           .aim = head.id == "null" ? aim_of(head.does) : Aim::none});
-  if (!is_added) return send(*page, refusal(head.id, "too many messages wait for the step under way"));
+  if (!is_added) return send(*page, refusal_text(head.id, "too many messages wait for the step under way"));
   if (urgency != Urgency::none && !is_watching_urgency_) watch_urgency();
 }
 

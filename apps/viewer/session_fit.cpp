@@ -32,7 +32,7 @@ FitPlan plan_for(const Bench& bench) {
   return plan;
 }
 
-Json json_of(const FitIteration& i, int residuals) {
+Json iteration_json(const FitIteration& i, int residuals) {
   return {{"index", i.index},
           {"misfit", i.misfit},
           {"roughness", i.roughness},
@@ -203,7 +203,7 @@ Json Session::Impl::fit_json() const {
   if (!capture.is_fitting && capture.history.empty() && capture.failure.empty()) return nullptr;
   const int residuals = capture.bench ? residuals_of(capture.bench->data().experiment) : 0;
   Json history = Json::array();
-  for (const FitIteration& i : capture.history) history.push_back(json_of(i, residuals));
+  for (const FitIteration& i : capture.history) history.push_back(iteration_json(i, residuals));
   Json fit = {{"running", capture.is_fitting},
               {"stage", capture.stage},
               {"words", capture.words},

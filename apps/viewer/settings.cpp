@@ -79,14 +79,14 @@ std::string kind_of(const Key& key, const Value& value) {
   return key.accepts & kNumber ? "number" : "integer";
 }
 
-Json json_of(const Value& value) {
+Json value_json(const Value& value) {
   if (value.is_text()) return value.text();
   if (std::holds_alternative<bool>(value.data)) return value.boolean();
   if (std::holds_alternative<std::int64_t>(value.data)) return std::get<std::int64_t>(value.data);
   if (value.is_number()) return value.number();
   if (!value.is_array()) return inline_toml(value);
   Json list = Json::array();
-  for (const Value& element : value.array()) list.push_back(json_of(element));
+  for (const Value& element : value.array()) list.push_back(value_json(element));
   return list;
 }
 
@@ -96,8 +96,8 @@ Json setting_json(const Table& document, const Row& row, const Value& value) {
   std::string meaning = key.meaning;
   if (bodies > 1 && (row.key.starts_with("material.") || row.key.starts_with("damping.")))
     meaning += fmt::format(" (shown: that of the first body; a new value is for all {})", bodies);
-  return {{"key", row.key},     {"label", row.label},          {"group", row.group},      {"unit", key.unit},
-          {"meaning", meaning}, {"kind", kind_of(key, value)}, {"value", json_of(value)}, {"min", row.min},
+  return {{"key", row.key},     {"label", row.label},          {"group", row.group},         {"unit", key.unit},
+          {"meaning", meaning}, {"kind", kind_of(key, value)}, {"value", value_json(value)}, {"min", row.min},
           {"max", row.max},     {"log", row.is_log},           {"choices", key.choices}};
 }
 

@@ -14,7 +14,6 @@
 namespace aspic::cli::lecture {
 namespace {
 
-using nlohmann::json;
 using viewer::Lesson;
 
 // Where the cursor is at which time, from where it grabbed the highest point of the body.
@@ -41,10 +40,10 @@ struct Staging {
   std::vector<std::string> overrides = {};
   std::vector<Lesson::Comparison> comparison = {};
   std::optional<RecordedDrag> drag = {};
-  json function = nullptr;
+  nlohmann::json function = nullptr;
 };
 
-json question(const char* name, double x, double y, json settings) {
+nlohmann::json question(const char* name, double x, double y, nlohmann::json settings) {
   return {{"name", name}, {"start", {x, y}}, {"settings", std::move(settings)}, {"iteration", 0}, {"samples", 61}};
 }
 
@@ -237,7 +236,7 @@ Vec3d offset_at(const RecordedDrag& drag, double time) {
   return (1 - part) * last.offset + part * next->offset;
 }
 
-json to_json(const Vec3d& x) { return {x[0], x[1], x[2]}; }
+nlohmann::json to_json(const Vec3d& x) { return {x[0], x[1], x[2]}; }
 
 // The recorded mouse: it grabs the highest point, moves once in every step and lets go.
 std::string recording_of(const RecordedDrag& drag, const std::filesystem::path& path,
@@ -250,8 +249,10 @@ std::string recording_of(const RecordedDrag& drag, const std::filesystem::path& 
   const double h = scene.simulation.options().h;
   const auto step_at = [&](double time) { return 1 + static_cast<int>(std::lround(time / h)); };
 
-  json events = json::array();
-  const auto add = [&](int step, json command) { events.push_back({{"step", step}, {"command", std::move(command)}}); };
+  nlohmann::json events = nlohmann::json::array();
+  const auto add = [&](int step, nlohmann::json command) {
+    events.push_back({{"step", step}, {"command", std::move(command)}});
+  };
   if (drag.stiffness > 0) add(1, {{"do", "stiffness"}, {"value", drag.stiffness}});
   add(1, {{"do", "grab"},
           {"side", "a"},
@@ -262,11 +263,11 @@ std::string recording_of(const RecordedDrag& drag, const std::filesystem::path& 
   for (int step = 2; step <= released; ++step)
     add(step, {{"do", "move"}, {"target", to_json(top + offset_at(drag, step * h))}});
   add(released + 1, {{"do", "release"}});
-  return json{{"scene", path.string()},
-              {"overrides", overrides},
-              {"compare", nullptr},
-              {"events", std::move(events)},
-              {"steps", step_at(drag.until) - 1}}
+  return nlohmann::json{{"scene", path.string()},
+                        {"overrides", overrides},
+                        {"compare", nullptr},
+                        {"events", std::move(events)},
+                        {"steps", step_at(drag.until) - 1}}
       .dump();
 }
 

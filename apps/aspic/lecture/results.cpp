@@ -65,13 +65,13 @@ std::vector<int> pages_with(PageVerdict verdict, const std::vector<Result>& resu
 }
 
 // JSON has no infinity: what exploded is the word "inf".
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(fmt::format("{}", value)); }
+Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(fmt::format("{}", value)); }
 
 Json to_json(const Measure& m) {
-  Json json = {{"what", m.what}, {"value", number(m.value)}, {"unit", m.unit}};
+  Json json = {{"what", m.what}, {"value", number_json(m.value)}, {"unit", m.unit}};
   if (m.relation == Relation::shown) return json;
   json["relation"] = to_string(m.relation);
-  json["bound"] = number(m.bound);
+  json["bound"] = number_json(m.bound);
   json["holds"] = m.holds();
   json["reason"] = m.reason;
   return json;
@@ -110,11 +110,11 @@ void add_overview(ReportPage& page, const std::vector<Result>& results) {
   page.heading("All pages");
   page.paragraph(count_text(results));
   std::vector<std::vector<Cell>> rows;
-  for (int number = 1; number <= kPages; ++number) {
-    const PageVerdict verdict = verdict_of(number, results);
-    std::string titles = reason_for_none(number);
-    for (const Demonstration* d : demonstrations_of(number)) titles += (titles.empty() ? "" : "; ") + d->title;
-    rows.push_back({{std::to_string(number)}, {titles}, {to_text(verdict), badge(verdict)}});
+  for (int number_json = 1; number_json <= kPages; ++number_json) {
+    const PageVerdict verdict = verdict_of(number_json, results);
+    std::string titles = reason_for_none(number_json);
+    for (const Demonstration* d : demonstrations_of(number_json)) titles += (titles.empty() ? "" : "; ") + d->title;
+    rows.push_back({{std::to_string(number_json)}, {titles}, {to_text(verdict), badge(verdict)}});
   }
   page.table({"page", "demonstration", ""}, rows);
 }
