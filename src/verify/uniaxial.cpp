@@ -10,6 +10,8 @@
 namespace aspic::verify {
 namespace {
 
+using Real = long double;
+
 // Two cells along each edge of the unit cube; the vertex in the middle is moved away from it.
 TetMesh distorted_box() {
   TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2});
@@ -65,7 +67,6 @@ StretchedBox stretched_box(const std::string& material, const MaterialParameters
 }
 
 Uniaxial uniaxial_of_energy(const std::string& material, double young, double poisson, double l) {
-  using Real = long double;
   const auto psi = [&](Real a, Real b) { return principal_energy(material, {a, b, b}, young, poisson); };
   const Real h = 1e-3L;  // sixth-order differences: their error is h^6, round-off 1e-19 / h
   const auto slope = [h](const auto& f) {
