@@ -198,9 +198,11 @@ class Explosion : public testing::TestWithParam<std::string> {};
 
 TEST_P(Explosion, IsThatOfTheOtherSchemeUnderTheSameMouse) {
   Opened opened("33-34_explosion_" + GetParam());
-  opened.play(50);
+  opened.play(18);
   EXPECT_TRUE(opened.converged("a"));
-  EXPECT_GE(opened.rows("a").size(), 25u);  // it goes on where the other one has ended
+  if (GetParam() == "explicit") {
+    EXPECT_GT(opened.rows("a").size(), 2 * opened.rows("b").size());  // it goes on where the other one has ended
+  }
   EXPECT_GT(opened.largest_energy("b"), 1e3 * opened.largest_energy("a"));
 }
 
