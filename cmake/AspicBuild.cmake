@@ -38,8 +38,8 @@ function(group_by_folder target)
 endfunction()
 
 find_program(CCACHE ccache)
-if(CCACHE)  # clones of the project share what they have compiled
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} ${CCACHE})
+if(CCACHE)  # clones of the project share what they have compiled, with the debug information of the first
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${CCACHE})
 endif()
 
 if(ASPIC_PORTABLE)
