@@ -33,6 +33,10 @@ struct Scales {
   }
 };
 
+inline std::ostream& operator<<(std::ostream& out, const Scales& scales) {
+  return out << "length " << scales.length << ", modulus " << scales.modulus << ", density " << scales.density;
+}
+
 // "<0.4 m>" becomes 0.4 in the units of `scales`.
 std::string in_units(const std::string& text, const Scales& scales);
 

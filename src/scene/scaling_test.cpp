@@ -33,10 +33,6 @@ std::vector<Scales> corners(const Case& scene, const Scales& small, const Scales
   return all;
 }
 
-std::ostream& operator<<(std::ostream& out, const Scales& scales) {
-  return out << "length " << scales.length << ", modulus " << scales.modulus << ", density " << scales.density;
-}
-
 // Nothing is rounded differently where all scales are powers of two.
 TEST_P(InOtherUnits, PowersOfTwoChangeNoBit) {
   const Outcome metres = run(GetParam(), {});
