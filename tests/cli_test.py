@@ -87,7 +87,7 @@ class CommandLine(unittest.TestCase):
     def beam(self, name="beam.toml", duration=0.05, cells="8, 2, 2", extra=""):
         return self.write(name, BEAM.format(duration=duration, cells=cells) + extra)
 
-    def aspic(self, *arguments, code=0, timeout=120):
+    def aspic(self, *arguments, code=0, timeout=600):
         done = subprocess.run([ASPIC, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=timeout)
         self.assertEqual(done.returncode, code, f"aspic {' '.join(arguments)}\n{done.stdout}\n{done.stderr}")
         return done
@@ -779,7 +779,7 @@ class Interruption(CommandLine):
         folder = pathlib.Path(tempfile.mkdtemp(prefix="aspic_cli_"))
         atexit.register(shutil.rmtree, folder)
         (folder / "beam.toml").write_text(BEAM.format(duration=1.0, cells="8, 3, 3"))
-        subprocess.run([ASPIC, "run", "beam.toml", "--out", "whole"], cwd=folder, check=True, timeout=120,
+        subprocess.run([ASPIC, "run", "beam.toml", "--out", "whole"], cwd=folder, check=True, timeout=600,
                        capture_output=True)
         return folder / "whole"
 

@@ -123,6 +123,14 @@ TEST(ParameterDerivatives, HaveTheirTranspose) {
   }
 }
 
+// But for round-off: the compiler may fuse products differently where parameters are set and where terms are made.
+void expect_same(const std::vector<double>& a, const std::vector<double>& b, const std::string& name) {
+  ASSERT_EQ(a.size(), b.size());
+  double size = 0;
+  for (const double bi : b) size = std::fmax(size, std::abs(bi));
+  for (size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-13 * size) << name;
+}
+
 TEST(ParameterDerivatives, BelongToTheParametersThatWereSet) {
   for (const MaterialInfo& info : materials()) {
     const TwoBodies bodies(info);
@@ -133,11 +141,11 @@ TEST(ParameterDerivatives, BelongToTheParametersThatWereSet) {
     const auto made = make_tet_elasticity(bodies.material, bodies.mesh, TwoBodies::kFirst, others);
     EXPECT_NE(bodies.force(*set), bodies.force(*made)) << info.name;
     set->set_parameters(others);
-    EXPECT_EQ(bodies.force(*set), bodies.force(*made)) << info.name;
+    expect_same(bodies.force(*set), bodies.force(*made), info.name);
     std::vector<double> a(bodies.x.size()), b(bodies.x.size());
     set->add_parameter_force(bodies.x, change, 1, a);
     made->add_parameter_force(bodies.x, change, 1, b);
-    EXPECT_EQ(a, b) << info.name;
+    expect_same(a, b, info.name);
   }
 }
 
