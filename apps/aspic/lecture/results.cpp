@@ -110,11 +110,11 @@ void add_overview(ReportPage& page, const std::vector<Result>& results) {
   page.heading("All pages");
   page.paragraph(count_text(results));
   std::vector<std::vector<Cell>> rows;
-  for (int number_json = 1; number_json <= kPages; ++number_json) {
-    const PageVerdict verdict = verdict_of(number_json, results);
-    std::string titles = reason_for_none(number_json);
-    for (const Demonstration* d : demonstrations_of(number_json)) titles += (titles.empty() ? "" : "; ") + d->title;
-    rows.push_back({{std::to_string(number_json)}, {titles}, {to_text(verdict), badge(verdict)}});
+  for (int page_number = 1; page_number <= kPages; ++page_number) {
+    const PageVerdict verdict = verdict_of(page_number, results);
+    std::string titles = reason_for_none(page_number);
+    for (const Demonstration* d : demonstrations_of(page_number)) titles += (titles.empty() ? "" : "; ") + d->title;
+    rows.push_back({{std::to_string(page_number)}, {titles}, {to_text(verdict), badge(verdict)}});
   }
   page.table({"page", "demonstration", ""}, rows);
 }
