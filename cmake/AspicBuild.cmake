@@ -10,7 +10,7 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 
 # A unit is some files of one folder, compiled as one: headers are read once per unit.
-set(unit_size 8)
+set(unit_size 16)
 set(CMAKE_UNITY_BUILD ${ASPIC_UNITY})
 set(CMAKE_UNITY_BUILD_BATCH_SIZE ${unit_size})
 
@@ -58,6 +58,13 @@ endif()
 if(ASPIC_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # takes the files of a unit for headers
   target_compile_options(aspic_build INTERFACE -Wno-subobject-linkage)
 endif()
+
+# Compiles the code around the numerics with less optimization, for a third less time. clang's sanitizer builds keep theirs.
+function(compile_quickly target)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
+endfunction()
 if(ASPIC_WERROR)
   target_compile_options(aspic_build INTERFACE -Werror)
 endif()

@@ -35,8 +35,6 @@ double largest_term(const StepReport& report) {
 class CertifiedScene : public testing::TestWithParam<fs::path> {};
 
 TEST_P(CertifiedScene, ClosesItsLedgerAndKeepsTheBound) {
-  if (GetParam().stem() == "bunny" && !fs::exists(fs::path(ASPIC_SOURCE_DIR) / "assets" / "bunny.mesh"))
-    GTEST_SKIP() << "no assets/bunny.mesh: ./run makes it";
   Scene scene = load_scene(GetParam());
   const int tets = scene.simulation.model().mesh.tet_count();
   for (int i = 0; i < (tets > kManyTets ? 1 : 5); ++i) {

@@ -108,20 +108,16 @@ TEST(Recovery, AHeldBoxComesToRestFromAPointAPlaneAndRandomPlaces) {
 // A minimum other than the rest shape is one that no path without flat tets leaves: its tets lie twice around an edge.
 TEST(Recovery, AHeldBunnyComesToRestFromRandomPlacesOrStaysWoundAroundAnEdge) {
   const std::string mesh = std::string(ASPIC_SOURCE_DIR) + "/assets/bunny.mesh";
-  if (!std::filesystem::exists(mesh)) GTEST_SKIP() << "no assets/bunny.mesh: ./run makes it";
   const TestFolder folder;
   const std::string bunny = "mesh = \"" + mesh + "\"\nscale = 0.1";
-  int at_rest = 0;
-  for (const int seed : {1, 2, 3, 4}) {
+  for (const int seed : {1, 2}) {
     SCOPED_TRACE(seed);
     const std::string start = strewn({{-0.49, 0, -0.37}}, {{0.49, 0.95, 0.38}}, seed);
     const Recovery found = recover(folder.write("s.toml", held(bunny, "stable_neo_hookean", start)));
     EXPECT_LT(found.report.iterations, 150);
     EXPECT_GT(found.report.min_det_F, 0);
     EXPECT_EQ(found.is_at_rest(), found.winding == 1) << found.report.potential_total << " J";
-    at_rest += found.is_at_rest();
   }
-  EXPECT_GE(at_rest, 2);
 }
 
 }  // namespace

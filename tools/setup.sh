@@ -109,7 +109,7 @@ configure() {
     set -- "$@" "-D$setting"
     shift
   done
-  [ -f "$build_dir/CMakeCache.txt" ] || set -- -DASPIC_TESTS=OFF -DASPIC_BENCH=OFF "$@"
+  [ -f "$build_dir/CMakeCache.txt" ] || set -- -DASPIC_TESTS=OFF -DASPIC_BENCH=OFF -DASPIC_MESHER=OFF "$@"
   logged configure cmake -S "$root" -B "$build_dir" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@" ||
     die "the build could not be configured"
 }
@@ -150,28 +150,19 @@ run_tests() {
   return "$(cat "$tests_log.status")"
 }
 
-# The default scene's mesh: the Stanford bunny of the npm package `bunny` (public domain), about 3 000 vertices.
+# The surface of the Stanford bunny: npm package `bunny` (public domain). The default scene's mesh, assets/bunny.mesh, was made
+# from it and is part of the repository.
 bunny_package=bunny@1.0.1
-bunny_size=0.53 # in units of the file, in which the bunny is 10 wide
-make_bunny() {
-  assets=$root/assets
-  [ ! -s "$assets/bunny.mesh" ] || return 0
-  mkdir -p "$assets"
-  [ -s "$assets/bunny.obj" ] || fetch_bunny
-  say "Filling the bunny with tetrahedra ..."
-  logged bunny-mesh "$build_dir/bin/aspic-mesh" "$assets/bunny.obj" -o "$assets/new.mesh" --size "$bunny_size" --quiet ||
-    die "assets/bunny.obj could not be filled with tetrahedra"
-  mv "$assets/new.mesh" "$assets/bunny.mesh"
-}
-
 fetch_bunny() {
+  assets=$root/assets
+  [ ! -s "$assets/bunny.obj" ] || return 0
   need "" "nodejs:node npm"
   say "Fetching the surface of the bunny: npm package $bunny_package ..."
   folder=$(mktemp -d)
   if ! (cd "$folder" && logged npm npm pack "$bunny_package"); then
     rm -rf "$folder"
     die "the npm package $bunny_package could not be fetched (is the network away?).
-Everything but the default scene works without it: ./run run MESH with any mesh of your own."
+Only what fills this surface with tets needs it."
   fi
   tar -xzf "$folder"/bunny-*.tgz -C "$folder"
   awk -f "$root/tools/bunny_to_obj.awk" "$folder/package/index.js" >"$assets/new.obj"
@@ -194,12 +185,10 @@ shapes_dir=$root/build/shapes
 cgal_shapes="data/meshes/armadillo.off data/meshes/elephant.off data/meshes/hand.off data/meshes/homer.off
   data/images/liver.inr.gz"
 fetch_shapes() {
-  assets=$root/assets
   mkdir -p "$shapes_dir"
   if [ ! -s "$shapes_dir/bunny.obj" ]; then
-    mkdir -p "$assets"
-    [ -s "$assets/bunny.obj" ] || (fetch_bunny) || say "The benchmark goes on without the bunny."
-    [ ! -s "$assets/bunny.obj" ] || cp "$assets/bunny.obj" "$shapes_dir/"
+    (fetch_bunny) || say "The benchmark continues without the bunny."
+    [ ! -s "$root/assets/bunny.obj" ] || cp "$root/assets/bunny.obj" "$shapes_dir/"
   fi
   [ -s "$shapes_dir/liver.inr.gz" ] || fetch_cgal_shapes ||
     say "warning: the package libcgal-demo could not be fetched; the benchmark goes on without its shapes"

@@ -102,7 +102,7 @@ Stage::Stage(const fs::path& mesh, fs::path cache) : scenes_(found("scenes/lectu
     }
   }
   note_ = mesh_.empty() ? note_ +
-                              "no real mesh: assets/bunny.mesh is not found (./run makes it), nor was --mesh given; "
+                              "no real mesh: assets/bunny.mesh is not found, nor was --mesh given; "
                               "each scene keeps the shape that it describes"
                         : "real mesh: the bunny, made one metre large";
 }

@@ -1,6 +1,6 @@
 // Bytes and milliseconds per picture of a fine surface, and the time to the first picture. Only the bytes are judged.
 import assert from "node:assert/strict";
-import { existsSync, writeFileSync } from "node:fs";
+import { writeFileSync } from "node:fs";
 import { join, relative } from "node:path";
 import { test } from "node:test";
 import { openPage, openSession, root, setPlaying, startProgram, temporaryFolder } from "./harness.mjs";
@@ -70,8 +70,7 @@ test("pictures of a surface of 26 000 vertices have less than 1.2 MB", async (t)
 
 test("the first picture of a scene comes soon", async (t) => {
   const start = performance.now();
-  // ./run fetches the bunny, the tests do not.
-  const scene = existsSync(join(root, "assets/bunny.mesh")) ? "scenes/bunny.toml" : "scenes/cantilever.toml";
+  const scene = "scenes/bunny.toml";
   const program = await startProgram(scene);
   const listening = performance.now();
   const opened = await openPage(program.address);
