@@ -1,8 +1,16 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import type { TestContext } from "node:test";
 import { LiveSource } from "../src/live";
 import type { Socket } from "../src/live";
 import type { Incoming } from "../src/source";
+
+// Node.js 18 takes the list itself, newer versions an object that holds it.
+function mockTimeouts(context: TestContext): void {
+  const enable = context.mock.timers.enable.bind(context.mock.timers) as (what: unknown) => void;
+  const isOld = Number(process.versions.node.split(".")[0]) < 20;
+  enable(isOld ? ["setTimeout"] : { apis: ["setTimeout"] });
+}
 
 class FakeSocket {
   binaryType: BinaryType = "blob";
@@ -65,7 +73,7 @@ test("a refusal rejects what was asked, in the program's words", async () => {
 });
 
 test("a lost connection rejects what is open and is made anew", async (context) => {
-  context.mock.timers.enable({ apis: ["setTimeout"] });
+  mockTimeouts(context);
   const { source, sockets, received } = connect();
   const asked = source.ask({ ask: "recording" });
   sockets[0].closed();
@@ -85,7 +93,7 @@ test("a lost connection rejects what is open and is made anew", async (context) 
 });
 
 test("why the program closed the connection is told", (context) => {
-  context.mock.timers.enable({ apis: ["setTimeout"] });
+  mockTimeouts(context);
   const { sockets, received } = connect();
   sockets[0].closed("too slow");
   assert.match(JSON.stringify(received), /closed the connection: too slow/);
