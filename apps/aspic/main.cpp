@@ -16,6 +16,7 @@
 #include "aspic/streams.h"
 #include "base/error.h"
 #include "base/printable.h"
+#include "io/text_scanner.h"
 
 namespace aspic::cli {
 namespace {
@@ -68,6 +69,16 @@ std::string hint(const CLI::App& app, const std::vector<std::string>& arguments)
   return "";
 }
 
+// Comparisons with NaN are false, so no range refuses it.
+void require_finite_numbers(CLI::App& app) {
+  const auto complaint = [](const std::string& text) -> std::string {
+    return parse_number(text) ? "" : "'" + text + "' is not a finite number";
+  };
+  for (CLI::App* command : app.get_subcommands(nullptr))
+    for (CLI::Option* option : command->get_options())
+      if (option->get_type_name().starts_with("FLOAT")) option->check(complaint);
+}
+
 int report_parse_error(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& arguments) {
   if (error.get_exit_code() == 0) {  // --help, --version
     std::ostringstream text;
@@ -104,6 +115,8 @@ int run_program(int argc, char** argv) {
   add_lecture(app, action);
   add_verify(app, action);
   add_viewer_commands(app, action);
+  add_completion(app, action);
+  require_finite_numbers(app);
   if (argc == 1) {
     fmt::print("{}", app.help());
     return exit_bad_input;

@@ -35,6 +35,8 @@ class CsvFile {
                         Rows rows);
 
   void append(const CsvRow& row);  // with one write, so that a killed run leaves whole lines
+  uint64_t size() const { return file_.size(); }  // [bytes]
+  const std::filesystem::path& path() const { return file_.path(); }
   void sync() { file_.sync(); }
   void close() { file_.close(); }
 
