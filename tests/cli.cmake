@@ -1,7 +1,7 @@
 # The program as its users meet it; standard Python drives it.
 find_package(Python3 COMPONENTS Interpreter)
 if(TARGET aspic_cli AND Python3_FOUND)
-  set(cases Help Materials Minimize Derivatives Check Convert Mesh Run Compare Interruption Lecture Verify)
+  set(cases Help Completion Materials Minimize Derivatives Check Convert Mesh Run Compare Interruption Lecture Verify)
   if(ASPIC_VIEWER)
     list(APPEND cases Report Render)
   endif()

@@ -41,6 +41,7 @@ USES = {
     "verify": (["--list"], ["none"]),
     "view": (["--help"], ["none.toml"]),
     "report": (["--help"], ["none"]),
+    "completion": (["bash"], ["none"]),
     "render": (["--help"], ["none", "-o", "none.png"]),
 }
 DOCUMENTED = {0, 1, 2, 3, 4, 130, 141, 143}
@@ -54,7 +55,12 @@ class Streams(unittest.TestCase):
         for name, text in (("cube.toml", CUBE), ("tet.mesh", TET), ("curve.csv", CURVE)):
             (cls.folder / name).write_text(text)
         help_text = cls.aspic("--help").stdout.decode()
-        cls.commands = re.findall(r"(?m)^  ([a-z-]+) {2,}", help_text.split("Subcommands:")[1].split("Examples:")[0])
+        cls.expected = {}  # what each use does with ordinary streams
+        for command in re.findall(r"(?m)^  ([a-z-]+) {2,}", help_text.split("Subcommands:")[1].split("Examples:")[0]):
+            if command == "mesh" and not pathlib.Path(ASPIC).with_name("aspic-mesh").exists():
+                continue
+            for use in USES[command]:
+                cls.expected[command, *use] = cls.aspic(command, *use)
 
     @classmethod
     def aspic(cls, *arguments, prefix="", **streams):
@@ -63,25 +69,15 @@ class Streams(unittest.TestCase):
         streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **streams}
         return subprocess.run(command, cwd=cls.folder, timeout=60, **streams)
 
-    def each_use(self):
-        for command in self.commands:
-            self.assertIn(command, USES, "this command needs a use here")
-            if command == "mesh" and not pathlib.Path(ASPIC).with_name("aspic-mesh").exists():
-                continue
-            for use in USES[command]:
-                yield [command, *use]
-
     def test_lost_messages_change_no_exit_code(self):
-        for arguments in self.each_use():
-            expected = self.aspic(*arguments)
+        for arguments, expected in self.expected.items():
             self.assertIn(expected.returncode, DOCUMENTED, arguments)
-            for prefix in ("2> /dev/full", "2>&-", "2>&- <&-"):
+            for prefix in ("2> /dev/full", "2>&- <&-"):
                 done = self.aspic(*arguments, prefix=prefix)
                 self.assertEqual(done.returncode, expected.returncode, (arguments, prefix))
 
     def test_lost_results_are_bad_input(self):
-        for arguments in self.each_use():
-            expected = self.aspic(*arguments)
+        for arguments, expected in self.expected.items():
             is_lost = expected.stdout and arguments[0] != "mesh"  # aspic-mesh is a program of its own
             code = 2 if is_lost and expected.returncode == 0 else expected.returncode
             for prefix in ("> /dev/full", ">&-"):
@@ -91,12 +87,12 @@ class Streams(unittest.TestCase):
                     self.assertIn(b"standard output: cannot be written", done.stderr, arguments)
 
     def test_no_stream_at_all_is_no_crash(self):
-        for arguments in self.each_use():
+        for arguments in self.expected:
             for prefix in ("> /dev/full 2>&1", "<&- >&- 2>&-"):
                 self.assertIn(self.aspic(*arguments, prefix=prefix).returncode, DOCUMENTED, (arguments, prefix))
 
     def test_pipes_without_a_reader_end_quietly(self):
-        for arguments in self.each_use():
+        for arguments in self.expected:
             read, write = os.pipe()
             os.close(read)
             done = self.aspic(*arguments, stdout=write)
@@ -109,6 +105,18 @@ class Streams(unittest.TestCase):
             self.aspic("run", "cube.toml", "--out", "unread", "--force", prefix=prefix)
             self.assertEqual(len((self.folder / "unread/steps.csv").read_text().splitlines()), 3)
             self.assertNotIn("warning", (self.folder / "unread/steps.csv").read_text())
+
+    def test_a_run_ends_with_a_checkpoint_when_its_reader_has_gone(self):
+        (self.folder / "long.toml").write_text(CUBE.replace("duration = 0.02", "duration = 1000"))
+        process = subprocess.Popen([ASPIC, "run", "long.toml", "--json"], cwd=self.folder, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE)
+        process.stdout.readline()
+        process.stdout.close()
+        messages = process.stderr.read()
+        process.stderr.close()
+        self.assertEqual(process.wait(timeout=60), 141, messages)
+        done = self.aspic("run", "long.toml", "--resume", "--steps", "1", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
 
 
 if __name__ == "__main__":

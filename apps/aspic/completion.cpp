@@ -147,7 +147,7 @@ std::string man_page(const CLI::App& app, const std::vector<CommandHelp>& comman
       page += std::string(option.takes_value && !option.is_positional ? " \\fIVALUE\\fR" : "") + "\n";
       page += roff(option.text) + "\n";
     }
-    page += verbatim(command.footer);
+    if (command.footer != app.get_footer()) page += verbatim(command.footer);  // a command without one inherits it
   }
   return page + ".SH EXAMPLES AND EXIT CODES\n" + verbatim(app.get_footer());
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "aspic/commands.h"
+#include "aspic/interrupt.h"
 #include "aspic/streams.h"
 #include "base/error.h"
 #include "base/printable.h"
@@ -160,7 +161,8 @@ int main(int argc, char** argv) {
   guard_standard_streams();
   const int code = run_guarded(argc, argv);
   const std::string lost = lost_output();  // tables and JSON that did not arrive are no success
-  if (lost.empty() || code == exit_signal + SIGPIPE) return code;
+  if (lost.empty()) return code;
+  if (interrupt_signal() == SIGPIPE) return exit_signal + SIGPIPE;  // the reader has seen what it wanted
   fmt::print(stderr, "error: standard output: cannot be written: {}; free some space or choose another disk\n", lost);
   return code == exit_done ? exit_bad_input : code;
 }
