@@ -26,19 +26,13 @@ std::string first_indices(const std::vector<int>& indices) {
   return indices.size() > kShown ? text + ", ..." : text;
 }
 
-// What helps once the small holes have been filled.
-std::string remedy(const Finding& finding, Holes holes) {
-  const bool is_too_large = holes == Holes::fill_small && finding.name == "open_surface";
-  return is_too_large ? "close these holes where it was made; they are too large to be filled" : finding.remedy;
-}
-
-void check(const std::filesystem::path& path, const TriMesh& mesh, Holes holes) {
+void check(const std::filesystem::path& path, const TriMesh& mesh) {
   std::vector<std::string> errors;
   for (const Finding& finding : diagnose(mesh)) {
     if (finding.severity != Severity::error) continue;
     std::string& error = errors.emplace_back(path.string() + ": " + finding.message);
     if (!finding.indices.empty()) error += " [" + first_indices(finding.indices) + "]";
-    error += "; " + remedy(finding, holes);
+    error += "; " + finding.remedy;
   }
   if (!errors.empty()) throw InvalidInput(errors);
 }
@@ -54,7 +48,7 @@ CheckedSurface checked_surface(const std::filesystem::path& path, Holes holes) {
     if (const int added = surface.mesh.triangle_count() - before; added > 0)
       surface.actions.push_back("filled holes with " + std::to_string(added) + " triangles");
   }
-  check(path, surface.mesh, holes);
+  check(path, surface.mesh);
   return surface;
 }
 
