@@ -115,7 +115,7 @@ class CommandLine(unittest.TestCase):
 class Help(CommandLine):
     def test_every_level_has_examples(self):
         for arguments in ([], ["run"], ["check"], ["convert"], ["materials"], ["minimize"], ["capture"], ["fit"], ["fit-curves"],
-                          ["closed-loop"], ["verify"]):
+                          ["closed-loop"], ["verify"], ["completion"]):
             text = self.aspic(*arguments, "--help").stdout
             self.assertIn("Examples:", text)
             self.assertIn(" ".join(["  aspic", *arguments]), text)
@@ -137,6 +137,37 @@ class Help(CommandLine):
 
     def test_no_arguments_show_the_help(self):
         self.assertIn("Examples:", self.aspic(code=2).stdout)
+
+
+class Completion(CommandLine):
+    def test_holds_every_option_of_the_help(self):
+        script = self.aspic("completion", "bash").stdout
+        page = self.aspic("completion", "man").stdout.replace("\\-", "-")
+        for command in re.findall(r"(?m)^    ([a-z-]+)\)", script):
+            options = "" if command == "mesh" else self.aspic(command, "--help").stdout.split("Examples:")[0]
+            known = re.search(rf"(?m)^    {command}\) options='(.*)' ;;", script)[1].split()
+            for option in re.findall(r"(?m)^  (?:-\w,)?(--[a-z-]+)", options):
+                self.assertIn(option, known, command)
+                self.assertIn(option, page)
+
+    def test_bash_completes_commands_and_options(self):
+        script = self.write("aspic.bash", self.aspic("completion", "bash").stdout)
+        for words, expected in (("aspic mat", "materials"), ("aspic run x.toml --time", "--time-limit")):
+            done = subprocess.run(["bash", "-c", f'source {script}; COMP_WORDS=({words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); '
+                                   '_aspic; echo "${COMPREPLY[@]}"'], cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual((done.stdout, done.stderr), (expected + "\n", ""))
+
+    @unittest.skipUnless(shutil.which("groff"), "needs groff")
+    def test_the_man_page_is_well_formed(self):
+        done = subprocess.run(["groff", "-man", "-Tascii", "-ww", "-z"], input=self.aspic("completion", "man").stdout,
+                              capture_output=True, text=True)
+        self.assertEqual(done.stderr, "")
+
+    @unittest.skipUnless(shutil.which("zsh") or shutil.which("fish"), "needs zsh or fish")
+    def test_other_shells_read_their_scripts(self):
+        for shell in filter(shutil.which, ("zsh", "fish")):
+            script = self.write("script", self.aspic("completion", shell).stdout)
+            self.assertEqual(subprocess.run([shell, "-n", script], cwd=self.folder).returncode, 0)
 
 
 class Materials(CommandLine):

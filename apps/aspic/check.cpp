@@ -141,6 +141,7 @@ int check(const CheckArguments& arguments) {
   }
   if (!arguments.plot.empty() || arguments.json) throw InvalidInput("--plot and --json belong to --derivatives");
   if (arguments.input.extension() == ".toml") return check_scene(arguments);
+  if (!arguments.overrides.empty()) throw InvalidInput("--set changes a scene; a mesh has no values to override");
   return std::visit([&](auto mesh) { return check_mesh(arguments, std::move(mesh)); }, read_mesh(arguments.input));
 }
 

@@ -33,6 +33,7 @@ void add_minimize(CLI::App& app, Action& action);
 void add_capture(CLI::App& app, Action& action);
 void add_lecture(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
+void add_completion(CLI::App& app, Action& action);
 void add_viewer_commands(CLI::App& app, Action& action);  // view, report, render
 void add_view(CLI::App& app, Action& action);
 void add_report(CLI::App& app, Action& action);

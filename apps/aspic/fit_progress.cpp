@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "aspic/progress.h"
+#include "aspic/streams.h"
 
 namespace aspic::cli {
 namespace {
@@ -33,7 +34,7 @@ std::string stage_text(FitStage stage) {
 }  // namespace
 
 FitProgress::FitProgress(std::FILE* stream, bool every_iteration)
-    : stream_(stream), terminal_(isatty(fileno(stream)) != 0), every_iteration_(every_iteration) {}
+    : stream_(stream), terminal_(isatty(descriptor(stream)) != 0), every_iteration_(every_iteration) {}
 
 double FitProgress::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 

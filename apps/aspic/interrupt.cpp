@@ -11,7 +11,7 @@ static_assert(std::atomic<int>::is_always_lock_free, "the handler may only touch
 
 void on_signal(int signal) {
   received = signal;
-  std::signal(signal, SIG_DFL);
+  std::signal(signal, signal == SIGPIPE ? SIG_IGN : SIG_DFL);
 }
 
 }  // namespace
@@ -19,6 +19,7 @@ void on_signal(int signal) {
 void catch_interrupts() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  std::signal(SIGPIPE, on_signal);
 }
 
 int interrupt_signal() { return received; }

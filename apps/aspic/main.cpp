@@ -4,15 +4,20 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
+#include <csignal>
 #include <filesystem>
 #include <new>
+#include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "aspic/commands.h"
+#include "aspic/interrupt.h"
+#include "aspic/streams.h"
 #include "base/error.h"
 #include "base/printable.h"
+#include "io/text_scanner.h"
 
 namespace aspic::cli {
 namespace {
@@ -27,12 +32,9 @@ Examples:
 'aspic COMMAND --help' tells more about a command.
 
 Exit codes: 0 done, 1 internal error, 2 bad input, 3 not converged, a wrong derivative, a failed check,
-4 time limit, 130 interrupted by ctrl-C, 143 by kill.)";
-
-constexpr char kOutputLost[] = "standard output: cannot be written; free some space or choose another disk";
-
-// Tables and JSON that did not arrive are no success.
-bool is_output_lost() { return std::fflush(stdout) != 0 || std::ferror(stdout) != 0; }
+4 time limit, 130 interrupted by ctrl-C, 143 by kill, 141 when the reader of a pipe has gone. Standard output that
+cannot be written is bad input, too; a run goes on to its end all the same. Messages that standard error cannot take
+are dropped.)";
 
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
@@ -68,9 +70,21 @@ std::string hint(const CLI::App& app, const std::vector<std::string>& arguments)
   return "";
 }
 
+// Comparisons with NaN are false, so no range refuses it.
+void require_finite_numbers(CLI::App& app) {
+  const auto complaint = [](const std::string& text) -> std::string {
+    return parse_number(text) ? "" : "'" + text + "' is not a finite number";
+  };
+  for (CLI::App* command : app.get_subcommands(nullptr))
+    for (CLI::Option* option : command->get_options())
+      if (option->get_type_name().starts_with("FLOAT")) option->check(complaint);
+}
+
 int report_parse_error(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& arguments) {
   if (error.get_exit_code() == 0) {  // --help, --version
-    app.exit(error);
+    std::ostringstream text;
+    app.exit(error, text);
+    fmt::print("{}", text.str());
     return exit_done;
   }
   const std::string meant = arguments.empty() ? "" : hint(app, arguments);
@@ -102,6 +116,8 @@ int run_program(int argc, char** argv) {
   add_lecture(app, action);
   add_verify(app, action);
   add_viewer_commands(app, action);
+  add_completion(app, action);
+  require_finite_numbers(app);
   if (argc == 1) {
     fmt::print("{}", app.help());
     return exit_bad_input;
@@ -111,30 +127,42 @@ int run_program(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return report_parse_error(app, error, {argv + 1, argv + argc});
   }
-  const int code = action();
-  if (is_output_lost()) throw InvalidInput(kOutputLost);
-  return code;
+  return action();
+}
+
+// Returns the exit code. Throws nothing.
+int run_guarded(int argc, char** argv) {
+  try {
+    return run_program(argc, argv);
+  } catch (const InvalidInput& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return exit_bad_input;
+  } catch (const std::filesystem::filesystem_error& error) {
+    fmt::print(stderr, "error: {}: {}; check the name, the folder and its permissions\n",
+               printable(error.path1().string()), error.code().message());
+    return exit_bad_input;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "error: out of memory; use a smaller mesh or fewer --threads, or raise the limit (ulimit -v)\n");
+  } catch (const std::system_error& error) {
+    fmt::print(stderr, "error: the system refused: {}; check its limits (ulimit -a) and the free memory\n",
+               printable(error.what()));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "internal error: {}\nThis should not happen; please report it with the command and its input.\n",
+               printable(error.what()));
+  }
+  return exit_internal_error;
 }
 
 }  // namespace
 }  // namespace aspic::cli
 
 int main(int argc, char** argv) {
-  using namespace aspic;
-  try {
-    return cli::run_program(argc, argv);
-  } catch (const InvalidInput& error) {
-    fmt::print(stderr, "error: {}\n", error.what());
-    return cli::exit_bad_input;
-  } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "error: out of memory\n");
-  } catch (const std::exception& error) {
-    if (cli::is_output_lost()) {
-      fmt::print(stderr, "error: {}\n", cli::kOutputLost);
-      return cli::exit_bad_input;
-    }
-    fmt::print(stderr, "internal error: {}\nThis should not happen; please report it with the command and its input.\n",
-               printable(error.what()));
-  }
-  return cli::exit_internal_error;
+  using namespace aspic::cli;
+  guard_standard_streams();
+  const int code = run_guarded(argc, argv);
+  const std::string lost = lost_output();  // tables and JSON that did not arrive are no success
+  if (lost.empty()) return code;
+  if (interrupt_signal() == SIGPIPE) return exit_signal + SIGPIPE;  // the reader has seen what it wanted
+  fmt::print(stderr, "error: standard output: cannot be written: {}; free some space or choose another disk\n", lost);
+  return code == exit_done ? exit_bad_input : code;
 }

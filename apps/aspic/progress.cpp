@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "aspic/streams.h"
+
 namespace aspic::cli {
 namespace {
 
@@ -24,7 +26,7 @@ std::string step_text(const StepReport& report, int last) {
 
 size_t terminal_width(std::FILE* stream) {
   winsize size{};
-  const bool known = ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  const bool known = ioctl(descriptor(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
   return known ? size.ws_col : 80;
 }
 
@@ -38,7 +40,7 @@ std::string duration_text(double seconds) {
 
 Progress::Progress(std::FILE* stream, int first_step, int last_step)
     : stream_(stream),
-      terminal_(isatty(fileno(stream)) != 0),
+      terminal_(isatty(descriptor(stream)) != 0),
       first_(first_step),
       last_(last_step),
       shown_step_(first_step) {}

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <future>
 #include <optional>
 #include <thread>
@@ -21,7 +23,8 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr int kMaxConnections = 64;  // that are no pages yet
+constexpr size_t kMaxConnections = 64;  // that are no pages yet
+constexpr std::chrono::milliseconds kRetryPeriod(100);
 constexpr std::chrono::milliseconds kGoodbye(300);
 
 tcp::acceptor listen(asio::io_context& network, int port) {
@@ -45,6 +48,7 @@ struct Server::Impl {
                 .upgrade = [this](tcp::socket socket,
                                   const Client::HttpRequest& request) { room.admit(std::move(socket), request); }},
         acceptor(listen(network, options.port)),
+        retry(network),
         access(acceptor.local_endpoint().port()),
         room(network, options.log) {
     if (options.session) {
@@ -63,13 +67,29 @@ struct Server::Impl {
   void accept() {
     acceptor.async_accept([this](const error_code& error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
-      if (!error && service.connections < kMaxConnections) {
-        error_code ignored;
-        socket.set_option(tcp::no_delay(true), ignored);
-        std::make_shared<HttpConnection>(std::move(socket), service)->serve();
-      }
+      if (error) return accept_later();
+      if (service.connections.size() >= kMaxConnections) cut_off_one();
+      error_code ignored;
+      socket.set_option(tcp::no_delay(true), ignored);
+      std::make_shared<HttpConnection>(std::move(socket), service)->serve();
       accept();
     });
+  }
+
+  // Without a free descriptor, accepting fails at once, again and again.
+  void accept_later() {
+    retry.expires_after(kRetryPeriod);
+    retry.async_wait([this](const error_code& error) {
+      if (!error) accept();
+    });
+  }
+
+  // The oldest connection that has shown no token makes room for a new one, so that nobody can lock a browser out. When
+  // all have shown it, the oldest of them.
+  void cut_off_one() {
+    const auto& all = service.connections;
+    const auto stranger = std::find_if(all.begin(), all.end(), [](const auto* one) { return !one->has_token(); });
+    (stranger == all.end() ? all.front() : *stranger)->cut_off();
   }
 
   // The pages are told, but not waited for long.
@@ -78,6 +98,7 @@ struct Server::Impl {
     asio::post(network, [this] {
       error_code ignored;
       acceptor.close(ignored);
+      retry.cancel();
       room.close("aspic has ended");
     });
     if (network_ended.wait_for(kGoodbye) != std::future_status::ready) network.stop();
@@ -89,6 +110,7 @@ struct Server::Impl {
   HttpService service;  // outlives the network's last connections
   asio::io_context network{1};
   tcp::acceptor acceptor;
+  asio::steady_timer retry;
   Access access;
   Room room;
   std::optional<SimulationThread> simulation;

@@ -45,12 +45,12 @@ std::string words_page(const std::string& words) {
 
 HttpConnection::HttpConnection(Client::Socket socket, HttpService& service)
     : stream_(std::move(socket)), service_(service) {
-  ++service_.connections;
+  place_ = service_.connections.insert(service_.connections.end(), this);
   parser_.header_limit(kLongestHead);
   parser_.body_limit(kLongestBody);
 }
 
-HttpConnection::~HttpConnection() { --service_.connections; }
+HttpConnection::~HttpConnection() { service_.connections.erase(place_); }
 
 void HttpConnection::serve() {
   stream_.expires_after(kHeadTime);
@@ -85,6 +85,7 @@ std::optional<HttpConnection::Response> HttpConnection::refusal(const Client::Ht
 void HttpConnection::handle_head() {
   const Client::HttpRequest& request = parser_.get();
   if (auto refused = refusal(request)) return answer(std::move(*refused));
+  has_token_ = true;
   const std::string path = parse_target(view(request.target())).path;
   const bool has_session = service_.options.session != nullptr;
   if (beast::websocket::is_upgrade(request)) {

@@ -4,6 +4,7 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <functional>
+#include <list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,7 +20,7 @@ struct HttpService {
   const ServerOptions& options;
   std::function<bool()> is_full;  // no further page may come
   std::function<void(Client::Socket, const Client::HttpRequest&)> upgrade;
-  int connections = 0;  // now
+  std::list<class HttpConnection*> connections;  // now, the oldest first
 };
 
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
@@ -28,6 +29,8 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   ~HttpConnection();
 
   void serve();
+  bool has_token() const { return has_token_; }  // its request was accepted
+  void cut_off() { stream_.close(); }
 
  private:
   using Response = boost::beast::http::response<boost::beast::http::string_body>;
@@ -42,6 +45,8 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 
   boost::beast::tcp_stream stream_;
   HttpService& service_;
+  std::list<HttpConnection*>::iterator place_;  // among the connections
+  bool has_token_ = false;
   boost::beast::flat_buffer buffer_;
   boost::beast::http::request_parser<boost::beast::http::string_body> parser_;
 };

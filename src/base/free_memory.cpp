@@ -1,5 +1,8 @@
 #include "base/free_memory.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <fstream>
 #include <limits>
@@ -41,6 +44,15 @@ int64_t group_available(const GroupFiles& files) {
   return std::clamp<int64_t>(limit - usage + (cache == kUnknown ? 0 : cache), 0, limit);
 }
 
+// What this process may still map (ulimit -v).
+int64_t process_available() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnknown;
+  const int64_t pages = number_in("/proc/self/statm");
+  if (pages == kUnknown) return kUnknown;
+  return std::max<int64_t>(0, static_cast<int64_t>(limit.rlim_cur) - pages * ::sysconf(_SC_PAGESIZE));
+}
+
 }  // namespace
 
 int64_t free_memory() {
@@ -49,7 +61,7 @@ int64_t free_memory() {
   const int64_t version_1 =
       group_available({"/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes",
                        "/sys/fs/cgroup/memory/memory.stat", "total_inactive_file"});
-  return std::min({machine_available(), version_2, version_1});
+  return std::min({machine_available(), process_available(), version_2, version_1});
 }
 
 }  // namespace aspic

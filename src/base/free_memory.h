@@ -4,8 +4,8 @@
 
 namespace aspic {
 
-// [bytes], the smaller of what the machine has available and what the control group allows; INT64_MAX where the
-// system does not tell.
+// [bytes], the smallest of what the machine has available and what the control group and ulimit -v allow. INT64_MAX
+// where no limit is known.
 int64_t free_memory();
 
 }  // namespace aspic

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -53,17 +54,11 @@ class Pool {
 
   int workers() const { return static_cast<int>(threads_.size()); }
 
+  // Starts fewer when the system refuses that many: its limit of processes or of memory is reached.
   void resize(int workers) {
-    {
-      std::lock_guard lock(mutex_);
-      quit_ = true;
-    }
-    wake_.notify_all();
-    for (std::thread& thread : threads_) thread.join();
-    threads_.clear();
-    quit_ = false;
+    stop();
     may_spin_ = workers < processor_count();
-    for (int i = 0; i < workers; ++i) threads_.emplace_back([this] { serve(); });
+    while (!start(workers)) workers /= 2;
   }
 
   void run(int count, FunctionRef<void(int)> body) {
@@ -85,6 +80,29 @@ class Pool {
   }
 
  private:
+  void stop() {
+    {
+      std::lock_guard lock(mutex_);
+      quit_ = true;
+    }
+    wake_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+    threads_.clear();
+    quit_ = false;
+  }
+
+  // Starts all of them or none, so that those of a failed attempt give their memory back.
+  bool start(int workers) {
+    try {
+      threads_.reserve(static_cast<size_t>(workers));
+      for (int i = 0; i < workers; ++i) threads_.emplace_back([this] { serve(); });
+    } catch (const std::exception&) {
+      stop();
+      return false;
+    }
+    return true;
+  }
+
   void work() {
     int finished = 0;
     for (int left = remaining_; left > 0;) {
@@ -160,7 +178,11 @@ void parallel_for(int count, FunctionRef<void(int)> body) {
     for (int i = 0; i < count; ++i) body(i);
     return;
   }
-  if (pool().workers() != threads - 1) pool().resize(threads - 1);
+  if (pool().workers() != threads - 1) {
+    pool().resize(threads - 1);
+    int requested = threads;  // may have changed meanwhile
+    requested_threads().compare_exchange_strong(requested, pool().workers() + 1);
+  }
   pool().run(count, [&](int i) {
     inside_loop = true;
     body(i);

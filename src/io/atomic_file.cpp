@@ -134,6 +134,11 @@ std::string read_file(const fs::path& path) {
     throw InvalidInput(path.string() + ": is " + std::to_string(size) + " bytes, more than the " +
                        std::to_string(available) + " bytes of memory that are free; use a smaller file");
 
+  // A compressed file system stores less than the size, too, but not a hundred times less.
+  if (const auto stored = static_cast<size_t>(info.st_blocks) * 512; size > kSmall && stored < size / 100)
+    throw InvalidInput(path.string() + ": is " + std::to_string(size) + " bytes, of which only " +
+                       std::to_string(stored) + " were ever written; copy or download it again");
+
   std::string contents(size, '\0');
   size_t done = 0;
   while (done < size) {

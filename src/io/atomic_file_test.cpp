@@ -44,6 +44,22 @@ TEST_F(AtomicFile, ALinkStaysALink) {
   EXPECT_EQ(read_file(folder / "a"), "2");
 }
 
+TEST_F(AtomicFile, RefusesAFileThatIsAlmostAllHole) {
+  write_file(folder / "sparse", "MeshVersionFormatted 2");
+  fs::resize_file(folder / "sparse", std::uintmax_t{3} << 30);
+  EXPECT_THAT(message_of([&] { read_file(folder / "sparse"); }),
+              HasSubstr("sparse: is 3221225472 bytes, of which only"));
+}
+
+TEST_F(AtomicFile, NamesThatNoFileSystemTakesAreNamed) {
+  const fs::path long_name = folder / std::string(300, 'a'), loop = folder / "loop";
+  fs::create_symlink("loop", loop);
+  for (const fs::path& path : {long_name, long_name / "a", loop, loop / "a"}) {
+    EXPECT_THAT(message_of([&] { read_file(path); }), HasSubstr(path.string() + ": cannot be read: "));
+    EXPECT_THAT(message_of([&] { write_file(path, "1"); }), HasSubstr(path.string() + ": "));
+  }
+}
+
 TEST_F(AtomicFile, WhatCannotBeReadOrWrittenIsNamed) {
   EXPECT_THAT(message_of([&] { read_file(folder / "none"); }), HasSubstr("none: cannot be read: No such file"));
   EXPECT_THAT(message_of([&] { read_file(folder); }), HasSubstr("is a folder"));

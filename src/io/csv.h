@@ -34,7 +34,9 @@ class CsvFile {
   static CsvFile resume(const std::filesystem::path& path, const std::vector<std::string>& columns, int last_step,
                         Rows rows);
 
-  void append(const CsvRow& row);  // with one write, so that a killed run leaves whole lines
+  void append(const CsvRow& row);                 // with one write, so that a killed run leaves whole lines
+  uint64_t size() const { return file_.size(); }  // [bytes]
+  const std::filesystem::path& path() const { return file_.path(); }
   void sync() { file_.sync(); }
   void close() { file_.close(); }
 

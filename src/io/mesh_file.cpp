@@ -7,6 +7,7 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "base/free_memory.h"
 #include "io/atomic_file.h"
 #include "io/gmsh.h"
 #include "io/medit.h"
@@ -137,6 +138,18 @@ void check_vertices(const fs::path& path, const std::vector<Vec3d>& vertices) {
                            " has a coordinate that is not finite; find out where it comes from");
 }
 
+// The text and the mesh that is made of it are in memory together; a mesh takes about as much as its text.
+void check_memory(const fs::path& path) {
+  constexpr std::uintmax_t kSmall = std::uintmax_t{1} << 24;
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(path, error);
+  if (error || bytes < kSmall) return;
+  const auto available = static_cast<std::uintmax_t>(free_memory());
+  if (bytes > available / 2)
+    throw InvalidInput(path.string() + ": is " + std::to_string(bytes) + " bytes, and reading it takes twice that; " +
+                       std::to_string(available) + " bytes of memory are free; use a coarser mesh");
+}
+
 template <class Elements>
 bool are_indices_valid(const Elements& elements, int vertices) {
   for (const auto& element : elements)
@@ -160,6 +173,7 @@ const std::vector<MeshFormat>& mesh_formats() {
 
 std::variant<TetMesh, TriMesh> read_mesh(const fs::path& path) {
   const Format& format = format_of(path);
+  check_memory(path);
   MeshContent content = format.read(path);
   if (!content.tets.empty())
     return TetMesh{std::move(content.vertices), std::move(content.tets), std::move(content.region)};

@@ -5,7 +5,6 @@
 
 #include "base/parallel.h"
 #include "mesh/box_tree.h"
-#include "mesh/components.h"
 #include "mesh/findings.h"
 #include "mesh/grouped_elements.h"
 #include "mesh/order.h"
@@ -210,7 +209,7 @@ std::vector<Finding> diagnose(const TetMesh& mesh) {
                 count_of(overlapping.size(), mesh.tets.size(), "tets", "have their centroid inside another tet"),
                 "mesh the shape anew", overlapping, false});
   examine_boundary(mesh, findings);
-  examine_components(tet_components(mesh), "tets", findings);
+  examine_components(mesh, findings);
   examine_units(mesh.rest, findings);
   return findings.take();
 }

@@ -9,6 +9,9 @@ namespace aspic {
 
 enum class Severity { error, warning, note };  // an error stops a simulation
 
+// [m] Beyond it the powers of a length in volumes and angles overflow. Such a mesh cannot be examined.
+inline constexpr double kLargestCoordinate = 1e30;
+
 struct Finding {
   Severity severity = Severity::note;
   std::string name;          // "inverted_tets", "zero_volume_tets", "slivers", "duplicate_vertices", ...

@@ -140,6 +140,47 @@ TEST(DoctorOfTets, FindsSeveralComponents) {
   EXPECT_FALSE(has_errors(diagnose(mesh)));
 }
 
+TEST(DoctorOfTets, AdvisesMergingOnlyWhereItJoinsParts) {
+  TetMesh touching = box();
+  const TetMesh other = make_box({{1, 0, 0}}, {{2, 1, 1}}, {1, 1, 1});
+  const int first = touching.vertex_count();
+  touching.rest.insert(touching.rest.end(), other.rest.begin(), other.rest.end());
+  for (const auto& [a, b, c, d] : other.tets) touching.tets.push_back({first + a, first + b, first + c, first + d});
+  TetMesh apart = touching;
+  for (size_t v = static_cast<size_t>(first); v < apart.rest.size(); ++v) apart.rest[v][0] += 5;
+  EXPECT_THAT(found(apart, "several_components").remedy, testing::Not(testing::HasSubstr("--repair")));
+  EXPECT_THAT(found(touching, "several_components").remedy, testing::HasSubstr("--repair"));
+  repair(touching);
+  EXPECT_THAT(names(diagnose(touching)), testing::Not(testing::Contains("several_components")));
+}
+
+TEST(DoctorOfTets, AdviceToRepairHelps) {
+  TetMesh mesh = box();
+  const std::vector<Tet> clean = mesh.tets;
+  std::swap(mesh.tets[3][0], mesh.tets[3][1]);                                // inverted
+  mesh.tets.push_back(clean[0]);                                              // repeated
+  mesh.tets.push_back({clean[0][0], clean[0][1], clean[0][2], clean[0][2]});  // lists a vertex twice
+  mesh.rest.insert(mesh.rest.end(), {mesh.rest[clean[5][0]], {{9, 9, 9}}});   // a duplicate, an unreferenced one
+  mesh.tets[5][0] = mesh.vertex_count() - 2;
+  std::vector<std::string> promised;
+  for (const Finding& finding : diagnose(mesh))
+    if (finding.remedy.find("--repair") != std::string::npos) promised.push_back(finding.name);
+  EXPECT_GE(promised.size(), 5u);
+  repair(mesh);
+  for (const std::string& name : names(diagnose(mesh))) EXPECT_THAT(promised, testing::Not(testing::Contains(name)));
+}
+
+TEST(DoctorOfTets, RefusesCoordinatesWhosePowersOverflow) {
+  for (const double size : {1e31, 1e130, 1e300}) {
+    const TetMesh mesh = make_box({{0, 0, 0}}, {{size, size, size}}, {1, 1, 1});
+    EXPECT_THAT(names(diagnose(mesh)), ElementsAre("coordinates_too_large"));
+    EXPECT_EQ(quality(mesh).components, 1);
+  }
+  for (const double size : {1e30, 1e-30, 1e-200})
+    EXPECT_THAT(names(diagnose(make_box({{0, 0, 0}}, {{size, size, size}}, {1, 1, 1}))),
+                testing::Not(testing::Contains("coordinates_too_large")));
+}
+
 TEST(DoctorOfTets, NotesSuspiciousUnits) {
   EXPECT_THAT(found(make_sphere(81, 20), "suspicious_units").message,
               "extent 162 m; if the file is in millimetres use scale = 0.001");

@@ -7,7 +7,9 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "mesh/doctor.h"
 #include "mesh/locate.h"
+#include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {
@@ -15,8 +17,9 @@ namespace {
 void check_finite(const TriMesh& skin) {
   for (int v = 0; v < skin.vertex_count(); ++v) {
     const Vec3d& x = skin.vertices[v];
-    if (!std::isfinite(x[0] + x[1] + x[2]))
-      throw InvalidInput("skin vertex " + std::to_string(v) + " is not finite; correct the file");
+    if (!(length(x) <= kLargestCoordinate))
+      throw InvalidInput("skin vertex " + std::to_string(v) +
+                         " is not finite or beyond 1e30 m, where distances overflow; correct the file");
   }
 }
 

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "mesh/box_tree.h"
+#include "mesh/components.h"
 #include "mesh/topology.h"
 
 namespace aspic {
@@ -25,6 +26,14 @@ std::vector<int> not_finite(const std::vector<Vec3d>& vertices) {
   std::vector<int> list;
   for (size_t v = 0; v < vertices.size(); ++v)
     if (!std::isfinite(vertices[v][0] + vertices[v][1] + vertices[v][2])) list.push_back(static_cast<int>(v));
+  return list;
+}
+
+std::vector<int> too_large(const std::vector<Vec3d>& vertices) {
+  std::vector<int> list;
+  for (size_t v = 0; v < vertices.size(); ++v)
+    if (std::any_of(vertices[v].a, vertices[v].a + 3, [](double x) { return std::abs(x) > kLargestCoordinate; }))
+      list.push_back(static_cast<int>(v));
   return list;
 }
 
@@ -74,6 +83,12 @@ bool examine_vertices(const std::vector<Vec3d>& vertices, const std::vector<Elem
                 count_of(infinite.size(), total, "vertices", "have a coordinate that is infinite or not a number"),
                 "correct the file", infinite, false});
   if (elements.empty() || !invalid.empty() || !infinite.empty()) return false;
+  const std::vector<int> large = too_large(vertices);
+  findings.add({Severity::error, "coordinates_too_large",
+                count_of(large.size(), total, "vertices",
+                         "have a coordinate beyond " + number(kLargestCoordinate) + " m, where volumes overflow"),
+                "choose a larger unit of length, or correct the file", large, false});
+  if (!large.empty()) return false;
   const std::vector<int> repeated = duplicates(vertices), unused = unreferenced(elements, total);
   // A vertex of no tet has no mass, which no solver can move; beside a surface it is harmless.
   constexpr Severity severity = std::tuple_size_v<Element> == 4 ? Severity::error : Severity::note;
@@ -111,19 +126,51 @@ void examine_units(const std::vector<Vec3d>& vertices, Findings& findings) {
                           false});
 }
 
-void examine_components(const std::vector<std::vector<int>>& components, const std::string& noun, Findings& findings) {
-  if (components.size() < 2) return;
+namespace {
+
+// Whether parts of the mesh become one when vertices at the same place are merged.
+template <class Element>
+bool are_joined_by_merging(const std::vector<std::vector<int>>& parts, const std::vector<Element>& elements,
+                           const std::vector<Vec3d>& vertices) {
+  std::vector<int> part_at(vertices.size(), -1);  // by the first vertex of a place
+  const std::vector<int> first = first_at_same_place(vertices);
+  for (size_t p = 0; p < parts.size(); ++p)
+    for (const int e : parts[p])
+      for (const int v : elements[e]) {
+        int& part = part_at[first[v]];
+        if (part >= 0 && part != static_cast<int>(p)) return true;
+        part = static_cast<int>(p);
+      }
+  return false;
+}
+
+void add_components(const std::vector<std::vector<int>>& components, const std::string& noun, bool are_joined,
+                    Findings& findings) {
   const auto smaller = [](const auto& a, const auto& b) { return a.size() < b.size(); };
   const auto& smallest = *std::min_element(components.begin(), components.end(), smaller);
   Finding finding{Severity::note,
                   "several_components",
                   "the mesh falls into " + std::to_string(components.size()) +
                       " parts that share no vertex; the smallest has " + std::to_string(smallest.size()) + " " + noun,
-                  "if one body was meant, join them where it was made, or merge duplicate vertices with --repair",
+                  are_joined ? "if one body was meant, merge the duplicate vertices with --repair"
+                             : "if one body was meant, join the parts where it was made",
                   {},
                   false};
   for (const auto& component : components) finding.indices.push_back(component.front());
   findings.add(std::move(finding));
+}
+
+}  // namespace
+
+void examine_components(const TetMesh& mesh, Findings& findings) {
+  const auto parts = tet_components(mesh);
+  if (parts.size() > 1) add_components(parts, "tets", are_joined_by_merging(parts, mesh.tets, mesh.rest), findings);
+}
+
+void examine_components(const TriMesh& mesh, Findings& findings) {
+  const auto parts = triangle_components(mesh);
+  if (parts.size() > 1)
+    add_components(parts, "triangles", are_joined_by_merging(parts, mesh.triangles, mesh.vertices), findings);
 }
 
 }  // namespace aspic

@@ -32,6 +32,7 @@ bool examine_vertices(const std::vector<Vec3d>& vertices, const std::vector<Elem
                       Findings& findings);
 
 void examine_units(const std::vector<Vec3d>& vertices, Findings& findings);
-void examine_components(const std::vector<std::vector<int>>& components, const std::string& noun, Findings& findings);
+void examine_components(const TetMesh& mesh, Findings& findings);
+void examine_components(const TriMesh& mesh, Findings& findings);
 
 }  // namespace aspic

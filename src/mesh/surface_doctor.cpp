@@ -1,7 +1,6 @@
 // The doctor of triangle meshes.
 #include <algorithm>
 
-#include "mesh/components.h"
 #include "mesh/doctor.h"
 #include "mesh/findings.h"
 #include "mesh/self_intersection.h"
@@ -34,6 +33,12 @@ void examine_triangles(const TriMesh& mesh, Findings& findings) {
                 "remove them with --repair", repeated, true});
 }
 
+// A one-sided sheet (a Moebius strip) cannot be turned.
+bool can_be_oriented(TriMesh mesh) {
+  orient(mesh);
+  return topology(mesh.triangles, mesh.vertex_count()).disagreeing.empty();
+}
+
 void examine_edges(const TriMesh& mesh, const SurfaceTopology& surface, Findings& findings) {
   const size_t total = mesh.triangles.size();
   findings.add({Severity::error, "open_surface",
@@ -49,9 +54,12 @@ void examine_edges(const TriMesh& mesh, const SurfaceTopology& surface, Findings
                 count_of(surface.non_manifold_vertices.size(), mesh.vertices.size(), "vertices",
                          "join sheets that touch there only"),
                 "separate or join the sheets where it was made", surface.non_manifold_vertices, false});
+  const bool is_repairable = !surface.disagreeing.empty() && can_be_oriented(mesh);
   findings.add({Severity::error, "inconsistent_orientation",
                 count_of(surface.disagreeing.size(), total, "triangles", "face the other way than a neighbour"),
-                "turn them with --repair", surface.disagreeing, true});
+                is_repairable ? "turn them with --repair"
+                              : "the sheet has one side only, which --repair cannot turn; cut it where it was made",
+                surface.disagreeing, is_repairable});
 }
 
 void examine_intersections(const TriMesh& mesh, Findings& findings) {
@@ -91,7 +99,7 @@ std::vector<Finding> diagnose(const TriMesh& mesh) {
                           {},
                           true});
   examine_intersections(mesh, findings);
-  examine_components(triangle_components(mesh), "triangles", findings);
+  examine_components(mesh, findings);
   examine_units(mesh.vertices, findings);
   return findings.take();
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "mesh/doctor.h"
@@ -53,6 +54,28 @@ TEST(DoctorOfSurfaces, FindsTurnedTrianglesAndTurnsThemBack) {
   EXPECT_THAT(found(surface, "inconsistent_orientation").indices, testing::Contains(9));
   EXPECT_THAT(repair(surface), ElementsAre("turned 1 triangles that faced the wrong way"));
   EXPECT_EQ(surface.triangles, clean.triangles);
+}
+
+TEST(DoctorOfSurfaces, DoesNotAdviseTurningAOneSidedSheet) {
+  TriMesh strip;  // of Moebius: five quads, the last joined to the first upside down
+  for (int i = 0; i < 5; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 5;
+    for (const double side : {-0.2, 0.2}) {
+      const double radius = 1 + side * std::cos(angle / 2);
+      strip.vertices.push_back({{radius * std::cos(angle), radius * std::sin(angle), side * std::sin(angle / 2)}});
+    }
+    const int a = 2 * i, b = a + 1, c = i < 4 ? a + 2 : 1, d = i < 4 ? a + 3 : 0;
+    strip.triangles.insert(strip.triangles.end(), {{a, c, b}, {b, c, d}});
+  }
+  const Finding finding = found(strip, "inconsistent_orientation");
+  EXPECT_FALSE(finding.repairable);
+  EXPECT_THAT(finding.remedy, HasSubstr("one side only"));
+}
+
+TEST(DoctorOfSurfaces, RefusesCoordinatesWhosePowersOverflow) {
+  TriMesh surface = ball();
+  for (Vec3d& x : surface.vertices) x = 1e150 * x;
+  EXPECT_THAT(names(diagnose(surface)), ElementsAre("coordinates_too_large"));
 }
 
 TEST(DoctorOfSurfaces, FindsAnInwardSurfaceAndTurnsIt) {

@@ -18,6 +18,7 @@
 #include "scene/run_directory_layout.h"
 #include "scene/run_directory_skins.h"
 #include "scene/run_directory_tables.h"
+#include "scene/run_lock.h"
 
 namespace aspic {
 namespace {
@@ -37,7 +38,6 @@ void create_folder(const fs::path& folder) {
 void make_room(const RunLayout& layout, const Scene& scene, ExistingRun existing) {
   const std::string name = layout.root().string();
   std::error_code error;
-  if (!fs::exists(layout.root(), error)) return create_folder(layout.root());
   if (!fs::is_directory(layout.root(), error)) throw InvalidInput(name + ": is a file; results need a directory");
   if (layout.is_barely_begun()) return layout.remove_unfinished();
   if (!layout.holds_run()) {
@@ -176,6 +176,17 @@ struct RunDirectory::Impl {
     if (output.vtu) write_pvd(layout.index(), frames);
   }
 
+  // Frames that the checkpoint counts are kept, not computed again.
+  void require_frames(int count) const {
+    for (int frame = 0; frame < count && output.vtu; ++frame) {
+      const fs::path file = layout.root() / RunLayout::frame_file(frame);
+      std::error_code error;
+      if (const auto size = fs::file_size(file, error); error || size == 0)
+        throw InvalidInput(file.string() + ": " + (error ? "is missing" : "is empty") +
+                           ", so the run cannot be continued; put it back, or start the run again with --force");
+    }
+  }
+
   void add_frame(const Simulation& simulation, const StepReport* report) {
     const int frame = static_cast<int>(frame_times.size());
     if (output.vtu) write_frame(layout.root() / RunLayout::frame_file(frame), simulation, report);
@@ -190,7 +201,9 @@ struct RunDirectory::Impl {
     write_index();
     tables.sync();
     skins->sync();
-    write_checkpoint(layout.checkpoint(), to_checkpoint(simulation, scene_fingerprint, frame_times));
+    Checkpoint checkpoint = to_checkpoint(simulation, scene_fingerprint, frame_times);
+    tables.add_size(checkpoint);
+    write_checkpoint(layout.checkpoint(), checkpoint);
     last_checkpoint = Clock::now();
   }
 
@@ -200,6 +213,7 @@ struct RunDirectory::Impl {
   }
 
   RunLayout layout;
+  std::optional<RunLock> lock;
   OutputOptions output;
   std::string scene_fingerprint;
   std::vector<double> frame_times;  // [s]
@@ -216,6 +230,9 @@ RunDirectory RunDirectory::create(const fs::path& path, const Scene& scene, Exis
   auto impl = std::make_unique<Impl>(RunLayout(path), scene);
   const RunLayout& layout = impl->layout;
   const OutputOptions& output = scene.output;
+  std::error_code error;
+  if (!fs::exists(path, error)) create_folder(path);
+  impl->lock.emplace(path);
   make_room(layout, scene, existing);
   impl->tables = RunTables::create(layout, scene.simulation.potential_names());
   write_inputs(scene, path);
@@ -231,9 +248,11 @@ RunDirectory RunDirectory::create(const fs::path& path, const Scene& scene, Exis
 RunDirectory RunDirectory::resume(const fs::path& path, Scene& scene) {
   auto impl = std::make_unique<Impl>(RunLayout(path), scene);
   const RunLayout& layout = impl->layout;
+  impl->lock.emplace(path);
   if (!layout.holds_run()) throw InvalidInput(path.string() + ": holds no run to continue");
   layout.refuse_links();
-  if (!fs::exists(layout.checkpoint()) && !fs::exists(previous_checkpoint(layout.checkpoint())))
+  std::error_code error;
+  if (!fs::exists(layout.checkpoint(), error) && !fs::exists(previous_checkpoint(layout.checkpoint()), error))
     throw InvalidInput(path.string() +
                        ": the run was ended before its first checkpoint, so nothing is lost; start it with --force");
   const NewestCheckpoint newest = read_newest_checkpoint(layout.checkpoint());
@@ -246,7 +265,9 @@ RunDirectory RunDirectory::resume(const fs::path& path, Scene& scene) {
   }
   impl->frame_times = newest.checkpoint.array("frame_times");
   const int frames = static_cast<int>(impl->frame_times.size());
+  impl->require_frames(frames);
   impl->tables = RunTables::resume(layout, scene.simulation.potential_names(), scene.simulation.steps_taken());
+  impl->tables.require_iterations(newest.checkpoint);
   impl->skins = RunSkins::resume(layout, scene, frames);
   layout.remove_unfinished();
   impl->write_index();

@@ -1,5 +1,6 @@
 #include "scene/run_directory_tables.h"
 
+#include "base/error.h"
 #include "base/hash.h"
 #include "scene/run_directory_layout.h"
 
@@ -55,6 +56,7 @@ const std::vector<std::string> kIterationColumns = {"step",
                                                     "linear_iterations",
                                                     "products",
                                                     "cycles"};
+constexpr char kIterationBytes[] = "iteration_bytes";  // in checkpoints: the size of iterations.csv
 const std::vector<std::string> kTimingColumns = {"step", "seconds"};
 
 }  // namespace
@@ -103,6 +105,18 @@ void RunTables::add(int step, const Iteration& iteration) {
   row.add(direction.linear_iterations);
   row.add(direction.products).add(direction.cycles);
   iterations_.append(row);
+}
+
+void RunTables::add_size(Checkpoint& checkpoint) const {
+  checkpoint.integers.emplace_back(kIterationBytes, static_cast<int64_t>(iterations_.size()));
+}
+
+void RunTables::require_iterations(const Checkpoint& checkpoint) const {
+  for (const auto& [name, bytes] : checkpoint.integers)
+    if (name == kIterationBytes && static_cast<int64_t>(iterations_.size()) != bytes)
+      throw InvalidInput(iterations_.path().string() + ": has " + std::to_string(iterations_.size()) +
+                         " bytes up to the checkpoint, and " + std::to_string(bytes) +
+                         " were written; put the whole file back, or start the run again with --force");
 }
 
 void RunTables::sync() {

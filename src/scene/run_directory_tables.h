@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dynamics/step_report.h"
+#include "io/checkpoint.h"
 #include "io/csv.h"
 
 namespace aspic {
@@ -19,6 +20,8 @@ class RunTables {
 
   void add(const StepReport& report);
   void add(int step, const Iteration& iteration);
+  void add_size(Checkpoint& checkpoint) const;  // of iterations.csv, whose steps have any number of rows
+  void require_iterations(const Checkpoint& checkpoint) const;  // throws InvalidInput when rows are missing
   void sync();
   void close();
 

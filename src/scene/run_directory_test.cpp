@@ -342,6 +342,45 @@ TEST_F(RunResults, ADirectoryThatHoldsNoRunIsNeverTouched) {
   EXPECT_THAT(names(path("mine")), testing::ElementsAre("scene.toml"));
 }
 
+TEST_F(RunResults, RefusesASecondProcessInTheSameFolder) {
+  const Scene scene = sagging_scene();
+  std::optional<RunDirectory> running(RunDirectory::create(path("run"), scene, ExistingRun::refuse));
+  const auto before = contents(path("run"));
+  Scene second = sagging_scene();
+  for (const std::string& message :
+       {message_of<InvalidInput>([&] { RunDirectory::resume(path("run"), second); }),
+        message_of<InvalidInput>([&] { RunDirectory::create(path("run"), second, ExistingRun::overwrite); })}) {
+    EXPECT_THAT(message, HasSubstr("process "));
+    EXPECT_THAT(message, HasSubstr("is writing a run into it"));
+  }
+  EXPECT_EQ(contents(path("run")), before);
+  running.reset();
+  RunDirectory::resume(path("run"), second);
+}
+
+TEST_F(RunResults, RefusesToResumeWithoutItsIterations) {
+  run_whole(path("run"), {});
+  const std::string whole = read_file(path("run/iterations.csv"));
+  const size_t last_row = whole.rfind('\n', whole.size() - 2) + 1;
+  write_file(path("run/iterations.csv"), whole.substr(0, last_row));
+  Scene scene = sagging_scene();
+  EXPECT_THAT(message_of<InvalidInput>([&] { RunDirectory::resume(path("run"), scene); }),
+              HasSubstr("iterations.csv: has " + std::to_string(last_row) + " bytes"));
+}
+
+TEST_F(RunResults, RefusesToResumeWithoutAFrame) {
+  run_whole(path("run"), {});
+  const std::string frame = read_file(path("run/frames/body_000002.vtu"));
+  Scene scene = sagging_scene();
+  const auto message = [&] { return message_of<InvalidInput>([&] { RunDirectory::resume(path("run"), scene); }); };
+  write_file(path("run/frames/body_000002.vtu"), "");
+  EXPECT_THAT(message(), HasSubstr("body_000002.vtu: is empty"));
+  fs::remove(path("run/frames/body_000002.vtu"));
+  EXPECT_THAT(message(), HasSubstr("body_000002.vtu: is missing"));
+  write_file(path("run/frames/body_000002.vtu"), frame);
+  RunDirectory::resume(path("run"), scene);
+}
+
 TEST_F(RunResults, NothingToContinueIsSaidSo) {
   Scene scene = sagging_scene();
   EXPECT_THAT(message_of<InvalidInput>([&] { RunDirectory::resume(path("no"), scene); }),

@@ -1,0 +1,48 @@
+#include "scene/run_lock.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "base/error.h"
+
+namespace aspic {
+namespace {
+
+// The process that holds the lock, by a line of the system's list of locks:
+//   1: FLOCK  ADVISORY  WRITE 4711 08:01:131 0 EOF
+std::string holder_of(int descriptor) {
+  struct stat info {};
+  if (::fstat(descriptor, &info) != 0) return "another process";
+  std::ifstream locks("/proc/locks");
+  for (std::string line; std::getline(locks, line);) {
+    std::istringstream words(line);
+    std::string number, kind, mode, access, process, file;
+    words >> number >> kind >> mode >> access >> process >> file;
+    if (kind == "FLOCK" && file.substr(file.rfind(':') + 1) == std::to_string(info.st_ino)) return "process " + process;
+  }
+  return "another process";
+}
+
+}  // namespace
+
+RunLock::RunLock(const std::filesystem::path& folder)
+    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  const std::string holder = holder_of(descriptor_);
+  ::close(descriptor_);
+  throw InvalidInput(folder.string() + ": " + holder +
+                     " is writing a run into it; wait for its end, end it, or choose another folder with --out");
+}
+
+RunLock::~RunLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+}  // namespace aspic
