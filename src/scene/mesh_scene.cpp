@@ -72,7 +72,7 @@ Defaults defaults_for(const std::filesystem::path& path, const std::vector<Vec3d
   Defaults d;
   d.toml = "gravity = [0.0, -9.81, 0.0]\n[time]\nstep = 0.01\nduration = 2.0\n[[body]]\nmesh = " +
            toml_string(path.string()) + "\nscale = " + number_text(scale) +
-           "\nmaterial = { model = \"neo_hookean\", young = " + number_text(young) +
+           "\nmaterial = { model = \"neo_hookean_log\", young = " + number_text(young) +
            ", poisson = 0.4, density = 1000.0 }\ndeform = { displacement = [" + toml_string(pull) +
            ", 0.0, 0.0] }\n[[body.pin]]\nname = \"base\"\nwhere = { lowest = " + number_text(base) + " }\n";
   const std::string size = number_text(extent);
@@ -87,8 +87,7 @@ Defaults defaults_for(const std::filesystem::path& path, const std::vector<Vec3d
   }
   d.choices.push_back({"gravity", "gravity = 9.81 m/s^2 along -y: up is taken as y (gravity=[0,0,-9.81] for z)"});
   d.choices.push_back({"material.model",
-                       "material.model = neo_hookean: stays finite when elements are turned inside "
-                       "out"});
+                       "material.model = neo_hookean_log: its energy is infinite where a tet is flat, so that none inverts"});
   d.choices.push_back({"material.young", "material.young = " + number_text(young) +
                                              " Pa: under its own weight the body "
                                              "is compressed by about 5 %, soft enough to see it move"});
