@@ -412,6 +412,13 @@ class Run(CommandLine):
         self.write("box.mesh", box_mesh())
         self.assertIn("note:", self.aspic("run", "box.mesh", "--steps", "2").stdout)
 
+    def test_the_summary_names_inverted_tets(self):
+        self.write("box.mesh", box_mesh())
+        upside_down = ["--set", "material.model=neo_hookean", "--set", 'deform.displacement=["-1.5*X",0,0]']
+        text = self.aspic("run", "box.mesh", "--steps", "2", "--set", "time.step=1e-5", *upside_down).stdout
+        self.assertRegex(text, r"inverted   \d+ tets at the end, the first is tet 0, the smallest det F -0\.")
+        self.assertRegex(text, r"some tet in 2 of 2 steps, first in step 1")
+
     def test_an_existing_run_is_kept_unless_forced(self):
         scene = self.beam()
         self.aspic("run", scene)

@@ -275,6 +275,7 @@ int run(const RunArguments& arguments) {
                    .time_limit = runner.has_run_out() ? arguments.time_limit : 0,
                    .blown_up = runner.has_blown_up(),
                    .solver = scene.simulation.is_implicit() ? scene.simulation.solver_description() : "",
+                   .inverted = inverted_tets(scene.simulation),
                    .state_hash = state_hash(scene.simulation.state(), scene.simulation.model().numbering.vertex),
                    .directory = directory.path()});
   }

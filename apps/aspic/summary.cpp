@@ -12,6 +12,7 @@
 #include "aspic/progress.h"
 #include "base/hash.h"
 #include "base/printable.h"
+#include "dynamics/explanation_places.h"
 
 namespace aspic::cli {
 namespace {
@@ -92,6 +93,21 @@ void print_certificate(std::FILE* stream, const RunTotals& totals) {
                totals.grew, totals.most_grown);
 }
 
+void print_inverted(std::FILE* stream, const RunTotals& totals, const InvertedTets& end) {
+  if (totals.with_inverted_tets == 0 && end.count == 0) return;
+  fmt::print(stream, "inverted   ");
+  if (end.count > 0) {
+    fmt::print(stream, "{} tets at the end, the first is {}, the smallest det F {:.3g}; ", end.count, end.first,
+               end.least_det);
+  } else {
+    fmt::print(stream, "no tet at the end; ");
+  }
+  fmt::print(stream,
+             "some tet in {} of {} steps, first in step {}, with det F down to {:.3g} (material.model = "
+             "\"neo_hookean_log\" keeps every tet from inverting)\n",
+             totals.with_inverted_tets, totals.steps, totals.first_inverted, totals.least_det_F);
+}
+
 }  // namespace
 
 void RunTotals::add(const StepReport& report) {
@@ -119,8 +135,25 @@ void RunTotals::add(const StepReport& report) {
   most_iterations = std::max(most_iterations, report.iterations);
   substeps += report.substeps;
   rejected += report.rejected;
+  if (!(report.min_det_F > 0) && with_inverted_tets++ == 0) first_inverted = report.step;
+  least_det_F = std::min(least_det_F, report.min_det_F);
   seconds += report.seconds;
   time = report.time;
+}
+
+InvertedTets inverted_tets(const Simulation& simulation) {
+  const std::vector<double> det_F = simulation.tet_fields().det_F;
+  const Model& model = simulation.model();
+  InvertedTets found;
+  int first = -1;
+  for (int t = 0; t < model.mesh.tet_count(); ++t) {
+    found.least_det = std::min(found.least_det, det_F[t]);
+    if (det_F[t] > 0) continue;
+    ++found.count;
+    if (first < 0 || model.numbering.tet.to_user(t) < model.numbering.tet.to_user(first)) first = t;
+  }
+  if (first >= 0) found.first = places::tet_name(model, first);
+  return found;
 }
 
 void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end) {
@@ -140,6 +173,7 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
       fmt::print(stream, "budget     {} steps ended by solver.time_budget: these results depend on the clock\n",
                  totals.out_of_time);
     print_certificate(stream, totals);
+    print_inverted(stream, totals, end.inverted);
     const auto per_step = [&](long count) { return static_cast<double>(count) / totals.steps; };
     fmt::print(stream,
                "work       per step: {:.1f} values, {:.1f} gradients, {:.1f} Hessians, {:.1f} factorizations, {:.1f} "

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "dynamics/simulation.h"
 #include "dynamics/step_report.h"
 
 namespace aspic::cli {
@@ -25,9 +26,18 @@ struct RunTotals {
   long substeps = 0, rejected = 0;  // of adaptive steps
   double seconds = 0;               // in steps
   double time = 0;                  // of the last step [s]
+  int with_inverted_tets = 0, first_inverted = 0;  // steps that end with an inverted tet, and the first of them
+  double least_det_F = 1;                          // of all tets at the ends of steps
 
   void add(const StepReport& report);
 };
+
+struct InvertedTets {
+  int count = 0;         // of those with det F <= 0
+  std::string first;     // the first of them by the user's numbers: "tet 12"
+  double least_det = 1;  // smallest det F of all tets
+};
+InvertedTets inverted_tets(const Simulation& simulation);
 
 struct RunEnd {
   int last_step = 0, steps_taken = 0;
@@ -35,6 +45,7 @@ struct RunEnd {
   double time_limit = 0;  // that ended the run [s]; 0: it did not
   bool blown_up = false;
   std::string solver;            // the methods and what they chose, and why; empty: none was needed
+  InvertedTets inverted;         // of the last state
   std::uint64_t state_hash = 0;  // of the last state
   std::filesystem::path directory;
 };

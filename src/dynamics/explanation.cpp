@@ -264,7 +264,7 @@ class Explainer {
       return {"the exact Hessian has directions of negative curvature, along which Newton's method would climb",
               "solver.definiteness = \"exact\"", "solver.definiteness = \"on_demand\""};
     return {"no direction could be computed along which the energy falls", squashed_place(model_, x_),
-            is_newton() ? "solver.linear = \"cholesky\"; `aspic check` finds bad tets" : smaller_steps()};
+            smaller_steps() + "; `aspic check` finds bad tets"};
   }
 
   const Simulation& simulation_;

@@ -85,12 +85,6 @@ class SymplecticEuler : public ExplicitEuler {
 class ForwardEuler : public ExplicitEuler {
  public:
   std::string_view name() const override { return "forward_euler"; }
-  void set_pin_velocity(const Pins& pins, double h, State& state) const override {
-    std::vector<double> next = state.q;
-    pins.place(state.time + h, next);
-    for (size_t i = 0; i < next.size(); ++i)
-      if (pins.holds(static_cast<int>(i / 3))) state.qdot[i] = (next[i] - state.q[i]) / h;
-  }
 
  protected:
   bool moves_with_old_velocity() const override { return true; }

@@ -92,6 +92,13 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name) {
   throw InvalidInput("integrator = '" + std::string(name) + "' is unknown" + suggestion(name, integrator_names()));
 }
 
+void Integrator::set_pin_velocity(const Pins& pins, double h, State& state) const {
+  std::vector<double> next = state.q;
+  pins.place(state.time + h, next);
+  for (size_t i = 0; i < next.size(); ++i)
+    if (pins.holds(static_cast<int>(i / 3))) state.qdot[i] = (next[i] - state.q[i]) / h;
+}
+
 void tell_potential(const IncrementalPotential& E, const StepContext& context) {
   for (Energy* V : E.potential()) V->begin_step(context);
 }

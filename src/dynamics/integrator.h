@@ -67,8 +67,9 @@ class Integrator {
   virtual bool chooses_guess() const { return is_implicit(); }  // whether StepTools::guess is heeded
   virtual bool takes_one_iteration() const { return false; }    // of Newton's method, in place of a minimisation
   virtual bool is_backward_euler() const { return false; }      // however its E is minimised
-  // Gives the pinned vertices of the first state the velocities that the scheme expects there.
-  virtual void set_pin_velocity(const Pins&, double /* h */, State&) const {}
+  // Gives the pinned vertices of the first state the velocities of their pins, as the scheme sees them: here those with
+  // which they reach their places at the end of the first step.
+  virtual void set_pin_velocity(const Pins& pins, double h, State& state) const;
   // Writes the state at the end of the step, and what acted in it.
   virtual StepSolve advance(const StepTools& tools, State& end, StepForces& forces) = 0;
 };

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "linalg/linear_solver.h"
+#include "linalg/conjugate_gradient.h"
 #include "optimize/forcing.h"
 #include "optimize/kept_hessian.h"
 #include "optimize/progressive_projection.h"
@@ -13,7 +13,8 @@
 namespace aspic {
 
 // on_demand: exact first; clamped only when the exact Hessian turns out indefinite or its direction of no use; absolute
-// where a full step along that overshoots, and for a while after that.
+// where a full step along that overshoots, and for a while after that. Directions along which E curves downwards are
+// lengthened, and truncated ones of the exact Hessian take over where the iterates creep away from a saddle.
 // progressive: exact first; then clamped where the residual is largest, and further around, as far as it takes.
 enum class NewtonDefiniteness { exact, clamped, absolute, on_demand, progressive };
 std::string_view to_string(NewtonDefiniteness definiteness);
@@ -35,14 +36,22 @@ class Newton : public SearchDirection {
  private:
   friend std::unique_ptr<Newton> make_newton_cg(NewtonDefiniteness definiteness);
 
-  bool solve_on_demand(Objective& E, std::span<const double> x, std::optional<double> value, std::span<const double> g,
-                       double forcing, std::span<double> d, DirectionReport& report);
-  bool overshoots(Objective& E, std::span<const double> x, double value, std::span<const double> d,
-                  DirectionReport& report);
+  struct Place {  // x, what is known there, and E
+    Objective& E;
+    std::span<const double> x, g;
+    std::optional<double> value;  // E(x), where steps are judged by E
+  };
+  bool solve_on_demand(const Place& at, double forcing, std::span<double> d, DirectionReport& report);
+  bool solve_truncated(const Place& at, double gained, double forcing, std::span<double> d, DirectionReport& report);
+  bool solve_modified(const Place& at, double forcing, std::span<double> d, DirectionReport& report);
+  double lengthen(const Place& at, std::span<double> d, DirectionReport& report);
+  double value_ahead(const Place& at, double alpha, std::span<const double> d, DirectionReport& report);
   bool solve_progressively(Objective& E, std::span<const double> x, std::span<const double> g, double forcing,
                            std::span<double> d, DirectionReport& report);
   bool solve(Objective& E, std::span<const double> x, const Projection& projection, std::span<const double> g,
              double forcing, std::span<double> d, DirectionReport& report);
+  bool solve_semidefinite(const BlockSparse& H, std::span<const double> g, double forcing, std::span<double> d,
+                          DirectionReport& report);
   bool solve_with_kept(Objective& E, std::span<const double> g, double forcing, std::span<double> d,
                        DirectionReport& report);
   bool solve_factorized(std::span<const double> g, double forcing, std::span<double> d, DirectionReport& report);
@@ -58,13 +67,18 @@ class Newton : public SearchDirection {
   Deadline deadline_;
   bool is_new_ = true, is_first_ = true;  // begun, and nothing computed yet; the compute() under way is the first
   ProgressiveProjection progressive_;
-  uint64_t analyzed_version_ = 0;
+  // Bears singular and indefinite matrices, which the first one may not.
+  ConjugateGradient semidefinite_solver_{std::make_unique<BlockJacobi>(BlockJacobi::Blocks::made_definite)};
+  uint64_t analyzed_version_ = 0, semidefinite_version_ = 0;
+  const BlockSparse* exact_ = nullptr;  // the last Hessian that E made, if it is the exact one
   double gradient_norm_ = 0;
   bool used_kept_ = false;      // for the last direction
   bool cautious_next_ = false;  // after a retreat: project, or more than before
   bool clamped_ = false;        // on_demand: the last direction, or it is absolute
   int absolute_left_ = 0;       // on_demand: the next so many Hessians that are not exact are absolute
   int absolute_span_ = 0;       // and how many will be when a direction overshoots again
+  int modified_in_a_row_ = 0;   // on_demand: directions that are not of the exact Hessian
+  double last_value_ = 0;       // on_demand: E at the last iterate with such a direction
   std::vector<double> ahead_;
 };
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "energy/tet_elasticity.h"
+#include "mesh/components.h"
 #include "mesh/generators.h"
 #include "scene/placement.h"
 
@@ -139,6 +140,29 @@ void note_stiffness(const PlacedBody& body, const BodyMaterial& material, const 
   note_weight(body, mean, gravity, notes);
   note_diamond(body, mean, notes);
   note_unbounded(body, material, notes);
+}
+
+void note_parts(const PlacedBody& body, const Model& model, std::vector<std::string>& notes) {
+  const std::vector<std::vector<int>> parts = tet_components(body.mesh);
+  if (parts.size() < 2) return;
+  std::vector<char> is_pinned(model.mesh.vertex_count(), 0);
+  for (const Pin& pin : model.pins)
+    for (const int v : pin.vertices) is_pinned[v] = 1;
+  std::vector<int> loose;  // the first tet of each
+  for (const std::vector<int>& part : parts) {
+    const bool is_held = std::any_of(part.begin(), part.end(), [&](int t) {
+      const Tet& corners = body.mesh.tets[t];
+      return std::any_of(corners.begin(), corners.end(), [&](int v) { return is_pinned[body.model_vertex(v)] != 0; });
+    });
+    if (!is_held) loose.push_back(part.front());
+  }
+  std::string note = "body '" + body.name() + "': its mesh falls into " + std::to_string(parts.size()) +
+                     " parts that share no vertex";
+  if (!loose.empty() && loose.size() < parts.size())
+    note += "; no pin holds " + std::to_string(loose.size()) + " of them (the first holds tet " +
+            std::to_string(loose.front()) + ")";
+  notes.push_back(note + "; if one body was meant, join them where it was made, or merge duplicate vertices with " +
+                  "--repair");
 }
 
 }  // namespace aspic

@@ -15,4 +15,8 @@ void note_start(const PlacedBody& body, std::vector<std::string>& notes);
 void note_stiffness(const PlacedBody& body, const BodyMaterial& material, const Vec3d& gravity,
                     std::vector<std::string>& notes);
 
+// Parts of a body that share no vertex, and those among them that are free though pins hold the others. The model has
+// its pins.
+void note_parts(const PlacedBody& body, const Model& model, std::vector<std::string>& notes);
+
 }  // namespace aspic

@@ -6,13 +6,19 @@
 #include "base/error.h"
 #include "scene/overrides.h"
 #include "scene/placement.h"
+#include "scene/sag.h"
 #include "scene/scene_document.h"
 
 namespace aspic {
 namespace {
 
 constexpr double kSmallest = 0.3, kLargest = 3;  // [m] extents that are taken as they are
-constexpr double kSag = 0.05;                    // rho g H / E: strain of the base under the body's weight
+constexpr double kStrain = 0.05;                 // rho g H / E: strain of the base of a column under its weight
+constexpr double kSag = 0.05;                    // displacement under the body's weight / largest extent
+constexpr double kStiffest = 10;                 // largest E by the sag / E by the strain: stiffer, few bodies still swing
+constexpr double kDensity = 1000;                // [kg/m^3]
+constexpr double kPoisson = 0.4;
+constexpr double kGravity = 9.81;                // [m/s^2]
 constexpr double kPull = 0.25;                   // sideways displacement of the top / height
 
 // The number with one significant digit: a default that can be read and said.
@@ -37,6 +43,29 @@ double base_fraction(const std::vector<Vec3d>& X, const Box& box) {
   return 0.2;
 }
 
+struct Stiffness {
+  double young = 1;  // [Pa]
+  std::string reason;
+};
+
+// Carries the weight of the body, whose mesh is scaled.
+Stiffness stiffness_for(const TetMesh& mesh, double base) {
+  const Box box = bounding_box(mesh.rest);
+  const double height = std::max(box.upper[1] - box.lower[1], 1e-9);
+  const double least = kDensity * kGravity * height / kStrain;
+  std::vector<int> held;
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (mesh.rest[v][1] <= box.lower[1] + base * height) held.push_back(v);
+  const double depth = sag(mesh, std::move(held),
+                           {.young = least, .poisson = kPoisson, .density = kDensity, .gravity = {{0, -kGravity, 0}}});
+  const double share = depth / (kSag * largest_extent(box));
+  if (!(share > 1)) return {one_digit(least), "under its own weight the body is compressed by about 5 %"};
+  if (share < kStiffest)
+    return {one_digit(share * least), "under its own weight the body sinks by about 5 % of its size"};
+  return {one_digit(kStiffest * least),
+          "ten times what a column of its height needs; thin parts sink by more than 5 % of its size"};
+}
+
 struct Choice {
   std::string key, text;  // "material.young"
 };
@@ -57,22 +86,21 @@ struct Defaults {
   std::vector<Choice> choices;
 };
 
-Defaults defaults_for(const std::filesystem::path& path, const std::vector<Vec3d>& file_X, double scale) {
-  const Box file_box = bounding_box(file_X);
-  std::vector<Vec3d> X;
-  for (const Vec3d& P : file_X) X.push_back(scale * P);
+Defaults defaults_for(const std::filesystem::path& path, TetMesh mesh, double scale, bool needs_young) {
+  const Box file_box = bounding_box(mesh.rest);
+  for (Vec3d& P : mesh.rest) P = scale * P;
+  const std::vector<Vec3d>& X = mesh.rest;
   const Box box = bounding_box(X);
   const double height = box.upper[1] - box.lower[1], extent = largest_extent(file_box);
-  const double density = 1000, g = 9.81;
-  const double young = one_digit(density * g * std::max(height, 1e-9) / kSag);
   const double base = base_fraction(X, box);
+  const auto [young, reason] = needs_young ? stiffness_for(mesh, base) : Stiffness{};
   const std::string pull =
       number_text(kPull * height) + " * ((Y - " + number_text(box.lower[1]) + ") / " + number_text(height) + ")^2";
 
   Defaults d;
   d.toml = "gravity = [0.0, -9.81, 0.0]\n[time]\nstep = 0.01\nduration = 2.0\n[[body]]\nmesh = " +
            toml_string(path.string()) + "\nscale = " + number_text(scale) +
-           "\nmaterial = { model = \"neo_hookean\", young = " + number_text(young) +
+           "\nmaterial = { model = \"neo_hookean_log\", young = " + number_text(young) +
            ", poisson = 0.4, density = 1000.0 }\ndeform = { displacement = [" + toml_string(pull) +
            ", 0.0, 0.0] }\n[[body.pin]]\nname = \"base\"\nwhere = { lowest = " + number_text(base) + " }\n";
   const std::string size = number_text(extent);
@@ -87,11 +115,9 @@ Defaults defaults_for(const std::filesystem::path& path, const std::vector<Vec3d
   }
   d.choices.push_back({"gravity", "gravity = 9.81 m/s^2 along -y: up is taken as y (gravity=[0,0,-9.81] for z)"});
   d.choices.push_back({"material.model",
-                       "material.model = neo_hookean: stays finite when elements are turned inside "
-                       "out"});
+                       "material.model = neo_hookean_log: its energy is infinite where a tet is flat, so that none inverts"});
   d.choices.push_back({"material.young", "material.young = " + number_text(young) +
-                                             " Pa: under its own weight the body "
-                                             "is compressed by about 5 %, soft enough to see it move"});
+                                             " Pa: " + reason});
   d.choices.push_back({"material.poisson",
                        "material.poisson = 0.4: rubber or flesh as far as linear tets render it "
                        "well"});
@@ -135,7 +161,7 @@ SceneSource scene_of_mesh(const std::filesystem::path& path, const std::vector<s
 
   double scale = guessed_scale(mesh.tets.rest);
   if (is_overridden("scale", overrides) && body["scale"].is_number()) scale = body["scale"].number();
-  const Defaults defaults = defaults_for(path, mesh.tets.rest, scale);
+  const Defaults defaults = defaults_for(path, mesh.tets, scale, !is_overridden("material.young", overrides));
   SceneSource source{read(defaults.toml), path.stem().string(), file, {}, {}};
   for (const Choice& c : defaults.choices)
     if (!is_overridden(c.key, overrides)) source.notes.push_back(c.text);

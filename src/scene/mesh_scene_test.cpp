@@ -33,6 +33,34 @@ TEST(MeshAlone, GetsDefaultsThatAreStated) {
   EXPECT_GT(reach, 0.1);  // the top swings back, metres per second
 }
 
+// Held at its narrow end, a body that widens upwards needs a stiffer material than a column of its height.
+TEST(MeshAlone, StiffnessCarriesItsWeight) {
+  const TestFolder folder;
+  TetMesh funnel = make_box({{-0.5, 0, -0.5}}, {{0.5, 1, 0.5}}, {4, 8, 4});
+  for (Vec3d& X : funnel.rest) X = {{X[0] * (0.1 + X[1]), X[1], X[2] * (0.1 + X[1])}};
+  write_mesh(folder / "funnel.msh", funnel);
+  Scene scene = load_scene(folder / "funnel.msh", {.overrides = {"deform.displacement=[0,0,0]"}});
+  EXPECT_THAT(scene.notes, Contains(HasSubstr("sinks by about 5 %")));
+  EXPECT_THAT(scene.resolved, HasSubstr("neo_hookean_log"));
+  for (int step = 0; step < 40; ++step) EXPECT_TRUE(is_success(scene.simulation.step().status));
+  double deepest = 0;
+  for (int v = 0; v < scene.simulation.model().mesh.vertex_count(); ++v)
+    deepest = std::max(deepest, scene.simulation.model().mesh.rest[v][1] - scene.simulation.state().q[3 * v + 1]);
+  EXPECT_GT(deepest, 0.01);
+  EXPECT_LT(deepest, 0.1);
+}
+
+TEST(MeshAlone, NamesPartsAndLooseOnes) {
+  const TestFolder folder;
+  TetMesh two = make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2});
+  const TetMesh above = make_box({{0, 1.5, 0}}, {{1, 2, 1}}, {2, 1, 2});
+  for (const Tet& t : above.tets) two.tets.push_back({t[0] + 27, t[1] + 27, t[2] + 27, t[3] + 27});
+  two.rest.insert(two.rest.end(), above.rest.begin(), above.rest.end());
+  write_mesh(folder / "two.msh", two);
+  EXPECT_THAT(load_scene(folder / "two.msh").notes,
+              Contains(AllOf(HasSubstr("2 parts"), HasSubstr("no pin holds 1 of them (the first holds tet 48)"))));
+}
+
 TEST(MeshAlone, OverridesReplaceDefaultsAndTheirNotes) {
   const TestFolder folder;
   write_mesh(folder / "tower.msh", make_box({{0, 0, 0}}, {{40, 100, 40}}, {1, 2, 1}));

@@ -166,6 +166,7 @@ class SceneBuilder {
     }
     model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind);
     add_actions(bodies_, source_.document.find("gravity")->vector(), kind, files_, model_, source_.notes);
+    for (const PlacedBody& body : bodies_) note_parts(body, model_, source_.notes);
   }
 
   // The material fields of the results; zero where a body is not elastic.

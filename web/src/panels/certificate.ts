@@ -117,6 +117,7 @@ export interface Totals {
   iterations: number;
   worstExcess: StepRow | null;
   smallestVolume: StepRow | null;
+  inverted: number; // steps that end with an inverted tet
   largestError: StepRow | null;
   bounded: number; // steps whose energy bound was judged
   held: number; // of these
@@ -136,6 +137,7 @@ export function totals(steps: readonly StepRow[]): Totals {
     iterations: steps.reduce((sum, row) => sum + row.iterations.length, 0),
     worstExcess: worst(excess),
     smallestVolume: worst((row) => (row.min_det_F === null ? null : -row.min_det_F)),
+    inverted: steps.filter((row) => row.min_det_F !== null && row.min_det_F <= 0).length,
     largestError: worst((row) => (row.ledger_error === null ? null : Math.abs(row.ledger_error))),
     bounded: steps.filter(isBounded).length,
     held: steps.filter((row) => row.energy_bound === "holds").length,
