@@ -92,6 +92,18 @@ void print_certificate(std::FILE* stream, const RunTotals& totals) {
                totals.grew, totals.most_grown);
 }
 
+constexpr size_t kMostReactions = 6;
+
+void print_reactions(std::FILE* stream, const RunTotals& totals, const RunEnd& end) {
+  const auto vector = [](const Vec3d& v) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", v[0], v[1], v[2]); };
+  const size_t count = std::min(totals.reactions.size(), end.pins.size());
+  for (size_t i = 0; i < std::min(count, kMostReactions); ++i)
+    fmt::print(stream, "{}  {} exerts {} N, {} N m about the origin in the last step\n",
+               i == 0 ? "reactions" : "         ", end.pins[i], vector(totals.reactions[i].force),
+               vector(totals.reactions[i].moment));
+  if (count > kMostReactions) fmt::print(stream, "           {} more pins: steps.csv\n", count - kMostReactions);
+}
+
 }  // namespace
 
 void RunTotals::add(const StepReport& report) {
@@ -121,6 +133,7 @@ void RunTotals::add(const StepReport& report) {
   rejected += report.rejected;
   seconds += report.seconds;
   time = report.time;
+  reactions = report.resultants.pins;
 }
 
 void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end) {
@@ -140,6 +153,7 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
       fmt::print(stream, "budget     {} steps ended by solver.time_budget: these results depend on the clock\n",
                  totals.out_of_time);
     print_certificate(stream, totals);
+    print_reactions(stream, totals, end);
     const auto per_step = [&](long count) { return static_cast<double>(count) / totals.steps; };
     fmt::print(stream,
                "work       per step: {:.1f} values, {:.1f} gradients, {:.1f} Hessians, {:.1f} factorizations, {:.1f} "

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "dynamics/step_report.h"
 
@@ -22,9 +23,10 @@ struct RunTotals {
   long iterations = 0;
   long values = 0, gradients = 0, hessians = 0, factorizations = 0, products = 0, cycles = 0;
   int most_iterations = 0;
-  long substeps = 0, rejected = 0;  // of adaptive steps
-  double seconds = 0;               // in steps
-  double time = 0;                  // of the last step [s]
+  long substeps = 0, rejected = 0;   // of adaptive steps
+  double seconds = 0;                // in steps
+  double time = 0;                   // of the last step [s]
+  std::vector<Resultant> reactions;  // of the last step, of each pin
 
   void add(const StepReport& report);
 };
@@ -34,8 +36,9 @@ struct RunEnd {
   bool interrupted = false;
   double time_limit = 0;  // that ended the run [s]; 0: it did not
   bool blown_up = false;
-  std::string solver;            // the methods and what they chose, and why; empty: none was needed
-  std::uint64_t state_hash = 0;  // of the last state
+  std::string solver;             // the methods and what they chose, and why; empty: none was needed
+  std::uint64_t state_hash = 0;   // of the last state
+  std::vector<std::string> pins;  // the names of RunTotals::reactions
   std::filesystem::path directory;
 };
 

@@ -22,6 +22,7 @@ std::string kinds(const Key& key) {
   add(kBoolean, "true or false");
   add(kText, key.choices.empty() ? "string" : "one of " + list_of(key.choices));
   add(kExpression, "formula");
+  add(kMovingExpression, "formula with `t`");
   add(kNumbers, "3 numbers");
   add(kExpressions, "3 numbers or formulas");
   add(kMovingExpressions, "3 numbers or formulas with `t`");
@@ -87,7 +88,8 @@ const char* const kIntroduction =
     "in it, such as `../assets/bunny.mesh`; absolute paths and `../..` are refused unless they come from the command "
     "line (`--set mesh=...`, relative to the working directory), so that a scene from elsewhere cannot open files all "
     "over the disk.\n"
-    "* `--set PATH=VALUE` replaces a value: `time.step=0.005`; `material.young=2e5` for every body; "
+    "* `--set PATH=VALUE` replaces a value: `time.step=0.005`; several may follow one `--set`; `material.young=2e5` "
+    "for every body; "
     "`body.bunny.pin.0.where=\"y < 0.1\"` for one, lists by name or index from 0.\n"
     "* A run stores the resolved scene: every default filled in, with the meshes it used beside it and their hashes. "
     "Running that file again gives the same bits.\n"
