@@ -64,7 +64,8 @@ std::string formulas() {
       "## Formulas\n\nA formula is a string such as `\"1e5 * (1 + 3 * exp(-Y^2 / 0.02))\"`: at most " +
       std::to_string(kMaxExpressionLength) + " characters and " + std::to_string(kMaxExpressionDepth) +
       " open parentheses, with `+ - * / ^`, comparisons, `&& || !` and `condition ? a : b`. `X`, `Y`, `Z` (or `x`, "
-      "`y`, `z`) is a point of the placed rest shape [m]; in a motion it is where the point was at time 0, and `t` is "
+      "`y`, `z`) is a point of the placed rest shape [m]; in a motion it is where the point was at time 0. In "
+      "motions and loads `t` is "
       "the time [s]. A value that is not finite is an error. Functions:\n\n| name | meaning |\n|---|---|\n";
   for (const NamedMeaning& f : expression_functions()) out += "| `" + f.name + "` | " + cell(f.meaning) + " |\n";
   for (const NamedMeaning& c : expression_constants()) out += "| `" + c.name + "` | " + cell(c.meaning) + " |\n";
