@@ -97,8 +97,9 @@ class CommandLine(unittest.TestCase):
                                 text=True)
 
     def steps(self, run):
+        """Without the row of the start, step 0."""
         with open(self.folder / run / "steps.csv", newline="") as file:
-            return list(csv.DictReader(file))
+            return [row for row in csv.DictReader(file) if row["step"] != "0"]
 
     def assert_same_results(self, one, other):
         """To the bit, but for what the clock says."""
@@ -513,6 +514,22 @@ class Run(CommandLine):
         self.assertIn("did not converge", self.aspic("run", scene, *hard, code=3).stderr)
         self.aspic("run", scene, *hard, "--force", "--allow-unconverged")
         self.aspic("run", scene, "--resume", code=3)  # also when the steps were taken before
+
+    def test_several_assignments_follow_one_set(self):
+        self.aspic("run", "--set", "time.step=0.01", "time.duration=0.03", self.beam(), "--set", "output.report=false")
+        self.assertEqual([step["time"] for step in self.steps("out/beam")], ["0.01", "0.02", "0.03"])
+
+    def test_forces_of_pins_loads_and_bodies_are_in_table_json_and_summary(self):
+        scene = self.beam(extra='[[body.pin]]\nname = "guide"\nwhere = "x > 0.399"\naxes = "z"\n')
+        done = self.aspic("run", scene, "--json", "--set", "output.report=false")
+        last, row = json.loads(done.stdout.splitlines()[-1]), self.steps("out/beam")[-1]
+        name, (pin, *_) = next(iter(last["reactions"])), last["reactions"].values()
+        self.assertEqual([float(row[f"reaction_{name}_{axis}"]) for axis in "xyz"], pin["force"])
+        self.assertEqual([float(row[f"reaction_moment_{name}_{axis}"]) for axis in "xyz"], pin["moment"])
+        self.assertEqual([float(row[f"load_gravity_{axis}"]) for axis in "xyz"], last["loads"]["gravity"]["force"])
+        guide = next(sums for name, sums in last["reactions"].items() if name.endswith("guide"))
+        self.assertEqual(guide["force"][:2], [0, 0])
+        self.assertIn(f"reactions  {name} exerts (", done.stderr)
 
     def test_an_explicit_scheme_that_blows_up_ends_the_run(self):
         done = self.aspic("run", self.beam(duration=100), "--set", "time.integrator=\"rk4\"", "--set", "time.step=0.1",

@@ -156,7 +156,9 @@ void add_check(CLI::App& app, Action& action) {
       "  aspic check scenes/bunny.toml --derivatives --plot errors.svg\n"
       "Exit code 2 when there are errors (after the repair, when one was asked for), 3 when a derivative is wrong.");
   command->add_option("INPUT", arguments->input, "Scene (.toml) or mesh")->required();
-  command->add_option("--set", arguments->overrides, "Override a value of the scene: material.young=2e5")
+  command
+      ->add_option("--set", arguments->overrides,
+                   "Override values of the scene: material.young=2e5; several may follow")
       ->allow_extra_args(false);
   CLI::Option* output = command->add_option("-o,--output", arguments->output, "Where the repaired mesh goes");
   CLI::Option* repair = command->add_flag("--repair", arguments->repair,

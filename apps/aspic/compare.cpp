@@ -103,7 +103,7 @@ Exit codes: 0 every method reached the same minimiser, 2 bad input, 3 some did n
   command->add_option("--methods", arguments->methods, "Methods, separated by commas")->required()->delimiter(',');
   command->add_option("--step", arguments->step, "Which step; those before are taken by the scene's own method")
       ->check(CLI::Range(1, 1000000000));
-  command->add_option("--set", arguments->overrides, "Override a value: solver.tolerance=1e-8; can be repeated")
+  command->add_option("--set", arguments->overrides, "Override values: solver.tolerance=1e-8; several may follow")
       ->allow_extra_args(false);
   command->add_option("--max-seconds", arguments->max_seconds, "A method that takes longer is cut off")
       ->check(CLI::Range(1e-3, 1e9));

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <vector>
 
+#include "aspic/assignments.h"
 #include "aspic/commands.h"
 #include "aspic/interrupt.h"
 #include "aspic/streams.h"
@@ -123,7 +124,9 @@ int run_program(int argc, char** argv) {
     return exit_bad_input;
   }
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> spread = spread_assignments({argv + 1, argv + argc});
+    std::reverse(spread.begin(), spread.end());  // as CLI11 takes them
+    app.parse(std::move(spread));
   } catch (const CLI::ParseError& error) {
     return report_parse_error(app, error, {argv + 1, argv + argc});
   }

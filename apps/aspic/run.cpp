@@ -101,7 +101,10 @@ int unconverged_before(const fs::path& directory, int steps) {
   std::string line;
   std::getline(file, line);  // step,time,status,...
   int count = 0;
-  for (int i = 0; i < steps && std::getline(file, line); ++i) {
+  while (std::getline(file, line)) {
+    const int step = std::atoi(line.c_str());
+    if (step == 0) continue;
+    if (step > steps) break;
     const auto has = [&](Status status) { return line.find(fmt::format(",{},", to_string(status))) != line.npos; };
     if (!has(Status::converged) && !has(Status::round_off) && !has(Status::budget)) ++count;
   }
@@ -245,6 +248,12 @@ void print_start(std::FILE* stream, const RunArguments& arguments, const Scene& 
   std::fflush(stream);
 }
 
+std::vector<std::string> pin_names(const Model& model) {
+  std::vector<std::string> names;
+  for (const Pin& pin : model.pins) names.push_back(pin.name);
+  return names;
+}
+
 int exit_code(const RunArguments& arguments, bool has_run_out, int unconverged) {
   if (interrupt_signal()) return exit_signal + interrupt_signal();
   if (has_run_out) return exit_time_limit;
@@ -277,6 +286,7 @@ int run(const RunArguments& arguments) {
                    .solver = scene.simulation.is_implicit() ? scene.simulation.solver_description() : "",
                    .inverted = inverted_tets(scene.simulation),
                    .state_hash = state_hash(scene.simulation.state(), scene.simulation.model().numbering.vertex),
+                   .pins = pin_names(scene.simulation.model()),
                    .directory = directory.path()});
   }
   write_run_report(directory.path(), scene, arguments.quiet ? nullptr : runner.human());
@@ -293,7 +303,7 @@ void add_run(CLI::App& app, Action& action) {
 Examples:
   aspic run bunny.obj                             fills the surface with tets and lets it fall and hang
   aspic run scenes/bunny.toml                     results in out/bunny
-  aspic run beam.toml --set material.young=2e5 --set time.step=0.005 --out out/soft
+  aspic run beam.toml --set material.young=2e5 time.step=0.005 --out out/soft
   aspic run beam.toml --resume                    continues an interrupted run, to the same bits
   aspic run beam.toml --time-limit 3600           at most an hour; --resume goes on
   aspic run beam.toml --json | jq .iterations     one line of JSON per step
@@ -303,7 +313,7 @@ Exit codes: 0 done, 2 bad input, 3 some step did not converge (unless --allow-un
 solver.time_budget was spent) or an explicit scheme blew up, which ends the run;
 4 --time-limit came first; 130 interrupted by ctrl-C, 143 by kill: everything up to the last whole step is written.)");
   command->add_option("INPUT", arguments->input, "Scene (.toml), mesh, or with --resume a run directory")->required();
-  command->add_option("--set", arguments->overrides, "Override a value: material.young=2e5; can be repeated")
+  command->add_option("--set", arguments->overrides, "Override values: material.young=2e5; several may follow")
       ->allow_extra_args(false);
   command->add_option("--threads", arguments->threads, "Threads; all cores by default; the result is the same")
       ->check(CLI::Range(1, 1024));

@@ -5,6 +5,20 @@
 #include "base/hash.h"
 
 namespace aspic::cli {
+namespace {
+
+template <class Name>
+void add_resultants(const char* kind, const std::vector<Resultant>& sums, const Name& name_of,
+                    nlohmann::ordered_json& line) {
+  nlohmann::ordered_json all = nlohmann::json::object();
+  for (size_t i = 0; i < sums.size(); ++i) {
+    const auto& [f, m] = sums[i];
+    all[name_of(i)] = {{"force", {f[0], f[1], f[2]}}, {"moment", {m[0], m[1], m[2]}}};
+  }
+  line[kind] = std::move(all);
+}
+
+}  // namespace
 
 std::string step_json(const StepReport& report, const Explanation& why, const Simulation& simulation) {
   const std::vector<std::string> potential_names = simulation.potential_names();
@@ -52,6 +66,14 @@ std::string step_json(const StepReport& report, const Explanation& why, const Si
       {"state_hash", hex_digits(report.state_hash)},
       {"seconds", report.seconds},
   };
+  const Model& model = simulation.model();
+  const Resultants& sums = report.resultants;
+  add_resultants(
+      "reactions", sums.pins, [&](size_t i) { return model.pins[i].name; }, line);
+  add_resultants(
+      "loads", sums.loads, [&](size_t i) { return std::string(model.loads[i]->name()); }, line);
+  add_resultants(
+      "bodies", sums.bodies, [&](size_t i) { return model.bodies[i].name; }, line);
   if (!is_success(report.status))
     line["explanation"] = {{"cause", why.cause}, {"place", why.place}, {"remedy", why.remedy}};
   return line.dump();

@@ -108,6 +108,18 @@ void print_inverted(std::FILE* stream, const RunTotals& totals, const InvertedTe
              totals.with_inverted_tets, totals.steps, totals.first_inverted, totals.least_det_F);
 }
 
+constexpr size_t kMostReactions = 6;
+
+void print_reactions(std::FILE* stream, const RunTotals& totals, const RunEnd& end) {
+  const auto vector = [](const Vec3d& v) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", v[0], v[1], v[2]); };
+  const size_t count = std::min(totals.reactions.size(), end.pins.size());
+  for (size_t i = 0; i < std::min(count, kMostReactions); ++i)
+    fmt::print(stream, "{}  {} exerts {} N, {} N m about the origin in the last step\n",
+               i == 0 ? "reactions" : "         ", end.pins[i], vector(totals.reactions[i].force),
+               vector(totals.reactions[i].moment));
+  if (count > kMostReactions) fmt::print(stream, "           {} more pins: steps.csv\n", count - kMostReactions);
+}
+
 }  // namespace
 
 void RunTotals::add(const StepReport& report) {
@@ -139,6 +151,7 @@ void RunTotals::add(const StepReport& report) {
   least_det_F = std::min(least_det_F, report.min_det_F);
   seconds += report.seconds;
   time = report.time;
+  reactions = report.resultants.pins;
 }
 
 InvertedTets inverted_tets(const Simulation& simulation) {
@@ -174,6 +187,7 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
                  totals.out_of_time);
     print_certificate(stream, totals);
     print_inverted(stream, totals, end.inverted);
+    print_reactions(stream, totals, end);
     const auto per_step = [&](long count) { return static_cast<double>(count) / totals.steps; };
     fmt::print(stream,
                "work       per step: {:.1f} values, {:.1f} gradients, {:.1f} Hessians, {:.1f} factorizations, {:.1f} "

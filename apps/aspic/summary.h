@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "dynamics/simulation.h"
 #include "dynamics/step_report.h"
@@ -28,6 +29,7 @@ struct RunTotals {
   double time = 0;                  // of the last step [s]
   int with_inverted_tets = 0, first_inverted = 0;  // steps that end with an inverted tet, and the first of them
   double least_det_F = 1;                          // of all tets at the ends of steps
+  std::vector<Resultant> reactions;                // of the last step, of each pin
 
   void add(const StepReport& report);
 };
@@ -47,6 +49,7 @@ struct RunEnd {
   std::string solver;            // the methods and what they chose, and why; empty: none was needed
   InvertedTets inverted;         // of the last state
   std::uint64_t state_hash = 0;  // of the last state
+  std::vector<std::string> pins;  // the names of RunTotals::reactions
   std::filesystem::path directory;
 };
 

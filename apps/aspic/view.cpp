@@ -123,7 +123,7 @@ Examples:
 
 The address works on this machine only, with the token in it. Several pages may watch, one steers. Ctrl-C ends it, with exit code 0.)");
   command->add_option("INPUT", arguments->input, "Scene (.toml), mesh, or directory of a run")->required();
-  command->add_option("--set", arguments->overrides, "Override a value: material.young=2e5; can be repeated")
+  command->add_option("--set", arguments->overrides, "Override values: material.young=2e5; several may follow")
       ->allow_extra_args(false);
   command->add_option("--port", arguments->port, "Port to listen at; any free one by default")
       ->check(CLI::Range(1, 65535));

@@ -31,7 +31,10 @@ Vec3d gravity_of(const Scene& scene) {
 
 std::vector<int> held_by(const Model& model) {
   std::vector<int> held;
-  for (const Pin& pin : model.pins) held.insert(held.end(), pin.vertices.begin(), pin.vertices.end());
+  for (const Pin& pin : model.pins) {
+    require_full(pin);
+    held.insert(held.end(), pin.vertices.begin(), pin.vertices.end());
+  }
   std::sort(held.begin(), held.end());
   if (held.empty())
     throw InvalidInput("nothing holds the body, which the probe would push away; pin it first (brush, B)");

@@ -34,6 +34,28 @@ std::uint64_t from_hex(const std::string& digits) {
   throw InvalidInput(file.string() + ": the row of step " + std::to_string(step) + " is not where it belongs");
 }
 
+// From columns such as reaction_beam.wall_x; none in runs of earlier versions.
+std::vector<std::string> pins_of(const CsvReader& table) {
+  constexpr std::string_view kForce = "reaction_", kMoment = "reaction_moment_", kEnd = "_x";
+  std::vector<std::string> pins;
+  for (const std::string& name : table.columns()) {
+    if (pins.size() == StepRow::kMostReactions) break;
+    if (!name.starts_with(kMoment) || !name.ends_with(kEnd)) continue;
+    const std::string pin = name.substr(kMoment.size(), name.size() - kMoment.size() - kEnd.size());
+    const auto has_all = [&](std::string_view kind) {
+      return table.has(std::string(kind) + pin + "_x") && table.has(std::string(kind) + pin + "_y") &&
+             table.has(std::string(kind) + pin + "_z");
+    };
+    if (has_all(kForce) && has_all(kMoment)) pins.push_back(pin);
+  }
+  return pins;
+}
+
+Vec3d vector_of(CsvReader& table, const std::string& name) {
+  return {{table.number(table.column(name + "_x")), table.number(table.column(name + "_y")),
+           table.number(table.column(name + "_z"))}};
+}
+
 std::vector<StepRow> read_steps(const fs::path& file, int last_step, std::vector<std::string>& potentials) {
   CsvReader table(file);
   std::vector<size_t> potential_columns;
@@ -43,6 +65,7 @@ std::vector<StepRow> read_steps(const fs::path& file, int last_step, std::vector
     potentials.push_back(name.substr(kPotential.size()));
     potential_columns.push_back(i);
   }
+  const std::vector<std::string> pins = pins_of(table);
   const auto number = [&](const char* name) { return [&table, i = table.column(name)] { return table.number(i); }; };
   const auto time = number("time"), residual = number("residual"), threshold = number("residual_threshold"),
              min_det_F = number("min_det_F"), kinetic = number("kinetic"), total = number("potential_total"),
@@ -55,6 +78,7 @@ std::vector<StepRow> read_steps(const fs::path& file, int last_step, std::vector
   const bool is_hashed = table.has("state_hash");
   std::vector<StepRow> steps;
   while (static_cast<int>(steps.size()) < last_step && table.next()) {
+    if (table.integer(step) == 0) continue;  // the start; runs of earlier versions have no row of it
     StepReport& report = steps.emplace_back().report;
     report.step = table.integer(step);
     if (report.step != static_cast<int>(steps.size())) fail_order(file, report.step);
@@ -72,6 +96,10 @@ std::vector<StepRow> read_steps(const fs::path& file, int last_step, std::vector
     report.numerical_loss = numerical_loss();
     report.residual_work = residual_work();
     report.ledger_error = ledger_error();
+    steps.back().pins = pins;
+    for (const std::string& pin : pins)
+      report.resultants.pins.push_back(
+          {vector_of(table, "reaction_" + pin), vector_of(table, "reaction_moment_" + pin)});
     if (is_certified) {
       report.decrement = table.number(table.column("decrement"));
       report.energy_bound =

@@ -111,6 +111,7 @@ Progress Side::complete(const StepReport& report) {
               .mouse_work = by_mouse + mouse_jumps_,
               .probe_work = by_probe + tip_jumps_,
               .pin_work = report.pin_work - by_mouse - by_probe,
+              .pins = pin_names(model()),
               .why = explain(simulation(), report)};
   mouse_jumps_ = tip_jumps_ = 0;
   rows_.add(std::move(row));

@@ -1,5 +1,7 @@
 #include "viewer/step_rows.h"
 
+#include <algorithm>
+
 #include "base/hash.h"
 
 namespace aspic::viewer {
@@ -45,6 +47,27 @@ Json to_json(const Explanation& why) {
   return {{"cause", why.cause}, {"place", why.place}, {"remedy", why.remedy}};
 }
 
+std::vector<std::string> pin_names(const Model& model) {
+  std::vector<std::string> names;
+  for (const Pin& pin : model.pins) names.push_back(pin.name);
+  return names;
+}
+
+namespace {
+
+// By the names of the pins: three numbers of the force [N], three of the moment [N m].
+Json reactions(const StepRow& row) {
+  Json all = Json::object();
+  const std::vector<Resultant>& sums = row.report.resultants.pins;
+  for (size_t i = 0; i < std::min({sums.size(), row.pins.size(), StepRow::kMostReactions}); ++i) {
+    const auto& [f, m] = sums[i];
+    all[row.pins[i]] = {f[0], f[1], f[2], m[0], m[1], m[2]};
+  }
+  return all;
+}
+
+}  // namespace
+
 Json to_json(const StepRow& row) {
   const StepReport& report = row.report;
   Json iterations = Json::array();
@@ -63,6 +86,7 @@ Json to_json(const StepRow& row) {
           {"mouse_work", row.mouse_work},
           {"probe_work", row.probe_work},
           {"pin_work", row.pin_work},
+          {"reactions", reactions(row)},
           {"damping_loss", report.damping_loss},
           {"numerical_loss", report.numerical_loss},
           {"residual_work", report.residual_work},

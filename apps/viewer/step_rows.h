@@ -34,14 +34,17 @@ Json to_json(const std::vector<Trial>& tried);
 Json to_json(const Explanation& why);  // null when there is nothing to explain
 
 struct StepRow {
+  static constexpr size_t kMostReactions = 8;  // shown: vertices that are pinned by hand are a pin each
   StepReport report;
   std::vector<IterationRow> iterations;
-  double mouse_work = 0;  // within the step, and by what was done with the mouse before it [J]
-  double probe_work = 0;  // likewise, by the probe
-  double pin_work = 0;    // by pins and by the other targets [J]
+  double mouse_work = 0;               // within the step, and by what was done with the mouse before it [J]
+  double probe_work = 0;               // likewise, by the probe
+  double pin_work = 0;                 // by pins and by the other targets [J]
+  std::vector<std::string> pins = {};  // the names of report.resultants.pins
   Explanation why;
 };
 Json to_json(const StepRow& row);
+std::vector<std::string> pin_names(const Model& model);
 
 class StepRows {
  public:

@@ -63,6 +63,7 @@ class Bench {
     truth_.mesh = model_.mesh;
     truth_.density = model_.density;
     for (const Pin& pin : model_.pins) {
+      require_full(pin);
       truth_.fixed.insert(truth_.fixed.end(), pin.vertices.begin(), pin.vertices.end());
       if (pin.motion) result_.notes.push_back("the pin '" + pin.name + "' moves in the scene; here it holds still");
     }
@@ -282,6 +283,13 @@ void check(const SynthesisOptions& o) {
 }
 
 }  // namespace
+
+void require_full(const Pin& pin) {
+  if (!pin.directions.empty())
+    throw InvalidInput("pin '" + pin.name +
+                       "' holds its vertices along some directions only; captured data know vertices that are held in "
+                       "all (remove its axes or direction)");
+}
 
 Synthesis synthesize(const Scene& scene, const SynthesisOptions& options, const SynthesisWitness& witness) {
   check(options);

@@ -14,6 +14,9 @@
 
 namespace aspic {
 
+// Throws InvalidInput for a pin that holds some directions only: captured data know vertices that are held in all.
+void require_full(const Pin& pin);
+
 struct SynthesisOptions {
   int pokes = 8, depths = 3;
   double deepest = 0.1;   // relative to the size of the body, the cube root of its volume

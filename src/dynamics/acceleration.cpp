@@ -33,8 +33,8 @@ bool Acceleration::solve(const StepTools& tools, double time, std::span<const do
     add_damping(tools, q, v, -tools.h, -0.5);
   }
 
-  for (size_t i = 0; i < n; ++i)
-    if (!tools.pins.holds(static_cast<int>(i / 3))) acc[i] = 0;
+  tools.pins.copy_held(acc, scratch_);
+  std::copy(scratch_.begin(), scratch_.end(), acc.begin());
   tools.model.mass->multiply(acc, scratch_);
   for (size_t i = 0; i < n; ++i) force_[i] = -gradient_[i] - damping_[i] - scratch_[i];
   tools.pins.set_zero(force_);

@@ -20,7 +20,7 @@ void expect_steady_steps_to_allocate_only_their_report(const SimulationOptions& 
   for (int i = 0; i < 3; ++i) {
     const test::AllocationCounter counter;
     const StepReport report = simulation.step();
-    EXPECT_EQ(counter.count(), 2) << options.integrator << ", " << options.solver.method << ", "
+    EXPECT_EQ(counter.count(), 5) << options.integrator << ", " << options.solver.method << ", "
                                   << options.solver.linear
                                   << ": more than the vectors of StepReport, which go to the caller";
     EXPECT_TRUE(is_success(report.status) || report.status == Status::iteration_limit) << to_string(report.status);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "dynamics/explanation_places.h"
+#include "dynamics/pins.h"
 #include "material/registry.h"
 
 namespace aspic {
@@ -42,7 +43,8 @@ class Explainer {
     const bool is_unsolved = report_.status == Status::stuck || report_.status == Status::no_descent ||
                              report_.status == Status::iteration_limit;
     if (is_unsolved && is_static() && !is_held())
-      return {"there is no single equilibrium: nothing holds the body", "no pins in the scene",
+      return {"there is no single equilibrium: nothing holds the body",
+              model_.pins.empty() ? "no pins in the scene" : "pins that leave it free to slide along some direction",
               "pin some vertices, or use time.integrator = \"backward_euler\""};
     switch (report_.status) {
       case Status::undefined:
@@ -71,11 +73,28 @@ class Explainer {
  private:
   bool is_static() const { return simulation_.options().integrator == "quasi_static"; }
   bool is_newton() const { return solver_.method.starts_with("newton"); }
-  // Pins, or loads such as springs to points, which differ where the body is moved as a whole.
+  // Along every direction there are pins, or loads such as springs to points, which differ where the body is moved.
   bool is_held() const {
-    if (!model_.pins.empty()) return true;
+    std::vector<Vec3d> held;  // orthonormal
+    const auto rest = [&held](Vec3d d) {
+      for (const Vec3d& n : held) d = d - dot(n, d) * n;
+      return d;
+    };
+    for (const Pin& pin : model_.pins) {
+      if (pin.directions.empty()) return true;
+      for (const Vec3d& n : pin.directions)
+        if (const Vec3d d = rest(n); dot(d, d) > 1e-12) held.push_back((1 / std::sqrt(dot(d, d))) * d);
+    }
+    if (held.size() == 3) return true;
+    const Vec3d axes[] = {{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}};
+    return std::all_of(axes, axes + 3, [&](const Vec3d& axis) {
+      const Vec3d d = rest(axis);
+      return dot(d, d) < 1e-6 || is_held_by_loads(d);
+    });
+  }
+  bool is_held_by_loads(const Vec3d& d) const {
     std::vector<double> moved = x_, here(x_.size()), there(x_.size());
-    for (double& xi : moved) xi += size_of(model_.mesh);
+    for (size_t i = 0; i < moved.size(); ++i) moved[i] += size_of(model_.mesh) * d[static_cast<int>(i % 3)];
     for (const auto& V : model_.loads) {
       V->add_gradient(x_, 1, here);
       V->add_gradient(moved, 1, there);
@@ -124,14 +143,7 @@ class Explainer {
   // The positions at the start of the step, with the pins where they are at its end.
   std::vector<double> placed() const {
     std::vector<double> placed = x_;
-    const std::vector<double>& start = simulation_.snapshot().start.q;
-    for (const Pin& pin : model_.pins)
-      for (const int v : pin.vertices) {
-        if (!pin.motion) continue;
-        const size_t i = 3 * static_cast<size_t>(v);
-        const Vec3d to = pin.motion({{start[i], start[i + 1], start[i + 2]}}, report_.time);
-        for (int r = 0; r < 3; ++r) placed[i + r] = to[r];
-      }
+    Pins(model_.pins, simulation_.snapshot().start.q).place(report_.time, placed);
     return placed;
   }
 
@@ -187,11 +199,8 @@ class Explainer {
 
   bool is_pinned(int tet) const {
     const auto& corners = model_.mesh.tets[tet];
-    return std::all_of(corners.begin(), corners.end(), [&](int corner) {
-      return std::any_of(model_.pins.begin(), model_.pins.end(), [&](const Pin& pin) {
-        return std::find(pin.vertices.begin(), pin.vertices.end(), corner) != pin.vertices.end();
-      });
-    });
+    const Pins pins(model_.pins, simulation_.snapshot().start.q);
+    return std::all_of(corners.begin(), corners.end(), [&](int corner) { return pins.holds(corner); });
   }
 
   Explanation too_fine() const {

@@ -49,17 +49,15 @@ class ExplicitEuler : public Integrator {
       tools.pins.place(from, scratch_);
       for (size_t i = 0; i < scratch_.size(); ++i) pin_velocity_[i] = (pin_velocity_[i] - scratch_[i]) / h;
     };
-    const auto pinned = [&](size_t i) { return tools.pins.holds(static_cast<int>(i / 3)); };
     if (moves_with_old_velocity()) {
       place_velocity(state.time, tools.end_time);
-      for (size_t i = 0; i < scratch_.size(); ++i)
-        if (pinned(i)) state.qdot[i] = pin_velocity_[i];
+      tools.pins.copy_held(pin_velocity_, state.qdot);
       place_velocity(tools.end_time, tools.end_time + h);
     } else {
       place_velocity(state.time, tools.end_time);
     }
-    for (size_t i = 0; i < scratch_.size(); ++i)
-      if (pinned(i)) acceleration_[i] = (pin_velocity_[i] - state.qdot[i]) / h;
+    for (size_t i = 0; i < scratch_.size(); ++i) pin_velocity_[i] = (pin_velocity_[i] - state.qdot[i]) / h;
+    tools.pins.copy_held(pin_velocity_, acceleration_);
   }
 
   Acceleration force_;

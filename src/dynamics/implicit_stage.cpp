@@ -33,19 +33,20 @@ void ImplicitStage::predict(const StepTools& tools, const PinPath* path, const S
     for (size_t i = 0; i < a.size(); ++i) predicted_[i] = a[i] + beta * b[i];
     return;
   }
-  // For the pinned vertices a, b and predicted_ receive x, x' and x'' first.
+  // For what is held of the vertices a, b and predicted_ receive x, x' and x'' first.
   tools.pins.place(options.time, a);
   path->place_velocity(options.time, b);
+  std::fill(predicted_.begin(), predicted_.end(), 0.0);
   path->place_acceleration(options.time, predicted_);
-  for (size_t i = 0; i < a.size(); ++i) {
-    if (!tools.pins.holds(static_cast<int>(i / 3))) {
-      predicted_[i] = a[i] + beta * b[i];
-      continue;
+  for (int v = 0; v < tools.pins.vertex_count(); ++v) {
+    const Vec3d velocity = point(b, v), dx = tools.pins.held_part(v, velocity), ddx = point(predicted_, v);
+    const bool is_held = tools.pins.holds(v), is_free = tools.pins.is_free(v);
+    for (int r = 0; r < 3; ++r) {
+      const int i = 3 * v + r;
+      const double x = a[i];
+      if (!is_free) a[i] -= beta * dx[r], b[i] -= beta * ddx[r];
+      predicted_[i] = is_held ? x - beta * beta * ddx[r] : a[i] + beta * b[i];
     }
-    const double x = a[i], dx = b[i], ddx = predicted_[i];
-    predicted_[i] = x - beta * beta * ddx;
-    a[i] = x - beta * dx;
-    b[i] = dx - beta * ddx;
   }
 }
 

@@ -187,7 +187,7 @@ bool IncrementalPotential::vertex_systems(std::span<const double> q, std::span<c
     for (const Energy* V : potential_) V->add_vertex_systems(q, factor_, own, own_g, own_H);
     for (const Energy* D : damping_) D->add_vertex_systems(q, factor_, own, own_g, own_H);
     for (int k = 0; k < size; ++k)
-      if (pins_.holds(own[k])) own_g[k] = {}, own_H[k] = identity3<double>();
+      own_g[k] = pins_.free_part(own[k], own_g[k]), own_H[k] = pins_.with_identity(own[k], own_H[k]);
   });
   return true;
 }
@@ -201,9 +201,10 @@ double IncrementalPotential::max_step(std::span<const double> q, std::span<const
 double IncrementalPotential::free_norm(std::span<const double> v) const {
   return std::sqrt(parallel_sum(pattern_.rows(), [&](int first, int last) {
     double sum = 0;
-    for (int i = first; i < last; ++i)
-      if (!pins_.holds(i))
-        for (int r = 0; r < 3; ++r) sum += v[3 * i + r] * v[3 * i + r];
+    for (int i = first; i < last; ++i) {
+      const Vec3d free = pins_.free_part(i, point(v, i));
+      for (int r = 0; r < 3; ++r) sum += free[r] * free[r];
+    }
     return sum;
   }));
 }
@@ -214,12 +215,12 @@ void IncrementalPotential::add_term_gradient(const Energy& term, std::span<const
   const double squared = parallel_sum(pattern_.rows(), [&](int first, int last) {
     double square = 0;
     for (int i = first; i < last; ++i) {
-      const bool is_free = !pins_.holds(i);
-      for (int k = 3 * i; k < 3 * i + 3; ++k) {
-        const double t = term_[k];
-        if (is_free) square += t * t;
-        g[k] += t;
-        sum[k] += t;
+      const Vec3d free = pins_.free_part(i, point(term_, i));
+      for (int r = 0; r < 3; ++r) {
+        const int k = 3 * i + r;
+        square += free[r] * free[r];
+        g[k] += term_[k];
+        sum[k] += term_[k];
         term_[k] = 0;
       }
     }

@@ -1,6 +1,6 @@
 // E(q) = w/2 (q - q~)' M (q - q~) + f (V(q) + D(q)): its minimiser is the end of an implicit time step.
 //   backward Euler: w = 1, f = h^2, q~ = q_t + h qdot_t          statics: w = 0, f = 1
-// Pinned vertices are not variables: their gradient is zero and their rows of the Hessian are those of the identity.
+// What pins hold is no variable: the gradient is zero along it, and the Hessian that of the identity (see pins.h).
 #pragma once
 #include <optional>
 #include <span>

@@ -95,8 +95,8 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name) {
 void Integrator::set_pin_velocity(const Pins& pins, double h, State& state) const {
   std::vector<double> next = state.q;
   pins.place(state.time + h, next);
-  for (size_t i = 0; i < next.size(); ++i)
-    if (pins.holds(static_cast<int>(i / 3))) state.qdot[i] = (next[i] - state.q[i]) / h;
+  for (size_t i = 0; i < next.size(); ++i) next[i] = (next[i] - state.q[i]) / h;
+  pins.copy_held(next, state.qdot);
 }
 
 void tell_potential(const IncrementalPotential& E, const StepContext& context) {

@@ -37,13 +37,13 @@ KnownValue lead_pins(const StepTools& tools, double time, std::span<const double
   if (std::isfinite(at_once.E)) return at_once;
   const std::vector<double> to(q.begin(), q.end());
 
-  std::vector<double> reached(from.begin(), from.end()), trial = reached;
+  std::vector<double> reached(from.begin(), from.end()), trial = reached, between = reached;
   double done = 0, part = 0.5;
   for (int i = 0; i < kMostParts && part >= kSmallestPart; ++i) {
     const double next = std::min(1.0, done + part);
+    for (size_t k = 0; k < trial.size(); ++k) between[k] = next < 1 ? from[k] + next * (to[k] - from[k]) : to[k];
     trial = reached;
-    for (size_t k = 0; k < trial.size(); ++k)
-      if (tools.pins.holds(static_cast<int>(k / 3))) trial[k] = next < 1 ? from[k] + next * (to[k] - from[k]) : to[k];
+    tools.pins.copy_held(between, trial);
     const KnownValue there = evaluate(tools.E, trial, work);
     if (!std::isfinite(there.E)) {
       part /= 2;

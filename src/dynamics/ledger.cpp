@@ -87,9 +87,10 @@ std::span<const double> Ledger::elastic_energies(const Model& model, std::span<c
 void Ledger::note_worst_vertex(const Pins& pins, StepReport& report) const {
   double most = 0;
   for (size_t i = 0; i + 2 < residual_.size(); i += 3) {
-    const double size = std::hypot(residual_[i], residual_[i + 1], residual_[i + 2]);
     const int vertex = static_cast<int>(i / 3);
-    if (size > most && !pins.holds(vertex)) most = size, report.worst_vertex = vertex;
+    const Vec3d left = pins.free_part(vertex, {{residual_[i], residual_[i + 1], residual_[i + 2]}});
+    const double size = std::hypot(left[0], left[1], left[2]);
+    if (size > most) most = size, report.worst_vertex = vertex;
   }
   report.worst_residual = most;
 }
@@ -97,8 +98,8 @@ void Ledger::note_worst_vertex(const Pins& pins, StepReport& report) const {
 void Ledger::allow_moved_pins(const StepTools& tools, const State& end, BoundedEnergies& bounded, Work& work) {
   const State& start = tools.start;
   double V = 0, D = 0, T = 0;
-  for (size_t i = 0; i < moved_.size(); ++i)
-    moved_[i] = tools.pins.holds(static_cast<int>(i / 3)) ? end.q[i] : start.q[i];
+  moved_ = start.q;
+  tools.pins.copy_held(end.q, moved_);
   for (const Energy* term : tools.E.potential()) {
     const double value = term->value(moved_);
     V += value, bounded.magnitude += std::abs(value);
@@ -110,6 +111,46 @@ void Ledger::allow_moved_pins(const StepTools& tools, const State& end, BoundedE
   T = kinetic_energy(*tools.model.mass, moved_, momentum_);
   bounded.allowed = V + D + T;
   bounded.magnitude += D + T;
+}
+
+// residual_ is r of this step, and the loads are told of its end.
+void Ledger::add_resultants(const StepTools& tools, const State& end, const StepForces& forces, Resultants& sums) {
+  const Model& model = tools.model;
+  sums.pins.resize(model.pins.size());
+  sums.loads.resize(model.loads.size());
+  sums.bodies.resize(model.bodies.size());
+  sums.time += tools.h;
+  const double part = tools.h / sums.time;
+  const auto add = [&](int vertex, const Vec3d& force, Resultant& sum) {
+    sum.force = sum.force + force;
+    sum.moment = sum.moment + cross(point(end.q, vertex), force);
+  };
+  const auto update = [part](const Resultant& now, Resultant& mean) {
+    mean.force = mean.force + part * (now.force - mean.force);
+    mean.moment = mean.moment + part * (now.moment - mean.moment);
+  };
+  for (size_t p = 0; p < model.pins.size(); ++p) {
+    Resultant now;
+    const std::vector<int>& vertices = model.pins[p].vertices;
+    for (size_t i = 0; i < vertices.size(); ++i)
+      add(vertices[i], tools.pins.reaction_of(static_cast<int>(p), static_cast<int>(i), point(residual_, vertices[i])),
+          now);
+    update(now, sums.pins[p]);
+  }
+  for (size_t b = 0; b < model.bodies.size(); ++b) {
+    const BodyRange& body = model.bodies[b];
+    Resultant now;
+    for (int v = body.first_vertex; v < body.first_vertex + body.vertex_count; ++v)  // elastic forces cancel
+      add(v, tools.pins.held_part(v, point(residual_, v)) - point(forces.gradient, v), now);
+    update(now, sums.bodies[b]);
+  }
+  load_.resize(end.q.size());
+  for (size_t k = 0; k < model.loads.size(); ++k) {
+    model.loads[k]->add_gradient(end.q, -1, load_);
+    sums.loads[k] = {};
+    for (int v = 0; v < tools.pins.vertex_count(); ++v) add(v, point(load_, v), sums.loads[k]);
+    std::fill(load_.begin(), load_.end(), 0.0);
+  }
 }
 
 BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator, const State& end,
@@ -126,21 +167,30 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
 
   double residual_squared = 0, jump = 0, round_off = 0;
   LongSum inertia, gradient, damping, reaction, residuals;
+  LongSum* const sums[] = {&inertia, &gradient, &damping};
   bool pins_moved = false;
-  for (size_t i = 0; i < n; ++i) {
-    const double dx = end.q[i] - start.q[i];
-    const double r = residual_[i] = Ma_[i] + forces.gradient[i] + forces.damping[i];
-    const bool pinned = tools.pins.holds(static_cast<int>(i / 3));
-    pins_moved |= pinned && dx != 0;
-    jump += 0.5 * tools.h * tools.h * forces.acceleration[i] * Ma_[i];
-    round_off += kLastDigits * std::abs(end.q[i] * Ma_[i]);
-    if (!pinned) residual_squared += r * r;
+  for (int v = 0; v < tools.pins.vertex_count(); ++v) {
+    const Vec3d x = point(end.q, v), dx = x - point(start.q, v);
+    for (int i = 3 * v; i < 3 * v + 3; ++i) {
+      residual_[i] = Ma_[i] + forces.gradient[i] + forces.damping[i];
+      jump += 0.5 * tools.h * tools.h * forces.acceleration[i] * Ma_[i];
+      round_off += kLastDigits * std::abs(end.q[i] * Ma_[i]);
+    }
     // The same products on both sides of the balance, so that no rounding but that of the sums can open it.
-    LongSum& rest = pinned ? reaction : residuals;
-    const auto add = [&](double work, LongSum& sum) { sum.add(work), rest.add(work); };
-    add(Ma_[i] * dx, inertia);
-    add(forces.gradient[i] * dx, gradient);
-    add(forces.damping[i] * dx, damping);
+    const Vec3d acting[] = {point(Ma_, v), point(forces.gradient, v), point(forces.damping, v)};
+    Vec3d held[3];
+    for (int k = 0; k < 3; ++k) held[k] = tools.pins.held_part(v, acting[k]);
+    for (int r = 0; r < 3; ++r)
+      for (int k = 0; k < 3; ++k) {
+        sums[k]->add(acting[k][r] * dx[r]);
+        if (!tools.pins.holds(v)) residuals.add((acting[k][r] - held[k][r]) * dx[r]);
+        if (!tools.pins.is_free(v)) reaction.add(held[k][r] * dx[r]);
+      }
+    const Vec3d left = tools.pins.free_part(v, point(residual_, v)), moved = tools.pins.held_part(v, dx);
+    for (int r = 0; r < 3; ++r) {
+      residual_squared += left[r] * left[r];
+      pins_moved |= std::abs(moved[r]) > std::numeric_limits<double>::epsilon() * std::abs(x[r]);
+    }
   }
   const double reaction_work = reaction.value(), residual_work = residuals.value();
   const double inertia_work = inertia.value(), gradient_work = gradient.value(), damping_work = damping.value();
@@ -168,6 +218,8 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   report.numerical_loss += loss;
   report.residual_work += residual_work;
   report.ledger_error += kinetic_gain + potential_gain - pin_work + damping_work + loss - residual_work;
+
+  add_resultants(tools, end, forces, report.resultants);
 
   double magnitude = report.kinetic + kinetic_before + jump + std::abs(potential_before);
   for (const double V : report.potential) magnitude += std::abs(V);

@@ -33,8 +33,10 @@ class Ledger {
   // Puts what E was at its start, divided by h^2, in place of V_t + T_t + W.
   void allow_moved_pins(const StepTools& tools, const State& end, BoundedEnergies& bounded, Work& work);
   void note_worst_vertex(const Pins& pins, StepReport& report) const;
+  void add_resultants(const StepTools& tools, const State& end, const StepForces& forces, Resultants& sums);
 
   std::vector<double> Ma_, momentum_, residual_;
+  std::vector<double> load_;              // the gradient of one load; zero between
   std::vector<double> moved_;             // the positions with which E is compared where pins move, then u - v_t
   std::vector<double> early_, late_;      // of each load: what its target's motion adds to its energy
   std::vector<double> last_q_, elastic_;  // where the elastic energies were evaluated last, and one for each body

@@ -33,7 +33,7 @@ void PinPath::sample(const Pins& pins, double time, double end_time, int points)
   points_ = pins.any_moves() ? points : 0;
   x_.resize(points_);
   for (int j = 0; j < points_; ++j) {
-    x_[j].resize(3 * static_cast<size_t>(pins.vertex_count()));
+    x_[j].assign(3 * static_cast<size_t>(pins.vertex_count()), 0.0);
     pins.place(j == points - 1 ? end_time : time + h_ * j / (points - 1), x_[j]);
   }
 }
@@ -42,11 +42,17 @@ void PinPath::differentiate(double time, int derivative, std::span<double> out) 
   std::array<double, kMostPoints> weight{};
   for (int j = 0; j < points_; ++j)
     weight[j] = basis_derivative(j, points_, (time - time_) / h_, derivative) / (derivative == 1 ? h_ : h_ * h_);
-  for (size_t i = 0; i < out.size(); ++i) {
-    if (!pins_->holds(static_cast<int>(i / 3))) continue;
-    double sum = 0;  // the weights add up to zero, so one that stands still has exactly no velocity
-    for (int j = 1; j < points_; ++j) sum += weight[j] * (x_[j][i] - x_[0][i]);
-    out[i] = sum;
+  for (int v = 0; v < pins_->vertex_count(); ++v) {
+    if (pins_->is_free(v)) continue;
+    Vec3d sum{};  // the weights add up to zero, so one that stands still has exactly no velocity
+    Vec3d given;
+    for (int r = 0; r < 3; ++r) {
+      const size_t i = 3 * static_cast<size_t>(v) + r;
+      for (int j = 1; j < points_; ++j) sum[r] += weight[j] * (x_[j][i] - x_[0][i]);
+      given[r] = out[i];
+    }
+    const Vec3d value = pins_->holds(v) ? sum : pins_->free_part(v, given) + sum;
+    for (int r = 0; r < 3; ++r) out[3 * v + r] = value[r];
   }
 }
 

@@ -13,7 +13,7 @@ class PinPath {
   // With p points velocities are right to h^(p-1), accelerations to h^(p-2). At least 3 points, at most 8.
   void sample(const Pins& pins, double time, double end_time, int points);
 
-  // Write the entries of the pinned vertices only, for a time within the step.
+  // Write what the pins hold of each vertex and nothing else, for a time within the step.
   void place_velocity(double time, std::span<double> v) const { differentiate(time, 1, v); }      // [m/s]
   void place_acceleration(double time, std::span<double> a) const { differentiate(time, 2, a); }  // [m/s^2]
 

@@ -1,4 +1,6 @@
 // The prescribed vertices of a model: which they are, and where they are at a time.
+// A vertex with the prescribed directions n_k has M = sum of n_k n_k'. P = M^+ M projects onto what is held, Q = 1 - P
+// onto what is free, and M^+ (sum over the directions of one pin) is the share of that pin: 1 where it is the only one.
 #pragma once
 #include <span>
 #include <vector>
@@ -7,22 +9,42 @@
 
 namespace aspic {
 
+// Whether a vertex can be held along all of them; their lengths are 1.
+bool are_independent(std::span<const Vec3d> directions);
+
 class Pins {
  public:
   Pins(const std::vector<Pin>& pins, std::span<const double> start /* x at time 0 */);
 
-  int vertex_count() const { return static_cast<int>(pinned_.size()); }
-  bool holds(int vertex) const { return pinned_[vertex]; }
+  int vertex_count() const { return static_cast<int>(kind_.size()); }
+  bool holds(int vertex) const { return kind_[vertex] == kHeld; }  // in all directions
+  bool is_free(int vertex) const { return kind_[vertex] == kFree; }
+  bool holds(int vertex, int axis) const;  // along the axis, or along a direction that has a part of it
   bool any_moves() const;
 
-  void place(double time, std::span<double> x) const;  // writes the positions of the pinned vertices
-  void set_zero(std::span<double> v) const;            // clears the entries of the pinned vertices
-  void set_identity(BlockSparse& H) const;             // their rows and columns; the rest stays
+  Vec3d held_part(int vertex, const Vec3d& v) const;                         // P v
+  Vec3d free_part(int vertex, const Vec3d& v) const;                         // Q v
+  Vec3d reaction_of(int pin, int index, const Vec3d& force) const;           // of its index-th vertex
+  void place(double time, std::span<double> x) const;                        // P x = P x(t)
+  void set_zero(std::span<double> v) const;                                  // P v = 0
+  void copy_held(std::span<const double> from, std::span<double> to) const;  // P to = P from
+  void set_identity(BlockSparse& H) const;                                   // H = Q H Q + s P
+  Mat3d with_identity(int vertex, const Mat3d& H) const;                     // a diagonal block of that
 
  private:
+  static constexpr int kFree = -1, kHeld = -2;
+  struct Share {
+    int vertex;
+    Mat3d factor;
+  };
+
+  void add_directions();
+
   const std::vector<Pin>* pins_;
   std::vector<double> start_;
-  std::vector<char> pinned_;
+  std::vector<int> kind_;                   // kFree, kHeld, or an index of projector_
+  std::vector<Mat3d> projector_;            // P where some directions are held
+  std::vector<std::vector<Share>> shares_;  // per pin with directions, of its vertices
 };
 
 }  // namespace aspic

@@ -117,6 +117,7 @@ class RungeKutta : public Integrator {
     const double time = time_of(tools, i);
     if (i > 0) tools.pins.place(time, q_[i]);
     path_.place_velocity(time, v_[i]);
+    std::fill(acc_[i].begin(), acc_[i].end(), 0.0);
     path_.place_acceleration(time, acc_[i]);
     MinimizeReport report;
     report.iterations = is_implicit_ ? 0 : 1;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "base/error.h"
@@ -112,12 +113,9 @@ struct Simulation::Impl {
         has_previous = true;
       }
     }
-    report.time = state.time;
     if (!is_interrupted) report.step = ++steps_taken;
-    report.min_det_F = INFINITY;
-    for (const auto& V : model.elasticity) report.min_det_F = std::min(report.min_det_F, V->min_det_F(state.q));
+    describe_state(report);
     report_seconds = minimize.deadline.now() - advanced;
-    report.state_hash = state_hash(state, model.numbering.vertex);
     report.seconds = stopwatch.lap();
     return report;
   }
@@ -138,6 +136,7 @@ struct Simulation::Impl {
     report.numerical_loss = report.residual_work = report.ledger_error = report.energy_slack = 0;
     report.energy_bound = EnergyBound::none;
     report.target_work.clear();
+    report.resultants = {};
     state = before;
     state.time = time;
     has_previous = has_previous && time == before.time;
@@ -146,6 +145,13 @@ struct Simulation::Impl {
     forces.reset(state.q.size());
     for (const Energy* V : E->potential()) V->add_gradient(state.q, 1, forces.gradient);
     ledger.add(stand_still, *integrator, state, forces, report);
+  }
+
+  void describe_state(StepReport& report) const {
+    report.time = state.time;
+    report.min_det_F = INFINITY;
+    for (const auto& V : model.elasticity) report.min_det_F = std::min(report.min_det_F, V->min_det_F(state.q));
+    report.state_hash = state_hash(state, model.numbering.vertex);
   }
 
   void describe(const StepSolve& solved, StepReport& report) const {
@@ -212,6 +218,25 @@ std::vector<std::string> Simulation::potential_names() const {
   }
   for (const auto& V : impl_->model.loads) names.emplace_back(V->name());
   return names;
+}
+
+StepReport Simulation::start_report() const {
+  StepReport report;
+  impl_->describe_state(report);
+  report.elements = impl_->model.mesh.tet_count();
+  report.criterion = impl_->options.solver.minimize.criterion;
+  report.kinetic = kinetic_energy();
+  report.potential = potential_energies();
+  for (const double V : report.potential) report.potential_total += V;
+  const auto unknown = [](std::vector<Resultant>& all, size_t count) {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    const Vec3d vector{{kUnknown, kUnknown, kUnknown}};
+    all.assign(count, {vector, vector});
+  };
+  unknown(report.resultants.pins, impl_->model.pins.size());
+  unknown(report.resultants.loads, impl_->model.loads.size());
+  unknown(report.resultants.bodies, impl_->model.bodies.size());
+  return report;
 }
 
 double Simulation::kinetic_energy() const {

@@ -57,8 +57,9 @@ class Simulation {
   int steps_taken() const;
 
   std::vector<std::string> potential_names() const;  // one per entry of StepReport::potential
-  double kinetic_energy() const;                     // [J]
-  std::vector<double> potential_energies() const;    // [J]
+  StepReport start_report() const;  // of the state at the start, as step 0: energies, det F, nothing of a solve
+  double kinetic_energy() const;    // [J]
+  std::vector<double> potential_energies() const;  // [J]
   TetFields tet_fields() const;
   bool is_implicit() const;                // the integrator minimises
   StableStep stable_step() const;          // at the start: what an explicit integrator can take

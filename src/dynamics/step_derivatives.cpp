@@ -111,7 +111,8 @@ class StepCheck {
 
   void check_E(const NamedState& at) {
     DerivativeCheckOptions options{.length = edge_, .tolerance = tolerance_, .fixed = std::vector<char>(at.q.size())};
-    for (size_t i = 0; i < at.q.size(); ++i) options.fixed[i] = pins_.holds(static_cast<int>(i / 3));
+    for (size_t i = 0; i < at.q.size(); ++i)
+      options.fixed[i] = pins_.holds(static_cast<int>(i / 3), static_cast<int>(i % 3));
     results_.push_back({"E", at.name, check_derivatives(differentiable(E_), at.q, options)});
   }
 

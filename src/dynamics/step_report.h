@@ -8,12 +8,26 @@
 
 #include "dynamics/energy_bound.h"
 #include "dynamics/initial_guess.h"
+#include "math/small.h"
 #include "optimize/minimize.h"
 
 namespace aspic {
 
 using Consent = std::function<bool()>;  // asked between the parts of an adaptive step; empty: always given
 inline constexpr double kNoTimeLimit = std::numeric_limits<double>::infinity();
+
+struct Resultant {
+  Vec3d force{};   // [N]
+  Vec3d moment{};  // about the origin [N m]
+};
+
+// The forces that act from outside, each as a sum over vertices.
+struct Resultants {
+  std::vector<Resultant> pins;    // of each of Model::pins: what it exerts on its vertices, the mean over the step
+  std::vector<Resultant> loads;   // of each of Model::loads, at the end of the step
+  std::vector<Resultant> bodies;  // of each body: all pins and loads on it, the mean over the step; 0 in equilibrium
+  double time = 0;                // over which the means are taken so far [s]
+};
 
 struct StepReport : Work {  // of all its solves, and of what is reported here
   int step = 0;             // 1 for the first
@@ -44,6 +58,7 @@ struct StepReport : Work {  // of all its solves, and of what is reported here
   double numerical_loss = 0;        // by the integrator, in this step
   double residual_work = 0;         // by the forces that the solve left over
   double ledger_error = 0;          // what does not add up
+  Resultants resultants;
   EnergyBound energy_bound = EnergyBound::none;
   double energy_slack = 0;       // by how much the bound holds; 0 where there is none [J]
   std::uint64_t state_hash = 0;  // of the state at the end, see state_hash()

@@ -1,5 +1,6 @@
 #include "energy/linear_load.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -9,9 +10,21 @@ namespace {
 
 class LinearLoad : public Energy {
  public:
-  LinearLoad(std::string name, std::vector<double> force) : name_(std::move(name)), force_(std::move(force)) {}
+  LinearLoad(std::string name, std::vector<double> force, AddForces varying)
+      : name_(std::move(name)), force_(std::move(force)), varying_(std::move(varying)) {
+    if (!varying_) return;
+    constant_ = force_;
+    varying_(time_, force_);
+  }
 
   std::string_view name() const override { return name_; }
+
+  void begin_step(const StepContext& step) override {
+    if (!varying_ || step.time == time_) return;
+    time_ = step.time;
+    std::copy(constant_.begin(), constant_.end(), force_.begin());
+    varying_(time_, force_);
+  }
 
   double value(Positions x) const override {
     return -parallel_sum(static_cast<int>(x.size()), [&](int first, int last) {
@@ -38,13 +51,20 @@ class LinearLoad : public Energy {
 
  private:
   std::string name_;
-  std::vector<double> force_;  // [N]
+  std::vector<double> force_;  // at the time [N]
+  std::vector<double> constant_;
+  AddForces varying_;
+  double time_ = 0;
 };
 
 }  // namespace
 
 std::unique_ptr<Energy> make_linear_load(std::string name, std::vector<double> force) {
-  return std::make_unique<LinearLoad>(std::move(name), std::move(force));
+  return std::make_unique<LinearLoad>(std::move(name), std::move(force), nullptr);
+}
+
+std::unique_ptr<Energy> make_linear_load(std::string name, std::vector<double> constant, AddForces varying) {
+  return std::make_unique<LinearLoad>(std::move(name), std::move(constant), std::move(varying));
 }
 
 void add_body_force(const TetMesh& mesh, int tet, const Vec3d& force_density, std::span<double> force) {

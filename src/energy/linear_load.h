@@ -1,5 +1,7 @@
 // V(x) = -sum f_i . x_i: gravity, body forces, dead tractions and pressures; forces that do not follow the body.
+// Forces that depend on the time work on the body where it stands when they change, as targets that move do.
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +12,9 @@
 namespace aspic {
 
 std::unique_ptr<Energy> make_linear_load(std::string name, std::vector<double> force);  // 3 per vertex [N]
+// Adds what acts at the time to the forces, 3 per vertex [N].
+using AddForces = std::function<void(double time, std::span<double> force)>;
+std::unique_ptr<Energy> make_linear_load(std::string name, std::vector<double> constant, AddForces varying);
 
 // Nodal forces, 3 per vertex, added into `force`:
 void add_body_force(const TetMesh& mesh, int tet, const Vec3d& force_density, std::span<double> force);  // [N/m^3]

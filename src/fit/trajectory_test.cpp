@@ -33,6 +33,7 @@ struct Swinging {
   double mass_factor = 2, stiffness_factor = 4e-3;
   State start;
   MassKind mass = MassKind::consistent;
+  bool slides = false;  // the wall and the crank hold some directions only
   TetMesh mesh = make_box({{0, 0, 0}}, {{1.2, 0.4, 0.3}}, {5, 2, 1});
 
   explicit Swinging(const std::string& name = "mooney_rivlin") : material(name) {
@@ -73,6 +74,10 @@ struct Swinging {
     model.pins.push_back({"crank", {mesh.vertex_count() / 2}, [](const Vec3d& X, double t) {
                             return X + Vec3d{{0, 0.05 * std::sin(8 * t), 0}};
                           }});
+    if (slides) {
+      model.pins[0].directions = {{{0.6, 0.8, 0}}, {{0, 0, 1}}};
+      model.pins[1].directions = {{{0, 1, 0}}};
+    }
     return model;
   }
 };
@@ -210,6 +215,12 @@ TEST(Trajectory, GradientHasTaylorSlope2ForEveryKindOfParameter) {
   Swinging without_kinks("stable_neo_hookean");  // of the clamped matrix of damping
   without_kinks.stiffness_factor = 0;
   expect_slopes_2(without_kinks);
+}
+
+TEST(Trajectory, GradientWithRollersHasTaylorSlope2) {
+  Swinging body;
+  body.slides = true;
+  expect_slopes_2(body);
 }
 
 TEST(Trajectory, GradientWithLumpedMassHasTaylorSlope2InTheDensity) {

@@ -1,9 +1,12 @@
 #include "scene/body_actions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
+#include "dynamics/pins.h"
 #include "energy/linear_load.h"
 #include "energy/rayleigh_damping.h"
 #include "energy/springs.h"
@@ -35,33 +38,38 @@ const Array& list_of(const PlacedBody& body, const char* key) {
   return list ? list->array() : none;
 }
 
-// Formulas fail at a point; the message gets the place in the scene.
-template <class F>
-auto at_place(const Value& value, const F& evaluate) {
-  try {
-    return evaluate();
-  } catch (const InvalidInput& e) {
-    throw error_at(value.place, e.what());
-  }
-}
-
 std::vector<Vec3d> starts_of(const PlacedBody& body, const std::vector<int>& vertices) {
   std::vector<Vec3d> starts;
   for (const int v : vertices) starts.push_back(body.start[v]);
   return starts;
 }
 
+std::vector<Vec3d> directions_of(const Value& pin) {  // empty: all
+  if (const Value* given = pin.find("direction")) {
+    const Vec3d d = given->vector();
+    const double largest = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+    const Vec3d n = (1 / largest) * d;
+    return {(1 / std::sqrt(dot(n, n))) * n};
+  }
+  std::vector<Vec3d> axes;
+  for (const char axis : pin["axes"].text())
+    axes.push_back({{axis == 'x' ? 1. : 0., axis == 'y' ? 1. : 0., axis == 'z' ? 1. : 0.}});
+  return axes.size() == 3 ? std::vector<Vec3d>{} : axes;
+}
+
 // A motion that does not begin where the vertices are would throw them in the first step.
-void note_jump(const Motion& motion, const std::vector<Vec3d>& starts, const std::string& what,
-               std::vector<std::string>& notes) {
-  if (!motion) return;
+void note_jump(const Pin& pin, const std::vector<Vec3d>& starts, std::vector<std::string>& notes) {
+  if (!pin.motion) return;
   double jump = 0;
   for (const Vec3d& x : starts) {
-    const Vec3d d = motion(x, 0) - x;
-    jump = std::max(jump, std::sqrt(dot(d, d)));
+    const Vec3d d = pin.motion(x, 0) - x;
+    double squared = pin.directions.empty() ? dot(d, d) : 0;
+    for (const Vec3d& n : pin.directions) squared += dot(n, d) * dot(n, d);
+    jump = std::max(jump, std::sqrt(squared));
   }
   if (jump > 0)
-    notes.push_back(what + " jumps by " + number_text(jump) + " m at time 0: its motion does not start at 0");
+    notes.push_back("pin " + pin.name + " jumps by " + number_text(jump) +
+                    " m at time 0: its motion does not start at 0");
 }
 
 // What the second of two pins could select, so that none of the first's vertices is in it.
@@ -72,22 +80,38 @@ std::string leave_out(const Value& first, const Value& second, bool leaves_any) 
   return "try where = \"(" + b.text() + ") && !(" + a.text() + ")\" in pin '" + second["name"].text() + "'";
 }
 
+// What holds a vertex so far.
+struct Holder {
+  const Value* pin = nullptr;  // the last one
+  std::vector<Vec3d> directions;
+
+  // False where it is held along one of them, or along a combination of them, already.
+  bool add(const Value& scene, const std::vector<Vec3d>& more) {
+    const bool is_first = !pin;
+    directions.insert(directions.end(), more.begin(), more.end());
+    if (!is_first && (more.empty() || !are_independent(directions))) return false;
+    if (more.empty()) directions.resize(3);  // no further one is independent
+    pin = &scene;
+    return true;
+  }
+};
+
 void add_pins(Builder& builder, const PlacedBody& body) {
-  std::vector<const Value*> holder(body.mesh.rest.size(), nullptr);
+  std::vector<Holder> holders(body.mesh.rest.size());
   for (const Value& scene : list_of(body, "pin")) {
     const std::vector<int> vertices = select_vertices(scene["where"], builder.scope(body));
     const std::vector<Vec3d> starts = starts_of(body, vertices);
-    const std::string name = body.name() + "." + scene["name"].text();
-    Pin pin{name, {}, make_motion(scene["motion"], starts)};
-    note_jump(pin.motion, starts, "pin " + name, builder.notes);
-    const bool leaves_any = std::any_of(vertices.begin(), vertices.end(), [&](int v) { return !holder[v]; });
+    Pin pin{body.name() + "." + scene["name"].text(), {}, make_motion(scene["motion"], starts), directions_of(scene)};
+    note_jump(pin, starts, builder.notes);
+    const bool leaves_any = std::any_of(vertices.begin(), vertices.end(), [&](int v) { return !holders[v].pin; });
     for (const int v : vertices) {
-      if (holder[v])
+      const Value* other = holders[v].pin;
+      if (!holders[v].add(scene, pin.directions))
         throw error_at(scene["where"].place, "vertex " + std::to_string(v) + " of body '" + body.name() + "' at " +
                                                  point_text(body.mesh.rest[v]) + " is in pin '" +
-                                                 (*holder[v])["name"].text() + "' and in pin '" + scene["name"].text() +
-                                                 "'; " + leave_out(*holder[v], scene, leaves_any));
-      holder[v] = &scene;
+                                                 (*other)["name"].text() + "' and in pin '" + scene["name"].text() +
+                                                 "', which hold it along the same direction; " +
+                                                 leave_out(*other, scene, leaves_any));
       pin.vertices.push_back(body.model_vertex(v));
     }
     builder.model.pins.push_back(std::move(pin));
@@ -145,38 +169,106 @@ void add_springs(Builder& builder, const PlacedBody& body) {
   }
 }
 
-Vec3d traction_on(const Value& scene, const std::vector<Vec3d>& X, const Triangle& t) {
-  const Vec3d center = (1.0 / 3) * (X[t[0]] + X[t[1]] + X[t[2]]);
-  if (const Value* value = scene.find("value")) return at_place(*value, [&] { return VectorField(*value).at(center); });
-  const Value& pressure = scene["pressure"];
-  const double p = pressure.is_text() ? at_place(pressure, [&] { return Expression(pressure.text()).at(center); })
-                                      : pressure.number();
-  const Vec3d n = cross(X[t[1]] - X[t[0]], X[t[2]] - X[t[0]]);
-  return (-p / std::sqrt(dot(n, n))) * n;
+// The density of a load at a point with the outward normal n, of any length: a vector, or a pressure.
+class LoadDensity {
+ public:
+  explicit LoadDensity(const Value& scene) {
+    if (const Value* value = scene.find("value")) {
+      vector_.emplace(*value, ExpressionVariables::position_and_time);
+      place_ = value->place;
+    } else {
+      const Value& p = scene["pressure"];
+      pressure_.emplace(p.is_text() ? p.text() : number_text(p.number()), ExpressionVariables::position_and_time);
+      place_ = p.place;
+    }
+  }
+  bool depends_on_time() const { return vector_ ? vector_->depends_on_time() : pressure_->depends_on_time(); }
+  Vec3d at(const Vec3d& X, const Vec3d& n, double time) const {
+    try {
+      return vector_ ? vector_->at(X, time) : (-pressure_->at(X, time) / std::sqrt(dot(n, n))) * n;
+    } catch (const InvalidInput& e) {  // maybe long after the scene was read
+      throw error_at(place_, e.what());
+    }
+  }
+
+ private:
+  std::optional<VectorField> vector_;
+  std::optional<Expression> pressure_;
+  Place place_;
+};
+
+// What acts on one triangle or tet, in equal parts on its corners.
+struct LoadPatch {
+  Vec3d center, normal;
+  std::vector<int> corners;  // in the model
+  double size;               // area [m^2] or volume [m^3] per corner
+};
+
+struct LoadGroup {
+  LoadDensity density;
+  std::vector<LoadPatch> patches;
+
+  void add_to(std::span<double> force, double time) const {
+    for (const LoadPatch& patch : patches) {
+      const Vec3d f = patch.size * density.at(patch.center, patch.normal, time);
+      for (const int v : patch.corners)
+        for (int r = 0; r < 3; ++r) force[3 * v + r] += f[r];
+    }
+  }
+};
+
+template <size_t N>
+std::vector<int> in_model(const PlacedBody& body, const std::array<int, N>& corners) {
+  std::vector<int> vertices;
+  for (const int v : corners) vertices.push_back(body.model_vertex(v));
+  return vertices;
 }
 
-void add_tractions(const Builder& builder, const PlacedBody& body, std::vector<double>& force) {
+void add_tractions(const Builder& builder, const PlacedBody& body, std::vector<LoadGroup>& groups) {
   const Array& tractions = list_of(body, "traction");
   if (tractions.empty()) return;
+  const std::vector<Vec3d>& X = body.mesh.rest;
   const std::vector<Triangle> boundary = boundary_triangles(body.mesh, 0, body.mesh.tet_count());
-  const std::span<double> mine(force.data() + 3 * body.first_vertex, 3 * body.mesh.rest.size());
-  for (const Value& scene : tractions)
-    for (const Triangle& t : select_triangles(scene["where"], builder.scope(body), boundary))
-      add_traction(body.mesh.rest, t, traction_on(scene, body.mesh.rest, t), mine);
+  for (const Value& scene : tractions) {
+    LoadGroup group{LoadDensity(scene), {}};
+    for (const Triangle& t : select_triangles(scene["where"], builder.scope(body), boundary)) {
+      const Vec3d n = cross(X[t[1]] - X[t[0]], X[t[2]] - X[t[0]]);
+      group.patches.push_back(
+          {(1.0 / 3) * (X[t[0]] + X[t[1]] + X[t[2]]), n, in_model(body, t), std::sqrt(dot(n, n)) / 2 / 3});
+    }
+    groups.push_back(std::move(group));
+  }
 }
 
-void add_body_forces(const Builder& builder, const PlacedBody& body, std::vector<double>& force) {
-  const std::span<double> mine(force.data() + 3 * body.first_vertex, 3 * body.mesh.rest.size());
+void add_body_forces(const Builder& builder, const PlacedBody& body, std::vector<LoadGroup>& groups) {
   for (const Value& scene : list_of(body, "force")) {
-    const VectorField density(scene["value"]);
+    LoadGroup group{LoadDensity(scene), {}};
     for (const int t : select_tets(scene["where"], builder.scope(body)))
-      add_body_force(body.mesh, t, at_place(scene["value"], [&] { return density.at(centroid(body.mesh, t)); }), mine);
+      group.patches.push_back(
+          {centroid(body.mesh, t), {}, in_model(body, body.mesh.tets[t]), volume(body.mesh, t) / 4});
+    groups.push_back(std::move(group));
   }
 }
 
 void add_linear_load(Model& model, const char* name, std::vector<double> force) {
   if (std::any_of(force.begin(), force.end(), [](double f) { return f != 0; }))
     model.loads.push_back(make_linear_load(name, std::move(force)));
+}
+
+void add_linear_load(Model& model, const char* name, std::vector<LoadGroup> groups) {
+  std::vector<double> constant(3 * model.mesh.rest.size(), 0.0);
+  std::vector<LoadGroup> varying;
+  for (LoadGroup& group : groups) {
+    if (group.density.depends_on_time())
+      varying.push_back(std::move(group));
+    else
+      group.add_to(constant, 0);
+  }
+  if (varying.empty()) return add_linear_load(model, name, std::move(constant));
+  const auto add = [varying = std::move(varying)](double time, std::span<double> force) {
+    for (const LoadGroup& group : varying) group.add_to(force, time);
+  };
+  model.loads.push_back(make_linear_load(name, std::move(constant), add));  // a formula that fails at 0 fails here
 }
 
 void add_gravity(Model& model, const Vec3d& gravity) {
@@ -188,15 +280,15 @@ void add_gravity(Model& model, const Vec3d& gravity) {
 
 void add_loads(Builder& builder, const Vec3d& gravity) {
   add_gravity(builder.model, gravity);
-  std::vector<double> per_volume(3 * builder.model.mesh.rest.size(), 0.0), per_area = per_volume;  // by user's numbers
+  std::vector<LoadGroup> per_volume, per_area;
   for (const PlacedBody& body : builder.bodies) {
     add_body_forces(builder, body, per_volume);
     add_tractions(builder, body, per_area);
     add_springs(builder, body);
   }
   Model& model = builder.model;
-  add_linear_load(model, "body_force", model.numbering.vertex.from_user(per_volume, 3));
-  add_linear_load(model, "traction", model.numbering.vertex.from_user(per_area, 3));
+  add_linear_load(model, "body_force", std::move(per_volume));
+  add_linear_load(model, "traction", std::move(per_area));
   if (!builder.point_springs.empty())
     model.loads.push_back(make_point_springs("point_springs", std::move(builder.point_springs)));
   if (!builder.springs.empty()) model.loads.push_back(make_springs("springs", std::move(builder.springs)));

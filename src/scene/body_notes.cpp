@@ -71,6 +71,33 @@ std::string three_digits(double x) {
   return text;
 }
 
+// The change that multiplies the stiffness, by the keys with which the material was given.
+std::string stiffness_remedy(const PlacedBody& body, const Means& mean, double factor) {
+  const Value& material = body.scene["material"];
+  if (material.find("file"))
+    return "multiply the moduli in " + toml_string(material["file"].text()) + " by " + three_digits(factor);
+  if (material.find("young")) return "set material.young = " + three_digits(factor * mean.young);
+  std::string text;
+  for (const char* key : {"lambda", "mu", "shear", "bulk"}) {
+    const Value* modulus = material.find(key);
+    if (!modulus) continue;
+    const std::string name = "material." + std::string(key);
+    text += text.empty() ? "" : " and ";
+    text += modulus->is_number() ? "set " + name + " = " + three_digits(factor * modulus->number())
+                                 : "multiply " + name + " by " + three_digits(factor);
+  }
+  return text;
+}
+
+// The change that makes Poisson's ratio 0 or more, likewise.
+std::string poisson_remedy(const Value& material) {
+  if (material.find("poisson")) return "poisson = 0 or more";
+  if (material.find("lambda")) return "lambda = 0 or more";
+  const Value* shear = material.find("shear");
+  if (!shear) return "a Poisson's ratio of 0 or more in " + toml_string(material["file"].text());
+  return "bulk = " + (shear->is_number() ? number_text(2.0 / 3 * shear->number()) : "2/3 shear") + " or more";
+}
+
 void note_weight(const PlacedBody& body, const Means& mean, const Vec3d& gravity, std::vector<std::string>& notes) {
   const Value& scene = body.scene;
   if (!scene.find("pin") && !scene.find("spring")) return;  // it falls
@@ -89,8 +116,8 @@ void note_weight(const PlacedBody& body, const Means& mean, const Vec3d& gravity
   double factor = 1e3;
   while (factor < 1e9 && strain > factor) factor *= 1e3;
   const char* unit = factor == 1e3 ? "kPa" : factor == 1e6 ? "MPa" : "GPa";
-  notes.push_back(crushed + three_digits(mean.young) + " was meant in " + unit +
-                  ", set material.young = " + three_digits(factor * mean.young));
+  notes.push_back(crushed + three_digits(mean.young) + " was meant in " + unit + ", " +
+                  stiffness_remedy(body, mean, factor));
 }
 
 void note_diamond(const PlacedBody& body, const Means& mean, std::vector<std::string>& notes) {
@@ -101,8 +128,8 @@ void note_diamond(const PlacedBody& body, const Means& mean, std::vector<std::st
   while (factor < 1e9 && mean.young / factor > kSoft) factor *= 1e3;
   notes.push_back("body '" + body.name() + "': stiffer than diamond (1.2e12 Pa), it rings at " +
                   three_digits(std::sqrt(mean.young / mean.density) / (2 * length)) + " Hz; if " +
-                  three_digits(mean.young) + " Pa is " + three_digits(factor) +
-                  " times too much, set material.young = " + three_digits(mean.young / factor));
+                  three_digits(mean.young) + " Pa is " + three_digits(factor) + " times too much, " +
+                  stiffness_remedy(body, mean, 1 / factor));
 }
 
 // At a thousandth and at a thousand times its size, a body should have more energy than at rest.
@@ -120,8 +147,8 @@ void note_unbounded(const PlacedBody& body, const BodyMaterial& material, std::v
     if (!(V->value(x) < 0)) continue;
     notes.push_back("body '" + body.name() + "': with poisson = " + number_text(poisson_ratio(least->lame)) +
                     " the energy of " + material.model + " has no least value: a body that is " +
-                    (size < 1 ? "squeezed" : "stretched") +
-                    " far enough never comes back (poisson = 0 or more, or model = \"stvk\")");
+                    (size < 1 ? "squeezed" : "stretched") + " far enough never comes back (" +
+                    poisson_remedy(body.scene["material"]) + ", or model = \"stvk\")");
     return;
   }
 }

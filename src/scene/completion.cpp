@@ -73,11 +73,11 @@ void complete_material(Value& material) {
                                       "; must be > -2/3 mu = " + number_text(-2.0 / 3 * mu->number()));
 }
 
-void check_axis(const Value& table) {
-  const Value* axis = table.find("axis");
+void check_axis(const Value& table, const std::string& key = "axis") {
+  const Value* axis = table.find(key);
   if (!axis) return;
   const Vec3d a = axis->vector();
-  if (dot(a, a) == 0) throw error_at(axis->place, "axis = [0, 0, 0]; a direction is needed (try [0, 0, 1])");
+  if (dot(a, a) == 0) throw error_at(axis->place, key + " = [0, 0, 0]; a direction is needed (try [0, 0, 1])");
 }
 
 void check_keyframes(const Value& keyframes) {
@@ -140,7 +140,10 @@ void complete_scene(Table& document) {
     complete_material(*body.table().find("material"));
     if (Value* pins = body.table().find("pin")) {
       name_tables(pins->array(), [](const Table&, size_t i) { return "pin" + std::to_string(i + 1); });
-      for (const Value& pin : pins->array()) check_motion(pin);
+      for (const Value& pin : pins->array()) {
+        check_motion(pin);
+        check_axis(pin, "direction");
+      }
     }
     if (const Value* springs = body.find("spring")) check_springs(*springs, bodies);
     if (const Value* rotate = body.find("rotate")) check_axis(*rotate);

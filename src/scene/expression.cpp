@@ -200,6 +200,8 @@ double Expression::at(const Vec3d& X, double t) const {
   return result;
 }
 
+bool Expression::depends_on_time() const { return impl_->parser.GetUsedVar().count("t") > 0; }
+
 const std::string& Expression::text() const { return impl_->text; }
 
 std::vector<NamedMeaning> expression_functions() {

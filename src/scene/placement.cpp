@@ -134,17 +134,21 @@ std::vector<Vec3d> velocities(const Value& body, const std::vector<Vec3d>& X, co
   return result;
 }
 
-VectorField::VectorField(const Value& value) {
+VectorField::VectorField(const Value& value, ExpressionVariables variables) {
   for (const Value& v : value.array()) {
-    formula_.emplace_back(v.is_text() ? v.text() : "0");
+    formula_.emplace_back(v.is_text() ? v.text() : "0", variables);
     number_.push_back(v.is_text() ? NAN : v.number());
   }
 }
 
-Vec3d VectorField::at(const Vec3d& X) const {
+Vec3d VectorField::at(const Vec3d& X, double t) const {
   Vec3d result;
-  for (int i = 0; i < 3; ++i) result[i] = std::isnan(number_[i]) ? formula_[i].at(X) : number_[i];
+  for (int i = 0; i < 3; ++i) result[i] = std::isnan(number_[i]) ? formula_[i].at(X, t) : number_[i];
   return result;
+}
+
+bool VectorField::depends_on_time() const {
+  return std::any_of(formula_.begin(), formula_.end(), [](const Expression& f) { return f.depends_on_time(); });
 }
 
 Box bounding_box(const std::vector<Vec3d>& X) {

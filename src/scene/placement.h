@@ -35,8 +35,9 @@ std::vector<Vec3d> velocities(const Value& body, const std::vector<Vec3d>& X, co
 // A vector of numbers or formulas at points.
 class VectorField {
  public:
-  explicit VectorField(const Value& value);
-  Vec3d at(const Vec3d& X) const;
+  explicit VectorField(const Value& value, ExpressionVariables variables = ExpressionVariables::position);
+  Vec3d at(const Vec3d& X, double t = 0) const;
+  bool depends_on_time() const;
 
  private:
   std::vector<double> number_;  // NaN where the formula is meant

@@ -22,6 +22,7 @@ std::string kinds(const Key& key) {
   add(kBoolean, "true or false");
   add(kText, key.choices.empty() ? "string" : "one of " + list_of(key.choices));
   add(kExpression, "formula");
+  add(kMovingExpression, "formula with `t`");
   add(kNumbers, "3 numbers");
   add(kExpressions, "3 numbers or formulas");
   add(kMovingExpressions, "3 numbers or formulas with `t`");
@@ -63,7 +64,8 @@ std::string formulas() {
       "## Formulas\n\nA formula is a string such as `\"1e5 * (1 + 3 * exp(-Y^2 / 0.02))\"`: at most " +
       std::to_string(kMaxExpressionLength) + " characters and " + std::to_string(kMaxExpressionDepth) +
       " open parentheses, with `+ - * / ^`, comparisons, `&& || !` and `condition ? a : b`. `X`, `Y`, `Z` (or `x`, "
-      "`y`, `z`) is a point of the placed rest shape [m]; in a motion it is where the point was at time 0, and `t` is "
+      "`y`, `z`) is a point of the placed rest shape [m]; in a motion it is where the point was at time 0. In "
+      "motions and loads `t` is "
       "the time [s]. A value that is not finite is an error. Functions:\n\n| name | meaning |\n|---|---|\n";
   for (const NamedMeaning& f : expression_functions()) out += "| `" + f.name + "` | " + cell(f.meaning) + " |\n";
   for (const NamedMeaning& c : expression_constants()) out += "| `" + c.name + "` | " + cell(c.meaning) + " |\n";
@@ -87,7 +89,8 @@ const char* const kIntroduction =
     "in it, such as `../assets/bunny.mesh`; absolute paths and `../..` are refused unless they come from the command "
     "line (`--set mesh=...`, relative to the working directory), so that a scene from elsewhere cannot open files all "
     "over the disk.\n"
-    "* `--set PATH=VALUE` replaces a value: `time.step=0.005`; `material.young=2e5` for every body; "
+    "* `--set PATH=VALUE` replaces a value: `time.step=0.005`; several may follow one `--set`; `material.young=2e5` "
+    "for every body; "
     "`body.bunny.pin.0.where=\"y < 0.1\"` for one, lists by name or index from 0.\n"
     "* A run stores the resolved scene: every default filled in, with the meshes it used beside it and their hashes. "
     "Running that file again gives the same bits.\n"

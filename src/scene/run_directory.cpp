@@ -189,7 +189,8 @@ struct RunDirectory::Impl {
 
   void add_frame(const Simulation& simulation, const StepReport* report) {
     const int frame = static_cast<int>(frame_times.size());
-    if (output.vtu) write_frame(layout.root() / RunLayout::frame_file(frame), simulation, report);
+    if (output.vtu)
+      write_frame(layout.root() / RunLayout::frame_file(frame), simulation, report, output.double_precision);
     skins->add_frame(frame, simulation.state().q);
     frame_times.push_back(simulation.state().time);
     skins->write_usd_when_doubled(frame_times);
@@ -234,7 +235,8 @@ RunDirectory RunDirectory::create(const fs::path& path, const Scene& scene, Exis
   if (!fs::exists(path, error)) create_folder(path);
   impl->lock.emplace(path);
   make_room(layout, scene, existing);
-  impl->tables = RunTables::create(layout, scene.simulation.potential_names());
+  impl->tables = RunTables::create(layout, scene.simulation);
+  impl->tables.add_start(scene.simulation.start_report());
   write_inputs(scene, path);
   write_file(layout.scene(), scene.resolved);
   if (output.vtu || output.obj || output.ply) create_folder(layout.frames());
@@ -266,7 +268,7 @@ RunDirectory RunDirectory::resume(const fs::path& path, Scene& scene) {
   impl->frame_times = newest.checkpoint.array("frame_times");
   const int frames = static_cast<int>(impl->frame_times.size());
   impl->require_frames(frames);
-  impl->tables = RunTables::resume(layout, scene.simulation.potential_names(), scene.simulation.steps_taken());
+  impl->tables = RunTables::resume(layout, scene.simulation);
   impl->tables.require_iterations(newest.checkpoint);
   impl->skins = RunSkins::resume(layout, scene, frames);
   layout.remove_unfinished();

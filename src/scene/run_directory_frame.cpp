@@ -29,19 +29,19 @@ std::vector<double> region_of_tets(const TetMesh& mesh) {
 }
 
 // In the order of the model.
-std::vector<Field> cell_fields(const Simulation& simulation) {
+std::vector<Field> cell_fields(const Simulation& simulation, FieldType real) {
   const Model& model = simulation.model();
   TetFields tet = simulation.tet_fields();
-  constexpr FieldType kSingle = FieldType::float32, kLabel = FieldType::int32;
+  constexpr FieldType kLabel = FieldType::int32;
   std::vector<Field> fields;
-  fields.push_back({"energy_density", 1, std::move(tet.energy_density), kSingle});
-  fields.push_back({"det_F", 1, std::move(tet.det_F), kSingle});
-  fields.push_back({"cauchy", 6, std::move(tet.cauchy), kSingle});
-  fields.push_back({"von_mises", 1, std::move(tet.von_mises), kSingle});
+  fields.push_back({"energy_density", 1, std::move(tet.energy_density), real});
+  fields.push_back({"det_F", 1, std::move(tet.det_F), real});
+  fields.push_back({"cauchy", 6, std::move(tet.cauchy), real});
+  fields.push_back({"von_mises", 1, std::move(tet.von_mises), real});
   fields.push_back({"body", 1, body_of_tets(model), kLabel});
   fields.push_back({"region", 1, region_of_tets(model.mesh), kLabel});
-  if (!model.density.empty()) fields.push_back({"density", 1, model.density, kSingle});
-  for (const auto& [name, values] : model.tet_fields) fields.push_back({name, 1, values, kSingle});
+  if (!model.density.empty()) fields.push_back({"density", 1, model.density, real});
+  for (const auto& [name, values] : model.tet_fields) fields.push_back({name, 1, values, real});
   return fields;
 }
 
@@ -80,14 +80,16 @@ std::vector<Field> file_fields(double time, const StepReport* report) {
 
 }  // namespace
 
-void write_frame(const std::filesystem::path& path, const Simulation& simulation, const StepReport* report) {
+void write_frame(const std::filesystem::path& path, const Simulation& simulation, const StepReport* report,
+                 bool double_precision) {
+  const FieldType real = double_precision ? FieldType::float64 : FieldType::float32;
   const Model& model = simulation.model();
   const State& state = simulation.state();
   const auto& [vertex, tet] = model.numbering;
   const std::vector<Field> point_fields = {
-      {"displacement", 3, vertex.to_user(displacement(model.mesh, state.q), 3), FieldType::float32},
-      {"velocity", 3, vertex.to_user(state.qdot, 3), FieldType::float32}};
-  std::vector<Field> fields = cell_fields(simulation);
+      {"displacement", 3, vertex.to_user(displacement(model.mesh, state.q), 3), real},
+      {"velocity", 3, vertex.to_user(state.qdot, 3), real}};
+  std::vector<Field> fields = cell_fields(simulation, real);
   for (Field& field : fields) field.values = tet.to_user(field.values, field.components);
   write_vtu(path, vertex.to_user(state.q, 3), to_user(model.numbering, model.mesh).tets, point_fields, fields,
             file_fields(state.time, report));

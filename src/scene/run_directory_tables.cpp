@@ -7,7 +7,31 @@
 namespace aspic {
 namespace {
 
-std::vector<std::string> step_columns(const std::vector<std::string>& potential_names) {
+void add_vector_columns(const std::string& name, std::vector<std::string>& columns) {
+  for (const char* axis : {"_x", "_y", "_z"}) columns.push_back(name + axis);
+}
+
+// In the order of add(Resultants).
+void add_resultant_columns(const Model& model, std::vector<std::string>& columns) {
+  const auto add = [&](const std::string& kind, const std::string& name) {
+    add_vector_columns(kind + "_" + name, columns);
+    add_vector_columns(kind + "_moment_" + name, columns);
+  };
+  for (const Pin& pin : model.pins) add("reaction", pin.name);
+  for (const auto& load : model.loads) add("load", std::string(load->name()));
+  for (const BodyRange& body : model.bodies) add("body", body.name);
+}
+
+constexpr std::string_view kStart = "start";  // the status of step 0, which nothing was solved for
+
+void add(const Resultants& resultants, CsvRow& row) {
+  for (const auto* all : {&resultants.pins, &resultants.loads, &resultants.bodies})
+    for (const Resultant& sum : *all)
+      for (const Vec3d* v : {&sum.force, &sum.moment})
+        for (int r = 0; r < 3; ++r) row.add((*v)[r]);
+}
+
+std::vector<std::string> step_columns(const Simulation& simulation) {
   std::vector<std::string> columns = {"step",
                                       "time",
                                       "status",
@@ -33,12 +57,34 @@ std::vector<std::string> step_columns(const std::vector<std::string>& potential_
                                       "residual_threshold",
                                       "min_det_F",
                                       "kinetic"};
-  for (const std::string& name : potential_names) columns.push_back("potential_" + name);
-  for (const char* name : {"potential_total", "pin_work", "damping_loss", "numerical_loss", "residual_work",
-                           "ledger_error", "decrement", "energy_bound", "energy_slack", "state_hash"}) {
+  for (const std::string& name : simulation.potential_names()) columns.push_back("potential_" + name);
+  for (const char* name :
+       {"potential_total", "pin_work", "damping_loss", "numerical_loss", "residual_work", "ledger_error"})
     columns.push_back(name);
-  }
+  add_resultant_columns(simulation.model(), columns);
+  columns.insert(columns.end(), {"decrement", "energy_bound", "energy_slack", "state_hash"});
   return columns;
+}
+
+CsvRow step_row(const StepReport& report) {
+  CsvRow row;
+  row.add(report.step).add(report.time);
+  row.add(report.step == 0 ? kStart : to_string(report.status)).add(to_string(report.criterion));
+  row.add(report.iterations).add(report.trials);
+  row.add(report.values).add(report.gradients).add(report.hessians).add(report.projected_hessians);
+  for (const int evaluations : {report.values, report.gradients, report.hessians})
+    row.add(static_cast<double>(evaluations) * report.elements);
+  row.add(report.vertex_sweeps);
+  row.add(report.factorizations).add(report.linear_iterations).add(report.products).add(report.cycles);
+  row.add(to_string(report.initial_guess)).add(report.substeps).add(report.rejected);
+  row.add(report.residual).add(report.residual_threshold).add(report.min_det_F).add(report.kinetic);
+  for (const double energy : report.potential) row.add(energy);
+  row.add(report.potential_total).add(report.pin_work).add(report.damping_loss).add(report.numerical_loss);
+  row.add(report.residual_work).add(report.ledger_error);
+  add(report.resultants, row);
+  row.add(report.decrement).add(to_string(report.energy_bound)).add(report.energy_slack);
+  row.add(hex_digits(report.state_hash));
+  return row;
 }
 
 const std::vector<std::string> kIterationColumns = {"step",
@@ -61,38 +107,27 @@ const std::vector<std::string> kTimingColumns = {"step", "seconds"};
 
 }  // namespace
 
-RunTables RunTables::create(const RunLayout& layout, const std::vector<std::string>& potential_names) {
+RunTables RunTables::create(const RunLayout& layout, const Simulation& simulation) {
   RunTables tables;
-  tables.steps_ = CsvFile::create(layout.steps(), step_columns(potential_names));
+  tables.steps_ = CsvFile::create(layout.steps(), step_columns(simulation));
   tables.iterations_ = CsvFile::create(layout.iterations(), kIterationColumns);
   tables.timings_ = CsvFile::create(layout.timings(), kTimingColumns);
   return tables;
 }
 
-RunTables RunTables::resume(const RunLayout& layout, const std::vector<std::string>& potential_names, int last_step) {
+RunTables RunTables::resume(const RunLayout& layout, const Simulation& simulation) {
+  const int last_step = simulation.steps_taken();
   RunTables tables;
-  tables.steps_ = CsvFile::resume(layout.steps(), step_columns(potential_names), last_step, CsvFile::Rows::every_step);
+  tables.steps_ = CsvFile::resume(layout.steps(), step_columns(simulation), last_step, CsvFile::Rows::every_step);
   tables.iterations_ = CsvFile::resume(layout.iterations(), kIterationColumns, last_step, CsvFile::Rows::optional);
   tables.timings_ = CsvFile::resume(layout.timings(), kTimingColumns, last_step, CsvFile::Rows::every_step);
   return tables;
 }
 
+void RunTables::add_start(const StepReport& report) { steps_.append(step_row(report)); }
+
 void RunTables::add(const StepReport& report) {
-  CsvRow row;
-  row.add(report.step).add(report.time).add(to_string(report.status)).add(to_string(report.criterion));
-  row.add(report.iterations).add(report.trials);
-  row.add(report.values).add(report.gradients).add(report.hessians).add(report.projected_hessians);
-  for (const int evaluations : {report.values, report.gradients, report.hessians})
-    row.add(static_cast<double>(evaluations) * report.elements);
-  row.add(report.vertex_sweeps);
-  row.add(report.factorizations).add(report.linear_iterations).add(report.products).add(report.cycles);
-  row.add(to_string(report.initial_guess)).add(report.substeps).add(report.rejected);
-  row.add(report.residual).add(report.residual_threshold).add(report.min_det_F).add(report.kinetic);
-  for (const double energy : report.potential) row.add(energy);
-  row.add(report.potential_total).add(report.pin_work).add(report.damping_loss).add(report.numerical_loss);
-  row.add(report.residual_work).add(report.ledger_error).add(report.decrement);
-  row.add(to_string(report.energy_bound)).add(report.energy_slack).add(hex_digits(report.state_hash));
-  steps_.append(row);
+  steps_.append(step_row(report));
   timings_.append(CsvRow().add(report.step).add(report.seconds));
 }
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/step_report.h"
+#include "dynamics/simulation.h"
 #include "io/checkpoint.h"
 #include "io/csv.h"
 
@@ -15,9 +15,10 @@ class RunLayout;
 
 class RunTables {
  public:
-  static RunTables create(const RunLayout& layout, const std::vector<std::string>& potential_names);
-  static RunTables resume(const RunLayout& layout, const std::vector<std::string>& potential_names, int last_step);
+  static RunTables create(const RunLayout& layout, const Simulation& simulation);
+  static RunTables resume(const RunLayout& layout, const Simulation& simulation);  // after the steps it has taken
 
+  void add_start(const StepReport& report);  // the row of step 0, which has no time of computation
   void add(const StepReport& report);
   void add(int step, const Iteration& iteration);
   void add_size(Checkpoint& checkpoint) const;  // of iterations.csv, whose steps have any number of rows

@@ -109,7 +109,10 @@ TEST_F(RunResults, HoldTheDocumentedFiles) {
                                             "frames/skin_soft_bar_000000.obj", "frames/skin_soft_bar_000001.obj",
                                             "frames/skin_soft_bar_000002.obj", "skins/skin_soft_bar.obj",
                                             "skins/skin_soft_bar.pc2"));
-  EXPECT_EQ(line_count(read_file(path("run/steps.csv"))), 1 + kRunSteps);
+  EXPECT_EQ(line_count(read_file(path("run/steps.csv"))), 2 + kRunSteps) << "head, start, steps";
+  EXPECT_THAT(read_file(path("run/steps.csv")), HasSubstr("\n0,0,start,"));
+  EXPECT_THAT(read_file(path("run/steps.csv")),
+              HasSubstr(",reaction_wall_x,reaction_wall_y,reaction_wall_z,reaction_moment_wall_x,"));
   EXPECT_EQ(line_count(read_file(path("run/timings.csv"))), 1 + kRunSteps);
   EXPECT_THAT(read_file(path("run/steps.csv")), HasSubstr(",potential_elasticity,potential_gravity,potential_total,"));
   EXPECT_THAT(read_file(path("run/run.pvd")),
@@ -141,6 +144,16 @@ TEST_F(RunResults, FramesCarryStateStressAndMaterial) {
   EXPECT_EQ(fields["cauchy"].components, 6);
   EXPECT_EQ(fields["cauchy"].values[7], static_cast<float>(tet.cauchy[7]));
   EXPECT_EQ(fields["young"].values[0], 1e5);
+}
+
+TEST_F(RunResults, FramesHaveDoublePrecisionOnRequest) {
+  Scene scene = sagging_scene({.double_precision = true});
+  RunDirectory run = RunDirectory::create(path("run"), scene, ExistingRun::refuse);
+  run_to(run, scene.simulation, 2);
+  for (const Field& field : read_vtu(path("run/frames/body_000002.vtu")).point_fields)
+    if (field.name == "velocity") {
+      EXPECT_EQ(field.values, scene.simulation.state().qdot);
+    }
 }
 
 // The run is dropped without finish(), as a killed process drops it, after any number of steps.
@@ -205,7 +218,7 @@ TEST_F(RunResults, FramesAfterTheLastCheckpointAreComputedAgain) {
   RunDirectory run = RunDirectory::resume(path("run"), scene);
   EXPECT_EQ(scene.simulation.steps_taken(), 0);
   EXPECT_FALSE(fs::exists(path("run/frames/body_000001.vtu")));
-  EXPECT_EQ(line_count(read_file(path("run/steps.csv"))), 1);
+  EXPECT_EQ(line_count(read_file(path("run/steps.csv"))), 2);
   run_to(run, scene.simulation, kRunSteps);
   run.finish(scene.simulation);
   EXPECT_EQ(contents(path("run")), contents(path("whole")));

@@ -60,6 +60,7 @@ OutputOptions output_of(const Value& table) {
           .pc2 = table["pc2"].boolean(),
           .usd = table["usd"].boolean(),
           .report = table["report"].boolean(),
+          .double_precision = table["precision"].text() == "double",
           .checkpoint_every = table["checkpoint_every"].number()};
 }
 

@@ -129,9 +129,11 @@ Key where_key() {
 }
 
 void add_pin_and_spring(Schema& s) {
-  s.sections.push_back({"pin", "[[body.pin]]",
-                        "Vertices that are exactly where they are told to be. No vertex is in "
-                        "two pins."});
+  s.sections.push_back(
+      {"pin", "[[body.pin]]",
+       "Vertices whose positions are prescribed exactly: in all directions, along some axes (a "
+       "roller: `axes = \"y\"`) or along one direction (a symmetry plane: its normal). A vertex may be "
+       "in several pins that hold it in independent directions, as where symmetry planes meet."});
   add_key(s, "pin", {.name = "name", .accepts = kText, .meaning = "default: pin1, pin2, ..."});
   add_key(s, "pin", where_key());
   add_key(s, "pin",
@@ -142,6 +144,18 @@ void add_pin_and_spring(Schema& s) {
            .table = "motion",
            .meaning = "how they move",
            .reason = "holds the body"});
+  add_keys(
+      s, "pin",
+      {{.name = "axes",
+        .accepts = kText,
+        .fallback = "\"xyz\"",
+        .choices = {"x", "y", "z", "xy", "xz", "yz", "xyz"},
+        .meaning = "along which they are held; along the others they slide freely",
+        .reason = "holds the body"},
+       {.name = "direction",
+        .accepts = kNumbers,
+        .meaning = "the only one along which they are held, of any length but 0: the normal of a symmetry plane"}});
+  s.alternatives.push_back({"pin", {{"axes"}, {"direction"}}});
 
   s.sections.push_back({"spring", "[[body.spring]]",
                         "Springs to points (`where`), between vertices (`between`), or along all edges (`edges`)."});
@@ -190,14 +204,14 @@ void add_loads(Schema& s) {
   add_key(s, "traction", where_key());
   add_key(s, "traction",
           {.name = "value",
-           .accepts = kExpressions,
+           .accepts = kMovingExpressions,
            .unit = "Pa",
-           .meaning = "of the centroid (X, Y, Z) of each triangle"});
+           .meaning = "of the centroid (X, Y, Z) of each triangle and of the time t"});
   add_key(s, "traction",
           {.name = "pressure",
-           .accepts = kNumber | kExpression,
+           .accepts = kNumber | kMovingExpression,
            .unit = "Pa",
-           .meaning = "against the outward normal at rest"});
+           .meaning = "against the outward normal at rest; of the centroid (X, Y, Z) and of the time t"});
   s.alternatives.push_back({"traction", {{"value"}, {"pressure"}}, true});
 
   s.sections.push_back({"force", "[[body.force]]", "A force per volume of the rest shape."});
@@ -208,10 +222,10 @@ void add_loads(Schema& s) {
   add_key(s, "force", everywhere);
   add_key(s, "force",
           {.name = "value",
-           .accepts = kExpressions,
+           .accepts = kMovingExpressions,
            .unit = "N/m^3",
            .required = true,
-           .meaning = "of the centroid (X, Y, Z) of each tet"});
+           .meaning = "of the centroid (X, Y, Z) of each tet and of the time t"});
 }
 
 }  // namespace

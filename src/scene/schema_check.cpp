@@ -39,6 +39,7 @@ unsigned kind_of(const Value& v, unsigned accepts) {
   if (is(kBoolean, std::holds_alternative<bool>(v.data))) return kBoolean;
   if (is(kText, v.is_text())) return kText;
   if (is(kExpression, v.is_text())) return kExpression;
+  if (is(kMovingExpression, v.is_text())) return kMovingExpression;
   if (is(kNumbers, is_array_of(v, 3, is_number))) return kNumbers;
   if (is(kExpressions, is_array_of(v, 3, is_number_or_text))) return kExpressions;
   if (is(kMovingExpressions, is_array_of(v, 3, is_number_or_text))) return kMovingExpressions;
@@ -62,6 +63,7 @@ std::string expected(const Key& key) {
   add(kBoolean, "true or false");
   add(kText, "a string");
   add(kExpression, "a formula in a string");
+  add(kMovingExpression, "a formula of X, Y, Z, t in a string");
   add(kNumbers, "three numbers");
   add(kExpressions, "three numbers or formulas");
   add(kMovingExpressions, "three numbers or formulas of X, Y, Z, t");
@@ -133,7 +135,7 @@ class Checker {
   }
   void check_expression(const Value& value, const Key& key) {
     try {
-      const bool moves = key.accepts & kMovingExpressions;
+      const bool moves = key.accepts & (kMovingExpression | kMovingExpressions);
       Expression(value.text(), moves ? ExpressionVariables::position_and_time : ExpressionVariables::position);
     } catch (const InvalidInput& e) {
       error(value.place, key.name + ": " + e.what());
@@ -151,6 +153,7 @@ class Checker {
       case kText:
         return check_choice(value, key);
       case kExpression:
+      case kMovingExpression:
         return check_expression(value, key);
       case kIntegers:
       case kPairs:

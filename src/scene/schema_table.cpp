@@ -248,6 +248,13 @@ void add_output(Schema& s) {
   format("report", usual.report, "report.html, one page with playback, plots and certificate, from `aspic run`",
          "opens in any browser; takes less time than the VTU frames");
   add_key(s, "output",
+          {.name = "precision",
+           .accepts = kText,
+           .fallback = "\"single\"",
+           .choices = {"single", "double"},
+           .meaning = "of velocities, displacements and fields in VTU frames; positions are always double",
+           .reason = "half as large"});
+  add_key(s, "output",
           {.name = "checkpoint_every",
            .accepts = kNumber,
            .unit = "s",

@@ -8,31 +8,6 @@
 #include "mesh/surface.h"
 
 namespace aspic::verify {
-namespace {
-
-class GrowingLoad : public Energy {
- public:
-  GrowingLoad(std::vector<double> force, std::function<double(double)> growth)
-      : force_(std::move(force)), growth_(std::move(growth)) {}
-  std::string_view name() const override { return "growing_load"; }
-  void begin_step(const StepContext& step) override { factor_ = growth_(step.time); }
-  double value(Positions x) const override {
-    double V = 0;
-    for (size_t i = 0; i < x.size(); ++i) V -= factor_ * force_[i] * x[i];
-    return V;
-  }
-  void add_gradient(Positions, double scale, std::span<double> g) const override {
-    for (size_t i = 0; i < g.size(); ++i) g[i] -= scale * factor_ * force_[i];
-  }
-  int add_hessian(Positions, double, const Projection&, BlockSparse&) const override { return 0; }
-
- private:
-  std::vector<double> force_;
-  std::function<double(double)> growth_;
-  double factor_ = 0;
-};
-
-}  // namespace
 
 std::vector<int> boundary_vertices(const TetMesh& mesh) {
   std::vector<int> vertices = boundary_surface(mesh).tet_vertex;
@@ -61,7 +36,10 @@ Vec3d sum_over(const std::vector<int>& vertices, const std::vector<double>& valu
 }
 
 std::unique_ptr<Energy> make_growing_load(std::vector<double> force, std::function<double(double time)> factor) {
-  return std::make_unique<GrowingLoad>(std::move(force), std::move(factor));
+  const auto grow = [force, factor](double time, std::span<double> sum) {
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += factor(time) * force[i];
+  };
+  return make_linear_load("growing_load", std::vector<double>(force.size(), 0.0), grow);
 }
 
 std::vector<double> traction_on(const TetMesh& mesh, const std::function<bool(const Vec3d&)>& is_loaded,

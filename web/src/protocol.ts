@@ -176,6 +176,7 @@ export interface StepRow {
   numerical_loss: MaybeNumber;
   residual_work: MaybeNumber;
   ledger_error: MaybeNumber;
+  reactions?: Record<string, MaybeNumber[]>; // of each pin: its force [N] and moment about the origin [N m], x y z
   energy_bound: "none" | "not_guaranteed" | "holds" | "broken"; // what backward Euler guarantees
   energy_slack: MaybeNumber; // by how much it holds; null without one [J]
   state_hash: string | null; // of positions and velocities at its end

@@ -66,3 +66,9 @@ test("what is bad is marked as such", () => {
   assert.deepEqual(bad(kSteps[1]), ["status", "residual / wanted", "energy bound [J]"]);
   assert.deepEqual(bad(row(4, { min_det_F: -0.5 })), ["min det F"]);
 });
+
+test("reactions name the pin and its force", () => {
+  const reactions = column("reactions [N]");
+  assert.equal(reactions.value(row(1, { reactions: { "beam.wall": [0, 9.5, 0, 1, 2, 3] } })), "beam.wall (0, 9.5, 0)");
+  assert.equal(reactions.value(kSteps[0]), null);
+});

@@ -35,6 +35,12 @@ function boundBadness(row: StepRow): number {
   return row.energy_bound === "broken" ? Infinity : Number.MAX_VALUE;
 }
 
+function reactionText(row: StepRow): string | null {
+  const pins = Object.entries(row.reactions ?? {});
+  const vector = (values: MaybeNumber[]): string => values.slice(0, 3).map((value) => short(value)).join(", ");
+  return pins.length ? pins.map(([pin, values]) => `${pin} (${vector(values)})`).join("; ") : null;
+}
+
 export const kColumns: Column[] = [
   { title: "step", meaning: "number of the time step", value: (row) => row.step },
   { title: "time [s]", meaning: "at the end of the step", value: (row) => row.time },
@@ -83,6 +89,12 @@ export const kColumns: Column[] = [
     meaning: "the part of the energy's change that nothing accounts for",
     value: (row) => row.ledger_error,
     worse: (row) => (row.ledger_error === null ? Infinity : Math.abs(row.ledger_error)),
+  },
+  {
+    title: "reactions [N]",
+    meaning: "force of each pin on its vertices (x, y, z); moments are in steps.csv",
+    value: reactionText,
+    whole: (row) => reactionText(row) ?? "",
   },
   {
     title: "energy bound [J]",

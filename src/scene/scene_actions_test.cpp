@@ -1,0 +1,140 @@
+// Pins along some directions, loads that follow the time, and remedies in the keys of the scene.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "base/error.h"
+#include "scene/scene_cases_test.h"
+
+namespace aspic {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string pin(const std::string& rest) { return "[[body.pin]]\n" + rest + "\n"; }
+
+TEST(ScenePins, HoldAxesOrADirection) {
+  const Scene scene =
+      load(kCube + pin("where = \"x < 0.1\"\naxes = \"x\"") + pin("where = \"y < 0.1\"\naxes = \"yz\"") +
+           pin("where = \"x > 0.9 && y > 0.9\"\ndirection = [3, 4, 0]"));
+  const std::vector<Pin>& pins = scene.simulation.model().pins;
+  ASSERT_EQ(pins.size(), 3u);
+  ASSERT_EQ(pins[0].directions.size(), 1u);
+  EXPECT_EQ(pins[0].directions[0][0], 1);
+  EXPECT_EQ(pins[1].directions.size(), 2u);
+  EXPECT_NEAR(pins[2].directions[0][1], 0.8, 1e-15);
+  EXPECT_TRUE(load(kCube + pin("where = \"x < 0.1\"")).simulation.model().pins[0].directions.empty());
+}
+
+TEST(ScenePins, RollersLetTheBodySlide) {
+  Scene scene = load("gravity = [1, -9.81, 0]\n" + kCube + pin("where = \"y < 0.1\"\naxes = \"y\""));
+  for (int i = 0; i < 5; ++i) scene.simulation.step();
+  const double h = 0.01, slid = h * h * (1 + 2 + 3 + 4 + 5);  // backward Euler
+  const Model& model = scene.simulation.model();
+  double center = 0;  // of mass
+  for (int v = 0; v < 27; ++v) {
+    const std::vector<double>& q = scene.simulation.state().q;
+    if (model.mesh.rest[v][1] == 0) {
+      EXPECT_EQ(q[3 * v + 1], 0);
+    }
+    center += q[3 * v] * model.mass->vertex_mass()[v] / model.mass->total();
+  }
+  EXPECT_NEAR(center, 0.5 + slid, 1e-4 * slid);
+}
+
+TEST(ScenePins, HoldingADirectionTwiceIsRefused) {
+  const std::string roller = pin("name = \"roller\"\nwhere = \"y < 0.1\"\naxes = \"xy\"");
+  for (const char* other : {"axes = \"x\"", "direction = [1, 1, 0]", "axes = \"xyz\"", "axes = \"xz\""})
+    EXPECT_THAT(
+        refusal(kCube + roller + pin("name = \"wall\"\nwhere = \"x < 0.1\"\n" + std::string(other))),
+        AllOf(HasSubstr("'roller'"), HasSubstr("'wall'"), HasSubstr("along the same direction"), HasSubstr("&& !(")))
+        << other;
+  EXPECT_EQ(refusal(kCube + roller + pin("where = \"x < 0.1\"\naxes = \"z\"")), "");
+  EXPECT_THAT(refusal(kCube + pin("where = \"all\"\ndirection = [0, 0, 0]")), HasSubstr("a direction is needed"));
+  EXPECT_THAT(refusal(kCube + pin("where = \"all\"\naxes = \"yx\"")), HasSubstr("axes"));
+  EXPECT_THAT(refusal(kCube + pin("where = \"all\"\naxes = \"y\"\ndirection = [0, 0, 1]")), HasSubstr("direction"));
+}
+
+TEST(SceneLoads, FollowTheTimeAndWorkInTheLedger) {
+  const std::string text =
+      "gravity = [0, 0, 0]\n[time]\nstep = 0.5\nintegrator = \"quasi_static\"\n" + kCube + pin("where = \"x < 0.1\"");
+  const auto pulled = [&](const std::string& load_text, int steps) {
+    Scene scene = load(text + load_text);
+    StepReport report;
+    for (int i = 0; i < steps; ++i) report = scene.simulation.step();
+    EXPECT_TRUE(is_success(report.status));
+    EXPECT_LT(std::abs(report.ledger_error), 1e-9 * std::abs(report.potential_total));
+    EXPECT_GT(std::abs(report.pin_work), 0) << "the load worked when it grew";
+    EXPECT_NEAR(report.resultants.pins[0].force[0], -report.resultants.loads[0].force[0], 1e-3);
+    return report.resultants.loads[0].force[0];
+  };
+  const std::string face = "[[body.traction]]\nwhere = \"x > 0.999\"\n";
+  EXPECT_NEAR(pulled(face + "value = [\"100 * t\", 0, 0]\n", 2), 100, 1e-9);
+  EXPECT_NEAR(pulled(face + "pressure = \"-100 * t * (1 + 0 * Y)\"\n", 1), 50, 1e-9);
+  EXPECT_NEAR(pulled("[[body.force]]\nvalue = [\"10 * min(t, 0.6)\", 0, 0]\n", 2), 6, 1e-9);
+}
+
+TEST(SceneLoads, OfSeveralKindsAddUp) {
+  Scene scene = load("gravity = [0, 0, 0]\n" + kCube + "[[body.force]]\nvalue = [1, 0, 0]\n" +
+                     "[[body.force]]\nvalue = [\"sin(t)\", 0, 0]\n");
+  const StepReport report = scene.simulation.step();
+  EXPECT_NEAR(report.resultants.loads.at(0).force[0], 1 + std::sin(0.01), 1e-12);
+}
+
+TEST(SceneLoads, ThatFailDuringTheRunNameTheirPlace) {
+  Scene scene = load(kCube + "[[body.force]]\nvalue = [\"t < 0.015 ? 0 : 1/0\", 0, 0]\n");
+  scene.simulation.step();
+  EXPECT_THAT(message_of<InvalidInput>([&] { scene.simulation.step(); }),
+              AllOf(HasSubstr("beam.toml:5:"), HasSubstr("t = 0.02")));
+  EXPECT_THAT(refusal(kCube + "[[body.force]]\nvalue = [\"1 / t\", 0, 0]\n"), HasSubstr("t = 0"));
+}
+
+// "set A = 1 and set B = 2" as assignments.
+std::vector<std::string> assignments(const std::string& note) {
+  std::vector<std::string> all;
+  const std::regex pattern("set ([a-z._]+) = ([-+0-9.e]+)");
+  for (std::sregex_iterator i(note.begin(), note.end(), pattern), end; i != end; ++i)
+    all.push_back((*i)[1].str() + "=" + (*i)[2].str());
+  return all;
+}
+
+std::string note_with(const Scene& scene, const std::string& part) {
+  for (const std::string& note : scene.notes)
+    if (note.find(part) != std::string::npos) return note;
+  return "";
+}
+
+TEST(SceneRemedies, NameTheKeysThatGaveTheMaterial) {
+  const auto body = [](const std::string& moduli) {
+    return kCube + "material = { " + moduli + " }\n" + pin("where = \"x < 0.1\"");
+  };
+  for (const char* soft : {"young = 100", "shear = 40, bulk = 80", "lambda = 50, mu = 40"}) {
+    const std::string note = note_with(load(body(soft)), "crushes");
+    ASSERT_NE(note, "") << soft;
+    EXPECT_EQ(note_with(load(body(soft), assignments(note)), "crushes"), "") << note;
+  }
+  for (const char* stiff : {"young = 2e14", "shear = 1e14, bulk = 2e14", "lambda = 1e14, mu = 1e14"}) {
+    const std::string note = note_with(load(body(stiff)), "diamond");
+    ASSERT_NE(note, "") << stiff;
+    EXPECT_EQ(note_with(load(body(stiff), assignments(note)), "diamond"), "") << note;
+  }
+}
+
+TEST(SceneRemedies, OfNegativePoissonRatiosAreAccepted) {
+  const auto notes_of = [](const std::string& moduli) {
+    return note_with(load(kCube + "material = { model = \"neo_hookean\", " + moduli + " }\n"), "no least value");
+  };
+  EXPECT_THAT(notes_of("poisson = -0.5"), HasSubstr("(poisson = 0 or more"));
+  EXPECT_THAT(notes_of("shear = 3e4, bulk = 5e3"), HasSubstr("(bulk = 20000 or more"));
+  EXPECT_THAT(notes_of("lambda = -1e4, mu = 3e4"), HasSubstr("(lambda = 0 or more"));
+  EXPECT_EQ(notes_of("shear = 3e4, bulk = 2e4"), "");
+  EXPECT_EQ(notes_of("lambda = 0, mu = 3e4"), "");
+}
+
+}  // namespace
+}  // namespace aspic
