@@ -150,7 +150,8 @@ std::string in_words(const Minimization& done) {
           "defined there",
           report.iterations);
     case Status::interrupted:
-    case Status::inaccurate:  // of time steps only
+    case Status::unstable:  // of time steps only
+    case Status::inaccurate:
       break;
   }
   return fmt::format("interrupted after {} iterations", report.iterations);

@@ -173,6 +173,10 @@ class Runner {
     totals_.add(report);
     const Explanation why = explain(scene_.simulation, report);
     if (!is_success(report.status) && report.status != Status::budget) warn(report, why);
+    if (is_success(report.status) && report.lost_accuracy > 0 && !has_warned_of_round_off_) {
+      has_warned_of_round_off_ = true;
+      say(fmt::format("warning: step {}: {}", report.step, explanation_text(why)));
+    }
     if (arguments_.json) {
       fmt::print("{}\n", step_json(report, why, scene_.simulation));
       std::fflush(stdout);
@@ -217,6 +221,10 @@ class Runner {
     if (why.cause != last_cause_) line += explanation_text(why);
     last_cause_ = why.cause;
     if (count == kWarningsShown) line += " (further ones are only counted)";
+    say(line);
+  }
+
+  void say(const std::string& line) {
     if (progress_) {
       progress_->message(line);
     } else {
@@ -230,7 +238,7 @@ class Runner {
   RunDirectory& directory_;
   std::FILE* human_;
   int last_step_, first_step_;
-  bool has_blown_up_ = false, has_run_out_ = false;
+  bool has_blown_up_ = false, has_run_out_ = false, has_warned_of_round_off_ = false;
   std::optional<Progress> progress_;
   std::optional<Trace> trace_;
   std::vector<Iteration> iterations_;  // of the step under way; recorded once it is whole

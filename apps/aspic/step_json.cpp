@@ -49,6 +49,7 @@ std::string step_json(const StepReport& report, const Explanation& why, const Si
       {"residual", report.residual},
       {"residual_threshold", report.residual_threshold},
       {"residual_round_off", report.residual_round_off},
+      {"lost_accuracy", report.lost_accuracy},
       {"decrement", report.decrement},
       {"worst_vertex", worst},
       {"worst_residual", report.worst_residual},

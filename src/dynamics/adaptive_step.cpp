@@ -109,8 +109,6 @@ void AdaptiveStep::keep(Integrator& integrator, const StepTools& whole, Ledger& 
   enter(tools_of_part(whole, first_.end, nullptr, first + half, half), second_);
   report.substeps += 2;
   for (const Part* part : {&first_, &second_}) {
-    total_.threshold = std::max(total_.threshold, part->solve.threshold);
-    total_.round_off = std::max(total_.round_off, part->solve.round_off);
     total_.decrement = std::max(total_.decrement, part->solve.decrement);
     if (part->solve.work.status == Status::round_off) total_.work.status = Status::round_off;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "dynamics/explanation_places.h"
 #include "dynamics/pins.h"
@@ -62,8 +63,12 @@ class Explainer {
         return {"the time budget was spent after " + std::to_string(report_.iterations) +
                     " iterations; the step ends where they came",
                 "solver.time_budget = " + text(solver_.time_budget), "raise solver.time_budget, or solver.tolerance"};
-      case Status::converged:
+      case Status::unstable:
+        return blow_up();
       case Status::round_off:
+        if (report_.lost_accuracy > 0) return lost_accuracy();
+        break;
+      case Status::converged:
       case Status::interrupted:
         break;
     }
@@ -115,18 +120,29 @@ class Explainer {
                        : "shorten the step (" + step_text() + " now)";
   }
 
+  Explanation lost_accuracy() const {
+    const auto digits = std::numeric_limits<double>::digits10;
+    return {
+        "round-off hides " + text(100 * report_.lost_accuracy) + " % of the weight, the inertia or the velocities",
+        "positions have " + std::to_string(digits) + " digits, and " + step_text(),
+        "lengthen a tiny time.step, move a distant body to the origin, or lower an extreme stiffness (young, poisson); "
+        "pin what must not move"};
+  }
+
   Explanation blow_up() const {
     const Explanation pins = pressed_by_pins();
     if (!pins.cause.empty()) return pins;
     const StableStep stable = simulation_.stable_step();
     const double h = simulation_.options().h;
     const std::string& name = simulation_.options().integrator;
+    const std::string end = report_.status == Status::unstable ? "has made most of the energy that the body has"
+                                                               : "left the range of numbers";
     if (name == "forward_euler" && h < stable.h)
-      return {"forward_euler adds energy in every step, however short, and left the range of numbers",
+      return {"forward_euler adds energy in every step, however short, and " + end,
               "time.integrator = \"forward_euler\"", "time.integrator = \"symplectic_euler\" or \"backward_euler\""};
     if (h < stable.h)
       return {
-          "the explicit scheme " + name + " left the range of numbers",
+          "the explicit scheme " + name + " " + end,
           step_text() + " is below " + text(stable.h) + " s, where it is stable for small motions, but not for these",
           "shorten time.step, or use time.integrator = \"backward_euler\""};
     const std::string cause = "the explicit scheme " + name + " blew up: its steps of " + text(h) +

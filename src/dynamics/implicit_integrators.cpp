@@ -109,11 +109,10 @@ class QuasiStatic : public Integrator {
         tools.minimizer.minimize(tools.E, tools.direction, end.q, guess.value, tools.options, tools.observe);
     solve.add(report);
     add_work(lead, solve.work);
-    if (!judges_direction(tools.options.criterion)) solve.threshold = report.threshold;
-    solve.round_off = tools.E.gradient_noise(end.q);
     solve.decrement = report.decrement;
     std::fill(end.qdot.begin(), end.qdot.end(), 0.0);
     forces.add(tools.E, 1, end.q, {}, solve.work);
+    forces.add_bounds(tools, 1, end.q);
     end.time = tools.end_time;
     return solve;
   }

@@ -16,9 +16,7 @@ MinimizeOptions one_iteration(const MinimizeOptions& options) {
   return one;
 }
 
-void note_end(const IncrementalPotential& E, std::span<const double> q, const StageOptions& options,
-              const MinimizeReport& report, StepSolve& solve) {
-  solve.round_off += options.weight * (E.gradient_noise(q) / E.gradient_unit());
+void note_end(const IncrementalPotential& E, const MinimizeReport& report, StepSolve& solve) {
   solve.decrement = std::max(solve.decrement, report.decrement / E.gradient_unit());
 }
 
@@ -62,7 +60,7 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
     MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, minimize, tools.observe);
     // The scheme asks for one iteration, not for a small gradient; what is left over stays in the report.
     if (report.status == Status::iteration_limit) report.status = Status::converged;
-    note_end(tools.E, q_, options, report, solve);
+    note_end(tools.E, report, solve);
     return report;
   }
   MinimizeReport lead;
@@ -76,9 +74,7 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
   const Guess guess = guesser_.guess(tools, tools.guess, known, q_, lead);
   solve.guess = guess.used;
   MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, guess.value, minimize, tools.observe);
-  if (!judges_direction(minimize.criterion))
-    solve.threshold += options.weight * (report.threshold / tools.E.gradient_unit());
-  note_end(tools.E, q_, options, report, solve);
+  note_end(tools.E, report, solve);
   add_work(lead, report);
   return report;
 }
@@ -101,6 +97,7 @@ bool ImplicitStage::solve(const StepTools& tools, const PinPath* path, const Sta
     path->place_acceleration(options.time, acc);
   }
   forces.add(tools.E, options.weight, q, acc, solve.work);
+  forces.add_bounds(tools, options.weight, q);
   return true;
 }
 

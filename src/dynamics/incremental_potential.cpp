@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "mesh/components.h"
 
 namespace aspic {
 namespace {
@@ -16,7 +18,13 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // what the default tolerance can see.
 constexpr double kLeastStrain = 1e-9;
 
+// Regions of one body are judged apart where their moduli differ by more than this factor: at the default tolerance of
+// 1e-6 the softer one is then still resolved to 1e-4 of its own forces.
+constexpr double kSoft = 100;
+
 constexpr int kVerticesPerTask = 16;  // some 400 tets
+
+double squared(const Vec3d& v) { return dot(v, v); }
 
 BlockPattern pattern_of(const Model& model) {
   Couplings couplings;
@@ -41,6 +49,28 @@ std::vector<double> unit_stiffness(const TetMesh& mesh) {
       if (six_volumes > 0) stiffness[tet[k]] += dot(normal, normal) / (6 * six_volumes);
     }
   return stiffness;
+}
+
+// Per vertex: its part, numbered in the order of their first vertices. Vertices of one part are connected by tets or
+// lie in one body, and their moduli are those of its stiffest vertex, or kSoft times less, or kSoft^2 times less, ...
+std::vector<int> parts_of(const TetMesh& mesh, std::span<const double> modulus) {
+  const std::vector<std::vector<int>> components = tet_components(mesh);
+  std::vector<int> component(mesh.vertex_count(), 0);
+  std::vector<double> stiffest(components.size() + 1, 0.0);
+  for (size_t c = 0; c < components.size(); ++c)
+    for (const int t : components[c])
+      for (const int v : mesh.tets[t]) component[v] = static_cast<int>(c);
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (std::isfinite(modulus[v])) stiffest[component[v]] = std::max(stiffest[component[v]], modulus[v]);
+  std::map<std::pair<int, int>, int> number;
+  std::vector<int> part(mesh.vertex_count());
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    constexpr int kSoftest = 20;
+    const double softer = std::log(stiffest[component[v]] / modulus[v]) / std::log(kSoft);
+    const int level = softer > 0 ? static_cast<int>(std::min<double>(softer, kSoftest)) : 0;
+    part[v] = number.try_emplace({component[v], level}, static_cast<int>(number.size())).first->second;
+  }
+  return part;
 }
 
 }  // namespace
@@ -84,12 +114,19 @@ double IncrementalPotential::value(std::span<const double> q) {
 
 void IncrementalPotential::gradient(std::span<const double> q, std::span<double> g) {
   gradient_scale_ = radius_ > 0 ? kLeastStrain * factor_ * growth_stiffness_ / radius_ : 0;
+  exact_scale_ = 0;
+  for (Part& part : parts_) {
+    part.exact = 0;
+    part.scale = part.radius > 0 ? kLeastStrain * factor_ * part.growth_stiffness / part.radius : 0;
+  }
   if (inertia_ != 0) {
     parallel_chunks(static_cast<int>(q.size()), [&](int first, int last) {
       for (int i = first; i < last; ++i) offset_[i] = inertia_ * (q[i] - predicted_[i]);
     });
     model_.mass->multiply(offset_, g);
-    gradient_scale_ += free_norm(g);
+    exact_scale_ = free_norm(g);
+    gradient_scale_ += exact_scale_;
+    add_part_norms(g, true);
   } else {
     std::fill(g.begin(), g.end(), 0.0);
   }
@@ -145,6 +182,14 @@ double IncrementalPotential::gradient_round_off_at(std::span<const double> q) {
     largest_[first / kChunkSize] = size;
     return sum;
   });
+  for (Part& part : parts_) part.sum = part.largest = 0;
+  if (!parts_.empty())
+    for (int i = 0; i < pattern_.rows(); ++i) {
+      Part& part = parts_[part_of_[i]];
+      for (int r = 0; r < 3; ++r) part.largest = std::max(part.largest, std::abs(q[3 * i + r]));
+      if (!pins_.holds(i)) part.sum += squared_norm(H_.block[pattern_.diagonal(i)]);
+    }
+  for (Part& part : parts_) part.round_off = kEpsilon * part.largest * std::sqrt(part.sum);
   return kEpsilon * *std::max_element(largest_.begin(), largest_.end()) * std::sqrt(stiffness);
 }
 
@@ -153,6 +198,63 @@ double IncrementalPotential::gradient_noise(std::span<const double> q) const {
   for (const double qi : q) size = std::max(size, std::abs(qi));
   const double at_rest = kEpsilon * size * std::hypot(inertia_ * mass_norm_, factor_ * rest_stiffness_);
   return std::max(gradient_round_off_, at_rest) + kEpsilon * gradient_scale_;
+}
+
+void IncrementalPotential::add_part_noise(std::span<const double> q, double weight, std::span<double> noise) const {
+  if (parts_.empty()) {
+    noise[0] += weight * (gradient_noise(q) / factor_);
+    return;
+  }
+  double size = 0;
+  for (const double qi : q) size = std::max(size, std::abs(qi));
+  for (size_t k = 0; k < parts_.size(); ++k) {
+    const Part& part = parts_[k];
+    const double at_rest = kEpsilon * size * std::hypot(inertia_ * part.mass_norm, factor_ * part.rest_stiffness);
+    noise[k] += weight * ((std::max(part.round_off, at_rest) + kEpsilon * part.scale) / factor_);
+  }
+}
+
+// In the order of the vertices, so that the number of threads changes no bit.
+void IncrementalPotential::add_part_norms(std::span<const double> v, bool is_exact) {
+  if (parts_.empty()) return;
+  for (Part& part : parts_) part.sum = 0;
+  for (int i = 0; i < pattern_.rows(); ++i) parts_[part_of_[i]].sum += squared(pins_.free_part(i, point(v, i)));
+  for (Part& part : parts_) {
+    part.scale += std::sqrt(part.sum);
+    if (is_exact) part.exact += std::sqrt(part.sum);
+  }
+}
+
+void IncrementalPotential::measure_parts(std::span<const double> g, std::span<GradientPart> parts) {
+  if (parts_.empty()) return Objective::measure_parts(g, parts);
+  for (Part& part : parts_) part.sum = 0;
+  for (int i = 0; i < pattern_.rows(); ++i) parts_[part_of_[i]].sum += squared(point(g, i));
+  for (size_t k = 0; k < parts_.size(); ++k) parts[k] = {std::sqrt(parts_[k].sum), parts_[k].scale};
+}
+
+double IncrementalPotential::lost_accuracy(std::span<const double> q, std::span<const GradientPart> parts) {
+  constexpr double kNoise = 16 * kEpsilon;  // of inertia, by positions
+  double size = 0, lost = 0;
+  for (const double qi : q) size = std::max(size, std::abs(qi));
+  for (size_t k = 0; k < parts.size(); ++k) {
+    const double exact = parts_.empty() ? exact_scale_ : parts_[k].exact;
+    const double mass = parts_.empty() ? mass_norm_ : parts_[k].mass_norm;
+    const bool is_hidden = exact > kNoise * size * inertia_ * mass && parts[k].norm > kResolved * exact;
+    if (is_hidden) lost = std::max(lost, std::min(1.0, parts[k].norm / exact));
+  }
+  return lost;
+}
+
+double IncrementalPotential::relative_decrement(std::span<const double> g, std::span<const double> d) {
+  if (parts_.empty()) return Objective::relative_decrement(g, d);
+  for (Part& part : parts_) part.sum = 0;
+  for (int i = 0; i < pattern_.rows(); ++i) parts_[part_of_[i]].sum += aspic::dot(point(g, i), point(d, i));
+  double largest = 0;  // coupled parts may gain from each other's decrease
+  for (const Part& part : parts_) {
+    const double scale = inertia_ * part.growth_inertia + factor_ * part.growth_stiffness;
+    if (scale > 0) largest = std::max(largest, std::abs(part.sum) / 2 / scale);
+  }
+  return std::sqrt(largest);
 }
 
 const BlockSparse* IncrementalPotential::metric() {
@@ -212,6 +314,8 @@ double IncrementalPotential::free_norm(std::span<const double> v) const {
 void IncrementalPotential::add_term_gradient(const Energy& term, std::span<const double> q, std::span<double> g,
                                              std::span<double> sum) {
   term.add_gradient(q, factor_, term_);
+  const bool is_exact = term.has_constant_gradient();
+  add_part_norms(term_, is_exact);
   const double squared = parallel_sum(pattern_.rows(), [&](int first, int last) {
     double square = 0;
     for (int i = first; i < last; ++i) {
@@ -227,6 +331,7 @@ void IncrementalPotential::add_term_gradient(const Energy& term, std::span<const
     return square;
   });
   gradient_scale_ += std::sqrt(squared);
+  if (is_exact) exact_scale_ += std::sqrt(squared);
 }
 
 void IncrementalPotential::measure(const TetMesh& mesh) {
@@ -242,9 +347,15 @@ void IncrementalPotential::measure(const TetMesh& mesh) {
     }
   }
   H_.set_zero();
-  for (const Energy* V : potential_) V->add_hessian(rest, 1, {Definiteness::absolute}, H_);
+  const std::vector<double> unit = unit_stiffness(mesh);
+  std::vector<double> modulus(unit.size());
+  for (size_t k = 0; k < potential_.size(); ++k) {
+    potential_[k]->add_hessian(rest, 1, {Definiteness::absolute}, H_);
+    if (k + 1 == model_.elasticity.size())
+      for (int v = 0; v < pattern_.rows(); ++v) modulus[v] = trace(H_.block[pattern_.diagonal(v)]) / unit[v];
+  }
   H_.multiply(growth, term_);
-  pattern_.rest_modulus = unit_stiffness(mesh);
+  pattern_.rest_modulus = unit;
   for (int v = 0; v < pattern_.rows(); ++v)
     pattern_.rest_modulus[v] = trace(H_.block[pattern_.diagonal(v)]) / pattern_.rest_modulus[v];
   growth_stiffness_ = dot(growth, term_);
@@ -254,7 +365,34 @@ void IncrementalPotential::measure(const TetMesh& mesh) {
   }
   model_.mass->multiply(growth, term_);
   growth_inertia_ = dot(growth, term_);
+  measure_parts(mesh, modulus, growth);
   std::fill(term_.begin(), term_.end(), 0.0);
+}
+
+void IncrementalPotential::measure_parts(const TetMesh& mesh, std::span<const double> modulus,
+                                         std::span<double> growth) {
+  part_of_ = parts_of(mesh, modulus);
+  const int count = *std::max_element(part_of_.begin(), part_of_.end()) + 1;
+  if (count <= 1) return part_of_.clear();
+  parts_.resize(count);
+  std::vector<Vec3d> center(count);
+  std::vector<int> size(count);
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    center[part_of_[v]] = center[part_of_[v]] + mesh.rest[v], ++size[part_of_[v]];
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    Part& part = parts_[part_of_[v]];
+    const Vec3d offset = mesh.rest[v] - (1.0 / size[part_of_[v]]) * center[part_of_[v]];
+    part.radius = std::max(part.radius, std::sqrt(squared(offset)));
+    part.rest_stiffness = std::hypot(part.rest_stiffness, std::sqrt(squared_norm(H_.block[pattern_.diagonal(v)])));
+    part.mass_norm = std::hypot(part.mass_norm, std::sqrt(3.0) * model_.mass->vertex_mass()[v]);
+    for (int r = 0; r < 3; ++r) growth[3 * v + r] = offset[r];
+  }
+  H_.multiply(growth, term_);
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    parts_[part_of_[v]].growth_stiffness += aspic::dot(point(growth, v), point(term_, v));
+  model_.mass->multiply(growth, term_);
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    parts_[part_of_[v]].growth_inertia += aspic::dot(point(growth, v), point(term_, v));
 }
 
 }  // namespace aspic

@@ -35,12 +35,22 @@ class IncrementalPotential : public Objective {
   double gradient_scale() const override { return gradient_scale_; }
   double gradient_unit() const override { return factor_; }  // g is a force times f
   double gradient_round_off() const override { return gradient_round_off_; }
+  int part_count() const override { return parts_.empty() ? 1 : static_cast<int>(parts_.size()); }
+  void measure_parts(std::span<const double> g, std::span<GradientPart> parts) override;
+  double part_round_off(int part) const override {
+    return parts_.empty() ? gradient_round_off_ : parts_[part].round_off;
+  }
+  double lost_accuracy(std::span<const double> q, std::span<const GradientPart> parts) override;
+  double relative_decrement(std::span<const double> g, std::span<const double> d) override;
+  int part_of(int vertex) const { return part_of_.empty() ? 0 : part_of_[vertex]; }
   double value_round_off() const override { return value_round_off_; }
   double growth_stiffness() const { return growth_stiffness_; }  // of V, see value_scale() [J]
 
   // The part of |g| at q, where the gradient was evaluated last, that is noise: of positions, by the stiffness of the
   // last Hessian or of the body at rest, and of the sum of forces.
   double gradient_noise(std::span<const double> q) const;
+  // noise[k] += weight * that of part k [N].
+  void add_part_noise(std::span<const double> q, double weight, std::span<double> noise) const;
 
   // What is known of the iterate at which a minimisation ended: nothing there need be evaluated again. Empty elsewhere.
   std::span<const double> known_values(std::span<const double> q) const;  // of the terms of V [J]
@@ -61,10 +71,21 @@ class IncrementalPotential : public Objective {
   // moment of inertia about the centre [kg m^2] and the largest distance from there [m]: the sizes by which errors are
   // judged.
   void measure(const TetMesh& mesh);
+  // Divides the vertices into parts: bodies that no tet connects, and regions of a body whose moduli differ by more
+  // than kSoft. Each is judged by its own sizes. `growth` is scratch.
+  void measure_parts(const TetMesh& mesh, std::span<const double> modulus, std::span<double> growth);
+  void add_part_norms(std::span<const double> v, bool is_exact);
   bool prepare_vertex_systems();
   void add_term_gradient(const Energy& term, std::span<const double> q, std::span<double> g, std::span<double> sum);
   double free_norm(std::span<const double> v) const;
   double gradient_round_off_at(std::span<const double> q);
+
+  struct Part {  // see measure(), for this part alone
+    double growth_stiffness = 0, growth_inertia = 0, radius = 0, rest_stiffness = 0, mass_norm = 0;
+    double scale = 0, round_off = 0;  // of the last gradient and Hessian
+    double exact = 0;                 // the part of scale that is known to the last digit: inertia, weight, dead loads
+    double sum = 0, largest = 0;      // scratch
+  };
 
   const Model& model_;
   const Pins& pins_;
@@ -74,6 +95,8 @@ class IncrementalPotential : public Objective {
   std::optional<BlockSparse> metric_;          // made when it is first asked for
   std::optional<bool> offers_vertex_systems_;  // likewise
 
+  std::vector<Part> parts_;   // empty: there is one
+  std::vector<int> part_of_;  // of each vertex, unless there is one
   std::vector<double> predicted_;
   std::vector<double> iterate_;  // empty: there is none yet
   Parts last_, of_iterate_;      // of what was evaluated last, wherever that was
@@ -81,6 +104,7 @@ class IncrementalPotential : public Objective {
   double growth_stiffness_ = 0, growth_inertia_ = 0, radius_ = 0;
   double rest_stiffness_ = 0, mass_norm_ = 0;  // of the diagonal blocks [N/m] and [kg]
   int projected_elements_ = 0;
+  double exact_scale_ = 0;  // see Part::exact
   double gradient_scale_ = 0, gradient_round_off_ = 0, value_round_off_ = 0;
   // Scratch. offset: w (q - q~). term: one term's gradient; zero between terms. largest: |q| by chunks.
   std::vector<double> offset_, term_, largest_;

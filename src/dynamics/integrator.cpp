@@ -46,6 +46,25 @@ int badness(Status status) {
 
 void StepForces::reset(size_t size) {
   for (auto* v : {&gradient, &damping, &acceleration}) v->assign(size, 0.0);
+  for (auto* v : {&thresholds, &round_offs}) std::fill(v->begin(), v->end(), 0.0);
+}
+
+void StepForces::resize_bounds(const IncrementalPotential& E) {
+  for (auto* v : {&thresholds, &round_offs}) v->resize(E.part_count());
+}
+
+void StepForces::add_round_off(const IncrementalPotential& E, double round_off) {
+  resize_bounds(E);
+  for (double& r : round_offs) r += round_off;
+}
+
+void StepForces::add_bounds(const SolveTools& tools, double weight, Positions x) {
+  const double unit = tools.E.gradient_unit();
+  resize_bounds(tools.E);
+  tools.E.add_part_noise(x, weight, round_offs);
+  if (judges_direction(tools.options.criterion)) return;
+  const std::span<const double> asked = tools.minimizer.thresholds();
+  for (size_t k = 0; k < thresholds.size(); ++k) thresholds[k] += weight * (asked[k] / unit);
 }
 
 void StepForces::add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc,
@@ -62,6 +81,7 @@ bool StepSolve::add(const MinimizeReport& stage) {
   add_work(stage, work);
   work.value = stage.value;
   work.gradient_norm = stage.gradient_norm;
+  work.lost_accuracy = std::max(work.lost_accuracy, stage.lost_accuracy);
   if (badness(stage.status) > badness(work.status)) work.status = stage.status;
   return stage.status != Status::undefined && stage.status != Status::interrupted;
 }

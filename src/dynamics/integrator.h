@@ -38,17 +38,24 @@ struct StepTools : SolveTools {
 struct StepForces {
   std::vector<double> gradient, damping;  // G = sum w dV/dx and C = sum w dD/dx [N]
   std::vector<double> acceleration;       // a = sum w acc [m/s^2]; zero in statics
+  // Of each part of the objective (Objective::part_count): the |r| that was asked for, 0 without a solve, and the part
+  // of |r| that is round-off [N].
+  std::vector<double> thresholds, round_offs;
 
   void reset(size_t size);
   // Of the terms as they are told, at x.
   void add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc, Work& work);
+  // Of a solve that ended at x.
+  void add_bounds(const SolveTools& tools, double weight, Positions x);
+  void add_round_off(const IncrementalPotential& E, double round_off);  // to that of every part [N]
+
+ private:
+  void resize_bounds(const IncrementalPotential& E);
 };
 
 // How a step went: counts are sums over its stages, the status is the worst of them.
 struct StepSolve {
   MinimizeReport work = {.status = Status::converged};
-  double threshold = 0;  // of |r| over the free vertices, that the solves were asked for [N]
-  double round_off = 0;  // the part of |r| that is noise [N]
   double decrement = 0;  // the largest of its stages [J]
   InitialGuess guess = InitialGuess::none;
 

@@ -84,15 +84,35 @@ std::span<const double> Ledger::elastic_energies(const Model& model, std::span<c
   return elastic_;
 }
 
-void Ledger::note_worst_vertex(const Pins& pins, StepReport& report) const {
+void Ledger::note_worst_vertex(const StepTools& tools, int part, StepReport& report) const {
   double most = 0;
-  for (size_t i = 0; i + 2 < residual_.size(); i += 3) {
-    const int vertex = static_cast<int>(i / 3);
-    const Vec3d left = pins.free_part(vertex, {{residual_[i], residual_[i + 1], residual_[i + 2]}});
+  for (int v = 0; v < tools.pins.vertex_count(); ++v) {
+    if (tools.E.part_of(v) != part) continue;
+    const Vec3d left = tools.pins.free_part(v, point(residual_, v));
     const double size = std::hypot(left[0], left[1], left[2]);
-    if (size > most) most = size, report.worst_vertex = vertex;
+    if (size > most) most = size, report.worst_vertex = v;
   }
   report.worst_residual = most;
+}
+
+void Ledger::note_residual(const StepTools& tools, const StepForces& forces, StepReport& report) {
+  const auto ratio = [](double residual, double threshold) { return threshold > 0 ? residual / threshold : residual; };
+  const auto bound = [](const std::vector<double>& of_parts, int part) {
+    return of_parts.empty() ? 0.0 : of_parts[part];
+  };
+  int worst = -1;
+  double residual = report.residual, threshold = report.residual_threshold;
+  for (int k = 0; k < tools.E.part_count(); ++k) {
+    const double r = std::sqrt(squares_[k]), asked = bound(forces.thresholds, k);
+    const bool is_first = worst < 0 && report.worst_vertex < 0 && report.residual == 0;
+    if (!is_first && ratio(r, asked) <= ratio(residual, threshold)) continue;  // NaN stays
+    worst = k, residual = r, threshold = asked;
+  }
+  if (worst < 0) return;
+  report.residual = residual;
+  report.residual_threshold = threshold;
+  report.residual_round_off = bound(forces.round_offs, worst);
+  note_worst_vertex(tools, worst, report);
 }
 
 void Ledger::allow_moved_pins(const StepTools& tools, const State& end, BoundedEnergies& bounded, Work& work) {
@@ -165,7 +185,8 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   const double kinetic_before = kinetic_energy(*tools.model.mass, start.qdot, momentum_);
   tools.model.mass->multiply(forces.acceleration, Ma_);
 
-  double residual_squared = 0, jump = 0, round_off = 0;
+  double jump = 0, round_off = 0;
+  squares_.assign(tools.E.part_count(), 0.0);
   LongSum inertia, gradient, damping, reaction, residuals;
   LongSum* const sums[] = {&inertia, &gradient, &damping};
   bool pins_moved = false;
@@ -188,7 +209,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
       }
     const Vec3d left = tools.pins.free_part(v, point(residual_, v)), moved = tools.pins.held_part(v, dx);
     for (int r = 0; r < 3; ++r) {
-      residual_squared += left[r] * left[r];
+      squares_[tools.E.part_of(v)] += left[r] * left[r];
       pins_moved |= std::abs(moved[r]) > std::numeric_limits<double>::epsilon() * std::abs(x[r]);
     }
   }
@@ -208,11 +229,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
                potential_gain = report.potential_total - potential_before;
   const double pin_work = reaction_work + target;
   const double loss = (inertia_work - kinetic_gain) + gradient_work - (potential_gain - target);
-  const double residual = std::sqrt(residual_squared);
-  if (!(residual <= report.residual)) {  // NaN stays
-    report.residual = residual;
-    note_worst_vertex(tools.pins, report);
-  }
+  note_residual(tools, forces, report);
   report.pin_work += pin_work;
   report.damping_loss += damping_work;
   report.numerical_loss += loss;

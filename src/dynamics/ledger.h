@@ -32,10 +32,13 @@ class Ledger {
                                            Work& work);
   // Puts what E was at its start, divided by h^2, in place of V_t + T_t + W.
   void allow_moved_pins(const StepTools& tools, const State& end, BoundedEnergies& bounded, Work& work);
-  void note_worst_vertex(const Pins& pins, StepReport& report) const;
+  // The residual of the part of the model that is farthest from its threshold, and its worst vertex.
+  void note_residual(const StepTools& tools, const StepForces& forces, StepReport& report);
+  void note_worst_vertex(const StepTools& tools, int part, StepReport& report) const;
   void add_resultants(const StepTools& tools, const State& end, const StepForces& forces, Resultants& sums);
 
   std::vector<double> Ma_, momentum_, residual_;
+  std::vector<double> squares_;           // of the residual, by parts
   std::vector<double> load_;              // the gradient of one load; zero between
   std::vector<double> moved_;             // the positions with which E is compared where pins move, then u - v_t
   std::vector<double> early_, late_;      // of each load: what its target's motion adds to its energy

@@ -123,7 +123,7 @@ class RungeKutta : public Integrator {
     report.iterations = is_implicit_ ? 0 : 1;
     const bool solved =
         force_.solve(tools, time, q_[i], v_[i], DampingDifference::central, t_.b[i], acc_[i], forces, report);
-    solve.round_off += t_.b[i] * force_.noise();
+    forces.add_round_off(tools.E, t_.b[i] * force_.noise());
     const bool finite = std::all_of(acc_[i].begin(), acc_[i].end(), [](double x) { return std::isfinite(x); });
     report.status = finite && solved ? Status::converged : Status::undefined;
     return solve.add(report);

@@ -105,6 +105,8 @@ struct Simulation::Impl {
         const BoundedEnergies bounded = ledger.add(with, *integrator, state, forces, report);
         if (integrator->is_backward_euler()) judge(bounded, solved.work.value / (options.h * options.h), report);
       }
+      judge_energy(report);
+      note_lost_velocity(with, report);
       if (!is_finite(report)) {
         if (is_success(report.status)) report.status = Status::undefined;
         take_back(with, with.end_time, report);
@@ -120,6 +122,36 @@ struct Simulation::Impl {
     return report;
   }
 
+  // An explicit scheme with too long a step makes energy, more in each step, until numbers overflow. By then, and
+  // before, most of the kinetic and elastic energy comes from the scheme. In the first steps a body at rest that begins
+  // to fall has little energy, and first-order schemes make part of that.
+  void judge_energy(StepReport& report) {
+    if (integrator->is_implicit()) return;
+    constexpr double kMost = 0.9;
+    constexpr int kFirstSteps = 20;
+    made_energy -= report.numerical_loss;
+    double elastic = 0;
+    for (size_t body = 0; body < model.elasticity.size(); ++body) elastic += report.potential[body];
+    const bool has_begun = steps_taken >= kFirstSteps || elastic > E->growth_stiffness();
+    if (is_success(report.status) && has_begun && made_energy > kMost * (report.kinetic + elastic))
+      report.status = Status::unstable;
+  }
+
+  // Velocities are differences of positions, which are known to their last digit.
+  void note_lost_velocity(const StepTools& with, StepReport& report) const {
+    if (!integrator->is_implicit() || integrator->is_static() || !is_success(report.status)) return;
+    double position = 0, speed = 0, change = 0;
+    for (size_t i = 0; i < state.q.size(); ++i) {
+      position = std::max(position, std::abs(state.q[i]));
+      speed = std::max(speed, std::abs(with.start.qdot[i]));
+      change = std::max(change, std::abs(forces.acceleration.empty() ? 0 : forces.acceleration[i]) * with.h);
+    }
+    const double noise = std::numeric_limits<double>::epsilon() * position / with.h, most = std::max(speed, change);
+    if (most == 0 || noise <= kResolved * most) return;
+    report.lost_accuracy = std::max(report.lost_accuracy, std::min(1.0, noise / most));
+    report.status = Status::round_off;
+  }
+
   // A minimisation that stopped early leaves a state to go on from; a step divided for its accuracy does not.
   bool can_go_on(Status status) const {
     if (status == Status::interrupted || status == Status::undefined) return false;
@@ -132,7 +164,9 @@ struct Simulation::Impl {
   // The body stays where the step began, though time and moving targets may go on to `time`; a scheme of several steps
   // begins anew.
   void take_back(const StepTools& with, double time, StepReport& report) {
-    report.residual = report.pin_work = report.damping_loss = 0;
+    report.residual = report.residual_threshold = report.residual_round_off = 0;
+    report.worst_vertex = -1;
+    report.pin_work = report.damping_loss = 0;
     report.numerical_loss = report.residual_work = report.ledger_error = report.energy_slack = 0;
     report.energy_bound = EnergyBound::none;
     report.target_work.clear();
@@ -164,9 +198,8 @@ struct Simulation::Impl {
     report.elements = model.mesh.tet_count();
     report.objective = solved.work.value;
     report.objective_gradient = solved.work.gradient_norm;
-    report.residual_threshold = solved.threshold;
-    report.residual_round_off = solved.round_off;
     report.decrement = solved.decrement;
+    report.lost_accuracy = solved.work.lost_accuracy;
     report.initial_guess = solved.guess;
   }
 
@@ -183,7 +216,8 @@ struct Simulation::Impl {
   std::unique_ptr<IncrementalPotential> E;
   Minimizer minimizer;
   std::optional<AdaptiveStep> adaptive;
-  StepForces forces;  // of the last step
+  StepForces forces;       // of the last step
+  double made_energy = 0;  // by an explicit scheme since the start [J]
   Ledger ledger;
   int steps_taken = 0;
   MinimizeOptions minimize;   // of the step under way
@@ -292,8 +326,9 @@ StableStep Simulation::stable_step() const {
 std::string Simulation::solver_description() const { return impl_->direction->description(); }
 
 Simulation::Snapshot Simulation::snapshot() const {
-  return {impl_->state, impl_->start, impl_->steps_taken, impl_->adaptive ? double(impl_->adaptive->level()) : 0,
-          impl_->has_previous ? std::optional(impl_->previous) : std::nullopt};
+  return {impl_->state,       impl_->start,
+          impl_->steps_taken, impl_->adaptive ? double(impl_->adaptive->level()) : 0,
+          impl_->made_energy, impl_->has_previous ? std::optional(impl_->previous) : std::nullopt};
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
@@ -307,6 +342,7 @@ void Simulation::restore(const Snapshot& snapshot) {
   impl_->state = snapshot.state;
   impl_->start = snapshot.start;
   impl_->steps_taken = snapshot.steps_taken;
+  impl_->made_energy = snapshot.made_energy;
   *impl_->pins = Pins(impl_->model.pins, impl_->start.q);
   impl_->has_previous = impl_->remembers() && snapshot.previous;
   if (impl_->has_previous) impl_->previous = *snapshot.previous;

@@ -41,10 +41,12 @@ struct StepReport : Work {  // of all its solves, and of what is reported here
   InitialGuess initial_guess = InitialGuess::none;         // where that started
   int substeps = 1, rejected = 0;                          // parts it was taken in; parts tried that were too long
   double residual = 0;            // |M a + dV/dx + dD/dx| over the free vertices; of parts the largest [N]
+  // Of the part of the model that is farthest from its threshold, such as one of several bodies:
   double residual_threshold = 0;  // the residual that was asked for [N]; 0 for a scheme without a solve
   double residual_round_off = 0;  // the part of a residual that double precision cannot tell from zero [N]
   int worst_vertex = -1;          // where most of the residual is left
   double worst_residual = 0;      // its size there [N]
+  double lost_accuracy = 0;       // of weight, inertia or velocities, hidden by round-off: from 1e-3 to 1; else 0
   double decrement = 0;           // -g.d / 2 of the last iteration, of solves the largest; 0 without one [J]
   double min_det_F = 0;
 

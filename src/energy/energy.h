@@ -26,6 +26,7 @@ class Energy {
  public:
   virtual ~Energy() = default;
   virtual std::string_view name() const = 0;
+  virtual bool has_constant_gradient() const { return false; }  // the same at all x, and so free of round-off
 
   // Called before each stage of a step: moving targets follow the time, damping remembers the start.
   virtual void begin_step(const StepContext&) {}

@@ -18,6 +18,7 @@ class LinearLoad : public Energy {
   }
 
   std::string_view name() const override { return name_; }
+  bool has_constant_gradient() const override { return true; }
 
   void begin_step(const StepContext& step) override {
     if (!varying_ || step.time == time_) return;

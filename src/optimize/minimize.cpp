@@ -26,6 +26,8 @@ std::string_view to_string(Status status) {
       return "interrupted";
     case Status::undefined:
       return "undefined";
+    case Status::unstable:
+      return "unstable";
     case Status::inaccurate:
       return "inaccurate";
   }
@@ -64,7 +66,6 @@ struct Minimizer::Progress {
   const MinimizeOptions& options;
   MinimizeReport report;
   KnownValue value;
-  double gradient_scale = 0, gradient_round_off = 0;
   double slope = 0;             // g.d
   LineSearchResult step;        // the last one
   bool last_direction = false;  // the criterion holds for it
@@ -95,21 +96,20 @@ double largest_displacement(std::span<const double> d) {
 }
 
 // What a criterion that looks at the direction sees of it.
-double direction_size(const Objective& E, const MinimizeOptions& options, std::span<const double> d, double slope) {
+double direction_size(Objective& E, const MinimizeOptions& options, std::span<const double> g,
+                      std::span<const double> d) {
   switch (options.criterion) {
     case Criterion::velocity:
       return largest_displacement(d) / options.h;
     case Criterion::acceleration:
       return largest_displacement(d) / (options.h * options.h);
     default:
-      return std::sqrt(-slope / 2 / E.value_scale());
+      return E.relative_decrement(g, d);
   }
 }
 
 // A line search that fails this close to the round-off of the gradient has nothing left to find.
 constexpr double kRoundOffMargin = 100;
-// Round-off is as good as convergence only where it is small beside what the gradient is made of.
-constexpr double kResolved = 1e-3;
 
 bool is_round_off(double gradient_norm, double scale, double round_off, double margin) {
   return std::isfinite(round_off) && gradient_norm <= margin * round_off && gradient_norm <= kResolved * scale;
@@ -155,10 +155,10 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
     trials_.clear();
     if (at.slope < 0) {
       if (at.judges_direction()) {
-        report.reached = direction_size(E, options, d_, at.slope);
-        // Near a saddle a short direction does not mean that a minimum is near.
+        report.reached = direction_size(E, options, g_, d_);
+        // Near a saddle a short direction does not mean that a minimum is near, and a modified Hessian shortens it.
         const DirectionReport& made = iteration.direction;
-        const bool is_convex = !made.projected && !made.truncated;
+        const bool is_convex = !made.projected && made.projected_elements == 0 && !made.truncated;
         at.last_direction = is_convex && !made.stopped && report.reached <= options.tolerance;
       }
       Stopwatch stopwatch;
@@ -170,8 +170,8 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
       if (at.step.alpha > 0) return true;
       report.status = Status::stuck;
       if (at.last_direction) return report.status = Status::converged, false;
-      if (is_round_off(report.gradient_norm, at.gradient_scale, E.gradient_round_off(), kRoundOffMargin))
-        return report.status = Status::round_off, false;
+      for (size_t k = 0; k < parts_.size(); ++k) round_offs_[k] = E.part_round_off(static_cast<int>(k));
+      if (is_at_round_off(at, kRoundOffMargin)) return report.status = Status::round_off, false;
     }
     if (iteration.direction.stopped || line_search.deadline.has_passed()) return report.status = Status::budget, false;
     if (!direction.retreat()) return false;
@@ -182,7 +182,8 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
 void Minimizer::take_step(Progress& at, Iteration& iteration) {
   Stopwatch stopwatch;
   const double begin = at.options.deadline.now();
-  at.gradient_round_off = at.report.gradient_round_off = at.E.gradient_round_off();  // of the last Hessian
+  at.report.gradient_round_off = at.E.gradient_round_off();  // of the last Hessian
+  for (size_t k = 0; k < parts_.size(); ++k) round_offs_[k] = at.E.part_round_off(static_cast<int>(k));
   std::swap_ranges(trial_.begin(), trial_.end(), at.x.begin());
   at.value = at.step.value;
   if (!at.step.gradient_known) {
@@ -191,10 +192,46 @@ void Minimizer::take_step(Progress& at, Iteration& iteration) {
   }
   at.E.note_iterate(at.x);
   g_.swap(trial_gradient_);
-  at.gradient_scale = at.E.gradient_scale();
+  at.E.measure_parts(g_, parts_);
   iteration.alpha = at.step.alpha;
   iteration.gradient_seconds = stopwatch.lap();
   if (!at.step.gradient_known) cost_.gradient = at.options.deadline.now() - begin;
+}
+
+// Where g_ belongs to the first iterate.
+void Minimizer::begin_parts(Objective& E) {
+  const size_t count = E.part_count();
+  parts_.resize(count);
+  for (auto* v : {&first_norms_, &thresholds_, &round_offs_}) v->resize(count);
+  E.measure_parts(g_, parts_);
+  for (size_t k = 0; k < count; ++k) {
+    first_norms_[k] = parts_[k].norm;
+    round_offs_[k] = E.part_round_off(static_cast<int>(k));
+  }
+}
+
+// The report shows the part that is farthest from its threshold.
+void Minimizer::judge_parts(Progress& at) {
+  double farthest = -1;
+  for (size_t k = 0; k < parts_.size(); ++k) {
+    const double norm = parts_[k].norm;
+    thresholds_[k] = threshold(at.E, at.options, parts_[k].scale, first_norms_[k]);
+    const double ratio = norm > 0 ? norm / thresholds_[k] : 0;
+    if (ratio <= farthest) continue;
+    farthest = ratio;
+    at.report.threshold = thresholds_[k];
+    if (!at.judges_direction()) at.report.reached = norm;
+  }
+}
+
+// Whether every part has converged or is at its round-off.
+bool Minimizer::is_at_round_off(const Progress& at, double margin) const {
+  for (size_t k = 0; k < parts_.size(); ++k) {
+    const auto& [norm, scale] = parts_[k];
+    const bool has_converged = !at.judges_direction() && norm <= thresholds_[k];
+    if (!has_converged && !is_round_off(norm, scale, round_offs_[k], margin)) return false;
+  }
+  return true;
 }
 
 MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std::span<double> x,
@@ -220,22 +257,22 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
   Progress at{E, direction, x, options, {}, value};
   MinimizeReport& report = at.report;
   E.gradient(x, g_);
-  at.gradient_scale = E.gradient_scale();
-  at.gradient_round_off = E.gradient_round_off();
+  begin_parts(E);
   report.gradients = 1;
   for (int i = 0;; ++i) {
     report.iterations = i;
     report.value = at.value.E;
     report.gradient_norm = std::sqrt(E.dot(g_, g_));
     if (i == 0) report.first_gradient_norm = report.gradient_norm;
-    if (!at.judges_direction()) report.reached = report.gradient_norm;
-    report.threshold = threshold(E, options, at.gradient_scale, report.first_gradient_norm);
+    judge_parts(at);
     const auto ended = [&](Status status) { return report.status = status, report; };
     if (!std::isfinite(report.value) || !std::isfinite(report.gradient_norm)) return ended(Status::undefined);
     if (at.last_direction || report.gradient_norm == 0) return ended(Status::converged);
-    if (!at.judges_direction() && report.reached <= report.threshold) return ended(Status::converged);
-    if (is_round_off(report.gradient_norm, at.gradient_scale, at.gradient_round_off, 1))
-      return ended(Status::round_off);
+    if (!at.judges_direction() && report.reached <= report.threshold) {
+      if (options.criterion == Criterion::scale) report.lost_accuracy = E.lost_accuracy(x, parts_);
+      return ended(report.lost_accuracy > 0 ? Status::round_off : Status::converged);
+    }
+    if (is_at_round_off(at, 1)) return ended(Status::round_off);
     if (i == options.max_iterations) return ended(Status::iteration_limit);
     // The first iteration is tried even if it may not fit: without any, no force would act.
     if (options.deadline.left() <= (i > 0 ? cost_.at_least() : 0)) return ended(Status::budget);

@@ -21,16 +21,19 @@ enum class Status {
   no_descent,       // no descent direction could be computed
   interrupted,      // the observer asked to stop
   undefined,        // value or gradient is not finite at the start
-  inaccurate,       // not of a minimisation: the smallest part of an adaptive time step misses its tolerance
+  // Not of a minimization:
+  unstable,    // an explicit scheme made most of the energy that the body has
+  inaccurate,  // the smallest part of an adaptive time step misses its tolerance
 };
-inline constexpr int kStatusCount = 9;
+inline constexpr int kStatusCount = 10;
 std::string_view to_string(Status status);
 inline bool is_success(Status status) { return status == Status::converged || status == Status::round_off; }
 
 // What must be small. The last three look at the direction d, of a method for which x + d estimates the minimiser,
 // where the Hessian is positive definite; the step along it is still taken.
 enum class Criterion {
-  scale,           // |g| <= tolerance * objective.gradient_scale(): for a time step, the forces that balance
+  // Of the gradient of every part of the objective by itself, such as every body:
+  scale,           // |g| <= tolerance * GradientPart::scale: for a time step, the forces that balance
   first_gradient,  // |g| <= tolerance * |g at the first iterate|
   absolute,        // |g| <= tolerance * objective.gradient_unit(): for a time step, newtons
   decrement,       // Newton decrement: sqrt(-g.d / 2) <= tolerance * sqrt(objective.value_scale())
@@ -77,9 +80,11 @@ struct MinimizeReport : Work {
   Status status = Status::iteration_limit;
   int iterations = 0;
   double value = 0, gradient_norm = 0, first_gradient_norm = 0;
-  double reached = 0, threshold = 0;  // what the criterion looks at (|g|, or a size of d), and what was asked for
-  double gradient_round_off = 0;      // the part of |g| that is noise
-  double decrement = 0;               // -g.d / 2 of the last iteration; 0 without one
+  double reached = 0,
+         threshold = 0;           // what the criterion looks at (|g| of the worst part, or a size of d), and its bound
+  double gradient_round_off = 0;  // the part of |g| that is noise
+  double lost_accuracy = 0;       // see Objective::lost_accuracy(); the status is then round_off
+  double decrement = 0;           // -g.d / 2 of the last iteration; 0 without one
   int trials = 0, retreats = 0, projected_hessians = 0, projected_elements = 0;
 };
 
@@ -94,6 +99,9 @@ class Minimizer {  // holds the scratch vectors, so that repeated calls allocate
   MinimizeReport minimize(Objective& E, SearchDirection& direction, std::span<double> x, const KnownValue& value,
                           const MinimizeOptions& options, const IterationObserver& observe = {});
 
+  // The bound of |g| for each part in the last minimization, where the criterion judges the gradient.
+  std::span<const double> thresholds() const { return thresholds_; }
+
  private:
   struct Progress;
   // What the last iteration took, by the clock of the deadline: is there time for another one? [s]
@@ -107,7 +115,13 @@ class Minimizer {  // holds the scratch vectors, so that repeated calls allocate
   bool find_step(Progress& at, Iteration& iteration);
   void take_step(Progress& at, Iteration& iteration);
 
+  void begin_parts(Objective& E);
+  void judge_parts(Progress& at);
+  bool is_at_round_off(const Progress& at, double margin) const;
+
   std::vector<double> g_, d_, trial_, trial_gradient_;
+  std::vector<GradientPart> parts_;                            // of g_
+  std::vector<double> first_norms_, thresholds_, round_offs_;  // of each part
   std::vector<Trial> trials_;
   Cost cost_;  // from one minimisation to the next
 };

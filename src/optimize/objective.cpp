@@ -1,5 +1,7 @@
 #include "optimize/objective.h"
 
+#include <cmath>
+
 #include "base/parallel.h"
 
 namespace aspic {
@@ -10,6 +12,14 @@ double Objective::dot(std::span<const double> a, std::span<const double> b) {
     for (int i = first; i < last; ++i) sum += a[i] * b[i];
     return sum;
   });
+}
+
+void Objective::measure_parts(std::span<const double> g, std::span<GradientPart> parts) {
+  parts[0] = {std::sqrt(dot(g, g)), gradient_scale()};
+}
+
+double Objective::relative_decrement(std::span<const double> g, std::span<const double> d) {
+  return std::sqrt(-dot(g, d) / 2 / value_scale());
 }
 
 }  // namespace aspic

@@ -8,6 +8,15 @@
 
 namespace aspic {
 
+// Round-off is as good as convergence only where it is this small beside what the gradient is made of.
+inline constexpr double kResolved = 1e-3;
+
+// A part of the variables that is judged by itself, such as one of several bodies.
+struct GradientPart {
+  double norm = 0;   // |g| over the part
+  double scale = 1;  // against which that is small or large
+};
+
 class Objective {
  public:
   virtual ~Objective() = default;
@@ -50,6 +59,18 @@ class Objective {
   virtual double gradient_unit() const { return 1; }  // what a gradient of one physical unit is
   virtual double value_round_off() const { return 0; }
   virtual double gradient_round_off() const { return 0; }
+
+  // The parts that converge by themselves. By default there is one, of all variables.
+  virtual int part_count() const { return 1; }
+  // g: the gradient that was evaluated last.
+  virtual void measure_parts(std::span<const double> g, std::span<GradientPart> parts);
+  // The part of |g| over one of them that is round-off, by the last Hessian.
+  virtual double part_round_off(int /*part*/) const { return gradient_round_off(); }
+  // How much of the forces that are known exactly, such as weight, is hidden in the gradient evaluated last at x: |g|
+  // beside them where that is more than kResolved, at most 1; else 0.
+  virtual double lost_accuracy(std::span<const double> /*x*/, std::span<const GradientPart> /*parts*/) { return 0; }
+  // sqrt(-g.d / 2) against sqrt(value_scale()), of parts the largest.
+  virtual double relative_decrement(std::span<const double> g, std::span<const double> d);
 
   virtual double dot(std::span<const double> a,
                      std::span<const double> b);  // a distributed objective reduces over ranks
