@@ -24,9 +24,9 @@ struct RunTotals {
   long iterations = 0;
   long values = 0, gradients = 0, hessians = 0, factorizations = 0, products = 0, cycles = 0;
   int most_iterations = 0;
-  long substeps = 0, rejected = 0;  // of adaptive steps
-  double seconds = 0;               // in steps
-  double time = 0;                  // of the last step [s]
+  long substeps = 0, rejected = 0;                 // of adaptive steps
+  double seconds = 0;                              // in steps
+  double time = 0;                                 // of the last step [s]
   int with_inverted_tets = 0, first_inverted = 0;  // steps that end with an inverted tet, and the first of them
   double least_det_F = 1;                          // of all tets at the ends of steps
   std::vector<Resultant> reactions;                // of the last step, of each pin

@@ -41,7 +41,7 @@ struct Simulation::Impl {
     if (!integrator->is_static()) require_mass(model, *pins);
     pins->place(state.time, state.q);
     require_finite_energy(model, state.q);
-    integrator->set_pin_velocity(*pins, options.h, state);
+    if (!integrator->is_static()) integrator->set_pin_velocity(*pins, options.h, state);
     if (options.adaptive.tolerance > 0) adaptive.emplace(model, options.adaptive.tolerance, remembers());
     ledger.begin(model, state.q);
   }

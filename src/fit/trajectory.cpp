@@ -76,10 +76,15 @@ struct Trajectory::Impl {
     minimize.tolerance = o.tolerance;
     minimize.max_iterations = o.max_iterations;
     minimize.h = o.h;
-    pins.place(start.time, start.q);
+    place_pins();
     weight = acceleration_of_weight(model, start.q);
     for (auto* v : {&qbar, &vbar, &rhs, &mu, &moved, &Mmu}) v->resize(start.q.size());
     slots.resize(std::min(o.stored_states, std::max(1, o.steps)));
+  }
+
+  void place_pins() {
+    pins.place(start.time, start.q);
+    integrator->set_pin_velocity(pins, options.h, start);
   }
 
   double time_of(int number) const { return start.time + number * options.h; }
@@ -159,6 +164,7 @@ struct Trajectory::Impl {
     if (options.steps == 0) report.value += objective(0, now, qbar, vbar);
     report.ok = walk_backwards(options.steps, static_cast<int>(slots.size()), walk);
     pins.set_zero(qbar);
+    pins.set_zero(vbar);  // their velocities are those of the pins
     gradient.q.assign(qbar.begin(), qbar.end());
     gradient.qdot.assign(vbar.begin(), vbar.end());
     return report;
@@ -284,7 +290,7 @@ void Trajectory::set_start(const State& start) {
   ASPIC_CHECK(start.q.size() == impl_->start.q.size() && start.qdot.size() == start.q.size());
   impl_->start = start;
   impl_->pins = Pins(impl_->model.pins, start.q);
-  impl_->pins.place(start.time, impl_->start.q);
+  impl_->place_pins();
 }
 
 TrajectoryReport Trajectory::simulate(const TrajectoryObjective& objective) { return impl_->simulate(objective); }

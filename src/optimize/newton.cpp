@@ -103,8 +103,8 @@ bool Newton::compute(Objective& E, std::span<const double> x, std::span<const do
   return solve_on_demand({E, x, g, accuracy.value}, forcing, d, report);
 }
 
-// Modified Hessians are too stiff near a saddle: the iterates leave it at a creep. After some of them in a row a truncated
-// direction of the exact Hessian is used where it gains as much as the last step did.
+// Modified Hessians are too stiff near a saddle: the iterates leave it at a creep. After some of them in a row a
+// truncated direction of the exact Hessian is used where it gains as much as the last step did.
 bool Newton::solve_on_demand(const Place& at, double forcing, std::span<double> d, DirectionReport& report) {
   const double gained = at.value ? last_value_ - *at.value : 0;
   if (at.value) last_value_ = *at.value;

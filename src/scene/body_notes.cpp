@@ -183,8 +183,8 @@ void note_parts(const PlacedBody& body, const Model& model, std::vector<std::str
     });
     if (!is_held) loose.push_back(part.front());
   }
-  std::string note = "body '" + body.name() + "': its mesh falls into " + std::to_string(parts.size()) +
-                     " parts that share no vertex";
+  std::string note =
+      "body '" + body.name() + "': its mesh falls into " + std::to_string(parts.size()) + " parts that share no vertex";
   if (!loose.empty() && loose.size() < parts.size())
     note += "; no pin holds " + std::to_string(loose.size()) + " of them (the first holds tet " +
             std::to_string(loose.front()) + ")";

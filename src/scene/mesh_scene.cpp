@@ -15,11 +15,11 @@ namespace {
 constexpr double kSmallest = 0.3, kLargest = 3;  // [m] extents that are taken as they are
 constexpr double kStrain = 0.05;                 // rho g H / E: strain of the base of a column under its weight
 constexpr double kSag = 0.05;                    // displacement under the body's weight / largest extent
-constexpr double kStiffest = 10;                 // largest E by the sag / E by the strain: stiffer, few bodies still swing
-constexpr double kDensity = 1000;                // [kg/m^3]
+constexpr double kStiffest = 10;   // largest E by the sag / E by the strain: stiffer, few bodies still swing
+constexpr double kDensity = 1000;  // [kg/m^3]
 constexpr double kPoisson = 0.4;
-constexpr double kGravity = 9.81;                // [m/s^2]
-constexpr double kPull = 0.25;                   // sideways displacement of the top / height
+constexpr double kGravity = 9.81;  // [m/s^2]
+constexpr double kPull = 0.25;     // sideways displacement of the top / height
 
 // The number with one significant digit: a default that can be read and said.
 double one_digit(double x) {
@@ -86,21 +86,24 @@ struct Defaults {
   std::vector<Choice> choices;
 };
 
-Defaults defaults_for(const std::filesystem::path& path, TetMesh mesh, double scale, bool needs_young) {
+Defaults defaults_for(const std::filesystem::path& path, TetMesh mesh, double scale,
+                      const std::vector<std::string>& overrides) {
   const Box file_box = bounding_box(mesh.rest);
   for (Vec3d& P : mesh.rest) P = scale * P;
   const std::vector<Vec3d>& X = mesh.rest;
   const Box box = bounding_box(X);
   const double height = box.upper[1] - box.lower[1], extent = largest_extent(file_box);
   const double base = base_fraction(X, box);
+  const bool has_file = is_overridden("material.file", overrides);  // which names its model and its numbers
+  const bool needs_young = !has_file && !is_overridden("material.young", overrides);
   const auto [young, reason] = needs_young ? stiffness_for(mesh, base) : Stiffness{};
   const std::string pull =
       number_text(kPull * height) + " * ((Y - " + number_text(box.lower[1]) + ") / " + number_text(height) + ")^2";
 
   Defaults d;
   d.toml = "gravity = [0.0, -9.81, 0.0]\n[time]\nstep = 0.01\nduration = 2.0\n[[body]]\nmesh = " +
-           toml_string(path.string()) + "\nscale = " + number_text(scale) +
-           "\nmaterial = { model = \"neo_hookean_log\", young = " + number_text(young) +
+           toml_string(path.string()) + "\nscale = " + number_text(scale) + "\nmaterial = { " +
+           (has_file ? "" : "model = \"neo_hookean_log\", ") + "young = " + number_text(young) +
            ", poisson = 0.4, density = 1000.0 }\ndeform = { displacement = [" + toml_string(pull) +
            ", 0.0, 0.0] }\n[[body.pin]]\nname = \"base\"\nwhere = { lowest = " + number_text(base) + " }\n";
   const std::string size = number_text(extent);
@@ -114,10 +117,10 @@ Defaults defaults_for(const std::filesystem::path& path, TetMesh mesh, double sc
                                       "scale=0.001 is for millimetres)"});
   }
   d.choices.push_back({"gravity", "gravity = 9.81 m/s^2 along -y: up is taken as y (gravity=[0,0,-9.81] for z)"});
-  d.choices.push_back({"material.model",
-                       "material.model = neo_hookean_log: its energy is infinite where a tet is flat, so that none inverts"});
-  d.choices.push_back({"material.young", "material.young = " + number_text(young) +
-                                             " Pa: " + reason});
+  d.choices.push_back(
+      {"material.model",
+       "material.model = neo_hookean_log: its energy is infinite where a tet is flat, so that none inverts"});
+  d.choices.push_back({"material.young", "material.young = " + number_text(young) + " Pa: " + reason});
   d.choices.push_back({"material.poisson",
                        "material.poisson = 0.4: rubber or flesh as far as linear tets render it "
                        "well"});
@@ -161,7 +164,7 @@ SceneSource scene_of_mesh(const std::filesystem::path& path, const std::vector<s
 
   double scale = guessed_scale(mesh.tets.rest);
   if (is_overridden("scale", overrides) && body["scale"].is_number()) scale = body["scale"].number();
-  const Defaults defaults = defaults_for(path, mesh.tets, scale, !is_overridden("material.young", overrides));
+  const Defaults defaults = defaults_for(path, mesh.tets, scale, overrides);
   SceneSource source{read(defaults.toml), path.stem().string(), file, {}, {}};
   for (const Choice& c : defaults.choices)
     if (!is_overridden(c.key, overrides)) source.notes.push_back(c.text);

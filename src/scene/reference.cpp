@@ -94,10 +94,12 @@ const char* const kIntroduction =
     "`body.bunny.pin.0.where=\"y < 0.1\"` for one, lists by name or index from 0.\n"
     "* A run stores the resolved scene: every default filled in, with the meshes it used beside it and their hashes. "
     "Running that file again gives the same bits.\n"
-    "* Dead loads (gravity, `traction`, `force`) have the energy -f . x, with x measured from the origin of coordinates. "
+    "* Dead loads (gravity, `traction`, `force`) have the energy -f . x, with x measured from the origin of "
+    "coordinates. "
     "It is not zero at rest and changes when a body is moved; only its differences have a meaning, and forces do not "
     "depend on it.\n"
-    "* A pinned vertex moves as its pin says and has the velocity of the pin: initial velocities of a body are those of "
+    "* A pinned vertex moves as its pin says and has the velocity of the pin: initial velocities of a body are those "
+    "of "
     "its free vertices.\n"
     "* A mesh without a scene runs too, with defaults that are stated with their reasons.\n\n";
 
