@@ -167,5 +167,5 @@ int main(int argc, char** argv) {
   if (lost.empty()) return code;
   if (interrupt_signal() == SIGPIPE) return exit_signal + SIGPIPE;  // the reader has seen what it wanted
   fmt::print(stderr, "error: standard output: cannot be written: {}; free some space or choose another disk\n", lost);
-  return code == exit_done ? exit_bad_input : code;
+  return code == exit_done || code == exit_unconverged ? exit_bad_input : code;
 }

@@ -51,9 +51,10 @@ std::FILE* guarded(Stream& stream, int buffering) {
 
 // Writing to a reserved descriptor fails as writing to a closed one does.
 void reserve_closed_descriptors() {
-  for (int i = STDIN_FILENO; i <= STDERR_FILENO; ++i)
-    if (::fcntl(i, F_GETFD) < 0 && errno == EBADF) [[maybe_unused]]
-      const int lowest_free = ::open("/dev/null", O_RDONLY);
+  for (int i = STDIN_FILENO; i <= STDERR_FILENO; ++i) {
+    if (::fcntl(i, F_GETFD) >= 0 || errno != EBADF) continue;
+    [[maybe_unused]] const int lowest_free = ::open("/dev/null", O_RDONLY);
+  }
 }
 
 }  // namespace

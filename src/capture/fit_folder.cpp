@@ -79,6 +79,9 @@ FitFolder FitFolder::open(const fs::path& material, const std::string& options, 
   FitFolder folder;
   folder.path_ = fs::path(material).replace_extension(".fit");
   const fs::path& path = folder.path_;
+  std::error_code error;
+  const bool is_there = fs::is_directory(path, error);
+  if (is_there) folder.lock_ = std::make_shared<const RunLock>(path);
   const bool is_begun = fs::exists(options_file(path)), is_unfinished = !journals(path).empty();
   if (existing != ExistingFit::refuse) refuse_links(path, [](const fs::path&) { return true; });
   if (existing == ExistingFit::resume) {
@@ -98,9 +101,9 @@ FitFolder FitFolder::open(const fs::path& material, const std::string& options, 
     throw InvalidInput(path.string() + ": holds a fit that was interrupted; --resume goes on, --force begins anew");
   if (existing == ExistingFit::refuse && (is_begun || fs::exists(material)))
     throw InvalidInput((is_begun ? path : material).string() + ": exists; --force replaces it, -o writes another");
-  std::error_code error;
   fs::create_directories(path, error);
   if (error) throw InvalidInput(path.string() + ": cannot be created: " + error.message());
+  if (!is_there) folder.lock_ = std::make_shared<const RunLock>(path);
   // Until it is finished there is a journal, so that a fit that was killed at once does not pass for a complete one.
   const fs::path begun = path / "begun.journal";
   write_file(begun, "");

@@ -2,10 +2,12 @@
 // needs to go on when it is killed, and its report.
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "capture/fit_run.h"
+#include "scene/run_lock.h"
 
 namespace aspic {
 
@@ -14,7 +16,8 @@ enum class ExistingFit { refuse, overwrite, resume };
 class FitFolder {
  public:
   // Of the file that the material goes to. `options` belong to the fit: text_of(plan) and what the data are. Throws
-  // InvalidInput when something is there that may not be replaced, or that was begun with other options.
+  // InvalidInput when something is there that may not be replaced, that was begun with other options, or that another
+  // process is writing.
   static FitFolder open(const std::filesystem::path& material, const std::string& options, ExistingFit existing);
 
   const std::filesystem::path& path() const { return path_; }
@@ -31,6 +34,7 @@ class FitFolder {
 
  private:
   std::filesystem::path path_;
+  std::shared_ptr<const RunLock> lock_;
   JournalStart start_ = JournalStart::anew;
   std::string history_;
   int rows_ = 0, rows_on_disk_ = 0;

@@ -262,11 +262,15 @@ TEST_F(FitMemoryTest, SoDoesOneThatTakesOffWhatTheMeshGetsWrong) {
 TEST_F(FitMemoryTest, AFolderKnowsWhatItsFitWasBegunWith) {
   const fs::path material = path("block.vtu");
   const std::string options = text_of(completed(quick_plan(), block().experiment));
-  FitFolder begun = FitFolder::open(material, options, ExistingFit::refuse);
-  EXPECT_EQ(begun.path().filename(), "block.fit");
-  begun.add(FitStage::field, {.index = 1});
-  begun.add(FitStage::field, {.index = 2});
-  write_file(begun.path() / "fit.journal", "");
+  {
+    FitFolder begun = FitFolder::open(material, options, ExistingFit::refuse);
+    EXPECT_EQ(begun.path().filename(), "block.fit");
+    begun.add(FitStage::field, {.index = 1});
+    begun.add(FitStage::field, {.index = 2});
+    write_file(begun.path() / "fit.journal", "");
+    EXPECT_THAT(message_of([&] { FitFolder::open(material, options, ExistingFit::resume); }),
+                HasSubstr("is writing results into it"));
+  }
   const auto opened = [&](ExistingFit existing, const std::string& with) {
     return message_of([&] { FitFolder::open(material, with, existing); });
   };
@@ -275,12 +279,14 @@ TEST_F(FitMemoryTest, AFolderKnowsWhatItsFitWasBegunWith) {
   other.belief.smoothness = Smoothness::total_variation;
   EXPECT_THAT(opened(ExistingFit::resume, text_of(completed(other, block().experiment))),
               AllOf(HasSubstr("'smooth = \"h1\"'"), HasSubstr("'smooth = \"tv\"'")));
-  FitFolder again = FitFolder::open(material, options, ExistingFit::resume);
-  EXPECT_EQ(again.iterations_before(), 2);
-  const std::string before = read_file(again.path() / "history.csv");
-  for (int i = 1; i <= 3; ++i) again.add(FitStage::field, {.index = i});
-  EXPECT_TRUE(read_file(again.path() / "history.csv").starts_with(before));
-  again.finish();
+  {
+    FitFolder again = FitFolder::open(material, options, ExistingFit::resume);
+    EXPECT_EQ(again.iterations_before(), 2);
+    const std::string before = read_file(again.path() / "history.csv");
+    for (int i = 1; i <= 3; ++i) again.add(FitStage::field, {.index = i});
+    EXPECT_TRUE(read_file(again.path() / "history.csv").starts_with(before));
+    again.finish();
+  }
   EXPECT_THAT(opened(ExistingFit::resume, options), HasSubstr("this fit is complete"));
   EXPECT_THAT(opened(ExistingFit::refuse, options), HasSubstr("exists; --force replaces it"));
   EXPECT_EQ(opened(ExistingFit::overwrite, options), "");

@@ -364,7 +364,7 @@ TEST_F(RunResults, RefusesASecondProcessInTheSameFolder) {
        {message_of<InvalidInput>([&] { RunDirectory::resume(path("run"), second); }),
         message_of<InvalidInput>([&] { RunDirectory::create(path("run"), second, ExistingRun::overwrite); })}) {
     EXPECT_THAT(message, HasSubstr("process "));
-    EXPECT_THAT(message, HasSubstr("is writing a run into it"));
+    EXPECT_THAT(message, HasSubstr("is writing results into it"));
   }
   EXPECT_EQ(contents(path("run")), before);
   running.reset();
