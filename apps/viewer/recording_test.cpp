@@ -344,6 +344,8 @@ TEST_F(RunRecording, HasTheCertificateOfEveryStepAndNoneWhereTheRunHasNone) {
     EXPECT_EQ(row["energy_bound"], "holds");
     EXPECT_EQ(row["energy_slack"], report.energy_slack);
     EXPECT_EQ(row["decrement"], report.decrement);
+    ASSERT_EQ(row["reactions"].size(), 1u);
+    EXPECT_EQ(row["reactions"].begin().value()[1], report.resultants.pins[0].force[1]);
   }
   // As earlier versions wrote it: the last four columns are newer.
   std::string text = read_file(directory / "steps.csv");

@@ -8,6 +8,7 @@
 namespace aspic {
 
 // `report` of the step that ended there becomes numbers of the whole file; null for the start.
-void write_frame(const std::filesystem::path& path, const Simulation& simulation, const StepReport* report, bool double_precision = false);
+void write_frame(const std::filesystem::path& path, const Simulation& simulation, const StepReport* report,
+                 bool double_precision = false);
 
 }  // namespace aspic

@@ -18,7 +18,7 @@ struct OutputOptions {
   double every = 0;  // seconds of simulated time between frames; 0: every step
   bool vtu = true, obj = false, ply = false, pc2 = true, usd = true, report = true;
   bool double_precision = false;  // all numbers of the VTU frames; positions have it always
-  double checkpoint_every = 1;  // seconds of wall time between checkpoints; 0: with every frame
+  double checkpoint_every = 1;    // seconds of wall time between checkpoints; 0: with every frame
 };
 
 struct Skin {
