@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMostReplyBytes = size_t{40} << 20;
 constexpr double kSameTime = 1e-6;  // of a step
-const char* const kByHand = "by hand";
+const char* const kByHand = "by_hand";
 
 Value of(double number) { return {number, {}}; }
 Value of(int number) { return {static_cast<std::int64_t>(number), {}}; }
