@@ -31,7 +31,7 @@ export function openAnimation(store: Store, page: Page, video: Video): void {
     element("p", {}, "The surface at the steps that the timeline holds, from the start to now. Drags are part of it."),
     form,
     element("p", { class: "faint" }, "A GIF, or a video of any size: save the scene (Shift+T), then on a command line"),
-    element("pre", {}, "aspic run SCENE.toml -o out\naspic render out -o motion.gif   (or .mp4, .webm)"),
+    element("pre", {}, "aspic run SCENE.toml --out out\naspic render out -o motion.gif   (or .mp4, .webm)"),
   ]);
   form.addEventListener("submit", (event) => {
     event.preventDefault();
