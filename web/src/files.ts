@@ -81,7 +81,11 @@ export class Files {
 
   // Of the reader's machine: a workspace or a recording, or a scene or mesh with what belongs to it.
   private async openFiles(files: File[]): Promise<void> {
-    if (!files.some(({ name }) => isSceneOrMesh(name))) return this.open(files[0]);
+    if (!files.some(({ name }) => isSceneOrMesh(name))) {
+      if (!/\.json$/i.test(files[0].name))
+        throw new Error(`${files[0].name}: a scene (.toml, .zip), a mesh, a workspace or a recording (.json) is expected`);
+      return this.open(files[0]);
+    }
     const { scene, files: uploaded } = await prepareUpload(files);
     try {
       await this.store.source.request({ do: "load", scene, files: uploaded });

@@ -9,6 +9,7 @@ export function hasBlownUp(rows: readonly StepRow[], step: number): boolean {
   let last: StepRow | null = null;
   for (const row of rows) {
     if (row.step > step) break;
+    if (row.step === 0) continue; // the start
     last = row;
     gained += (row.residual_work ?? NaN) - (row.numerical_loss ?? NaN);
   }
