@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "energy/grab_paths.h"
 #include "energy/linear_load.h"
 #include "energy/rayleigh_damping.h"
 #include "energy/springs.h"
 #include "mesh/surface.h"
 #include "mesh/tet_shape.h"
+#include "scene/body_grabs.h"
 #include "scene/expression.h"
 #include "scene/motion.h"
 #include "scene/placement.h"
@@ -111,8 +111,8 @@ void add_point_springs(Builder& builder, const PlacedBody& body, const Value& sc
 int vertex_of(const Value& index, const PlacedBody& body) {
   const std::int64_t i = std::get<std::int64_t>(index.data);
   if (i >= body.mesh.vertex_count())
-    throw error_at(index.place, std::to_string(i) + " is beyond the last vertex of body '" + body.name() + "', " +
-                                    std::to_string(body.mesh.vertex_count() - 1));
+    throw error_at(index.place, "between: " + std::to_string(i) + " is beyond the last vertex of body '" + body.name() +
+                                    "', " + std::to_string(body.mesh.vertex_count() - 1));
   return static_cast<int>(i);
 }
 
@@ -144,38 +144,6 @@ void add_springs(Builder& builder, const PlacedBody& body) {
       builder.springs.insert(builder.springs.end(), edges.begin(), edges.end());
     }
   }
-}
-
-// The four vertices by their numbers in the mesh of the body. Throws InvalidInput unless they belong to one tet.
-Tet corners_of(const Value& point, const PlacedBody& body) {
-  Tet corners{};
-  for (int i = 0; i < 4; ++i) corners[i] = vertex_of(point.array()[i]["vertex"], body);
-  const auto sorted = [](Tet t) {
-    std::sort(t.begin(), t.end());
-    return t;
-  };
-  const Tet wanted = sorted(corners);
-  const auto is_wanted = [&](const Tet& t) { return sorted(t) == wanted; };
-  if (std::none_of(body.mesh.tets.begin(), body.mesh.tets.end(), is_wanted))
-    throw error_at(point.place, "point: no tet of body '" + body.name() + "' has the vertices " +
-                                    std::to_string(corners[0]) + ", " + std::to_string(corners[1]) + ", " +
-                                    std::to_string(corners[2]) + ", " + std::to_string(corners[3]) +
-                                    "; a spring can hold a point of one tet only");
-  return corners;
-}
-
-GrabPath grab_path(const Value& scene, const PlacedBody& body) {
-  GrabPath made;
-  const Value& point = scene["point"];
-  const Tet corners = corners_of(point, body);
-  for (int i = 0; i < 4; ++i) {
-    made.grab.vertices[i] = body.model_vertex(corners[i]);
-    made.grab.weights[i] = point.array()[i]["weight"].number();
-  }
-  made.grab.stiffness = scene["stiffness"].number();
-  for (const Value& place : scene["path"].array())
-    made.path.push_back({place["time"].number(), place["position"].vector()});
-  return made;
 }
 
 Vec3d traction_on(const Value& scene, const std::vector<Vec3d>& X, const Triangle& t) {
@@ -233,10 +201,6 @@ void add_loads(Builder& builder, const Vec3d& gravity) {
   if (!builder.point_springs.empty())
     model.loads.push_back(make_point_springs("point_springs", std::move(builder.point_springs)));
   if (!builder.springs.empty()) model.loads.push_back(make_springs("springs", std::move(builder.springs)));
-  std::vector<GrabPath> grabs;
-  for (const PlacedBody& body : builder.bodies)
-    for (const Value& scene : list_of(body, "grab")) grabs.push_back(grab_path(scene, body));
-  if (!grabs.empty()) model.loads.push_back(std::make_unique<GrabPaths>(std::move(grabs)));
 }
 
 void add_damping(PlacedBody& body, size_t index, MassKind kind, SceneFiles& files, Model& model) {
@@ -264,6 +228,7 @@ void add_actions(std::vector<PlacedBody>& bodies, const Vec3d& gravity, MassKind
   Builder builder{bodies, g > 0 ? (-1 / g) * gravity : Vec3d{{0, 1, 0}}, model, notes, {}, {}};
   for (const PlacedBody& body : bodies) add_pins(builder, body);
   add_loads(builder, gravity);
+  add_grabs(bodies, model);
   for (size_t i = 0; i < bodies.size(); ++i) add_damping(bodies[i], i, mass, files, model);
 }
 
