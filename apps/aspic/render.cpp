@@ -109,7 +109,8 @@ std::unique_ptr<Output> open_output(const RenderArguments& arguments, const view
     return std::make_unique<Video>(out, arguments.fps);
   }
   if (out.has_extension() && !fs::is_directory(out))
-    throw InvalidInput(fmt::format("{}: pictures become .png, .mp4, .webm, .gif, or a folder such as frames/", out.string()));
+    throw InvalidInput(
+        fmt::format("{}: pictures become .png, .mp4, .webm, .gif, or a folder such as frames/", out.string()));
   return std::make_unique<Folder>(out);
 }
 

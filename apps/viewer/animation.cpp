@@ -18,7 +18,7 @@
 namespace aspic::viewer {
 namespace {
 
-constexpr double kMostPerSecond = 120;   // frames
+constexpr double kMostPerSecond = 120;  // frames
 constexpr double kMostBytes = 36e6;     // of a file, estimated
 constexpr int kMostMorphTargets = 240;  // more are slow in every program that reads them
 
