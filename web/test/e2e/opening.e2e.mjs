@@ -126,7 +126,7 @@ test("a mesh dropped onto the page is simulated, saved with its mesh, and travel
   const workspace = await read(await downloaded(page, () => page.keyboard.press("Shift+S")));
   const { scene, files, ...rest } = JSON.parse(workspace);
   assert.deepEqual([scene, files.map(({ name }) => name)], ["dropped.toml", ["dropped.toml", "inputs/dropped.msh"]]);
-  assert.doesNotMatch(JSON.stringify(rest), /dropped|\/tmp\//, "no path of this machine");
+  assert.deepEqual(JSON.stringify(rest).match(/.{0,80}\/tmp\/.{0,80}/), null, "no path of this machine");
   // As on another machine, where only the files are.
   const fresh = async (what, files) => {
     const { generation } = heard.geometries.a;
