@@ -34,7 +34,7 @@ export class Files {
       this.item("Shift+R", "Save the recording of the mouse", false, () => this.try(this.saveRecording())),
       this.item("Shift+P", "Repeat the session from its start", true, () => this.try(this.replayNow())),
       this.item("Shift+M", "Save the deformed mesh", false, () => this.openMesh()),
-      this.item("Shift+E", "Export the motion (USD, glTF, PC2, video)", false, () => openAnimation(this.store, this.page, this.video)),
+      this.item("Shift+E", "Export the motion (USD, glTF, PC2, video, GIF)", false, () => openAnimation(this.store, this.page, this.video)),
       scene,
       ...pictures,
     ]);

@@ -9,7 +9,7 @@ export function placeText(state: State): string {
   const { step, time, iteration } = state.a;
   // The step under way is the next one, as the other panels and the picture count it.
   const place = iteration < 0 ? `step ${step}` : `step ${step + 1}, iteration ${iteration}`;
-  return `${place}, t = ${time.toFixed(3)} s`;
+  return `${place}, ${time.toFixed(3)} s`;
 }
 
 export function makeTimeline(store: Store, page: Page): HTMLElement {

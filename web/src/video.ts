@@ -84,6 +84,11 @@ export class Video {
     this.indicator.hidden = true;
   }
 
+  // The views as they are now, composed on the canvas.
+  picture(canvas: HTMLCanvasElement): void {
+    compose(canvas, this.draw());
+  }
+
   get isRecording(): boolean {
     return this.recorder !== null;
   }

@@ -84,6 +84,22 @@ test("the motion is exported for other programs", async () => {
   const [videoName, video] = await exported("video");
   assert.match(videoName, /^cantilever\.(mp4|webm)$/);
   assert.ok(video.length > 100);
+  for (const step of [4, 5, 6, 7, 8]) await atStep(opened, step);
+  const [gifName, gif] = await exported("gif");
+  assert.equal(gifName, "cantilever.gif");
+  if (process.env.ASPIC_PICTURES) writeFileSync(join(process.env.ASPIC_PICTURES, "exported.gif"), gif);
+  // Read by the browser.
+  const seen = await page.evaluate(async (base64) => {
+    const data = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+    const decoder = new ImageDecoder({ data, type: "image/gif" });
+    await Promise.all([decoder.tracks.ready, decoder.completed]);
+    const { frameCount } = decoder.tracks.selectedTrack;
+    const { image } = await decoder.decode({ frameIndex: frameCount - 1 });
+    const canvas = new OffscreenCanvas(image.displayWidth, image.displayHeight);
+    canvas.getContext("2d").drawImage(image, 0, 0);
+    return { frameCount, contrast: window.lookAt(canvas).contrast };
+  }, gif.toString("base64"));
+  assert.ok(seen.frameCount >= 2 && seen.contrast > 5, JSON.stringify(seen));
   await close();
 });
 
