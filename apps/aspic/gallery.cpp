@@ -54,7 +54,7 @@ std::vector<viewer::OfferedScene> scenes_below(const fs::path& folder) {
 
 fs::path shipped_scenes() {
   std::error_code error;
-  // A folder of that name which is somebody else's has no lecture.
+  // The lecture distinguishes this folder from other folders named scenes.
   const fs::path near = found_near(fs::current_path(error), "scenes/lecture");
   const fs::path lecture = near.empty() ? found_near(program_folder(), "scenes/lecture") : near;
   return lecture.parent_path();

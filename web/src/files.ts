@@ -79,7 +79,7 @@ export class Files {
     for (const note of reply.notes ?? []) this.page.notice(`Not in the file: ${note}.`);
   }
 
-  // Of the reader's machine: a workspace or a recording, or a scene or mesh with what belongs to it.
+  // Opens files of the reader's machine: a workspace, a recording, or a scene or mesh with what belongs to it.
   private async openFiles(files: File[]): Promise<void> {
     if (!files.some(({ name }) => isSceneOrMesh(name))) {
       if (!/\.json$/i.test(files[0].name))

@@ -75,7 +75,7 @@ function makeShelves({ scenes, recent }: GalleryReply, load: (scene: string) => 
   ];
 }
 
-const kTitles: Record<string, string> = { "": "Scenes", lecture: "Of the lecture", capture: "For capture and fitting" };
+const kTitles: Record<string, string> = { "": "Scenes", lecture: "Lecture", capture: "Capture and fitting" };
 
 // By folder, in the order of the program.
 export function shelvesOf(scenes: GalleryReply["scenes"]): { title: string; entries: GalleryReply["scenes"] }[] {

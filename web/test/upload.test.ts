@@ -93,5 +93,5 @@ test("scenes are offered by their folders", () => {
     { name: "bunny.toml", about: "", path: "/s/bunny.toml" },
     { name: "lecture/33_mouse.toml", about: "", path: "/s/lecture/33_mouse.toml" },
   ]);
-  assert.deepEqual(shelves.map(({ title, entries }) => [title, entries[0]!.name]), [["Scenes", "bunny"], ["Of the lecture", "33_mouse"]]);
+  assert.deepEqual(shelves.map(({ title, entries }) => [title, entries[0]!.name]), [["Scenes", "bunny"], ["Lecture", "33_mouse"]]);
 });

@@ -311,7 +311,7 @@ export class View implements Touched {
     return { at: cursor, words: valueText(interpolated(hover, triangles, values), shown.field.unit) };
   }
 
-  // Of a body that is not in the view.
+  // Describes where a body is that cannot be seen.
   private whereItIs(): string {
     const step = this.store.state?.[this.side]?.step ?? 0;
     const blewUp = hasBlownUp(this.figure.side?.steps ?? [], step);
