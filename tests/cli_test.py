@@ -631,6 +631,8 @@ class Render(CommandLine):
         self.assertNotEqual((self.folder / "last.png").read_bytes(), frames[4].read_bytes())
         self.aspic("render", "out/beam", "-o", "beam.webm", "--size", "160x120", "--every-frame", timeout=200)
         self.assertGreater((self.folder / "beam.webm").stat().st_size, 500)
+        self.aspic("render", "out/beam", "-o", "beam.gif", "--size", "160x120", "--every-frame", timeout=200)
+        self.assertEqual((self.folder / "beam.gif").read_bytes()[:6], b"GIF89a")
         self.assertEqual([f for f in self.folder.iterdir() if f.name.startswith(".aspic")], [])
 
     def test_bad_input_is_named(self):

@@ -8,7 +8,8 @@ if(TARGET aspic_viewer)
   target_include_directories(test_viewer SYSTEM PRIVATE ${BOOST_INCLUDE})
   target_compile_definitions(test_viewer PRIVATE ASPIC_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 
-  add_aspic_tests(test_lessons ${CMAKE_SOURCE_DIR}/apps/aspic/lecture/lessons_test.cpp)
+  add_aspic_tests(test_lessons ${CMAKE_SOURCE_DIR}/apps/aspic/lecture/lessons_test.cpp
+    ${CMAKE_SOURCE_DIR}/apps/aspic/gallery_test.cpp)
   target_link_libraries(test_lessons PRIVATE aspic_commands)
 
   # The page: types, unit tests, and the shortcuts in its guide.

@@ -109,7 +109,8 @@ std::unique_ptr<Output> open_output(const RenderArguments& arguments, const view
     return std::make_unique<Video>(out, arguments.fps);
   }
   if (out.has_extension() && !fs::is_directory(out))
-    throw InvalidInput(fmt::format("{}: pictures become .png, .mp4, .webm, or a folder such as frames/", out.string()));
+    throw InvalidInput(
+        fmt::format("{}: pictures become .png, .mp4, .webm, .gif, or a folder such as frames/", out.string()));
   return std::make_unique<Folder>(out);
 }
 
@@ -158,7 +159,7 @@ Examples:
 
 Chromium draws them with the page of aspic view and aspic report, on the processor where there is no graphics card.)");
   command->add_option("RUN", arguments->run, "Directory of a run")->required();
-  command->add_option("-o,--out", arguments->out, "Folder, .mp4, .webm, or with --step .png")->required();
+  command->add_option("-o,--out", arguments->out, "Folder, .mp4, .webm, .gif, or with --step .png")->required();
   command->add_option("--size", arguments->size, "Width and height in pixels, 1280x720 by default");
   command->add_option("--view", arguments->view,
                       "front, back, left, right, top, bottom, isometric, or the direction to look from: \"1,2,0.5\"");

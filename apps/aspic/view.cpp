@@ -9,6 +9,7 @@
 
 #include "aspic/browser.h"
 #include "aspic/commands.h"
+#include "aspic/gallery.h"
 #include "aspic/interrupt.h"
 #include "aspic/lecture/lessons.h"
 #include "base/error.h"
@@ -91,8 +92,16 @@ int view_scene(const ViewArguments& arguments) {
     if (!what.empty()) fmt::print("{} ...\n", what);
     std::fflush(stdout);
   };
+  const RecentScenes recent(RecentScenes::usual_file());
   Session session(arguments.input, arguments.overrides,
-                  {.lessons = lecture::lessons(fs::path("out") / "lecture" / "meshes"), .announce = announce});
+                  {.lessons = lecture::lessons(fs::path("out") / "lecture" / "meshes"),
+                   .gallery =
+                       [&] {
+                         return viewer::Gallery{scenes_below(shipped_scenes()), recent.read()};
+                       },
+                   .note_loaded = [&](const fs::path& scene) { recent.note(scene); },
+                   .announce = announce});
+  recent.note(arguments.input);
   print_scene(session);
   if (arguments.play) session.handle(R"({"do":"play"})", Role::steers);
 

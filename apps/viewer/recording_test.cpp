@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-const std::string kBeam = R"(
+const std::string kRecordedBeam = R"(
 [time]
 step = 0.01
 duration = 0.12
@@ -115,7 +115,7 @@ class RunRecording : public FolderTest {
  protected:
   // Takes the steps of a scene into a directory; the rest of the scene's text comes after the beam's.
   fs::path run(const std::string& name, const std::string& more = "", int steps = 0, bool is_traced = false) {
-    write_file(path("beam.toml"), kBeam + more);
+    write_file(path("beam.toml"), kRecordedBeam + more);
     Scene scene = load_scene(path("beam.toml"));
     RunDirectory directory = RunDirectory::create(path(name), scene, ExistingRun::overwrite);
     take_steps(scene, directory, steps > 0 ? steps : scene.steps, is_traced);
@@ -266,7 +266,7 @@ TEST_F(RunRecording, OfAFineSkinHasBothSurfaces) {
   write_file(path("skin.obj"),
              "v 0.1 0.02 0.02\nv 0.9 0.02 0.02\nv 0.5 0.18 0.02\nv 0.5 0.1 0.18\n"
              "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
-  std::string text = kBeam;
+  std::string text = kRecordedBeam;
   text.insert(text.find("material ="), "skin = \"skin.obj\"\n");
   write_file(path("beam.toml"), text);
   Scene scene = load_scene(path("beam.toml"));
@@ -298,7 +298,7 @@ TEST_F(RunRecording, WithoutFramesShowsTheSkins) {
 }
 
 TEST_F(RunRecording, ThatWasKilledIsShownUpToItsCheckpoint) {
-  write_file(path("beam.toml"), kBeam + "[output]\ncheckpoint_every = 0\n");
+  write_file(path("beam.toml"), kRecordedBeam + "[output]\ncheckpoint_every = 0\n");
   Scene scene = load_scene(path("beam.toml"));
   {
     RunDirectory directory = RunDirectory::create(path("run"), scene, ExistingRun::refuse);

@@ -33,6 +33,15 @@ std::string query(const RenderOptions& options) {
   return text;
 }
 
+// A GIF has 256 colors, the best ones for all of its pictures, and no more than 50 pictures a second.
+std::vector<std::string> coder_of(const std::string& extension) {
+  if (extension == ".gif")
+    return {"-vf", "fps=fps='min(50,source_fps)',split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=bayer"};
+  if (extension == ".webm")
+    return {"-c:v", "libvpx-vp9", "-b:v", "0", "-crf", "30", "-row-mt", "1", "-cpu-used", "4", "-pix_fmt", "yuv420p"};
+  return {"-c:v", "libx264", "-crf", "18", "-preset", "medium", "-movflags", "+faststart", "-pix_fmt", "yuv420p"};
+}
+
 }  // namespace
 
 RenderEnd render(const std::string& page, const RenderOptions& options, const Pictures& pictures,
@@ -67,13 +76,9 @@ struct VideoFile::Impl {
         "png",
         "-i",
         "-"};
-    const std::vector<std::string> coder =
-        path.extension() == ".webm"
-            ? std::vector<std::string>{"-c:v", "libvpx-vp9", "-b:v", "0",         "-crf",
-                                       "30",   "-row-mt",    "1",    "-cpu-used", "4"}
-            : std::vector<std::string>{"-c:v", "libx264", "-crf", "18", "-preset", "medium", "-movflags", "+faststart"};
+    const std::vector<std::string> coder = coder_of(path.extension().string());
     words.insert(words.end(), coder.begin(), coder.end());
-    words.insert(words.end(), {"-pix_fmt", "yuv420p", "file:" + unfinished.string()});
+    words.push_back("file:" + unfinished.string());
     return words;
   }
 
@@ -88,10 +93,12 @@ struct VideoFile::Impl {
   std::optional<ChildProcess> ffmpeg;
 };
 
-bool VideoFile::is_video(const fs::path& path) { return path.extension() == ".mp4" || path.extension() == ".webm"; }
+bool VideoFile::is_video(const fs::path& path) {
+  return path.extension() == ".mp4" || path.extension() == ".webm" || path.extension() == ".gif";
+}
 
 VideoFile::VideoFile(fs::path path, double frames_per_second) {
-  if (!is_video(path)) throw InvalidInput(path.string() + ": a video is .mp4 or .webm");
+  if (!is_video(path)) throw InvalidInput(path.string() + ": a video is .mp4, .webm or .gif");
   impl_ = std::make_unique<Impl>(std::move(path), frames_per_second);
 }
 

@@ -26,7 +26,7 @@ RenderEnd render(const std::string& page, const RenderOptions& options, const Pi
 // Makes a video of PNG pictures of the same even size; the file appears as a whole at the end.
 class VideoFile {
  public:
-  // .mp4 or .webm. Throws InvalidInput for another extension and when ffmpeg is missing.
+  // .mp4, .webm or .gif. Throws InvalidInput for another extension and when ffmpeg is missing.
   VideoFile(std::filesystem::path path, double frames_per_second);
   ~VideoFile();  // without finish(): no file
   VideoFile(const VideoFile&) = delete;

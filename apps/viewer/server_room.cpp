@@ -15,7 +15,7 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kUrgencyPeriod(50);
-constexpr size_t kLongestCommand = size_t{1} << 20;  // except a recorded session to be replayed
+constexpr size_t kLongestCommand = size_t{1} << 20;  // except a recorded session, and a scene with its files
 constexpr int kComplaints = 5;                       // in one second
 
 // Commands that do not wait for the end of a slow step.
@@ -102,7 +102,7 @@ void Room::receive(PageId id, std::string text) {
   }
   const MessageHead head = parse_head(text);
   if (!head.is_message) complain("a page sent what is no message of the viewer's protocol; it was refused");
-  if (text.size() > kLongestCommand && head.does != "replay")
+  if (text.size() > kLongestCommand && head.does != "replay" && head.does != "load")
     return send(*page, refusal_text(head.id, "this message is longer than 1 MiB"));
   if (head.does == "take") return take(*page, head.id);
   if (text.empty()) text = " ";  // refused like any other text that is no message

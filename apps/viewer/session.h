@@ -39,9 +39,22 @@ struct Lesson {
   std::function<std::string()> recording;  // JSON of a recorded session, made when it is needed; empty: none
 };
 
+// A scene that a page may offer to its reader.
+struct OfferedScene {
+  std::string name, about;  // "bunny.toml"; one sentence
+  std::filesystem::path path;
+};
+
+struct Gallery {
+  std::vector<OfferedScene> scenes;           // those that come with the program
+  std::vector<std::filesystem::path> recent;  // what was loaded before, the newest first
+};
+
 struct SessionOptions {
   std::vector<Lesson> lessons = {};
-  size_t timeline_bytes = size_t{256} << 20;                   // what rewinding may hold, per side
+  std::function<Gallery()> gallery = {};                                     // empty: nothing is offered
+  std::function<void(const std::filesystem::path& scene)> note_loaded = {};  // for Gallery::recent
+  size_t timeline_bytes = size_t{256} << 20;                                 // what rewinding may hold, per side
   double most_tets = 1e18;                                     // per side; fewer where the memory is smaller
   std::function<void(const std::string& what)> announce = {};  // before something that takes a while; "" after it
 };

@@ -166,8 +166,9 @@ struct Session::Impl {
   double speed = 1, rate = 0;
   std::string field;  // shown; empty: none
   bool wants_skin = true;
-  uint32_t generation = 0;  // of the last geometry made
-  long version = 0;         // of what is to be seen
+  uint32_t generation = 0;                    // of the last geometry made
+  long version = 0;                           // of what is to be seen
+  std::unique_ptr<TemporaryFolder> uploaded;  // the files of the latest scene that a page brought along
   std::atomic<bool> stop = false;
   Messages news;  // for all pages
   PictureEncoder encoder;

@@ -6,9 +6,11 @@
 #include "io/atomic_file.h"
 #include "io/external_program.h"
 #include "io/mesh_file.h"
+#include "viewer/animation.h"
 #include "viewer/function_query.h"
 #include "viewer/iteration_query.h"
 #include "viewer/place_query.h"
+#include "viewer/saved_scene.h"
 #include "viewer/session_impl.h"
 
 namespace aspic::viewer {
@@ -48,6 +50,14 @@ Json mesh_reply(const ShownSide& shown, const Json& format) {
       return {{"name", fmt::format("{}_{:06}.{}", shown.side.steered().scene.name, shown.side.steps_taken(), known)},
               {"text", mesh_text(shown, known)}};
   refuse("mesh.format", format, "'obj', 'ply', 'vtu', 'msh' or 'mesh' is expected");
+}
+
+Json gallery_reply(const Gallery& gallery) {
+  Json reply = {{"scenes", Json::array()}, {"recent", Json::array()}};
+  for (const OfferedScene& scene : gallery.scenes)
+    reply["scenes"].push_back({{"name", scene.name}, {"about", scene.about}, {"path", scene.path.string()}});
+  for (const fs::path& path : gallery.recent) reply["recent"].push_back(path.string());
+  return reply;
 }
 
 }  // namespace
@@ -98,9 +108,24 @@ Json Session::Impl::query(const Json& message) {
     return mesh_reply(shown, format);
   }
   if (what == "scene") {
-    const Scene& scene = side_of(arguments).side.steered().scene;
+    const ShownSide& shown = side_of(arguments);
     arguments.finish();
-    return {{"name", scene.name + ".toml"}, {"text", scene.resolved}};
+    return scene_reply(saved_scene(shown.side, SavedHand::with_drags));
+  }
+  if (what == "scene_files") {
+    const ShownSide& shown = side_of(arguments);
+    arguments.finish();
+    return scene_files_reply(saved_scene(shown.side, SavedHand::without_drags));
+  }
+  if (what == "animation") {
+    const ShownSide& shown = side_of(arguments);
+    const Json& format = arguments.value("format");
+    arguments.finish();
+    return animation_reply(shown, format);
+  }
+  if (what == "gallery") {
+    arguments.finish();
+    return gallery_reply(options.gallery ? options.gallery() : Gallery{});
   }
   if (what == "recording") {
     arguments.finish();
@@ -109,9 +134,9 @@ Json Session::Impl::query(const Json& message) {
     return to_json(
         Recording{a->side.steered().path.string(), base_overrides, comparison, log.events(), a->side.steps_taken()});
   }
-  throw InvalidInput(
-      fmt::format("unknown question '{}'{}", what,
-                  suggestion(what, {"vertex", "tet", "iteration", "worst", "function", "mesh", "scene", "recording"})));
+  throw InvalidInput(fmt::format("unknown question '{}'{}", what,
+                                 suggestion(what, {"vertex", "tet", "iteration", "worst", "function", "mesh", "scene",
+                                                   "scene_files", "animation", "gallery", "recording"})));
 }
 
 }  // namespace aspic::viewer

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "viewer/session_impl.h"
+#include "viewer/upload.h"
 
 namespace aspic::viewer {
 
@@ -46,8 +47,16 @@ void Session::Impl::load(Arguments& arguments) {
   const std::string path = arguments.text("scene");
   const std::vector<std::string> overrides =
       arguments.has("overrides") ? arguments.texts("overrides") : std::vector<std::string>{};
+  std::unique_ptr<TemporaryFolder> files;
+  if (arguments.has("files")) files = written_upload(arguments.value("files"));
   arguments.finish();
-  install(loaded("a", path, overrides), nullptr, std::nullopt);
+  const std::filesystem::path place = files ? uploaded_file(*files, path) : std::filesystem::path(path);
+  install(loaded("a", place, overrides), nullptr, std::nullopt);
+  if (files) {
+    uploaded = std::move(files);
+  } else if (options.note_loaded) {
+    options.note_loaded(place);
+  }
 }
 
 void Session::Impl::lesson(Arguments& arguments) {

@@ -13,7 +13,7 @@ Side::Side(SteeredScene steered, size_t timeline_bytes) : steered_(std::move(ste
   const Simulation::Snapshot snapshot = simulation().snapshot();
   start_ = std::make_shared<const State>(snapshot.start);
   start_time_ = snapshot.start.time;
-  pins_ = std::make_shared<const std::vector<Pin>>(model().pins);
+  scene_pins_ = pins_ = std::make_shared<const std::vector<Pin>>(model().pins);
   note_pins();
   stiffness_ = usual_stiffness(model());
   timeline_.add(moment());
@@ -116,6 +116,7 @@ Progress Side::complete(const StepReport& report) {
               .pins = pin_names(model()),
               .why = explain(simulation(), report)};
   mouse_jumps_ = tip_jumps_ = 0;
+  if (acted.stiffness > 0) pulls_.push_back({steps_taken(), acted});
   rows_.add(std::move(row));
   Moment now = moment();
   now.acted = acted;
@@ -170,6 +171,7 @@ void Side::rewind(int step) {
   const Moment moment = timeline_.nearest(step);
   timeline_.drop_after(moment.step);
   rows_.drop_after(moment.step);
+  while (!pulls_.empty() && pulls_.back().step > moment.step) pulls_.pop_back();
   if (pins_ != moment.pins) ++settings_;
   stand_at(moment);
   is_blown_up_ = false;

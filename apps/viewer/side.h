@@ -40,6 +40,16 @@ class Side {
   const State& start() const { return *start_; }
   std::vector<Field> fields() const;
   bool has_field(const std::string& name) const;
+  // What the mouse did in each of the steps taken, where it held the body.
+  struct Pull {
+    int step = 0;
+    Grab grab;  // from the start of the step to its end
+  };
+  const std::vector<Pull>& pulls() const { return pulls_; }
+  // At the start, and as the scene has them.
+  const std::vector<Pin>& start_pins() const { return *timeline_.nearest(0).pins; }
+  const std::vector<Pin>& scene_pins() const { return *scene_pins_; }
+  const std::vector<Pin>& pins() const { return *pins_; }                              // now
   void show_further(std::vector<TetField> further) { further_ = std::move(further); }  // beside those of the model
 
   // ---- steps
@@ -111,15 +121,16 @@ class Side {
   SteeredScene steered_;
   std::shared_ptr<const State> start_;  // to which pins and ledger refer
   double start_time_ = 0;               // [s] where the first step would have begun, had all had the length h
-  std::shared_ptr<const std::vector<Pin>> pins_;
+  std::shared_ptr<const std::vector<Pin>> pins_, scene_pins_;
   std::vector<char> pinned_;
   Timeline timeline_;
   StepRows rows_;
   long settings_ = 0;  // changes with every setting and pin
 
-  Grab grab_;               // as it rests
-  Vec3d wanted_{};          // where the hand is by now
-  double stiffness_ = 0;    // for the next grab [N/m]
+  Grab grab_;             // as it rests
+  Vec3d wanted_{};        // where the hand is by now
+  double stiffness_ = 0;  // for the next grab [N/m]
+  std::vector<Pull> pulls_;
   double mouse_jumps_ = 0;  // work of grabbing, letting go and stiffening since the last step [J]
 
   Poke poke_;             // as it rests

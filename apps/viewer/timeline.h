@@ -35,6 +35,7 @@ class Timeline {
   explicit Timeline(size_t most_bytes) : most_bytes_(most_bytes) {}
 
   void add(Moment moment);  // of a later step than all others; the first one always stays
+  const std::vector<Moment>& moments() const { return moments_; }  // ascending; the first one is the start
   Moment& last() { return moments_.back(); }
   const Moment& nearest(int step) const;                       // of that step, or the next earlier one that is held
   const Moment* find(int step) const;                          // null: not held

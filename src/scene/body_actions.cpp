@@ -12,6 +12,7 @@
 #include "energy/springs.h"
 #include "mesh/surface.h"
 #include "mesh/tet_shape.h"
+#include "scene/body_grabs.h"
 #include "scene/expression.h"
 #include "scene/motion.h"
 #include "scene/placement.h"
@@ -319,6 +320,7 @@ void add_actions(std::vector<PlacedBody>& bodies, const Vec3d& gravity, MassKind
   Builder builder{bodies, g > 0 ? (-1 / g) * gravity : Vec3d{{0, 1, 0}}, model, notes, {}, {}};
   for (const PlacedBody& body : bodies) add_pins(builder, body);
   add_loads(builder, gravity);
+  add_grabs(bodies, model);
   for (size_t i = 0; i < bodies.size(); ++i) add_damping(bodies[i], i, mass, files, model);
 }
 

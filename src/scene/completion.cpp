@@ -1,6 +1,7 @@
 #include "scene/completion.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "base/error.h"
@@ -12,6 +13,7 @@ namespace aspic {
 namespace {
 
 constexpr size_t kMostBodies = 10000;
+constexpr double kWeightRoundOff = 1e-9;  // of weights that sum to 1
 
 void put_first(Table& table, const std::string& key, Value value) {
   table.members.insert(table.members.begin(), Member{key, value.place, std::move(value)});
@@ -80,15 +82,19 @@ void check_axis(const Value& table, const std::string& key = "axis") {
   if (dot(a, a) == 0) throw error_at(axis->place, key + " = [0, 0, 0]; a direction is needed (try [0, 0, 1])");
 }
 
-void check_keyframes(const Value& keyframes) {
+void check_times(const Array& places) {
   double last = -1;
-  for (const Value& k : keyframes.array()) {
-    const Value& time = k["time"];
+  for (const Value& place : places) {
+    const Value& time = place["time"];
     if (time.number() <= last)
       throw error_at(time.place, "time = " + number_text(time.number()) + "; must be later than the one before, " +
                                      number_text(last));
     last = time.number();
   }
+}
+
+void check_keyframes(const Value& keyframes) {
+  check_times(keyframes.array());
   if (keyframes.array().empty()) throw error_at(keyframes.place, "keyframes = []; at least one is needed");
 }
 
@@ -110,6 +116,24 @@ void check_springs(const Value& springs, const Array& bodies) {
     if (other && std::find(names.begin(), names.end(), other->text()) == names.end())
       throw error_at(other->place, "to_body = " + toml_string(other->text()) + "; there is no such body" +
                                        suggestion(other->text(), names));
+  }
+}
+
+void check_grabs(const Value& grabs) {
+  for (const Value& grab : grabs.array()) {
+    const Array &path = grab["path"].array(), &point = grab["point"].array();
+    check_times(path);
+    if (path.size() < 2)
+      throw error_at(grab["path"].place, "path: " + std::to_string(path.size()) +
+                                             " places; at least two are needed, the start and the end");
+    if (point.size() != 4)
+      throw error_at(grab["point"].place, "point: " + std::to_string(point.size()) +
+                                              " vertices; the four of one tet are needed (weight = 0 for one that does "
+                                              "not count)");
+    double sum = 0;
+    for (const Value& share : point) sum += share["weight"].number();
+    if (!(std::abs(sum - 1) <= kWeightRoundOff))
+      throw error_at(grab["point"].place, "point: the weights sum to " + number_text(sum) + "; they must sum to 1");
   }
 }
 
@@ -146,6 +170,7 @@ void complete_scene(Table& document) {
       }
     }
     if (const Value* springs = body.find("spring")) check_springs(*springs, bodies);
+    if (const Value* grabs = body.find("grab")) check_grabs(*grabs);
     if (const Value* rotate = body.find("rotate")) check_axis(*rotate);
     if (const Value* shape = body.find("shape")) check_box(*shape);
     const Value* deform = body.find("deform");

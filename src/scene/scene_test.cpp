@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "base/error.h"
 #include "io/folder_test.h"
 #include "scene/scene_cases_test.h"
@@ -236,6 +238,44 @@ TEST(Scene, SpringsJoinBodies) {
   EXPECT_THAT(refusal(kCube + "[[body.spring]]\nbetween = [[1, 1]]\nstiffness = 1\n"), HasSubstr("to itself"));
   EXPECT_THAT(refusal(kCube + "[[body.spring]]\nbetween = [[0, 1]]\nto_body = \"cub\"\nstiffness = 1\n"),
               HasSubstr("did you mean 'cube'?"));
+}
+
+const std::string kGrabbed =
+    "[[body.grab]]\nstiffness = 10\npoint = [{ vertex = 13, weight = 0.0 }, { vertex = 14, "
+    "weight = 0.0 }, { vertex = 17, weight = 0.25 }, { vertex = 26, weight = 0.75 }]\n";
+
+TEST(Scene, AGrabPullsBetweenItsFirstTimeAndItsLast) {
+  Scene scene = load("gravity = [0, 0, 0]\n" + kCube + kGrabbed +
+                     "path = [{ time = 0.02, position = [1, 1, 1] }, { time = 0.04, position = [3, 1, 1] }]\n" +
+                     "[[body.pin]]\nwhere = \"x < 0.1\"\n");
+  const auto grabbed = [&] { return scene.simulation.potential_energies().back(); };
+  ASSERT_EQ(scene.simulation.potential_names().back(), "grab");
+  while (scene.simulation.state().time < 0.0199) scene.simulation.step();
+  EXPECT_EQ(grabbed(), 0);
+  EXPECT_EQ(velocities(scene)[3 * 26], 0);
+  while (scene.simulation.state().time < 0.0399) scene.simulation.step();
+  EXPECT_NEAR(grabbed(), 0.5 * 10 * 2.125 * 2.125, 0.05) << "the stiff cube has hardly followed the hand";
+  EXPECT_GT(velocities(scene)[3 * 26], 0);
+  const StepReport report = scene.simulation.step();
+  EXPECT_EQ(grabbed(), 0);
+  EXPECT_LT(std::abs(report.ledger_error), 1e-9) << "letting go is work of the hand";
+}
+
+TEST(Scene, AGrabNeedsATetWeightsAndAPath) {
+  const std::string path = "path = [{ time = 0, position = [1, 1, 1] }, { time = 1, position = [3, 1, 1] }]\n";
+  EXPECT_THAT(refusal(kCube + kGrabbed + "path = [{ time = 0, position = [1, 1, 1] }]\n"), HasSubstr("at least two"));
+  EXPECT_THAT(
+      refusal(kCube + kGrabbed + "path = [{ time = 1, position = [1, 1, 1] }, { time = 1, position = [1, 1, 1] }]\n"),
+      HasSubstr("later than the one before"));
+  const auto with_point = [&](const std::string& point) {
+    return refusal(kCube + "[[body.grab]]\nstiffness = 10\npoint = [" + point + "]\n" + path);
+  };
+  const std::string three =
+      "{ vertex = 13, weight = 0.5 }, { vertex = 14, weight = 0.0 }, { vertex = 17, weight = 0.0 }";
+  EXPECT_THAT(with_point(three), HasSubstr("the four of one tet"));
+  EXPECT_THAT(with_point(three + ", { vertex = 26, weight = 0.6 }"), HasSubstr("must sum to 1"));
+  EXPECT_THAT(with_point(three + ", { vertex = 0, weight = 0.5 }"), HasSubstr("no tet of body 'cube'"));
+  EXPECT_THAT(with_point(three + ", { vertex = 99, weight = 0.5 }"), HasSubstr("99 is beyond the last vertex"));
 }
 
 TEST(Scene, SpringsToPointsPullTowardsTheirTarget) {

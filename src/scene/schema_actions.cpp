@@ -198,6 +198,46 @@ void add_pin_and_spring(Schema& s) {
       {"spring", {{"where", "target", "motion"}, {"between", "to_body", "rest_length"}, {"edges"}}, true});
 }
 
+void add_grab(Schema& s) {
+  s.sections.push_back({"grab", "[[body.grab]]",
+                        "A spring between a point of a tet and a hand that moves along a path. It acts from the first "
+                        "time of the path to the last one. The viewer saves what its mouse did in this form."});
+  add_keys(s, "grab",
+           {{.name = "stiffness",
+             .accepts = kNumber,
+             .unit = "N/m",
+             .required = true,
+             .range = kPositive,
+             .meaning = "k of V = k/2 |p - hand|^2"},
+            {.name = "point",
+             .accepts = kTables,
+             .required = true,
+             .table = "grab_vertex",
+             .meaning = "p: the weighted sum of the four vertices of one tet"},
+            {.name = "path",
+             .accepts = kTables,
+             .required = true,
+             .table = "grab_place",
+             .meaning = "where the hand is, linear in between; at least two places"}});
+  s.sections.push_back({"grab_vertex", "point = [{ ... }, ...] in a grab", "A vertex and its share of the point."});
+  add_keys(s, "grab_vertex",
+           {{.name = "vertex",
+             .accepts = kInteger,
+             .required = true,
+             .range = kNotNegative,
+             .meaning = "index in the body, from 0"},
+            {.name = "weight", .accepts = kNumber, .required = true, .meaning = "the four weights sum to 1"}});
+  s.sections.push_back({"grab_place", "path = [{ ... }, ...] in a grab", "A place of the hand at a time."});
+  add_keys(s, "grab_place",
+           {{.name = "time",
+             .accepts = kNumber,
+             .unit = "s",
+             .required = true,
+             .range = kNotNegative,
+             .meaning = "later than the one before"},
+            {.name = "position", .accepts = kNumbers, .unit = "m", .required = true, .meaning = "of the hand"}});
+}
+
 void add_loads(Schema& s) {
   s.sections.push_back({"traction", "[[body.traction]]",
                         "A force per area of the rest shape; it keeps its direction when the body turns."});
@@ -235,6 +275,7 @@ void add_action_sections(Schema& s) {
   add_where(s);
   add_motion(s);
   add_pin_and_spring(s);
+  add_grab(s);
   add_loads(s);
 }
 

@@ -1,11 +1,14 @@
 // The menu of files: scenes, workspaces, the recorded mouse, deformed meshes.
+import { openAnimation } from "./animation";
 import { chooseFile, element, labelled, messageOf, openDialog, saveFile } from "./dom";
+import { openGallery } from "./gallery";
 import { makeMenu } from "./menu";
 import type { Page } from "./page";
-import type { Query, Recording, TextReply } from "./protocol";
+import type { Query, Recording, SceneReply, TextReply } from "./protocol";
 import { shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
-import { fileName } from "./video";
+import { bytesOf, isSceneOrMesh, prepareUpload } from "./upload";
+import { fileName, type Video } from "./video";
 import { isWorkspace, openWorkspace, parseRecording, parseWorkspace, saveWorkspace } from "./workspace";
 
 const kLargestFile = 50e6; // [bytes] of a workspace or recording
@@ -15,21 +18,23 @@ export class Files {
   constructor(
     private readonly store: Store,
     private readonly page: Page,
+    private readonly video: Video,
   ) {}
 
   // With the commands that make pictures. A recorded run has fewer of its own.
   makeMenu(pictures: HTMLButtonElement[]): HTMLElement {
-    const saveScene = (): void => this.try(this.saveText({ ask: "scene", side: "a" }));
+    const saveScene = (): void => this.try(this.saveScene());
     const scene = this.item("Shift+T", "Save the scene with all its values (TOML)", false, saveScene);
     if (!this.store.source.live) return makeMenu("File", "Save", [scene, ...pictures]);
     this.acceptDrops();
     return makeMenu("File", "Load and save", [
-      this.item("Shift+O", "Load a scene or a mesh", true, () => this.openScene()),
+      this.item("Shift+O", "Load a scene or a mesh", true, () => openGallery(this.store, (files) => this.openFiles(files))),
       this.item("Shift+S", "Save the workspace", false, () => this.try(saveWorkspace(this.store, this.page))),
       this.item("Shift+L", "Load a workspace or a recording", true, () => this.try(this.choose())),
       this.item("Shift+R", "Save the recording of the mouse", false, () => this.try(this.saveRecording())),
       this.item("Shift+P", "Repeat the session from its start", true, () => this.try(this.replayNow())),
       this.item("Shift+M", "Save the deformed mesh", false, () => this.openMesh()),
+      this.item("Shift+E", "Export the motion (USD, glTF, PC2, video, GIF)", false, () => openAnimation(this.store, this.page, this.video)),
       scene,
       ...pictures,
     ]);
@@ -41,32 +46,6 @@ export class Files {
 
   private try(work: Promise<unknown>): void {
     work.catch((reason: unknown) => this.page.notice(messageOf(reason), "error"));
-  }
-
-  private openScene(): void {
-    const path = element("input", { type: "text", required: true, spellcheck: "false", size: "50" });
-    path.value = this.store.side("a")?.scene.path ?? "";
-    const problem = element("p", { class: "problem", role: "alert" });
-    const submit = element("button", { type: "submit", class: "primary" }, "Load");
-    const form = element(
-      "form",
-      {},
-      labelled("Scene, mesh or run, a path on the machine of the program", path),
-      problem,
-      element("div", { class: "actions" }, submit),
-    );
-    const dialog = openDialog("Load a scene or a mesh", [form]);
-    path.select();
-    form.addEventListener("submit", (event) => {
-      event.preventDefault();
-      submit.disabled = true;
-      problem.textContent = "";
-      this.store.source
-        .request({ do: "load", scene: path.value.trim() })
-        .then(() => dialog.close())
-        .catch((reason: unknown) => (problem.textContent = messageOf(reason)))
-        .finally(() => (submit.disabled = false));
-    });
   }
 
   private openMesh(): void {
@@ -87,6 +66,33 @@ export class Files {
       const chosen = format.value as (typeof kFormats)[number];
       this.try(this.saveText({ ask: "mesh", side: side.value === "b" ? "b" : "a", format: chosen }));
     });
+  }
+
+  private async saveScene(): Promise<void> {
+    const reply = await this.store.source.ask<SceneReply>({ ask: "scene", side: "a" });
+    if ("text" in reply) saveFile(reply.name, new Blob([reply.text], { type: "text/plain" }));
+    else {
+      saveFile(reply.name, new Blob([bytesOf(reply.base64)], { type: "application/zip" }));
+      const folder = reply.name.replace(/\.zip$/, "");
+      this.page.notice(`The archive holds the scene with its meshes. Unpack it, then: aspic run ${folder}/${folder}.toml`);
+    }
+    for (const note of reply.notes ?? []) this.page.notice(`Not in the file: ${note}.`);
+  }
+
+  // Opens files of the reader's machine: a workspace, a recording, or a scene or mesh with what belongs to it.
+  private async openFiles(files: File[]): Promise<void> {
+    if (!files.some(({ name }) => isSceneOrMesh(name))) {
+      if (!/\.json$/i.test(files[0].name))
+        throw new Error(`${files[0].name}: a scene (.toml, .zip), a mesh, a workspace or a recording (.json) is expected`);
+      return this.open(files[0]);
+    }
+    const { scene, files: uploaded } = await prepareUpload(files);
+    try {
+      await this.store.source.request({ do: "load", scene, files: uploaded });
+    } catch (reason) {
+      const alone = files.length === 1 && /does not exist/.test(messageOf(reason));
+      throw new Error(messageOf(reason) + (alone ? ". Hand the scene over together with the files that it names." : ""));
+    }
   }
 
   private async saveText(query: Query): Promise<void> {
@@ -122,14 +128,19 @@ export class Files {
   }
 
   private acceptDrops(): void {
+    const showDrop = (over: boolean): void => void document.body.classList.toggle("dropping", over);
     addEventListener("dragover", (event) => {
-      if (event.dataTransfer?.types.includes("Files")) event.preventDefault();
-    });
-    addEventListener("drop", (event) => {
-      const file = event.dataTransfer?.files[0];
-      if (!file) return;
+      if (!event.dataTransfer?.types.includes("Files")) return;
       event.preventDefault();
-      if (this.store.steers) this.try(this.open(file));
+      showDrop(true);
+    });
+    addEventListener("dragleave", (event) => event.relatedTarget === null && showDrop(false));
+    addEventListener("drop", (event) => {
+      showDrop(false);
+      const files = [...(event.dataTransfer?.files ?? [])];
+      if (files.length === 0) return;
+      event.preventDefault();
+      if (this.store.steers) this.try(this.openFiles(files));
       else this.page.notice("This page watches; take the steering to load files.", "error");
     });
   }

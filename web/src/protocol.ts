@@ -19,7 +19,8 @@ export type Command = { id?: number } & (
   | { do: "rewind"; step: number } // to the end of a step that `timeline` still holds; 0 is the start
   | { do: "speed"; value: number } // simulated seconds per second of wall time that play aims at
   | { do: "set"; key: string; value: SettingValue; side?: SideName } // both sides without `side`
-  | { do: "load"; scene: string; overrides?: string[] } // a scene or a mesh, a path on the program's machine
+  // A scene or a mesh: a path on the program's machine, or the name of one of the files that come with the command.
+  | { do: "load"; scene: string; overrides?: string[]; files?: UploadedFile[] }
   | { do: "lesson"; lesson: string }
   | { do: "grab"; side: SideName; triangle: number; weights: Vec3; target: Vec3 } // weights of the triangle's corners
   | { do: "move"; target: Vec3 }
@@ -46,6 +47,11 @@ export type Command = { id?: number } & (
   | { do: "take" } // this page wants to steer; any page may send it
 );
 
+export interface UploadedFile {
+  name: string; // relative, with "/" between folders
+  gzip: string; // in base64
+}
+
 export interface TipChoice {
   shape: "sphere" | "disc";
   contact: "bonded" | "sliding";
@@ -60,7 +66,10 @@ export type Query =
   | { ask: "worst"; side: SideName }
   | ({ ask: "function" } & FunctionQuestion)
   | { ask: "mesh"; side: SideName; format: "obj" | "ply" | "vtu" | "msh" | "mesh" } // as deformed now
-  | { ask: "scene"; side: SideName } // its complete TOML
+  | { ask: "scene"; side: SideName } // what `aspic run` runs: complete, with the drags so far
+  | { ask: "scene_files"; side: SideName } // the same without drags, for the command "load"
+  | { ask: "animation"; side: SideName; format: "usd" | "pc2" | "glb" } // of the steps that the timeline holds
+  | { ask: "gallery" } // scenes to choose from
   | { ask: "recording" };
 
 export interface FunctionQuestion {
@@ -359,6 +368,26 @@ export interface FunctionReply {
 export interface TextReply {
   name: string; // a file name
   text: string;
+}
+
+export interface FileReply {
+  name: string;
+  base64: string;
+  note?: string;
+}
+
+// A scene that needs other files is a ZIP archive.
+export type SceneReply = (TextReply | FileReply) & { notes?: string[] };
+
+export interface SceneFilesReply {
+  scene: string;
+  files: UploadedFile[];
+  notes: string[];
+}
+
+export interface GalleryReply {
+  scenes: { name: string; about: string; path: string }[];
+  recent: string[]; // paths
 }
 
 // ---------------------------------------------------------------- binary

@@ -7,8 +7,9 @@ import type { Store } from "./store";
 
 export function placeText(state: State): string {
   const { step, time, iteration } = state.a;
-  const within = iteration < 0 ? "" : `, iteration ${iteration}`;
-  return `step ${step}${within}, ${time.toFixed(3)} s`;
+  // The step under way is the next one, as the other panels and the picture count it.
+  const place = iteration < 0 ? `step ${step}` : `step ${step + 1}, iteration ${iteration}`;
+  return `${place}, ${time.toFixed(3)} s`;
 }
 
 export function makeTimeline(store: Store, page: Page): HTMLElement {
@@ -33,7 +34,7 @@ export function makeTimeline(store: Store, page: Page): HTMLElement {
   store.on("state", (state) => {
     const { first, last } = state.a.timeline;
     place.textContent = placeText(state);
-    ends.textContent = `${first} to ${last}`;
+    ends.textContent = `steps ${first} to ${last}`;
     slider.min = String(first);
     slider.max = String(last);
     if (!held && !rewind.busy) slider.value = String(state.a.step);

@@ -12,7 +12,7 @@ export type DrawViews = () => Layers[];
 
 const kFramesPerSecond = 30;
 const kBitsPerSecond = 8_000_000;
-const kTypes = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
+const kTypes = ["video/mp4;codecs=avc1", "video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
 
 export function fileName(name: string, extension: string): string {
   const plain = name.replace(/[^\w.-]+/g, "_").replace(/^[_.]+|_+$/g, "");
@@ -84,7 +84,16 @@ export class Video {
     this.indicator.hidden = true;
   }
 
-  private start(): void {
+  // The views as they are now, composed on the canvas.
+  picture(canvas: HTMLCanvasElement): void {
+    compose(canvas, this.draw());
+  }
+
+  get isRecording(): boolean {
+    return this.recorder !== null;
+  }
+
+  start(): void {
     const type = typeof MediaRecorder === "undefined" ? undefined : kTypes.find((t) => MediaRecorder.isTypeSupported(t));
     if (!type) return this.page.notice("This browser cannot record videos; aspic render can.", "error");
     try {
@@ -131,7 +140,7 @@ export class Video {
     requestAnimationFrame(() => this.follow(canvas));
   }
 
-  private stop(): void {
+  stop(): void {
     if (this.recorder?.state === "recording") this.recorder.stop();
     this.recorder = null;
     this.indicator.hidden = true;

@@ -1,13 +1,15 @@
 // A workspace file: the scene with its settings, the comparison, and what the reader chose in the page.
 import { saveFile } from "./dom";
 import type { Page } from "./page";
-import type { Recording, SettingValue } from "./protocol";
+import type { Recording, SceneFilesReply, SettingValue, UploadedFile } from "./protocol";
 import type { Store } from "./store";
+import { isTooLarge } from "./upload";
 import { fileName } from "./video";
 
 export interface Workspace {
   aspic_workspace: 1;
-  scene: string;
+  scene: string; // the name of one of the files; without files a path on the program's machine
+  files?: UploadedFile[]; // the scene with all its values, and its meshes: so it is opened on any machine
   overrides: string[];
   settings: Record<string, SettingValue>; // of side a
   compare: Recording["compare"];
@@ -40,6 +42,13 @@ function parseCompare(value: unknown): Recording["compare"] {
   return { overrides: value.overrides, label: typeof value.label === "string" ? value.label : "B" };
 }
 
+function parseFiles(value: unknown): UploadedFile[] | null {
+  const isFile = (file: unknown): file is UploadedFile =>
+    isTable(file) && typeof file.name === "string" && typeof file.gzip === "string";
+  if (!Array.isArray(value) || !value.every(isFile)) return null;
+  return value.map(({ name, gzip }) => ({ name, gzip }));
+}
+
 // What a file says, or an error in words. What is unknown in it is left out.
 export function parseWorkspace(text: string): Workspace {
   const read = parseJson(text, "workspace");
@@ -49,9 +58,11 @@ export function parseWorkspace(text: string): Workspace {
   }
   if (typeof read.scene !== "string") throw new Error("The workspace names no scene.");
   const settings = isTable(read.settings) ? read.settings : {};
+  const files = parseFiles(read.files);
   return {
     aspic_workspace: 1,
     scene: read.scene,
+    ...(files ? { files } : {}),
     overrides: isStrings(read.overrides) ? read.overrides : [],
     settings: Object.fromEntries(Object.entries(settings).filter(([, value]) => isSetting(value))) as Workspace["settings"],
     compare: parseCompare(read.compare),
@@ -75,10 +86,11 @@ export function isWorkspace(text: string): boolean {
 export async function saveWorkspace(store: Store, page: Page): Promise<void> {
   const { scene, overrides, compare } = await store.source.ask<Recording>({ ask: "recording" });
   const shown = store.side("a")?.scene;
+  const whole = await wholeScene(store);
+  if (!whole) page.notice(`The meshes are too large for a workspace, so it opens only where ${scene} exists.`);
   const workspace: Workspace = {
     aspic_workspace: 1,
-    scene,
-    overrides,
+    ...(whole ?? { scene, overrides }),
     settings: Object.fromEntries((shown?.settings ?? []).map((setting) => [setting.key, setting.value])),
     compare,
     page: Object.fromEntries([...page.keepers].map(([name, keeper]) => [name, keeper.save()])),
@@ -87,9 +99,15 @@ export async function saveWorkspace(store: Store, page: Page): Promise<void> {
   saveFile(fileName(`${shown?.name ?? ""}.aspic`, "json"), new Blob([text], { type: "application/json" }));
 }
 
+async function wholeScene(store: Store): Promise<Pick<Workspace, "scene" | "files" | "overrides"> | null> {
+  const reply = await store.source.ask<SceneFilesReply>({ ask: "scene_files", side: "a" }).catch(() => null);
+  return reply && !isTooLarge(reply.files) ? { scene: reply.scene, files: reply.files, overrides: [] } : null;
+}
+
 export async function openWorkspace(workspace: Workspace, store: Store, page: Page): Promise<void> {
   const { source } = store;
-  await source.request({ do: "load", scene: workspace.scene, overrides: workspace.overrides });
+  const { scene, files, overrides } = workspace;
+  await source.request({ do: "load", scene, overrides, ...(files ? { files } : {}) });
   const refused: string[] = [];
   for (const { key, value } of store.side("a")?.scene.settings ?? []) {
     const kept = workspace.settings[key];

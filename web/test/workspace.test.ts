@@ -17,6 +17,13 @@ test("a workspace reads back what was saved", () => {
   assert.deepEqual(parseWorkspace(text), saved);
 });
 
+test("a workspace keeps the files of its scene", () => {
+  const files = [{ name: "bunny.toml", gzip: "H4sI" }];
+  const read = (more: unknown) => parseWorkspace(JSON.stringify({ aspic_workspace: 1, scene: "bunny.toml", files: more }));
+  assert.deepEqual(read(files).files, files);
+  assert.equal(read([{ name: 3 }]).files, undefined);
+});
+
 test("what a workspace has wrong or too much is left out", () => {
   const read = parseWorkspace(
     '{"aspic_workspace": 1, "scene": "x.toml", "overrides": [1], "settings": {"a": null, "b": {"c": 1}, "d": 2}, ' +

@@ -88,7 +88,7 @@ class LandscapePanel implements Panel {
     const row = this.chosen.row();
     const count = row?.iterations.length ?? 0;
     this.where.textContent =
-      count > 0 ? `step ${step}, iteration ${iteration} of ${count}` : step > 0 ? `step ${step}` : "no step yet";
+      count > 0 ? `step ${step}, iteration ${iteration} of 0 to ${count - 1}` : step > 0 ? `step ${step}` : "no step yet";
     if (count === 0) {
       const implicit = this.store.side(side)?.scene.implicit ?? true;
       return this.settle(

@@ -28,7 +28,7 @@ export class Figure {
   takeScene(): boolean {
     const scene = this.side?.scene;
     if (!scene) return false;
-    this.display.cameras[this.name].show(scene.path, scene.lower, scene.upper, scene.up);
+    this.display.cameras[this.name].show(scene.name, scene.lower, scene.upper, scene.up);
     const isOld = this.body !== null && this.body.geometry.generation !== scene.generation;
     if (isOld) this.drop();
     return this.takeGeometry() || isOld;

@@ -12,13 +12,13 @@ import { kGroundRadius, makeGroundMaterial } from "./shading";
 import { TipBody } from "./tipBody";
 
 const kFarthest = 1e4; // of a body that bursts, else depths lose their digits
-const kBlownUp = 30; // radii of the scene, and heights of the view
+const kFar = 30; // radii of the scene, and heights of the view
 const kGap = 0.12; // between the box and the ground below it
 
 export class Stage {
   readonly renderer: THREE.WebGLRenderer; // the constructor throws when there is no WebGL
   gridStep = 0; // [m]
-  isBlownUp = false; // the body, so far that it is not drawn
+  isFar = false; // the body, so far that it is not drawn
   hasLeft = false; // the middle of a body that is not larger than the view
   radius = 1; // of the scene's box [m]
   readonly extras = new THREE.Group(); // what stands beside the body [m]
@@ -184,8 +184,8 @@ export class Stage {
     const lift = (lens.extent > 0 ? lens.extent / this.radius : lens.slope) / (lens.height / 2);
     // Each triangle would fill the view: nothing to be seen in it, and minutes for a renderer without a GPU.
     const height = lens.extent > 0 ? lens.extent : lens.slope * length(minus(this.centre, lens.eye));
-    this.isBlownUp = this.reach() > kBlownUp && this.reach() * this.radius > kBlownUp * height;
-    body.root.visible = !this.isBlownUp;
+    this.isFar = this.reach() > kFar && this.reach() * this.radius > kFar * height;
+    body.root.visible = !this.isFar;
     this.hasLeft = body.box !== null && this.reach() * this.radius < 2 * half && !isInside(lens, middle);
     body.adapt(body.edge * pixels, this.renderer.getPixelRatio(), lift, pinColour);
   }

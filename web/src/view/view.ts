@@ -1,6 +1,7 @@
 // One side in 3-D: draws its newest picture, and only when something has changed.
 import "./view.css";
 import type { Highlight, Page } from "../page";
+import { hasBlownUp } from "../plots/gain";
 import type { SideName } from "../protocol";
 import type { Store } from "../store";
 import type { CameraRig } from "./cameras";
@@ -300,12 +301,21 @@ export class View implements Touched {
 
   // The value under the cursor, while it reads.
   private tip(): Marks["tip"] {
-    const lost = this.stage?.isBlownUp ? "The body has blown up, far out of the view." : "The body has left the view.";
-    if (this.stage?.isBlownUp || this.stage?.hasLeft) return { at: [0, this.size()[1] / 2], words: `${lost} Press 0 to see it.` };
+    if (this.stage?.isFar || this.stage?.hasLeft) return { at: [0, this.size()[1] / 2], words: this.whereItIs() };
     const { hover, cursor } = this.touch;
+    if (cursor && this.touch.target && this.store.state && !this.store.state.playing)
+      return { at: cursor, words: "Paused: press Space to play" };
     const [shown, values] = [this.figure.coloured(), this.figure.side?.picture?.values];
     const triangles = this.figure.body?.geometry.triangles;
     if (!hover || !cursor || !shown || !values || !triangles || this.display.settings.tool !== "read") return null;
     return { at: cursor, words: valueText(interpolated(hover, triangles, values), shown.field.unit) };
+  }
+
+  // Describes where a body is that cannot be seen.
+  private whereItIs(): string {
+    const step = this.store.state?.[this.side]?.step ?? 0;
+    const blewUp = hasBlownUp(this.figure.side?.steps ?? [], step);
+    const what = blewUp ? "The motion has blown up: it has gained energy" : "The body has left the view";
+    return `${what}. Press 0 to see it.`;
   }
 }

@@ -45,9 +45,13 @@ export async function until(what, condition, told = () => "") {
   }
 }
 
+let stateFolder = "";
+const stateHome = () => (stateFolder ||= temporaryFolder());
+
 // `aspic view`, with its address and what it said.
 export async function startProgram(scene, more = []) {
-  const child = spawn(aspic, ["view", resolve(root, scene), "--no-browser", ...more]);
+  const env = { ...process.env, XDG_STATE_HOME: stateHome() }; // not the list of what this user opened
+  const child = spawn(aspic, ["view", resolve(root, scene), "--no-browser", ...more], { env });
   const program = { child, address: "", said: "", complained: "", ended: null };
   child.stdout.on("data", (chunk) => (program.said += chunk));
   child.stderr.on("data", (chunk) => (program.complained += chunk));

@@ -1,0 +1,133 @@
+#include "io/gltf.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "base/check.h"
+#include "io/number_text.h"
+
+namespace aspic {
+namespace {
+
+enum ComponentType { kUnsignedInt = 5125, kFloat = 5126 };
+enum ChunkType : uint32_t { kJson = 0x4e4f534a, kBinary = 0x004e4942 };
+
+void append_word(std::string& bytes, uint32_t word) {
+  for (int i = 0; i < 4; ++i) bytes += static_cast<char>(word >> (8 * i) & 0xff);
+}
+
+// Names are shown to people: what JSON could not hold is left out.
+std::string json_text(const std::string& name) {
+  std::string text = "\"";
+  for (const char c : name)
+    if (c != '"' && c != '\\' && static_cast<unsigned char>(c) >= ' ' && static_cast<unsigned char>(c) < 0x80)
+      text += c;
+  return text + "\"";
+}
+
+// The binary chunk, and the accessors that say what is where.
+class Arrays {
+ public:
+  // Returns the number of the accessor.
+  int add(const std::vector<float>& numbers, int components) {
+    std::string range;
+    for (const bool is_max : {false, true}) {
+      range += is_max ? ",\"max\":[" : ",\"min\":[";
+      for (int c = 0; c < components; ++c) {
+        float limit = numbers.empty() ? 0 : numbers[c];
+        for (size_t i = c; i < numbers.size(); i += components)
+          limit = is_max ? std::max(limit, numbers[i]) : std::min(limit, numbers[i]);
+        if (c > 0) range += ',';
+        append_number(range, limit);
+      }
+      range += ']';
+    }
+    return add(numbers.data(), numbers.size(), components, kFloat, range);
+  }
+  int add(const std::vector<uint32_t>& indices) { return add(indices.data(), indices.size(), 1, kUnsignedInt, ""); }
+
+  std::string json() const {
+    return "\"accessors\":[" + accessors_ + "],\"bufferViews\":[" + views_ +
+           "],\"buffers\":[{\"byteLength\":" + std::to_string(bytes_.size()) + "}]";
+  }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  int add(const void* data, size_t count, int components, ComponentType type, const std::string& range) {
+    const size_t size = 4 * count;
+    const std::string comma = count_ == 0 ? "" : ",";
+    views_ += comma + "{\"buffer\":0,\"byteOffset\":" + std::to_string(bytes_.size()) +
+              ",\"byteLength\":" + std::to_string(size) + "}";
+    accessors_ += comma + "{\"bufferView\":" + std::to_string(count_) + ",\"componentType\":" + std::to_string(type) +
+                  ",\"count\":" + std::to_string(count / components) + ",\"type\":\"" +
+                  (components == 3 ? "VEC3" : "SCALAR") + "\"" + range + "}";
+    bytes_.append(static_cast<const char*>(data), size);
+    return count_++;
+  }
+
+  std::string accessors_, views_, bytes_;
+  int count_ = 0;
+};
+
+std::vector<uint32_t> corners(std::span<const Triangle> triangles) {
+  std::vector<uint32_t> indices;
+  for (const Triangle& t : triangles) indices.insert(indices.end(), t.begin(), t.end());
+  return indices;
+}
+
+std::vector<float> difference(const std::vector<float>& a, const std::vector<float>& b) {
+  std::vector<float> d(a.size());
+  for (size_t i = 0; i < a.size(); ++i) d[i] = a[i] - b[i];
+  return d;
+}
+
+// Frame k is the first one plus target k - 1, so at its time that weight is 1 and all others are 0.
+std::vector<float> weights_of(size_t frames) {
+  std::vector<float> weights(frames * (frames - 1), 0.0F);
+  for (size_t k = 1; k < frames; ++k) weights[k * (frames - 1) + k - 1] = 1;
+  return weights;
+}
+
+void append_chunk(std::string& file, ChunkType type, std::string bytes, char filler) {
+  bytes.resize((bytes.size() + 3) / 4 * 4, filler);
+  append_word(file, static_cast<uint32_t>(bytes.size()));
+  append_word(file, type);
+  file += bytes;
+}
+
+}  // namespace
+
+std::string glb(const GltfMesh& mesh) {
+  ASPIC_CHECK(!mesh.frames.empty() && mesh.frames.size() == mesh.times.size());
+  Arrays arrays;
+  const auto number = [](int accessor) { return std::to_string(accessor); };
+  const std::string position = number(arrays.add(mesh.frames[0], 3)),
+                    indices = number(arrays.add(corners(mesh.triangles)));
+  std::string targets, animations;
+  for (size_t k = 1; k < mesh.frames.size(); ++k)
+    targets += std::string(k > 1 ? "," : "") +
+               "{\"POSITION\":" + number(arrays.add(difference(mesh.frames[k], mesh.frames[0]), 3)) + "}";
+  if (mesh.frames.size() > 1) {
+    targets = ",\"targets\":[" + targets + "]";
+    const std::string times = number(arrays.add(std::vector<float>(mesh.times.begin(), mesh.times.end()), 1));
+    const std::string weights = number(arrays.add(weights_of(mesh.frames.size()), 1));
+    animations =
+        ",\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"weights\"}}],"
+        "\"samplers\":[{\"input\":" +
+        times + ",\"output\":" + weights + ",\"interpolation\":\"LINEAR\"}]}]";
+  }
+  const std::string name = json_text(mesh.name);
+  const std::string json =
+      R"({"asset":{"version":"2.0","generator":"Aspic"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"name":)" +
+      name + "}],\"meshes\":[{\"name\":" + name + ",\"primitives\":[{\"attributes\":{\"POSITION\":" + position +
+      "},\"indices\":" + indices + targets + "}]}]" + animations + "," + arrays.json() + "}";
+  std::string chunks;
+  append_chunk(chunks, kJson, json, ' ');
+  append_chunk(chunks, kBinary, arrays.bytes(), '\0');
+  std::string file = "glTF";
+  append_word(file, 2);
+  append_word(file, static_cast<uint32_t>(12 + chunks.size()));
+  return file + chunks;
+}
+
+}  // namespace aspic

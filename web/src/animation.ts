@@ -1,0 +1,111 @@
+// Hands the motion so far to other programs, as a file.
+import { element, labelled, messageOf, openDialog, saveFile } from "./dom";
+import { Gif } from "./gif";
+import type { Page } from "./page";
+import type { FileReply, Query, Recording, SideName } from "./protocol";
+import type { Store } from "./store";
+import { bytesOf } from "./upload";
+import { fileName, type Video } from "./video";
+
+type Format = Extract<Query, { ask: "animation" }>["format"];
+const kFormats: Record<Format | "video" | "gif", string> = {
+  usd: "USD (.usda): Blender, Houdini, Maya, Omniverse",
+  glb: "glTF (.glb): Blender, browsers, game engines",
+  pc2: "OBJ and PC2, in a ZIP archive: point caches",
+  video: "Video of the view (.mp4 or .webm), while the session repeats itself",
+  gif: "GIF of the view, while the session repeats itself",
+};
+
+export function openAnimation(store: Store, page: Page, video: Video): void {
+  const format = element("select", {}, ...Object.entries(kFormats).map(([value, text]) => element("option", { value }, text)));
+  const side = element("select", {}, element("option", { value: "a" }, "A"), element("option", { value: "b" }, "B"));
+  const submit = element("button", { type: "submit", class: "primary" }, "Export");
+  const problem = element("p", { class: "problem", role: "alert" });
+  const form = element(
+    "form",
+    {},
+    labelled("Format", format),
+    store.side("b") ? labelled("Side", side) : null,
+    problem,
+    element("div", { class: "actions" }, submit),
+  );
+  const dialog = openDialog("Export the motion", [
+    element("p", {}, "The surface at the steps that the timeline holds, from the start to now. Drags are part of it."),
+    form,
+    element("p", { class: "faint" }, "Videos and GIFs of any size: save the scene (Shift+T), then on a command line"),
+    element("pre", {}, "aspic run SCENE.toml --out out\naspic render out -o motion.gif   (or .mp4, .webm)"),
+  ]);
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    submit.disabled = true;
+    problem.textContent = "";
+    const made =
+      format.value === "video"
+        ? videoOfSession(store, video)
+        : format.value === "gif"
+          ? gifOfSession(store, page, video)
+          : saveAnimation(store, page, side.value as SideName, format.value as Format);
+    made
+      .then(() => dialog.close())
+      .catch((reason: unknown) => (problem.textContent = messageOf(reason)))
+      .finally(() => (submit.disabled = false));
+  });
+}
+
+async function saveAnimation(store: Store, page: Page, side: SideName, format: Format): Promise<void> {
+  const reply = await store.source.ask<FileReply>({ ask: "animation", side, format });
+  saveFile(reply.name, new Blob([bytesOf(reply.base64)]));
+  page.notice(`${reply.name}: ${reply.note ?? ""}`);
+}
+
+// The program repeats what was done; the promise is fulfilled when that begins.
+async function repeatSession(store: Store, atEnd: () => void): Promise<void> {
+  if (!store.steers) throw new Error("This page watches; take the steering to repeat the session.");
+  const recording = await store.source.ask<Recording>({ ask: "recording" });
+  if (recording.steps === 0) throw new Error("nothing has moved yet; play first, then export");
+  await store.source.request({ do: "replay", recording });
+  let began = store.state?.replaying ?? false;
+  const stop = store.on("state", ({ replaying, a }) => {
+    began ||= replaying;
+    if (replaying || !(began || a.step >= recording.steps)) return;
+    stop();
+    requestAnimationFrame(() => requestAnimationFrame(atEnd));
+  });
+}
+
+async function videoOfSession(store: Store, video: Video): Promise<void> {
+  await repeatSession(store, () => video.isRecording && video.stop());
+  if (!video.isRecording) video.start();
+}
+
+const kGifWidth = 640; // at most [px]
+const kGifEvery = 0.04; // of simulated time [s]
+const kMostGifFrames = 400;
+
+async function gifOfSession(store: Store, page: Page, video: Video): Promise<void> {
+  const [whole, small] = [element("canvas"), element("canvas")];
+  video.picture(whole);
+  const scale = Math.min(1, kGifWidth / whole.width);
+  [small.width, small.height] = [Math.floor(whole.width * scale), Math.floor(whole.height * scale)];
+  const gif = new Gif(small.width, small.height);
+  const context = small.getContext("2d", { willReadFrequently: true })!;
+  let [frames, shown] = [0, -Infinity];
+  const take = (time: number): void => {
+    if (time - shown < kGifEvery * 0.999 || frames >= kMostGifFrames) return;
+    video.picture(whole);
+    context.drawImage(whole, 0, 0, small.width, small.height);
+    gif.add(context.getImageData(0, 0, small.width, small.height).data, 100 * kGifEvery);
+    [frames, shown] = [frames + 1, time];
+  };
+  const stop = store.on("picture", (side) => side === "a" && take(store.side("a")?.picture?.time ?? 0));
+  const end = (): void => {
+    stop();
+    take(Infinity);
+    saveFile(fileName(store.side("a")?.scene.name ?? "", "gif"), gif.blob());
+    page.notice(`${frames} pictures${frames === kMostGifFrames ? ", as many as a GIF gets here; aspic render makes longer ones" : ""}`);
+  };
+  await repeatSession(store, end).catch((reason: unknown) => {
+    stop();
+    throw reason;
+  });
+}

@@ -1,0 +1,91 @@
+// The dialog that opens another scene: those that come with the program, those opened before, files of the reader's
+// machine, and a path on the program's machine.
+import "./gallery.css";
+import { button, element, labelled, messageOf, openDialog } from "./dom";
+import type { GalleryReply } from "./protocol";
+import type { Store } from "./store";
+
+export type OpenFiles = (files: File[]) => Promise<void>;
+
+export function openGallery(store: Store, openFiles: OpenFiles): void {
+  const problem = element("p", { class: "problem", role: "alert" });
+  const shelves = element("div", { class: "shelves" }, element("p", { class: "faint" }, "Looking for scenes ..."));
+  const work = async (load: () => Promise<unknown>): Promise<void> => {
+    problem.textContent = "";
+    dialog.inert = true;
+    try {
+      await load();
+      dialog.close();
+    } catch (reason) {
+      problem.textContent = messageOf(reason);
+    } finally {
+      dialog.inert = false;
+    }
+  };
+  const load = (scene: string): Promise<void> => work(() => store.source.request({ do: "load", scene }));
+  const dialog = openDialog(
+    "Load a scene or a mesh",
+    [makePathForm(store, load), problem, makeFileChooser((files) => work(() => openFiles(files))), shelves],
+    "gallery",
+  );
+  void store.source
+    .ask<GalleryReply>({ ask: "gallery" })
+    .then((reply) => shelves.replaceChildren(...makeShelves(reply, load)))
+    .catch((reason: unknown) => shelves.replaceChildren(element("p", { class: "problem" }, messageOf(reason))));
+}
+
+function makePathForm(store: Store, load: (scene: string) => Promise<void>): HTMLFormElement {
+  const path = element("input", { type: "text", required: true, spellcheck: "false", size: "50" });
+  path.value = store.side("a")?.scene.path ?? "";
+  const submit = element("button", { type: "submit", class: "primary" }, "Load");
+  const form = element("form", {}, labelled("Scene, mesh or run, a path on the machine of the program", path), submit);
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    void load(path.value.trim());
+  });
+  requestAnimationFrame(() => path.select());
+  return form;
+}
+
+// The browser's own dialog, for several files: a scene and its meshes.
+function makeFileChooser(open: (files: File[]) => Promise<void>): HTMLElement {
+  const input = element("input", { type: "file", multiple: true, hidden: true, "aria-label": "Files of this computer" });
+  input.addEventListener("change", () => {
+    const files = [...(input.files ?? [])];
+    input.value = "";
+    if (files.length > 0) void open(files);
+  });
+  const choose = button({ text: "Files of this computer ..." }, () => input.click());
+  const words = "or drop them onto the page: a mesh, a scene with its meshes, or a saved ZIP archive";
+  return element("p", {}, choose, input, ` ${words}`);
+}
+
+function makeShelves({ scenes, recent }: GalleryReply, load: (scene: string) => Promise<void>): HTMLElement[] {
+  const entry = (title: string, about: string, path: string): HTMLElement => {
+    const made = element("button", { type: "button", class: "scene", title: path }, element("b", {}, title));
+    if (about) made.append(element("span", { class: "faint" }, about));
+    made.addEventListener("click", () => void load(path));
+    return made;
+  };
+  const shelf = (title: string, entries: HTMLElement[]): HTMLElement[] =>
+    entries.length === 0 ? [] : [element("section", {}, element("h3", {}, title), ...entries)];
+  return [
+    ...shelf("Opened before", recent.map((path) => entry(path.slice(path.lastIndexOf("/") + 1), path, path))),
+    ...shelvesOf(scenes).flatMap(({ title, entries }) => shelf(title, entries.map(({ name, about, path }) => entry(name, about, path)))),
+  ];
+}
+
+const kTitles: Record<string, string> = { "": "Scenes", lecture: "Lecture", capture: "Capture and fitting" };
+
+// By folder, in the order of the program.
+export function shelvesOf(scenes: GalleryReply["scenes"]): { title: string; entries: GalleryReply["scenes"] }[] {
+  const folders = new Map<string, GalleryReply["scenes"]>();
+  for (const scene of scenes) {
+    const end = scene.name.lastIndexOf("/");
+    const folder = end < 0 ? "" : scene.name.slice(0, end);
+    const entries = folders.get(folder) ?? [];
+    entries.push({ ...scene, name: scene.name.slice(end + 1).replace(/\.toml$/, "") });
+    folders.set(folder, entries);
+  }
+  return [...folders].map(([folder, entries]) => ({ title: kTitles[folder] ?? folder, entries }));
+}

@@ -1,0 +1,97 @@
+// Files of the reader's machine, made ready for the command "load": a scene with its meshes, or a mesh alone.
+import type { UploadedFile } from "./protocol";
+import { unzip } from "./unzip";
+
+const kMostBytes = 200e6; // of all files
+const kMostPacked = 15e6; // characters of a message that the program takes
+const kMeshes = ["msh", "vtu", "mesh", "ele", "node", "obj", "ply", "stl", "off"];
+
+export interface NamedBytes {
+  name: string;
+  bytes: Uint8Array<ArrayBuffer>;
+}
+
+export interface Upload {
+  scene: string; // the name of one of the files
+  files: UploadedFile[];
+}
+
+const baseName = (path: string): string => path.slice(path.lastIndexOf("/") + 1);
+const extensionOf = (name: string): string => (/\.([^./]+)$/.exec(name)?.[1] ?? "").toLowerCase();
+
+export function isSceneOrMesh(name: string): boolean {
+  return ["toml", "zip", ...kMeshes].includes(extensionOf(name));
+}
+
+// The scene among them, the one in the fewest folders; else a mesh. Null: neither.
+export function mainFile(names: readonly string[]): string | null {
+  const depth = (name: string): number => name.split("/").length;
+  const scenes = names.filter((name) => extensionOf(name) === "toml");
+  const meshes = names.filter((name) => kMeshes.includes(extensionOf(name)));
+  return [...(scenes.length > 0 ? scenes : meshes)].sort((x, y) => depth(x) - depth(y))[0] ?? null;
+}
+
+// A browser hands over files without their folders. Those that a scene names go where it looks for them, which may be
+// the folder above its own.
+export function placed(files: readonly NamedBytes[], scene: string): NamedBytes[] {
+  const main = files.find(({ name }) => name === scene);
+  if (!main || extensionOf(scene) !== "toml" || scene.includes("/")) return [...files];
+  const text = new TextDecoder().decode(main.bytes);
+  const named = [...text.matchAll(/["']([^"'\n]+)["']/g)].map((match) => match[1]!);
+  return files.map((file) => {
+    if (file === main) return { ...file, name: `scene/${scene}` };
+    const wanted = named.find((path) => baseName(path) === baseName(file.name)) ?? file.name;
+    const parts = ["scene"];
+    for (const part of wanted.split("/")) {
+      if (part === "..") parts.pop();
+      else if (part !== "" && part !== ".") parts.push(part);
+    }
+    return { ...file, name: parts.join("/") };
+  });
+}
+
+export async function prepareUpload(files: readonly File[]): Promise<Upload> {
+  const total = files.reduce((sum, file) => sum + file.size, 0);
+  if (total > kMostBytes) throw tooLarge(total);
+  const read: NamedBytes[] = [];
+  for (const file of files) {
+    const bytes = await file.arrayBuffer();
+    if (extensionOf(file.name) === "zip") read.push(...(await unzip(bytes, kMostBytes)));
+    else read.push({ name: file.name, bytes: new Uint8Array(bytes) });
+  }
+  const main = mainFile(read.map(({ name }) => name));
+  if (!main) throw new Error(`${files.map((file) => file.name).join(", ")}: holds no scene (.toml) and no mesh (.${kMeshes.join(", .")})`);
+  const ready = placed(read, main);
+  const scene = ready[read.findIndex(({ name }) => name === main)]!.name;
+  const packed = await Promise.all(ready.map(async ({ name, bytes }) => ({ name, gzip: await gzipBase64(bytes) })));
+  if (packedSize(packed) > kMostPacked) throw tooLarge(total);
+  return { scene, files: packed };
+}
+
+export function packedSize(files: readonly UploadedFile[]): number {
+  return files.reduce((sum, { gzip }) => sum + gzip.length, 0);
+}
+export const isTooLarge = (files: readonly UploadedFile[]): boolean => packedSize(files) > kMostPacked;
+
+function tooLarge(bytes: number): Error {
+  const size = `${Math.round(bytes / 1e6)} MB`;
+  return new Error(`${size} are too much to be handed over by the page; load it by its path on the machine of the program`);
+}
+
+async function gzipBase64(bytes: Uint8Array<ArrayBuffer>): Promise<string> {
+  const stream = new Blob([bytes]).stream().pipeThrough(new CompressionStream("gzip"));
+  return base64Of(new Uint8Array(await new Response(stream).arrayBuffer()));
+}
+
+const kPortion = 0x6000; // a multiple of 3, and few enough arguments for a call
+
+function base64Of(bytes: Uint8Array): string {
+  let text = "";
+  for (let at = 0; at < bytes.length; at += kPortion)
+    text += btoa(String.fromCharCode(...bytes.subarray(at, at + kPortion)));
+  return text;
+}
+
+export function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
+  return Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+}
