@@ -22,7 +22,7 @@ const std::vector<Row>& rows() {
   static const std::vector<Row> list = {
       {"material.model", "Material model", "Material"},
       {"material.young", "Young's modulus E", "Material", 1e3, 1e9, true},
-      {"material.poisson", "Poisson's ratio ν", "Material", 0, 0.49},
+      {"material.poisson", "Poisson's ratio ν", "Material", 0, 0.49},
       {"material.density", "Density", "Material", 10, 1e4, true},
       {"damping.mass", "Mass damping", "Material", 0, 10},
       {"damping.stiffness", "Stiffness damping", "Material", 0, 0.1},

@@ -79,8 +79,8 @@ const std::vector<Staging>& stagings() {
       {.demonstration = "03_tissue",
        .part = "",
        .look = "The colors show Young's modulus: stiff skin over soft fat over muscle. Play: the indenter sinks in, and "
-               "its work in the plot grows faster than the square of its depth because the tissue stiffens. Color by "
-               "von Mises stress to see where it is loaded.",
+               "the energy V in the plot grows faster than the square of its depth because the tissue stiffens. Color "
+               "by von Mises stress to see where it is loaded.",
        .panel = "energy",
        .scene = "03_tissue",
        .field = "young",
