@@ -222,8 +222,11 @@ export function addRow(gui: GUI, setting: Setting, changed: (value: SettingValue
       return dress(new VectorRow(gui, name, model));
     case "text":
       return dress(new TextRow(gui, name, model));
-    case "choice":
-      return new PlainRow(dress(gui.add(model, "value", named(setting))), model);
+    case "choice": {
+      const controller = dress(gui.add(model, "value", named(setting)));
+      controller.$select.querySelectorAll("option").forEach((option, i) => (option.value = setting.choices[i]));
+      return new PlainRow(controller, model);
+    }
     case "switch":
       return new PlainRow(dress(gui.add(model, "value")), model);
   }
