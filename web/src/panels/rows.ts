@@ -224,7 +224,7 @@ export function addRow(gui: GUI, setting: Setting, changed: (value: SettingValue
       return dress(new TextRow(gui, name, model));
     case "choice": {
       const controller = dress(gui.add(model, "value", named(setting)));
-      controller.$select.querySelectorAll("option").forEach((option, i) => (option.value = setting.choices[i]));
+      controller.domElement.querySelectorAll("option").forEach((option, i) => (option.value = setting.choices[i]));
       return new PlainRow(controller, model);
     }
     case "switch":

@@ -14,7 +14,7 @@ export interface LedgerColumn {
 }
 
 // No two curves of a legend have the same color.
-const kTermColours: Colour[] = ["series6", "series4", "series5", "series8", "series9", "series12", "series13", "series14"];
+const kTermColours: Colour[] = ["series6", "series4", "series5", "series12", "series13", "series14", "series11"];
 
 export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
   const line = (
@@ -46,9 +46,9 @@ export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
     ...terms,
     line("potential_total", "V", "potential energy, the sum of its terms", "series1", 2),
     line("total", "T + V", "kinetic plus potential energy", "text", 2.5),
-    line("mouse_work", "work of the mouse", "by the mouse's spring, summed over the steps", "series11", 1.5, true),
+    line("mouse_work", "work of the mouse", "by the mouse's spring, summed over the steps", "series8", 1.5, true),
     line("probe_work", "work of the probe", "by the tip that is pressed in, summed over the steps", "series10", 1.5, true),
-    line("pin_work", "work of pins", "by moving pins and targets, summed over the steps", "series3", 1.5, true),
+    line("pin_work", "work of pins", "by moving pins and targets, summed over the steps", "series9", 1.5, true),
     line("damping_loss", "damping loss", "dissipated by damping, summed over the steps", "series7", 1.5, true),
     line("numerical_loss", "numerical loss", "dissipated by the integrator, summed over the steps", "bad", 1.5, true),
     line("balance", "balance", "T + V − works + losses: flat where every step was solved accurately", "good", 2.5),

@@ -163,6 +163,12 @@ function wrapped(ink: Ink, words: string, width: number): string[] {
   return lines;
 }
 
+// Text in lines that end left of the right edge.
+export function paragraph(ink: Ink, lens: Lens, words: string, x: number, y: number): void {
+  const lines = wrapped(ink, words, Math.max(8 * ink.em, lens.width - x - ink.em));
+  lines.forEach((line, i) => text(ink, line, x, y + 1.25 * i * ink.em));
+}
+
 // The colours of a field with ticks, in a strip right of the view: nothing of the body is behind it.
 export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange, map: MapName): void {
   const { em } = ink;

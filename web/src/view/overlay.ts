@@ -81,7 +81,7 @@ export class Overlay {
     if (what.spring) marks.spring(ink, lens, what.spring.point, what.spring.target, what.spring.force);
     if (what.brush) marks.ring(ink, what.brush.at, what.brush.radius, what.brush.words);
     if (what.bar) marks.colourBar(ink, lens, what.bar.field, what.bar.range, what.bar.map);
-    if (what.tip) marks.text(ink, what.tip.words, what.tip.at[0] + style.em, what.tip.at[1] - style.em);
+    if (what.tip) marks.paragraph(ink, lens, what.tip.words, what.tip.at[0] + style.em, what.tip.at[1] - style.em);
   }
 
   // Both canvases in one, of the same size.
