@@ -64,8 +64,8 @@ TEST(Settings, TakeEffectAndKeepTheState) {
 TEST(Settings, NullDropsTheOverrideAndKeepsTheState) {
   Page page;
   page.steps(3);
-  for (const Json& change : {Json{{"key", "material.young"}, {"value", 1e7}},
-                             Json{{"key", "solver.tolerance"}, {"value", 1e-9}}}) {
+  for (const Json& change :
+       {Json{{"key", "material.young"}, {"value", 1e7}}, Json{{"key", "solver.tolerance"}, {"value", 1e-9}}}) {
     const Json before = setting(page, change["key"]);
     page.send({{"do", "set"}, {"key", change["key"]}, {"value", change["value"]}});
     const Picture picture = page.picture();

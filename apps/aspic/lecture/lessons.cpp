@@ -71,24 +71,27 @@ const std::vector<Staging>& stagings() {
   static const std::vector<Staging> list = {
       {.demonstration = "02_fine_mesh",
        .part = "",
-       .look = "The thin wires are the edges of tets at the surface: come closer to see them. So that it moves while you "
-               "watch, this mesh has fewer tets than the slide's; aspic lecture 2 simulates more than 100 000. Press S: "
-               "the column \"took\" shows the wall time of each step.",
+       .look =
+           "The thin wires are the edges of tets at the surface: come closer to see them. So that it moves while you "
+           "watch, this mesh has fewer tets than the slide's; aspic lecture 2 simulates more than 100 000. Press S: "
+           "the column \"took\" shows the wall time of each step.",
        .panel = "microscope",
        .scene = "02_fine_mesh"},
       {.demonstration = "03_tissue",
        .part = "",
-       .look = "The colors show Young's modulus: stiff skin over soft fat over muscle. Play: the indenter sinks in, and "
-               "the energy V in the plot grows faster than the square of its depth because the tissue stiffens. Color "
-               "by von Mises stress to see where it is loaded.",
+       .look =
+           "The colors show Young's modulus: stiff skin over soft fat over muscle. Play: the indenter sinks in, and "
+           "the energy V in the plot grows faster than the square of its depth because the tissue stiffens. Color "
+           "by von Mises stress to see where it is loaded.",
        .panel = "energy",
        .scene = "03_tissue",
        .field = "young",
        .shape = Shape::of_the_scene},
       {.demonstration = "05-09_equation_of_motion",
        .part = "",
-       .look = "Play: while V falls T rises, and back again, as M q'' = -dV/dq trades one for the other. Shift and click "
-               "on a vertex to read where its three entries stand in q.",
+       .look =
+           "Play: while V falls T rises, and back again, as M q'' = -dV/dq trades one for the other. Shift and click "
+           "on a vertex to read where its three entries stand in q.",
        .panel = "energy",
        .scene = "05_swing"},
       {.demonstration = "08-10_springs_beside_elements",
@@ -209,7 +212,8 @@ const std::vector<Staging>& stagings() {
       {.demonstration = "53+62_pure_newton",
        .part = "",
        .look =
-           "Take one step (S): left Newton's method with a line search, right without. Left E falls in every iteration. "
+           "Take one step (S): left Newton's method with a line search, right without. Left E falls in every "
+           "iteration. "
            "Choose B above the table: right E jumps far up in the first iteration, the iterates end outside the range "
            "of numbers, and the body stays squashed because its step has no result.",
        .panel = "microscope",
@@ -225,7 +229,8 @@ const std::vector<Staging>& stagings() {
       {.demonstration = "60-61_backtracking",
        .part = "",
        .look = "Take one step and choose an iteration with several trials: those above the line are rejected, alpha "
-               "shrinks by p until one lies below. Change \u03b1_max, c and p in the settings, Line search, and step again.",
+               "shrinks by p until one lies below. Change \u03b1_max, c and p in the settings, Line search, and step "
+               "again.",
        .panel = "microscope",
        .scene = "53_hard_step"},
   };
