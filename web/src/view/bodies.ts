@@ -4,13 +4,18 @@ import type { Geometry } from "../protocol";
 // After the reader's own color for the first one; told apart with any kind of color vision, and not that of the inside.
 const kFurther = ["#56a35a", "#c9699f", "#d8c23f", "#7a68c4", "#3fb0b5", "#b5543f", "#8a929e"];
 
+export function bodyOfTet(tet: number, bodyTets: readonly number[]): number {
+  let body = bodyTets.length - 1;
+  while (body > 0 && tet < bodyTets[body]) --body;
+  return Math.max(0, body);
+}
+
 // The number of the body of each vertex. Surfaces of bodies share no vertex; tets of bodies are consecutive.
 export function bodiesOf(geometry: Pick<Geometry, "rest" | "triangles" | "tet">, bodyTets: readonly number[]): Float32Array {
   const bodies = new Float32Array(geometry.rest.length / 3);
   geometry.tet.forEach((tet, t) => {
-    let body = bodyTets.length - 1;
-    while (body > 0 && tet < bodyTets[body]) --body;
-    for (let c = 0; c < 3; ++c) bodies[geometry.triangles[3 * t + c]] = Math.max(0, body);
+    const body = bodyOfTet(tet, bodyTets);
+    for (let c = 0; c < 3; ++c) bodies[geometry.triangles[3 * t + c]] = body;
   });
   return bodies;
 }
