@@ -41,11 +41,13 @@ Json scene_messages(const RecordedScene& recorded) {
                   {"label", ""},
                   {"path", ""},
                   {"overrides", Json::array()},
+                  {"loaded_overrides", Json::array()},
                   {"notes", Json::array()},
                   {"has_skin", has_fine_skin(scene)},
                   {"vertices", model.mesh.vertex_count()},
                   {"tets", model.mesh.tet_count()},
                   {"bodies", Json::array()},
+                  {"body_tets", Json::array()},
                   {"lower", json_of(recorded.lower)},
                   {"upper", json_of(recorded.upper)},
                   {"up", json_of(up_of(document))},
@@ -58,7 +60,10 @@ Json scene_messages(const RecordedScene& recorded) {
                   {"settings", settings_json(document)},
                   {"stiffness", 0}};
   if (!recorded.note.empty()) message["notes"].push_back(recorded.note);
-  for (const BodyRange& body : model.bodies) message["bodies"].push_back(body.name);
+  for (const BodyRange& body : model.bodies) {
+    message["bodies"].push_back(body.name);
+    message["body_tets"].push_back(body.first_tet);
+  }
   Json messages = Json::array();
   for (size_t i = 0; i < recorded.body.surfaces.size(); ++i) {
     message["generation"] = i + 1;

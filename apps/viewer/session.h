@@ -31,6 +31,7 @@ struct Lesson {
   std::string missing;           // why it cannot be shown; empty: it can
   std::filesystem::path scene;   // empty: no other scene
   std::vector<std::string> overrides;
+  std::string field;  // that colors the body; empty: none
   struct Comparison {
     std::vector<std::string> overrides;
     std::string label;

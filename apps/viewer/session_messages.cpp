@@ -64,6 +64,8 @@ Message scene_message(const ShownSide& shown, const std::string& field) {
   const Box box = box_of(shown.side.start().q);
   Json bodies = Json::array();
   for (const BodyRange& body : model.bodies) bodies.push_back(body.name);
+  Json body_tets = Json::array();
+  for (const BodyRange& body : model.bodies) body_tets.push_back(body.first_tet);
   return text({{"kind", "scene"},
                {"side", shown.name},
                {"generation", shown.generation},
@@ -71,12 +73,14 @@ Message scene_message(const ShownSide& shown, const std::string& field) {
                {"label", shown.label},
                {"path", steered.path.string()},
                {"overrides", steered.overrides},
+               {"loaded_overrides", shown.loaded_overrides},
                {"notes", steered.scene.notes},
                {"surface", shown.surface.is_fine ? "skin" : "cage"},
                {"has_skin", has_fine_skin(steered.scene)},
                {"vertices", model.mesh.vertex_count()},
                {"tets", model.mesh.tet_count()},
                {"bodies", std::move(bodies)},
+               {"body_tets", std::move(body_tets)},
                {"lower", json_of(box.lower)},
                {"upper", json_of(box.upper)},
                {"up", json_of(up_of(steered.document))},

@@ -12,8 +12,9 @@ struct ShownSide {
   std::string label;  // in a comparison
   Side side;
   Surface surface;
-  uint32_t generation = 1;  // of its geometry
-  int told_steps = 0;       // whose rows the pages have
+  uint32_t generation = 1;                                               // of its geometry
+  int told_steps = 0;                                                    // whose rows the pages have
+  std::vector<std::string> loaded_overrides = side.steered().overrides;  // before any setting was changed
 
   int number() const { return name == "a" ? 0 : 1; }
 };

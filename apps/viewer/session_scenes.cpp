@@ -29,8 +29,9 @@ void Session::Impl::set(Arguments& arguments) {
   for (ShownSide* shown : {a.get(), b.get()}) {
     if (!shown || (only && only != shown)) continue;
     if (!only && shown == b.get() && is_compared()) continue;
-    const std::string override_text = setting_override(shown->side.steered().document, key, value);
-    prepared.push_back({*shown, shown->side.prepared(override_text, busy.announce())});
+    const SteeredScene& steered = shown->side.steered();
+    const std::string change = value.is_null() ? setting_key(key) : setting_override(steered.document, key, value);
+    prepared.push_back({*shown, shown->side.prepared(change, busy.announce())});
   }
   for (Prepared& p : prepared) {
     p.shown.side.apply(std::move(p.change));
@@ -82,6 +83,7 @@ void Session::Impl::lesson(Arguments& arguments) {
     overrides.insert(overrides.end(), compared->overrides.begin(), compared->overrides.end());
     second = loaded("b", lesson->scene, overrides);
   }
+  field = lesson->field;
   install(std::move(first), std::move(second), std::move(compared));
   if (recording) start_replay(*std::move(recording));
 }

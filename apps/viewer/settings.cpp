@@ -20,29 +20,29 @@ struct Row {
 
 const std::vector<Row>& rows() {
   static const std::vector<Row> list = {
-      {"material.model", "material", "Material"},
-      {"material.young", "E", "Material", 1e3, 1e9, true},
-      {"material.poisson", "nu", "Material", 0, 0.49},
-      {"material.density", "density", "Material", 10, 1e4, true},
-      {"damping.mass", "damping of motion", "Material", 0, 10},
-      {"damping.stiffness", "damping of vibration", "Material", 0, 0.1},
-      {"damping.viscosity", "viscosity", "Material", 0, 1e4},
-      {"time.step", "h", "Time", 1e-5, 0.1, true},
-      {"time.integrator", "integrator", "Time"},
-      {"gravity", "gravity", "World", -20, 20},
-      {"solver.method", "method", "Solver"},
-      {"solver.definiteness", "indefinite Hessian", "Solver"},
-      {"solver.linear", "linear solver", "Solver"},
-      {"solver.preconditioner", "preconditioner", "Solver"},
-      {"solver.initial_guess", "initial guess", "Solver"},
-      {"solver.criterion", "criterion", "Solver"},
-      {"solver.tolerance", "tolerance", "Solver", 1e-12, 1e-1, true},
-      {"solver.max_iterations", "most iterations", "Solver", 1, 1e4, true},
-      {"solver.line_search.test", "test", "Line search"},
-      {"solver.line_search.alpha_max", "alpha_max", "Line search", 0.1, 10, true},
-      {"solver.line_search.c", "c", "Line search", 1e-6, 0.9, true},
-      {"solver.line_search.p", "p", "Line search", 0.05, 0.95},
-      {"solver.line_search.tol", "tol", "Line search", 1e-16, 1e-1, true},
+      {"material.model", "Material model", "Material"},
+      {"material.young", "Young's modulus E", "Material", 1e3, 1e9, true},
+      {"material.poisson", "Poisson's ratio ν", "Material", 0, 0.49},
+      {"material.density", "Density", "Material", 10, 1e4, true},
+      {"damping.mass", "Mass damping", "Material", 0, 10},
+      {"damping.stiffness", "Stiffness damping", "Material", 0, 0.1},
+      {"damping.viscosity", "Viscosity", "Material", 0, 1e4},
+      {"time.step", "Time step h", "Time", 1e-5, 0.1, true},
+      {"time.integrator", "Integrator", "Time"},
+      {"gravity", "Gravity", "World", -20, 20},
+      {"solver.method", "Method", "Solver"},
+      {"solver.definiteness", "Indefinite Hessian", "Solver"},
+      {"solver.linear", "Linear solver", "Solver"},
+      {"solver.preconditioner", "Preconditioner", "Solver"},
+      {"solver.initial_guess", "Initial guess", "Solver"},
+      {"solver.criterion", "Criterion", "Solver"},
+      {"solver.tolerance", "Tolerance", "Solver", 1e-12, 1e-1, true},
+      {"solver.max_iterations", "Maximum iterations", "Solver", 1, 1e4, true},
+      {"solver.line_search.test", "Decrease test", "Line search"},
+      {"solver.line_search.alpha_max", "Largest step α_max", "Line search", 0.1, 10, true},
+      {"solver.line_search.c", "Slope fraction c", "Line search", 1e-6, 0.9, true},
+      {"solver.line_search.p", "Shrink factor p", "Line search", 0.05, 0.95},
+      {"solver.line_search.tol", "Smallest step tol", "Line search", 1e-16, 1e-1, true},
   };
   return list;
 }
@@ -130,6 +130,12 @@ std::string toml_of(const std::string& name, const Key& key, const Json& value) 
   return "[" + list + "]";
 }
 
+void check_known(const std::string& key, const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), key) != known.end()) return;
+  throw InvalidInput(fmt::format("'{}' is no setting that can change while the simulation runs{}", shortened(key),
+                                 suggestion(key, known)));
+}
+
 }  // namespace
 
 Json settings_json(const Table& document) {
@@ -143,10 +149,15 @@ std::string setting_override(const Table& document, const std::string& key, cons
   std::vector<std::string> known;
   for (const Row& row : rows())
     if (find(document, row.key)) known.push_back(row.key);
-  if (std::find(known.begin(), known.end(), key) == known.end())
-    throw InvalidInput(fmt::format("'{}' is no setting that can change while the simulation runs{}", shortened(key),
-                                   suggestion(key, known)));
+  check_known(key, known);
   return key + "=" + toml_of(key, schema_key(key), value);
+}
+
+std::string setting_key(const std::string& key) {
+  std::vector<std::string> known;
+  for (const Row& row : rows()) known.push_back(row.key);
+  check_known(key, known);
+  return key;
 }
 
 std::string key_of(const std::string& override_text) {
@@ -157,7 +168,7 @@ std::string key_of(const std::string& override_text) {
 
 std::vector<std::string> with_override(std::vector<std::string> overrides, const std::string& override_text) {
   std::erase_if(overrides, [&](const std::string& o) { return key_of(o) == key_of(override_text); });
-  overrides.push_back(override_text);
+  if (override_text.find('=') != std::string::npos) overrides.push_back(override_text);
   return overrides;
 }
 

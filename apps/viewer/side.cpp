@@ -205,7 +205,8 @@ StepReport Side::repeat(int step, const IterationObserver& observe, const Consen
 
 Side::Change Side::prepared(const std::string& override_text, const Announce& announce) const {
   Change change{.overrides = with_override(steered_.overrides, override_text)};
-  if (is_of_solver_alone(key_of(override_text))) {
+  const bool drops = override_text.find('=') == std::string::npos;  // what the scene's file says is read again
+  if (!drops && is_of_solver_alone(key_of(override_text))) {
     change.document = overridden(steered_, override_text);
     change.solver = solver_options(*change.document.find("solver"));
     SimulationOptions options = simulation().options();

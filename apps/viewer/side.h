@@ -65,7 +65,7 @@ class Side {
     std::optional<SteeredScene> reloaded;
     std::optional<SolverOptions> solver;
   };
-  // Throws InvalidInput; nothing has changed before apply().
+  // A key alone drops its override. Throws InvalidInput; nothing has changed before apply().
   Change prepared(const std::string& override_text, const Announce& announce) const;
   void apply(Change change);
 

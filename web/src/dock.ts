@@ -1,6 +1,7 @@
 // The panels below the view, one at a time, chosen by tabs. Closed, only the tabs remain.
 import { makeDivider } from "./divider";
 import { button, element } from "./dom";
+import { whenNarrow } from "./narrow";
 import type { Page, Panel } from "./page";
 import { keyName } from "./shortcuts";
 
@@ -44,6 +45,7 @@ export class Dock {
       restore: (saved) => this.restore(saved),
     });
     this.show(panels[0] ?? null);
+    whenNarrow((narrow) => this.show(narrow ? null : (this.last ?? panels[0] ?? null)));
   }
 
   show(panel: Panel | null): void {

@@ -55,7 +55,7 @@ export class Lecture {
     root.append(turn, this.card, this.replay, this.search, this.list);
     this.search.addEventListener("input", () => this.fill());
     store.on("hello", (hello) => this.greet(hello.lessons));
-    store.on("state", ({ replaying }) => this.showReplay(replaying));
+    store.on("state", ({ replaying, playing }) => this.showReplay(replaying, playing));
   }
 
   private greet(lessons: Lesson[]): void {
@@ -110,6 +110,7 @@ export class Lecture {
     } catch (reason) {
       return this.page.notice(messageOf(reason), "error");
     }
+    this.page.emit("cleared", undefined);
     this.current = lesson;
     this.replay.hidden = !this.replaying; // what an earlier lesson's mouse did
     this.card.replaceChildren(
@@ -123,12 +124,15 @@ export class Lecture {
     if (lesson.function) this.showFunction(lesson.function);
   }
 
-  private showReplay(replaying: boolean): void {
-    if (replaying === this.replaying) return;
+  private showReplay(replaying: boolean, playing: boolean): void {
+    const text = !replaying
+      ? "The recorded mouse has ended: the body is yours."
+      : playing
+        ? "A recorded mouse plays. Drag the body to take over."
+        : "The recorded mouse is paused: press Space to go on, or drag the body to take over.";
+    if (replaying === this.replaying && (!replaying || text === this.replay.textContent)) return;
     this.replaying = replaying;
     this.replay.hidden = false;
-    this.replay.textContent = replaying
-      ? "A recorded mouse plays. Drag the body to take over."
-      : "The recorded mouse has ended: the body is yours.";
+    this.replay.textContent = text;
   }
 }

@@ -51,8 +51,8 @@ function buildPage(store: Store, page: Page): void {
   if (store.source.live) panels.push(makeLandscapePanel(store, page), functions, makeCapturePanel(store, page, display));
   panels.push(makeReportPanel(store, page));
   const sidebar = new Sidebar(area("right"), page);
-  new Settings(sidebar.body, store, page);
   addDisplayControls(new GUI({ container: sidebar.body, title: "View" }), display, page, views.all);
+  new Settings(sidebar.body, store, page);
   new Dock(area("dock"), page, panels);
   const lecture = new Lecture(area("left"), store, page, (question) => functions.open(question));
   const video = new Video(store, page, views.draw);

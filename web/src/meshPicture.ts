@@ -9,7 +9,7 @@ import { Body, type Box } from "./view/body";
 import { lookingFrom, sceneAxes } from "./view/cameras";
 import { type DisplaySettings, kDefaults } from "./view/display";
 import { along, dot, type Lens, minus } from "./view/lens";
-import { colourBar, type Ink, text } from "./view/marks";
+import { colourBar, type Ink, kBarWidth, text } from "./view/marks";
 import { png } from "./view/overlay";
 import type { ColourRange } from "./view/ranges";
 import { Stage } from "./view/stage";
@@ -116,7 +116,7 @@ class Painter {
     const canvas = document.createElement("canvas");
     const context = canvas.getContext("2d")!;
     context.font = `${em}px ${this.font}`;
-    const bar = head.range ? Math.max(7 * em, context.measureText(head.value_label).width + 2 * em) : 0;
+    const bar = head.range ? kBarWidth * em : 0;
     const top = head.title === "" ? 0 : 2.4 * em;
     const bottom = head.panels.some(({ caption }) => caption !== "") ? 2.4 * em : 0;
     const width = Math.floor((head.width - bar) / panels.length);
@@ -175,7 +175,7 @@ class Painter {
   // Half as high as the panels beside it, in their middle.
   private addBar(ink: Ink, head: MeshPicture, range: [number, number], top: number, height: number): void {
     const field: Field = { name: "", label: head.value_label, unit: "", diverging: false, center: 0, log: false };
-    const lens = { width: head.width, height } as Lens;
+    const lens = { width: head.width - kBarWidth * ink.em, height } as Lens;
     ink.context.translate(0, top + Math.max(0, (height - 23 * ink.em) / 2));
     colourBar(ink, lens, field, colours(range), "viridis");
     ink.context.resetTransform();

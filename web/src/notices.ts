@@ -32,6 +32,7 @@ export function showNotices(root: HTMLElement, store: Store, page: Page): void {
     requestAnimationFrame(() => setTimeout(() => item.remove(), kind === "info" ? kInfoLasts : kErrorLasts));
   };
   page.on("notice", ({ text, kind }) => say(text, kind));
+  page.on("cleared", () => list.replaceChildren());
   store.on("refused", (why) => say(why, "error"));
 
   const showLasting = (): void => {

@@ -21,6 +21,7 @@ interface Events {
   panel: Panel["name"]; // to be opened in the dock
   layout: void; // sizes have changed
   notice: { text: string; kind: "info" | "error" };
+  cleared: void; // notices about what was shown before go
 }
 
 // A part of the page that a workspace file keeps.

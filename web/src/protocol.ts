@@ -18,7 +18,7 @@ export type Command = { id?: number } & (
   | { do: "reset" }
   | { do: "rewind"; step: number } // to the end of a step that `timeline` still holds; 0 is the start
   | { do: "speed"; value: number } // simulated seconds per second of wall time that play aims at
-  | { do: "set"; key: string; value: SettingValue; side?: SideName } // both sides without `side`
+  | { do: "set"; key: string; value: SettingValue | null; side?: SideName } // null: as the scene's file has it; both sides without `side`
   // A scene or a mesh: a path on the program's machine, or the name of one of the files that come with the command.
   | { do: "load"; scene: string; overrides?: string[]; files?: UploadedFile[] }
   | { do: "lesson"; lesson: string }
@@ -124,12 +124,14 @@ export interface Scene {
   label: string; // of the side in a comparison, else ""
   path: string;
   overrides: string[];
+  loaded_overrides: string[]; // before any setting was changed
   notes: string[];
   surface: "skin" | "cage";
   has_skin: boolean; // a fine skin apart from the cage
   vertices: number;
   tets: number;
   bodies: string[];
+  body_tets: number[]; // the first tet of each body, by the user's numbers
   lower: Vec3; // box around the start
   upper: Vec3;
   up: Vec3; // against gravity

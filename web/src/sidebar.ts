@@ -1,6 +1,7 @@
 // The settings' area: its width, and the key that hides it.
 import { makeDivider } from "./divider";
 import { element } from "./dom";
+import { whenNarrow } from "./narrow";
 import type { Page } from "./page";
 import { shortcutButton } from "./shortcuts";
 
@@ -28,6 +29,7 @@ export class Sidebar {
       { key: "g", does: "Settings", group: "Panels", run: () => this.hide(!root.hidden) },
       { text: "Settings" },
     );
+    whenNarrow((narrow) => this.hide(narrow));
     page.keep("settings", {
       save: () => ({ hidden: root.hidden, width: root.offsetWidth }),
       restore: (saved) => this.restore(saved),

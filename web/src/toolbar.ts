@@ -1,5 +1,6 @@
 // What is always at hand: the simulation's time, and the doors to everything else.
 import { button, element, icon, messageOf } from "./dom";
+import { statusName } from "./names";
 import type { Page } from "./page";
 import type { SideName, SideState, State } from "./protocol";
 import { openShortcutList, shortcutButton } from "./shortcuts";
@@ -68,7 +69,9 @@ function makeTransport(store: Store, page: Page): HTMLElement {
 // Where nobody paused: an explicit scheme that blew up, for example.
 function tellWhyItStopped(state: State, page: Page): void {
   const words = state.a.words ?? state.b?.words;
-  if (words) page.notice(`Stopped: ${words.cause}; ${words.place}. Remedy: ${words.remedy}`, "error");
+  if (!words) return;
+  const who = state.b ? (state.a.words ? "A stopped" : "B stopped") : "Stopped";
+  page.notice(`${who}: ${words.cause}; ${words.place}. Remedy: ${words.remedy}`, "error");
 }
 
 function makeIterate(store: Store, page: Page): HTMLElement {
@@ -126,7 +129,7 @@ function showChip(chip: HTMLButtonElement, side: SideState | null, bad: boolean,
   chip.hidden = !side || side.status === "";
   if (!side) return;
   const words = side.words;
-  const text = `${before}${side.status.replaceAll("_", " ")}`;
+  const text = `${before}${statusName(side.status)}`;
   const plain = bad ? "The last step did not converge." : "The last step converged.";
   const tip = words ? `${words.cause}\n${words.place}\n${words.remedy}` : plain;
   if (chip.dataset.tip === tip && chip.textContent === text) return;

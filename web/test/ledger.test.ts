@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { balanceText, calmRange, Ledger, ledgerColumns } from "../src/plots/ledger";
+import { balanceText, calmRange, explosionText, Ledger, ledgerColumns } from "../src/plots/ledger";
 import { stepRow } from "./rowsOfSteps";
 
 const potentials = ["elasticity", "gravity"];
@@ -97,4 +97,47 @@ test("a side that blew up does not flatten the other one", () => {
   assert.deepEqual(range, calmRange(wild, calm));
   const values = calm.columns.flat().map((value) => value ?? 0);
   assert.ok(range[0] <= Math.min(...values) && range[1] >= Math.max(...values) && range[1] < 1e3);
+});
+
+test("rows of zeros are not shown, until they are something", () => {
+  const ledger = new Ledger(["elasticity", "gravity", "probe"]);
+  const still = stepRow({ step: 1, time: 0.1, kinetic: 0, potential: [2, 0, 0] });
+  const moving = stepRow({ step: 2, time: 0.2, kinetic: 1, potential: [1, 0, 0], mouse_work: 0.5 });
+  ledger.update([still], 0);
+  assert.deepEqual(ledger.used(), ["potential_elasticity", "potential_total", "total", "balance"]);
+  ledger.update([still, moving], 1);
+  assert.ok(ledger.used().includes("kinetic") && ledger.used().includes("mouse_work"));
+  assert.ok(!ledger.used().includes("potential_probe"));
+  ledger.update([still, moving], 1);
+  ledger.update([still], 1);
+  assert.deepEqual(ledger.used(), ["potential_elasticity", "potential_total", "total", "balance"]);
+});
+
+test("no two rows of the legend have the same color", () => {
+  const columns = ledgerColumns(Array.from({ length: 30 }, (_, i) => `term_${i}`));
+  assert.equal(new Set(columns.map(({ colour }) => colour)).size, columns.length);
+});
+
+test("an explosion is not called a flat balance", () => {
+  const [calm, wild] = [new Ledger(potentials), new Ledger(potentials)];
+  calm.update(steps(50), 0);
+  assert.equal(calm.exploded(), null);
+  const made = 1e60;
+  wild.update([...steps(5), stepRow({ step: 6, time: 0.6, kinetic: made, potential: [1, 0], numerical_loss: -made })], 0);
+  assert.ok(wild.drift().drift < 1e-9 * made, "the books are balanced: the loss is negative");
+  assert.equal(wild.exploded(), made + 1);
+  assert.match(explosionText(made), /exploded: .* 1e60 J out of nothing/);
+  wild.update(steps(5), 5);
+  assert.equal(wild.exploded(), null);
+});
+
+test("a fall, and energy that the mouse puts in, are no explosions", () => {
+  const fall = new Ledger(potentials);
+  const row = (step: number, kinetic: number, more = {}): ReturnType<typeof stepRow> =>
+    stepRow({ step, time: 0.1 * step, kinetic, potential: [0, -kinetic + 1e-9], ...more });
+  fall.update([row(1, 0), row(2, 100), row(3, 1e6)], 0);
+  assert.equal(fall.exploded(), null);
+  const pulled = new Ledger(potentials);
+  pulled.update([row(1, 0), stepRow({ step: 2, time: 0.2, kinetic: 50, potential: [0, 0], mouse_work: 50 })], 0);
+  assert.equal(pulled.exploded(), null);
 });

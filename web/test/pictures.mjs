@@ -72,7 +72,7 @@ async function drawViewer(browser) {
   const address = await startProgram("scenes/bunny.toml", ["--set", "body.0.deform.displacement=[0, 0, 0]"]);
   const page = await openPage(browser, address, 800);
   await page.getByRole("tab", { name: "Microscope" }).click();
-  await page.getByRole("combobox", { name: "Colour by" }).selectOption("displacement");
+  await page.getByRole("combobox", { name: "Color by" }).selectOption("displacement");
   const [x, y] = await highestPoint(page);
   await page.keyboard.press(" ");
   await page.mouse.down();

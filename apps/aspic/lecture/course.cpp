@@ -24,8 +24,10 @@ const std::vector<Demonstration>& demonstrations() {
       {"03_tissue",
        {3},
        "soft tissue in layers",
-       "Capture and modelling of non-linear heterogeneous soft tissue [Bickel et al. 2009]: a slab of layers is poked, "
-       "its force measured. Capture and fitting are not part of Aspic yet.",
+       "Capture and modelling of non-linear heterogeneous soft tissue [Bickel et al. 2009]: a slab of layers is poked "
+       "and "
+       "the force is measured. Here the layers' moduli are given; aspic capture records such pokes of a body, and "
+       "aspic fit estimates its stiffness from them.",
        show_tissue},
       {"05-09_equation_of_motion",
        {5, 7, 8, 9},

@@ -36,6 +36,7 @@ struct Staging {
   const char* look;
   const char* panel;
   const char* scene = "";  // of scenes/lecture; empty: none
+  const char* field = "";  // that colors the body
   Shape shape = Shape::real_mesh;
   std::vector<std::string> overrides = {};
   std::vector<Lesson::Comparison> comparison = {};
@@ -70,21 +71,27 @@ const std::vector<Staging>& stagings() {
   static const std::vector<Staging> list = {
       {.demonstration = "02_fine_mesh",
        .part = "",
-       .look = "Come closer and switch the wires on: every triangle is the side of a tet. Play, and watch how the "
-               "time per step tells what the number of tets costs.",
+       .look =
+           "The thin wires are the edges of tets at the surface: come closer to see them. So that it moves while you "
+           "watch, this mesh has fewer tets than the slide's; aspic lecture 2 simulates more than 100 000. Press S: "
+           "the column \"took\" shows the wall time of each step.",
        .panel = "microscope",
        .scene = "02_fine_mesh"},
       {.demonstration = "03_tissue",
        .part = "",
-       .look = "Colour the slab by its stiffness, then by stress, and play: the pin sinks in and the force that it "
-               "needs grows faster than its depth. The soft layer of fat takes most of the deformation.",
+       .look =
+           "The colors show Young's modulus: stiff skin over soft fat over muscle. Play: the indenter sinks in, and "
+           "the energy V in the plot grows faster than the square of its depth because the tissue stiffens. Color "
+           "by von Mises stress to see where it is loaded.",
        .panel = "energy",
        .scene = "03_tissue",
+       .field = "young",
        .shape = Shape::of_the_scene},
       {.demonstration = "05-09_equation_of_motion",
        .part = "",
-       .look = "Play: while V falls T rises, and back again, as M q'' = -dV/dq trades one for the other. Pick a vertex "
-               "to read where its three entries stand in q.",
+       .look =
+           "Play: while V falls T rises, and back again, as M q'' = -dV/dq trades one for the other. Shift and click "
+           "on a vertex to read where its three entries stand in q.",
        .panel = "energy",
        .scene = "05_swing"},
       {.demonstration = "08-10_springs_beside_elements",
@@ -152,8 +159,8 @@ const std::vector<Staging>& stagings() {
        .scene = "05_swing"},
       {.demonstration = "33-34_explosion",
        .part = "explicit",
-       .look = "The same mouse drags both: left implicit, right explicit. The explicit scheme explodes at once and its "
-               "energy leaves the plot; the implicit one stays stable whatever you do with the mouse.",
+       .look = "The same mouse drags both: left implicit, right explicit. The explicit scheme explodes within a few "
+               "steps and ends; the implicit one goes on, and stays stable whatever you do with the mouse.",
        .panel = "energy",
        .scene = "33_mouse",
        .overrides = {"spring=[]"},
@@ -177,14 +184,14 @@ const std::vector<Staging>& stagings() {
        .scene = "05_swing"},
       {.demonstration = "38-42_gradient_descent",
        .part = "Rosenbrock's valley",
-       .look = "Each step goes straight downhill and meets the other side of the valley: the path zig-zags. Drag the "
-               "start elsewhere, or choose Newton's method for the same start.",
+       .look = "Each step goes straight downhill and meets the other side of the valley: the path zig-zags. 200 "
+               "iterations are not enough. Drag the start elsewhere, or choose Newton's method for the same start.",
        .panel = "functions",
        .function = question("rosenbrock", -1, -0.5, {{"method", "gradient_descent"}})},
       {.demonstration = "38-42_gradient_descent",
        .part = "two bumps",
-       .look = "Where the level lines are nearly circles the gradient points at the minimum and few steps do. Drag the "
-               "start to the other side of the bump and see which way it goes.",
+       .look = "Where the level lines are nearly circles the gradient points at the minimum and a few dozen iterations "
+               "are enough. Drag the start to the other side of the bump and see which way it goes.",
        .panel = "functions",
        .function = question("two_bump", -0.3, 0.9, {{"method", "gradient_descent"}})},
       {.demonstration = "38-42_gradient_descent",
@@ -205,8 +212,10 @@ const std::vector<Staging>& stagings() {
       {.demonstration = "53+62_pure_newton",
        .part = "",
        .look =
-           "Take one step: left Newton's method with a line search, right without. Left E falls in every iteration; "
-           "right it jumps up and down and the step ends without having converged.",
+           "Take one step (S): left Newton's method with a line search, right without. Left E falls in every "
+           "iteration. "
+           "Choose B above the table: right E jumps far up in the first iteration, the iterates end outside the range "
+           "of numbers, and the body stays squashed because its step has no result.",
        .panel = "microscope",
        .scene = "53_hard_step",
        .comparison = {{{"solver.line_search.test=none"}, "without line search"}}},
@@ -220,7 +229,8 @@ const std::vector<Staging>& stagings() {
       {.demonstration = "60-61_backtracking",
        .part = "",
        .look = "Take one step and choose an iteration with several trials: those above the line are rejected, alpha "
-               "shrinks by p until one lies below. Change alpha_max, c and p and step again.",
+               "shrinks by p until one lies below. Change \u03b1_max, c and p in the settings, Line search, and step "
+               "again.",
        .panel = "microscope",
        .scene = "53_hard_step"},
   };
@@ -299,6 +309,7 @@ void set_scene(const Staging& staging, const Place& place, Lesson& lesson) {
   if (staging.shape == Shape::real_mesh) lesson.overrides = place.real_mesh;
   lesson.overrides.insert(lesson.overrides.end(), staging.overrides.begin(), staging.overrides.end());
   lesson.comparison = staging.comparison;
+  lesson.field = staging.field;
   if (staging.drag)
     lesson.recording = [drag = *staging.drag, path = lesson.scene, overrides = lesson.overrides] {
       return recording_of(drag, path, overrides);

@@ -54,6 +54,7 @@ class Opened {
     for (int i = 0; i < steps && session_->is_playing(); ++i) hear(session_->advance());
   }
 
+  const std::string& field() const { return field_; }  // that colors the body
   bool has(const std::string& side) const { return scenes_.contains(side); }
   const std::vector<json>& rows(const std::string& side) { return rows_[side]; }
   bool converged(const std::string& side) const {
@@ -80,7 +81,10 @@ class Opened {
     for (const Message& message : messages) {
       if (message.is_binary) continue;
       const json told = json::parse(message.bytes);
-      if (told["kind"] == "scene") scenes_.insert(told["side"].get<std::string>());
+      if (told["kind"] == "scene") {
+        scenes_.insert(told["side"].get<std::string>());
+        field_ = told["field"].get<std::string>();
+      }
       if (told["kind"] != "steps") continue;
       auto& rows = rows_[told["side"].get<std::string>()];
       rows.resize(std::min(rows.size(), told["from"].get<size_t>()));
@@ -92,6 +96,7 @@ class Opened {
   std::optional<Session> session_;
   json reply_;
   std::set<std::string> scenes_;
+  std::string field_;
   std::map<std::string, std::vector<json>> rows_;
 };
 
@@ -192,6 +197,36 @@ TEST(Lessons, TheRecordedMousePullsTheBody) {
   for (const json& row : opened.rows("a")) work += row["mouse_work"].get<double>();
   EXPECT_GT(work, 0.01);
   EXPECT_EQ(opened.rows("a").size(), 150u);
+}
+
+TEST(Lessons, NoTextDeniesCaptureAndFitting) {
+  for (const Lesson& lesson : all_lessons())
+    for (const std::string* text : {&lesson.title, &lesson.claim, &lesson.look})
+      EXPECT_THAT(*text, testing::Not(testing::HasSubstr("not part of Aspic"))) << lesson.id;
+}
+
+TEST(Lessons, TissueShowsItsStiffnessAndStiffens) {
+  Opened opened("03_tissue");
+  EXPECT_EQ(opened.field(), "young");
+  opened.play(10);
+  const auto energy = [&](int step) { return opened.rows("a").at(step - 1)["potential"][0].get<double>(); };
+  EXPECT_GT(energy(10), 1.05 * 4 * energy(5));  // at twice the depth
+}
+
+TEST(Lessons, TenTimesTheStepEndsTheExplicitSchemeAlone) {
+  Opened opened("19-22_explicit_or_implicit");
+  opened.command({{"do", "set"}, {"key", "time.step"}, {"value", 5e-3}});
+  opened.play(60);
+  EXPECT_TRUE(opened.converged("a"));
+  EXPECT_GT(opened.largest_energy("b"), 1e3 * opened.largest_energy("a"));
+}
+
+TEST(Lessons, HardStepWithoutLineSearchLeavesTheNumbers) {
+  Opened opened("53+62_pure_newton");
+  opened.step();
+  const json row = opened.rows("b")[0];
+  EXPECT_EQ(row["status"], "undefined");
+  EXPECT_GT(row["iterations"][1]["value"].get<double>(), 1e3 * row["iterations"][0]["value"].get<double>());
 }
 
 class Explosion : public testing::TestWithParam<std::string> {};

@@ -131,7 +131,7 @@ void show_tissue(const Stage& stage, Sheet& sheet) {
                  "the layers show: fat is 10 times softer than muscle, but stiffens where it is squeezed");
   sheet.at_least("force of the layered / of a uniform slab of fat", layered.force.back() / soft.force.back(), 1.5, "",
                  "layers that are stiffer stiffen the whole");
-  sheet.remark("Capture and fitting of the material are not part of Aspic yet: the layers' moduli are given.");
+  sheet.remark("The layers' moduli are given here; 'aspic capture' and 'aspic fit' estimate them from pokes.");
 
   sheet.draw("force.svg", "Force against depth",
              Chart{"a poke",

@@ -1,4 +1,5 @@
 // What a run's steps certify: who converged, how far off the others are, what the worst values are and where.
+import { statusName } from "../names";
 import { short } from "../plots/numbers";
 import type { MaybeNumber, StepRow } from "../protocol";
 
@@ -46,8 +47,8 @@ export const kColumns: Column[] = [
   { title: "time [s]", meaning: "at the end of the step", value: (row) => row.time },
   {
     title: "status",
-    meaning: "how its minimisation ended; converged and round_off are success",
-    value: (row) => row.status,
+    meaning: "how its minimization ended",
+    value: (row) => statusName(row.status),
     worse: (row) => (row.success ? 0 : 1),
     isBad: (row) => !row.success,
   },

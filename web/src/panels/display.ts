@@ -89,9 +89,9 @@ class Folder {
 export function addDisplayControls(gui: GUI, display: Display, page: Page, views: () => View[]): void {
   page.keep("display", display);
   page.keep("camera", display.cameraKeeper);
-  addMouse(new Folder(gui.addFolder("Mouse"), display));
   addDisplay(new Folder(gui.addFolder("Display"), display), display, views);
-  addCamera(new Folder(gui.addFolder("Camera"), display), display, views);
+  addCamera(new Folder(gui.addFolder("Camera").close(), display), display, views);
+  addMouse(new Folder(gui.addFolder("Mouse").close(), display));
   addDisplayShortcuts(page, display);
   addCameraShortcuts(page, display, views);
 }
@@ -104,16 +104,15 @@ function addMouse(folder: Folder): void {
 
 function addDisplay(folder: Folder, display: Display, views: () => View[]): void {
   addField(folder, display, views);
-  folder.add("fill", "Fill");
-  folder.add("smooth", "Smooth shading");
   folder.add("wires", "Wires");
+  folder.add("fill", "Fill");
   folder.add("ground", "Ground");
   folder.add("shadows", "Shadows");
   folder.add("clip", "Cut", { no: "off", "across x": "x", "across y": "y", "across z": "z" });
   folder.slider("clipAt", "Cut at", 0, 1, 0.001);
   folder.add("clipOther", "Keep the other half");
   addNumbers(folder.within("Numbers and marks"));
-  addLook(folder.within("Colours and light"));
+  addLook(folder.within("Colors and light"));
   folder.button("As at the start", () => display.change(kDefaults));
 }
 
@@ -125,11 +124,12 @@ function addNumbers(folder: Folder): void {
 }
 
 function addLook(folder: Folder): void {
+  folder.add("smooth", "Smooth shading");
   folder.colour("bodyColour", "Body");
   folder.colour("lineColour", "Wires");
   folder.add("wiresOnTop", "Wires shine through");
-  folder.add("inside", "Inside", { "its own colour": "own", "as outside": "same", hidden: "hidden" });
-  folder.colour("insideColour", "Inside's colour");
+  folder.add("inside", "Inside", { "its own color": "own", "as outside": "same", hidden: "hidden" });
+  folder.colour("insideColour", "Inside's color");
   folder.add("invert", "Invert normals");
   folder.slider("shininess", "Shininess", 0, 200, 1);
   folder.add("ownBackground", "Own background");
@@ -140,13 +140,13 @@ function addLook(folder: Folder): void {
 function addField(folder: Folder, display: Display, views: () => View[]): void {
   const fields = (): Choices => {
     const known = display.fields.map((field) => [field.label, field.name] as const);
-    return { none: "", ...Object.fromEntries(known) };
+    return { [display.bodies > 1 ? "body" : "none"]: "", ...Object.fromEntries(known) };
   };
   const choose = (field: string): void => views()[0]?.store.source.send({ do: "colour", field });
-  folder.choice("Colour by", fields, () => display.field, choose);
-  const range = folder.within("Colour range");
+  folder.choice("Color by", fields, () => display.field, choose);
+  const range = folder.within("Color range");
   const maps = { "by field": "auto", viridis: "viridis", cividis: "cividis", "blue to orange": "blue_orange" };
-  range.add("map", "Colours", maps);
+  range.add("map", "Colors", maps);
   range.add("fixedRange", "Fixed range");
   range.number("low", "From", { fixedRange: true });
   range.number("high", "To", { fixedRange: true });

@@ -14,7 +14,8 @@ import {
   numberField,
   oncePerFrame,
 } from "../plots/dom";
-import { balanceText, calmRange, Ledger, ledgerColumns } from "../plots/ledger";
+import { balanceText, calmRange, explosionText, Ledger, ledgerColumns } from "../plots/ledger";
+import type { LedgerColumn } from "../plots/ledger";
 import { csv, short, withUnit } from "../plots/numbers";
 import type { Palette } from "../plots/palette";
 import { paintVerticalLine } from "../plots/verticalLine";
@@ -57,6 +58,7 @@ class EnergyPanel implements Panel {
   private range: [number, number] | null = null; // zoomed by the mouse [s]
   private visible = false;
   private byStep = false; // time does not pass: statics
+  private rows = new Set<string>(); // keys of what the legend shows
   private readonly redraw = oncePerFrame(() => this.visible && this.draw());
 
   constructor(
@@ -106,16 +108,28 @@ class EnergyPanel implements Panel {
     return kSides.flatMap((side) => (this.ledgers[side] ? [{ side, ledger: this.ledgers[side] }] : []));
   }
 
+  // Keys of the columns that are not zero all the time, on one of the sides.
+  private used(): Set<string> {
+    return new Set(this.shown().flatMap(({ ledger }) => ledger.used()));
+  }
+
   private curves(): Curve[] {
     return this.shown().flatMap(({ side, ledger }) =>
-      ledgerColumns(ledger.potentials).map((column) => ({
+      this.columnsOf(ledger).map(({ column }) => ({
         ...column,
         dash: side === "b" ? (column.dotted ? [8, 3, 2, 3] : [8, 5]) : column.dotted ? [2, 3] : undefined,
       })),
     );
   }
 
+  private columnsOf(ledger: Ledger): { column: LedgerColumn; values: MaybeNumber[] }[] {
+    return ledgerColumns(ledger.potentials)
+      .map((column, i) => ({ column, values: ledger.columns[i]! }))
+      .filter(({ column }) => this.rows.has(column.key));
+  }
+
   private configure(): void {
+    this.rows = this.used();
     const log = this.logSwitch.input.checked;
     this.byStep = this.shown().every(({ ledger }) => (ledger.time[ledger.time.length - 1] ?? 0) === 0);
     this.chart.configure({
@@ -199,13 +213,16 @@ class EnergyPanel implements Panel {
     const range = this.xRange();
     const from = range ? Math.max(0, lowerBound(x, range[0]) - 1) : 0;
     const to = range ? Math.min(x.length, lowerBound(x, range[1]) + 1) : x.length;
-    return thinned({ x, columns: ledger.columns }, from, to, Math.max(100, this.chart.width / 2));
+    const columns = this.columnsOf(ledger).map(({ values }) => values);
+    return thinned({ x, columns }, from, to, Math.max(100, this.chart.width / 2));
   }
 
   private draw(): void {
     const sides = this.shown();
     const statics = sides.every(({ ledger }) => (ledger.time[ledger.time.length - 1] ?? 0) === 0);
-    if (statics !== this.byStep) return this.configure();
+    const used = this.used();
+    if (statics !== this.byStep || used.size !== this.rows.size || [...used].some((key) => !this.rows.has(key)))
+      return this.configure();
     const tables = sides.map(({ ledger }) => this.table(ledger));
     const [first, second] = tables;
     const table = first && second ? merged(first, second) : (first ?? { x: [], columns: [] });
@@ -217,8 +234,10 @@ class EnergyPanel implements Panel {
   private tell(): void {
     const texts = this.shown().map(({ side, ledger }) => {
       const { drift, scale } = ledger.drift();
-      if (ledger.step.length < 2 || !Number.isFinite(drift)) return "";
       const name = this.ledgers.b ? `${this.store.side(side)?.scene.label || side.toUpperCase()}: ` : "";
+      const peak = ledger.exploded();
+      if (peak !== null) return `${name}${explosionText(peak)}`;
+      if (ledger.step.length < 2 || !Number.isFinite(drift)) return "";
       return `${name}${balanceText(drift, scale)}`;
     });
     const dashes = this.ledgers.b ? [`${this.store.side("b")?.scene.label || "b"} is dashed`] : [];

@@ -66,18 +66,18 @@ function addTrials(reply: FunctionReply, iteration: number, marks: Mark[], signs
 function addModel(reply: FunctionReply, grid: Grid, marks: Mark[], signs: Sign[]): void {
   signs.push({ sign: "▇", colour: "series2", text: "this iteration's quadratic model" });
   const lowest = minimizerOf(reply.model);
-  if (!lowest) return void signs.push({ sign: "◆", colour: "series2", text: "the model has no minimum" });
+  if (!lowest) return void signs.push({ sign: "◆", colour: "series4", text: "the model has no minimum" });
   const value = quadraticAt(reply.model, lowest.x, lowest.y);
-  marks.push({ ...lowest, value, shape: "diamond", colour: "series2", size: 12 });
+  marks.push({ ...lowest, value, shape: "diamond", colour: "series4", size: 12 });
   const place = isInside(grid, lowest) ? "" : `, outside at (${short(lowest.x, 3)}, ${short(lowest.y, 3)})`;
-  signs.push({ sign: "◆", colour: "series2", text: `the model's minimum${place}` });
+  signs.push({ sign: "◆", colour: "series4", text: `the model's minimum${place}` });
 }
 
 function addMinimum({ minimizer }: FunctionReply, marks: Mark[], signs: Sign[]): void {
   if (!minimizer) return;
   const [x, y] = minimizer;
-  marks.push({ x, y, value: null, shape: "cross", colour: "good", size: 11, label: "minimum" });
-  signs.push({ sign: "✕", colour: "good", text: "the minimum of f" });
+  marks.push({ x, y, value: null, shape: "cross", colour: "series8", size: 11, label: "minimum" });
+  signs.push({ sign: "✕", colour: "series8", text: "the minimum of f" });
 }
 
 // Of the iteration, and the start of them all.

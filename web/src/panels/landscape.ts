@@ -143,15 +143,15 @@ class LandscapePanel implements Panel {
         ...lowest,
         value: quadraticAt(quadratic, lowest.x, lowest.y),
         shape: "diamond",
-        colour: "series2",
+        colour: "series4",
         size: 12,
         label: "model's minimum",
       });
       const place = isInside(grid, lowest) ? "" : `, outside at s = ${short(lowest.x, 3)}, t = ${short(lowest.y, 3)}`;
-      signs.push({ sign: "◆", colour: "series2", text: `the model's minimum${place}` });
-    } else if (showModel) signs.push({ sign: "◆", colour: "series2", text: "the model has no minimum in this plane" });
-    marks.push({ x: 0, y: 0, value: reply.value, shape: "ring", colour: "text", size: 13, label: "start" });
-    signs.push({ sign: "○", colour: "text", text: `start: E = ${short(reply.value, 6)}` });
+      signs.push({ sign: "◆", colour: "series4", text: `the model's minimum${place}` });
+    } else if (showModel) signs.push({ sign: "◆", colour: "series4", text: "the model has no minimum in this plane" });
+    marks.push({ x: 0, y: 0, value: reply.value, shape: "ring", colour: "series5", size: 13, label: "start" });
+    signs.push({ sign: "○", colour: "series5", text: `start: E = ${short(reply.value, 6)}` });
     const accepted = reply.trials.find((t) => t.accepted)?.value ?? null;
     if (reply.alpha > 0) {
       marks.push({ x: reply.alpha, y: 0, value: accepted, shape: "dot", colour: "good", size: 13, label: "accepted" });
@@ -160,7 +160,7 @@ class LandscapePanel implements Panel {
         colour: "good",
         text: `accepted: α = ${short(reply.alpha, 3)}${accepted === null ? "" : `, E lower by ${short(reply.value - accepted, 3)}`}`,
       });
-    } else signs.push({ sign: "✕", colour: "bad", text: "no step was found along d" });
+    } else signs.push({ sign: "✕", colour: "series11", text: "no step was found along d" });
     signs.push({ sign: "•─", colour: "text", text: "iterates, projected" });
     this.signs = signs;
     const end = grid.x[grid.x.length - 1]!;

@@ -1,4 +1,5 @@
 // The solver under the microscope: the steps, the iterations of one of them, and the line search of one iteration.
+import { statusName } from "../names";
 import type { Page, Panel } from "../page";
 import type { IterationRow, SideName, StepRow, WorstReply } from "../protocol";
 import type { Store } from "../store";
@@ -188,7 +189,7 @@ class MicroscopePanel implements Panel {
     this.sides.element.hidden = !two;
     if (!two) return;
     const options = (["a", "b"] as const).map(
-      (side) => new Option(`${side.toUpperCase()}: ${this.store.side(side)?.scene.label || side}`, side),
+      (side) => new Option(sideTitle(side, this.store.side(side)?.scene.label ?? ""), side),
     );
     const text = options.map((option) => option.text).join();
     if (this.sides.element.dataset.text !== text) this.sides.select.replaceChildren(...options);
@@ -295,6 +296,10 @@ class MicroscopePanel implements Panel {
   }
 }
 
+function sideTitle(side: SideName, label: string): string {
+  return label === "" ? side.toUpperCase() : `${side.toUpperCase()}: ${label}`;
+}
+
 function residualText(step: StepRow): string {
   if (step.residual === null || step.threshold === null || step.threshold <= 0) return withUnit(step.residual, "N", 3);
   return `${short(step.residual / step.threshold, 2)} ×`;
@@ -302,5 +307,5 @@ function residualText(step: StepRow): string {
 
 function statusText(step: StepRow): string {
   if (step.status === "under way") return "… under way";
-  return `${step.success ? "✓" : "✗"} ${step.status.replaceAll("_", " ")}`;
+  return `${step.success ? "✓" : "✗"} ${statusName(step.status)}`;
 }

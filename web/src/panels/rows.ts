@@ -3,6 +3,7 @@
 import { Controller } from "lil-gui";
 import type { GUI } from "lil-gui";
 import { element } from "../dom";
+import { choiceName, plainText } from "../names";
 import type { Setting, SettingValue } from "../protocol";
 import { numberText, parseNumber, toPosition, toValue } from "./scale";
 import type { Range } from "./scale";
@@ -199,13 +200,18 @@ class PlainRow implements Row {
   }
 }
 
+// Choices by their names for people.
+function named({ key, choices }: Setting): Record<string, string> {
+  return Object.fromEntries(choices.map((value) => [choiceName(key, value), value]));
+}
+
 export function addRow(gui: GUI, setting: Setting, changed: (value: SettingValue) => void): Row {
   const model: Model = { value: setting.value };
   const unit = setting.unit.replace("^2", "²").replace("^3", "³");
   const name = unit === "" ? setting.label : `${setting.label} [${unit}]`;
   const dress = <C extends Controller>(controller: C): C => {
     controller.name(name).onChange(changed);
-    controller.$name.title = `${setting.meaning}\n${setting.key}`;
+    controller.$name.title = `${plainText(setting.meaning)}\n${setting.key}`;
     return controller;
   };
   switch (setting.kind) {
@@ -216,8 +222,11 @@ export function addRow(gui: GUI, setting: Setting, changed: (value: SettingValue
       return dress(new VectorRow(gui, name, model));
     case "text":
       return dress(new TextRow(gui, name, model));
-    case "choice":
-      return new PlainRow(dress(gui.add(model, "value", setting.choices)), model);
+    case "choice": {
+      const controller = dress(gui.add(model, "value", named(setting)));
+      controller.domElement.querySelectorAll("option").forEach((option, i) => (option.value = setting.choices[i]));
+      return new PlainRow(controller, model);
+    }
     case "switch":
       return new PlainRow(dress(gui.add(model, "value")), model);
   }

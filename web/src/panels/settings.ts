@@ -1,15 +1,21 @@
 // The settings of the simulation: built from what the program says it has, sent while a slider moves, and put back where
 // the program refuses.
-import { GUI } from "lil-gui";
-import { element, messageOf } from "../dom";
+import { GUI, type Controller } from "lil-gui";
+import { button, element, messageOf } from "../dom";
+import { backTo, History, toLoaded, type SettingChange } from "../history";
+import { kMaterials } from "../materials";
 import { Newest } from "../newest";
 import type { Page } from "../page";
 import type { Scene, Setting, SettingValue, SideName } from "../protocol";
 import type { Store } from "../store";
+import { shortcutButton } from "../shortcuts";
 import { addRow, NumberRow } from "./rows";
 import type { Row } from "./rows";
 
 type Target = SideName | "both";
+
+const kClosed = ["World", "Solver", "Line search"]; // until the reader opens them
+const kOneChange = 1000; // [ms]: values that follow each other faster are one change
 
 // Whether the same rows can show both.
 function sameShape(a: Setting[], b: Setting[]): boolean {
@@ -32,6 +38,13 @@ export class Settings {
   private readonly senders = new Map<string, Newest<SettingValue>>();
   private readonly mouse: NumberRow;
   private readonly surface: HTMLSelectElement;
+  private readonly spring: GUI;
+  private readonly history = new History();
+  private readonly undoer: HTMLButtonElement;
+  private readonly resetter: HTMLButtonElement;
+  private newest = { key: "", at: 0 }; // the change that was made last
+  private loaded = ""; // which scene the history is about
+  private material: Controller | null = null;
 
   constructor(
     root: HTMLElement,
@@ -42,10 +55,20 @@ export class Settings {
     root.append(this.top);
     this.surface = this.makeSurface();
     root.append(element("label", { class: "surface-choice" }, element("span", {}, "Surface"), this.surface));
+    this.undoer = shortcutButton(
+      page,
+      { key: "z", does: "Undo the last change of a setting", group: "Simulation", run: () => void this.undo() },
+      { text: "Undo", steers: true },
+    );
+    const title = "Every setting as it was when the scene was loaded; the motion goes on from here";
+    this.resetter = button({ text: "Reset settings", title, steers: true }, () => void this.reset());
+    const actions = element("div", { class: "setting-actions" }, this.undoer, this.resetter);
+    actions.hidden = !store.source.live;
+    root.append(actions);
     this.gui = new GUI({ container: root, title: "Simulation" });
     if (!store.source.live) this.gui.close();
-    const spring = this.gui.addFolder("Spring of the mouse").show(store.source.live);
-    this.mouse = this.makeMouse(spring);
+    this.spring = this.gui.addFolder("Mouse spring").show(store.source.live).close();
+    this.mouse = this.makeMouse(this.spring);
     store.on("scene", () => this.update());
     store.on("gone", () => this.update());
     store.on("role", () => this.enable());
@@ -61,6 +84,9 @@ export class Settings {
     this.showSides();
     const scene = this.scene;
     if (!scene) return;
+    const loaded = JSON.stringify([scene.path, scene.loaded_overrides, this.store.side("b") !== null]);
+    if (loaded !== this.loaded) this.history.clear();
+    this.loaded = loaded;
     if (!sameShape(scene.settings, this.shown)) this.build(scene.settings);
     this.shown = scene.settings;
     this.showValues(scene);
@@ -76,13 +102,16 @@ export class Settings {
       const differs = this.target === "both" && twin && valueText(twin.value) !== valueText(setting.value);
       row?.mark(differs ? `A: ${valueText(setting.value)}, B: ${valueText(twin.value)}` : "");
     }
+    this.showMaterial(scene);
     this.mouse.display(scene.stiffness);
     this.surface.value = scene.surface;
     this.surface.closest("label")?.toggleAttribute("hidden", !scene.has_skin);
   }
 
   private build(settings: Setting[]): void {
-    const closed = new Set(this.folders.filter((folder) => folder._closed).map((folder) => folder._title));
+    const closed = this.folders.length === 0
+      ? new Set(kClosed)
+      : new Set(this.folders.filter((folder) => folder._closed).map((folder) => folder._title));
     for (const folder of this.folders) folder.destroy();
     this.folders = [];
     this.rows.clear();
@@ -91,8 +120,101 @@ export class Settings {
       const folder = this.gui.addFolder(group);
       this.folders.push(folder);
       if (closed.has(group)) folder.close();
+      if (group === "Material") this.addMaterials(folder, settings);
       for (const setting of settings) if (setting.group === group) this.addSetting(folder, setting);
     }
+    this.spring.domElement.parentElement?.append(this.spring.domElement); // the last
+  }
+
+  private addMaterials(folder: GUI, settings: Setting[]): void {
+    this.material = null;
+    if (!this.store.source.live || !settings.some(({ key }) => key === "material.young")) return;
+    const names = Object.fromEntries(kMaterials.map(({ name }) => [name, name]));
+    this.material = folder.add({ value: "" }, "value", { "choose ...": "", ...names }).name("Typical values");
+    this.material.onChange((name: string) => void this.takeMaterial(name));
+    this.material.$name.title = "Published moduli of real materials; each names its source.\nmaterial.young, material.poisson, material.density";
+    const options = [...this.material.domElement.querySelectorAll("option")];
+    kMaterials.forEach(({ source }, i) => (options[i + 1].title = source));
+  }
+
+  // The preset whose values the scene has, if there is one.
+  private showMaterial(scene: Scene): void {
+    if (!this.material) return;
+    const value = (name: string): unknown => scene.settings.find(({ key }) => key === `material.${name}`)?.value;
+    const shown = kMaterials.find(
+      ({ young, poisson, density }) => value("young") === young && value("poisson") === poisson && value("density") === density,
+    );
+    (this.material.object as { value: string }).value = shown?.name ?? "";
+    this.material.updateDisplay();
+    this.material.$widget.title = shown?.source ?? "";
+  }
+
+  private async takeMaterial(name: string): Promise<void> {
+    const chosen = kMaterials.find((material) => material.name === name);
+    if (!chosen) return this.update();
+    const values = { "material.young": chosen.young, "material.poisson": chosen.poisson, "material.density": chosen.density };
+    const changes: SettingChange[] = Object.entries(values)
+      .filter(([key]) => this.rows.has(key))
+      .map(([key, value]) => ({ key, value, ...this.side() }));
+    this.history.add(name, changes.flatMap(({ key }) => this.back(key)).reverse());
+    this.newest = { key: "", at: 0 };
+    await this.carryOut(changes);
+  }
+
+  // What brings a setting back to how it is now, on each side that a change is about.
+  private back(key: string): SettingChange[] {
+    const { a, b } = { a: this.store.side("a")?.scene, b: this.store.side("b")?.scene };
+    if (!a) return [];
+    if (!b) return [backTo(a, key)];
+    return [
+      ...(this.target === "b" ? [] : [backTo(a, key, "a")]),
+      ...(this.target === "a" ? [] : [backTo(b, key, "b")]),
+    ];
+  }
+
+  private note(setting: Setting): void {
+    const now = performance.now();
+    const goesOn = this.newest.key === setting.key && now - this.newest.at < kOneChange;
+    this.newest = { key: setting.key, at: now };
+    if (!goesOn) this.history.add(setting.label, this.back(setting.key));
+  }
+
+  private async undo(): Promise<void> {
+    this.newest = { key: "", at: 0 };
+    while (this.history.last !== null) {
+      const changes = this.history.pop().filter((change) => this.changes(change));
+      if (changes.length > 0) return this.carryOut(changes);
+    }
+    this.page.notice("No change of a setting is left to be undone.");
+  }
+
+  private async reset(): Promise<void> {
+    const sides = this.store.side("b") ? (["a", "b"] as const) : ([undefined] as const);
+    const changes = sides.flatMap((side) => {
+      const scene = this.store.side(side ?? "a")?.scene;
+      return scene ? toLoaded(scene, side) : [];
+    });
+    if (changes.length === 0) return this.page.notice("Every setting is as it was loaded.");
+    this.newest = { key: "", at: 0 };
+    this.history.add("reset", changes.flatMap(({ key, side }) => backTo(this.store.side(side ?? "a")!.scene, key, side)).reverse());
+    await this.carryOut(changes);
+  }
+
+  // Whether it would make a difference.
+  private changes({ key, value, side }: SettingChange): boolean {
+    const scene = this.store.side(side ?? "a")?.scene;
+    if (!scene) return false;
+    const now = backTo(scene, key);
+    return JSON.stringify(now.value) !== JSON.stringify(value);
+  }
+
+  private async carryOut(changes: SettingChange[]): Promise<void> {
+    try {
+      for (const change of changes) await this.store.source.request({ do: "set", ...change });
+    } catch (reason) {
+      this.page.notice(messageOf(reason), "error");
+    }
+    this.update();
   }
 
   private addSetting(folder: GUI, setting: Setting): void {
@@ -102,7 +224,13 @@ export class Settings {
       () => this.update(),
     );
     this.senders.set(setting.key, sender);
-    this.rows.set(setting.key, addRow(folder, setting, (value) => sender.push(value)));
+    this.rows.set(
+      setting.key,
+      addRow(folder, setting, (value) => {
+        this.note(setting);
+        sender.push(value);
+      }),
+    );
   }
 
   private side(): { side?: SideName } {
@@ -157,5 +285,7 @@ export class Settings {
     const may = this.store.source.live && this.store.steers && this.store.connected;
     for (const row of this.rows.values()) row.enable(may);
     this.mouse.enable(may);
+    this.material?.enable(may);
+    this.undoer.disabled = this.resetter.disabled = !may;
   }
 }

@@ -6,7 +6,7 @@ import "./plots.css";
 import type { MaybeNumber } from "../protocol";
 import { axis, padded, ranged, type Axis } from "./axes";
 import { element, oncePerFrame } from "./dom";
-import { palette, sameLook, type Colour, type Palette } from "./palette";
+import { cssOf, inkOf, palette, sameLook, type Colour, type Palette } from "./palette";
 
 export interface Curve {
   key: string; // curves of the same key share an entry of the legend
@@ -143,7 +143,7 @@ export class Chart {
     line: number,
   ): void {
     const curve = this.options!.curves.find((c) => c.key === key)!;
-    pen.strokeStyle = colours[curve.colour];
+    pen.strokeStyle = inkOf(colours, curve.colour);
     pen.lineWidth = (curve.width ?? 1.5) * uPlot.pxRatio;
     pen.setLineDash((curve.dash ?? []).map((d) => d * uPlot.pxRatio));
     pen.beginPath();
@@ -188,7 +188,7 @@ export class Chart {
   }
 
   private series(curve: Curve, colours: Palette): uPlot.Series {
-    const stroke = colours[curve.colour];
+    const stroke = inkOf(colours, curve.colour);
     const shape = curve.shape ?? "line";
     return {
       show: !this.hidden.has(curve.key),
@@ -249,7 +249,7 @@ export class Chart {
       const values = element("span", { class: "chart-values" });
       const sample = element("span", { class: "chart-sample" });
       const dashed = curve.dash ? "dashed" : "solid";
-      sample.style.borderTop = `${Math.max(2, (curve.width ?? 1.5) * 1.4)}px ${dashed} var(${variableOf(curve.colour)})`;
+      sample.style.borderTop = `${Math.max(2, (curve.width ?? 1.5) * 1.4)}px ${dashed} ${cssOf(curve.colour)}`;
       const entry = element("button", {
         type: "button",
         class: "chart-entry",
@@ -285,10 +285,6 @@ export class Chart {
       });
     }
   }
-}
-
-function variableOf(colour: Colour): string {
-  return "--" + colour.replace(/(\d)/, "-$1");
 }
 
 // Dots on a line only where they stand apart.

@@ -2,7 +2,7 @@
 import type { MaybeNumber, StepRow } from "../protocol";
 import { lowerBound } from "./table";
 import { short, withUnit } from "./numbers";
-import type { Colour } from "./palette";
+import { furtherColour, type Colour } from "./palette";
 
 export interface LedgerColumn {
   key: string;
@@ -13,7 +13,8 @@ export interface LedgerColumn {
   dotted: boolean; // sums over the steps
 }
 
-const kTermColours: Colour[] = ["series3", "series6", "series4", "series5", "series1"];
+// No two curves of a legend have the same color.
+const kTermColours: Colour[] = ["series6", "series4", "series5", "series12", "series13", "series14", "series11"];
 
 export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
   const line = (
@@ -36,7 +37,7 @@ export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
       `potential_${name}`,
       `V: ${name.replaceAll("_", " ")}`,
       "a term of the potential energy",
-      kTermColours[i % kTermColours.length]!,
+      kTermColours[i] ?? furtherColour(i),
       1.25,
     ),
   );
@@ -45,14 +46,17 @@ export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
     ...terms,
     line("potential_total", "V", "potential energy, the sum of its terms", "series1", 2),
     line("total", "T + V", "kinetic plus potential energy", "text", 2.5),
-    line("mouse_work", "work of the mouse", "by the mouse's spring, summed over the steps", "series4", 1.5, true),
-    line("probe_work", "work of the probe", "by the tip that is pressed in, summed over the steps", "series6", 1.5, true),
-    line("pin_work", "work of pins", "by moving pins and targets, summed over the steps", "series5", 1.5, true),
+    line("mouse_work", "work of the mouse", "by the mouse's spring, summed over the steps", "series8", 1.5, true),
+    line("probe_work", "work of the probe", "by the tip that is pressed in, summed over the steps", "series10", 1.5, true),
+    line("pin_work", "work of pins", "by moving pins and targets, summed over the steps", "series9", 1.5, true),
     line("damping_loss", "damping loss", "dissipated by damping, summed over the steps", "series7", 1.5, true),
     line("numerical_loss", "numerical loss", "dissipated by the integrator, summed over the steps", "bad", 1.5, true),
     line("balance", "balance", "T + V − works + losses: flat where every step was solved accurately", "good", 2.5),
   ];
 }
+
+const kAlways = ["total", "balance"];
+const kExplosion = 1e3; // times the energy that was there or was put in
 
 // All steps since the start; where they are very many, every other one of the older half goes.
 const kMostSteps = 100_000;
@@ -66,15 +70,20 @@ export class Ledger {
   private readonly lowest: number[] = []; // of the balance so far
   private readonly highest: number[] = [];
   private readonly largest: number[] = []; // magnitude of any column so far
+  private readonly peak: number[] = []; // of T + V so far
+  private readonly given: number[] = []; // energy that was there at first, or was put in or taken out since
+  private readonly first: (number | undefined)[]; // where each column is not zero for the first time
 
   constructor(readonly potentials: readonly string[]) {
     this.columns = ledgerColumns(potentials).map(() => []);
+    this.first = this.columns.map(() => undefined);
   }
 
   // Steps after number `from` are as in `rows`, of consecutive steps; earlier ones are known.
   update(rows: readonly StepRow[], from: number): void {
     const keep = lowerBound(this.step, from + 0.5);
     for (const column of this.all()) column.length = keep;
+    this.first.forEach((at, i) => (this.first[i] = at !== undefined && at < keep ? at : undefined));
     const known = this.step[keep - 1] ?? -Infinity;
     const first = rows[0]?.step ?? 0;
     for (let i = Math.max(0, known + 1 - first); i < rows.length; ++i) this.append(rows[i]!);
@@ -82,7 +91,7 @@ export class Ledger {
   }
 
   private all(): MaybeNumber[][] {
-    const running = [this.lowest, this.highest, this.largest];
+    const running = [this.lowest, this.highest, this.largest, this.peak, this.given];
     return [this.step, this.time, this.residualWork, this.ledgerError, ...running, ...this.columns];
   }
 
@@ -93,6 +102,28 @@ export class Ledger {
       column.length = kept.length;
       kept.forEach((value, i) => (column[i] = value));
     }
+    this.columns.forEach((column, i) => {
+      if (this.first[i] !== undefined) this.first[i] = Math.max(0, column.findIndex((value) => value !== 0));
+    });
+  }
+
+  // Which columns to show: those that were ever other than zero, or are not known, and the sums T + V and balance.
+  used(): string[] {
+    const columns = ledgerColumns(this.potentials);
+    return columns.filter(({ key }, i) => kAlways.includes(key) || this.first[i] !== undefined).map(({ key }) => key);
+  }
+
+  // The largest T + V, when it is far above the energy at the start and all works: the scheme has made it out of nothing.
+  exploded(): number | null {
+    const last = this.step.length - 1;
+    if (last < 0) return null;
+    if (this.columns[this.totalColumn]![last] === null) return Infinity;
+    const peak = this.peak[last]!;
+    return peak > kExplosion * this.given[last]! && peak > 0.1 * this.largest[last]! ? peak : null;
+  }
+
+  private get totalColumn(): number {
+    return this.potentials.length + 2;
   }
 
   // The range that the balance has covered since the first step, and the largest energy so far.
@@ -109,12 +140,18 @@ export class Ledger {
     const potential = sum(terms);
     const total = sum([row.kinetic, potential]);
     const flows = [row.mouse_work, row.probe_work, row.pin_work, row.damping_loss, row.numerical_loss];
-    const firstFlow = terms.length + 3;
+    const firstFlow = this.totalColumn + 1;
     const sums = flows.map((flow, i) => sum([last < 0 ? 0 : this.columns[firstFlow + i]![last]!, flow]));
     const [mouse, probe, pins, damping, numerical] = sums as MaybeNumber[];
     const balance = sum([total, negated(mouse!), negated(probe!), negated(pins!), damping!, numerical!]);
     const values = [row.kinetic, ...terms, potential, total, ...sums, balance];
-    values.forEach((value, i) => this.columns[i]!.push(value));
+    values.forEach((value, i) => {
+      if (value !== 0) this.first[i] ??= this.step.length;
+      this.columns[i]!.push(value);
+    });
+    const works = Math.abs(mouse ?? 0) + Math.abs(probe ?? 0) + Math.abs(pins ?? 0);
+    this.peak.push(Math.max(this.peak[last] ?? 0, total ?? 0));
+    this.given.push(Math.max(this.given[last] ?? Math.abs(balance ?? 0), works));
     this.lowest.push(Math.min(this.lowest[last] ?? Infinity, balance ?? Infinity));
     this.highest.push(Math.max(this.highest[last] ?? -Infinity, balance ?? -Infinity));
     this.largest.push(Math.max(this.largest[last] ?? 0, ...values.map((v) => Math.abs(v ?? 0))));
@@ -153,6 +190,10 @@ function sum(parts: readonly MaybeNumber[]): MaybeNumber {
 
 function negated(value: MaybeNumber): MaybeNumber {
   return value === null ? null : -value;
+}
+
+export function explosionText(peak: number): string {
+  return Number.isFinite(peak) ? `exploded: T + V rose to ${withUnit(peak, "J", 3)} out of nothing` : "exploded: T + V is no number any more";
 }
 
 export function balanceText(drift: number, scale: number): string {

@@ -1,6 +1,6 @@
 // What the signs in a picture of a surface mean.
 import { element } from "./dom";
-import type { Colour, Palette } from "./palette";
+import { cssOf, inkOf, type Colour, type Palette } from "./palette";
 
 export interface Sign {
   sign: string;
@@ -12,7 +12,7 @@ export function legendOf(signs: readonly Sign[]): HTMLDListElement {
   const list = element("dl", { class: "surface-legend" });
   for (const { sign, colour, text } of signs) {
     const term = element("dt", {}, sign);
-    term.style.color = `var(--${colour.replace(/(\d)/, "-$1")})`;
+    term.style.color = cssOf(colour);
     list.append(term, element("dd", {}, text));
   }
   return list;
@@ -32,7 +32,7 @@ export function paintLegend(
       line * 0.5 + (i % columns) * ((pen.canvas.width - line) / columns),
       top + line * (Math.floor(i / columns) + 0.5),
     ];
-    pen.fillStyle = colours[colour];
+    pen.fillStyle = inkOf(colours, colour);
     pen.fillText(sign, x, y);
     pen.fillStyle = colours.text;
     pen.fillText(text, x + line * 1.5, y);

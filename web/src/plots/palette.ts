@@ -15,11 +15,34 @@ const kNames = {
   series5: "--series-5",
   series6: "--series-6",
   series7: "--series-7",
+  series8: "--series-8",
+  series9: "--series-9",
+  series10: "--series-10",
+  series11: "--series-11",
+  series12: "--series-12",
+  series13: "--series-13",
+  series14: "--series-14",
 } as const;
 
-export type Colour = keyof typeof kNames;
+type Name = keyof typeof kNames;
+export type Colour = Name | `hsl(${string}`; // of the style sheet, or one that is made
 
-export interface Palette extends Record<Colour, string> {
+// Colors without end, hues far from each other.
+export function furtherColour(i: number): Colour {
+  return `hsl(${((137.508 * i) % 360).toFixed(1)} ${i % 2 === 0 ? 60 : 35}% 50%)`;
+}
+
+// As a canvas takes it.
+export function inkOf(colours: Palette, colour: Colour): string {
+  return colour in kNames ? colours[colour as Name] : colour;
+}
+
+// As a style takes it.
+export function cssOf(colour: Colour): string {
+  return colour in kNames ? `var(${kNames[colour as Name]})` : colour;
+}
+
+export interface Palette extends Record<Name, string> {
   font: string; // of a canvas
   fontSize: number; // [CSS px]
 }
@@ -32,7 +55,7 @@ export function palette(of: HTMLElement): Palette {
   const style = getComputedStyle(of);
   const colours = Object.fromEntries(
     Object.entries(kNames).map(([name, variable]) => [name, style.getPropertyValue(variable).trim() || "#888888"]),
-  ) as Record<Colour, string>;
+  ) as Record<Name, string>;
   const fontSize = Number.parseFloat(style.fontSize) || 14;
   return { ...colours, fontSize, font: `${fontSize * 0.86}px ${style.fontFamily || "sans-serif"}` };
 }

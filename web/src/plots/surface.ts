@@ -4,7 +4,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { element, oncePerFrame } from "./dom";
 import { sample, type Point } from "./grid";
 import { legendColumns, paintLegend, type Sign } from "./legend";
-import { palette, sameLook, type Palette } from "./palette";
+import { inkOf, palette, sameLook, type Palette } from "./palette";
 import { SurfaceBody, type SurfaceContent } from "./surfaceBody";
 import { axisLabels, placed, type Placed } from "./surfaceLabels";
 import "./plots.css";
@@ -98,7 +98,7 @@ export class SurfaceView {
     pen.textBaseline = "middle";
     pen.font = `${this.colours.fontSize * 0.82 * scale}px sans-serif`;
     for (const { label, x, y } of this.placedLabels()) {
-      pen.fillStyle = this.colours[label.colour];
+      pen.fillStyle = inkOf(this.colours, label.colour);
       pen.fillText(label.text, x * scale, y * scale + line * 1.5);
     }
     pen.fillStyle = this.colours.text;

@@ -5,7 +5,7 @@ import { LineGeometry } from "three/addons/lines/LineGeometry.js";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import type { MaybeNumber } from "../protocol";
 import { clipped, heightRange, isInside, sample, valueAtHeight, type Grid, type Point } from "./grid";
-import type { Colour, Palette } from "./palette";
+import { inkOf, type Colour, type Palette } from "./palette";
 import type { Label } from "./surfaceLabels";
 import { Frame, gridLines, levelLines, markTexture, surfaceGeometry, type MarkShape } from "./surfaceParts";
 
@@ -224,7 +224,7 @@ export class SurfaceBody {
       Math.max(Math.min(value, this.frame.range.high), this.frame.range.low),
       0.008,
     );
-    this.addPoints([place], mark.shape, this.colours[mark.colour], this.colours.panel, mark.size);
+    this.addPoints([place], mark.shape, inkOf(this.colours, mark.colour), this.colours.panel, mark.size);
     if (mark.label)
       this.labels.push({ text: (above ? "↑ " : "") + mark.label, place, colour: mark.colour, important: true });
   }

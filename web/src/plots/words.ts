@@ -1,5 +1,6 @@
 // How a minimisation went, in sentences that say no more than its numbers do.
 import type { IterationRow, MaybeNumber, StepRow } from "../protocol";
+import { statusName } from "../names";
 import { plural, short, withUnit } from "./numbers";
 
 export type Pace = "squaring" | "faster" | "steady" | "none";
@@ -51,7 +52,7 @@ export function stepText(row: StepRow, implicit: boolean): string {
   if (!implicit) return "Nothing is minimised: this scheme computes the next positions from the forces at hand.";
   const count = plural(row.iterations.length, "iteration");
   if (!row.success)
-    return `Not converged (${row.status.replaceAll("_", " ")}) after ${count}${residualText(row) ? `: ${residualText(row)}` : ""}.`;
+    return `Not converged (${statusName(row.status)}) after ${count}${residualText(row) ? `: ${residualText(row)}` : ""}.`;
   if (row.iterations.length === 0)
     return `Converged: ${residualText(row) || "the criterion is met"}. It needed no iteration, or they are no longer kept.`;
   if (row.status === "round_off")

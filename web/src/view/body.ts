@@ -2,6 +2,7 @@
 import * as THREE from "three";
 import type { ColourRange } from "./ranges";
 import type { Geometry, Picture, Vec3 } from "../protocol";
+import { bodiesOf, bodyColours, bodyTexels } from "./bodies";
 import { mapTexels, type MapName } from "./colourMaps";
 import type { DisplaySettings } from "./display";
 import { kSkinPoint } from "./labels";
@@ -56,12 +57,19 @@ export class Body {
   private readonly lift = { value: 0 };
   private readonly pinMaterial = makePinMaterial(this.lift);
   private readonly mesh: THREE.Mesh;
+  private readonly bodyCount: number;
+  private readonly bodies: Float32Array | null; // of each vertex, where there are several
   private readonly wires: THREE.LineSegments;
   private readonly pins: THREE.Points;
   private gloss = 0;
-  private mapShown: MapName | null = null;
+  private mapShown: string | null = null; // name of the map, or the colors of bodies
 
-  constructor(readonly geometry: Geometry) {
+  constructor(
+    readonly geometry: Geometry,
+    bodyTets: readonly number[] = [],
+  ) {
+    this.bodyCount = bodyTets.length;
+    this.bodies = this.bodyCount > 1 ? bodiesOf(geometry, bodyTets) : null;
     const n = geometry.rest.length / 3;
     this.edge = meanEdge(geometry);
     this.numbered = geometry.vertex.some((vertex) => vertex !== kSkinPoint);
@@ -128,15 +136,34 @@ export class Body {
     this.uniforms.fieldShown.value = range !== null;
     this.surface.specular.setScalar(range ? 0.3 * this.gloss : this.gloss); // glare hides colours
     if (!range) return;
+    this.showMap(map, () => mapTexels(map, 256));
     const [low, high] = range.log ? [Math.log(range.low), Math.log(range.high)] : [range.low, range.high];
     // A constant field has the colour in the middle.
     this.uniforms.fieldLow.value = high > low ? low : low - 0.5;
     this.uniforms.fieldScale.value = high > low ? 1 / (high - low) : 1;
     this.uniforms.fieldLog.value = range.log;
-    if (map === this.mapShown) return;
-    this.mapShown = map;
+  }
+
+  // Several bodies have a color each, the first the reader's own; one has that alone.
+  colourBodies(own: string): void {
+    this.uniforms.fieldShown.value = this.bodies !== null;
+    this.surface.specular.setScalar(this.gloss);
+    if (!this.bodies) return;
+    this.values.array = this.bodies;
+    this.values.needsUpdate = true;
+    const colours = bodyColours(own, this.bodyCount);
+    this.showMap(colours.join(), () => bodyTexels(colours));
+    this.uniforms.fieldLow.value = 0;
+    this.uniforms.fieldScale.value = 1 / (this.bodyCount - 1);
+    this.uniforms.fieldLog.value = false;
+  }
+
+  private showMap(name: string, make: () => Uint8Array): void {
+    if (name === this.mapShown) return;
+    this.mapShown = name;
     this.uniforms.fieldMap.value?.dispose();
-    const texture = new THREE.DataTexture(mapTexels(map, 256), 256, 1);
+    const texels = make();
+    const texture = new THREE.DataTexture(texels, texels.length / 4, 1);
     texture.colorSpace = THREE.SRGBColorSpace;
     texture.magFilter = THREE.LinearFilter;
     texture.minFilter = THREE.LinearFilter;

@@ -3,6 +3,7 @@ import { element, messageOf } from "../dom";
 import type { Highlight } from "../page";
 import type { Scene, SideName, TetReply, Vec3, VertexReply } from "../protocol";
 import type { Store } from "../store";
+import { bodyOfTet } from "./bodies";
 import { isFinite3 } from "./lens";
 import type { Hit } from "./picking";
 import { matrixText, valueText, vectorText } from "./values";
@@ -88,7 +89,8 @@ export class Card {
       this.fields.show("Fields there", []);
     }
     if (tet.status === "fulfilled") {
-      this.tet.show(`Tet ${tet.value.tet}`, tetRows(tet.value));
+      const body = scene.bodies.length > 1 ? ` of ${scene.bodies[bodyOfTet(tet.value.tet, scene.body_tets)]}` : "";
+      this.tet.show(`Tet ${tet.value.tet}${body}`, tetRows(tet.value));
       this.mark(tet.value.positions);
     } else this.tet.show("Tet", [["not told", messageOf(tet.reason)]]);
     this.element.hidden = false;

@@ -68,6 +68,7 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
   readonly cameras: { a: CameraRig; b: CameraRig } = { a: new CameraRig(), b: new CameraRig() };
   fields: Field[] = []; // of side a
   field = ""; // shown; "" for none
+  bodies = 1; // of side a
   showsBench = false; // its markers
   private readonly running = new RunningRange();
   private measured = ""; // field whose range is running
@@ -89,7 +90,8 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
     this.emit("changed", undefined);
   }
 
-  setFields(fields: Field[], field: string): void {
+  setFields(fields: Field[], field: string, bodies: number): void {
+    this.bodies = bodies;
     this.fields = fields;
     this.field = field;
     this.emit("changed", undefined);

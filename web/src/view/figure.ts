@@ -39,7 +39,7 @@ export class Figure {
     if (!stage || !side?.geometry || this.body?.geometry === side.geometry) return false;
     this.drop();
     stage.place(side.scene);
-    this.body = new Body(side.geometry);
+    this.body = new Body(side.geometry, side.scene.body_tets);
     stage.show(this.body);
     this.body.setPins(side.pins);
     this.takePicture();
@@ -77,7 +77,8 @@ export class Figure {
 
   colour(): void {
     const shown = this.coloured();
-    this.body?.colour(shown && shown.range, shown ? this.display.map(shown.field) : "viridis");
+    if (shown) this.body?.colour(shown.range, this.display.map(shown.field));
+    else this.body?.colourBodies(this.display.settings.bodyColour);
   }
 
   // What the body's colours mean.

@@ -150,38 +150,46 @@ export function axes(ink: Ink, lens: Lens): void {
   }
 }
 
-// The colours of a field with ticks, at the right edge.
-export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange, map: MapName): number {
+export const kBarWidth = 8.5; // of the strip beside the view that belongs to the colour bar [em]
+
+// As few lines as the words need at this width.
+function wrapped(ink: Ink, words: string, width: number): string[] {
+  const lines: string[] = [];
+  for (const word of words.split(" ")) {
+    const longer = `${lines[lines.length - 1] ?? ""} ${word}`.trim();
+    if (lines.length > 0 && ink.context.measureText(longer).width <= width) lines[lines.length - 1] = longer;
+    else lines.push(word);
+  }
+  return lines;
+}
+
+// Text in lines that end left of the right edge.
+export function paragraph(ink: Ink, lens: Lens, words: string, x: number, y: number): void {
+  const lines = wrapped(ink, words, Math.max(8 * ink.em, lens.width - x - ink.em));
+  lines.forEach((line, i) => text(ink, line, x, y + 1.25 * i * ink.em));
+}
+
+// The colours of a field with ticks, in a strip right of the view: nothing of the body is behind it.
+export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange, map: MapName): void {
   const { em } = ink;
-  const height = Math.min(16 * em, lens.height - 7 * em);
-  if (height < 3 * em) return lens.width;
-  const [left, top, width] = [lens.width - 2.1 * em, 3.2 * em, 1.1 * em];
+  ink.context.fillStyle = ink.halo;
+  ink.context.fillRect(lens.width, 0, kBarWidth * em + 1, lens.height);
   const title = `${field.label}${field.unit && ` [${unitText(field.unit)}]`}${range.log ? ", logarithmic" : ""}`;
+  const right = lens.width + (kBarWidth - 0.6) * em;
+  const lines = wrapped(ink, title, (kBarWidth - 1) * em);
+  lines.forEach((line, i) => text(ink, line, right, (1 + 1.25 * i) * em, "right"));
+  const [left, top, width] = [right - 1.1 * em, (1.25 * lines.length + 1.2) * em, 1.1 * em];
+  const height = Math.min(16 * em, lens.height - top - 1.2 * em);
+  if (height < 3 * em) return;
   const values = range.log ? logTicks(range.low, range.high) : ticks(range.low, range.high, height / (2.6 * em));
   const words = range.log || values.length < 2 ? values.map((value) => short(value)) : tickTexts(values);
-  const widest = Math.max(0, ...words.map((word) => ink.context.measureText(word).width)) + 1.6 * em + width;
-  const backed = Math.max(widest, ink.context.measureText(title).width) + em;
-  backing(ink, { left: lens.width - 0.4 * em - backed, top: top - 2.4 * em, width: backed, height: height + 3.2 * em });
   colours(ink, { left, top, width, height }, map, range.high > range.low);
-  text(ink, title, left + width, top - 1.4 * em, "right");
   values.forEach((value, i) => {
     const y = top + height * (1 - fraction(range, value));
     ink.context.fillStyle = ink.text;
     ink.context.fillRect(left - 0.35 * em, y - 0.5, 0.35 * em, 1);
     text(ink, words[i], left - 0.6 * em, y, "right");
   });
-  return lens.width - 0.4 * em - backed;
-}
-
-// Sets off what stands on it from the body behind.
-function backing(ink: Ink, { left, top, width, height }: Place): void {
-  const { context } = ink;
-  context.globalAlpha = 0.8;
-  context.fillStyle = ink.halo;
-  context.beginPath();
-  context.roundRect(left, top, width, height, 0.4 * ink.em);
-  context.fill();
-  context.globalAlpha = 1;
 }
 
 function colours(ink: Ink, { left, top, width, height }: Place, map: MapName, varies: boolean): void {

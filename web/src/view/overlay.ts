@@ -68,20 +68,20 @@ export class Overlay {
 
   draw(lens: Lens, style: Style, what: Marks): void {
     const { context } = this;
-    const ratio = this.canvas.width / lens.width;
+    const ratio = this.canvas.height / lens.height; // it is wider than what the lens sees, where there is a colour bar
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    context.clearRect(0, 0, lens.width, lens.height);
+    context.clearRect(0, 0, this.canvas.width / ratio, lens.height);
     context.font = `${style.em}px ${style.font}`;
     const ink: marks.Ink = { context, em: style.em, text: style.text, halo: style.background, accent: style.accent };
     for (const { x, y, text } of what.labels) marks.label(ink, text, x, y);
-    const right = what.bar ? marks.colourBar(ink, lens, what.bar.field, what.bar.range, what.bar.map) : lens.width;
-    marks.highlights(ink, lens, what.highlights, right);
+    marks.highlights(ink, lens, what.highlights, lens.width);
     if (what.axes) marks.axes(ink, lens);
     if (what.gridStep > 0) marks.gridNote(ink, lens, what.gridStep);
     for (const dot of what.dots) marks.surfaceDot(ink, lens, dot.at, dot.normal, dot.ring);
     if (what.spring) marks.spring(ink, lens, what.spring.point, what.spring.target, what.spring.force);
     if (what.brush) marks.ring(ink, what.brush.at, what.brush.radius, what.brush.words);
-    if (what.tip) marks.text(ink, what.tip.words, what.tip.at[0] + style.em, what.tip.at[1] - style.em);
+    if (what.bar) marks.colourBar(ink, lens, what.bar.field, what.bar.range, what.bar.map);
+    if (what.tip) marks.paragraph(ink, lens, what.tip.words, what.tip.at[0] + style.em, what.tip.at[1] - style.em);
   }
 
   // Both canvases in one, of the same size.

@@ -191,8 +191,8 @@ export class Touch {
   }
 
   private zoom(factor: number, x: number, y: number): void {
-    const { clientWidth, clientHeight } = this.view.host;
-    this.view.rig.zoom(factor, x - clientWidth / 2, clientHeight / 2 - y, clientHeight);
+    const { width, height } = this.view.lens();
+    this.view.rig.zoom(factor, x - width / 2, height / 2 - y, height);
   }
 
   // Ends what is under way; the spring lets go.

@@ -11,6 +11,7 @@ import { Figure } from "./figure";
 import { chooseLabels, type Label } from "./labels";
 import type { Lens } from "./lens";
 import { markersOn, nearestOn } from "./markers";
+import { kBarWidth } from "./marks";
 import { Overlay, png, readStyle, type Dot, type Marks, type Style } from "./overlay";
 import { Pace } from "./pace";
 import { interpolated, nearestVertex, type Hit, type Surface } from "./picking";
@@ -65,7 +66,8 @@ export class View implements Touched {
   }
 
   lens(): Lens {
-    return this.rig.lens(...this.size());
+    const [width, height] = this.size();
+    return this.rig.lens(Math.max(1, width - this.strip()), height);
   }
 
   surface(): Surface | null {
@@ -201,7 +203,7 @@ export class View implements Touched {
     if (this.figure.takeScene()) this.card.close();
     const scene = this.figure.side?.scene;
     // Side a tells the fields to the display, which then changes for all.
-    if (scene && this.side === "a") this.display.setFields(scene.fields, scene.field);
+    if (scene && this.side === "a") this.display.setFields(scene.fields, scene.field, scene.bodies.length);
     else this.applyDisplay();
   }
 
@@ -247,6 +249,11 @@ export class View implements Touched {
     return this.fixedSize ?? [this.host.clientWidth, this.host.clientHeight];
   }
 
+  // Beside the body, for the colour bar.
+  private strip(): number {
+    return this.figure.coloured() ? kBarWidth * this.style.em : 0;
+  }
+
   private pixelRatio(): number {
     return this.fixedSize ? 1 : Math.min(3, window.devicePixelRatio || 1);
   }
@@ -255,9 +262,11 @@ export class View implements Touched {
     const ratio = this.pixelRatio() * this.sharpness;
     const { canvas } = this.overlay;
     const [columns, rows] = [Math.floor(width * ratio), Math.floor(height * ratio)];
-    if (canvas.width === columns && canvas.height === rows) return;
+    const seen = Math.max(1, width - this.strip());
+    if (canvas.width === columns && canvas.height === rows && this.glCanvas.width === Math.floor(seen * ratio)) return;
     this.stage?.renderer.setPixelRatio(ratio);
-    this.stage?.renderer.setSize(width, height, false);
+    this.stage?.renderer.setSize(seen, height, false);
+    this.glCanvas.style.width = `${seen}px`;
     [canvas.width, canvas.height] = [columns, rows];
   }
 

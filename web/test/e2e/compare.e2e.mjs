@@ -96,7 +96,7 @@ test("settings of the sides are set apart or together", async () => {
   const { page, heard, until, close } = opened;
   await compare(opened, "Half the time step");
   assert.equal(settingOf(heard, "time.step", "b").value, settingOf(heard, "time.step").value / 2);
-  const poisson = page.getByLabel("nu", { exact: true });
+  const poisson = page.getByLabel(/^Poisson's ratio.ν$/);
   for (const [side, value, a, b] of [["B", 0.3, 0.4, 0.3], ["A", 0.2, 0.2, 0.3], ["both", 0.1, 0.1, 0.1]]) {
     await page.locator(".sides").getByLabel(side, { exact: true }).check();
     await poisson.fill(String(value));

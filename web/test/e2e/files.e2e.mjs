@@ -17,7 +17,7 @@ async function loadFile({ page, until, choosers }, name, buffer) {
 test("a workspace brings back settings, comparison, camera and panels", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
-  const nu = page.getByLabel("nu", { exact: true });
+  const nu = page.getByLabel(/^Poisson's ratio.ν$/);
   await nu.fill("0.2");
   await nu.press("Enter");
   await until("nu", () => settingOf(heard, "material.poisson").value === 0.2);
@@ -147,7 +147,7 @@ test("a recorded session is repeated to the bit, from memory and from its file",
   await atStep(3);
   await page.mouse.up();
   await until("a release", ({ state }) => !state.a.grab);
-  const nu = page.getByLabel("nu", { exact: true });
+  const nu = page.getByLabel(/^Poisson's ratio.ν$/);
   const before = await nu.inputValue();
   await nu.fill("0.3");
   await nu.press("Enter");

@@ -116,7 +116,7 @@ test("every control of the view's display can be used, and nothing breaks", asyn
   const opened = await withSteps();
   const { page, errors, until, close } = opened;
   await openFolders(page);
-  const view = page.locator("#right .lil-gui.lil-root").nth(1);
+  const view = page.locator("#right .lil-gui.lil-root").first();
   for (const select of await view.locator("select").all()) {
     const values = await select.locator("option").evaluateAll((options) => options.map((option) => option.value));
     const first = await select.inputValue();

@@ -17,6 +17,15 @@ async function backToTheScene({ page, heard, until }) {
   await until("the scene", () => heard.messages.slice(from).some(({ kind }) => kind === "scene"));
 }
 
+// With every folder open, as a reader leaves them who changes what is folded away.
+async function openSettings() {
+  const opened = await openSession(program);
+  const closed = opened.page.locator("#right .lil-closed > .lil-title");
+  await closed.evaluateAll((titles) => titles.forEach((title) => title.click()));
+  await opened.until("open folders", async () => (await closed.count()) === 0);
+  return opened;
+}
+
 const isAbout = (key) => (message) => message.do === "set" && message.key === key;
 const set = (opened, key, act) => answered(opened, key, isAbout(key), act);
 
@@ -35,7 +44,7 @@ async function typeInto(field, text) {
 }
 
 test("every setting has a row, and takes another value", async () => {
-  const opened = await openSession(program);
+  const opened = await openSettings();
   const { page, heard, close } = opened;
   const settings = heard.scenes.a.settings;
   assert.ok(settings.length > 20, `${settings.length} settings`);
@@ -78,7 +87,7 @@ test("every setting has a row, and takes another value", async () => {
 });
 
 test("every slider moves its value by the keyboard", async () => {
-  const opened = await openSession(program);
+  const opened = await openSettings();
   const { page, heard, close } = opened;
   for (const { key, kind } of heard.scenes.a.settings.filter((setting) => setting.kind === "number" || setting.kind === "integer")) {
     const setting = settingOf(heard, key);
@@ -95,7 +104,7 @@ test("every slider moves its value by the keyboard", async () => {
 });
 
 test("every choice of every setting is taken or refused in words, and a step can be taken with it", async () => {
-  const opened = await openSession(program);
+  const opened = await openSettings();
   const { page, heard, until, close } = opened;
   for (const { key, choices, value: first } of heard.scenes.a.settings.filter(({ kind }) => kind === "choice")) {
     for (const value of [...choices.filter((choice) => choice !== first), first]) {
@@ -116,7 +125,7 @@ test("every choice of every setting is taken or refused in words, and a step can
 });
 
 test("what is typed wrongly is refused in words, put back, and the simulation goes on", async () => {
-  const opened = await openSession(program);
+  const opened = await openSettings();
   const { page, heard, until, close } = opened;
   for (const { key } of heard.scenes.a.settings.filter(({ kind }) => ["number", "integer", "vector"].includes(kind))) {
     const setting = settingOf(heard, key);
@@ -151,7 +160,7 @@ test("what is typed wrongly is refused in words, put back, and the simulation go
 });
 
 test("extremes while it plays: it goes on, and says what failed", async () => {
-  const opened = await openSession(program);
+  const opened = await openSettings();
   const { page, heard, until, close } = opened;
   await setPlaying(opened, true);
   for (const setting of heard.scenes.a.settings.filter(({ kind, value }) => kind === "number" && typeof value === "number")) {

@@ -1,0 +1,96 @@
+// Names for people of what scenes and reports name by keys. Keys stay the values that are sent.
+
+const kChoices: Record<string, string> = {
+  // material models
+  neo_hookean: "Neo-Hookean",
+  stable_neo_hookean: "Stable neo-Hookean",
+  neo_hookean_log: "Neo-Hookean, log J",
+  neo_hookean_log_j2: "Neo-Hookean, log² J",
+  neo_hookean_isochoric: "Neo-Hookean, isochoric",
+  neo_hookean_2020: "Neo-Hookean (2020)",
+  stvk: "Saint Venant-Kirchhoff",
+  corotated: "Corotated linear",
+  arap: "As rigid as possible",
+  linear: "Linear",
+  mooney_rivlin: "Mooney-Rivlin",
+  fung: "Fung",
+  spline: "Spline",
+  // integrators
+  backward_euler: "Backward Euler",
+  linearly_implicit_euler: "Linearly implicit Euler",
+  bdf2: "BDF2",
+  tr_bdf2: "TR-BDF2",
+  midpoint: "Implicit midpoint",
+  trapezoid: "Trapezoidal rule",
+  symplectic_euler: "Symplectic Euler",
+  forward_euler: "Forward Euler",
+  rk4: "Runge-Kutta 4",
+  quasi_static: "Quasi-static",
+  // solvers
+  newton: "Newton",
+  newton_cg: "Newton-CG",
+  lbfgs: "L-BFGS",
+  nonlinear_cg: "Nonlinear CG",
+  gradient_descent: "Gradient descent",
+  vertex_descent: "Vertex descent",
+  auto: "Automatic",
+  on_demand: "Clamped on demand",
+  progressive: "Clamped progressively",
+  clamped: "Clamped eigenvalues",
+  absolute: "Absolute values",
+  exact: "Exact",
+  cholesky: "Cholesky",
+  multigrid: "Multigrid",
+  block_jacobi: "Block Jacobi",
+  none: "None",
+  mass: "Mass matrix",
+  diagonal: "Diagonal",
+  hessian: "Hessian",
+  best: "Best of all",
+  zero: "Rest shape",
+  current: "Current positions",
+  extrapolated: "Free flight",
+  last_increment: "Last increment",
+  accelerated: "Accelerated flight",
+  scale: "Force scale",
+  first_gradient: "First gradient",
+  decrement: "Newton decrement",
+  velocity: "Velocity",
+  acceleration: "Acceleration",
+  textbook: "Textbook (Armijo)",
+  slide: "As on the slide",
+};
+
+// Where a value means something else than under other keys.
+const kChoicesOf: Record<string, Record<string, string>> = {
+  "solver.criterion": { absolute: "Force in N" },
+  "solver.line_search.test": { none: "None: first trial" },
+};
+
+export function choiceName(key: string, value: string): string {
+  const known = kChoicesOf[key]?.[value] ?? kChoices[value];
+  if (known) return known;
+  const words = value.replaceAll("_", " ");
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+const kStatuses: Record<string, string> = {
+  round_off: "converged to round-off",
+  budget: "out of time",
+  iteration_limit: "iteration limit",
+  no_descent: "no descent",
+  undefined: "blew up",
+};
+
+// How a step ended.
+export function statusName(status: string): string {
+  return kStatuses[status] ?? status.replaceAll("_", " ");
+}
+
+// Text without the marks of Markdown: `code`, **strong**, [link](target).
+export function plainText(markdown: string): string {
+  return markdown
+    .replace(/\[([^\]]+)\]\([^)]*\)/g, "$1")
+    .replace(/\*\*([^*]+)\*\*/g, "$1")
+    .replace(/`([^`]*)`/g, "$1");
+}

@@ -1,0 +1,35 @@
+// Which body each vertex of a surface belongs to, and the colors of bodies.
+import type { Geometry } from "../protocol";
+
+// After the reader's own color for the first one; told apart with any kind of color vision, and not that of the inside.
+const kFurther = ["#56a35a", "#c9699f", "#d8c23f", "#7a68c4", "#3fb0b5", "#b5543f", "#8a929e"];
+
+export function bodyOfTet(tet: number, bodyTets: readonly number[]): number {
+  let body = bodyTets.length - 1;
+  while (body > 0 && tet < bodyTets[body]) --body;
+  return Math.max(0, body);
+}
+
+// The number of the body of each vertex. Surfaces of bodies share no vertex; tets of bodies are consecutive.
+export function bodiesOf(geometry: Pick<Geometry, "rest" | "triangles" | "tet">, bodyTets: readonly number[]): Float32Array {
+  const bodies = new Float32Array(geometry.rest.length / 3);
+  geometry.tet.forEach((tet, t) => {
+    const body = bodyOfTet(tet, bodyTets);
+    for (let c = 0; c < 3; ++c) bodies[geometry.triangles[3 * t + c]] = body;
+  });
+  return bodies;
+}
+
+export function bodyColours(own: string, count: number): string[] {
+  return Array.from({ length: count }, (_, i) => (i === 0 ? own : kFurther[(i - 1) % kFurther.length]));
+}
+
+// Texels of a map that has one color for each body, RGBA.
+export function bodyTexels(colours: readonly string[]): Uint8Array {
+  const texels = new Uint8Array(4 * colours.length);
+  colours.forEach((colour, i) => {
+    const channels = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+    texels.set([...channels, 255], 4 * i);
+  });
+  return texels;
+}

@@ -1,0 +1,21 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { bodiesOf, bodyColours, bodyTexels } from "../src/view/bodies";
+
+const geometry = (tet: number[]): Parameters<typeof bodiesOf>[0] => ({
+  rest: new Float32Array(9 * tet.length),
+  triangles: Uint32Array.from({ length: 3 * tet.length }, (_, i) => i),
+  tet: Uint32Array.from(tet),
+});
+
+test("each vertex belongs to the body of its tet", () => {
+  assert.deepEqual([...bodiesOf(geometry([0, 9, 10, 25]), [0, 10, 20])], [0, 0, 0, 0, 0, 0, 1, 1, 1, 2, 2, 2]);
+  assert.deepEqual([...bodiesOf(geometry([3]), [])], [0, 0, 0]);
+});
+
+test("two bodies have two colors, the first the reader's own", () => {
+  const colours = bodyColours("#4f8fd0", 8);
+  assert.equal(colours[0], "#4f8fd0");
+  assert.equal(new Set(colours).size, 8);
+  assert.deepEqual([...bodyTexels(["#010203", "#ff8000"])], [1, 2, 3, 255, 255, 128, 0, 255]);
+});

@@ -1,0 +1,52 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { backTo, History, toLoaded } from "../src/history";
+import type { Scene, Setting } from "../src/protocol";
+
+const setting = (key: string, value: Setting["value"]): Setting => ({ key, value }) as Setting;
+const scene = (overrides: string[], loaded: string[] = []): Scene =>
+  ({
+    overrides,
+    loaded_overrides: loaded,
+    settings: [setting("material.young", 2e5), setting("time.step", 0.01), setting("gravity", [0, -9.81, 0])],
+  }) as unknown as Scene;
+
+test("a first change is undone by dropping its override", () => {
+  assert.deepEqual(backTo(scene([]), "material.young"), { key: "material.young", value: null });
+});
+
+test("a second change is undone by the value before it", () => {
+  assert.deepEqual(backTo(scene(["material.young=2e+05"]), "material.young", "b"), { key: "material.young", value: 2e5, side: "b" });
+});
+
+test("a reset takes the changes back, the latest first", () => {
+  const changed = scene(["mesh=\"bunny.mesh\"", "time.step=0.02", "material.young=2e+05"], ["mesh=\"bunny.mesh\"", "time.step=5e-4"]);
+  assert.deepEqual(toLoaded(changed), [
+    { key: "material.young", value: null },
+    { key: "time.step", value: 5e-4 },
+  ]);
+});
+
+test("a reset reads vectors and texts of loaded overrides", () => {
+  const changed = scene(["gravity=[0, 0, 0]", "material.young=1e6"], ["gravity=[0, 1e+01, 0]", 'material.young="1e5 * X"']);
+  assert.deepEqual(toLoaded(changed, "a"), [
+    { key: "material.young", value: "1e5 * X", side: "a" },
+    { key: "gravity", value: [0, 10, 0], side: "a" },
+  ]);
+});
+
+test("nothing is reset where nothing was changed", () => {
+  assert.deepEqual(toLoaded(scene(["time.step=0.02"], ["time.step=0.02"])), []);
+});
+
+test("a history gives back the newest change first", () => {
+  const history = new History();
+  history.add("E", [{ key: "material.young", value: null }]);
+  history.add("nothing", []);
+  history.add("h", [{ key: "time.step", value: 0.01 }]);
+  assert.equal(history.last, "h");
+  assert.deepEqual(history.pop(), [{ key: "time.step", value: 0.01 }]);
+  assert.equal(history.last, "E");
+  history.clear();
+  assert.deepEqual(history.pop(), []);
+});
