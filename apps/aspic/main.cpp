@@ -13,6 +13,7 @@
 #include "aspic/commands.h"
 #include "base/error.h"
 #include "base/printable.h"
+#include "io/external_program.h"
 
 namespace aspic::cli {
 namespace {
@@ -123,6 +124,9 @@ int main(int argc, char** argv) {
   using namespace aspic;
   try {
     return cli::run_program(argc, argv);
+  } catch (const TimeLimitPassed& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return cli::exit_time_limit;
   } catch (const InvalidInput& error) {
     fmt::print(stderr, "error: {}\n", error.what());
     return cli::exit_bad_input;
