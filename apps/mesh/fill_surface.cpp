@@ -7,11 +7,11 @@
 #include "base/error.h"
 #include "bodies.h"
 #include "body_domain.h"
-#include "features.h"
 #include "fidelity.h"
 #include "local_size.h"
 #include "mesh/surface_orientation.h"
 #include "mesher.h"
+#include "sharp_edges.h"
 #include "unit_frame.h"
 
 namespace aspic {
@@ -83,7 +83,8 @@ class SurfaceFiller {
       throw InvalidInput(body_name(body) + ": it is " + length(thin.thickness) + " thin, and " + thin.problem +
                          "; allow more with --max-tets, or thicken it");
     if (const double across = thin.thickness / thin.rule.smallest; thin.rule.smallest < size_ && across < 1.9)
-      result_.notes.push_back(body_name(body) + ": it is " + length(thin.thickness) + " thin; " + digits(across) +
+      result_.notes.push_back((bodies_.size() == 1 ? "" : "body " + std::to_string(body + 1) + ": ") + "it is " +
+                              length(thin.thickness) + " thin; " + digits(across) +
                               " tets across instead of two, since more than " + digits(options_.most_tets) +
                               " are not allowed (--max-tets)");
     std::string problem;
@@ -108,7 +109,7 @@ class SurfaceFiller {
     const LocalSize size(samples, rule);
     least_size_ = size.least();
     BodyDomain domain{surface, size, sharp_chains(surface, rule.size), seeds(samples), 0};
-    domain.most_vertices = static_cast<size_t>(2e4 + predicted);  // several times what refinement needs
+    domain.most_vertices = static_cast<size_t>(1e4 + predicted);  // several times what refinement needs
     return fill_body(domain);
   }
 

@@ -19,8 +19,8 @@ double own_size(const SurfaceSample& sample, const SizeRule& rule) {
   return std::min(std::max(wanted, rule.smallest), rule.size);
 }
 
-// Thin parts lie opposite each other: the normals differ from antiparallel by less than 45 degrees.
-constexpr double kOpposite = -0.7;
+// Sides lie opposite each other when their normals differ from antiparallel by less than 30 degrees.
+constexpr double kOpposite = -0.87;
 
 double reach(const TriMesh& body, const TriangleTree& tree, const Vec3d& x, const Vec3d& normal, double direction) {
   constexpr double kTouching = 1e-9;

@@ -106,7 +106,8 @@ class BoxTree {
 
   template <class Visit>
   void along(Node node, const Vec3d& origin, const Vec3d& direction, const double& reach, Visit& visit) const {
-    if (!(bounds_[node.index].entry(origin, direction) <= reach)) return;
+    const double entry = bounds_[node.index].entry(origin, direction);
+    if (!(entry <= reach) || entry == Box::kInfinity) return;
     if (node.is_leaf()) return visit(items_[node.begin]);
     along(node.left(), origin, direction, reach, visit);
     along(node.right(), origin, direction, reach, visit);

@@ -1,4 +1,4 @@
-#include "features.h"
+#include "sharp_edges.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,6 +103,31 @@ bool prune(const TriMesh& body, double shortest, std::vector<std::array<int, 2>>
   return !gone.empty();
 }
 
+// Chains that leave a common corner at a small angle: the balls that protect them would shrink without end.
+std::vector<bool> in_needles(const TriMesh& body, const std::vector<Chain>& chains) {
+  constexpr double kNeedle = 0.94;  // cosine of 20 degrees
+  struct End {
+    int corner;
+    Vec3d direction;
+    size_t chain;
+  };
+  std::vector<End> ends;
+  const auto add = [&](int corner, int next, size_t chain) {
+    const Vec3d edge = body.vertices[next] - body.vertices[corner];
+    ends.push_back({corner, (1 / std::sqrt(dot(edge, edge))) * edge, chain});
+  };
+  for (size_t c = 0; c < chains.size(); ++c) {
+    add(chains[c].front(), chains[c][1], c);
+    add(chains[c].back(), chains[c][chains[c].size() - 2], c);
+  }
+  std::stable_sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.corner < b.corner; });
+  std::vector<bool> result(chains.size());
+  for (size_t i = 0; i < ends.size(); ++i)
+    for (size_t j = i + 1; j < ends.size() && ends[j].corner == ends[i].corner; ++j)
+      if (dot(ends[i].direction, ends[j].direction) > kNeedle) result[ends[i].chain] = result[ends[j].chain] = true;
+  return result;
+}
+
 }  // namespace
 
 std::vector<std::vector<Vec3d>> sharp_chains(const TriMesh& body, double size) {
@@ -114,10 +139,12 @@ std::vector<std::vector<Vec3d>> sharp_chains(const TriMesh& body, double size) {
   const long tiny = std::count_if(chains.begin(), chains.end(),
                                   [&](const Chain& chain) { return chain_length(body, chain) < size / 4; });
   if (tiny > kFew && 4 * tiny > static_cast<long>(chains.size())) return {};
+  const std::vector<bool> is_in_needle = in_needles(body, chains);
   std::vector<std::vector<Vec3d>> lines;
-  for (const Chain& chain : chains) {
+  for (size_t c = 0; c < chains.size(); ++c) {
+    if (is_in_needle[c]) continue;
     std::vector<Vec3d>& line = lines.emplace_back();
-    for (int v : chain) line.push_back(body.vertices[v]);
+    for (int v : chains[c]) line.push_back(body.vertices[v]);
   }
   return lines;
 }

@@ -7,7 +7,8 @@
 namespace aspic {
 
 // Chains of edges whose triangles meet at more than 50 degrees, from corner to corner or closed. Chains with a free end
-// that are shorter than half of `size` are left out; so are all chains of a surface that is rough rather than sharp.
+// that are shorter than half of `size` are left out, as are chains that meet at less than 20 degrees, and all chains of
+// a surface that is rough rather than sharp.
 std::vector<std::vector<Vec3d>> sharp_chains(const TriMesh& body, double size);
 
 }  // namespace aspic
