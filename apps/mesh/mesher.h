@@ -13,7 +13,7 @@ namespace aspic {
 struct MesherOptions {
   double size = 0;                    // target edge length in units of the input; 0: bounding box diagonal / 25
   std::map<int, double> region_size;  // label -> target edge length there
-  double most_tets = 4e5;             // predicted, where thin parts of a surface ask for smaller edges than `size`
+  double most_tets = 1.5e5;           // predicted, where thin parts of a surface ask for smaller edges than `size`
 };
 
 struct FilledSurface {
