@@ -5,6 +5,7 @@ import gzip
 import itertools
 import math
 import pathlib
+import random
 import subprocess
 import sys
 import tempfile
@@ -63,6 +64,24 @@ def write_ball(path, centre=(0, 0, 0), rings=12, sectors=24, append_to=None, ski
     lines += ["f " + " ".join(str(first + v) for v in face) for face in faces[skip:]]
     path.write_text("\n".join(lines) + "\n")
     return lines
+
+
+def write_boxes(path, *boxes):
+    """Boxes from one corner to the opposite one, each of twelve triangles."""
+    lines = []
+    for box in boxes:
+        first = 1 + sum(line.startswith("v") for line in lines)
+        lines += [f"v {box[x][0]!r} {box[y][1]!r} {box[z][2]!r}" for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+        for a, b, c, d in quads:
+            lines += [f"f {first + a} {first + b} {first + c}", f"f {first + a} {first + c} {first + d}"]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def write_tet(path, *corners):
+    """The tetrahedron of the origin and three corners."""
+    path.write_text("v 0 0 0\n" + "".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in corners)
+                    + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
 
 
 def write_image(path, labels):
@@ -191,6 +210,68 @@ class Mesher(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         _, tets = read_medit(self.out)
         self.assertEqual({label for _, label in tets}, {3})
+
+    def expect_filled(self, path, expected_volume, tolerance, euler, *arguments):
+        result = run(path, "-o", self.out, *arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.expect_sound(expected_volume, tolerance, euler)
+        return result.stdout
+
+    def test_thin_parts_keep_their_volume(self):
+        write_boxes(self.folder / "rod.obj", ((0, 0, 0), (0.4, 0.01, 0.01)))
+        self.assertIn("thin", self.expect_filled(self.folder / "rod.obj", 4e-5, 0.02, 2))
+        write_boxes(self.folder / "plate.obj", ((0, 0, 0), (0.2, 0.2, 0.01)))
+        self.expect_filled(self.folder / "plate.obj", 4e-4, 0.02, 2)
+
+    def test_a_plate_too_thin_for_the_limit_is_refused(self):
+        write_boxes(self.folder / "plate.obj", ((0, 0, 0), (1, 1, 0.005)))
+        self.expect_error(2, ["0.005 thin", "--max-tets", "plate.obj"], self.folder / "plate.obj", "--max-tets", 1e4)
+
+    def test_bodies_with_a_gap_stay_apart(self):
+        write_boxes(self.folder / "two.obj", ((0, 0, 0), (1, 1, 1)), ((1.05, 0, 0), (2.05, 1, 1)))
+        self.assertIn("2 components", self.expect_filled(self.folder / "two.obj", 2, 0.01, 4, "--size", 0.3))
+
+    def test_a_cavity_stays_empty(self):
+        write_boxes(self.folder / "hollow.obj", ((0, 0, 0), (1, 1, 1)), ((0.3, 0.3, 0.3), (0.7, 0.7, 0.7)))
+        self.expect_filled(self.folder / "hollow.obj", 1 - 0.4**3, 0.01, 4, "--size", 0.3)
+
+    def test_any_unit_gives_the_same_mesh(self):
+        counts = set()
+        for unit in (1, 2.0**-100, 2.0**66):
+            write_boxes(self.folder / "cube.obj", ((0, 0, 0), (unit, unit, unit)))
+            self.expect_filled(self.folder / "cube.obj", unit**3, 0.01, 2, "--size", 0.3 * unit)
+            counts.add(len(read_medit(self.out)[1]))
+        self.assertEqual(len(counts), 1)
+
+    def test_coordinates_without_resolution_are_refused(self):
+        write_boxes(self.folder / "far.obj", ((1e15, 0, 0), (1e15 + 1, 1, 1)))
+        self.expect_error(2, ["far.obj", "1e+15", "0.125", "origin"], self.folder / "far.obj")
+
+    def test_sharp_corners_and_spikes_end(self):
+        write_tet(self.folder / "corner.obj", (1, 0, 0), (0, 1, 0), (0, 0, 1))
+        self.expect_filled(self.folder / "corner.obj", 1 / 6, 0.01, 2, "--size", 0.2)
+        width = math.tan(math.radians(1))
+        write_tet(self.folder / "spike.obj", (1, 0, 0), (1, width, 0), (1, 0, width))
+        self.expect_filled(self.folder / "spike.obj", width**2 / 6, 0.05, 2)
+
+    def test_noisy_labels_end(self):
+        random.seed(1)
+        write_image(self.folder / "noise.inr", [[[random.randrange(4) for _ in range(8)] for _ in range(8)]
+                                                for _ in range(8)])
+        self.assertIn(run(self.folder / "noise.inr", "-o", self.out, "--time-limit", 20).returncode, (0, 2, 4))
+
+    def test_the_time_limit_has_its_exit_code(self):
+        write_ball(self.folder / "ball.obj")
+        self.expect_error(4, ["ball.obj", "0.01 s", "--time-limit"], self.folder / "ball.obj", "--size", 0.05,
+                          "--time-limit", 0.01)
+
+    def test_a_defective_surface_is_rebuilt(self):
+        lines = write_ball(self.folder / "meeting.obj", skip=3)
+        write_ball(self.folder / "meeting.obj", centre=(1.5, 0, 0), append_to=lines)
+        self.expect_error(2, ["--rebuild"], self.folder / "meeting.obj")
+        lens = math.pi * (2 - 1.5)**2 * (1.5**2 + 4 * 1.5) / (12 * 1.5)
+        self.assertIn("rebuilt", self.expect_filled(self.folder / "meeting.obj", 2 * 4 * math.pi / 3 - lens, 0.08, 2,
+                                                    "--rebuild", "--size", 0.3))
 
     def test_help_and_version_name_the_licence(self):
         for flag in ("--help", "--version"):

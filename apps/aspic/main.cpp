@@ -18,6 +18,7 @@
 #include "aspic/streams.h"
 #include "base/error.h"
 #include "base/printable.h"
+#include "io/external_program.h"
 #include "io/text_scanner.h"
 
 namespace aspic::cli {
@@ -137,6 +138,9 @@ int run_program(int argc, char** argv) {
 int run_guarded(int argc, char** argv) {
   try {
     return run_program(argc, argv);
+  } catch (const TimeLimitPassed& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return exit_time_limit;
   } catch (const InvalidInput& error) {
     fmt::print(stderr, "error: {}\n", error.what());
     return exit_bad_input;

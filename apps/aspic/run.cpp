@@ -79,13 +79,14 @@ Scene load(const RunArguments& arguments) {
     if (!fs::is_directory(directory)) {
       throw InvalidInput(fmt::format("{}: no such run to resume; start it without --resume", directory.string()));
     }
-    return load_scene(scene_of_run(directory), {.announce = tell});
+    return load_scene(scene_of_run(directory), {.announce = tell, .mesher_seconds = arguments.time_limit});
   }
   if (fs::is_directory(arguments.input)) {
     throw InvalidInput(
         fmt::format("{0}: is a directory; to continue a run: aspic run {0} --resume", arguments.input.string()));
   }
-  return load_scene(arguments.input, {.overrides = arguments.overrides, .announce = tell});
+  return load_scene(arguments.input,
+                    {.overrides = arguments.overrides, .announce = tell, .mesher_seconds = arguments.time_limit});
 }
 
 RunDirectory open_directory(const RunArguments& arguments, Scene& scene) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "labelled.h"
+#include "unit_frame.h"
 
 namespace aspic {
 namespace {
@@ -36,13 +37,30 @@ CGAL::Bbox_3 widened_by_voxel(const CGAL::Bbox_3& box, const CGAL::Image_3& imag
           box.xmax() + image.vx(), box.ymax() + image.vy(), box.zmax() + image.vz()};
 }
 
+std::vector<Vec3d> corners(const CGAL::Bbox_3& box) {
+  return {{{box.xmin(), box.ymin(), box.zmin()}}, {{box.xmax(), box.ymax(), box.zmax()}}};
+}
+
+void to_frame(const UnitFrame& frame, CGAL::Image_3& image) {
+  auto* const voxels = image.image();
+  voxels->vx /= frame.unit, voxels->vy /= frame.unit, voxels->vz /= frame.unit;
+  voxels->tx = static_cast<decltype(voxels->tx)>((voxels->tx - frame.origin[0]) / frame.unit);
+  voxels->ty = static_cast<decltype(voxels->ty)>((voxels->ty - frame.origin[1]) / frame.unit);
+  voxels->tz = static_cast<decltype(voxels->tz)>((voxels->tz - frame.origin[2]) / frame.unit);
+}
+
 }  // namespace
 
 TetMesh mesh_image(const std::filesystem::path& path, const MesherOptions& options) {
-  const CGAL::Image_3 image = read_image(path);
+  CGAL::Image_3 image = read_image(path);
+  const UnitFrame frame = unit_frame(path.string(), corners(widened_by_voxel(bounding_box(image), image)));
+  to_frame(frame, image);
   const CGAL::Bbox_3 box = bounding_box(image);
-  const double size = options.size > 0 ? options.size : std::hypot(box.x_span(), box.y_span(), box.z_span()) / 25;
-  check_size(box, size);
+  MesherOptions in_frame = options;
+  in_frame.size =
+      options.size > 0 ? options.size / frame.unit : std::hypot(box.x_span(), box.y_span(), box.z_span()) / 25;
+  for (auto& [label, size] : in_frame.region_size) size /= frame.unit;
+  check_size(frame.unit * Vec3d{{box.x_span(), box.y_span(), box.z_span()}}, in_frame.size * frame.unit);
   const LabelledDomain domain = LabelledDomain::create_labeled_image_mesh_domain(
       image, CGAL::parameters::relative_error_bound = kSurfaceTolerance);
   const LabelGrid grid(domain, widened_by_voxel(box, image), std::min({image.vx(), image.vy(), image.vz()}));
@@ -50,7 +68,9 @@ TetMesh mesh_image(const std::filesystem::path& path, const MesherOptions& optio
   for (const auto& [label, unused] : options.region_size)
     if (!grid.has(label))
       throw InvalidInput("--region-size: " + path.string() + " has no label " + std::to_string(label));
-  return mesh_labelled(domain, grid, size, options);
+  TetMesh mesh = mesh_labelled(path.string(), domain, grid, in_frame);
+  from_frame(frame, mesh.rest);
+  return mesh;
 }
 
 }  // namespace aspic

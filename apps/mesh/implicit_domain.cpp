@@ -2,6 +2,7 @@
 
 #include "labelled.h"
 #include "scene/expression.h"
+#include "unit_frame.h"
 
 namespace aspic {
 namespace {
@@ -36,20 +37,30 @@ Expression parsed(const std::string& text) {
 
 // A shape that reaches beyond the bounds is cut off there.
 TetMesh mesh_implicit(const ImplicitShape& shape, const MesherOptions& options) {
-  const CGAL::Bbox_3 bounds = bounding_box(shape.lower, shape.upper);
+  std::vector<Vec3d> corners = {shape.lower, shape.upper};
+  bounding_box(shape.lower, shape.upper);  // refuses empty ones
+  const UnitFrame frame = unit_frame("--bounds", corners);
+  to_frame(frame, corners);
+  const CGAL::Bbox_3 bounds = bounding_box(corners[0], corners[1]);
   const double diagonal = std::hypot(bounds.x_span(), bounds.y_span(), bounds.z_span());
-  const double size = options.size > 0 ? options.size : diagonal / 25;
-  check_size(bounds, size);
+  MesherOptions in_frame{.size = options.size > 0 ? options.size / frame.unit : diagonal / 25, .region_size = {}};
+  check_size(shape.upper - shape.lower, in_frame.size * frame.unit);
   const Expression f = parsed(shape.expression);
-  const auto label = [&](const Point& p) { return contains(bounds, p) && f.at({{p.x(), p.y(), p.z()}}) < 0 ? 1 : 0; };
+  const auto label = [&](const Point& p) {
+    if (!contains(bounds, p)) return 0;
+    double x[3];
+    for (int axis = 0; axis < 3; ++axis) x[axis] = frame.origin[axis] + frame.unit * p[axis];
+    return f.at({{x[0], x[1], x[2]}}) < 0 ? 1 : 0;
+  };
   const CGAL::Bbox_3 wide = widened(bounds, 0.05 * diagonal);
   const LabelledDomain domain(label, wide, CGAL::parameters::relative_error_bound = kSurfaceTolerance);
-  const LabelGrid grid(domain, wide, size / 2);
+  const LabelGrid grid(domain, wide, in_frame.size / 2);
   if (grid.is_empty())
     throw InvalidInput("--implicit: '" + shape.expression +
                        "' is negative at no point of a grid over the bounds; check --bounds and the sign (f < 0 is "
                        "inside), or give a smaller --size if the shape is thin");
-  TetMesh mesh = mesh_labelled(domain, grid, size, options);
+  TetMesh mesh = mesh_labelled("--implicit", domain, grid, in_frame);
+  from_frame(frame, mesh.rest);
   mesh.region.clear();
   return mesh;
 }

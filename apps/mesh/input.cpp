@@ -8,7 +8,9 @@
 #include "base/error.h"
 #include "io/mesh_file.h"
 #include "mesh/doctor.h"
+#include "mesh/findings.h"
 #include "mesher.h"
+#include "unit_frame.h"
 
 namespace aspic {
 namespace {
@@ -26,29 +28,50 @@ std::string first_indices(const std::vector<int>& indices) {
   return indices.size() > kShown ? text + ", ..." : text;
 }
 
-void check(const std::filesystem::path& path, const TriMesh& mesh) {
+// Holes that --fill-holes left open.
+constexpr const char* kLargeHoles = "these holes are too large to fill; wrap the surface with --rebuild instead";
+
+void check(const std::filesystem::path& path, const TriMesh& mesh, Defects defects) {
   std::vector<std::string> errors;
   for (const Finding& finding : diagnose(mesh)) {
     if (finding.severity != Severity::error) continue;
     std::string& error = errors.emplace_back(path.string() + ": " + finding.message);
     if (!finding.indices.empty()) error += " [" + first_indices(finding.indices) + "]";
-    error += "; " + finding.remedy;
+    const bool stays_open = defects == Defects::fill_small_holes && finding.name == "open_surface";
+    error += "; " + (stays_open ? kLargeHoles : finding.remedy);
   }
   if (!errors.empty()) throw InvalidInput(errors);
 }
 
+void check_coordinates(const std::filesystem::path& path, const TriMesh& mesh) {
+  if (mesh.triangles.empty()) return check(path, mesh, Defects::refuse);
+  for (const Vec3d& x : mesh.vertices)
+    if (!std::isfinite(x[0]) || !std::isfinite(x[1]) || !std::isfinite(x[2])) return check(path, mesh, Defects::refuse);
+}
+
 }  // namespace
 
-CheckedSurface checked_surface(const std::filesystem::path& path, Holes holes) {
+// The doctor's products of lengths overflow or vanish in the units of some files; so it examines the frame.
+CheckedSurface checked_surface(const std::filesystem::path& path, Defects defects) {
   CheckedSurface surface{read_tri_mesh(path), {}};
   surface.actions = repair(surface.mesh);
-  if (holes == Holes::fill_small) {
+  check_coordinates(path, surface.mesh);
+  const UnitFrame frame = unit_frame(path.string(), surface.mesh.vertices);
+  to_frame(frame, surface.mesh.vertices);
+  if (defects == Defects::rebuild) {
+    Rebuilt closed = rebuilt(surface.mesh);
+    surface.mesh = std::move(closed.surface);
+    surface.actions.push_back("rebuilt with " + std::to_string(surface.mesh.triangle_count()) +
+                              " triangles; holes and grooves narrower than about " +
+                              number(closed.detail * frame.unit) + " are closed");
+  } else if (defects == Defects::fill_small_holes) {
     const int before = surface.mesh.triangle_count();
     surface.mesh = with_holes_filled(surface.mesh);
     if (const int added = surface.mesh.triangle_count() - before; added > 0)
       surface.actions.push_back("filled holes with " + std::to_string(added) + " triangles");
   }
-  check(path, surface.mesh);
+  check(path, surface.mesh, defects);
+  from_frame(frame, surface.mesh.vertices);
   return surface;
 }
 

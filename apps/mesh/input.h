@@ -13,11 +13,11 @@ struct CheckedSurface {
   std::vector<std::string> actions;  // what was mended without being asked: one sentence each
 };
 
-enum class Holes { refuse, fill_small };
+enum class Defects { refuse, fill_small_holes, rebuild };
 
 // A closed surface that does not run into itself; duplicate vertices, as in every STL file, are merged.
 // Throws InvalidInput naming triangles and remedy.
-CheckedSurface checked_surface(const std::filesystem::path& path, Holes holes);
+CheckedSurface checked_surface(const std::filesystem::path& path, Defects defects);
 
 bool is_image(const std::filesystem::path& path);
 

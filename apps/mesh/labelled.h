@@ -33,8 +33,10 @@ class LabelGrid {
     return std::all_of(labels_.begin(), labels_.end(), [](int label) { return label == 0; });
   }
 
-  SeededDomain<LabelledDomain>::Seeds seeds() const {
-    SeededDomain<LabelledDomain>::Seeds seeds;
+  double box_volume() const { return box_.x_span() * box_.y_span() * box_.z_span(); }
+
+  Seeds<LabelledDomain> seeds() const {
+    Seeds<LabelledDomain> seeds;
     for (const auto& [component, crossings] : crossings_of_components()) {
       constexpr size_t kSeedsPerComponent = 20;
       const size_t count = std::min(kSeedsPerComponent, crossings.size());
@@ -93,7 +95,8 @@ class LabelGrid {
   std::vector<int> labels_;
 };
 
-// Defined once, in labelled.cpp, for images and implicit shapes alike.
-TetMesh mesh_labelled(const LabelledDomain& domain, const LabelGrid& grid, double size, const MesherOptions& options);
+// Defined once, in labelled.cpp, for images and implicit shapes alike. `name`: what is filled, in messages.
+TetMesh mesh_labelled(const std::string& name, const LabelledDomain& domain, const LabelGrid& grid,
+                      const MesherOptions& options);
 
 }  // namespace aspic

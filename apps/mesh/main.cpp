@@ -5,8 +5,12 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <new>
 
 #include "base/error.h"
+#include "base/free_memory.h"
+#include "base/printable.h"
+#include "budget.h"
 #include "input.h"
 #include "io/mesh_file.h"
 #include "mesher.h"
@@ -27,14 +31,16 @@ constexpr const char* kExamples =
     "  aspic-mesh part.stl -o part.msh --size 2 --fill-holes\n"
     "  aspic-mesh --implicit \"(sqrt(x^2+y^2)-1)^2+z^2-0.16\" --bounds -2 -2 -1 2 2 1 -o torus.mesh\n"
     "  aspic-mesh liver.inr.gz -o liver.msh --size 8 --region-size 2=4\n"
-    "Exit codes: 0 done, 2 bad input, 1 anything else.\n\n";
+    "  aspic-mesh scan.ply -o scan.msh --rebuild\n"
+    "Exit codes: 0 done, 2 bad input, or a result that is not the shape, 4 time limit, 1 anything else.\n\n";
 
 struct Arguments {
   std::string input, output, expression;
   std::vector<double> bounds;
   double size = 0;
   std::vector<std::string> region_sizes;
-  bool fill_holes = false, quiet = false;
+  double most_tets = MesherOptions().most_tets, time_limit = 600;
+  bool fill_holes = false, rebuild = false, quiet = false;
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
@@ -53,13 +59,22 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->allow_extra_args(false);
   app.add_flag("--fill-holes", arguments.fill_holes,
                "close holes of the surface whose border is shorter than its diagonal");
+  app.add_flag("--rebuild", arguments.rebuild,
+               "wrap a defective surface (holes, overlaps, inner walls) in a closed one and fill that");
+  app.add_option("--max-tets", arguments.most_tets,
+                 "tets up to which thin parts of a surface get two across; beyond, fewer, or an error")
+      ->capture_default_str()
+      ->check(CLI::Range(1e3, 1e8));
+  app.add_option("--time-limit", arguments.time_limit, "seconds of wall time after which meshing fails (exit code 4)")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-3, 1e9));
   app.add_flag("--quiet", arguments.quiet, "no report");
 }
 
 MesherOptions mesher_options(const Arguments& arguments) {
   if (!(arguments.size >= 0) || !std::isfinite(arguments.size))
     throw InvalidInput("--size " + std::to_string(arguments.size) + ": give a positive length, or 0 for the default");
-  MesherOptions options{arguments.size, {}};
+  MesherOptions options{.size = arguments.size, .region_size = {}, .most_tets = arguments.most_tets};
   for (const std::string& text : arguments.region_sizes) options.region_size.insert(parsed_region_size(text));
   return options;
 }
@@ -75,6 +90,20 @@ void check_combination(const Arguments& arguments) {
     throw InvalidInput("--region-size needs a labelled image (.inr, .inr.gz); use --size");
   if (arguments.fill_holes && (arguments.input.empty() || is_image(arguments.input)))
     throw InvalidInput("--fill-holes needs a surface");
+  if (arguments.rebuild && (arguments.input.empty() || is_image(arguments.input)))
+    throw InvalidInput("--rebuild needs a surface");
+  if (arguments.rebuild && arguments.fill_holes)
+    throw InvalidInput("--rebuild closes holes too; leave --fill-holes out");
+}
+
+Defects defects(const Arguments& arguments) {
+  if (arguments.rebuild) return Defects::rebuild;
+  return arguments.fill_holes ? Defects::fill_small_holes : Defects::refuse;
+}
+
+void print(const Arguments& arguments, const std::vector<std::string>& lines) {
+  if (arguments.quiet) return;
+  for (const std::string& line : lines) std::printf("%s: %s\n", arguments.input.c_str(), line.c_str());
 }
 
 TetMesh mesh(const Arguments& arguments) {
@@ -84,17 +113,27 @@ TetMesh mesh(const Arguments& arguments) {
     return mesh_implicit({arguments.expression, {{b[0], b[1], b[2]}}, {{b[3], b[4], b[5]}}}, options);
   }
   if (is_image(arguments.input)) return mesh_image(arguments.input, options);
-  const CheckedSurface surface =
-      checked_surface(arguments.input, arguments.fill_holes ? Holes::fill_small : Holes::refuse);
-  if (!arguments.quiet)
-    for (const std::string& action : surface.actions) std::printf("%s: %s\n", arguments.input.c_str(), action.c_str());
-  return mesh_surface(surface.mesh, options);
+  const CheckedSurface surface = checked_surface(arguments.input, defects(arguments));
+  print(arguments, surface.actions);
+  FilledSurface filled = mesh_surface(arguments.input, surface.mesh, options);
+  print(arguments, filled.notes);
+  return std::move(filled.tets);
+}
+
+void set_budget(const Arguments& arguments) {
+  const std::string subject = arguments.input.empty() ? "--implicit" : arguments.input;
+  char seconds[32];
+  std::snprintf(seconds, sizeof seconds, "%g", arguments.time_limit);
+  limit_time(arguments.time_limit, "error: " + printable(subject) + ": meshing did not end within " + seconds +
+                                       " s; give a larger --size, or more with --time-limit\n");
+  limit_memory(free_memory());
 }
 
 void run(const Arguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   check_combination(arguments);
   check_output(arguments.output);
+  set_budget(arguments);
   const TetMesh tets = mesh(arguments);
   write_mesh(arguments.output, tets);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
@@ -117,6 +156,9 @@ int main(int argc, char** argv) {
   } catch (const aspic::InvalidInput& error) {
     std::fprintf(stderr, "error: %s\n", error.what());
     return aspic::kBadInput;
+  } catch (const std::bad_alloc&) {
+    std::fputs("error: meshing needs more memory than is free; give a larger --size\n", stderr);
+    return aspic::kFailed;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "error: meshing failed: %s\n", error.what());
     return aspic::kFailed;

@@ -5,9 +5,13 @@
 #include <CGAL/Mesh_criteria_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Random.h>
+#include <CGAL/exude_mesh_3.h>
 #include <CGAL/make_mesh_3.h>
+#include <CGAL/odt_optimize_mesh_3.h>
+#include <CGAL/perturb_mesh_3.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -26,71 +30,23 @@ using Point = Kernel::Point_3;
 inline constexpr double kRadiusPerEdge = 0.75;
 // Distance between the facets and the surface, relative to the bound of the facets' radii.
 inline constexpr double kDistancePerRadius = 0.15;
+// Largest diameter of the balls around sharp edges.
+inline constexpr double kProtectedPerEdge = 1;
 inline constexpr double kSliverBound = 12;  // [degrees] smallest dihedral angle that the optimisers aim for
-
-// A size given in other units than the input would never end.
-inline void check_size(const CGAL::Bbox_3& box, double size) {
-  constexpr double kMostCells = 1e9;  // cubes of that size in the bounding box
-  const double cells = (box.x_span() / size + 1) * (box.y_span() / size + 1) * (box.z_span() / size + 1);
-  if (cells > kMostCells)
-    throw InvalidInput("--size " + std::to_string(size) + ": too fine for a shape " +
-                       std::to_string(std::max({box.x_span(), box.y_span(), box.z_span()})) +
-                       " long; it is in the units of the input, give a larger one");
-}
-
-// Bound of the radii at a point, from the region it is in or, on a surface, the finer of the two regions it separates.
-template <class Domain>
-class RadiusField {
- public:
-  using FT = Kernel::FT;
-  using Point_3 = Point;
-  using Index = typename Domain::Index;
-
-  RadiusField(const Domain& domain, double size, const std::map<int, double>& region_size, double factor)
-      : domain_(&domain), size_(size), region_size_(&region_size), factor_(factor) {}
-
-  template <class AnyPoint>
-  FT operator()(const AnyPoint&, int dimension, const Index& index) const {
-    if (region_size_->empty()) return factor_ * size_;
-    if (dimension == 3) return factor_ * region(static_cast<int>(domain_->subdomain_index(index)));
-    const auto patch = domain_->surface_patch_index(index);
-    return factor_ * std::min(region(static_cast<int>(patch.first)), region(static_cast<int>(patch.second)));
-  }
-
- private:
-  double region(int label) const {
-    const auto found = region_size_->find(label);
-    return found == region_size_->end() ? size_ : found->second;
-  }
-
-  const Domain* domain_;
-  double size_;
-  const std::map<int, double>* region_size_;
-  double factor_;
-};
 
 // Points that the refinement starts from, given rather than shot at random, so that no component is missed.
 template <class Domain>
-class SeededDomain : public Domain {
- public:
-  using Domain::Domain;
-  using Seeds = std::vector<std::pair<Point, typename Domain::Index>>;
+using Seeds = std::vector<std::pair<Point, typename Domain::Index>>;
 
-  explicit SeededDomain(const Domain& domain) : Domain(domain) {}
-
-  void set_seeds(Seeds seeds) { seeds_ = std::move(seeds); }
-
-  struct Construct_initial_points {
-    const Seeds* seeds;
-    template <class Output>
-    Output operator()(Output output, int = 0) const {
-      return std::copy(seeds->begin(), seeds->end(), output);
-    }
-  };
-  Construct_initial_points construct_initial_points_object() const { return {&seeds_}; }
-
- private:
-  Seeds seeds_;
+template <class Domain, class Triangulation,
+          bool has_features = CGAL::Mesh_3::internal::has_Has_features<Domain>::value>
+struct ComplexOf {
+  using type = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
+};
+template <class Domain, class Triangulation>
+struct ComplexOf<Domain, Triangulation, true> {
+  using type = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation, typename Domain::Corner_index,
+                                                       typename Domain::Curve_index>;
 };
 
 template <class Complex>
@@ -111,25 +67,92 @@ TetMesh to_tet_mesh(const Complex& complex) {
   return mesh;
 }
 
-// Every optimiser runs until it has converged, not until a clock says so: that is what makes the output reproducible.
-template <class Domain>
-TetMesh filled(const Domain& domain, double size, const MesherOptions& options) {
+// A field of target edge lengths, times a factor.
+template <class Field>
+class Scaled {
+ public:
+  using FT = Kernel::FT;
+  using Point_3 = Point;
+  using Index = typename Field::Index;
+
+  Scaled(const Field& edge, double factor) : edge_(&edge), factor_(factor) {}
+
+  template <class AnyPoint>
+  FT operator()(const AnyPoint& x, int dimension, const Index& index) const {
+    return factor_ * (*edge_)(x, dimension, index);
+  }
+
+ private:
+  const Field* edge_;
+  double factor_;
+};
+
+// Adds the seeds that no ball around a sharp edge covers or nearly touches.
+template <class Domain, class Field, class Complex>
+void insert_seeds(const Seeds<Domain>& seeds, const Field& edge, Complex& complex) {
+  constexpr double kApart = 0.5;  // edge lengths
+  auto& triangulation = complex.triangulation();
+  const auto weighted = triangulation.geom_traits().construct_weighted_point_3_object();
+  std::vector<std::pair<Point, double>> balls;  // center, radius
+  for (auto v = triangulation.finite_vertices_begin(); v != triangulation.finite_vertices_end(); ++v)
+    balls.emplace_back(Point(v->point().x(), v->point().y(), v->point().z()), std::sqrt(v->point().weight()));
+  const auto is_free = [&](const Point& x, double apart) {
+    return std::none_of(balls.begin(), balls.end(), [&](const auto& ball) {
+      const double reach = ball.second + apart;
+      return CGAL::squared_distance(x, ball.first) < reach * reach;
+    });
+  };
+  for (const auto& [x, index] : seeds) {
+    const double apart = kApart * edge(x, 2, index);
+    if (!is_free(x, apart)) continue;
+    const auto vertex = triangulation.insert(weighted(x));
+    if (vertex == typename Complex::Vertex_handle()) continue;
+    complex.set_dimension(vertex, 2);
+    complex.set_index(vertex, index);
+    balls.emplace_back(x, 0);
+  }
+}
+
+template <class Domain, class Complex, class Criteria>
+void protect_sharp_edges(const Domain& domain, const Criteria& criteria, size_t most_vertices, Complex& complex) {
+  if constexpr (CGAL::Mesh_3::internal::has_Has_features<Domain>::value) {
+    CGAL::Mesh_error_code error{};
+    CGAL::Mesh_3::internal::init_c3t3_with_features(complex, domain, criteria, false, most_vertices, &error);
+  }
+}
+
+// Every optimizer runs until it has converged, not until a clock says so: that is what makes the output reproducible.
+template <class Domain, class Complex>
+void optimize(const Domain& domain, Complex& complex) {
+  namespace p = CGAL::parameters;
+  constexpr size_t kManyCells = 60'000;
+  const int iterations = complex.number_of_cells_in_complex() > kManyCells ? 10 : 100;
+  CGAL::odt_optimize_mesh_3(complex, domain, p::time_limit = 0, p::max_iteration_number = iterations);
+  CGAL::perturb_mesh_3(complex, domain, p::time_limit = 0, p::sliver_bound = kSliverBound);
+  CGAL::exude_mesh_3(complex, p::time_limit = 0, p::sliver_bound = kSliverBound);
+}
+
+// `edge`: target edge lengths. Refinement stops at `most_vertices`; `is_complete` tells whether it ended before.
+template <class Domain, class Field>
+TetMesh filled(const Domain& domain, const Field& edge, const Seeds<Domain>& seeds, size_t most_vertices,
+               bool& is_complete) {
   namespace p = CGAL::parameters;
   using Triangulation = typename CGAL::Mesh_triangulation_3<Domain, Kernel>::type;
-  using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
+  using Complex = typename ComplexOf<Domain, Triangulation>::type;
   using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
-  using Field = RadiusField<Domain>;
   CGAL::get_default_random() = CGAL::Random(0);
-  const Field radius(domain, size, options.region_size, kRadiusPerEdge);
-  const Field distance(domain, size, options.region_size, kRadiusPerEdge * kDistancePerRadius);
-  const Criteria criteria(p::facet_angle = 25, p::facet_size = radius, p::facet_distance = distance,
-                          p::cell_radius_edge_ratio = 2.2, p::cell_size = radius);
-  auto complex = CGAL::make_mesh_3<Complex>(domain, criteria, p::odt(p::time_limit = 0, p::max_iteration_number = 100),
-                                            p::perturb(p::time_limit = 0, p::sliver_bound = kSliverBound),
-                                            p::exude(p::time_limit = 0, p::sliver_bound = kSliverBound));
-  TetMesh mesh = to_tet_mesh(complex);
-  if (mesh.tets.empty()) throw InvalidInput("no tet fits into the shape; give a smaller --size");
-  return mesh;
+  const Scaled<Field> radius(edge, kRadiusPerEdge), distance(edge, kRadiusPerEdge * kDistancePerRadius);
+  const Criteria criteria(p::edge_size = Scaled<Field>(edge, kProtectedPerEdge), p::facet_angle = 25,
+                          p::facet_size = radius, p::facet_distance = distance, p::cell_radius_edge_ratio = 2.2,
+                          p::cell_size = radius);
+  Complex complex;
+  protect_sharp_edges(domain, criteria, most_vertices, complex);
+  insert_seeds<Domain>(seeds, edge, complex);
+  CGAL::refine_mesh_3(complex, domain, criteria, p::no_exude(), p::no_perturb(), p::no_odt(), p::no_lloyd(),
+                      p::no_reset_c3t3(), p::mesh_3_options(p::maximal_number_of_vertices = most_vertices));
+  is_complete = complex.triangulation().number_of_vertices() < most_vertices;
+  if (is_complete) optimize(domain, complex);
+  return to_tet_mesh(complex);
 }
 
 }  // namespace aspic

@@ -1,3 +1,4 @@
+#include <CGAL/Mesh_domain_with_polyline_features_3.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
@@ -7,9 +8,8 @@
 #include <CGAL/Surface_mesh.h>
 
 #include <cmath>
-#include <numeric>
 
-#include "mesh/components.h"
+#include "body_domain.h"
 #include "mesh3.h"
 
 namespace aspic {
@@ -17,7 +17,7 @@ namespace {
 
 namespace processing = CGAL::Polygon_mesh_processing;
 using Surface = CGAL::Surface_mesh<Point>;
-using Domain = CGAL::Polyhedral_mesh_domain_3<Surface, Kernel>;
+using Domain = CGAL::Mesh_domain_with_polyline_features_3<CGAL::Polyhedral_mesh_domain_3<Surface, Kernel>>;
 
 Surface to_surface(const TriMesh& mesh) {
   std::vector<Point> points;
@@ -47,47 +47,56 @@ TriMesh to_tri_mesh(const Surface& surface) {
   return mesh;
 }
 
-CGAL::Bbox_3 bounding_box(const TriMesh& mesh) {
+double diagonal(const TriMesh& mesh) {
   CGAL::Bbox_3 box;
   for (const Vec3d& x : mesh.vertices) box += Point(x[0], x[1], x[2]).bbox();
-  return box;
+  return std::hypot(box.x_span(), box.y_span(), box.z_span());
 }
 
-double diagonal(const CGAL::Bbox_3& box) { return std::hypot(box.x_span(), box.y_span(), box.z_span()); }
+class BodySize {
+ public:
+  using Index = Domain::Index;
 
-// Up to a dozen vertices of each component, beside the points that the domain shoots itself.
-SeededDomain<Domain>::Seeds seeds(const Domain& domain, const TriMesh& mesh) {
-  constexpr size_t kSeedsPerComponent = 12;
-  SeededDomain<Domain>::Seeds seeds;
-  domain.construct_initial_points_object()(std::back_inserter(seeds));
-  const Domain::Index index = seeds.front().second;
-  for (const std::vector<int>& triangles : triangle_components(mesh)) {
-    const size_t count = std::min(kSeedsPerComponent, triangles.size());
-    for (size_t i = 0; i < count; ++i) {
-      const Vec3d& x = mesh.vertices[mesh.triangles[triangles[i * triangles.size() / count]][0]];
-      seeds.emplace_back(Point(x[0], x[1], x[2]), index);
-    }
+  explicit BodySize(const LocalSize& size) : size_(&size) {}
+  double operator()(const Point& x, int, const Index&) const { return (*size_)({{x.x(), x.y(), x.z()}}); }
+
+ private:
+  const LocalSize* size_;
+};
+
+std::vector<std::vector<Point>> polylines(const std::vector<std::vector<Vec3d>>& chains) {
+  std::vector<std::vector<Point>> lines;
+  for (const std::vector<Vec3d>& chain : chains) {
+    std::vector<Point>& line = lines.emplace_back();
+    for (const Vec3d& x : chain) line.emplace_back(x[0], x[1], x[2]);
   }
+  return lines;
+}
+
+Seeds<Domain> seeds(const Domain& domain, const std::vector<Vec3d>& points) {
+  std::vector<std::pair<Point, Domain::Index>> shot;  // for the index of the surface
+  domain.construct_initial_points_object()(std::back_inserter(shot), 1);
+  Seeds<Domain> seeds;
+  for (const Vec3d& x : points) seeds.emplace_back(Point(x[0], x[1], x[2]), shot.front().second);
   return seeds;
 }
 
 }  // namespace
 
-TetMesh mesh_surface(const TriMesh& mesh, const MesherOptions& options) {
-  const CGAL::Bbox_3 box = bounding_box(mesh);
-  const double size = options.size > 0 ? options.size : diagonal(box) / 25;
-  check_size(box, size);
-  const Surface surface = to_surface(mesh);
-  SeededDomain<Domain> domain(surface);
-  domain.set_seeds(seeds(domain, mesh));
-  TetMesh tets = filled(domain, size, {});
+TetMesh fill_body(const BodyDomain& body) {
+  const Surface surface = to_surface(body.surface);
+  Domain domain(surface);
+  const std::vector<std::vector<Point>> lines = polylines(body.sharp);
+  domain.add_features(lines.begin(), lines.end());
+  bool is_complete = false;  // an incomplete mesh is judged like any other
+  TetMesh tets = filled(domain, BodySize(body.size), seeds(domain, body.seeds), body.most_vertices, is_complete);
   tets.region.clear();
   return tets;
 }
 
 TriMesh with_holes_filled(const TriMesh& mesh) {
   Surface surface = to_surface(mesh);
-  const double longest = diagonal(bounding_box(mesh));
+  const double longest = diagonal(mesh);
   std::vector<Surface::Halfedge_index> borders;
   processing::extract_boundary_cycles(surface, std::back_inserter(borders));
   for (const auto border : borders) {

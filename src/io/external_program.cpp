@@ -1,14 +1,15 @@
 #include "io/external_program.h"
 
 #include <fcntl.h>
-#include <spawn.h>
 #include <stdlib.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <sstream>
 #include <system_error>
@@ -23,27 +24,47 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the wait status; what the program says on stderr goes to a file.
+[[noreturn]] void become(char* const* argv, const char* messages, pid_t parent, int failure) {
+  // Calls between fork and exec must be safe beside other threads.
+  const auto redirect = [](const char* path, int flags, int to) {
+    const int file = ::open(path, flags, 0600);
+    return file >= 0 && ::dup2(file, to) >= 0;
+  };
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() == parent && redirect("/dev/null", O_RDONLY, STDIN_FILENO) &&
+      redirect("/dev/null", O_WRONLY, STDOUT_FILENO) && redirect(messages, O_WRONLY | O_CREAT | O_TRUNC, STDERR_FILENO))
+    ::execve(argv[0], argv, environ);
+  const int error = errno;
+  [[maybe_unused]] const ssize_t written = ::write(failure, &error, sizeof error);
+  ::_exit(127);
+}
+
+// Returns the wait status; what the program says on stderr goes to a file. The program is killed when the thread that
+// started it ends, however that happens.
 int wait_status(const ExternalCommand& command) {
   std::vector<char*> argv;
   for (const std::string& argument : command.command) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
-
-  posix_spawn_file_actions_t files;
-  ::posix_spawn_file_actions_init(&files);
-  ::posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  ::posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  ::posix_spawn_file_actions_addopen(&files, STDERR_FILENO, command.messages.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
-                                     0600);
-  pid_t process = 0;
-  const int error = ::posix_spawn(&process, argv[0], &files, nullptr, argv.data(), environ);
-  ::posix_spawn_file_actions_destroy(&files);
+  const std::string messages = command.messages.string();
+  const pid_t self = ::getpid();
+  int failure[2];  // a pipe that exec closes; otherwise it brings the reason
+  int error = 0, status = 0;
+  if (::pipe2(failure, O_CLOEXEC) != 0) {
+    error = errno;
+  } else {
+    const pid_t process = ::fork();
+    if (process == 0) become(argv.data(), messages.c_str(), self, failure[1]);
+    if (process < 0) error = errno;
+    ::close(failure[1]);
+    while (process > 0 && ::read(failure[0], &error, sizeof error) < 0 && errno == EINTR) {
+    }
+    ::close(failure[0]);
+    while (process > 0 && ::waitpid(process, &status, 0) < 0 && errno == EINTR) {
+    }
+  }
   if (error)
     throw InvalidInput(command.command[0] + ": cannot be run: " + std::generic_category().message(error) + "; " +
                        command.when_unusable);
-  int status = 0;
-  while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
   return status;
 }
 
@@ -99,11 +120,14 @@ fs::path find_program(const std::string& name, std::vector<fs::path> folders, co
 std::string run_program(const ExternalCommand& command) {
   const int status = wait_status(command);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return said(command.messages);
+  const std::string subject = command.about + ": " + command.name;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == command.out_of_time)
+    throw TimeLimitPassed(subject + " ran out of time: " + said(command.messages));
   std::string end = " failed: ";
   if (WIFSIGNALED(status))
     end = std::string(" was ended by the signal '") + ::strsignal(WTERMSIG(status)) + "' (" + command.after_signal +
           "): ";
-  throw InvalidInput(command.about + ": " + command.name + end + said(command.messages));
+  throw InvalidInput(subject + end + said(command.messages));
 }
 
 }  // namespace aspic

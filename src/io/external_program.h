@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.h"
+
 namespace aspic {
 
 // A new folder below the system's for temporary files, removed with its contents at the end of its scope. Throws
@@ -35,9 +37,16 @@ struct ExternalCommand {
   std::filesystem::path messages;    // the file that receives what it says on stderr
   std::string after_signal;          // the likely reason when a signal ended it
   std::string when_unusable;         // remedy when it cannot be started
+  int out_of_time = -1;              // exit code that means so; -1: there is none
 };
 
-// Returns the end of what it said on stderr, on one line. Throws InvalidInput when it cannot be run or fails.
+// A program ended because of the time limit that it was given. The message is the program's.
+class TimeLimitPassed : public InvalidInput {
+  using InvalidInput::InvalidInput;
+};
+
+// Runs the program to its end; it never outlives this process. Returns the end of what it said on stderr, on one line.
+// Throws InvalidInput when it cannot be run or fails.
 std::string run_program(const ExternalCommand& command);
 
 }  // namespace aspic

@@ -15,6 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "aspic-mesh";
+constexpr int kOutOfTime = 4;  // its exit code
 
 // Beside this program, where an installation has it; at its place in the build folder; on the PATH.
 fs::path mesher() {
@@ -24,18 +25,10 @@ fs::path mesher() {
                       "libcgal-dev), or give a mesh of tets");
 }
 
-// The diagonal of the surface's bounding box / 25.
-double default_size(const fs::path& surface) {
-  const TriMesh mesh = read_tri_mesh(surface);
-  Vec3d lower = mesh.vertices.at(0), upper = lower;
-  for (const Vec3d& vertex : mesh.vertices)
-    for (int i = 0; i < 3; ++i) {
-      lower[i] = std::min(lower[i], vertex[i]);
-      upper[i] = std::max(upper[i], vertex[i]);
-    }
-  const double diagonal = std::hypot(upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]);
-  if (!(diagonal > 0)) throw InvalidInput(surface.string() + ": all vertices are in one place; use a closed surface");
-  return diagonal / 25;
+void add_option(const char* name, double value, std::vector<std::string>& words) {
+  if (!(value > 0)) return;
+  words.emplace_back(name);
+  append_number(words.emplace_back(), value);
 }
 
 }  // namespace
@@ -47,18 +40,19 @@ TetMesh tetrahedralise(const fs::path& surface, const TetrahedraliseOptions& opt
   if (!options.program.empty() && !is_program(options.program))
     throw InvalidInput(options.program.string() + ": is not a program; give the path of " + kProgram);
   const fs::path program = options.program.empty() ? mesher() : options.program;
-  std::string size;
-  append_number(size, options.size > 0 ? options.size : default_size(surface));
-
   const TemporaryFolder folder;
   const fs::path result = folder.path() / "tets.mesh";
+  std::vector<std::string> words = {fs::absolute(program).string(), fs::absolute(surface).string(), "-o",
+                                    result.string()};
+  add_option("--size", options.size, words);
+  add_option("--time-limit", options.seconds, words);
   const std::string said = run_program({.name = kProgram,
-                                        .command = {fs::absolute(program).string(), fs::absolute(surface).string(),
-                                                    "-o", result.string(), "--size", size},
+                                        .command = words,
                                         .about = surface.string(),
                                         .messages = folder.path() / "messages",
                                         .after_signal = "out of memory? try a larger size",
-                                        .when_unusable = "build it again with -DASPIC_MESHER=ON"});
+                                        .when_unusable = "build it again with -DASPIC_MESHER=ON",
+                                        .out_of_time = kOutOfTime});
   std::error_code error;
   if (!fs::exists(result, error)) throw InvalidInput(surface.string() + ": " + kProgram + " wrote no mesh: " + said);
   return read_tet_mesh(result);

@@ -1,10 +1,14 @@
 #include "io/tetrahedralise.h"
 
 #include <gmock/gmock.h>
+#include <signal.h>
 #include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "base/error.h"
 #include "io/atomic_file.h"
+#include "io/external_program.h"
 #include "io/folder_test.h"
 #include "io/mesh_file.h"
 #include "mesh/generators.h"
@@ -48,9 +52,41 @@ TEST_F(Tetrahedralise, ReturnsTheTetsThatTheProgramWrote) {
   expect_no_leftovers();
 }
 
-TEST_F(Tetrahedralise, TheDefaultSizeIsTheDiagonalOver25) {
+TEST_F(Tetrahedralise, LeavesDefaultsToTheProgram) {
   run(good());
-  EXPECT_THAT(read_file(folder / "said"), HasSubstr("--size 0.12\n"));  // sqrt(4 + 4 + 1) / 25
+  EXPECT_EQ(read_file(folder / "said"), (folder / "mesher").string() + " " + surface.string() + " -o  \n");
+}
+
+TEST_F(Tetrahedralise, PassesTheTimeLimitAndItsFailure) {
+  write_file(folder / "mesher", "#!/bin/sh\necho \"$4 $5: too slow\" >&2; exit 4");
+  fs::permissions(folder / "mesher", fs::perms::owner_all);
+  EXPECT_THROW(tetrahedralise(surface, {.seconds = 2.5, .program = folder / "mesher"}), TimeLimitPassed);
+  EXPECT_THAT(message_of([&] { tetrahedralise(surface, {.seconds = 2.5, .program = folder / "mesher"}); }),
+              HasSubstr("ran out of time: --time-limit 2.5: too slow"));
+}
+
+// A process starts the program and is killed; the program's end of a pipe then closes.
+TEST_F(Tetrahedralise, TheProgramDiesWithItsParent) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  const pid_t parent = ::fork();
+  if (parent == 0) {
+    ::close(ends[0]);
+    run("echo x > /dev/fd/" + std::to_string(ends[1]) + "; exec sleep 100");
+    ::_exit(0);
+  }
+  ::close(ends[1]);
+  char byte;
+  ASSERT_EQ(::read(ends[0], &byte, 1), 1);  // the program runs
+  ::kill(parent, SIGKILL);
+  int status = 0;
+  ::waitpid(parent, &status, 0);
+  ssize_t count = 0;
+  while ((count = ::read(ends[0], &byte, 1)) > 0) {
+  }
+  EXPECT_EQ(count, 0);
+  ::close(ends[0]);
+  fs::remove_all(folder / "temporary");
 }
 
 TEST_F(Tetrahedralise, TheReasonOfAFailureIsPassedOn) {
@@ -69,8 +105,6 @@ TEST_F(Tetrahedralise, BadSizesAndProgramsAreRefused) {
               HasSubstr("is not a program"));
   ::setenv("TMPDIR", "/nowhere", 1);
   EXPECT_THAT(message_of([&] { run(good()); }), HasSubstr("set TMPDIR to a folder with space"));
-  EXPECT_THAT(message_of([&] { tetrahedralise(folder / "none.obj", {.program = "/bin/true"}); }),
-              HasSubstr("cannot be read"));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// A binary tree of axis-aligned boxes over items in Morton order: which items may overlap a box, or be nearest to a
-// point.
+// A binary tree of axis-aligned boxes over items in Morton order: which items may overlap a box, be nearest to a point,
+// or lie on a ray.
 #pragma once
 #include <algorithm>
 #include <limits>
@@ -34,6 +34,21 @@ struct Box {
     }
     return sum;
   }
+  // The parameter s >= 0 at which origin + s direction enters the box; infinity when it misses.
+  double entry(const Vec3d& origin, const Vec3d& direction) const {
+    double first = 0, last = kInfinity;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (direction[axis] == 0) {
+        if (origin[axis] < lower[axis] || origin[axis] > upper[axis]) return kInfinity;
+        continue;
+      }
+      double in = (lower[axis] - origin[axis]) / direction[axis], out = (upper[axis] - origin[axis]) / direction[axis];
+      if (out < in) std::swap(in, out);
+      first = std::max(first, in);
+      last = std::min(last, out);
+    }
+    return first <= last ? first : kInfinity;
+  }
 };
 
 class BoxTree {
@@ -52,6 +67,12 @@ class BoxTree {
   template <class Visit>
   void for_each_near(const Vec3d& x, const double& reach, Visit visit) const {
     if (!items_.empty()) near({0, 0, static_cast<int>(items_.size())}, x, reach, visit);
+  }
+
+  // Calls visit(item) for the items whose box the ray enters at a parameter of at most `reach`, which visit may lower.
+  template <class Visit>
+  void for_each_on_ray(const Vec3d& origin, const Vec3d& direction, const double& reach, Visit visit) const {
+    if (!items_.empty()) along({0, 0, static_cast<int>(items_.size())}, origin, direction, reach, visit);
   }
 
  private:
@@ -81,6 +102,15 @@ class BoxTree {
     if (to_second < to_first) std::swap(first, second), std::swap(to_first, to_second);
     if (to_first <= reach) near(first, x, reach, visit);
     if (to_second <= reach) near(second, x, reach, visit);
+  }
+
+  template <class Visit>
+  void along(Node node, const Vec3d& origin, const Vec3d& direction, const double& reach, Visit& visit) const {
+    const double entry = bounds_[node.index].entry(origin, direction);
+    if (!(entry <= reach) || entry == Box::kInfinity) return;
+    if (node.is_leaf()) return visit(items_[node.begin]);
+    along(node.left(), origin, direction, reach, visit);
+    along(node.right(), origin, direction, reach, visit);
   }
 
   std::vector<int> items_;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "mesh/doctor.h"
 #include "mesh/surface_orientation.h"
@@ -97,6 +98,47 @@ size_t remove_triangles(TriMesh& mesh, const std::vector<bool>& remove) {
   return removed;
 }
 
+// Edges that an odd number of the triangles share: the boundary of what they enclose.
+size_t odd_edges(const TriMesh& mesh, const std::vector<bool>& remove) {
+  std::vector<Triangle> kept;
+  for (size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (!remove[t]) kept.push_back(mesh.triangles[t]);
+  size_t odd = 0;
+  for_each_edge(edge_uses(kept), [&](const EdgeUse* first, const EdgeUse* last) { odd += (last - first) % 2; });
+  return odd;
+}
+
+// Whether the triangle is an even permutation of its vertices in ascending order.
+bool runs_forward(const Triangle& triangle) {
+  const auto& [a, b, c] = triangle;
+  return (a < b) + (b < c) + (c < a) == 2;
+}
+
+// Pairs of triangles with the same vertices that face each other. They enclose nothing.
+std::vector<bool> back_to_back(const TriMesh& mesh) {
+  std::map<Triangle, std::vector<size_t>> unpaired;  // facing the same way
+  std::vector<bool> paired(mesh.triangles.size());
+  for (size_t t = 0; t < paired.size(); ++t) {
+    Triangle key = mesh.triangles[t];
+    std::sort(key.begin(), key.end());
+    std::vector<size_t>& others = unpaired[key];
+    if (!others.empty() && runs_forward(mesh.triangles[others.back()]) != runs_forward(mesh.triangles[t])) {
+      paired[t] = paired[others.back()] = true;
+      others.pop_back();
+    } else {
+      others.push_back(t);
+    }
+  }
+  return paired;
+}
+
+// Removes back-to-back pairs where that leaves fewer open edges than keeping one triangle of each, which is right for a
+// surface that was written from both sides. Returns how many triangles.
+size_t cancel_pairs(TriMesh& mesh) {
+  const std::vector<bool> pairs = back_to_back(mesh), repeated = is_repeated(mesh.triangles);
+  return odd_edges(mesh, pairs) < odd_edges(mesh, repeated) ? remove_triangles(mesh, pairs) : 0;
+}
+
 }  // namespace
 
 std::vector<std::string> repair(TetMesh& mesh) {
@@ -121,6 +163,7 @@ std::vector<std::string> repair(TriMesh& mesh) {
   std::vector<bool> twice(mesh.triangles.size());
   for (size_t t = 0; t < mesh.triangles.size(); ++t) twice[t] = lists_vertex_twice(mesh.triangles[t]);
   say(actions, "removed", remove_triangles(mesh, twice), "triangles that list a vertex twice");
+  say(actions, "removed", cancel_pairs(mesh), "triangles that lie back to back in pairs");
   say(actions, "removed", remove_triangles(mesh, is_repeated(mesh.triangles)), "repeated triangles");
   say(actions, "turned", orient(mesh), "triangles that faced the wrong way");
   say(actions, "dropped", drop_unreferenced(mesh.vertices, mesh.triangles),

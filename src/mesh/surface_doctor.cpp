@@ -41,15 +41,19 @@ bool can_be_oriented(TriMesh mesh) {
 
 void examine_edges(const TriMesh& mesh, const SurfaceTopology& surface, Findings& findings) {
   const size_t total = mesh.triangles.size();
-  findings.add({Severity::error, "open_surface",
-                "the surface is open: " + std::to_string(surface.open_edges) + " edges round " +
-                    std::to_string(surface.holes) + (surface.holes == 1 ? " hole" : " holes") +
-                    " have one triangle only (these triangles are listed)",
-                "close the holes where it was made; aspic-mesh --fill-holes closes small ones", surface.open, false});
+  findings.add(
+      {Severity::error, "open_surface",
+       "the surface is open: " + std::to_string(surface.open_edges) + " edges round " + std::to_string(surface.holes) +
+           (surface.holes == 1 ? " hole" : " holes") + " have one triangle only (these triangles are listed)",
+       "close the holes where it was made; aspic mesh --fill-holes closes small ones, aspic mesh --rebuild wraps "
+       "the surface in a closed one",
+       surface.open, false});
   findings.add(
       {Severity::error, "non_manifold_edges",
        std::to_string(surface.non_manifold_edges) + " edges are shared by more than two triangles (these are listed)",
-       "remove inner walls and extra triangles where it was made", surface.non_manifold, false});
+       "remove inner walls and extra triangles where it was made, or wrap the surface in a new one with aspic mesh "
+       "--rebuild",
+       surface.non_manifold, false});
   findings.add({Severity::warning, "non_manifold_vertices",
                 count_of(surface.non_manifold_vertices.size(), mesh.vertices.size(), "vertices",
                          "join sheets that touch there only"),
@@ -79,7 +83,8 @@ void examine_intersections(const TriMesh& mesh, Findings& findings) {
   findings.add({Severity::error, "self_intersections",
                 "the surface runs into itself: " + std::to_string(pairs.size()) + " pairs of triangles, the first " +
                     std::to_string(pairs[0][0]) + " and " + std::to_string(pairs[0][1]),
-                "pull the parts apart, or unite them where it was made", triangles, false});
+                "pull the parts apart, or unite them where it was made or with aspic mesh --rebuild", triangles,
+                false});
 }
 
 }  // namespace

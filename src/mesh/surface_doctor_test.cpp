@@ -78,6 +78,26 @@ TEST(DoctorOfSurfaces, RefusesCoordinatesWhosePowersOverflow) {
   EXPECT_THAT(names(diagnose(surface)), ElementsAre("coordinates_too_large"));
 }
 
+TEST(DoctorOfSurfaces, CancelsBackToBackPairs) {
+  TriMesh surface = ball();  // with a fin of two triangles on an edge
+  const auto [a, b, c] = surface.triangles[5];
+  const int tip = surface.vertex_count();
+  surface.vertices.push_back(1.5 * surface.vertices[a]);
+  surface.triangles.push_back({a, b, tip});
+  surface.triangles.push_back({b, a, tip});
+  EXPECT_THAT(repair(surface), ElementsAre("removed 2 triangles that lie back to back in pairs",
+                                           "dropped 1 vertices that only removed triangles used"));
+  EXPECT_THAT(diagnose(surface), IsEmpty());
+}
+
+TEST(DoctorOfSurfaces, KeepsOneSideOfASurfaceWrittenTwice) {
+  const TriMesh clean = ball();
+  TriMesh surface = clean;
+  for (const auto& [a, b, c] : clean.triangles) surface.triangles.push_back({a, c, b});
+  repair(surface);
+  EXPECT_EQ(surface.triangles, clean.triangles);
+}
+
 TEST(DoctorOfSurfaces, FindsAnInwardSurfaceAndTurnsIt) {
   TriMesh surface = ball();
   for (Triangle& triangle : surface.triangles) std::swap(triangle[1], triangle[2]);

@@ -25,7 +25,8 @@ struct MeshLoader {
   std::vector<std::string>& notes;
   Announce announce;
   TetLimit limit = {};
-  double tets = 0;  // so far
+  double tets = 0;            // so far
+  double mesher_seconds = 0;  // as in SceneOptions
 
   void tell(const std::string& what) const;
   void tell_if_many(int tets, const std::string& what) const;  // so many that it takes more than a moment

@@ -34,7 +34,7 @@ Scene load_scene(const fs::path& path, const SceneOptions& options) {
   }
   SceneFiles files("", true);  // the user named the mesh
   std::vector<std::string> notes;
-  MeshLoader loader{files, options.mesher, notes, options.announce, options.limit};
+  MeshLoader loader{files, options.mesher, notes, options.announce, options.limit, 0, options.mesher_seconds};
   SceneSource source = scene_of_mesh(path, options.overrides, loader);
   source.notes.insert(source.notes.begin(), notes.begin(), notes.end());
   return build_scene(std::move(source), std::move(files), options);

@@ -61,6 +61,7 @@ struct SceneOptions {
   bool allow_outside = false;               // read files from outside the scene's folder and the folder above it
   Announce announce = {};                   // empty: nobody listens
   TetLimit limit = {};
+  double mesher_seconds = 0;               // wall time after which filling a surface fails; 0: the mesher's default
   std::function<void(Model&)> amend = {};  // adds to the model what no scene can name; called before it is simulated
 };
 

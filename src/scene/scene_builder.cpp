@@ -118,7 +118,9 @@ class SceneBuilder {
     source_.document.members.insert(source_.document.members.begin(), Member{"version", {}, {current, {}}});
   }
 
-  MeshLoader mesh_loader() { return {files_, options_.mesher, source_.notes, options_.announce, options_.limit}; }
+  MeshLoader mesh_loader() {
+    return {files_, options_.mesher, source_.notes, options_.announce, options_.limit, 0, options_.mesher_seconds};
+  }
 
   void add_bodies() {
     MeshLoader loader = mesh_loader();

@@ -1,0 +1,17 @@
+// Bounds of the time and the memory of this process.
+#pragma once
+#include <cstdint>
+#include <string>
+
+namespace aspic {
+
+inline constexpr int kOutOfTime = 4;  // exit code
+
+// After this many seconds of wall time the process prints `message` to stderr and ends with kOutOfTime. A second call
+// replaces the first.
+void limit_time(double seconds, const std::string& message);
+
+// Allocations beyond this many bytes throw std::bad_alloc.
+void limit_memory(std::int64_t bytes);
+
+}  // namespace aspic

@@ -1,0 +1,131 @@
+// From a closed surface to tets: body by body, in a frame of unit size, judged against the surface.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "base/error.h"
+#include "bodies.h"
+#include "body_domain.h"
+#include "fidelity.h"
+#include "local_size.h"
+#include "mesh/surface_orientation.h"
+#include "mesher.h"
+#include "sharp_edges.h"
+#include "unit_frame.h"
+
+namespace aspic {
+namespace {
+
+std::string digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+Vec3d extent(const TriMesh& mesh) {
+  Box box;
+  for (const Vec3d& x : mesh.vertices) box.add(x);
+  return box.upper - box.lower;
+}
+
+// Points of the samples, far enough from each other to leave the refinement its freedom.
+std::vector<Vec3d> seeds(const std::vector<SurfaceSample>& samples) {
+  constexpr size_t kSeeds = 200;
+  std::vector<Vec3d> seeds;
+  const size_t count = std::min(kSeeds, samples.size());
+  for (size_t i = 0; i < count; ++i) seeds.push_back(samples[i * samples.size() / count].x);
+  return seeds;
+}
+
+void append(const TetMesh& part, TetMesh& whole) {
+  const int first = whole.vertex_count();
+  whole.rest.insert(whole.rest.end(), part.rest.begin(), part.rest.end());
+  for (const auto& [a, b, c, d] : part.tets) whole.tets.push_back({first + a, first + b, first + c, first + d});
+}
+
+class SurfaceFiller {
+ public:
+  SurfaceFiller(std::string name, const TriMesh& surface, const MesherOptions& options)
+      : name_(std::move(name)), frame_(unit_frame(name_, surface.vertices)), options_(options) {
+    TriMesh unit = surface;
+    to_frame(frame_, unit.vertices);
+    const Vec3d span = extent(unit);
+    size_ = options.size > 0 ? options.size / frame_.unit : std::sqrt(dot(span, span)) / 25;
+    check_size(frame_.unit * span, frame_.unit * size_);
+    bodies_ = bodies(unit);
+  }
+
+  FilledSurface fill() {
+    for (size_t b = 0; b < bodies_.size(); ++b) append(filled(static_cast<int>(b)), result_.tets);
+    from_frame(frame_, result_.tets.rest);
+    if (least_ < 0.9 * size_)
+      result_.notes.push_back("edges are as short as " + length(least_) + " where the shape is thin, elsewhere " +
+                              length(size_));
+    return std::move(result_);
+  }
+
+ private:
+  std::string length(double in_frame) const { return digits(in_frame * frame_.unit); }
+
+  std::string body_name(int body) const {
+    return bodies_.size() == 1 ? name_
+                               : name_ + ", body " + std::to_string(body + 1) + " of " + std::to_string(bodies_.size());
+  }
+
+  TetMesh filled(int body) {
+    const TriMesh& surface = bodies_[body];
+    const double volume = std::abs(enclosed_volume(surface));
+    const std::vector<SurfaceSample> samples = surface_samples(surface, size_ / 2);
+    if (samples.empty() || !(volume > 0)) throw InvalidInput(body_name(body) + ": encloses no volume; remove it");
+    const ThinParts thin = choose_rule(samples, volume, size_, options_.most_tets);
+    if (!thin.problem.empty())
+      throw InvalidInput(body_name(body) + ": it is " + length(thin.thickness) + " thin, and " + thin.problem +
+                         "; allow more with --max-tets, or thicken it");
+    if (const double across = thin.thickness / thin.rule.smallest; thin.rule.smallest < size_ && across < 1.9)
+      result_.notes.push_back((bodies_.size() == 1 ? "" : "body " + std::to_string(body + 1) + ": ") + "it is " +
+                              length(thin.thickness) + " thin; " + digits(across) +
+                              " tets across instead of two, since more than " + digits(options_.most_tets) +
+                              " are not allowed (--max-tets)");
+    std::string problem;
+    for (const double factor : {1.0, 0.6}) {
+      SizeRule rule = thin.rule;
+      rule.size *= factor, rule.smallest *= factor, rule.tets_across /= factor;
+      const double tets = predicted_tets(samples, volume, rule);
+      if (factor < 1 && tets > options_.most_tets) break;
+      TetMesh mesh = attempt(surface, samples, rule, tets);
+      const double allowed = 0.7 * size_;
+      problem =
+          mesh.tets.empty() ? "no tet fits into it" : mismatch(fidelity(surface, mesh, allowed), allowed, frame_.unit);
+      if (!problem.empty()) continue;
+      least_ = std::min(least_, std::max(rule.smallest, least_size_));
+      return mesh;
+    }
+    throw InvalidInput(body_name(body) + ": " + problem + "; give a --size smaller than " + length(size_));
+  }
+
+  TetMesh attempt(const TriMesh& surface, const std::vector<SurfaceSample>& samples, const SizeRule& rule,
+                  double predicted) {
+    const LocalSize size(samples, rule);
+    least_size_ = size.least();
+    BodyDomain domain{surface, size, sharp_chains(surface, rule.size), seeds(samples), 0};
+    domain.most_vertices = static_cast<size_t>(1e4 + predicted);  // several times what refinement needs
+    return fill_body(domain);
+  }
+
+  std::string name_;
+  UnitFrame frame_;
+  const MesherOptions& options_;
+  double size_ = 0;
+  double least_ = Box::kInfinity, least_size_ = 0;  // edge lengths in the frame
+  std::vector<TriMesh> bodies_;
+  FilledSurface result_;
+};
+
+}  // namespace
+
+FilledSurface mesh_surface(const std::string& name, const TriMesh& surface, const MesherOptions& options) {
+  return SurfaceFiller(name, surface, options).fill();
+}
+
+}  // namespace aspic
