@@ -11,7 +11,6 @@ namespace aspic::viewer {
 namespace {
 
 constexpr size_t kMostBytes = 32 << 20;  // of a text: recordings are long
-constexpr double kSameTime = 1e-6;       // of a step
 
 }  // namespace
 

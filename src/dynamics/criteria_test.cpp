@@ -1,6 +1,10 @@
 // The stopping criteria of a step: what each of them promises is kept.
 #include <gmock/gmock.h>
 
+#include <array>
+#include <numeric>
+#include <random>
+
 #include "base/error.h"
 #include "dynamics/models_test.h"
 
@@ -93,6 +97,130 @@ TEST(Criteria, ThoseThatJudgeDirectionsNeedDirectionsThatEstimateTheMinimiser) {
     options.solver.minimize.criterion = criterion;
     EXPECT_THAT(([&] { simulate(beam(1), options).step(); }),
                 testing::ThrowsMessage<InvalidInput>(testing::HasSubstr("scale")));
+  }
+}
+
+// A hanging box of side `size`, whose stiffness makes it sag like one of 1 m and 100 kPa.
+struct Box {
+  double size;
+  Vec3d at;
+};
+
+Model hanging_boxes(const std::vector<Box>& boxes) {
+  TetMesh mesh;
+  std::vector<MaterialParameters> parameters;
+  std::vector<int> held;
+  for (const Box& b : boxes) {
+    const TetMesh box = make_box(b.at, b.at + Vec3d{{2 * b.size, b.size, b.size}}, {4, 2, 2});
+    const int first = mesh.vertex_count();
+    for (int v = 0; v < box.vertex_count(); ++v)
+      if (box.rest[v][0] < b.at[0] + 1e-3 * b.size) held.push_back(first + v);
+    mesh.rest.insert(mesh.rest.end(), box.rest.begin(), box.rest.end());
+    for (const Tet& t : box.tets) mesh.tets.push_back({t[0] + first, t[1] + first, t[2] + first, t[3] + first});
+    parameters.resize(mesh.tets.size(), parameters_of("neo_hookean_log", 1e5 * b.size, 0.3));
+  }
+  Model model = make_model(mesh, {});
+  model.elasticity[0] = make_tet_elasticity("neo_hookean_log", model.mesh, 0, parameters);
+  model.pins.push_back({"wall", held, {}});
+  return model;
+}
+
+// The state of the last box after five steps.
+std::vector<double> last_box(const std::vector<Box>& boxes, const SimulationOptions& options) {
+  Simulation simulation = simulate(hanging_boxes(boxes), options);
+  for (int i = 0; i < 5; ++i) {
+    const StepReport report = simulation.step();
+    EXPECT_TRUE(is_success(report.status)) << to_string(report.status);
+  }
+  const std::vector<double>& q = simulation.state().q;
+  return {q.end() - static_cast<std::ptrdiff_t>(q.size() / boxes.size()), q.end()};
+}
+
+TEST(Criteria, ASmallBodyMovesAsItDoesAlone) {
+  std::mt19937 random(7);
+  for (int scene = 0; scene < 12; ++scene) {
+    const double size = std::pow(10, -1 - 3 * std::uniform_real_distribution(0.0, 1.0)(random));
+    SimulationOptions options;
+    options.h = 0.005 * std::sqrt(size);
+    if (scene % 3 == 2) options.integrator = "quasi_static";
+    options.solver.linear = scene % 2 ? "multigrid" : "cholesky";
+    options.solver.minimize.criterion =
+        std::array{Criterion::scale, Criterion::first_gradient, Criterion::decrement}[scene / 2 % 3];
+    const Box small{size, {{0.5, 1.5, 0.5}}};
+    const std::vector<double> alone = last_box({small}, options), beside = last_box({{1, {}}, small}, options);
+    EXPECT_LT(largest_distance(alone, beside), 1e-4 * size)
+        << "size " << size << ", " << to_string(options.solver.minimize.criterion) << ", " << options.solver.linear
+        << ", " << options.integrator;
+  }
+}
+
+TEST(Criteria, TheWorstVertexIsThatOfTheWorstBody) {
+  SimulationOptions options;
+  options.solver.minimize.max_iterations = 1;
+  Model model = hanging_boxes({{1, {}}, {1e-3, {{0.5, 1.5, 0.5}}}});
+  const int half = model.mesh.vertex_count() / 2;
+  std::vector<int> all(half);
+  std::iota(all.begin(), all.end(), 0);
+  model.pins.insert(model.pins.begin(), {"large", all, {}});
+  model.pins[1].vertices.erase(model.pins[1].vertices.begin(), model.pins[1].vertices.begin() + 9);
+  options.integrator = "quasi_static";
+  Simulation simulation = simulate(std::move(model), options);
+  EXPECT_GE(simulation.step().worst_vertex, half);
+}
+
+TEST(Criteria, ASoftRegionOfAStiffBodyConverges) {
+  const auto hung = [](double stiff) {  // the left half is stiff, the right half soft
+    const TetMesh mesh = make_box({}, {{0.4, 0.1, 0.1}}, {8, 2, 2});
+    std::vector<MaterialParameters> parameters;
+    std::vector<int> held;
+    for (const Tet& tet : mesh.tets) {
+      double x = 0;
+      for (const int v : tet) x += mesh.rest[v][0] / 4;
+      parameters.push_back(parameters_of("neo_hookean_log", x < 0.2 ? stiff : 1e4, 0.3));
+    }
+    for (int v = 0; v < mesh.vertex_count(); ++v)
+      if (mesh.rest[v][0] < 1e-6) held.push_back(v);
+    Model model = make_model(mesh, {});
+    model.elasticity[0] = make_tet_elasticity("neo_hookean_log", model.mesh, 0, parameters);
+    model.pins.push_back({"wall", held, {}});
+    SimulationOptions options;
+    options.integrator = "quasi_static";
+    Simulation simulation = simulate(std::move(model), options);
+    const StepReport report = simulation.step();
+    EXPECT_TRUE(is_success(report.status)) << to_string(report.status);
+    return simulation.state().q;
+  };
+  EXPECT_LT(largest_distance(hung(1e12), hung(1e10)), 1e-5);  // both as good as rigid
+}
+
+// A body whose weight is less than the round-off of its elastic forces.
+TEST(Criteria, ForcesHiddenByRoundOffAreNamed) {
+  const TetMesh mesh = make_box({}, {{0.1, 0.1, 0.1}}, {2, 2, 2});
+  Model model = make_model(mesh, {});
+  model.elasticity[0] = make_tet_elasticity("neo_hookean", model.mesh, 0,
+                                            std::vector(mesh.tets.size(), parameters_of("neo_hookean", 1e19, 0.3)));
+  SimulationOptions options;
+  options.initial_guess = "current";
+  Simulation simulation = simulate(std::move(model), options);
+  const StepReport report = simulation.step();
+  EXPECT_NE(report.status, Status::converged);
+  EXPECT_GT(report.lost_accuracy, 0);
+}
+
+TEST(Criteria, VelocitiesLostInTinyStepsAreNamed) {
+  const TetMesh mesh = make_box({}, {{1, 0.2, 0.2}}, {4, 1, 1});
+  for (const double h : {1e-17, 1e-3}) {
+    Model model = make_model(mesh, {});
+    model.loads.clear();
+    State state{std::vector<double>(3 * mesh.rest.size()), std::vector<double>(3 * mesh.rest.size(), 1.0), 0};
+    for (int v = 0; v < mesh.vertex_count(); ++v)
+      for (int r = 0; r < 3; ++r) state.q[3 * v + r] = mesh.rest[v][r];
+    SimulationOptions options;
+    options.h = h;
+    Simulation simulation(std::move(model), state, options);
+    const StepReport report = simulation.step();
+    EXPECT_EQ(report.status == Status::converged, h > 1e-10) << to_string(report.status);
+    EXPECT_EQ(report.lost_accuracy == 0, h > 1e-10);
   }
 }
 

@@ -100,5 +100,29 @@ TEST(Ledger, TheNumericalLossOfBackwardEulerIsHalfTheVelocityJumpForConstantForc
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(simulation.step().numerical_loss, mass * jump * jump / 2, 1e-7);
 }
 
+// The status of the last of `steps` steps of a beam that falls into its own weight.
+StepReport last_step_of_beam(const char* integrator, double h, int steps) {
+  Simulation simulation = simulate(beam(1, {.material = "arap"}), {.h = h, .integrator = integrator});
+  StepReport report;
+  for (int i = 0; i < steps; ++i) report = simulation.step();
+  return report;
+}
+
+TEST(Ledger, AnExplicitRunThatBlowsUpIsNoSuccess) {
+  for (const char* integrator : {"rk4", "symplectic_euler", "forward_euler"}) {
+    const double stable = simulate(beam(1, {.material = "arap"}), {.integrator = integrator}).stable_step().h;
+    const StepReport blown_up = last_step_of_beam(integrator, 1.2 * stable, 60);
+    EXPECT_EQ(blown_up.status, Status::unstable) << integrator << ", " << blown_up.kinetic << " J";
+  }
+}
+
+TEST(Ledger, AStableExplicitRunIsASuccess) {
+  for (const char* integrator : {"rk4", "symplectic_euler"}) {
+    const double stable = simulate(beam(1, {.material = "arap"}), {.integrator = integrator}).stable_step().h;
+    for (const int steps : {1, 20, 200})
+      EXPECT_EQ(last_step_of_beam(integrator, 0.9 * stable, steps).status, Status::converged) << integrator;
+  }
+}
+
 }  // namespace
 }  // namespace aspic

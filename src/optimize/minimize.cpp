@@ -69,6 +69,7 @@ struct Minimizer::Progress {
   double slope = 0;             // g.d
   LineSearchResult step;        // the last one
   bool last_direction = false;  // the criterion holds for it
+  bool is_modified = false;     // the Hessian behind the last direction
 
   bool judges_direction() const { return aspic::judges_direction(options.criterion); }
 };
@@ -135,9 +136,7 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
   SearchDirection& direction = at.direction;
   const MinimizeOptions& options = at.options;
   MinimizeReport& report = at.report;
-  const bool judges_gradient = !at.judges_direction();
-  InnerAccuracy accuracy = {options.max_forcing, judges_gradient ? 0.5 * report.threshold / report.gradient_norm : 0,
-                            options.deadline.earlier_by(cost_.to_finish())};
+  InnerAccuracy accuracy = inner_accuracy(at);
   if (options.line_search.test != DecreaseTest::none) accuracy.value = at.value.E;
   LineSearchOptions line_search = options.line_search;
   line_search.deadline = options.deadline.earlier_by(cost_.gradient);
@@ -156,10 +155,9 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
     if (at.slope < 0) {
       if (at.judges_direction()) {
         report.reached = direction_size(E, options, g_, d_);
-        // Near a saddle a short direction does not mean that a minimum is near, and a modified Hessian shortens it.
         const DirectionReport& made = iteration.direction;
-        const bool is_convex = !made.projected && made.projected_elements == 0 && !made.truncated;
-        at.last_direction = is_convex && !made.stopped && report.reached <= options.tolerance;
+        if (!made.kept) at.is_modified = made.projected_elements > 0;
+        at.last_direction = is_near_minimum(at, made);
       }
       Stopwatch stopwatch;
       at.step = backtrack(E, at.x, d_, at.value, at.slope, line_search, trial_, trial_gradient_, trials_);
@@ -222,6 +220,34 @@ void Minimizer::judge_parts(Progress& at) {
     at.report.threshold = thresholds_[k];
     if (!at.judges_direction()) at.report.reached = norm;
   }
+}
+
+// Near a saddle a short direction does not mean that a minimum is near. Nor does one of a modified Hessian, which
+// shortens it: the gradient must then be small beside what it is made of.
+bool Minimizer::is_near_minimum(const Progress& at, const DirectionReport& made) const {
+  constexpr double kBalanced = 1e-6;
+  if (made.projected || made.truncated || made.stopped || !(at.report.reached <= at.options.tolerance)) return false;
+  return !at.is_modified || std::all_of(parts_.begin(), parts_.end(),
+                                        [](const GradientPart& part) { return part.norm <= kBalanced * part.scale; });
+}
+
+// Linear solves see the whole of g, of which a part that has not converged may be a small share.
+InnerAccuracy Minimizer::inner_accuracy(const Progress& at) const {
+  constexpr double kFinestSolve = 1e-12;  // the most accurate one that is worth its iterations
+  const MinimizeOptions& options = at.options;
+  const double norm = at.report.gradient_norm;
+  InnerAccuracy accuracy = {options.max_forcing, at.judges_direction() ? 0 : 0.5 * at.report.threshold / norm,
+                            options.deadline.earlier_by(cost_.to_finish())};
+  if (parts_.size() == 1) return accuracy;
+  double smallest = norm;
+  for (size_t k = 0; k < parts_.size(); ++k) {
+    const bool has_converged = !at.judges_direction() && parts_[k].norm <= thresholds_[k];
+    if (has_converged || parts_[k].norm <= round_offs_[k]) continue;
+    smallest = std::min(smallest, parts_[k].norm);
+    if (!at.judges_direction()) accuracy.enough = std::min(accuracy.enough, 0.5 * thresholds_[k] / norm);
+  }
+  accuracy.loosest = std::max(kFinestSolve, options.max_forcing * smallest / norm);
+  return accuracy;
 }
 
 // Whether every part has converged or is at its round-off.

@@ -117,6 +117,8 @@ class Minimizer {  // holds the scratch vectors, so that repeated calls allocate
 
   void begin_parts(Objective& E);
   void judge_parts(Progress& at);
+  bool is_near_minimum(const Progress& at, const DirectionReport& made) const;
+  InnerAccuracy inner_accuracy(const Progress& at) const;
   bool is_at_round_off(const Progress& at, double margin) const;
 
   std::vector<double> g_, d_, trial_, trial_gradient_;
