@@ -74,7 +74,7 @@ TriMesh to_tri_mesh(const Surface& surface) {
 // Wraps with finer and finer probes, as long as they do not enter the shape through its holes: there the volume drops.
 Rebuilt rebuilt(const TriMesh& mesh) {
   constexpr double kCoarsest = 20, kFinest = 160;  // parts of the diagonal
-  constexpr double kEntered = 0.8;                 // volume of a wrap that went inside, relative to the coarser one
+  constexpr double kEntered = 0.65;                // volume of a wrap that went inside, relative to the coarser one
   const Soup soup = soup_of(mesh);
   if (soup.triangles.empty()) throw InvalidInput("--rebuild: no triangle of the surface has an area");
   double parts = kCoarsest;
