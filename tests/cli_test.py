@@ -227,8 +227,8 @@ class Minimize(CommandLine):
         self.assertNotIn("--definiteness", self.aspic(*start, code=3).stdout)
         self.assertIn("--definiteness on_demand", self.aspic(*start, "--definiteness", "exact", code=3).stdout)
 
-    def test_a_gradient_that_is_no_number_has_no_sign(self):
-        text = self.aspic("minimize", "--expression", "-x^2-y^2", "--start", "1,2", code=3).stdout
+    def test_a_number_that_overflows_has_no_sign(self):
+        text = self.aspic("minimize", "--expression", "-exp(x^2+y^2)", "--start", "1,2", code=3).stdout
         self.assertIn("|g| = nan; nan was reached", text)
         self.assertNotIn("-nan", text)
 
@@ -250,7 +250,7 @@ class Minimize(CommandLine):
         self.assertAlmostEqual(end["x"][1], -0.5, places=5)
 
     def test_functions_without_a_bound_end_with_a_status(self):
-        for formula, method, status in (("x + y", "gradient_descent", "iteration_limit"), ("x + y", "newton", "no_descent"),
+        for formula, method, status in (("x + y", "gradient_descent", "iteration_limit"), ("x + y", "newton", "iteration_limit"),
                                         ("0 - exp(x)", "gradient_descent", "undefined")):
             _, end = self.rows("--expression", formula, "--start", "0,0", "--method", method, code=3)
             self.assertEqual(end["status"], status)
@@ -539,7 +539,7 @@ class Run(CommandLine):
         steps = self.steps("out/beam")
         self.assertLess(len(steps), 1000)
         self.assertEqual(steps[-1]["status"], "undefined")
-        self.assertTrue(all(step["status"] == "converged" for step in steps[:-1]))
+        self.assertLessEqual({step["status"] for step in steps[:-1]}, {"converged", "unstable"})
 
     def test_adaptive_steps_are_counted_in_table_json_and_summary(self):
         done = self.aspic("run", self.beam(), "--set", "time.adaptive.tolerance=1e-5", "--set",
@@ -640,7 +640,7 @@ class Render(CommandLine):
         self.assertIn("--size 9x: write WIDTHxHEIGHT", render("-o", "a.png", "--step", "1", "--size", "9x"))
         self.assertIn("one picture needs --step", render("-o", "a.png"))
         self.assertIn("a video needs even numbers", render("-o", "a.mp4", "--size", "101x100"))
-        self.assertIn("a.gif: pictures become", render("-o", "a.gif"))
+        self.assertIn("a.bmp: pictures become", render("-o", "a.bmp"))
         self.assertIn("choose one of displacement", render("-o", "a.png", "--step", "1", "--colour", "stress"))
         self.assertIn("choose one of front", render("-o", "a.png", "--step", "1", "--view", "above"))
         self.assertFalse((self.folder / "a.png").exists())

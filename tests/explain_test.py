@@ -47,7 +47,7 @@ class Explanations(CommandLine):
         for words in said:
             self.assertIn(words, text)
         remedy = text[text.index("remedy:"):] if "remedy:" in text else text
-        found = re.search(CHANGE, remedy)
+        found = re.search(CHANGE, remedy) or re.search(CHANGE, text)
         self.assertTrue(found, f"no change in: {text}")
         proposed = f"{found[1]}={found[2]}"
         if change:

@@ -103,7 +103,7 @@ class Streams(unittest.TestCase):
     def test_a_run_is_written_when_nobody_reads(self):
         for prefix in ("> /dev/full", ">&- 2>&-"):
             self.aspic("run", "cube.toml", "--out", "unread", "--force", prefix=prefix)
-            self.assertEqual(len((self.folder / "unread/steps.csv").read_text().splitlines()), 3)
+            self.assertEqual(len((self.folder / "unread/steps.csv").read_text().splitlines()), 4)  # names, the start, two steps
             self.assertNotIn("warning", (self.folder / "unread/steps.csv").read_text())
 
     def test_a_run_ends_with_a_checkpoint_when_its_reader_has_gone(self):

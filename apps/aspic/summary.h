@@ -46,9 +46,9 @@ struct RunEnd {
   bool interrupted = false;
   double time_limit = 0;  // that ended the run [s]; 0: it did not
   bool blown_up = false;
-  std::string solver;            // the methods and what they chose, and why; empty: none was needed
-  InvertedTets inverted;         // of the last state
-  std::uint64_t state_hash = 0;  // of the last state
+  std::string solver;             // the methods and what they chose, and why; empty: none was needed
+  InvertedTets inverted;          // of the last state
+  std::uint64_t state_hash = 0;   // of the last state
   std::vector<std::string> pins;  // the names of RunTotals::reactions
   std::filesystem::path directory;
 };

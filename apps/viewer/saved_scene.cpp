@@ -55,7 +55,8 @@ void append(Table& body, const char* key, Table entry) {
 bool goes_on(const Grab& before, const Grab& next) {
   const double h = next.to_time - next.from_time;
   return before.vertices == next.vertices && before.weights == next.weights && before.stiffness == next.stiffness &&
-         std::equal(before.to.a, before.to.a + 3, next.from.a) && std::abs(next.from_time - before.to_time) < kSameTime * h;
+         std::equal(before.to.a, before.to.a + 3, next.from.a) &&
+         std::abs(next.from_time - before.to_time) < kSameTime * h;
 }
 
 Table grab_table(const Model& model, const Grab& grab) {

@@ -42,7 +42,6 @@ Moment Side::moment() const {
           .state = std::move(now.state),
           .previous = std::move(now.previous),
           .level = now.level,
-          .made_energy = now.made_energy,
           .start_time = start_time_,
           .h = simulation().options().h,
           .integrator = simulation().options().integrator,
@@ -63,7 +62,6 @@ Simulation::Snapshot Side::snapshot_of(const Moment& moment) const {
           .start = std::move(start),
           .steps_taken = moment.step,
           .level = moment.level,
-          .made_energy = moment.made_energy,
           .previous = is_same_step && options.integrator == moment.integrator ? moment.previous : std::nullopt};
 }
 

@@ -135,8 +135,9 @@ class Explainer {
     const StableStep stable = simulation_.stable_step();
     const double h = simulation_.options().h;
     const std::string& name = simulation_.options().integrator;
-    const std::string end = report_.status == Status::unstable ? "has made most of the energy that the body has"
-                                                               : "left the range of numbers";
+    const std::string end = report_.status == Status::unstable
+                                ? "has made more than ten times the energy that the body can have"
+                                : "left the range of numbers";
     if (name == "forward_euler" && h < stable.h)
       return {"forward_euler adds energy in every step, however short, and " + end,
               "time.integrator = \"forward_euler\"", "time.integrator = \"symplectic_euler\" or \"backward_euler\""};

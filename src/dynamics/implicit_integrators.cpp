@@ -112,7 +112,7 @@ class QuasiStatic : public Integrator {
     solve.decrement = report.decrement;
     std::fill(end.qdot.begin(), end.qdot.end(), 0.0);
     forces.add(tools.E, 1, end.q, {}, solve.work);
-    forces.add_bounds(tools, 1, end.q);
+    forces.add_bounds(tools, Asked::residual, 1, end.q);
     end.time = tools.end_time;
     return solve;
   }

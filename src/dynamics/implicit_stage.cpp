@@ -97,7 +97,7 @@ bool ImplicitStage::solve(const StepTools& tools, const PinPath* path, const Sta
     path->place_acceleration(options.time, acc);
   }
   forces.add(tools.E, options.weight, q, acc, solve.work);
-  forces.add_bounds(tools, options.weight, q);
+  forces.add_bounds(tools, options.once ? Asked::nothing : Asked::residual, options.weight, q);
   return true;
 }
 

@@ -58,13 +58,12 @@ void StepForces::add_round_off(const IncrementalPotential& E, double round_off) 
   for (double& r : round_offs) r += round_off;
 }
 
-void StepForces::add_bounds(const SolveTools& tools, double weight, Positions x) {
-  const double unit = tools.E.gradient_unit();
+void StepForces::add_bounds(const SolveTools& tools, Asked asked, double weight, Positions x) {
   resize_bounds(tools.E);
   tools.E.add_part_noise(x, weight, round_offs);
-  if (judges_direction(tools.options.criterion)) return;
-  const std::span<const double> asked = tools.minimizer.thresholds();
-  for (size_t k = 0; k < thresholds.size(); ++k) thresholds[k] += weight * (asked[k] / unit);
+  if (asked == Asked::nothing || judges_direction(tools.options.criterion)) return;
+  const std::span<const double> bounds = tools.minimizer.thresholds();
+  for (size_t k = 0; k < thresholds.size(); ++k) thresholds[k] += weight * (bounds[k] / tools.E.gradient_unit());
 }
 
 void StepForces::add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc,

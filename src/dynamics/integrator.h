@@ -33,6 +33,8 @@ struct StepTools : SolveTools {
   double h, end_time;     // of the step [s]
 };
 
+enum class Asked { nothing, residual };  // of a solve
+
 // What acted in a step, weighted over its stages so that r = M a + G + C is what the solves left over, and on pinned
 // vertices the force of the pins.
 struct StepForces {
@@ -46,7 +48,7 @@ struct StepForces {
   // Of the terms as they are told, at x.
   void add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc, Work& work);
   // Of a solve that ended at x.
-  void add_bounds(const SolveTools& tools, double weight, Positions x);
+  void add_bounds(const SolveTools& tools, Asked asked, double weight, Positions x);
   void add_round_off(const IncrementalPotential& E, double round_off);  // to that of every part [N]
 
  private:

@@ -44,6 +44,7 @@ struct Simulation::Impl {
     if (!integrator->is_static()) integrator->set_pin_velocity(*pins, options.h, state);
     if (options.adaptive.tolerance > 0) adaptive.emplace(model, options.adaptive.tolerance, remembers());
     ledger.begin(model, state.q);
+    measure_start();
   }
 
   // Whether the start of the step before is needed.
@@ -105,11 +106,12 @@ struct Simulation::Impl {
         const BoundedEnergies bounded = ledger.add(with, *integrator, state, forces, report);
         if (integrator->is_backward_euler()) judge(bounded, solved.work.value / (options.h * options.h), report);
       }
-      judge_energy(report);
       note_lost_velocity(with, report);
       if (!is_finite(report)) {
         if (is_success(report.status)) report.status = Status::undefined;
         take_back(with, with.end_time, report);
+      } else if (is_success(report.status) && has_blown_up(report)) {
+        report.status = Status::unstable;
       } else if (remembers()) {
         previous = adaptive ? adaptive->previous() : before;
         has_previous = true;
@@ -122,19 +124,40 @@ struct Simulation::Impl {
     return report;
   }
 
-  // An explicit scheme with too long a step makes energy, more in each step, until numbers overflow. By then, and
-  // before, most of the kinetic and elastic energy comes from the scheme. In the first steps a body at rest that begins
-  // to fall has little energy, and first-order schemes make part of that.
-  void judge_energy(StepReport& report) {
+  // The energies from which a run began, with which has_blown_up() compares.
+  void measure_start() {
     if (integrator->is_implicit()) return;
-    constexpr double kMost = 0.9;
-    constexpr int kFirstSteps = 20;
-    made_energy -= report.numerical_loss;
-    double elastic = 0;
-    for (size_t body = 0; body < model.elasticity.size(); ++body) elastic += report.potential[body];
-    const bool has_begun = steps_taken >= kFirstSteps || elastic > E->growth_stiffness();
-    if (is_success(report.status) && has_begun && made_energy > kMost * (report.kinetic + elastic))
-      report.status = Status::unstable;
+    constexpr double kRoundOff = 1e-12;  // of elastic energies, beside the stiffness of the body
+    stand_at(start.time);
+    start_force.assign(start.q.size(), 0.0);
+    start_energy = aspic::kinetic_energy(*model.mass, start.qdot, start_force) + kRoundOff * E->growth_stiffness();
+    start_force.assign(start.q.size(), 0.0);
+    for (const auto& V : model.elasticity) start_energy += std::abs(V->value(start.q));
+    // A convex V falls by at most -dV/dx (x - x at the start).
+    for (const auto& V : model.loads) V->add_gradient(start.q, 1, start_force);
+    // First-order schemes give a body at rest this much in the first step, in which some of them do not move it.
+    const std::span<const double> mass = model.mass->vertex_mass();
+    for (size_t i = 0; i < start_force.size(); ++i)
+      if (mass[i / 3] > 0) start_energy += 0.5 * options.h * options.h * start_force[i] * start_force[i] / mass[i / 3];
+  }
+
+  // An explicit scheme with too long a step makes energy, more in each step, until numbers overflow. Returns whether
+  // the body has ten times the energy that it had at the start of the run and can have got from its loads since. Where
+  // pins or targets move, their work since the start is not known, and the answer is false.
+  bool has_blown_up(const StepReport& report) {
+    constexpr double kBlownUp = 10;
+    const auto is_work = [](double work) { return work != 0; };
+    if (integrator->is_implicit() || pins->any_moves() ||
+        std::any_of(report.target_work.begin(), report.target_work.end(), is_work))
+      return false;
+    load_force.assign(start.q.size(), 0.0);
+    for (const auto& V : model.loads)
+      if (V->has_constant_gradient()) V->add_gradient(state.q, 1, load_force);
+    double allowed = start_energy, reached = report.kinetic;
+    for (size_t i = 0; i < start_force.size(); ++i)
+      allowed += (std::abs(start_force[i]) + std::abs(load_force[i])) * std::abs(state.q[i] - start.q[i]);
+    for (size_t body = 0; body < model.elasticity.size(); ++body) reached += report.potential[body];
+    return reached > kBlownUp * allowed;
   }
 
   // Velocities are differences of positions, which are known to their last digit.
@@ -216,8 +239,10 @@ struct Simulation::Impl {
   std::unique_ptr<IncrementalPotential> E;
   Minimizer minimizer;
   std::optional<AdaptiveStep> adaptive;
-  StepForces forces;       // of the last step
-  double made_energy = 0;  // by an explicit scheme since the start [J]
+  StepForces forces;                // of the last step
+  std::vector<double> start_force;  // dV/dx of the loads at the start of an explicit run [N]
+  std::vector<double> load_force;   // the same of those that do not depend on x, now [N]
+  double start_energy = 0;          // kinetic and elastic, at the start of an explicit run [J]
   Ledger ledger;
   int steps_taken = 0;
   MinimizeOptions minimize;   // of the step under way
@@ -326,9 +351,8 @@ StableStep Simulation::stable_step() const {
 std::string Simulation::solver_description() const { return impl_->direction->description(); }
 
 Simulation::Snapshot Simulation::snapshot() const {
-  return {impl_->state,       impl_->start,
-          impl_->steps_taken, impl_->adaptive ? double(impl_->adaptive->level()) : 0,
-          impl_->made_energy, impl_->has_previous ? std::optional(impl_->previous) : std::nullopt};
+  return {impl_->state, impl_->start, impl_->steps_taken, impl_->adaptive ? double(impl_->adaptive->level()) : 0,
+          impl_->has_previous ? std::optional(impl_->previous) : std::nullopt};
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
@@ -342,11 +366,11 @@ void Simulation::restore(const Snapshot& snapshot) {
   impl_->state = snapshot.state;
   impl_->start = snapshot.start;
   impl_->steps_taken = snapshot.steps_taken;
-  impl_->made_energy = snapshot.made_energy;
   *impl_->pins = Pins(impl_->model.pins, impl_->start.q);
   impl_->has_previous = impl_->remembers() && snapshot.previous;
   if (impl_->has_previous) impl_->previous = *snapshot.previous;
   impl_->ledger.begin(impl_->model, impl_->state.q);
+  impl_->measure_start();
   impl_->stand_at(impl_->state.time);  // moving targets stand where they stood
 }
 

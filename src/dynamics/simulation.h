@@ -71,7 +71,6 @@ class Simulation {
     State start;  // the state at time 0, to which pins and ledger refer
     int steps_taken = 0;
     double level = 0;               // of an adaptive step: its next part has the length h / 2^level
-    double made_energy = 0;         // by an explicit scheme since the start [J]
     std::optional<State> previous;  // where the last step or part began, when that is remembered
   };
   Snapshot snapshot() const;

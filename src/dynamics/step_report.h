@@ -40,7 +40,7 @@ struct StepReport : Work {  // of all its solves, and of what is reported here
   double objective = 0, objective_gradient = 0;            // E and |g| at the end of the last minimisation
   InitialGuess initial_guess = InitialGuess::none;         // where that started
   int substeps = 1, rejected = 0;                          // parts it was taken in; parts tried that were too long
-  double residual = 0;            // |M a + dV/dx + dD/dx| over the free vertices; of parts the largest [N]
+  double residual = 0;  // |M a + dV/dx + dD/dx| over the free vertices; of parts the largest [N]
   // Of the part of the model that is farthest from its threshold, such as one of several bodies:
   double residual_threshold = 0;  // the residual that was asked for [N]; 0 for a scheme without a solve
   double residual_round_off = 0;  // the part of a residual that double precision cannot tell from zero [N]

@@ -10,7 +10,7 @@ namespace aspic {
 namespace {
 
 // r = A p - b
-struct Linear : LeastSquares {
+struct LinearProblem : LeastSquares {
   int n, m;
   std::vector<double> A, b;  // row by row
 
@@ -36,9 +36,9 @@ struct Linear : LeastSquares {
   }
 };
 
-Linear random_problem(std::mt19937& random, int n, int m) {
+LinearProblem random_problem(std::mt19937& random, int n, int m) {
   std::normal_distribution<double> normal;
-  Linear problem;
+  LinearProblem problem;
   problem.n = n, problem.m = m;
   for (int i = 0; i < n * m; ++i) problem.A.push_back(normal(random));
   for (int i = 0; i < m; ++i) problem.b.push_back(3 * normal(random));
@@ -48,7 +48,7 @@ Linear random_problem(std::mt19937& random, int n, int m) {
 TEST(MinimizeWithin, FulfilsTheConditionsOfTheConstrainedMinimum) {
   std::mt19937 random(1);
   for (int trial = 0; trial < 50; ++trial) {
-    Linear problem = random_problem(random, 8, 20);
+    LinearProblem problem = random_problem(random, 8, 20);
     const std::vector<Bounds> bounds(8, {0, 0.5});
     const std::vector<double> guess(8, 0.1);
     const BoundedFit fit = minimize_within(problem, guess, bounds);
@@ -80,7 +80,7 @@ TEST(MinimizeWithin, HasTheDeviationsOfLinearRegression) {
   // A line through n points with noise: var(slope) = s^2 / sum (x - mean)^2.
   std::mt19937 random(2);
   std::normal_distribution<double> noise(0, 0.1);
-  Linear line;
+  LinearProblem line;
   line.n = 2, line.m = 200;
   double mean = 0, spread = 0;
   for (int i = 0; i < line.m; ++i) {
@@ -100,7 +100,7 @@ TEST(MinimizeWithin, HasTheDeviationsOfLinearRegression) {
 }
 
 TEST(MinimizeWithin, CallsWhatTheResidualsDoNotSeeUndetermined) {
-  Linear problem;  // only p0 + p1 matters, and p2 not at all
+  LinearProblem problem;  // only p0 + p1 matters, and p2 not at all
   problem.n = 3, problem.m = 4;
   problem.A = {1, 1, 0, 1, 1, 0, 1, 1, 0, 2, 2, 0};
   problem.b = {1, 1.1, 0.9, 2};

@@ -95,7 +95,6 @@ Checkpoint to_checkpoint(const Simulation& simulation, const std::string& scene,
   checkpoint.arrays = {{"q", std::move(state.q)},
                        {"qdot", std::move(state.qdot)},
                        {"time", {state.time}},
-                       {"made_energy", {snapshot.made_energy}},
                        {"start_q", std::move(start.q)},
                        {"start_qdot", std::move(start.qdot)},
                        {"start_time", {start.time}},
@@ -129,7 +128,6 @@ Simulation::Snapshot to_snapshot(const Checkpoint& checkpoint, const Model& mode
   snapshot.steps_taken = static_cast<int>(steps);
   snapshot.state = state_of(checkpoint, "", model);
   snapshot.start = state_of(checkpoint, "start_", model);
-  snapshot.made_energy = only_number(checkpoint, "made_energy");
   read_history(checkpoint.array("history"), model.numbering.vertex, snapshot);
   return snapshot;
 }
