@@ -18,6 +18,7 @@
 #include "base/printable.h"
 #include "capture/fit_folder.h"
 #include "capture/fit_run.h"
+#include "capture/fit_verdict.h"
 #include "material/registry.h"
 #include "scene/value.h"
 
@@ -185,10 +186,18 @@ void print_use(const FitArguments& arguments, bool is_whole) {
     fmt::print("           it is what was reached; the same command with --resume goes on, to the same bits\n");
 }
 
-int exit_code(const FitArguments& arguments, const FitOutcome& outcome) {
+int exit_code(const FitArguments& arguments, bool is_good) {
   if (interrupt_signal()) return exit_signal + interrupt_signal();
-  if (!outcome.has_material()) return exit_unconverged;
-  return is_success(outcome.report.status) || arguments.allow_unconverged ? exit_done : exit_unconverged;
+  return is_good || arguments.allow_unconverged ? exit_done : exit_unconverged;
+}
+
+void print_verdict(const FitVerdict& verdict, bool is_quiet) {
+  if (verdict.is_good()) {
+    if (!is_quiet) fmt::print("verdict    good: {}\n", verdict.text);
+    return;
+  }
+  for (const FitReason& reason : verdict.reasons)
+    fmt::print(stderr, "warning: not to be relied on ({}): {}\n", reason.name, reason.text);
 }
 
 // Synthetic data come with what is true.
@@ -219,19 +228,22 @@ int run(const FitArguments& arguments) {
   const FitOutcome outcome = fitter.run();
   if (!outcome.has_material()) {
     fmt::print(stderr, "the fit failed: {}\n", outcome.failure);
-    return exit_code(arguments, outcome);
+    return interrupt_signal() ? exit_signal + interrupt_signal() : exit_unconverged;
   }
   write_material(arguments.out, outcome.material);
   folder.add_weights(outcome.report);
   const FitFigures figures = figures_of(data, outcome, truth_beside(arguments.data), arguments.baselines);
-  write_figures(folder.path() / "figures.json", outcome, figures);
+  const FitVerdict judged = verdict(data, outcome);
+  write_figures(folder.path() / "figures.json", outcome, judged, figures);
   if (!arguments.quiet) print_fit(stdout, data, outcome), print_figures(stdout, figures);
-  if (!is_success(outcome.report.status))
-    fmt::print(stderr, "warning: the fit is not converged: {}\n", outcome.report.words);
+  if (arguments.quiet)
+    for (const std::string& warning : outcome.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  std::fflush(stdout);
+  print_verdict(judged, arguments.quiet);
   print_use(arguments, !outcome.interrupted);
   write_fit_report(folder.report(), data, outcome, fitter.history(), arguments.quiet ? nullptr : stdout);
   if (!outcome.interrupted) folder.finish();
-  return exit_code(arguments, outcome);
+  return exit_code(arguments, judged.is_good());
 }
 
 std::vector<std::string> model_names() {
@@ -295,8 +307,9 @@ Examples:
   aspic fit pillow --resume                    goes on where it was interrupted, to the same bits
 then in a scene: material = { file = "material.vtu" }
 
-Exit codes: 0 done, 2 bad input (also: data with errors), 3 the fit failed or did not converge (unless
---allow-unconverged); 130 interrupted by ctrl-C, 143 by kill: what was reached is written, --resume goes on.)");
+Exit codes: 0 the verdict is good, 2 bad input (also: data with errors), 3 the fit failed, did not converge, or
+its material is not to be relied on (unless --allow-unconverged): the reasons are printed and written into
+figures.json; 130 interrupted by ctrl-C, 143 by kill: what was reached is written, --resume goes on.)");
   command->add_option("DATA", arguments->data, "Folder of a data set, or its capture.toml")->required();
   command->add_option("-o,--out", arguments->out, "The material to write; material.vtu by default");
   command->add_flag("--check", arguments->check, "Only reads and diagnoses the data");
@@ -308,7 +321,7 @@ Exit codes: 0 done, 2 bad input (also: data with errors), 3 the fit failed or di
   command->add_flag("-q,--quiet", arguments->quiet, "Only warnings and errors");
   command->add_flag("-v,--verbose", arguments->verbose, "A line per iteration")->excludes("--quiet");
   command->add_flag("--allow-unconverged", arguments->allow_unconverged,
-                    "Exit code 0 even when the fit did not converge");
+                    "Exit code 0 even when the fit did not converge or its material is not to be relied on");
   command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }
 

@@ -116,6 +116,12 @@ Json json_of(const HeldOut& h) {
           {"force_noise", h.force_noise}};
 }
 
+Json json_of(const FitVerdict& judged) {
+  Json reasons = Json::array();
+  for (const FitReason& reason : judged.reasons) reasons.push_back({{"name", reason.name}, {"text", reason.text}});
+  return {{"good", judged.is_good()}, {"text", judged.text}, {"reasons", reasons}};
+}
+
 Json values_of(const FitOutcome& outcome) {
   Json values = Json::object();
   for (const FittedQuantity& q : outcome.quantities)
@@ -143,10 +149,12 @@ void print_figures(std::FILE* stream, const FitFigures& figures) {
   for (const Prediction& p : figures.predictions) print_prediction(stream, p);
 }
 
-void write_figures(const std::filesystem::path& file, const FitOutcome& outcome, const FitFigures& figures) {
+void write_figures(const std::filesystem::path& file, const FitOutcome& outcome, const FitVerdict& judged,
+                   const FitFigures& figures) {
   const FitReport& report = outcome.report;
   Json json = {{"converged", is_success(report.status)},
                {"words", report.words},
+               {"verdict", json_of(judged)},
                {"unknowns", outcome.unknowns},
                {"residuals", outcome.residuals},
                {"iterations", report.iterations},

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "capture/fit_run.h"
+#include "capture/fit_verdict.h"
 #include "capture/judge.h"
 
 namespace aspic::cli {
@@ -25,6 +25,7 @@ struct FitFigures {
 FitFigures figures_of(const DataSet& data, const FitOutcome& outcome, const std::filesystem::path& truth,
                       bool with_baselines);
 void print_figures(std::FILE* stream, const FitFigures& figures);
-void write_figures(const std::filesystem::path& file, const FitOutcome& outcome, const FitFigures& figures);
+void write_figures(const std::filesystem::path& file, const FitOutcome& outcome, const FitVerdict& judged,
+                   const FitFigures& figures);
 
 }  // namespace aspic::cli

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "capture/fit_verdict.h"
 #include "capture/fitted_values.h"
 #include "io/base64.h"
 #include "io/gzip.h"
@@ -51,6 +52,8 @@ class FitPack {
                  {"weights", weights()},
                  {"notes", data_.notes},
                  {"warnings", outcome_.warnings},
+                 {"verdict", verdict_json()},
+                 {"markerNames", data_.marker_names},
                  {"nextPoke", next_poke()}};
     std::string text;
     append_base64(gzipped(pack_.bytes(std::move(head))), text);
@@ -88,7 +91,7 @@ class FitPack {
       for (size_t i = 0; i < load.positions.size(); ++i) {
         marker.push_back(static_cast<uint32_t>(load.positions[i].marker));
         append(load.positions[i].position, measured);
-        append(load.positions[i].deviation, deviation);
+        append(outcome.marker_deviation.empty() ? load.positions[i].deviation : outcome.marker_deviation[i], deviation);
         outcome.ok ? append(outcome.markers[i], predicted) : append_nothing(predicted);
         outcome.has_held_out ? append(outcome.held_out_markers[i], held_out) : append_nothing(held_out);
       }
@@ -98,6 +101,13 @@ class FitPack {
     pack_.add("reading.deviation", deviation);
     pack_.add("reading.predicted", predicted);
     pack_.add("reading.heldOut", held_out);
+  }
+
+  Json verdict_json() const {
+    const FitVerdict judged = verdict(data_, outcome_);
+    Json reasons = Json::array();
+    for (const FitReason& reason : judged.reasons) reasons.push_back({{"name", reason.name}, {"text", reason.text}});
+    return {{"good", judged.is_good()}, {"text", judged.text}, {"reasons", reasons}};
   }
 
   Json counts() const {
@@ -181,7 +191,8 @@ class FitPack {
                        {"axis", vector(load.touch.axis)}};
       if (load.force)
         item["force"] = {{"measured", vector(*load.force)},
-                         {"deviation", vector(load.force_deviation)},
+                         {"deviation", vector(outcome.ok && !outcome.left_out ? outcome.force_deviation
+                                                                              : load.force_deviation)},
                          {"predicted", outcome.ok ? vector(outcome.wrench.force) : Json()},
                          {"heldOut", outcome.has_held_out ? vector(outcome.held_out_wrench.force) : Json()}};
       list.push_back(std::move(item));

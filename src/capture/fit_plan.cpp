@@ -120,6 +120,11 @@ std::pair<std::string, double> parse_known(const std::string& text) {
   return {quantity, value};
 }
 
+std::vector<Unknown> single_values(std::vector<Unknown> unknowns) {
+  for (Unknown& u : unknowns) u.spread = Spread::uniform, u.handles = 0;
+  return unknowns;
+}
+
 FitPlan completed(FitPlan plan, const Experiment& experiment) {
   const std::vector<std::string> quantities = quantities_of(plan.model);
   for (const auto& [quantity, value] : plan.known) {

@@ -35,6 +35,9 @@ std::pair<std::string, double> parse_known(const std::string& text);  // "poisso
 
 inline constexpr int kMostParts = 4;
 
+// One value for the whole body of each.
+std::vector<Unknown> single_values(std::vector<Unknown> unknowns);
+
 // The plan with everything filled in that the data and the model decide. Throws InvalidInput for names that the model
 // or the data do not have.
 FitPlan completed(FitPlan plan, const Experiment& experiment);

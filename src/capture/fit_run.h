@@ -41,6 +41,10 @@ struct CaseOutcome {
   bool has_held_out = false;  // predicted by a fit without its group
   std::vector<Vec3d> held_out_markers;
   Wrench held_out_wrench;
+  // Standard deviations with those of the correction for the mesh, as the fit used them [m], [N].
+  std::vector<Vec3d> marker_deviation;
+  Vec3d force_deviation{};
+  double relative_mesh_error = 0;  // of the force: |limit - mesh| over the smaller of both
 };
 
 // What a field of stiffness was divided into.
@@ -52,6 +56,11 @@ struct FoundParts {
   double squares = 0;          // |r|^2 of what was kept, or of the last that was tried
 };
 
+// Why a material is not to be relied on.
+struct FitReason {
+  std::string name, text;  // "group_missed", "the forces of 'poke 2' are missed by 12 standard deviations"
+};
+
 struct FitOutcome {
   FitPlan plan;                      // completed
   FitReport report;                  // of the last stage that was begun
@@ -59,10 +68,14 @@ struct FitOutcome {
   std::vector<FittedQuantity> quantities;
   FittedMaterial material;         // by the user's numbers
   std::vector<CaseOutcome> cases;  // one per case of the data
+  std::vector<FitReason> against_field;  // why one value replaces the field that was wanted; empty: it does not
+  bool mesh_errors_settle = true;        // false: they changed the material to the last
+  std::vector<std::string> at_bound;     // quantities: "young in 3 tets"
   double mesh_error = -1;          // of the positions, root mean square over the largest motion; < 0: not known
   std::optional<Posterior> posterior;
   std::optional<FoundParts> parts;
   std::optional<CrossValidation> held_out;
+  std::optional<CrossValidation> held_out_of_one_value;  // where a field is fitted
   std::optional<PokeCandidate> next_poke;
   std::vector<std::string> warnings;
   std::string failure;       // why there is no material; empty: there is one

@@ -1,9 +1,12 @@
 #include "capture/fitted_values.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <numeric>
 #include <set>
+
+#include "fit/regularizer.h"
 
 namespace aspic {
 namespace {
@@ -38,6 +41,19 @@ std::vector<std::pair<std::string, int>> telling_tets(const FittedQuantity& quan
           {is_young ? "stiffest tet" : "highest", order.back()}};
 }
 
+constexpr double kAtEnd = 0.9995;  // of a range from -1 to 1
+constexpr double kNearWall = 0.9;  // of the farthest that a field can be from its guess
+
+bool is_field_of_powers(const Unknown& u) {
+  return u.quantity == "young" && (u.spread == Spread::tets || u.spread == Spread::handles);
+}
+
+bool is_at_bound(const ParameterMap& map, int unknown, double fitted) {
+  const Unknown& u = map.unknowns()[static_cast<size_t>(unknown)];
+  if (is_field_of_powers(u)) return std::abs(fitted - std::log(u.guess)) > kNearWall * kFarthestOfField;
+  return std::abs(map.place_in_range(unknown, fitted)) > kAtEnd;
+}
+
 // A quantity of every tet, fitted or known.
 double quantity_of(const MaterialParameters& m, const std::string& name, const MaterialInfo& info) {
   if (name == "young") return young_modulus(m.lame);
@@ -67,6 +83,20 @@ std::vector<FittedQuantity> fitted_quantities(const ParameterMap& map, const Tet
     }
   }
   return result;
+}
+
+std::vector<std::string> values_at_bound(const ParameterMap& map, std::span<const double> p) {
+  std::vector<std::string> found;
+  for (size_t u = 0; u < map.unknowns().size(); ++u) {
+    const int unknown = static_cast<int>(u);
+    const std::vector<double> fitted = map.fitted_values(unknown, p);
+    const auto count =
+        std::count_if(fitted.begin(), fitted.end(), [&](double z) { return is_at_bound(map, unknown, z); });
+    if (count == 0) continue;
+    const bool is_single = map.unknowns()[u].spread == Spread::uniform;
+    found.push_back(map.unknowns()[u].quantity + (is_single ? "" : " in " + std::to_string(count) + " tets"));
+  }
+  return found;
 }
 
 FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std::span<const double> p,

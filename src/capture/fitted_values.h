@@ -16,6 +16,10 @@ std::vector<FittedQuantity> fitted_quantities(const ParameterMap& map, const Tet
 FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std::span<const double> p,
                                const std::vector<FittedQuantity>& quantities);
 
+// Quantities whose values the readings push to an end of their range, or a field to its farthest from the guess:
+// "young in 3 tets".
+std::vector<std::string> values_at_bound(const ParameterMap& map, std::span<const double> p);
+
 // "a material per tet of 384, simulated on 3072 (--refine 1); positions err by ...".
 std::string words_of_mesh(const FitOutcome& outcome);
 

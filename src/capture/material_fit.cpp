@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "capture/fit_troubles.h"
+#include "capture/fit_verdict.h"
 
 namespace aspic {
 namespace {
@@ -15,11 +16,9 @@ constexpr int kFewValues = 50;
 // Guesses that are tried when the first one is so soft that the loads crush the body.
 constexpr double kStiffer[] = {1, 10, 100, 0.1};
 
-std::vector<Unknown> as_single_values(std::vector<Unknown> unknowns, double factor) {
-  for (Unknown& u : unknowns) {
-    u.spread = Spread::uniform, u.handles = 0;
+std::vector<Unknown> stiffer(std::vector<Unknown> unknowns, double factor) {
+  for (Unknown& u : unknowns)
     if (u.quantity == "young") u.guess *= factor;
-  }
   return unknowns;
 }
 
@@ -66,6 +65,11 @@ bool MaterialFit::is_field() const {
                      [](const Unknown& u) { return u.spread != Spread::uniform; });
 }
 
+bool MaterialFit::has_many_values() const {
+  return std::any_of(plan_.unknowns.begin(), plan_.unknowns.end(),
+                     [](const Unknown& u) { return u.spread == Spread::tets || u.spread == Spread::handles; });
+}
+
 // One value per quantity explains most of the data, and is where the fields begin.
 bool MaterialFit::fit_single_values(const std::string& name) {
   begin(FitStage::uniform, "one value for the whole body");
@@ -73,7 +77,7 @@ bool MaterialFit::fit_single_values(const std::string& name) {
   options.method = options.weight_rule = "auto";
   options.weight = -1;
   for (const double factor : kStiffer) {
-    FitModel model(data_.experiment, simulated_.fitted(), plan_, as_single_values(plan_.unknowns, factor), memory_,
+    FitModel model(data_.experiment, simulated_.fitted(), plan_, stiffer(single_values(plan_.unknowns), factor), memory_,
                    name + suffix(factor), fingerprint_);
     const FitReport report = fit_stage(FitStage::uniform, model, options);
     outcome_.uniform = outcome_.report = report;
@@ -115,20 +119,25 @@ bool MaterialFit::take_off_mesh_errors() {
 }
 
 void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
+  const bool is_one_value = !outcome_.against_field.empty();
+  const std::string stage = is_one_value ? "one_value" : "fit";
+  outcome_.mesh_errors_settle = true;
   std::vector<double> start;
   FitOptions options = plan_.fit;
   for (int pass = 0;; ++pass) {
-    const std::string name = pass == 0 ? "fit" : "fit_corrected" + std::to_string(pass);
+    const std::string name = pass == 0 ? stage : stage + "_corrected" + std::to_string(pass);
     model.emplace(data_.experiment, simulated_.fitted(), plan_, plan_.unknowns, memory_, name, fingerprint_);
-    outcome_.report = fit_stage(FitStage::field, *model, options, start);
+    outcome_.report = fit_stage(is_one_value ? FitStage::uniform : FitStage::field, *model, options, start);
     const std::vector<double>& p = outcome_.report.p;
     if (!plan_.mesh_errors || !is_success(outcome_.report.status)) return;
     const double change = largest_change(start, p);
     if (pass > 0 && change < (model->map.size() > kFewValues ? kSettledField : kSettled)) return;
-    if (pass == kPasses)
+    if (pass == kPasses) {
+      outcome_.mesh_errors_settle = false;
       return add_warnings({"what the mesh gets wrong and the material do not settle: after " + std::to_string(kPasses) +
                            " rounds it still changes by " + std::to_string(change) +
                            " (of log E); a finer mesh (--refine) makes both smaller"});
+    }
     options.weight = outcome_.report.weight;
     start = p;
     material_ = model->map.parameters(p);
@@ -138,7 +147,33 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
 }
 
 void MaterialFit::fit_fields() {
+  const size_t warnings = outcome_.warnings.size();
   begin(FitStage::field, "");
+  fit_and_describe();
+  if (!has_many_values() || outcome_.interrupted || !outcome_.has_material() || !is_over(outcome_.report)) return;
+  std::vector<FitReason> reasons = reasons_against_field(data_, outcome_);
+  if (reasons.empty()) return;
+  outcome_.warnings.resize(warnings);
+  fall_back(std::move(reasons));
+}
+
+void MaterialFit::fall_back(std::vector<FitReason> reasons) {
+  outcome_.against_field = std::move(reasons);
+  outcome_.uniform.reset();
+  outcome_.posterior.reset();
+  outcome_.parts.reset();
+  outcome_.held_out.reset();
+  outcome_.held_out_of_one_value.reset();
+  outcome_.next_poke.reset();
+  outcome_.cases.clear();
+  plan_.unknowns = outcome_.plan.unknowns = single_values(plan_.unknowns);
+  plan_.fit.method = plan_.fit.weight_rule = "auto";
+  plan_.fit.weight = -1;
+  begin(FitStage::uniform, "one value for the whole body, as the data do not support a field");
+  fit_and_describe();
+}
+
+void MaterialFit::fit_and_describe() {
   std::optional<FitModel> last;
   fit_until_mesh_errors_settle(last);
   FitModel& model = *last;

@@ -24,6 +24,9 @@ class MaterialFit {
   bool has_single_values(FitModel& model, const FitReport& report);
   bool take_off_mesh_errors();  // false: they are not known, and the data remain as they are
   void fit_fields();
+  void fit_and_describe();
+  // One value replaces a field that the data do not support, with what was found for the reason.
+  void fall_back(std::vector<FitReason> reasons);
   // Fits again as long as what the mesh gets wrong changes with the material; `model` is the last one.
   void fit_until_mesh_errors_settle(std::optional<FitModel>& model);
   FitReport fit_stage(FitStage which, FitModel& model, const FitOptions& options,
@@ -34,6 +37,8 @@ class MaterialFit {
   void describe(FitModel& model, std::span<const double> p);
   void predict_left_out(const ParameterMap& map, std::span<const double> p);
   void cross_validate_groups(FitModel& model);
+  CrossValidation cross_validated(FitModel& model, const FitReport& report, FitOptions options);
+  void cross_validate_one_value();
   void find_next_poke(FitModel& model);
   using UsePrediction = std::function<void(CaseOutcome&, const CasePrediction&)>;
   void predict_group(const std::string& group, const ParameterMap& map, std::span<const double> p,
@@ -47,6 +52,7 @@ class MaterialFit {
   bool may_go_on();
   void add_warnings(const std::vector<std::string>& more);
   bool is_field() const;
+  bool has_many_values() const;  // a value per tet or handle
   const TetMesh& mesh() const { return data_.experiment.mesh; }  // of the material
 
   const DataSet& data_;

@@ -4,6 +4,7 @@
 #include "capture/fit_troubles.h"
 #include "capture/fitted_values.h"
 #include "capture/material_fit.h"
+#include "fit/columns.h"
 
 namespace aspic {
 namespace {
@@ -49,15 +50,18 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
   const Posterior* belief = outcome_.posterior && outcome_.posterior->ok ? &*outcome_.posterior : nullptr;
   outcome_.quantities = fitted_quantities(model.map, mesh(), p, belief);
   outcome_.material = fitted_material(data_, model.map, p, outcome_.quantities);
+  outcome_.at_bound = values_at_bound(model.map, p);
   outcome_.counts = model.misfit.counts();
   outcome_.cases.resize(data_.experiment.cases.size());
   std::vector<double> r(static_cast<size_t>(model.misfit.residual_count()));
   if (model.journal) model.journal->catch_up();
-  const bool ok = model.misfit.evaluate(p, r);
-  model.with_layers->errors().apply(r);
-  if (ok)
+  WithUncertainLayers about_fit(model.misfit);
+  const bool ok = about_fit.evaluate(p, r);
+  if (ok) {
+    outcome_.report.misfit = dot(r, r) / 2;
     if (const std::string words = words_of_worst_row(data_, plan_.left_out, model.misfit, r); !words.empty())
       add_warnings({words});
+  }
   int fitted = 0;
   for (size_t c = 0; c < outcome_.cases.size(); ++c) {
     CaseOutcome& outcome = outcome_.cases[c];
@@ -71,6 +75,9 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
     outcome.ok = true;
     outcome.markers = std::move(prediction.markers);
     outcome.wrench = prediction.wrench;
+    for (const MarkerReading& reading : load.positions) outcome.marker_deviation.push_back(reading.deviation);
+    outcome.force_deviation = load.force_deviation;
+    if (load.force) outcome.relative_mesh_error = simulated_.relative_force_error(c);
   }
 }
 
@@ -98,17 +105,7 @@ void MaterialFit::predict_left_out(const ParameterMap& map, std::span<const doub
 
 void MaterialFit::cross_validate_groups(FitModel& model) {
   if (!plan_.cross_validation || !may_go_on()) return;
-  // A fit stops at its deadline: that comes when the witness wants no more.
-  const WallClock clock = [&] { return may_go_on() ? 0.0 : std::numeric_limits<double>::infinity(); };
-  FitOptions options = plan_.fit;
-  options.deadline = Deadline(clock, 1);
-  const auto observe = [&](int group, int groups, const std::string& name) {
-    begin(FitStage::cross_validation,
-          "'" + name + "' is left out (" + std::to_string(group + 1) + " of " + std::to_string(groups) + ")");
-    return may_go_on();
-  };
-  CrossValidation held_out = cross_validate(simulated_.fitted(), model.map, *model.prior, outcome_.report, options,
-                                            plan_.equilibrium, observe);
+  CrossValidation held_out = cross_validated(model, outcome_.report, plan_.fit);
   if (outcome_.interrupted) return;  // the last group is not to be trusted
   add_warnings(held_out.warnings);
   for (const HeldOut& group : held_out.groups)
@@ -119,6 +116,31 @@ void MaterialFit::cross_validate_groups(FitModel& model) {
         outcome.held_out_wrench = prediction.wrench;
       });
   outcome_.held_out = std::move(held_out);
+  if (has_many_values()) cross_validate_one_value();
+}
+
+CrossValidation MaterialFit::cross_validated(FitModel& model, const FitReport& report, FitOptions options) {
+  // A fit stops at its deadline: that comes when the witness wants no more.
+  const WallClock clock = [&] { return may_go_on() ? 0.0 : std::numeric_limits<double>::infinity(); };
+  options.deadline = Deadline(clock, 1);
+  const auto observe = [&](int group, int groups, const std::string& name) {
+    begin(FitStage::cross_validation,
+          "'" + name + "' is left out (" + std::to_string(group + 1) + " of " + std::to_string(groups) + ")");
+    return may_go_on();
+  };
+  return cross_validate(simulated_.fitted(), model.map, *model.prior, report, options, plan_.equilibrium, observe);
+}
+
+// What a field has to surpass.
+void MaterialFit::cross_validate_one_value() {
+  FitOptions options = plan_.fit;
+  options.method = options.weight_rule = "auto";
+  options.weight = -1;
+  FitModel one(data_.experiment, simulated_.fitted(), plan_, single_values(plan_.unknowns), {}, "", "");
+  const FitReport report = fit(one.data(), *one.prior, one.map.guess(), options);
+  if (!is_success(report.status)) return;
+  CrossValidation held_out = cross_validated(one, report, options);
+  if (!outcome_.interrupted) outcome_.held_out_of_one_value = std::move(held_out);
 }
 
 void MaterialFit::find_next_poke(FitModel& model) {

@@ -41,8 +41,9 @@ CasePrediction SimulatedData::on_finer_mesh(size_t c, const CasePrediction& pred
   CasePrediction finer = prediction;
   if (errors_.empty()) return finer;
   for (size_t k = 0; k < finer.markers.size(); ++k) finer.markers[k] = finer.markers[k] + errors_[c].markers[k];
-  finer.wrench.force = finer.wrench.force + errors_[c].wrench.force;
-  finer.wrench.torque = finer.wrench.torque + errors_[c].wrench.torque;
+  const Wrench error = errors_[c].for_force_on_mesh(finer.wrench.force);
+  finer.wrench.force = finer.wrench.force + error.force;
+  finer.wrench.torque = finer.wrench.torque + error.torque;
   return finer;
 }
 

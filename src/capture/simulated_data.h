@@ -25,6 +25,8 @@ class SimulatedData {
   std::string take_off_mesh_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material);
   // Of the positions, root mean square over the largest motion; < 0: not known.
   double mesh_error() const;
+  // Of the force of case c, see MeshError; 0: not known.
+  double relative_force_error(size_t c) const { return errors_.empty() ? 0 : errors_[c].relative_force_error(); }
   // Case c as a finer mesh would have it.
   CasePrediction on_finer_mesh(size_t c, const CasePrediction& prediction) const;
 

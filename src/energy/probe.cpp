@@ -312,4 +312,11 @@ std::unique_ptr<Probe> make_probe(const TetMesh& mesh, std::span<const Triangle>
                      " m away from it; check its pose at the touch, its axis and the units");
 }
 
+int touched_points_at_rest(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip,
+                           const TipPose& touch) {
+  std::vector<double> x;
+  for (const Vec3d& X : mesh.rest) x.insert(x.end(), {X[0], X[1], X[2]});
+  return ProbeTerm(mesh, surface, tip, touch).touched_points(x);
+}
+
 }  // namespace aspic

@@ -61,4 +61,8 @@ inline constexpr double kGlue = 0.5;
 std::unique_ptr<Probe> make_probe(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip,
                                   const TipPose& touch);
 
+// The number of points of `surface` that a valid tip touches at rest; 0: none.
+int touched_points_at_rest(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip,
+                           const TipPose& touch);
+
 }  // namespace aspic

@@ -43,6 +43,23 @@ void require_positive(const Vec3d& deviation, const std::string& what) {
                          "; it must be positive");
 }
 
+// A bonded tip on a triangle with a held corner would press its own layer against the support: a force that is
+// proportional to the conventional stiffness of the layer and independent of the material. Such triangles carry no
+// layer, unless the tip touches few others.
+std::unique_ptr<Probe> make_probe_beside_support(const Experiment& experiment, const Tip& tip, const TipPose& touch) {
+  const TetMesh& mesh = experiment.mesh;
+  const std::vector<Triangle> surface = boundary_triangles(mesh, 0, mesh.tet_count());
+  if (tip.contact != TipContact::bonded) return make_probe(mesh, surface, tip, touch);
+  std::vector<char> is_held(mesh.rest.size(), 0);
+  for (const int v : experiment.fixed) is_held[v] = 1;
+  std::vector<Triangle> free;
+  for (const Triangle& t : surface)
+    if (std::none_of(t.begin(), t.end(), [&](int v) { return is_held[v] != 0; })) free.push_back(t);
+  const auto touched = [&](const std::vector<Triangle>& part) { return touched_points_at_rest(mesh, part, tip, touch); };
+  auto probe = make_probe(mesh, surface, tip, touch);  // refuses bad tips
+  return 2 * touched(free) < touched(surface) ? std::move(probe) : make_probe(mesh, free, tip, touch);
+}
+
 }  // namespace
 
 LoadedBody::LoadedBody(const Experiment& experiment, const LoadCase& load, const std::string& material,
@@ -93,7 +110,7 @@ Model LoadedBody::make_model(const std::string& material, std::span<const Materi
   }
   if (load_.pressure != 0) add_scaled(make_pressure(mesh, load_.pressed, load_.pressure));
   if (load_.tip) {
-    auto probe = make_probe(mesh, boundary_triangles(mesh, 0, mesh.tet_count()), *load_.tip, load_.touch);
+    auto probe = make_probe_beside_support(experiment_, *load_.tip, load_.touch);
     probe->set_pose(load_.pose);
     probe_ = probe.get();
     model.loads.push_back(std::move(probe));

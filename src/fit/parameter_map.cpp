@@ -274,6 +274,10 @@ std::vector<double> ParameterMap::values(int unknown, std::span<const double> p)
 
 double ParameterMap::value(int unknown, double fitted) const { return impl_->fitted[unknown].scale.value(fitted); }
 
+double ParameterMap::place_in_range(int unknown, double fitted) const {
+  return impl_->fitted[unknown].scale.place_in_range(fitted);
+}
+
 void ParameterMap::multiply_fitted(int unknown, std::span<const double> dp, std::span<double> values) const {
   const Fitted& f = impl_->fitted[unknown];
   f.basis.multiply(f.part(dp), values);

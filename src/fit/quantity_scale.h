@@ -45,6 +45,8 @@ class QuantityScale {
     return half_ > 0 ? width_ * std::atanh((u - middle_) / half_) : u;
   }
 
+  double place_in_range(double z) const { return half_ > 0 ? std::tanh(z / width_) : 0; }  // -1 to 1; 0: no range
+
  private:
   double line(double z) const {
     return half_ > 0 ? middle_ + half_ * std::tanh(z / width_) : z;

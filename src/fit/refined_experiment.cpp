@@ -14,7 +14,8 @@
 namespace aspic {
 namespace {
 
-constexpr double kRichardson = 4.0 / 3;  // 1 / (1 - 1/2^2)
+constexpr double kRichardson = 4.0 / 3;    // 1 / (1 - 1/2^2)
+constexpr double kLeastMultiple = 0.1, kMostMultiple = 10;  // of the force whose error is known
 
 class Refinement {
  public:
@@ -135,12 +136,39 @@ Predictions predicted(const Experiment& experiment, const std::string& material,
   return result;
 }
 
+// F on fine meshes from F on the mesh and on the next finer one: log |F| is extrapolated.
+double factor_in_limit(const Wrench& coarse, const Wrench& fine) {
+  const double on_mesh = length(coarse.force), on_fine = length(fine.force);
+  return on_mesh > 0 && on_fine > 0 ? std::pow(on_fine / on_mesh, kRichardson - 1) : 1;
+}
+
+Wrench scaled(const Wrench& w, double factor) { return {factor * w.force, factor * w.torque}; }
+
+// How many times `known` the other force is, along it.
+double multiple_of(const Vec3d& known, const Vec3d& other) {
+  const double squares = dot(known, known);
+  return squares > 0 ? std::clamp(dot(known, other) / squares, kLeastMultiple, kMostMultiple) : 1;
+}
+
 void shift(Vec3d& value, Vec3d& deviation, const Vec3d& error) {
   value = value - error;
   for (int i = 0; i < 3; ++i) deviation[i] = std::hypot(deviation[i], kUncertain * length(error));
 }
 
 }  // namespace
+
+Wrench MeshError::for_force_on_mesh(const Vec3d& force) const {
+  return scaled(wrench, multiple_of(force_on_mesh, force));
+}
+
+Wrench MeshError::for_force_in_limit(const Vec3d& force) const {
+  return scaled(wrench, multiple_of(force_on_mesh + wrench.force, force));
+}
+
+double MeshError::relative_force_error() const {
+  const double smaller = std::min(length(force_on_mesh), length(force_on_mesh + wrench.force));
+  return smaller > 0 ? length(wrench.force) / smaller : 0;
+}
 
 Experiment refined(const Experiment& experiment) { return Refinement(experiment).take(); }
 
@@ -172,8 +200,9 @@ MeshErrors mesh_errors(const Experiment& experiment, const std::string& material
     MeshError& error = errors.cases.emplace_back();
     for (size_t k = 0; k < coarse.markers.size(); ++k)
       error.markers.push_back(kRichardson * (better.markers[k] - coarse.markers[k]));
-    error.wrench.force = kRichardson * (better.wrench.force - coarse.wrench.force);
-    error.wrench.torque = kRichardson * (better.wrench.torque - coarse.wrench.torque);
+    const Wrench limit = scaled(better.wrench, factor_in_limit(coarse.wrench, better.wrench));
+    error.wrench = {limit.force - coarse.wrench.force, limit.torque - coarse.wrench.torque};
+    error.force_on_mesh = coarse.wrench.force;
   }
   return errors;
 }
@@ -186,8 +215,9 @@ Experiment without_mesh_errors(Experiment experiment, const MeshErrors& errors) 
     const MeshError& error = errors.cases[c];
     for (size_t k = 0; k < load.positions.size(); ++k)
       shift(load.positions[k].position, load.positions[k].deviation, error.markers[k]);
-    if (load.force) shift(*load.force, load.force_deviation, error.wrench.force);
-    if (load.torque) shift(*load.torque, load.torque_deviation, error.wrench.torque);
+    const Wrench own = load.force ? error.for_force_in_limit(*load.force) : error.wrench;
+    if (load.force) shift(*load.force, load.force_deviation, own.force);
+    if (load.torque) shift(*load.torque, load.torque_deviation, own.torque);
   }
   return experiment;
 }

@@ -1,7 +1,8 @@
 // What the mesh of a fit gets wrong: linear tets are too stiff. The same body is put at rest under the same loads on a
 // mesh with edges half as long; errors fall with the square of the edges, so that 4/3 of the difference is that of the
 // mesh [Richardson 1911]. It is taken off the measurements, and a part of it is added to their standard deviations
-// (as in the approximation errors of [Kaipio and Somersalo 2007]).
+// (as in the approximation errors of [Kaipio and Somersalo 2007]). A force is proportional to the stiffness, which is
+// unknown: its extrapolation is geometric, so that it keeps its sign, and its error is relative.
 #pragma once
 #include <span>
 #include <string>
@@ -22,6 +23,13 @@ std::vector<MaterialParameters> for_parts(std::span<const MaterialParameters> pa
 struct MeshError {
   std::vector<Vec3d> markers;  // one per position [m]
   Wrench wrench;
+  Vec3d force_on_mesh{};  // predicted on the mesh of the fit [N]
+
+  // The error of another force on the same body: it grows with the force.
+  Wrench for_force_on_mesh(const Vec3d& force) const;
+  Wrench for_force_in_limit(const Vec3d& force) const;
+  // |error of the force| over the smaller of both forces; 0 without a force.
+  double relative_force_error() const;
 };
 
 struct MeshErrors {

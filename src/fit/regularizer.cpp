@@ -16,7 +16,7 @@ constexpr double kDeviationOfNoPrior = 100;
 
 // Of a field: beyond a factor of 100 from its guess (of log E, 4.6) values are held back, whatever the weight. Where
 // the weight is low, nothing else keeps tets that the data hardly see from running to 0 or infinity.
-constexpr double kFarthest = 4.6, kWall = 1e4;
+constexpr double kFarthest = kFarthestOfField, kWall = 1e4;
 
 double excess(double distance) { return std::copysign(std::max(0.0, std::abs(distance) - kFarthest), distance); }
 

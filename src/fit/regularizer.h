@@ -17,6 +17,9 @@ namespace aspic {
 
 enum class Smoothness { none, h1, total_variation };
 
+// Distance of a positive field (log E) from its guess beyond which it is held back: a factor of 100.
+inline constexpr double kFarthestOfField = 4.6;
+
 struct RegularizerOptions {
   Smoothness smoothness = Smoothness::h1;  // of quantities that differ from tet to tet, over what is fitted (log E)
   double prior_deviation = 2;              // of what is fitted about its guess: log E +- 2; infinity: no prior

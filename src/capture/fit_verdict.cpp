@@ -1,0 +1,185 @@
+#include "capture/fit_verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace aspic {
+namespace {
+
+constexpr double kMissed = 4;          // standard deviations, root mean square over a group
+constexpr double kDisagree = 1.5;      // ratio of the stiffnesses that two groups ask for
+constexpr double kCoarse = 1;          // relative error of a force on the mesh: a factor of 2
+constexpr double kTooManySquares = 2.25;  // |r|^2 per reading
+constexpr double kPoorPosition = 0.05, kPoorForce = 0.1;  // held-out errors, relative to the peak
+constexpr double kWorse = 1.1;                            // of held-out errors, field by one value
+
+std::string three_significant(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+// The readings of a group against what is shown of it.
+class GroupMisfit {
+ public:
+  explicit GroupMisfit(std::string name) : name_(std::move(name)) {}
+
+  void add(const LoadCase& load, const CaseOutcome& outcome) {
+    for (size_t k = 0; k < load.positions.size(); ++k)
+      add(outcome.markers[k] - load.positions[k].position, outcome.marker_deviation[k], positions_);
+    if (!load.force) return;
+    add(outcome.wrench.force - *load.force, outcome.force_deviation, forces_);
+    for (int i = 0; i < 3; ++i) {
+      const double precision = 1 / (outcome.force_deviation[i] * outcome.force_deviation[i]);
+      product_ += precision * outcome.wrench.force[i] * (*load.force)[i];
+      squares_ += precision * outcome.wrench.force[i] * outcome.wrench.force[i];
+    }
+  }
+
+  const std::string& name() const { return name_; }
+  double missed_positions() const { return positions_.rms(); }
+  double missed_forces() const { return forces_.rms(); }
+  // The stiffness that the forces ask for, relative to the fitted one, and its standard deviation; 0: not known.
+  double stiffness() const { return squares_ > 0 ? product_ / squares_ : 0; }
+  double stiffness_deviation() const { return squares_ > 0 ? 1 / std::sqrt(squares_) : 0; }
+
+ private:
+  struct Sum {
+    double squares = 0;
+    int count = 0;
+    double rms() const { return count > 0 ? std::sqrt(squares / count) : 0; }
+  };
+  static void add(const Vec3d& error, const Vec3d& deviation, Sum& sum) {
+    for (int i = 0; i < 3; ++i) sum.squares += error[i] * error[i] / (deviation[i] * deviation[i]), ++sum.count;
+  }
+
+  std::string name_;
+  Sum positions_, forces_;
+  double product_ = 0, squares_ = 0;
+};
+
+std::vector<GroupMisfit> fitted_groups(const DataSet& data, const FitOutcome& outcome) {
+  std::vector<GroupMisfit> groups;
+  for (size_t c = 0; c < outcome.cases.size(); ++c) {
+    const LoadCase& load = data.experiment.cases[c];
+    if (!outcome.cases[c].ok || outcome.cases[c].left_out) continue;
+    auto own = std::find_if(groups.begin(), groups.end(), [&](const GroupMisfit& g) { return g.name() == load.group; });
+    if (own == groups.end()) own = groups.insert(groups.end(), GroupMisfit(load.group));
+    own->add(load, outcome.cases[c]);
+  }
+  return groups;
+}
+
+class Reasons {
+ public:
+  Reasons(const DataSet& data, const FitOutcome& outcome) : data_(data), outcome_(outcome) {}
+
+  void add_against_field() {
+    if (!outcome_.mesh_errors_settle)
+      add("mesh_not_settled", "the correction for the mesh and the material do not settle: refine the mesh (--refine)");
+    for (const std::string& where : outcome_.at_bound)
+      add("at_bound", where + " lies at its bound: the readings do not determine it");
+    add_missed_groups();
+    add_worse_than_one_value();
+  }
+
+  void add_others() {
+    for (size_t c = 0; c < outcome_.cases.size(); ++c)
+      if (outcome_.cases[c].relative_mesh_error > kCoarse) {
+        add("mesh_too_coarse", "'" + data_.experiment.cases[c].name + "': the mesh changes the force by a factor of " +
+                                   three_significant(1 + outcome_.cases[c].relative_mesh_error) +
+                                   "; refine it around the tip (--refine) or use a wider tip");
+        break;
+      }
+    add_disagreement();
+    const double squares = outcome_.residuals > 0 ? 2 * outcome_.report.misfit / outcome_.residuals : 0;
+    if (squares > kTooManySquares)
+      add("unexplained", "|r|^2 is " + three_significant(squares) +
+                             " per reading: the model is too simple, or the standard deviations are too small");
+    const std::optional<CrossValidation>& held_out = outcome_.held_out;
+    if (held_out && (held_out->position_error > kPoorPosition || held_out->force_error > kPoorForce))
+      add("predicts_badly", "held-out groups are predicted with errors of " + percents(*held_out) +
+                                ": fit fewer values, measure more, or trust it only where it was poked");
+  }
+
+  std::vector<FitReason> take() { return std::move(reasons_); }
+  void add(std::string name, std::string text) { reasons_.push_back({std::move(name), std::move(text)}); }
+
+ private:
+  static std::string percents(const CrossValidation& held_out) {
+    const auto percent = [](double part) { return part < 0 ? "-" : three_significant(100 * part) + " %"; };
+    return percent(held_out.position_error) + " (positions) and " + percent(held_out.force_error) + " (forces)";
+  }
+
+  void add_missed_groups() {
+    for (const GroupMisfit& g : fitted_groups(data_, outcome_)) {
+      const double worst = std::max(g.missed_positions(), g.missed_forces());
+      if (!(worst > kMissed)) continue;
+      add("group_missed", "the " + std::string(g.missed_forces() == worst ? "forces" : "positions") + " of '" +
+                              g.name() + "' are missed by " + three_significant(worst) + " standard deviations");
+    }
+  }
+
+  void add_worse_than_one_value() {
+    if (!outcome_.held_out || !outcome_.held_out_of_one_value) return;
+    const CrossValidation &field = *outcome_.held_out, &one = *outcome_.held_out_of_one_value;
+    const auto error = [](const CrossValidation& v) {
+      return std::hypot(std::max(v.position_error, 0.0), std::max(v.force_error, 0.0));
+    };
+    if (error(field) > kWorse * error(one))
+      add("held_out_worse", "held-out groups are predicted with errors of " + percents(field) + ", by one value with " +
+                                percents(one));
+  }
+
+  void add_disagreement() {
+    const std::vector<GroupMisfit> all = fitted_groups(data_, outcome_);
+    const GroupMisfit *softest = nullptr, *stiffest = nullptr;
+    for (const GroupMisfit& g : all) {
+      if (!(g.stiffness() > 0)) continue;
+      if (!softest || g.stiffness() < softest->stiffness()) softest = &g;
+      if (!stiffest || g.stiffness() > stiffest->stiffness()) stiffest = &g;
+    }
+    if (!softest) return;
+    const double ratio = stiffest->stiffness() / softest->stiffness();
+    const double deviation = std::hypot(stiffest->stiffness_deviation() / stiffest->stiffness(),
+                                        softest->stiffness_deviation() / softest->stiffness());
+    if (ratio > kDisagree && std::log(ratio) > kMissed * deviation)
+      add("groups_disagree", "the forces of '" + stiffest->name() + "' ask for a body " + three_significant(ratio) +
+                                 " times as stiff as those of '" + softest->name() +
+                                 "': one of them is wrong, or the body is not what is fitted");
+  }
+
+  const DataSet& data_;
+  const FitOutcome& outcome_;
+  std::vector<FitReason> reasons_;
+};
+
+}  // namespace
+
+std::vector<FitReason> reasons_against_field(const DataSet& data, const FitOutcome& outcome) {
+  Reasons reasons(data, outcome);
+  reasons.add_against_field();
+  return reasons.take();
+}
+
+FitVerdict verdict(const DataSet& data, const FitOutcome& outcome) {
+  FitVerdict result;
+  if (outcome.interrupted) {
+    result.reasons = {{"interrupted", "the same command with --resume continues the fit"}};
+    result.text = "Interrupted: this is the material that was reached.";
+    return result;
+  }
+  Reasons reasons(data, outcome);
+  if (!is_success(outcome.report.status)) reasons.add("not_converged", outcome.report.words);
+  for (const FitReason& reason : outcome.against_field)
+    reasons.add("field_rejected", "one value replaces the field: " + reason.text);
+  reasons.add_against_field();
+  reasons.add_others();
+  result.reasons = reasons.take();
+  result.text = result.is_good() ? "Converged; the fit explains the readings as well as their standard deviations say."
+                                 : "Do not rely on this material: " + result.reasons.front().text + ".";
+  return result;
+}
+
+}  // namespace aspic
