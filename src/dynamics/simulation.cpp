@@ -133,6 +133,8 @@ struct Simulation::Impl {
     start_energy = aspic::kinetic_energy(*model.mass, start.qdot, start_force) + kRoundOff * E->growth_stiffness();
     start_force.assign(start.q.size(), 0.0);
     for (const auto& V : model.elasticity) start_energy += std::abs(V->value(start.q));
+    for (const auto& V : model.loads)
+      if (!V->has_constant_gradient()) start_energy += std::abs(V->value(start.q));  // such as springs
     // A convex V falls by at most -dV/dx (x - x at the start).
     for (const auto& V : model.loads) V->add_gradient(start.q, 1, start_force);
     // First-order schemes give a body at rest this much in the first step, in which some of them do not move it.
