@@ -64,12 +64,13 @@ class FitCommand(CommandLine):
         return (self.folder / name).read_bytes()
 
 
-QUICK = ("--no-mesh-errors", "--unknown", "young=uniform", "--known", "poisson=0.4", "--no-uncertainty", "--no-cross-validation")
+QUICK = ("--no-mesh-errors", "--unknown", "young=uniform", "--known", "poisson=0.4", "--no-uncertainty", "--no-cross-validation",
+         "--allow-unconverged")  # one value cannot explain the layers, which the verdict says
 
 
 class Fit(FitCommand):
     def test_data_become_a_material_that_a_scene_simulates(self):
-        said = self.fit("--unknown", "young=handles:8", "--known", "poisson=0.4").stdout
+        said = self.fit("--unknown", "young=handles:8", "--known", "poisson=0.4", "--allow-unconverged").stdout
         for fact in ("fit        converged", "misfit     |r|^2 = ", "with one value for all", "softest tet", "95 %: ",
                      "held out   each group predicted from the others: positions within", "next poke  at (",
                      'material = { file = "material.vtu" }'):
@@ -112,7 +113,7 @@ class Fit(FitCommand):
 
     def test_a_fit_that_does_not_converge_is_no_success(self):
         options = ("--unknown", "young=tets", "--iterations", "2", "--no-uncertainty", "--no-cross-validation", "-q")
-        self.assertIn("warning: the fit is not converged", self.fit(*options, code=3).stderr)
+        self.assertIn("(not_converged)", self.fit(*options, code=3).stderr)
         self.assertTrue((self.folder / "material.vtu").exists())
         self.fit(*options, "--force", "--allow-unconverged")
 

@@ -190,11 +190,11 @@ class FitPack {
                        {"center", vector(load.pose.center)},
                        {"axis", vector(load.touch.axis)}};
       if (load.force)
-        item["force"] = {{"measured", vector(*load.force)},
-                         {"deviation", vector(outcome.ok && !outcome.left_out ? outcome.force_deviation
-                                                                              : load.force_deviation)},
-                         {"predicted", outcome.ok ? vector(outcome.wrench.force) : Json()},
-                         {"heldOut", outcome.has_held_out ? vector(outcome.held_out_wrench.force) : Json()}};
+        item["force"] = {
+            {"measured", vector(*load.force)},
+            {"deviation", vector(outcome.ok && !outcome.left_out ? outcome.force_deviation : load.force_deviation)},
+            {"predicted", outcome.ok ? vector(outcome.wrench.force) : Json()},
+            {"heldOut", outcome.has_held_out ? vector(outcome.held_out_wrench.force) : Json()}};
       list.push_back(std::move(item));
       first += load.positions.size();
     }

@@ -93,6 +93,9 @@ void Session::Impl::compare(Arguments& arguments) {
   arguments.finish();
   const SteeredScene& steered = a->side.steered();
   std::vector<std::string> overrides = steered.overrides;
+  for (const std::string& text : compared.overrides)
+    if (text.find('=') == std::string::npos)  // which drops a setting elsewhere
+      throw InvalidInput("overrides: '" + text + "' is not KEY=VALUE");
   for (const std::string& text : compared.overrides) overrides = with_override(std::move(overrides), text);
   auto second = loaded("b", steered.path, overrides);
   install(loaded("a", steered.path, steered.overrides), std::move(second), std::move(compared));

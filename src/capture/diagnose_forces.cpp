@@ -11,9 +11,9 @@ namespace aspic {
 namespace {
 
 constexpr double kSoftestPoked = 50, kStiffestPoked = 1.5e7;  // [Pa] Young's moduli of bodies that one pokes
-constexpr double kUnlike = 30;                          // ratio of apparent moduli within one body that is no tissue's
-constexpr double kStriking = 2.5;                       // and one that a wrong force or an inclusion has
-constexpr double kSamePlace = 0.1, kSameDepth = 0.05;   // of pokes that are one, relative to the radius and the depth
+constexpr double kUnlike = 30;                         // ratio of apparent moduli within one body that is no tissue's
+constexpr double kStriking = 2.5;                      // and one that a wrong force or an inclusion has
+constexpr double kSamePlace = 0.1, kSameDepth = 0.05;  // of pokes that are one, relative to the radius and the depth
 constexpr double kOtherForce = 0.2, kOtherDeviations = 4;  // that forces of one poke should not differ by
 constexpr double kFalling = 0.8;                        // a force that falls below this share of the last, going deeper
 constexpr double kLargest = 1e9, kFinestForce = 1e-12;  // [N] of bodies that one pokes, and of their deviations
@@ -179,9 +179,10 @@ class ForceDiagnosis {
       const double ratio = of(members) / usual;
       if (ratio < kStriking && ratio > 1 / kStriking) continue;
       if (ratio < kUnlike && ratio > 1 / kUnlike) {
-        findings_.warning(where(members.front()),
-                          "the body seems " + factor_text(ratio) + " as stiff here as in the other pokes",
-                          "check this force; an inclusion or an edge near the tip explains it as well");
+        findings_.warning(
+            where(members.front()),
+            std::string("the body seems much ") + (ratio > 1 ? "stiffer" : "softer") + " here than in the other pokes",
+            "check this force; an inclusion or an edge near the tip explains it as well");
         continue;
       }
       findings_.warning(

@@ -66,12 +66,12 @@ struct FitOutcome {
   FitReport report;                  // of the last stage that was begun
   std::optional<FitReport> uniform;  // of the first, where there are two: one value per quantity
   std::vector<FittedQuantity> quantities;
-  FittedMaterial material;         // by the user's numbers
-  std::vector<CaseOutcome> cases;  // one per case of the data
+  FittedMaterial material;               // by the user's numbers
+  std::vector<CaseOutcome> cases;        // one per case of the data
   std::vector<FitReason> against_field;  // why one value replaces the field that was wanted; empty: it does not
   bool mesh_errors_settle = true;        // false: they changed the material to the last
   std::vector<std::string> at_bound;     // quantities: "young in 3 tets"
-  double mesh_error = -1;          // of the positions, root mean square over the largest motion; < 0: not known
+  double mesh_error = -1;                // of the positions, root mean square over the largest motion; < 0: not known
   std::optional<Posterior> posterior;
   std::optional<FoundParts> parts;
   std::optional<CrossValidation> held_out;

@@ -7,10 +7,10 @@
 namespace aspic {
 namespace {
 
-constexpr double kMissed = 4;          // standard deviations, root mean square over a group
-constexpr double kDisagree = 1.5;      // ratio of the stiffnesses that two groups ask for
-constexpr double kCoarse = 1;          // relative error of a force on the mesh: a factor of 2
-constexpr double kTooManySquares = 2.25;  // |r|^2 per reading
+constexpr double kMissed = 4;                             // standard deviations, root mean square over a group
+constexpr double kDisagree = 1.5;                         // ratio of the stiffnesses that two groups ask for
+constexpr double kCoarse = 1;                             // relative error of a force on the mesh: a factor of 2
+constexpr double kTooManySquares = 2.25;                  // |r|^2 per reading
 constexpr double kPoorPosition = 0.05, kPoorForce = 0.1;  // held-out errors, relative to the peak
 constexpr double kWorse = 1.1;                            // of held-out errors, field by one value
 
@@ -128,8 +128,8 @@ class Reasons {
       return std::hypot(std::max(v.position_error, 0.0), std::max(v.force_error, 0.0));
     };
     if (error(field) > kWorse * error(one))
-      add("held_out_worse", "held-out groups are predicted with errors of " + percents(field) + ", by one value with " +
-                                percents(one));
+      add("held_out_worse",
+          "held-out groups are predicted with errors of " + percents(field) + ", by one value with " + percents(one));
   }
 
   void add_disagreement() {

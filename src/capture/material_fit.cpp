@@ -77,8 +77,8 @@ bool MaterialFit::fit_single_values(const std::string& name) {
   options.method = options.weight_rule = "auto";
   options.weight = -1;
   for (const double factor : kStiffer) {
-    FitModel model(data_.experiment, simulated_.fitted(), plan_, stiffer(single_values(plan_.unknowns), factor), memory_,
-                   name + suffix(factor), fingerprint_);
+    FitModel model(data_.experiment, simulated_.fitted(), plan_, stiffer(single_values(plan_.unknowns), factor),
+                   memory_, name + suffix(factor), fingerprint_);
     const FitReport report = fit_stage(FitStage::uniform, model, options);
     outcome_.uniform = outcome_.report = report;
     if (!has_failed(report)) return has_single_values(model, report);

@@ -52,7 +52,7 @@ class MaterialFit {
   bool may_go_on();
   void add_warnings(const std::vector<std::string>& more);
   bool is_field() const;
-  bool has_many_values() const;  // a value per tet or handle
+  bool has_many_values() const;                                  // a value per tet or handle
   const TetMesh& mesh() const { return data_.experiment.mesh; }  // of the material
 
   const DataSet& data_;

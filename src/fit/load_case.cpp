@@ -55,7 +55,9 @@ std::unique_ptr<Probe> make_probe_beside_support(const Experiment& experiment, c
   std::vector<Triangle> free;
   for (const Triangle& t : surface)
     if (std::none_of(t.begin(), t.end(), [&](int v) { return is_held[v] != 0; })) free.push_back(t);
-  const auto touched = [&](const std::vector<Triangle>& part) { return touched_points_at_rest(mesh, part, tip, touch); };
+  const auto touched = [&](const std::vector<Triangle>& part) {
+    return touched_points_at_rest(mesh, part, tip, touch);
+  };
   auto probe = make_probe(mesh, surface, tip, touch);  // refuses bad tips
   return 2 * touched(free) < touched(surface) ? std::move(probe) : make_probe(mesh, free, tip, touch);
 }

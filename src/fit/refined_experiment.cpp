@@ -14,7 +14,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kRichardson = 4.0 / 3;    // 1 / (1 - 1/2^2)
+constexpr double kRichardson = 4.0 / 3;                     // 1 / (1 - 1/2^2)
 constexpr double kLeastMultiple = 0.1, kMostMultiple = 10;  // of the force whose error is known
 
 class Refinement {

@@ -207,6 +207,8 @@ test("the verdict never calls a failure a success", () => {
   assert.equal(closeness(6, 12), 1);
   assert.equal(verdict(what).kind, "good");
   assert.equal(verdict({ ...what, fit: { ...what.fit, success: false } }).kind, "bad");
+  const red = verdict({ ...what, verdict: { good: false, text: "Do not rely on it.", reasons: [{ name: "at_bound", text: "E is at its bound." }] } });
+  assert.deepEqual(red, { text: "Do not rely on it. E is at its bound.", kind: "bad" });
   assert.equal(verdict({ ...what, fit: { ...what.fit, interrupted: true } }).kind, "bad");
   assert.equal(verdict({ ...what, fit: { ...what.fit, misfit: 60 } }).kind, "bad");
   assert.match(verdict({ ...what, heldOut: { groups: [], position: 0.01, force: 0.21 } }).text, /has not seen/);

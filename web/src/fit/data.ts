@@ -72,6 +72,7 @@ export interface FitHead {
   name: string;
   version: string;
   model: string;
+  verdict?: { good: boolean; text: string; reasons: { name: string; text: string }[] }; // by the program
   counts: {
     vertices: number;
     tets: number;
@@ -300,6 +301,8 @@ const kPoorForce = 0.1;
 // What the numbers say, in one sentence.
 export function verdict(head: FitHead): { text: string; kind: "good" | "bad" | "plain" } {
   const { fit, counts } = head;
+  if (head.verdict && !head.verdict.good)
+    return { text: [head.verdict.text, ...head.verdict.reasons.map(({ text }) => text)].join(" "), kind: "bad" };
   if (fit.interrupted) return { text: "Interrupted: this is what was reached. The same command with --resume goes on.", kind: "bad" };
   if (!fit.success) return { text: `Not converged: ${fit.words}. Do not rely on it.`, kind: "bad" };
   const size = closeness(fit.misfit, counts.residuals);
