@@ -49,7 +49,7 @@ class ParameterMap {
   // The values in each tet of one unknown, as it is fitted (log E) and in SI units (E).
   std::vector<double> fitted_values(int unknown, std::span<const double> p) const;
   std::vector<double> values(int unknown, std::span<const double> p) const;
-  double value(int unknown, double fitted) const;  // in SI units, increasing in `fitted`
+  double value(int unknown, double fitted) const;           // in SI units, increasing in `fitted`
   double place_in_range(int unknown, double fitted) const;  // -1 to 1, its ends; 0: it has no range
   // fitted_values is linear in p: values' rows as a sparse matrix, tet by tet. For uncertainty.
   void multiply_fitted(int unknown, std::span<const double> dp, std::span<double> values) const;
