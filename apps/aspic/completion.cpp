@@ -121,7 +121,7 @@ std::string fish_script(const std::vector<CommandHelp>& commands) {
   return script;
 }
 
-// Text for roff: hyphens that can be copied, and no line that is taken for a request.
+// Escapes text for roff: hyphens can be copied, and no line starts a request.
 std::string roff(const std::string& text) {
   std::string escaped = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
   escaped = replaced(replaced(escaped, "\n.", "\n\\&."), "\n'", "\n\\&'");
