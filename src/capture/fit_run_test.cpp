@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "capture/fit_folder.h"
+#include "capture/fit_verdict.h"
 #include "capture/poked_block_test.h"
 #include "fit/refined_experiment.h"
 #include "io/atomic_file.h"
@@ -108,6 +109,66 @@ TEST(FitRun, ShowsThePredictionThatTheMisfitCounts) {
   }
   EXPECT_GT(outcome.report.misfit, 100);
   EXPECT_NEAR(squares, 2 * outcome.report.misfit, 1e-6 * squares);
+}
+
+// Forces of one poke that belong to another body: no field explains all three.
+DataSet contradictory_block() {
+  DataSet data = measured_block(2);
+  for (LoadCase& load : data.experiment.cases)
+    if (load.group == "poke 2") load.force = 8.0 * *load.force;
+  return data;
+}
+
+TEST(FitRun, OneValueReplacesAFieldAtItsBounds) {
+  FitPlan plan = quick_plan({"young=tets"});
+  plan.fit.max_iterations = 30;
+  plan.uncertainty = true;
+  const DataSet data = contradictory_block();
+  const FitOutcome outcome = fit_material(data, plan, {}, {});
+  ASSERT_TRUE(outcome.has_material()) << outcome.failure;
+  ASSERT_THAT(outcome.against_field, ::testing::Not(::testing::IsEmpty()));
+  EXPECT_EQ(outcome.against_field.front().name, "at_bound") << outcome.against_field.front().text;
+  EXPECT_EQ(outcome.unknowns, 1);
+  ASSERT_EQ(young(outcome).rows.size(), 1u);
+  EXPECT_EQ(young(outcome).rows[0].where, "everywhere");
+  EXPECT_TRUE(young(outcome).rows[0].interval);
+  for (const double E : *outcome.material.find("young")) EXPECT_DOUBLE_EQ(E, young(outcome).rows[0].value);
+  const FitVerdict judged = verdict(data, outcome);
+  EXPECT_FALSE(judged.is_good());
+  EXPECT_EQ(judged.reasons.front().name, "field_rejected");
+}
+
+TEST(FitRun, AFieldThatExplainsTheDataStays) {
+  FitPlan plan = quick_plan({"young=tets"});
+  plan.fit.max_iterations = 30;
+  const FitOutcome outcome = fit_material(block(), plan, {}, {});
+  EXPECT_THAT(outcome.against_field, ::testing::IsEmpty());
+  EXPECT_GT(young(outcome).rows.size(), 1u);
+}
+
+// With the mesh's errors taken off, what is shown beside a reading is what the material predicts on fine meshes.
+TEST(FitRun, ShowsForcesWithTheCorrectionForTheMesh) {
+  DataSet data = measured_block(2);
+  for (size_t c = 0; c < data.experiment.cases.size(); ++c)
+    data.experiment.cases[c].force = (c % 2 == 0 ? 1.1 : 0.9) * *data.experiment.cases[c].force;
+  FitPlan plan = quick_plan({"young=uniform"});
+  plan.mesh_errors = true;
+  const FitOutcome outcome = fit_material(data, plan, {}, {});
+  ASSERT_TRUE(outcome.has_material()) << outcome.failure;
+  double squares = 0;
+  const auto add = [&](const Vec3d& error, const Vec3d& deviation) {
+    for (int i = 0; i < 3; ++i) squares += std::pow(error[i] / deviation[i], 2);
+  };
+  for (size_t c = 0; c < outcome.cases.size(); ++c) {
+    const LoadCase& load = data.experiment.cases[c];
+    const CaseOutcome& shown = outcome.cases[c];
+    EXPECT_GT(shown.relative_mesh_error, 0.05);
+    EXPECT_GT(shown.force_deviation[1], load.force_deviation[1]) << "with that of the correction";
+    for (size_t k = 0; k < load.positions.size(); ++k)
+      add(shown.markers[k] - load.positions[k].position, shown.marker_deviation[k]);
+    add(shown.wrench.force - *load.force, shown.force_deviation);
+  }
+  EXPECT_NEAR(squares, 2 * outcome.report.misfit, 0.1 * squares) << "the page's residuals are those of the fit";
 }
 
 TEST(FitRun, EveryModelBeginsInsideOfItsRanges) {
