@@ -177,7 +177,7 @@ FitVerdict verdict(const DataSet& data, const FitOutcome& outcome) {
   reasons.add_against_field();
   reasons.add_others();
   result.reasons = reasons.take();
-  result.text = result.is_good() ? "Converged; the fit explains the readings as well as their standard deviations say."
+  result.text = result.is_good() ? "Converged; the fit explains the readings within their standard deviations."
                                  : "Do not rely on this material: " + result.reasons.front().text + ".";
   return result;
 }

@@ -29,7 +29,7 @@ export class Misfits {
     this.view.showWires(false);
     const cases: [string, string][] = [["all", "all cases"], ...fit.head.cases.map((c, i): [string, string] => [String(i), c.name])];
     const pick = choice("worst markers of", "Whose errors are drawn", cases, "all", (value) => this.show(value === "all" ? null : Number(value)));
-    const titles = ["marker", "case", "error", "deviations"];
+    const titles = ["marker", "case", "error", "standard deviations"];
     this.element = element(
       "div",
       { class: "map-row misfits" },
