@@ -73,8 +73,8 @@ const std::vector<Staging>& stagings() {
        .part = "",
        .look =
            "The thin wires are the edges of tets at the surface: come closer to see them. So that it moves while you "
-           "watch, this mesh has fewer tets than the slide's; aspic lecture 2 simulates more than 100 000. Press S: "
-           "the column \"took\" shows the wall time of each step.",
+           "watch, this mesh has fewer tets than the slide's; aspic lecture 2 simulates more than 100 000. Press S, "
+           "and choose the chart \"Time by stage over the iterations\": it shows the wall time of the step.",
        .panel = "microscope",
        .scene = "02_fine_mesh"},
       {.demonstration = "03_tissue",

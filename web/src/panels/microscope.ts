@@ -145,6 +145,7 @@ class MicroscopePanel implements Panel {
       {
         title: "proj.",
         meaning: "elements whose Hessian was made definite",
+        class: "spare",
         text: of((it) => String(it.projected_elements)),
       },
       {
