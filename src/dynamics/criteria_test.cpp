@@ -1,6 +1,7 @@
 // The stopping criteria of a step: what each of them promises is kept.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
 #include <numeric>
 #include <random>
