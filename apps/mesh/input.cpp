@@ -66,7 +66,7 @@ CheckedSurface checked_surface(const std::filesystem::path& path, Defects defect
                               number(closed.detail * frame.unit) + " are closed");
   } else if (defects == Defects::fill_small_holes) {
     const int before = surface.mesh.triangle_count();
-    surface.mesh = with_holes_filled(surface.mesh);
+    surface.mesh = with_holes_filled(surface.mesh, diagonal(surface.mesh.vertices));
     if (const int added = surface.mesh.triangle_count() - before; added > 0)
       surface.actions.push_back("filled holes with " + std::to_string(added) + " triangles");
   }
