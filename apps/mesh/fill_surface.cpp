@@ -79,34 +79,38 @@ class SurfaceFiller {
   }
 
   TetMesh filled(int body) {
-    const TriMesh& surface = bodies_[body];
     const Plan plan = cheapest(body);
     add_note(body, plan);
-    const double allowed = 0.7 * size_;
-    std::string problem;
-    for (const double factor : {1.0, 0.6}) {
-      SizeRule rule = plan.thin.rule;
-      rule.size *= factor, rule.smallest *= factor, rule.tets_across /= factor;
-      const double tets = predicted_tets(plan.samples, plan.volume, rule);
-      if (factor < 1 && tets > options_.most_tets) break;
-      const TetMesh mesh = attempt(plan, rule, tets);
-      problem =
-          mesh.tets.empty() ? "no tet fits into it" : mismatch(fidelity(surface, mesh, allowed), allowed, frame_.unit);
-      if (!problem.empty()) continue;
-      least_ = std::min(least_, std::max(rule.smallest, least_size_));
-      return mesh;
-    }
-    throw InvalidInput(body_name(body) + ": " + problem + "; give a --size smaller than " + length(size_));
+    TetMesh mesh;
+    std::string problem = attempt(body, plan, 1, mesh);
+    if (!problem.empty()) problem = attempt(body, plan, 0.6, mesh);
+    if (!problem.empty()) problem = attempt(body, planned(body, {}, Sides::any), 1, mesh);
+    if (problem.empty()) return mesh;
+    throw InvalidInput(body_name(body) + ": " + problem_ + "; give a --size smaller than " + length(size_));
+  }
+
+  // Returns why the tets are not the body; nothing when they are.
+  std::string attempt(int body, const Plan& plan, double factor, TetMesh& mesh) {
+    if (!plan.thin.problem.empty()) return plan.thin.problem;
+    SizeRule rule = plan.thin.rule;
+    rule.size *= factor, rule.smallest *= factor, rule.tets_across /= factor;
+    const double tets = predicted_tets(plan.samples, plan.volume, rule), allowed = 0.7 * size_;
+    if (factor < 1 && tets > options_.most_tets) return "it takes too many tets";
+    mesh = refined(plan, rule, tets);
+    problem_ = mesh.tets.empty() ? "no tet fits into it"
+                                 : mismatch(fidelity(bodies_[body], mesh, allowed), allowed, frame_.unit);
+    if (problem_.empty()) least_ = std::min(least_, std::max(rule.smallest, least_size_));
+    return problem_;
   }
 
   // The plan with equal edges where that takes few enough tets; else, of a plate, the one that is stretched least.
   Plan cheapest(int body) const {
-    Plan plan = planned(body, {});
+    Plan plan = planned(body, {}, Sides::opposite);
     const std::string problem = plan.thin.problem;
     const std::optional<Vec3d> normal = problem.empty() ? std::nullopt : plate_normal(bodies_[body]);
     for (const double factor : {2.0, 4.0, 8.0}) {
       if (plan.thin.problem.empty() || !normal) break;
-      plan = planned(body, {*normal, factor});
+      plan = planned(body, {*normal, factor}, Sides::opposite);
     }
     if (!plan.thin.problem.empty())
       throw InvalidInput(body_name(body) + ": it is " + length(plan.thickness()) + " thin, and " + problem +
@@ -114,11 +118,11 @@ class SurfaceFiller {
     return plan;
   }
 
-  Plan planned(int body, const Stretch& along) const {
+  Plan planned(int body, const Stretch& along, Sides sides) const {
     Plan plan{along, bodies_[body], 0, {}, {}};
     stretch(along, plan.surface.vertices);
     plan.volume = std::abs(enclosed_volume(plan.surface));
-    plan.samples = surface_samples(plan.surface, size_ / 2);
+    plan.samples = surface_samples(plan.surface, size_ / 2, sides);
     if (plan.samples.empty() || !(plan.volume > 0))
       throw InvalidInput(body_name(body) + ": encloses no volume; remove it");
     plan.thin = choose_rule(plan.samples, plan.volume, size_, options_.most_tets);
@@ -138,7 +142,7 @@ class SurfaceFiller {
                             ", since more than " + digits(options_.most_tets) + " are not allowed (--max-tets)");
   }
 
-  TetMesh attempt(const Plan& plan, const SizeRule& rule, double predicted) {
+  TetMesh refined(const Plan& plan, const SizeRule& rule, double predicted) {
     const LocalSize size(plan.samples, rule);
     least_size_ = size.least();
     BodyDomain domain{plan.surface, size, {}, seeds(plan.samples), 0};
@@ -154,6 +158,7 @@ class SurfaceFiller {
   const MesherOptions& options_;
   double size_ = 0;
   double least_ = Box::kInfinity, least_size_ = 0;  // edge lengths in the frame
+  std::string problem_;                             // of the last mesh
   std::vector<TriMesh> bodies_;
   FilledSurface result_;
 };

@@ -59,7 +59,7 @@ CheckedSurface checked_surface(const std::filesystem::path& path, Defects defect
   const UnitFrame frame = unit_frame(path.string(), surface.mesh.vertices);
   to_frame(frame, surface.mesh.vertices);
   if (defects == Defects::rebuild) {
-    Rebuilt closed = rebuilt(surface.mesh);
+    Rebuilt closed = rebuilt(path.string(), surface.mesh);
     surface.mesh = std::move(closed.surface);
     surface.actions.push_back("rebuilt with " + std::to_string(surface.mesh.triangle_count()) +
                               " triangles; holes and grooves narrower than about " +

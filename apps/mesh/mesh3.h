@@ -147,7 +147,7 @@ template <class Domain, class Complex>
 void perturb(const Domain& domain, Complex& complex) {
   namespace p = CGAL::parameters;
   using Criterion = CountedMoves<typename Complex::Triangulation>;
-  constexpr long kMovesPerCell = 40;
+  constexpr long kMovesPerCell = 4;  // hundreds of times what blunt shapes need
   long moves = kMovesPerCell * static_cast<long>(complex.number_of_cells_in_complex());
   try {
     CGAL::perturb_mesh_3(complex, domain, p::time_limit = 0, p::sliver_bound = kSliverBound,
@@ -161,8 +161,8 @@ void perturb(const Domain& domain, Complex& complex) {
 template <class Domain, class Complex>
 void optimize(const Domain& domain, Complex& complex) {
   namespace p = CGAL::parameters;
-  constexpr size_t kManyCells = 60'000;
-  const int iterations = complex.number_of_cells_in_complex() > kManyCells ? 10 : 100;
+  const double sweeps = 1e6 / static_cast<double>(1 + complex.number_of_cells_in_complex());
+  const int iterations = static_cast<int>(std::clamp(sweeps, 10.0, 100.0));
   CGAL::odt_optimize_mesh_3(complex, domain, p::time_limit = 0, p::max_iteration_number = iterations);
   perturb(domain, complex);
   CGAL::exude_mesh_3(complex, p::time_limit = 0, p::sliver_bound = kSliverBound);

@@ -39,12 +39,12 @@ TetMesh mesh_image(const std::filesystem::path& image, const MesherOptions& opti
 // Fills the holes whose border is at most `longest`.
 TriMesh with_holes_filled(const TriMesh& surface, double longest);
 
-// A closed surface around any triangles: holes, overlaps and inner walls disappear. Throws InvalidInput where they
-// enclose next to no volume.
+// A closed surface around any triangles: holes, overlaps and inner walls disappear. `name` is the file in messages.
+// Throws InvalidInput where the triangles enclose next to no volume.
 struct Rebuilt {
   TriMesh surface;
   double detail = 0;  // smaller holes and grooves are closed
 };
-Rebuilt rebuilt(const TriMesh& surface);
+Rebuilt rebuilt(const std::string& name, const TriMesh& surface);
 
 }  // namespace aspic

@@ -38,33 +38,33 @@ Wrap wrapped(const Soup& soup, double alpha) {
   return wrap;
 }
 
-void check_encloses(const Wrap& wrap, double least) {
+void check_encloses(const std::string& name, const Wrap& wrap, double least) {
   if (wrap.inner < least * wrap.volume)
-    throw InvalidInput(
-        "--rebuild: the surface encloses next to no volume: it is a sheet, or open beyond what can be closed; give the "
-        "sheet a thickness, or close the surface, where it was made");
+    throw InvalidInput(name +
+                       ": encloses next to no volume: it is a sheet, or open beyond what --rebuild can close; give the "
+                       "sheet a thickness, or close the surface, where it was made");
 }
 
 }  // namespace
 
 // Wraps with finer and finer probes, as long as they do not enter the shape through its gaps: there the volume drops.
-Rebuilt rebuilt(const TriMesh& mesh) {
+Rebuilt rebuilt(const std::string& name, const TriMesh& mesh) {
   constexpr double kCoarsest = 20, kFinest = 160;  // parts of the diagonal
   constexpr double kEntered = 0.65;                // inner volume after a probe went inside, relative to before
   const TriMesh triangles = without_degenerate_triangles(mesh);
-  if (triangles.triangles.empty()) throw InvalidInput("--rebuild: no triangle of the surface has an area");
+  if (triangles.triangles.empty()) throw InvalidInput(name + ": no triangle has an area; export the surface again");
   const Soup soup = to_soup(with_holes_filled(triangles, Box::kInfinity));
   const double whole = diagonal(mesh.vertices);
   double parts = kCoarsest;
   Wrap best = wrapped(soup, whole / parts);
-  check_encloses(best, 0.05);
+  check_encloses(name, best, 0.05);
   while (parts < kFinest) {
     Wrap finer = wrapped(soup, whole / (2 * parts));
     if (finer.inner < kEntered * best.inner) break;
     best = std::move(finer);
     parts *= 2;
   }
-  check_encloses(best, 0.2);
+  check_encloses(name, best, 0.2);
   return {to_tri_mesh(best.surface), whole / parts};
 }
 
