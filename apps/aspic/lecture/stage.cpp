@@ -51,7 +51,7 @@ fs::path filled(const fs::path& surface, double size, const fs::path& cache) {
   std::error_code error;
   if (fs::exists(kept, error)) return kept;
   fs::create_directories(cache, error);
-  write_mesh(kept, tetrahedralise(surface, {.size = size}));
+  write_mesh(kept, tetrahedralise(surface, {.size = size}).tets);
   return kept;
 }
 
