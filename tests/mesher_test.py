@@ -224,8 +224,16 @@ class Mesher(unittest.TestCase):
         self.expect_filled(self.folder / "plate.obj", 4e-4, 0.02, 2)
 
     def test_a_plate_too_thin_for_the_limit_is_refused(self):
-        write_boxes(self.folder / "plate.obj", ((0, 0, 0), (1, 1, 0.005)))
-        self.expect_error(2, ["0.005 thin", "--max-tets", "plate.obj"], self.folder / "plate.obj", "--max-tets", 1e4)
+        write_boxes(self.folder / "plate.obj", ((0, 0, 0), (1, 1, 0.0005)))
+        self.expect_error(2, ["0.0005 thin", "--max-tets", "plate.obj"], self.folder / "plate.obj", "--max-tets", 1e4)
+
+    def test_a_thin_plate_gets_flat_tets_within_the_limit(self):
+        write_boxes(self.folder / "plate.obj", ((0, 0, 0), (0.2, 0.2, 0.002)))
+        said = self.expect_filled(self.folder / "plate.obj", 0.2 * 0.2 * 0.002, 1e-6, 2, "--max-tets", 1e4)
+        self.assertIn("0.002 thin", said)
+        self.assertIn("times as wide as thick", said)
+        self.assertIn("--max-tets", said)
+        self.assertLess(len(read_medit(self.out)[1]), 12000)
 
     def test_bodies_with_a_gap_stay_apart(self):
         write_boxes(self.folder / "two.obj", ((0, 0, 0), (1, 1, 1)), ((1.05, 0, 0), (2.05, 1, 1)))
@@ -273,6 +281,16 @@ class Mesher(unittest.TestCase):
         lens = math.pi * (2 - 1.5)**2 * (1.5**2 + 4 * 1.5) / (12 * 1.5)
         self.assertIn("rebuilt", self.expect_filled(self.folder / "meeting.obj", 2 * 4 * math.pi / 3 - lens, 0.08, 2,
                                                     "--rebuild", "--size", 0.3))
+
+    def test_an_open_box_is_closed_and_rebuilt(self):
+        write_boxes(self.folder / "box.obj", ((0, 0, 0), (1, 1, 1)))
+        lines = (self.folder / "box.obj").read_text().splitlines()
+        (self.folder / "box.obj").write_text("\n".join(lines[:-2]) + "\n")  # a side is missing
+        self.expect_filled(self.folder / "box.obj", 1, 0.03, 2, "--rebuild", "--size", 0.3)
+
+    def test_a_sheet_is_not_rebuilt(self):
+        (self.folder / "sheet.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+        self.expect_error(2, ["sheet.obj", "sheet", "thickness"], self.folder / "sheet.obj", "--rebuild")
 
     def test_help_and_version_name_the_licence(self):
         for flag in ("--help", "--version"):

@@ -11,6 +11,9 @@ inline constexpr int kOutOfTime = 4;  // exit code
 // replaces the first.
 void limit_time(double seconds, const std::string& message);
 
+// When the process faults, by a signal as SIGSEGV, it prints `message` to stderr and ends with this exit code.
+void end_faults(int exit_code, const std::string& message);
+
 // Allocations beyond this many bytes throw std::bad_alloc.
 void limit_memory(std::int64_t bytes);
 

@@ -8,6 +8,7 @@
 #include "bodies.h"
 #include "body_domain.h"
 #include "fidelity.h"
+#include "flat_body.h"
 #include "local_size.h"
 #include "mesh/surface_orientation.h"
 #include "mesher.h"
@@ -23,11 +24,16 @@ std::string digits(double value) {
   return text;
 }
 
-Vec3d extent(const TriMesh& mesh) {
-  Box box;
-  for (const Vec3d& x : mesh.vertices) box.add(x);
-  return box.upper - box.lower;
-}
+// A body as it is refined, with the rule of its edge lengths.
+struct Plan {
+  Stretch stretch;
+  TriMesh surface;  // stretched
+  double volume = 0;
+  std::vector<SurfaceSample> samples;
+  ThinParts thin;
+
+  double thickness() const { return thin.thickness / stretch.factor; }
+};
 
 // Points of the samples, far enough from each other to leave the refinement its freedom.
 std::vector<Vec3d> seeds(const std::vector<SurfaceSample>& samples) {
@@ -50,9 +56,8 @@ class SurfaceFiller {
       : name_(std::move(name)), frame_(unit_frame(name_, surface.vertices)), options_(options) {
     TriMesh unit = surface;
     to_frame(frame_, unit.vertices);
-    const Vec3d span = extent(unit);
-    size_ = options.size > 0 ? options.size / frame_.unit : std::sqrt(dot(span, span)) / 25;
-    check_size(frame_.unit * span, frame_.unit * size_);
+    size_ = options.size > 0 ? options.size / frame_.unit : diagonal(unit.vertices) / 25;
+    check_size(frame_.unit * extent(unit.vertices), frame_.unit * size_);
     bodies_ = bodies(unit);
   }
 
@@ -74,43 +79,78 @@ class SurfaceFiller {
   }
 
   TetMesh filled(int body) {
-    const TriMesh& surface = bodies_[body];
-    const double volume = std::abs(enclosed_volume(surface));
-    const std::vector<SurfaceSample> samples = surface_samples(surface, size_ / 2);
-    if (samples.empty() || !(volume > 0)) throw InvalidInput(body_name(body) + ": encloses no volume; remove it");
-    const ThinParts thin = choose_rule(samples, volume, size_, options_.most_tets);
-    if (!thin.problem.empty())
-      throw InvalidInput(body_name(body) + ": it is " + length(thin.thickness) + " thin, and " + thin.problem +
-                         "; allow more with --max-tets, or thicken it");
-    if (const double across = thin.thickness / thin.rule.smallest; thin.rule.smallest < size_ && across < 1.9)
-      result_.notes.push_back((bodies_.size() == 1 ? "" : "body " + std::to_string(body + 1) + ": ") + "it is " +
-                              length(thin.thickness) + " thin; " + digits(across) +
-                              " tets across instead of two, since more than " + digits(options_.most_tets) +
-                              " are not allowed (--max-tets)");
-    std::string problem;
-    for (const double factor : {1.0, 0.6}) {
-      SizeRule rule = thin.rule;
-      rule.size *= factor, rule.smallest *= factor, rule.tets_across /= factor;
-      const double tets = predicted_tets(samples, volume, rule);
-      if (factor < 1 && tets > options_.most_tets) break;
-      TetMesh mesh = attempt(surface, samples, rule, tets);
-      const double allowed = 0.7 * size_;
-      problem =
-          mesh.tets.empty() ? "no tet fits into it" : mismatch(fidelity(surface, mesh, allowed), allowed, frame_.unit);
-      if (!problem.empty()) continue;
-      least_ = std::min(least_, std::max(rule.smallest, least_size_));
-      return mesh;
-    }
-    throw InvalidInput(body_name(body) + ": " + problem + "; give a --size smaller than " + length(size_));
+    const Plan plan = cheapest(body);
+    add_note(body, plan);
+    TetMesh mesh;
+    std::string problem = attempt(body, plan, 1, mesh);
+    if (!problem.empty()) problem = attempt(body, plan, 0.6, mesh);
+    if (!problem.empty()) problem = attempt(body, planned(body, {}, Sides::any), 1, mesh);
+    if (problem.empty()) return mesh;
+    throw InvalidInput(body_name(body) + ": " + problem_ + "; give a --size smaller than " + length(size_));
   }
 
-  TetMesh attempt(const TriMesh& surface, const std::vector<SurfaceSample>& samples, const SizeRule& rule,
-                  double predicted) {
-    const LocalSize size(samples, rule);
+  // Returns why the tets are not the body; nothing when they are.
+  std::string attempt(int body, const Plan& plan, double factor, TetMesh& mesh) {
+    if (!plan.thin.problem.empty()) return plan.thin.problem;
+    SizeRule rule = plan.thin.rule;
+    rule.size *= factor, rule.smallest *= factor, rule.tets_across /= factor;
+    const double tets = predicted_tets(plan.samples, plan.volume, rule), allowed = 0.7 * size_;
+    if (factor < 1 && tets > options_.most_tets) return "it takes too many tets";
+    mesh = refined(plan, rule, tets);
+    problem_ = mesh.tets.empty() ? "no tet fits into it"
+                                 : mismatch(fidelity(bodies_[body], mesh, allowed), allowed, frame_.unit);
+    if (problem_.empty()) least_ = std::min(least_, std::max(rule.smallest, least_size_));
+    return problem_;
+  }
+
+  // The plan with equal edges where that takes few enough tets; else, of a plate, the one that is stretched least.
+  Plan cheapest(int body) const {
+    Plan plan = planned(body, {}, Sides::opposite);
+    const std::string problem = plan.thin.problem;
+    const std::optional<Vec3d> normal = problem.empty() ? std::nullopt : plate_normal(bodies_[body]);
+    for (const double factor : {2.0, 4.0, 8.0}) {
+      if (plan.thin.problem.empty() || !normal) break;
+      plan = planned(body, {*normal, factor}, Sides::opposite);
+    }
+    if (!plan.thin.problem.empty())
+      throw InvalidInput(body_name(body) + ": it is " + length(plan.thickness()) + " thin, and " + problem +
+                         "; allow more with --max-tets, or thicken it");
+    return plan;
+  }
+
+  Plan planned(int body, const Stretch& along, Sides sides) const {
+    Plan plan{along, bodies_[body], 0, {}, {}};
+    stretch(along, plan.surface.vertices);
+    plan.volume = std::abs(enclosed_volume(plan.surface));
+    plan.samples = surface_samples(plan.surface, size_ / 2, sides);
+    if (plan.samples.empty() || !(plan.volume > 0))
+      throw InvalidInput(body_name(body) + ": encloses no volume; remove it");
+    plan.thin = choose_rule(plan.samples, plan.volume, size_, options_.most_tets);
+    return plan;
+  }
+
+  void add_note(int body, const Plan& plan) {
+    const SizeRule& rule = plan.thin.rule;
+    const double across = plan.thin.thickness / rule.smallest;
+    const bool has_few = rule.smallest < size_ && across < 1.9, is_flat = plan.stretch.factor > 1;
+    if (!has_few && !is_flat) return;
+    result_.notes.push_back((bodies_.size() == 1 ? "" : "body " + std::to_string(body + 1) + ": ") + "it is " +
+                            length(plan.thickness()) + " thin; " +
+                            (has_few ? digits(across) + " tets across instead of two" : "") +
+                            (has_few && is_flat ? ", and " : "") +
+                            (is_flat ? "tets are " + digits(plan.stretch.factor) + " times as wide as thick" : "") +
+                            ", since more than " + digits(options_.most_tets) + " are not allowed (--max-tets)");
+  }
+
+  TetMesh refined(const Plan& plan, const SizeRule& rule, double predicted) {
+    const LocalSize size(plan.samples, rule);
     least_size_ = size.least();
-    BodyDomain domain{surface, size, sharp_chains(surface, rule.size), seeds(samples), 0};
+    BodyDomain domain{plan.surface, size, {}, seeds(plan.samples), 0};
+    if (options_.has_sharp_edges) domain.sharp = sharp_chains(plan.surface, rule.size);
     domain.most_vertices = static_cast<size_t>(1e4 + predicted);  // several times what refinement needs
-    return fill_body(domain);
+    TetMesh mesh = fill_body(domain);
+    stretch({plan.stretch.axis, 1 / plan.stretch.factor}, mesh.rest);
+    return mesh;
   }
 
   std::string name_;
@@ -118,6 +158,7 @@ class SurfaceFiller {
   const MesherOptions& options_;
   double size_ = 0;
   double least_ = Box::kInfinity, least_size_ = 0;  // edge lengths in the frame
+  std::string problem_;                             // of the last mesh
   std::vector<TriMesh> bodies_;
   FilledSurface result_;
 };

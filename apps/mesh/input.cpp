@@ -59,14 +59,14 @@ CheckedSurface checked_surface(const std::filesystem::path& path, Defects defect
   const UnitFrame frame = unit_frame(path.string(), surface.mesh.vertices);
   to_frame(frame, surface.mesh.vertices);
   if (defects == Defects::rebuild) {
-    Rebuilt closed = rebuilt(surface.mesh);
+    Rebuilt closed = rebuilt(path.string(), surface.mesh);
     surface.mesh = std::move(closed.surface);
     surface.actions.push_back("rebuilt with " + std::to_string(surface.mesh.triangle_count()) +
                               " triangles; holes and grooves narrower than about " +
                               number(closed.detail * frame.unit) + " are closed");
   } else if (defects == Defects::fill_small_holes) {
     const int before = surface.mesh.triangle_count();
-    surface.mesh = with_holes_filled(surface.mesh);
+    surface.mesh = with_holes_filled(surface.mesh, diagonal(surface.mesh.vertices));
     if (const int added = surface.mesh.triangle_count() - before; added > 0)
       surface.actions.push_back("filled holes with " + std::to_string(added) + " triangles");
   }

@@ -43,7 +43,9 @@ TetMesh mesh_labelled(const std::string& name, const LabelledDomain& domain, con
   const double size = smallest_size(options), cells = grid.box_volume() / (0.11785 * size * size * size);
   const auto most_vertices = static_cast<size_t>(5e4 + std::min(cells, 1e9));
   bool is_complete = false;
-  TetMesh mesh = filled(domain, RegionSize(domain, options), grid.seeds(), most_vertices, is_complete);
+  const RegionSize edge(domain, options);
+  const Seeds<LabelledDomain> seeds = grid.seeds();
+  TetMesh mesh = filled(Filling<LabelledDomain, RegionSize>{domain, edge, seeds, most_vertices}, is_complete);
   if (!is_complete)
     throw InvalidInput(name + ": refinement did not end within " + std::to_string(most_vertices) +
                        " vertices: the border between its regions is too rough for edges of this length; smooth the "

@@ -19,13 +19,13 @@ double own_size(const SurfaceSample& sample, const SizeRule& rule) {
   return std::min(std::max(wanted, rule.smallest), rule.size);
 }
 
-// Sides lie opposite each other when their normals differ from antiparallel by less than 30 degrees.
-constexpr double kOpposite = -0.87;
+// Between a ray and the normal of the side that it meets. Opposite sides are less than 30 degrees from parallel.
+double least_cosine(Sides sides) { return sides == Sides::opposite ? 0.87 : 0; }
 
-double reach(const TriMesh& body, const TriangleTree& tree, const Vec3d& x, const Vec3d& normal, double direction) {
+double reach(const TriMesh& body, const TriangleTree& tree, const Vec3d& x, const Vec3d& ray, double cosine) {
   constexpr double kTouching = 1e-9;
-  const TriangleTree::Hit hit = tree.first_hit(x, direction * normal, kTouching);
-  if (hit.triangle < 0 || dot(unit_normal(body, hit.triangle), normal) > kOpposite) return Box::kInfinity;
+  const TriangleTree::Hit hit = tree.first_hit(x, ray, kTouching);
+  if (hit.triangle < 0 || std::abs(dot(unit_normal(body, hit.triangle), ray)) < cosine) return Box::kInfinity;
   return hit.distance;
 }
 
@@ -87,7 +87,7 @@ SizeRule with_least_bound(const std::vector<SurfaceSample>& samples, double volu
 
 }  // namespace
 
-std::vector<SurfaceSample> surface_samples(const TriMesh& body, double spacing) {
+std::vector<SurfaceSample> surface_samples(const TriMesh& body, double spacing, Sides sides) {
   constexpr double kMost = 5e4;
   double count = 0;
   for (int t = 0; t < body.triangle_count(); ++t) count += std::pow(parts_per_edge(body, t, spacing), 2);
@@ -102,7 +102,8 @@ std::vector<SurfaceSample> surface_samples(const TriMesh& body, double spacing) 
     const int n = parts_per_edge(body, t, spacing);
     const double part = stride * area(body, t) / (n * n);
     for_each_part({body.vertices[a], body.vertices[b], body.vertices[c]}, n, [&](const Vec3d& x) {
-      samples.push_back({x, part, reach(body, tree, x, normal, -1), reach(body, tree, x, normal, 1)});
+      samples.push_back({x, part, reach(body, tree, x, -1.0 * normal, least_cosine(sides)),
+                         reach(body, tree, x, normal, least_cosine(Sides::opposite))});
     });
   }
   return samples;

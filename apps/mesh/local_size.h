@@ -16,8 +16,12 @@ struct SurfaceSample {
   double gap = Box::kInfinity;        // to the next part of the same body
 };
 
+// The sides between which thickness is measured: opposite ones, or any, which finds the tip of a three-sided needle
+// thin, but also the edges of every block.
+enum class Sides { opposite, any };
+
 // Samples at a distance of about `spacing`, at least one per triangle up to a limit. `body` faces outwards.
-std::vector<SurfaceSample> surface_samples(const TriMesh& body, double spacing);
+std::vector<SurfaceSample> surface_samples(const TriMesh& body, double spacing, Sides sides);
 
 // How edge lengths follow from thickness: thickness / tets_across, between `smallest` and `size`.
 struct SizeRule {

@@ -74,7 +74,10 @@ void declare(CLI::App& app, Arguments& arguments) {
 MesherOptions mesher_options(const Arguments& arguments) {
   if (!(arguments.size >= 0) || !std::isfinite(arguments.size))
     throw InvalidInput("--size " + std::to_string(arguments.size) + ": give a positive length, or 0 for the default");
-  MesherOptions options{.size = arguments.size, .region_size = {}, .most_tets = arguments.most_tets};
+  MesherOptions options{.size = arguments.size,
+                        .region_size = {},
+                        .most_tets = arguments.most_tets,
+                        .has_sharp_edges = !arguments.rebuild};
   for (const std::string& text : arguments.region_sizes) options.region_size.insert(parsed_region_size(text));
   return options;
 }
@@ -126,6 +129,8 @@ void set_budget(const Arguments& arguments) {
   std::snprintf(seconds, sizeof seconds, "%g", arguments.time_limit);
   limit_time(arguments.time_limit, "error: " + printable(subject) + ": meshing did not end within " + seconds +
                                        " s; give a larger --size, or more with --time-limit\n");
+  end_faults(kFailed, "error: " + printable(subject) +
+                          ": meshing failed in CGAL; give another --size, or rebuild the surface with --rebuild\n");
   limit_memory(free_memory());
 }
 

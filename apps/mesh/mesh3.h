@@ -2,9 +2,11 @@
 #pragma once
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
+#include <CGAL/Mesh_3/sliver_criteria.h>
 #include <CGAL/Mesh_criteria_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Random.h>
+#include <CGAL/exceptions.h>
 #include <CGAL/exude_mesh_3.h>
 #include <CGAL/make_mesh_3.h>
 #include <CGAL/odt_optimize_mesh_3.h>
@@ -121,26 +123,69 @@ void protect_sharp_edges(const Domain& domain, const Criteria& criteria, size_t 
   }
 }
 
-// Every optimizer runs until it has converged, not until a clock says so: that is what makes the output reproducible.
+// Counts the moves of a perturbation and throws when there are too many of them: in the tip of a needle, slivers can
+// turn into each other without end. At that point nothing has moved yet, so the complex is whole.
+template <class Triangulation>
+class CountedMoves : public CGAL::Mesh_3::Min_dihedral_angle_criterion<Triangulation> {
+  using Base = CGAL::Mesh_3::Min_dihedral_angle_criterion<Triangulation>;
+
+ public:
+  struct TooMany {};
+
+  CountedMoves(const Triangulation& triangulation, long& left) : Base(kSliverBound, triangulation), left_(&left) {}
+
+  void before_move(const typename Base::Cell_vector& cells) const override {
+    if (--*left_ < 0) throw TooMany();
+    Base::before_move(cells);
+  }
+
+ private:
+  long* left_;
+};
+
+template <class Domain, class Complex>
+void perturb(const Domain& domain, Complex& complex) {
+  namespace p = CGAL::parameters;
+  using Criterion = CountedMoves<typename Complex::Triangulation>;
+  constexpr long kMovesPerCell = 4;  // hundreds of times what blunt shapes need
+  long moves = kMovesPerCell * static_cast<long>(complex.number_of_cells_in_complex());
+  try {
+    CGAL::perturb_mesh_3(complex, domain, p::time_limit = 0, p::sliver_bound = kSliverBound,
+                         p::sliver_criterion = Criterion(complex.triangulation(), moves));
+  } catch (const typename Criterion::TooMany&) {
+  }
+}
+
+// Every optimizer runs until it has converged or for a number of steps, not until a clock says so: that is what makes
+// the output reproducible.
 template <class Domain, class Complex>
 void optimize(const Domain& domain, Complex& complex) {
   namespace p = CGAL::parameters;
-  constexpr size_t kManyCells = 60'000;
-  const int iterations = complex.number_of_cells_in_complex() > kManyCells ? 10 : 100;
+  const double sweeps = 1e6 / static_cast<double>(1 + complex.number_of_cells_in_complex());
+  const int iterations = static_cast<int>(std::clamp(sweeps, 10.0, 100.0));
   CGAL::odt_optimize_mesh_3(complex, domain, p::time_limit = 0, p::max_iteration_number = iterations);
-  CGAL::perturb_mesh_3(complex, domain, p::time_limit = 0, p::sliver_bound = kSliverBound);
+  perturb(domain, complex);
   CGAL::exude_mesh_3(complex, p::time_limit = 0, p::sliver_bound = kSliverBound);
 }
 
-// `edge`: target edge lengths. Refinement stops at `most_vertices`; `is_complete` tells whether it ended before.
+// What is to be filled.
 template <class Domain, class Field>
-TetMesh filled(const Domain& domain, const Field& edge, const Seeds<Domain>& seeds, size_t most_vertices,
-               bool& is_complete) {
+struct Filling {
+  const Domain& domain;
+  const Field& edge;  // target edge lengths
+  const Seeds<Domain>& seeds;
+  size_t most_vertices;  // at which refinement stops
+};
+
+// `is_complete`: whether refinement ended before it stopped.
+template <class Domain, class Field>
+TetMesh refined(const Filling<Domain, Field>& filling, bool optimizes, bool& is_complete) {
   namespace p = CGAL::parameters;
   using Triangulation = typename CGAL::Mesh_triangulation_3<Domain, Kernel>::type;
   using Complex = typename ComplexOf<Domain, Triangulation>::type;
   using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
   CGAL::get_default_random() = CGAL::Random(0);
+  const auto& [domain, edge, seeds, most_vertices] = filling;
   const Scaled<Field> radius(edge, kRadiusPerEdge), distance(edge, kRadiusPerEdge * kDistancePerRadius);
   const Criteria criteria(p::edge_size = Scaled<Field>(edge, kProtectedPerEdge), p::facet_angle = 25,
                           p::facet_size = radius, p::facet_distance = distance, p::cell_radius_edge_ratio = 2.2,
@@ -151,8 +196,19 @@ TetMesh filled(const Domain& domain, const Field& edge, const Seeds<Domain>& see
   CGAL::refine_mesh_3(complex, domain, criteria, p::no_exude(), p::no_perturb(), p::no_odt(), p::no_lloyd(),
                       p::no_reset_c3t3(), p::mesh_3_options(p::maximal_number_of_vertices = most_vertices));
   is_complete = complex.triangulation().number_of_vertices() < most_vertices;
-  if (is_complete) optimize(domain, complex);
+  if (is_complete && optimizes) optimize(domain, complex);
   return to_tet_mesh(complex);
+}
+
+// CGAL's optimizers can break the triangulation between many protected edges. Its assertions, which are part of every
+// build of this program, notice; then the tets stay as refinement left them.
+template <class Domain, class Field>
+TetMesh filled(const Filling<Domain, Field>& filling, bool& is_complete) {
+  try {
+    return refined(filling, true, is_complete);
+  } catch (const CGAL::Failure_exception&) {
+    return refined(filling, false, is_complete);
+  }
 }
 
 }  // namespace aspic

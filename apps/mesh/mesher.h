@@ -14,6 +14,7 @@ struct MesherOptions {
   double size = 0;                    // target edge length in units of the input; 0: bounding box diagonal / 25
   std::map<int, double> region_size;  // label -> target edge length there
   double most_tets = 1.5e5;           // predicted, where thin parts of a surface ask for smaller edges than `size`
+  bool has_sharp_edges = true;        // of a surface; those of a wrap are none of the shape
 };
 
 struct FilledSurface {
@@ -35,14 +36,15 @@ TetMesh mesh_implicit(const ImplicitShape& shape, const MesherOptions& options);
 // The voxels with a label other than 0 of an .inr or .inr.gz image; the labels become regions.
 TetMesh mesh_image(const std::filesystem::path& image, const MesherOptions& options);
 
-// Fills holes whose border is shorter than the diagonal of the bounding box; larger ones stay open.
-TriMesh with_holes_filled(const TriMesh& surface);
+// Fills the holes whose border is at most `longest`.
+TriMesh with_holes_filled(const TriMesh& surface, double longest);
 
-// A closed surface around any triangles: holes, overlaps and inner walls disappear.
+// A closed surface around any triangles: holes, overlaps and inner walls disappear. `name` is the file in messages.
+// Throws InvalidInput where the triangles enclose next to no volume.
 struct Rebuilt {
   TriMesh surface;
   double detail = 0;  // smaller holes and grooves are closed
 };
-Rebuilt rebuilt(const TriMesh& surface);
+Rebuilt rebuilt(const std::string& name, const TriMesh& surface);
 
 }  // namespace aspic

@@ -5,52 +5,23 @@
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/Polyhedral_mesh_domain_3.h>
-#include <CGAL/Surface_mesh.h>
-
-#include <cmath>
 
 #include "body_domain.h"
 #include "mesh3.h"
+#include "surface_mesh.h"
 
 namespace aspic {
 namespace {
 
 namespace processing = CGAL::Polygon_mesh_processing;
-using Surface = CGAL::Surface_mesh<Point>;
-using Domain = CGAL::Mesh_domain_with_polyline_features_3<CGAL::Polyhedral_mesh_domain_3<Surface, Kernel>>;
+using Domain = CGAL::Mesh_domain_with_polyline_features_3<CGAL::Polyhedral_mesh_domain_3<SurfaceMesh, Kernel>>;
 
-Surface to_surface(const TriMesh& mesh) {
-  std::vector<Point> points;
-  std::vector<std::array<size_t, 3>> triangles;
-  for (const Vec3d& x : mesh.vertices) points.emplace_back(x[0], x[1], x[2]);
-  for (const auto& [a, b, c] : mesh.triangles)
-    triangles.push_back({static_cast<size_t>(a), static_cast<size_t>(b), static_cast<size_t>(c)});
-  processing::orient_polygon_soup(points, triangles);
-  Surface surface;
-  processing::polygon_soup_to_polygon_mesh(points, triangles, surface);
+SurfaceMesh to_surface(const TriMesh& mesh) {
+  Soup soup = to_soup(mesh);
+  processing::orient_polygon_soup(soup.points, soup.triangles);
+  SurfaceMesh surface;
+  processing::polygon_soup_to_polygon_mesh(soup.points, soup.triangles, surface);
   return surface;
-}
-
-TriMesh to_tri_mesh(const Surface& surface) {
-  TriMesh mesh;
-  for (const auto vertex : surface.vertices()) {
-    const Point& x = surface.point(vertex);
-    mesh.vertices.push_back({{x.x(), x.y(), x.z()}});
-  }
-  for (const auto face : surface.faces()) {
-    Triangle triangle{};
-    int corner = 0;
-    for (const auto vertex : CGAL::vertices_around_face(surface.halfedge(face), surface))
-      triangle[corner++] = static_cast<int>(vertex.idx());
-    mesh.triangles.push_back(triangle);
-  }
-  return mesh;
-}
-
-double diagonal(const TriMesh& mesh) {
-  CGAL::Bbox_3 box;
-  for (const Vec3d& x : mesh.vertices) box += Point(x[0], x[1], x[2]).bbox();
-  return std::hypot(box.x_span(), box.y_span(), box.z_span());
 }
 
 class BodySize {
@@ -84,24 +55,25 @@ Seeds<Domain> seeds(const Domain& domain, const std::vector<Vec3d>& points) {
 }  // namespace
 
 TetMesh fill_body(const BodyDomain& body) {
-  const Surface surface = to_surface(body.surface);
+  const SurfaceMesh surface = to_surface(body.surface);
   Domain domain(surface);
   const std::vector<std::vector<Point>> lines = polylines(body.sharp);
   domain.add_features(lines.begin(), lines.end());
   bool is_complete = false;  // an incomplete mesh is judged like any other
-  TetMesh tets = filled(domain, BodySize(body.size), seeds(domain, body.seeds), body.most_vertices, is_complete);
+  const BodySize edge(body.size);
+  const Seeds<Domain> starts = seeds(domain, body.seeds);
+  TetMesh tets = filled(Filling<Domain, BodySize>{domain, edge, starts, body.most_vertices}, is_complete);
   tets.region.clear();
   return tets;
 }
 
-TriMesh with_holes_filled(const TriMesh& mesh) {
-  Surface surface = to_surface(mesh);
-  const double longest = diagonal(mesh);
-  std::vector<Surface::Halfedge_index> borders;
+TriMesh with_holes_filled(const TriMesh& mesh, double longest) {
+  SurfaceMesh surface = to_surface(mesh);
+  std::vector<SurfaceMesh::Halfedge_index> borders;
   processing::extract_boundary_cycles(surface, std::back_inserter(borders));
   for (const auto border : borders) {
     if (processing::face_border_length(border, surface) > longest) continue;
-    std::vector<Surface::Face_index> faces;
+    std::vector<SurfaceMesh::Face_index> faces;
     processing::triangulate_hole(surface, border, std::back_inserter(faces));
   }
   return to_tri_mesh(surface);

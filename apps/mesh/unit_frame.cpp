@@ -23,6 +23,17 @@ std::string text(double value) {
 
 }  // namespace
 
+Vec3d extent(const std::vector<Vec3d>& points) {
+  Box box;
+  for (const Vec3d& x : points) box.add(x);
+  return box.upper - box.lower;
+}
+
+double diagonal(const std::vector<Vec3d>& points) {
+  const Vec3d span = extent(points);
+  return std::sqrt(dot(span, span));
+}
+
 UnitFrame unit_frame(const std::string& name, const std::vector<Vec3d>& points) {
   Box box;
   for (const Vec3d& x : points) box.add(x);

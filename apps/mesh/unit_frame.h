@@ -8,6 +8,9 @@
 
 namespace aspic {
 
+Vec3d extent(const std::vector<Vec3d>& points);    // of the bounding box
+double diagonal(const std::vector<Vec3d>& points);  // of the bounding box
+
 // Position in the file = origin + unit * position in the frame. The unit is a power of two.
 struct UnitFrame {
   Vec3d origin{};

@@ -43,7 +43,7 @@ TetMesh filled_coarser(const TetMesh& mesh, const std::filesystem::path& mesher)
   const TemporaryFolder folder;
   const std::filesystem::path surface = folder.path() / "surface.off";
   write_mesh(surface, boundary_surface(mesh).surface);
-  return tetrahedralise(surface, {.size = kCoarser * edge_length(mesh), .program = mesher});
+  return tetrahedralise(surface, {.size = kCoarser * edge_length(mesh), .program = mesher}).tets;
 }
 
 }  // namespace

@@ -24,28 +24,33 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void become(char* const* argv, const char* messages, pid_t parent, int failure) {
+struct Redirections {
+  std::string output, messages;
+};
+
+[[noreturn]] void become(char* const* argv, const Redirections& to, pid_t parent, int failure) {
   // Calls between fork and exec must be safe beside other threads.
-  const auto redirect = [](const char* path, int flags, int to) {
+  constexpr int kNew = O_WRONLY | O_CREAT | O_TRUNC;
+  const auto redirect = [](const char* path, int flags, int stream) {
     const int file = ::open(path, flags, 0600);
-    return file >= 0 && ::dup2(file, to) >= 0;
+    return file >= 0 && ::dup2(file, stream) >= 0;
   };
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() == parent && redirect("/dev/null", O_RDONLY, STDIN_FILENO) &&
-      redirect("/dev/null", O_WRONLY, STDOUT_FILENO) && redirect(messages, O_WRONLY | O_CREAT | O_TRUNC, STDERR_FILENO))
+      redirect(to.output.c_str(), kNew, STDOUT_FILENO) && redirect(to.messages.c_str(), kNew, STDERR_FILENO))
     ::execve(argv[0], argv, environ);
   const int error = errno;
   [[maybe_unused]] const ssize_t written = ::write(failure, &error, sizeof error);
   ::_exit(127);
 }
 
-// Returns the wait status; what the program says on stderr goes to a file. The program is killed when the thread that
+// Returns the wait status; what the program prints goes to files. The program is killed when the thread that
 // started it ends, however that happens.
 int wait_status(const ExternalCommand& command) {
   std::vector<char*> argv;
   for (const std::string& argument : command.command) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
-  const std::string messages = command.messages.string();
+  const Redirections to{command.output.empty() ? "/dev/null" : command.output.string(), command.messages.string()};
   const pid_t self = ::getpid();
   int failure[2];  // a pipe that exec closes; otherwise it brings the reason
   int error = 0, status = 0;
@@ -53,7 +58,7 @@ int wait_status(const ExternalCommand& command) {
     error = errno;
   } else {
     const pid_t process = ::fork();
-    if (process == 0) become(argv.data(), messages.c_str(), self, failure[1]);
+    if (process == 0) become(argv.data(), to, self, failure[1]);
     if (process < 0) error = errno;
     ::close(failure[1]);
     while (process > 0 && ::read(failure[0], &error, sizeof error) < 0 && errno == EINTR) {

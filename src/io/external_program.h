@@ -35,6 +35,7 @@ struct ExternalCommand {
   std::vector<std::string> command;  // absolute path of the program, arguments
   std::string about;                 // what it works on; messages begin with it
   std::filesystem::path messages;    // the file that receives what it says on stderr
+  std::filesystem::path output{};    // the file that receives its stdout; empty: nothing does
   std::string after_signal;          // the likely reason when a signal ended it
   std::string when_unusable;         // remedy when it cannot be started
   int out_of_time = -1;              // exit code that means so; -1: there is none

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <system_error>
 
 #include "base/error.h"
+#include "io/atomic_file.h"
 #include "io/external_program.h"
 #include "io/mesh_file.h"
 #include "io/number_text.h"
@@ -31,9 +33,20 @@ void add_option(const char* name, double value, std::vector<std::string>& words)
   append_number(words.emplace_back(), value);
 }
 
+// The lines that the program begins with the name of the surface; the table of quality has none.
+std::vector<std::string> notes(const fs::path& output, const std::string& surface) {
+  std::error_code error;
+  std::istringstream lines(fs::exists(output, error) ? read_file(output) : "");
+  std::vector<std::string> notes;
+  const std::string start = surface + ": ";
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(start)) notes.push_back(line.substr(start.size()));
+  return notes;
+}
+
 }  // namespace
 
-TetMesh tetrahedralise(const fs::path& surface, const TetrahedraliseOptions& options) {
+Tetrahedralization tetrahedralise(const fs::path& surface, const TetrahedraliseOptions& options) {
   if (!(options.size >= 0) || !std::isfinite(options.size))
     throw InvalidInput(surface.string() + ": the target edge length is " + std::to_string(options.size) +
                        "; it must be positive, or 0 for a default");
@@ -50,12 +63,13 @@ TetMesh tetrahedralise(const fs::path& surface, const TetrahedraliseOptions& opt
                                         .command = words,
                                         .about = surface.string(),
                                         .messages = folder.path() / "messages",
+                                        .output = folder.path() / "output",
                                         .after_signal = "out of memory? try a larger size",
                                         .when_unusable = "build it again with -DASPIC_MESHER=ON",
                                         .out_of_time = kOutOfTime});
   std::error_code error;
   if (!fs::exists(result, error)) throw InvalidInput(surface.string() + ": " + kProgram + " wrote no mesh: " + said);
-  return read_tet_mesh(result);
+  return {read_tet_mesh(result), notes(folder.path() / "output", words[1])};
 }
 
 }  // namespace aspic

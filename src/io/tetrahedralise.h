@@ -1,6 +1,8 @@
 // Fills a closed surface with tets by running the separate program aspic-mesh.
 #pragma once
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "mesh/tet_mesh.h"
 
@@ -12,7 +14,12 @@ struct TetrahedraliseOptions {
   std::filesystem::path program;  // aspic-mesh; empty: beside the running program, then on the PATH
 };
 
-// Throws InvalidInput with what the program said, or how to install it; TimeLimitPassed when time ran out.
-TetMesh tetrahedralise(const std::filesystem::path& surface, const TetrahedraliseOptions& options);
+struct Tetrahedralization {
+  TetMesh tets;
+  std::vector<std::string> notes;  // of the program: what it mended, where edges are short; one sentence each
+};
+
+// Throws InvalidInput with the message of the program, or how to install it; TimeLimitPassed when time ran out.
+Tetrahedralization tetrahedralise(const std::filesystem::path& surface, const TetrahedraliseOptions& options);
 
 }  // namespace aspic

@@ -35,7 +35,7 @@ class Tetrahedralise : public FolderTest {
   TetMesh run(const std::string& script, double size = 0) {
     write_file(folder / "mesher", "#!/bin/sh\n" + script);
     fs::permissions(folder / "mesher", fs::perms::owner_all);
-    return tetrahedralise(surface, {.size = size, .program = folder / "mesher"});
+    return tetrahedralise(surface, {.size = size, .program = folder / "mesher"}).tets;
   }
   void expect_no_leftovers() { EXPECT_TRUE(fs::is_empty(folder / "temporary")); }
 
@@ -55,6 +55,13 @@ TEST_F(Tetrahedralise, ReturnsTheTetsThatTheProgramWrote) {
 TEST_F(Tetrahedralise, LeavesDefaultsToTheProgram) {
   run(good());
   EXPECT_EQ(read_file(folder / "said"), (folder / "mesher").string() + " " + surface.string() + " -o  \n");
+}
+
+TEST_F(Tetrahedralise, ReturnsTheNotesOfTheProgram) {
+  write_file(folder / "mesher", "#!/bin/sh\necho \"$1: it is thin\"; echo 'tets 6'; cp '" +
+                                    (folder / "tets.mesh").string() + "' \"$3\"");
+  fs::permissions(folder / "mesher", fs::perms::owner_all);
+  EXPECT_THAT(tetrahedralise(surface, {.program = folder / "mesher"}).notes, testing::ElementsAre("it is thin"));
 }
 
 TEST_F(Tetrahedralise, PassesTheTimeLimitAndItsFailure) {

@@ -160,7 +160,7 @@ const std::vector<Staging>& stagings() {
       {.demonstration = "33-34_explosion",
        .part = "explicit",
        .look = "The same mouse drags both: left implicit, right explicit. The explicit scheme explodes within a few "
-               "steps and ends; the implicit one goes on, and stays stable whatever you do with the mouse.",
+               "steps and ends; the implicit one continues, and stays stable whatever you do with the mouse.",
        .panel = "energy",
        .scene = "33_mouse",
        .overrides = {"spring=[]"},
