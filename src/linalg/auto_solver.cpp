@@ -45,10 +45,10 @@ int search(const BlockPattern& p, std::vector<int>& queue, size_t begin, std::ve
 
 // The rows of vertices that are held along some direction n: all their couplings K have n'K = 0. Where all couplings of
 // all rows have that, such as those of a chain of springs, it means nothing.
-std::vector<char> held_rows(const BlockSparse& H) {
+void find_held_rows(const BlockSparse& H, std::vector<char>& held) {
   constexpr double kFlat = 1e-14;  // of a determinant, beside the cube of the trace; its round-off is below 1e-16
   const BlockPattern& p = *H.pattern;
-  std::vector<char> held(p.rows());
+  held.assign(p.rows(), 0);
   parallel_chunks(p.rows(), [&](int first, int last) {
     for (int row = first; row < last; ++row) {
       Mat3d squares{};
@@ -61,7 +61,6 @@ std::vector<char> held_rows(const BlockSparse& H) {
     }
   });
   if (std::all_of(held.begin(), held.end(), [](char h) { return h; })) std::fill(held.begin(), held.end(), 0);
-  return held;
 }
 
 std::string approximate(double value) {
@@ -96,8 +95,13 @@ CostPrediction predict_cholesky(const BlockPattern& pattern) {
 }
 
 double predict_iterations(const BlockSparse& H) {
+  std::vector<char> held;
+  return predict_iterations(H, held);
+}
+
+double predict_iterations(const BlockSparse& H, std::vector<char>& held) {
   const BlockPattern& p = *H.pattern;
-  const std::vector<char> held = held_rows(H);
+  find_held_rows(H, held);
   double uniform = 0, diagonal = 0;  // 1' H 1 and 1' D 1, over the rows away from pinned vertices
   for (int row = 0; row < p.rows(); ++row) {
     double sum = 0;
@@ -145,7 +149,7 @@ void AutoSolver::begin() {
 AutoSolver::Choice AutoSolver::cheapest(const BlockSparse& H) {
   expected_ = 0;
   if (fits_ && affordable_ <= kLoose) return kCholesky;
-  expected_ = predict_iterations(H);
+  expected_ = predict_iterations(H, held_);
   const double iterative = kLoose * std::min(expected_, kMultigridCost);
   if (fits_ && affordable_ <= iterative) return kCholesky;
   return expected_ <= kMultigridCost ? kBlockJacobi : kMultigrid;

@@ -18,6 +18,7 @@ CostPrediction predict_cholesky(const BlockPattern& pattern);
 // displacement is than the diagonal: time steps of soft bodies are easy, since the mass dominates; stiff bodies and
 // statics are hard.
 double predict_iterations(const BlockSparse& H);
+double predict_iterations(const BlockSparse& H, std::vector<char>& scratch);
 
 // Chooses for each sequence of matrices, by its first one, what is predicted to be cheapest: a factorisation, conjugate
 // gradients with multigrid, or with block-Jacobi. A choice that turns out wrong gives way to the next in the order
@@ -65,6 +66,7 @@ class AutoSolver : public LinearSolver {
   bool is_chosen_ = false;   // for this sequence
   Choice choice_ = kBlockJacobi;
   int64_t fallbacks_ = 0;
+  std::vector<char> held_;  // scratch
 };
 
 // The factorisation that a solver is, or has chosen; null: none.

@@ -132,7 +132,7 @@ export class Settings {
     const names = Object.fromEntries(kMaterials.map(({ name }) => [name, name]));
     this.material = folder.add({ value: "" }, "value", { "choose ...": "", ...names }).name("Typical values");
     this.material.onChange((name: string) => void this.takeMaterial(name));
-    this.material.$name.title = "Published moduli of real materials; each names its source.\nmaterial.young, material.poisson, material.density";
+    this.material.$name.title = "Published moduli, with their source, and typical ones.\nmaterial.young, material.poisson, material.density";
     const options = [...this.material.domElement.querySelectorAll("option")];
     kMaterials.forEach(({ source }, i) => (options[i + 1].title = source));
   }
