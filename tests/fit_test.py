@@ -6,6 +6,7 @@ usage: ASPIC=path/to/aspic fit_test.py [TestCase...]
 import atexit
 import csv
 import functools
+import json
 import pathlib
 import re
 import shutil
@@ -116,6 +117,33 @@ class Fit(FitCommand):
         self.assertIn("(not_converged)", self.fit(*options, code=3).stderr)
         self.assertTrue((self.folder / "material.vtu").exists())
         self.fit(*options, "--force", "--allow-unconverged")
+
+    def test_a_field_that_the_data_contradict_becomes_one_value(self):
+        """Forces of one poke are 20 times those of the body: material, figures, exit code and report agree on it."""
+        table = self.folder / "layers/cases.csv"
+        with open(table, newline="") as file:
+            rows = list(csv.DictReader(file))
+        for row in rows:
+            for name in ("force_x", "force_y", "force_z"):
+                if row["group"] == rows[0]["group"]:
+                    row[name] = repr(20 * float(row[name]))
+        with open(table, "w", newline="") as file:
+            writer = csv.DictWriter(file, rows[0].keys())
+            writer.writeheader()
+            writer.writerows(rows)
+        options = ("--no-mesh-errors", "--known", "poisson=0.4", "--no-cross-validation")
+        run = self.fit(*options, code=3)
+        self.assertIn("not to be relied on (field_rejected): one value replaces the field", run.stderr)
+        self.assertNotIn("verdict    good", run.stdout)
+        figures = json.loads((self.folder / "material.fit/figures.json").read_text())
+        self.assertFalse(figures["verdict"]["good"])
+        self.assertEqual(figures["verdict"]["reasons"][0]["name"], "field_rejected")
+        self.assertEqual(figures["unknowns"], 1)
+        self.assertEqual(list(figures["values"]["young"]), ["everywhere"])
+        value = re.search(r"young +everywhere +([\d.]+) (k?)Pa", run.stdout)
+        young = float(value[1]) * (1e3 if value[2] else 1)
+        self.assertAlmostEqual(young / figures["values"]["young"]["everywhere"]["value"], 1, places=3)
+        self.fit(*options, "-q", "--force", "--allow-unconverged")
 
     def test_groups_are_left_out(self):
         with open(self.folder / "layers/cases.csv", newline="") as file:

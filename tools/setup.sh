@@ -1,5 +1,5 @@
 # Shared by ./run and ./test: installs what is missing, configures, builds. Sourced; `root` is the repository.
-# shellcheck shell=sh disable=SC2034,SC2086,SC2154,SC2209
+# shellcheck shell=sh disable=SC2034,SC2046,SC2086,SC2154,SC2209
 
 build_dir=$root/build/release
 log_dir=$root/build/log
@@ -75,15 +75,17 @@ Neither root nor sudo is available to install them. Ask an administrator to run:
   $by_hand"
 }
 
-# need PACKAGES PROGRAMS: two lists; what is missing of either is installed.
-need() {
+# missing PACKAGES PROGRAMS: prints the packages that are missing of two lists.
+missing() {
   if command -v dpkg-query >/dev/null 2>&1; then
-    missing=$(missing_packages $1)
-  else
-    missing=
+    missing_packages $1
   fi
-  missing="$missing$(missing_programs $2)"
-  install_packages $missing
+  missing_programs $2
+}
+
+# need PACKAGES PROGRAMS: what is missing of either list is installed.
+need() {
+  install_packages $(missing "$1" "$2")
 }
 
 # configured NAME=VALUE...: whether the build folder was configured with all of these.

@@ -1,4 +1,4 @@
-// `aspic fit`: measurements to a material, with progress, that goes on where it was killed.
+// `aspic fit`: measurements to a material, with progress, that continues where it was killed.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -183,7 +183,7 @@ void print_use(const FitArguments& arguments, bool is_whole) {
   fmt::print("material   {0}; in a scene: material = {{ file = {1} }}\n", arguments.out.string(),
              toml_string(arguments.out.string()));
   if (!is_whole)
-    fmt::print("           it is what was reached; the same command with --resume goes on, to the same bits\n");
+    fmt::print("           it is what was reached; the same command with --resume continues, to the same bits\n");
 }
 
 int exit_code(const FitArguments& arguments, bool is_good) {
@@ -304,12 +304,12 @@ Examples:
   aspic fit pillow                             writes material.vtu, and material.fit/report.html to be looked at
   aspic fit pillow -o soft.vtu --known poisson=0.45 --leave-out "poke 4"
   aspic fit pillow --model fung --unknown young=handles:40 --unknown b=uniform
-  aspic fit pillow --resume                    goes on where it was interrupted, to the same bits
+  aspic fit pillow --resume                    continues where it was interrupted, to the same bits
 then in a scene: material = { file = "material.vtu" }
 
 Exit codes: 0 the verdict is good, 2 bad input (also: data with errors), 3 the fit failed, did not converge, or
 its material is not to be relied on (unless --allow-unconverged): the reasons are printed and written into
-figures.json; 130 interrupted by ctrl-C, 143 by kill: what was reached is written, --resume goes on.)");
+figures.json; 130 interrupted by ctrl-C, 143 by kill: what was reached is written, --resume continues.)");
   command->add_option("DATA", arguments->data, "Folder of a data set, or its capture.toml")->required();
   command->add_option("-o,--out", arguments->out, "The material to write; material.vtu by default");
   command->add_flag("--check", arguments->check, "Only reads and diagnoses the data");

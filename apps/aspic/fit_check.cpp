@@ -67,7 +67,7 @@ Chart motion_against_distance(const Experiment& experiment) {
   return chart;
 }
 
-// Charts are a help, not the purpose: without gnuplot the check goes on.
+// Charts are a help, not the purpose: without gnuplot the check continues.
 void draw_charts(const DataSet& data, const fs::path& folder, std::FILE* human) {
   std::error_code error;
   fs::create_directories(folder, error);

@@ -5,10 +5,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "aspic/shipped_files.h"
 #include "base/error.h"
 #include "base/printable.h"
 #include "io/atomic_file.h"
-#include "io/external_program.h"
 
 namespace aspic::cli {
 namespace {
@@ -16,17 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kLongestAbout = 300, kLongestPath = 4096;
-
-// `name` below a folder or one of those above it, or in the share folder of an installation there; else empty.
-fs::path found_near(fs::path folder, const fs::path& name) {
-  std::error_code error;
-  for (;;) {
-    for (const fs::path& place : {folder / name, folder / "share" / "aspic" / name})
-      if (fs::exists(place, error)) return place;
-    if (!folder.has_relative_path()) return {};
-    folder = folder.parent_path();
-  }
-}
 
 std::string about(const fs::path& scene) {
   std::ifstream in(scene);
@@ -52,13 +41,8 @@ std::vector<viewer::OfferedScene> scenes_below(const fs::path& folder) {
   return scenes;
 }
 
-fs::path shipped_scenes() {
-  std::error_code error;
-  // The lecture distinguishes this folder from other folders named scenes.
-  const fs::path near = found_near(fs::current_path(error), "scenes/lecture");
-  const fs::path lecture = near.empty() ? found_near(program_folder(), "scenes/lecture") : near;
-  return lecture.parent_path();
-}
+// The lecture distinguishes this folder from other folders named scenes.
+fs::path shipped_scenes() { return shipped_file("scenes/lecture").parent_path(); }
 
 RecentScenes::RecentScenes(fs::path file) : file_(std::move(file)) {}
 

@@ -35,7 +35,7 @@ Examples:
 
 Exit codes: 0 done, 1 internal error, 2 bad input, 3 not converged, a wrong derivative, a failed check,
 4 time limit, 130 interrupted by ctrl-C, 143 by kill, 141 when the reader of a pipe has gone. Standard output that
-cannot be written is bad input, too; a run goes on to its end all the same. Messages that standard error cannot take
+cannot be written is bad input, too; a run continues to its end all the same. Messages that standard error cannot take
 are dropped.)";
 
 std::vector<std::string> command_names(const CLI::App& app) {

@@ -73,7 +73,7 @@ Examples:
   aspic report out/bunny -o bunny.html        elsewhere, to be sent by mail: it needs no server and no network
   aspic report out/long --max-size 40         more of the frames of a long run; the page says what was left out
 
-A run that still goes on, or was killed, is shown up to its latest checkpoint.)");
+A run that is still under way, or was killed, is shown up to its latest checkpoint.)");
   command->add_option("RUN", arguments->run, "Directory of a run")->required();
   command->add_option("-o,--out", arguments->out, "File to write; RUN/report.html by default");
   command->add_option("--max-size", arguments->max_size, "Largest size of the file [MB]; frames are left out, evenly")

@@ -314,7 +314,7 @@ Examples:
   aspic run scenes/bunny.toml                     results in out/bunny
   aspic run beam.toml --set material.young=2e5 time.step=0.005 --out out/soft
   aspic run beam.toml --resume                    continues an interrupted run, to the same bits
-  aspic run beam.toml --time-limit 3600           at most an hour; --resume goes on
+  aspic run beam.toml --time-limit 3600           at most an hour; --resume continues
   aspic run beam.toml --json | jq .iterations     one line of JSON per step
   aspic run beam.toml --landscape 12:0            why is step 12 slow? its first iteration, looked at closely
 
@@ -330,7 +330,7 @@ solver.time_budget was spent) or an explicit scheme blew up, which ends the run;
       ->check(CLI::Range(1, 1000000000));
   command
       ->add_option("--time-limit", arguments->time_limit,
-                   "Stop after so many seconds of wall time, dropping the step under way; --resume goes on")
+                   "Stop after so many seconds of wall time, dropping the step under way; --resume continues")
       ->check(CLI::Range(1e-3, 1e9));
   command->add_option("--out", arguments->out, "Directory of the results; out/NAME by default");
   command->add_flag("--force", arguments->force, "Replace the results of an earlier run");

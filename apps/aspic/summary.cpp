@@ -97,8 +97,7 @@ void print_inverted(std::FILE* stream, const RunTotals& totals, const InvertedTe
   if (totals.with_inverted_tets == 0 && end.count == 0) return;
   fmt::print(stream, "inverted   ");
   if (end.count > 0) {
-    fmt::print(stream, "{} tets at the end, the first is {}, the smallest det F {:.3g}; ", end.count, end.first,
-               end.least_det);
+    fmt::print(stream, "{} tets at the end, the smallest det F is {:.3g} in {}; ", end.count, end.least_det, end.worst);
   } else {
     fmt::print(stream, "no tet at the end; ");
   }
@@ -158,14 +157,15 @@ InvertedTets inverted_tets(const Simulation& simulation) {
   const std::vector<double> det_F = simulation.tet_fields().det_F;
   const Model& model = simulation.model();
   InvertedTets found;
-  int first = -1;
+  int worst = -1;
   for (int t = 0; t < model.mesh.tet_count(); ++t) {
-    found.least_det = std::min(found.least_det, det_F[t]);
-    if (det_F[t] > 0) continue;
-    ++found.count;
-    if (first < 0 || model.numbering.tet.to_user(t) < model.numbering.tet.to_user(first)) first = t;
+    found.count += !(det_F[t] > 0);
+    if (worst < 0 || det_F[t] < det_F[worst]) worst = t;
   }
-  if (first >= 0) found.first = places::tet_name(model, first);
+  if (found.count == 0) return found;
+  found.least_det = det_F[worst];
+  found.worst =
+      places::tet_name(model, worst) + " at " + places::point_text(simulation.state().q, model.mesh.tets[worst][0]);
   return found;
 }
 

@@ -36,8 +36,8 @@ struct RunTotals {
 
 struct InvertedTets {
   int count = 0;         // of those with det F <= 0
-  std::string first;     // the first of them by the user's numbers: "tet 12"
   double least_det = 1;  // smallest det F of all tets
+  std::string worst;     // which tet has it, and where: "tet 12 at (0, 0.1, 0.2) m"
 };
 InvertedTets inverted_tets(const Simulation& simulation);
 

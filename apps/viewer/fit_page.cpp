@@ -182,23 +182,33 @@ class FitPack {
                    {"pressure", load.pressure},
                    {"gravity", length(load.gravity)},
                    {"tip", nullptr},
-                   {"force", nullptr}};
+                   {"force", nullptr},
+                   {"torque", nullptr}};
       if (load.tip)
         item["tip"] = {{"shape", load.tip->shape == TipShape::sphere ? "sphere" : "disc"},
                        {"radius", load.tip->radius},
                        {"touch", vector(load.touch.center)},
                        {"center", vector(load.pose.center)},
-                       {"axis", vector(load.touch.axis)}};
+                       {"axis", vector(load.touch.axis)},
+                       {"turn", vector(load.pose.rotation)}};
+      const bool is_fitted = outcome.ok && !outcome.left_out;
       if (load.force)
-        item["force"] = {
-            {"measured", vector(*load.force)},
-            {"deviation", vector(outcome.ok && !outcome.left_out ? outcome.force_deviation : load.force_deviation)},
-            {"predicted", outcome.ok ? vector(outcome.wrench.force) : Json()},
-            {"heldOut", outcome.has_held_out ? vector(outcome.held_out_wrench.force) : Json()}};
+        item["force"] =
+            reading(*load.force, is_fitted ? outcome.force_deviation : load.force_deviation, outcome, &Wrench::force);
+      if (load.torque)
+        item["torque"] = reading(*load.torque, is_fitted ? outcome.torque_deviation : load.torque_deviation, outcome,
+                                 &Wrench::torque);
       list.push_back(std::move(item));
       first += load.positions.size();
     }
     return list;
+  }
+
+  static Json reading(const Vec3d& measured, const Vec3d& deviation, const CaseOutcome& outcome, Vec3d Wrench::*part) {
+    return {{"measured", vector(measured)},
+            {"deviation", vector(deviation)},
+            {"predicted", outcome.ok ? vector(outcome.wrench.*part) : Json()},
+            {"heldOut", outcome.has_held_out ? vector(outcome.held_out_wrench.*part) : Json()}};
   }
 
   Json held_out() const {

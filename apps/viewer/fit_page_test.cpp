@@ -90,6 +90,24 @@ TEST(FitPage, HoldsWhatWasMeasuredAndFound) {
   EXPECT_TRUE(std::isnan(held_out.front())) << "of a case that was fitted";
 }
 
+TEST(FitPage, NamesMarkersAndGivesTorquesWithTheirAngle) {
+  DataSet data = measured_block(2);
+  for (size_t m = 0; m < data.experiment.markers.size(); ++m) data.marker_names.push_back("dot " + std::to_string(m));
+  LoadCase& twist = data.experiment.cases[0];
+  twist.pose.rotation = {{0, 0.05, 0}};
+  twist.torque = Vec3d{{0, 1e-3, 0}};
+  twist.torque_deviation = {{1, 1, 1}};
+  const FitOutcome outcome = fitted(data);
+  ASSERT_TRUE(outcome.has_material()) << outcome.failure;
+  const Json head = Unpacked(fit_page(data, outcome, {})).head;
+  EXPECT_EQ(head["markerNames"][3], "dot 3");
+  EXPECT_EQ(head["cases"][0]["tip"]["turn"], Json({0.0, 0.05, 0.0}));
+  EXPECT_EQ(head["cases"][0]["torque"]["measured"][1], 1e-3);
+  EXPECT_GT(head["cases"][0]["torque"]["predicted"][1].get<double>(), 0);
+  EXPECT_NEAR(head["cases"][0]["torque"]["deviation"][1].get<double>(), 1, 1e-9);
+  EXPECT_TRUE(head["cases"][1]["torque"].is_null());
+}
+
 TEST(FitPage, KeepsTheScriptsOfThePage) {
   const DataSet data = measured_block(2);
   FitOutcome outcome = fitted(data);

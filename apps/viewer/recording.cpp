@@ -181,8 +181,7 @@ class Recorder {
     add_body(pack);
     const PositionRange range = add_motion(pack, frames, chosen);
     Json head = {{"format", 1}};
-    PositionRange start;
-    start.add(frames.front().x);
+    const PositionRange start(frames.front().x);
     const RecordedScene recorded{scene_, body_, fields_, tables_, start.lower, start.upper, note};
     head["hello"] = hello_message(recorded);
     head["scenes"] = scene_messages(recorded);
@@ -234,7 +233,7 @@ class Recorder {
   }
 
   PositionRange add_motion(ArrayPack& pack, const std::vector<Frame>& frames, const std::vector<int>& chosen) const {
-    PositionRange range;
+    PositionRange range(frames.front().x);
     for (const int i : chosen) range.add(frames[i].x);
     PositionCode positions(range);
     for (const int i : chosen) positions.add(frames[i].x);

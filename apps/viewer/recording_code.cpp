@@ -20,6 +20,26 @@ uint16_t folded(int difference) {
   return static_cast<uint16_t>((static_cast<uint32_t>(small) << 1) ^ static_cast<uint32_t>(small >> 15));
 }
 
+struct FrameBox {
+  Vec3d lower, upper;
+
+  double extent() const {
+    const Vec3d size = upper - lower;
+    return std::max({size[0], size[1], size[2]});
+  }
+};
+
+FrameBox box_of(std::span<const float> x) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  FrameBox box{{{kFar, kFar, kFar}}, {{-kFar, -kFar, -kFar}}};
+  for (size_t i = 0; i < x.size(); ++i) {
+    const int axis = static_cast<int>(i % 3);
+    box.lower[axis] = std::min<double>(box.lower[axis], x[i]);
+    box.upper[axis] = std::max<double>(box.upper[axis], x[i]);
+  }
+  return box;
+}
+
 }  // namespace
 
 void ArrayPack::add_bytes(const std::string& name, const char* type, const void* data, size_t count, size_t size) {
@@ -49,17 +69,20 @@ std::string ArrayPack::bytes(Json head) const {
   return bytes + bytes_;
 }
 
-PositionRange::PositionRange() {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  lower = {{kFar, kFar, kFar}};
-  upper = {{-kFar, -kFar, -kFar}};
+PositionRange::PositionRange(std::span<const float> first) {
+  constexpr double kBlownUp = 1000;
+  const FrameBox box = box_of(first);
+  lower = box.lower;
+  upper = box.upper;
+  largest_ = kBlownUp * box.extent();
 }
 
 void PositionRange::add(std::span<const float> x) {
-  for (size_t i = 0; i < x.size(); ++i) {
-    const int axis = static_cast<int>(i % 3);
-    lower[axis] = std::min<double>(lower[axis], x[i]);
-    upper[axis] = std::max<double>(upper[axis], x[i]);
+  const FrameBox box = box_of(x);
+  if (largest_ > 0 && !(box.extent() <= largest_)) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    lower[axis] = std::min(lower[axis], box.lower[axis]);
+    upper[axis] = std::max(upper[axis], box.upper[axis]);
   }
 }
 
@@ -71,7 +94,7 @@ void PositionCode::add(std::span<const float> x) {
     const int axis = static_cast<int>(i % 3);
     const double size = range_.size()[axis];
     const double code = size > 0 ? kLargestCode * ((x[i] - range_.lower[axis]) / size) : 0;
-    codes[i] = static_cast<uint16_t>(std::lround(code));
+    codes[i] = static_cast<uint16_t>(std::lround(std::clamp(code, 0.0, kLargestCode)));
     const int before = last_.empty() ? 0 : last_[i];
     const int earlier = before_last_.empty() ? before : before_last_[i];
     const uint16_t difference = folded(codes[i] - (2 * before - earlier));

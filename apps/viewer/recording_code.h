@@ -27,13 +27,17 @@ class ArrayPack {
   std::string bytes_;
 };
 
-// The box of points over all frames.
+// The box of points over all frames. Frames of a motion that blew up, more than 1000 times as large as the first, would
+// leave no digits for the others: they do not count, and their points are put onto its faces.
 struct PositionRange {
   Vec3d lower, upper;
 
-  PositionRange();
-  void add(std::span<const float> x);  // 3 per point
+  explicit PositionRange(std::span<const float> first);  // 3 numbers per point
+  void add(std::span<const float> x);                    // of another frame
   Vec3d size() const { return upper - lower; }
+
+ private:
+  double largest_ = 0;  // extent of a frame that counts
 };
 
 // Positions as whole numbers 0 .. 65535 over the box, frame by frame as the difference to the straight line through

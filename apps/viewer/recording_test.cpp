@@ -20,6 +20,7 @@
 #include "viewer/arguments.h"
 #include "viewer/fields.h"
 #include "viewer/page.h"
+#include "viewer/recording_code.h"
 #include "viewer/report.h"
 
 namespace aspic::viewer {
@@ -162,6 +163,19 @@ TEST_F(RunRecording, HoldsPositionsToHalfAStepOfTheirCode) {
         ASSERT_NEAR(x[3 * corner[v] + k], body.mesh.rest[vertex[v]][k],
                     decoded.head["size"][k].get<double>() / 65535 / 2 + 1e-6);
   }
+}
+
+TEST(PositionRange, LeavesOutFramesThatBlewUp) {
+  const std::vector<float> start = {0, 0, 0, 1, 1, 1}, moved = {5, 0, 0, 6, 1, 1},
+                           blown_up = {-1e30F, 0, 0, 1e30F, 1, 1};
+  PositionRange range(start);
+  range.add(moved);
+  range.add(blown_up);
+  EXPECT_EQ(range.lower[0], 0);
+  EXPECT_EQ(range.upper[0], 6);
+  PositionCode code(range);
+  for (const std::vector<float>& frame : {start, moved, blown_up}) code.add(frame);
+  EXPECT_EQ(code.bytes().size(), 3 * 2 * start.size());
 }
 
 TEST_F(RunRecording, HoldsTheFieldsOfALiveSession) {

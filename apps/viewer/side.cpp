@@ -42,6 +42,7 @@ Moment Side::moment() const {
           .state = std::move(now.state),
           .previous = std::move(now.previous),
           .level = now.level,
+          .outside_work = now.outside_work,
           .start_time = start_time_,
           .h = simulation().options().h,
           .integrator = simulation().options().integrator,
@@ -62,7 +63,8 @@ Simulation::Snapshot Side::snapshot_of(const Moment& moment) const {
           .start = std::move(start),
           .steps_taken = moment.step,
           .level = moment.level,
-          .previous = is_same_step && options.integrator == moment.integrator ? moment.previous : std::nullopt};
+          .previous = is_same_step && options.integrator == moment.integrator ? moment.previous : std::nullopt,
+          .outside_work = moment.outside_work};
 }
 
 void Side::stand_at(const Moment& moment) {

@@ -17,6 +17,7 @@ struct Moment {
   State state;
   std::optional<State> previous;  // see Simulation::Snapshot
   double level = 0;               // likewise
+  double outside_work = 0;        // likewise
   double start_time = 0, h = 0;   // [s] see Side::snapshot_of
   std::string integrator;
   Grab grab;                                     // resting, after what was done at this moment

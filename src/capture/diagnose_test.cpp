@@ -62,6 +62,40 @@ TEST(Diagnosis, OnePokeInAnotherUnitIsNoticed) {
   EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "cases.csv:4", "times as stiff here", "as mN are")));
 }
 
+// The cases of the first poke once more, as a group of their own, with other forces.
+void repeat_first_poke(DataSet& data, double factor) {
+  for (const size_t c : {0, 1}) {
+    LoadCase again = data.experiment.cases[c];
+    again.group = "again", again.name = "again, depth " + std::to_string(c + 1);
+    again.force = factor * *again.force;
+    for (MarkerReading& reading : again.positions) reading.position[0] += 1e-6;
+    data.experiment.cases.push_back(std::move(again));
+  }
+}
+
+TEST(Diagnosis, TheSamePokeWithAnotherForceIsNoticed) {
+  for (const double factor : {0.25, 0.5, 2.0, 4.0}) {
+    DataSet data = data_in_lines();
+    repeat_first_poke(data, factor);
+    EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "again, depth 2",
+                                                 "1 N under the same load in 'poke 1, depth 2'", "correct the wrong")))
+        << factor;
+  }
+}
+
+TEST(Diagnosis, RepetitionsThatAgreeAreNoWarnings) {
+  DataSet data = data_in_lines();
+  repeat_first_poke(data, 1.05);
+  EXPECT_THAT(diagnose(data), Not(Contains(finding(Severity::warning, "", "under the same load"))));
+  EXPECT_THAT(diagnose(data), Not(Contains(finding(Severity::warning, "", "stiffer here"))));
+}
+
+TEST(Diagnosis, OnePokeFourTimesAsStiffIsNoticed) {
+  DataSet data = data_in_lines();
+  for (const size_t c : {2, 3}) data.experiment.cases[c].force = 4.0 * *data.experiment.cases[c].force;
+  EXPECT_THAT(diagnose(data), Contains(finding(Severity::warning, "poke 2", "much stiffer here", "check this force")));
+}
+
 TEST(Diagnosis, AForceBelowItsNoiseSaysNothingOfTheStiffness) {
   DataSet data = data_in_lines(4);
   for (const size_t c : {2, 3}) data.experiment.cases[c].force = 0.01 * *data.experiment.cases[c].force;

@@ -151,6 +151,11 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
                                .guess = 0});
   for (Unknown& u : plan.unknowns)
     if (u.guess == 0) u.guess = usual_value(u.quantity, plan.model, experiment);
+  // Standard deviations with those of the correction for the mesh are wider than what is random: the discrepancy
+  // principle would take that for noise and smooth the field away.
+  const bool is_field = std::any_of(plan.unknowns.begin(), plan.unknowns.end(),
+                                    [](const Unknown& u) { return u.spread == Spread::tets; });
+  if (is_field && plan.mesh_errors && plan.fit.weight_rule == "auto") plan.fit.weight_rule = "evidence";
   check_refinement(plan, experiment.mesh);
   const std::vector<std::string> groups = groups_of(experiment);
   for (const std::string& group : plan.left_out)

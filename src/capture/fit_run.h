@@ -43,7 +43,7 @@ struct CaseOutcome {
   Wrench held_out_wrench;
   // Standard deviations with those of the correction for the mesh, as the fit used them [m], [N].
   std::vector<Vec3d> marker_deviation;
-  Vec3d force_deviation{};
+  Vec3d force_deviation{}, torque_deviation{};
   double relative_mesh_error = 0;  // of the force: |limit - mesh| over the smaller of both
 };
 

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "capture/fit_folder.h"
+#include "capture/fit_verdict.h"
 #include "capture/poked_block_test.h"
 #include "fit/refined_experiment.h"
 #include "io/atomic_file.h"
@@ -110,6 +111,66 @@ TEST(FitRun, ShowsThePredictionThatTheMisfitCounts) {
   EXPECT_NEAR(squares, 2 * outcome.report.misfit, 1e-6 * squares);
 }
 
+// Forces of one poke that belong to another body: no field explains all three.
+DataSet contradictory_block() {
+  DataSet data = measured_block(2);
+  for (LoadCase& load : data.experiment.cases)
+    if (load.group == "poke 2") load.force = 8.0 * *load.force;
+  return data;
+}
+
+TEST(FitRun, OneValueReplacesAFieldAtItsBounds) {
+  FitPlan plan = quick_plan({"young=tets"});
+  plan.fit.max_iterations = 30;
+  plan.uncertainty = true;
+  const DataSet data = contradictory_block();
+  const FitOutcome outcome = fit_material(data, plan, {}, {});
+  ASSERT_TRUE(outcome.has_material()) << outcome.failure;
+  ASSERT_THAT(outcome.against_field, ::testing::Not(::testing::IsEmpty()));
+  EXPECT_EQ(outcome.against_field.front().name, "at_bound") << outcome.against_field.front().text;
+  EXPECT_EQ(outcome.unknowns, 1);
+  ASSERT_EQ(young(outcome).rows.size(), 1u);
+  EXPECT_EQ(young(outcome).rows[0].where, "everywhere");
+  EXPECT_TRUE(young(outcome).rows[0].interval);
+  for (const double E : *outcome.material.find("young")) EXPECT_DOUBLE_EQ(E, young(outcome).rows[0].value);
+  const FitVerdict judged = verdict(data, outcome);
+  EXPECT_FALSE(judged.is_good());
+  EXPECT_EQ(judged.reasons.front().name, "field_rejected");
+}
+
+TEST(FitRun, AFieldThatExplainsTheDataStays) {
+  FitPlan plan = quick_plan({"young=tets"});
+  plan.fit.max_iterations = 30;
+  const FitOutcome outcome = fit_material(block(), plan, {}, {});
+  EXPECT_THAT(outcome.against_field, ::testing::IsEmpty());
+  EXPECT_GT(young(outcome).rows.size(), 1u);
+}
+
+// With the mesh's errors taken off, what is shown beside a reading is what the material predicts on fine meshes.
+TEST(FitRun, ShowsForcesWithTheCorrectionForTheMesh) {
+  DataSet data = measured_block(2);
+  for (size_t c = 0; c < data.experiment.cases.size(); ++c)
+    data.experiment.cases[c].force = (c % 2 == 0 ? 1.1 : 0.9) * *data.experiment.cases[c].force;
+  FitPlan plan = quick_plan({"young=uniform"});
+  plan.mesh_errors = true;
+  const FitOutcome outcome = fit_material(data, plan, {}, {});
+  ASSERT_TRUE(outcome.has_material()) << outcome.failure;
+  double squares = 0;
+  const auto add = [&](const Vec3d& error, const Vec3d& deviation) {
+    for (int i = 0; i < 3; ++i) squares += std::pow(error[i] / deviation[i], 2);
+  };
+  for (size_t c = 0; c < outcome.cases.size(); ++c) {
+    const LoadCase& load = data.experiment.cases[c];
+    const CaseOutcome& shown = outcome.cases[c];
+    EXPECT_GT(shown.relative_mesh_error, 0.05);
+    EXPECT_GT(shown.force_deviation[1], load.force_deviation[1]) << "with that of the correction";
+    for (size_t k = 0; k < load.positions.size(); ++k)
+      add(shown.markers[k] - load.positions[k].position, shown.marker_deviation[k]);
+    add(shown.wrench.force - *load.force, shown.force_deviation);
+  }
+  EXPECT_NEAR(squares, 2 * outcome.report.misfit, 0.1 * squares) << "the page's residuals are those of the fit";
+}
+
 TEST(FitRun, EveryModelBeginsInsideOfItsRanges) {
   for (const MaterialInfo& info : materials()) {
     FitPlan plan = quick_plan({"young=uniform"});
@@ -169,13 +230,11 @@ TEST(FitRun, RefusesAStiffnessThatNoBodyHas) {
   EXPECT_THAT(outcome.failure, HasSubstr("positions of some markers"));
 }
 
-// Measured on a mesh of twice as many cells: simulated so, the material of the data's tets is exact.
-TEST(FitRun, SimulatesOnAFinerMeshThanItFits) {
-  DataSet data = block();
+// What a body of the layers' moduli would show on a mesh with each tet in 8.
+void measure_on_finer_mesh(DataSet& data) {
   const Experiment fine = refined(data.experiment);
-  FitPlan plan = quick_plan();
   const ParameterMap map(
-      data.experiment.mesh, plan.model,
+      data.experiment.mesh, "neo_hookean",
       std::vector<MaterialParameters>(data.experiment.mesh.tets.size(), {lame_from_young_poisson(1e4, 0.4), {}}),
       {{.quantity = "young", .spread = Spread::regions}});
   Misfit model(fine, map);
@@ -187,6 +246,13 @@ TEST(FitRun, SimulatesOnAFinerMeshThanItFits) {
       data.experiment.cases[c].positions[i].position = prediction.markers[i];
     data.experiment.cases[c].force = prediction.wrench.force;
   }
+}
+
+// Simulated on the mesh that was measured, the material of the data's tets is exact.
+TEST(FitRun, SimulatesOnAFinerMeshThanItFits) {
+  DataSet data = block();
+  measure_on_finer_mesh(data);
+  FitPlan plan = quick_plan();
   const double without = young(fit_material(data, plan, {}, {})).rows.at(0).value;
   EXPECT_GT(std::abs(without / kSoftLayer - 1), 0.03) << "the mesh alone is too coarse for this test to tell anything";
   plan.refine = 1;
@@ -201,6 +267,33 @@ TEST(FitRun, SimulatesOnAFinerMeshThanItFits) {
   EXPECT_THAT(young(outcome).deviation, testing::SizeIs(data.experiment.mesh.tets.size()));
   EXPECT_LT(outcome.held_out->force_error, 0.01);
   EXPECT_TRUE(outcome.next_poke);
+}
+
+// Of the stiff layer by the soft one, of geometric means by volume.
+double contrast_of_layers(const FittedMaterial& material) {
+  const std::vector<double>& E = *material.find("young");
+  double log_E[2] = {}, volumes[2] = {};
+  for (int t = 0; t < material.mesh.tet_count(); ++t) {
+    const int layer = material.mesh.region[static_cast<size_t>(t)] - 1;
+    log_E[layer] += volume(material.mesh, t) * std::log(E[static_cast<size_t>(t)]);
+    volumes[layer] += volume(material.mesh, t);
+  }
+  return std::exp(log_E[1] / volumes[1] - log_E[0] / volumes[0]);
+}
+
+// Standard deviations that cover the errors of the mesh are wider than what is random: a rule that takes them for noise
+// finds a contrast of 1.5.
+TEST(FitRun, AFieldFindsLayersDespiteTheErrorsOfTheMesh) {
+  DataSet data = block();
+  measure_on_finer_mesh(data);
+  FitPlan plan = quick_plan({"young=tets"});
+  plan.mesh_errors = true;
+  const FitOutcome outcome = fit_material(data, plan, {}, {});
+  ASSERT_TRUE(outcome.has_material()) << outcome.failure;
+  EXPECT_TRUE(outcome.mesh_errors_settle);
+  EXPECT_THAT(outcome.against_field, ::testing::IsEmpty());
+  EXPECT_GT(contrast_of_layers(outcome.material), 2) << "of " << kStiffLayer / kSoftLayer;
+  EXPECT_LT(contrast_of_layers(outcome.material), 4);
 }
 
 TEST(FitRun, RefusesToRefineBeyondWhatIsSensible) {
@@ -301,6 +394,16 @@ TEST(FitPlan, UnknownsAreRead) {
   EXPECT_THAT(refused("young=tet"), HasSubstr("did you mean 'tets'?"));
   EXPECT_THAT(refused("young=handles:0"), HasSubstr("whole number above 0"));
   EXPECT_THAT(message_of([] { parse_known("poisson=much"); }), HasSubstr("'much' is no finite number"));
+}
+
+TEST(FitPlan, CorrectedFieldsAreWeighedByTheirEvidence) {
+  FitPlan plan = quick_plan({"young=tets"});
+  EXPECT_EQ(completed(plan, block().experiment).fit.weight_rule, "auto");
+  plan.mesh_errors = true;
+  EXPECT_EQ(completed(plan, block().experiment).fit.weight_rule, "evidence");
+  plan.fit.weight_rule = "l_curve";
+  EXPECT_EQ(completed(plan, block().experiment).fit.weight_rule, "l_curve");
+  EXPECT_EQ(completed(quick_plan({"young=regions"}), block().experiment).fit.weight_rule, "auto");
 }
 
 TEST(FitPlan, WhatDoesNotFitTogetherIsRefused) {

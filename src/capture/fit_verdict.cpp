@@ -11,7 +11,7 @@ constexpr double kMissed = 4;                             // standard deviations
 constexpr double kDisagree = 1.5;                         // ratio of the stiffnesses that two groups ask for
 constexpr double kCoarse = 1;                             // relative error of a force on the mesh: a factor of 2
 constexpr double kTooManySquares = 2.25;                  // |r|^2 per reading
-constexpr double kPoorPosition = 0.05, kPoorForce = 0.1;  // held-out errors, relative to the peak
+constexpr double kPoorPosition = 0.05, kPoorForce = 0.1;  // held-out errors beyond noise, relative to the peak
 constexpr double kWorse = 1.1;                            // of held-out errors, field by one value
 
 std::string three_significant(double value) {
@@ -27,20 +27,21 @@ class GroupMisfit {
 
   void add(const LoadCase& load, const CaseOutcome& outcome) {
     for (size_t k = 0; k < load.positions.size(); ++k)
-      add(outcome.markers[k] - load.positions[k].position, outcome.marker_deviation[k], positions_);
-    if (!load.force) return;
-    add(outcome.wrench.force - *load.force, outcome.force_deviation, forces_);
-    for (int i = 0; i < 3; ++i) {
-      const double precision = 1 / (outcome.force_deviation[i] * outcome.force_deviation[i]);
-      product_ += precision * outcome.wrench.force[i] * (*load.force)[i];
-      squares_ += precision * outcome.wrench.force[i] * outcome.wrench.force[i];
-    }
+      add(outcome.markers[k] - load.positions[k].position, outcome.marker_deviation[k], 3, positions_);
+    if (load.force) add_answer(*load.force, outcome.wrench.force, outcome.force_deviation, forces_);
+    if (load.torque) add_answer(*load.torque, outcome.wrench.torque, outcome.torque_deviation, torques_);
   }
 
   const std::string& name() const { return name_; }
-  double missed_positions() const { return positions_.rms(); }
-  double missed_forces() const { return forces_.rms(); }
-  // The stiffness that the forces ask for, relative to the fitted one, and its standard deviation; 0: not known.
+  // What is missed most, and by how many standard deviations.
+  std::pair<std::string, double> missed_most() const {
+    std::pair<std::string, double> worst = {"positions", positions_.rms()};
+    if (forces_.rms() > worst.second) worst = {"forces", forces_.rms()};
+    if (torques_.rms() > worst.second) worst = {"torques", torques_.rms()};
+    return worst;
+  }
+  // The stiffness that forces and torques ask for, relative to the fitted one, and its standard deviation; 0: not
+  // known.
   double stiffness() const { return squares_ > 0 ? product_ / squares_ : 0; }
   double stiffness_deviation() const { return squares_ > 0 ? 1 / std::sqrt(squares_) : 0; }
 
@@ -50,12 +51,22 @@ class GroupMisfit {
     int count = 0;
     double rms() const { return count > 0 ? std::sqrt(squares / count) : 0; }
   };
-  static void add(const Vec3d& error, const Vec3d& deviation, Sum& sum) {
-    for (int i = 0; i < 3; ++i) sum.squares += error[i] * error[i] / (deviation[i] * deviation[i]), ++sum.count;
+  // A vector counts as `numbers` readings: its length in standard deviations, or that of each coordinate.
+  static void add(const Vec3d& error, const Vec3d& deviation, int numbers, Sum& sum) {
+    for (int i = 0; i < 3; ++i) sum.squares += error[i] * error[i] / (deviation[i] * deviation[i]);
+    sum.count += numbers;
+  }
+  void add_answer(const Vec3d& measured, const Vec3d& shown, const Vec3d& deviation, Sum& sum) {
+    add(shown - measured, deviation, 1, sum);
+    for (int i = 0; i < 3; ++i) {
+      const double precision = 1 / (deviation[i] * deviation[i]);
+      product_ += precision * shown[i] * measured[i];
+      squares_ += precision * shown[i] * shown[i];
+    }
   }
 
   std::string name_;
-  Sum positions_, forces_;
+  Sum positions_, forces_, torques_;
   double product_ = 0, squares_ = 0;
 };
 
@@ -69,6 +80,41 @@ std::vector<GroupMisfit> fitted_groups(const DataSet& data, const FitOutcome& ou
     own->add(load, outcome.cases[c]);
   }
   return groups;
+}
+
+double squared_length(const Vec3d& v) { return dot(v, v); }
+
+// Held-out errors of positions and forces relative to the peaks, root mean square over the groups, without the noise of
+// the readings; < 0: there is none.
+struct HeldOutErrors {
+  double position = -1, force = -1;
+};
+
+HeldOutErrors beyond_noise(const DataSet& data, const CrossValidation& held_out) {
+  double squares[2] = {}, groups[2] = {};
+  const auto add = [&](int what, double error, double variance, double peak) {
+    if (!(peak > 0)) return;
+    squares[what] += std::max(error * error - variance, 0.0) / (peak * peak);
+    ++groups[what];
+  };
+  for (const HeldOut& group : held_out.groups) {
+    if (!group.ok) continue;
+    double positions = 0, forces = 0;  // sums of variances
+    for (const LoadCase& load : data.experiment.cases) {
+      if (load.group != group.group) continue;
+      for (const MarkerReading& reading : load.positions) positions += squared_length(reading.deviation);
+      if (load.force) forces += squared_length(load.force_deviation);
+    }
+    add(0, group.position_error, positions / std::max(group.readings, 1), group.peak_motion);
+    add(1, group.force_error, forces / std::max(group.forces, 1), group.peak_force);
+  }
+  const auto rms = [&](int what) { return groups[what] > 0 ? std::sqrt(squares[what] / groups[what]) : -1; };
+  return {rms(0), rms(1)};
+}
+
+std::string percents(const HeldOutErrors& errors) {
+  const auto percent = [](double part) { return part < 0 ? "-" : three_significant(100 * part) + " %"; };
+  return percent(errors.position) + " (positions) and " + percent(errors.force) + " (forces)";
 }
 
 class Reasons {
@@ -97,27 +143,26 @@ class Reasons {
     if (squares > kTooManySquares)
       add("unexplained", "|r|^2 is " + three_significant(squares) +
                              " per reading: the model is too simple, or the standard deviations are too small");
-    const std::optional<CrossValidation>& held_out = outcome_.held_out;
-    if (held_out && (held_out->position_error > kPoorPosition || held_out->force_error > kPoorForce))
-      add("predicts_badly", "held-out groups are predicted with errors of " + percents(*held_out) +
-                                ": fit fewer values, measure more, or trust it only where it was poked");
+    if (outcome_.held_out) add_poor_predictions(beyond_noise(data_, *outcome_.held_out));
   }
 
   std::vector<FitReason> take() { return std::move(reasons_); }
   void add(std::string name, std::string text) { reasons_.push_back({std::move(name), std::move(text)}); }
 
  private:
-  static std::string percents(const CrossValidation& held_out) {
-    const auto percent = [](double part) { return part < 0 ? "-" : three_significant(100 * part) + " %"; };
-    return percent(held_out.position_error) + " (positions) and " + percent(held_out.force_error) + " (forces)";
+  void add_poor_predictions(const HeldOutErrors& errors) {
+    if (errors.position > kPoorPosition || errors.force > kPoorForce)
+      add("predicts_badly",
+          "held-out groups are predicted with errors of " + percents(errors) +
+              " beyond the noise: fit fewer values, measure more, or trust it only where it was poked");
   }
 
   void add_missed_groups() {
     for (const GroupMisfit& g : fitted_groups(data_, outcome_)) {
-      const double worst = std::max(g.missed_positions(), g.missed_forces());
-      if (!(worst > kMissed)) continue;
-      add("group_missed", "the " + std::string(g.missed_forces() == worst ? "forces" : "positions") + " of '" +
-                              g.name() + "' are missed by " + three_significant(worst) + " standard deviations");
+      const auto [what, deviations] = g.missed_most();
+      if (deviations > kMissed)
+        add("group_missed", "the " + what + " of '" + g.name() + "' are missed by " + three_significant(deviations) +
+                                " standard deviations");
     }
   }
 
@@ -128,8 +173,9 @@ class Reasons {
       return std::hypot(std::max(v.position_error, 0.0), std::max(v.force_error, 0.0));
     };
     if (error(field) > kWorse * error(one))
-      add("held_out_worse",
-          "held-out groups are predicted with errors of " + percents(field) + ", by one value with " + percents(one));
+      add("held_out_worse", "held-out groups are predicted with errors of " +
+                                percents({field.position_error, field.force_error}) + ", by one value with " +
+                                percents({one.position_error, one.force_error}));
   }
 
   void add_disagreement() {
@@ -177,7 +223,7 @@ FitVerdict verdict(const DataSet& data, const FitOutcome& outcome) {
   reasons.add_against_field();
   reasons.add_others();
   result.reasons = reasons.take();
-  result.text = result.is_good() ? "Converged; the fit explains the readings as well as their standard deviations say."
+  result.text = result.is_good() ? "Converged; the fit explains the readings within their standard deviations."
                                  : "Do not rely on this material: " + result.reasons.front().text + ".";
   return result;
 }

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kPasses = 8;
 constexpr double kSettled = 1e-3;       // relative change of a value
-constexpr double kSettledField = 0.03;  // where there are more than kFewValues, which noise leaves open far more
-constexpr int kFewValues = 50;
+constexpr double kSettledField = 0.03;  // root mean square of more than kFewValues, which noise leaves open far more
+constexpr size_t kFewValues = 50;
 // Guesses that are tried when the first one is so soft that the loads crush the body.
 constexpr double kStiffer[] = {1, 10, 100, 0.1};
 
@@ -27,10 +27,16 @@ std::string suffix(double factor) {
   return factor > 1 ? "_stiffer" + std::to_string(std::lround(factor)) : "_softer";
 }
 
-double largest_change(const std::vector<double>& before, const std::vector<double>& after) {
-  double change = 0;
-  for (size_t i = 0; i < before.size(); ++i) change = std::max(change, std::abs(after[i] - before[i]));
-  return change;
+bool is_many(const std::vector<double>& p) { return p.size() > kFewValues; }
+
+// The largest change of a few values. Of many, single ones are known far less well than a fit converges.
+double change_between(const std::vector<double>& before, const std::vector<double>& after) {
+  double largest = 0, squares = 0;
+  for (size_t i = 0; i < before.size(); ++i) {
+    const double change = std::abs(after[i] - before[i]);
+    largest = std::max(largest, change), squares += change * change;
+  }
+  return is_many(after) ? std::sqrt(squares / static_cast<double>(after.size())) : largest;
 }
 
 bool has_failed(const FitReport& report) { return report.p.empty() || report.status == Status::undefined; }
@@ -130,8 +136,8 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
     outcome_.report = fit_stage(is_one_value ? FitStage::uniform : FitStage::field, *model, options, start);
     const std::vector<double>& p = outcome_.report.p;
     if (!plan_.mesh_errors || !is_success(outcome_.report.status)) return;
-    const double change = largest_change(start, p);
-    if (pass > 0 && change < (model->map.size() > kFewValues ? kSettledField : kSettled)) return;
+    const double change = change_between(start, p);
+    if (pass > 0 && change < (is_many(p) ? kSettledField : kSettled)) return;
     if (pass == kPasses) {
       outcome_.mesh_errors_settle = false;
       return add_warnings({"what the mesh gets wrong and the material do not settle: after " + std::to_string(kPasses) +

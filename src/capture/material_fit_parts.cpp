@@ -18,6 +18,8 @@ void set_deviations(const std::vector<double>& deviation, int unknown, Posterior
   }
 }
 
+bool is_about_misfit(const std::string& warning) { return warning.starts_with("|r|^2 is"); }
+
 double share_of_body(const TetMesh& mesh, const std::vector<double>& share) {
   double part = 0, all = 0;
   for (int t = 0; t < mesh.tet_count(); ++t) all += volume(mesh, t), part += volume(mesh, t) * share[t];
@@ -41,6 +43,7 @@ std::vector<double> MaterialFit::divided(FitModel& model) {
     found.are_kept = are_as_good(parts, 2 * report.misfit, outcome_.residuals);
     if (!found.are_kept) continue;
     outcome_.report.misfit = parts.squares / 2;
+    std::erase_if(outcome_.warnings, is_about_misfit);  // of the field
     return keep(parts, model.map, unknown, found);
   }
   return report.p;

@@ -11,17 +11,16 @@ namespace {
 
 constexpr double kLearnt = 1;  // directions that data tell, if they tell anything
 
-// The prediction that r is counted of: with layers as stiff as the readings say. `measured` without what the mesh gets
-// wrong is `fitted`.
-void put_layers_in(std::span<const double> r, const LoadCase& measured, const LoadCase& fitted, CasePrediction& shown) {
+// The prediction that r is counted of: with layers as stiff as the readings say.
+void put_layers_in(std::span<const double> r, const LoadCase& fitted, CasePrediction& shown) {
   auto residual = r.begin();
   const auto put = [&](const Vec3d& reading, const Vec3d& deviation, Vec3d& to) {
     for (int i = 0; i < 3; ++i) to[i] = reading[i] + *residual++ * deviation[i];
   };
   for (size_t k = 0; k < fitted.positions.size(); ++k)
-    put(measured.positions[k].position, fitted.positions[k].deviation, shown.markers[k]);
-  if (fitted.force) put(*measured.force, fitted.force_deviation, shown.wrench.force);
-  if (fitted.torque) put(*measured.torque, fitted.torque_deviation, shown.wrench.torque);
+    put(fitted.positions[k].position, fitted.positions[k].deviation, shown.markers[k]);
+  if (fitted.force) put(*fitted.force, fitted.force_deviation, shown.wrench.force);
+  if (fitted.torque) put(*fitted.torque, fitted.torque_deviation, shown.wrench.torque);
 }
 
 }  // namespace
@@ -71,12 +70,14 @@ void MaterialFit::describe(FitModel& model, std::span<const double> p) {
     const LoadCase& load = simulated_.fitted().cases[fitted];
     CasePrediction prediction = model.misfit.prediction(fitted++);
     if (!ok) continue;
-    put_layers_in(std::span(r).subspan(first, count), data_.experiment.cases[c], load, prediction);
+    put_layers_in(std::span(r).subspan(first, count), load, prediction);
+    prediction = simulated_.on_finer_mesh(c, prediction);
     outcome.ok = true;
     outcome.markers = std::move(prediction.markers);
     outcome.wrench = prediction.wrench;
     for (const MarkerReading& reading : load.positions) outcome.marker_deviation.push_back(reading.deviation);
-    outcome.force_deviation = load.force_deviation;
+    outcome.force_deviation = simulated_.force_factor(c) * load.force_deviation;
+    outcome.torque_deviation = simulated_.force_factor(c) * load.torque_deviation;
     if (load.force) outcome.relative_mesh_error = simulated_.relative_force_error(c);
   }
 }

@@ -27,6 +27,7 @@ class SimulatedData {
   double mesh_error() const;
   // Of the force of case c, see MeshError; 0: not known.
   double relative_force_error(size_t c) const { return errors_.empty() ? 0 : errors_[c].relative_force_error(); }
+  double force_factor(size_t c) const { return errors_.empty() ? 1 : errors_[c].force_factor(); }
   // Case c as a finer mesh would have it.
   CasePrediction on_finer_mesh(size_t c, const CasePrediction& prediction) const;
 

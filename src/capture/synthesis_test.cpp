@@ -32,6 +32,13 @@ class VirtualBench : public FolderTest {
   }
 };
 
+TEST_F(VirtualBench, RefusesPinsAlongSomeDirections) {
+  const Scene rollers = scene("[[body.pin]]\nname = \"rollers\"\nwhere = \"Z < 1e-6\"\naxes = \"z\"\n");
+  EXPECT_THAT(message_of([&] { synthesize(rollers, exact(), {}); }),
+              testing::AllOf(HasSubstr("pin 'block.rollers' holds its vertices along some directions only"),
+                             HasSubstr("remove its axes or direction")));
+}
+
 // The truth, seen by the misfit of a fit on the same mesh, explains exact data.
 TEST_F(VirtualBench, ExactDataOnTheSameMeshAreExplainedByTheTruth) {
   const Scene block = scene();

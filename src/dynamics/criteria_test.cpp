@@ -1,6 +1,7 @@
 // The stopping criteria of a step: what each of them promises is kept.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
 #include <numeric>
 #include <random>
@@ -191,6 +192,42 @@ TEST(Criteria, ASoftRegionOfAStiffBodyConverges) {
     return simulation.state().q;
   };
   EXPECT_LT(largest_distance(hung(1e12), hung(1e10)), 1e-5);  // both as good as rigid
+}
+
+// A block of 2 m and a finger of 2 mm that hangs from one of its corners, of one material.
+TetMesh block_with_finger() {
+  const Vec3d corner{{2, 2, 2}};
+  TetMesh mesh = make_box({}, corner, {3, 3, 3});
+  const TetMesh finger = make_box(corner, corner + Vec3d{{2e-3, 2e-3, 2e-3}}, {1, 1, 1});
+  std::vector<int> number;
+  for (const Vec3d& X : finger.rest) {
+    const auto same = [&](const Vec3d& Y) { return dot(X - Y, X - Y) < 1e-20; };
+    const auto found = std::find_if(mesh.rest.begin(), mesh.rest.end(), same);
+    number.push_back(static_cast<int>(found - mesh.rest.begin()));
+    if (found == mesh.rest.end()) mesh.rest.push_back(X);
+  }
+  for (const Tet& tet : finger.tets)
+    mesh.tets.push_back({number[tet[0]], number[tet[1]], number[tet[2]], number[tet[3]]});
+  return mesh;
+}
+
+TEST(Criteria, AFingerOnALargeBlockMoves) {
+  const auto moved = [](double tolerance) {  // the finger's vertices, from the corner of the block
+    Model model = make_model(block_with_finger(), {.material = "neo_hookean_log", .young = 1e4});
+    const int count = model.mesh.vertex_count();
+    model.pins.push_back({"floor", vertices_where(model.mesh, [](const Vec3d& X) { return X[1] < 1e-9; }), {}});
+    SimulationOptions options{.h = 0.01, .solver = {}};
+    options.solver.minimize.tolerance = tolerance;
+    Simulation simulation = simulate(std::move(model), options);
+    EXPECT_TRUE(is_success(simulation.step().status));
+    const std::vector<double>& q = simulation.state().q;
+    const int corner = 63;
+    std::vector<double> finger;
+    for (int v = corner + 1; v < count; ++v)
+      for (int r = 0; r < 3; ++r) finger.push_back(q[3 * v + r] - q[3 * corner + r]);
+    return finger;
+  };
+  EXPECT_LT(largest_distance(moved(1e-6), moved(1e-11)), 1e-2 * 2e-3);
 }
 
 // A body whose weight is less than the round-off of its elastic forces.

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "dynamics/explanation_places.h"
 #include "dynamics/pins.h"
+#include "dynamics/rigid_motions.h"
 #include "material/registry.h"
 
 namespace aspic {
@@ -43,10 +45,9 @@ class Explainer {
   Explanation explain() const {
     const bool is_unsolved = report_.status == Status::stuck || report_.status == Status::no_descent ||
                              report_.status == Status::iteration_limit;
-    if (is_unsolved && is_static() && !is_held())
-      return {"there is no single equilibrium: nothing holds the body",
-              model_.pins.empty() ? "no pins in the scene" : "pins that leave it free to slide along some direction",
-              "pin some vertices, or use time.integrator = \"backward_euler\""};
+    if (is_unsolved && is_static())
+      if (const std::optional<RigidMotion> motion = free_rigid_motion(model_, simulation_.snapshot().start.q))
+        return not_held(*motion);
     switch (report_.status) {
       case Status::undefined:
         if (!simulation_.is_implicit()) return blow_up();
@@ -78,38 +79,14 @@ class Explainer {
  private:
   bool is_static() const { return simulation_.options().integrator == "quasi_static"; }
   bool is_newton() const { return solver_.method.starts_with("newton"); }
-  // Along every direction there are pins, or loads such as springs to points, which differ where the body is moved.
-  bool is_held() const {
-    std::vector<Vec3d> held;  // orthonormal
-    const auto rest = [&held](Vec3d d) {
-      for (const Vec3d& n : held) d = d - dot(n, d) * n;
-      return d;
-    };
-    for (const Pin& pin : model_.pins) {
-      if (pin.directions.empty()) return true;
-      for (const Vec3d& n : pin.directions)
-        if (const Vec3d d = rest(n); dot(d, d) > 1e-12) held.push_back((1 / std::sqrt(dot(d, d))) * d);
-    }
-    if (held.size() == 3) return true;
-    const Vec3d axes[] = {{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}};
-    return std::all_of(axes, axes + 3, [&](const Vec3d& axis) {
-      const Vec3d d = rest(axis);
-      return dot(d, d) < 1e-6 || is_held_by_loads(d);
-    });
-  }
-  bool is_held_by_loads(const Vec3d& d) const {
-    std::vector<double> moved = x_, here(x_.size()), there(x_.size());
-    for (size_t i = 0; i < moved.size(); ++i) moved[i] += size_of(model_.mesh) * d[static_cast<int>(i % 3)];
-    for (const auto& V : model_.loads) {
-      V->add_gradient(x_, 1, here);
-      V->add_gradient(moved, 1, there);
-    }
-    double largest = 0, change = 0;
-    for (size_t i = 0; i < here.size(); ++i) {
-      largest = std::max({largest, std::abs(here[i]), std::abs(there[i])});
-      change = std::max(change, std::abs(there[i] - here[i]));
-    }
-    return change > 1e-6 * largest;
+  Explanation not_held(const RigidMotion& motion) const {
+    const std::string body = model_.bodies.size() > 1 ? "body '" + model_.bodies[motion.body].name + "'" : "the body";
+    const bool has_pins = !model_.pins.empty();
+    return {motion.is_rotation ? "statics have no stiffness along a rigid motion that the pins leave free"
+                               : "there is no single equilibrium: nothing holds " + body,
+            (has_pins ? "the pins let " + body + " " : "no pins in the scene: " + body + " can ") + to_string(motion),
+            std::string(motion.is_rotation ? "pin one more vertex, away from that axis" : "pin some vertices") +
+                ", or use time.integrator = \"backward_euler\""};
   }
   std::string step_text() const { return "time.step = " + text(simulation_.options().h); }
   std::string smaller_steps() const {
@@ -210,6 +187,9 @@ class Explainer {
     if (name == "midpoint" || name == "trapezoid" || name == "tr_bdf2" || name == "bdf2")
       return {"the step of " + name + " goes on beyond what it minimised, to where the material has no energy",
               "time.integrator = \"" + name + "\"", remedy};
+    if (solver_.minimize.line_search.test == DecreaseTest::none)
+      return {"without a line search the iterations left the range of numbers", "solver.line_search.test = \"none\"",
+              "solver.line_search.test = \"textbook\""};
     return {"the iterations left the range of numbers", residual_place(model_, report_, x_),
             smaller_steps() + ", and look for forces, pins or velocities that are too large"};
   }

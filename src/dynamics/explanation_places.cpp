@@ -70,11 +70,4 @@ std::string squashed_place(const Model& model, std::span<const double> x) {
          " of its volume";
 }
 
-double size_of(const TetMesh& mesh) {
-  Vec3d low{{INFINITY, INFINITY, INFINITY}}, high{{-INFINITY, -INFINITY, -INFINITY}};
-  for (const Vec3d& X : mesh.rest)
-    for (int r = 0; r < 3; ++r) low[r] = std::min(low[r], X[r]), high[r] = std::max(high[r], X[r]);
-  return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}) / 2;
-}
-
 }  // namespace aspic::places

@@ -21,6 +21,5 @@ std::string vertex_name(const Model& model, int vertex);
 std::string tet_name(const Model& model, int tet);
 WorstTet most_squashed(const TetMesh& mesh, std::span<const double> x);
 std::string squashed_place(const Model& model, std::span<const double> x);  // that tet, in words
-double size_of(const TetMesh& mesh);  // half of the longest edge of the bounding box [m]
 
 }  // namespace aspic::places

@@ -136,6 +136,51 @@ TEST(Explanation, OfStaticsNamesWhatIsMissingWhenNothingHoldsTheBodyWhateverTheM
   }
 }
 
+// A beam on rollers along one edge, which leave it free to turn about that edge.
+TEST(Explanation, OfHingedStaticsNamesTheFreeRotation) {
+  for (const bool is_fixed : {true, false}) {
+    Model model = beam(2, {.gravity = {{0, 0, -9.81}}});
+    const std::vector<int> edge = vertices_where(model.mesh, [](const Vec3d& X) { return X[0] < 1e-9 && X[1] < 1e-9; });
+    model.pins = {{.name = "hinge", .vertices = edge}};
+    if (!is_fixed) {
+      model.pins[0].directions = {{{1, 0, 0}}, {{0, 1, 0}}};
+      model.pins.push_back({.name = "stop", .vertices = {edge[0]}, .directions = {{{0, 0, 1}}}});
+    }
+    SimulationOptions options{.integrator = "quasi_static"};
+    options.solver.minimize.max_iterations = 1;
+    Simulation simulation = simulate(std::move(model), options);
+    const StepReport report = simulation.step();
+    ASSERT_FALSE(is_success(report.status));
+    const Explanation why = explain(simulation, report);
+    EXPECT_THAT(why.place, HasSubstr("rotate about the axis through (0, 0, 0.5) m along (0, 0, 1)"));
+    EXPECT_THAT(why.remedy, HasSubstr("pin one more vertex"));
+  }
+}
+
+TEST(Explanation, OfStaticsOnRollersNamesTheFreeSlide) {
+  Model model = beam(2);
+  model.pins[0].directions = {{{1, 0, 0}}, {{0, 1, 0}}};
+  SimulationOptions options{.integrator = "quasi_static"};
+  options.solver.minimize.max_iterations = 1;
+  Simulation simulation = simulate(std::move(model), options);
+  const StepReport report = simulation.step();
+  ASSERT_FALSE(is_success(report.status));
+  EXPECT_THAT(explain(simulation, report).place, HasSubstr("slide along (0, 0, 1)"));
+}
+
+TEST(Explanation, OfIteratesOutOfRangeNamesTheMissingLineSearch) {
+  SimulationOptions options{.h = 1, .solver = {}};
+  options.solver.minimize.line_search.test = DecreaseTest::none;
+  Simulation simulation = simulate(beam(1), options);
+  StepReport report = simulation.step();
+  report.status = Status::undefined;
+  report.objective = 1;
+  report.iterations = 3;
+  const Explanation why = explain(simulation, report);
+  EXPECT_THAT(why.place, HasSubstr("solver.line_search.test = \"none\""));
+  EXPECT_THAT(why.remedy, HasSubstr("textbook"));
+}
+
 // Every retreat covers more elements, though each of their systems can be solved.
 TEST(Explanation, OfStaticsThatNothingHoldsIsReachedThroughEveryRetreat) {
   for (const char* method : {"newton", "newton_cg"}) {

@@ -18,8 +18,9 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // what the default tolerance can see.
 constexpr double kLeastStrain = 1e-9;
 
-// Regions of one body are judged apart where their moduli differ by more than this factor: at the default tolerance of
-// 1e-6 the softer one is then still resolved to 1e-4 of its own forces.
+// Regions of one body are judged apart where their moduli times the lengths of their edges differ by more than this
+// factor. At the default tolerance of 1e-6 a region that is softer by less is resolved to 1e-4 of its own forces, and
+// one whose tets are smaller by less to 1e-2, since forces grow with areas.
 constexpr double kSoft = 100;
 
 constexpr int kVerticesPerTask = 16;  // some 400 tets
@@ -51,9 +52,24 @@ std::vector<double> unit_stiffness(const TetMesh& mesh) {
   return stiffness;
 }
 
+// Per vertex: the longest edge of its tets [m]. Unlike volumes, it does not take slivers for small tets.
+std::vector<double> longest_edge(const TetMesh& mesh) {
+  std::vector<double> longest(mesh.vertex_count(), 0.0);
+  for (const Tet& tet : mesh.tets) {
+    double square = 0;
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < a; ++b) square = std::max(square, squared(mesh.rest[tet[a]] - mesh.rest[tet[b]]));
+    for (const int v : tet) longest[v] = std::max(longest[v], std::sqrt(square));
+  }
+  return longest;
+}
+
 // Per vertex: its part, numbered in the order of their first vertices. Vertices of one part are connected by tets or
-// lie in one body, and their moduli are those of its stiffest vertex, or kSoft times less, or kSoft^2 times less, ...
+// lie in one body, and their stiffnesses (modulus times edge) are those of its stiffest vertex, or kSoft times less, or
+// kSoft^2 times less, ...
 std::vector<int> parts_of(const TetMesh& mesh, std::span<const double> modulus) {
+  std::vector<double> stiffness = longest_edge(mesh);
+  for (int v = 0; v < mesh.vertex_count(); ++v) stiffness[v] *= modulus[v];
   const std::vector<std::vector<int>> components = tet_components(mesh);
   std::vector<int> component(mesh.vertex_count(), 0);
   std::vector<double> stiffest(components.size() + 1, 0.0);
@@ -61,12 +77,12 @@ std::vector<int> parts_of(const TetMesh& mesh, std::span<const double> modulus) 
     for (const int t : components[c])
       for (const int v : mesh.tets[t]) component[v] = static_cast<int>(c);
   for (int v = 0; v < mesh.vertex_count(); ++v)
-    if (std::isfinite(modulus[v])) stiffest[component[v]] = std::max(stiffest[component[v]], modulus[v]);
+    if (std::isfinite(stiffness[v])) stiffest[component[v]] = std::max(stiffest[component[v]], stiffness[v]);
   std::map<std::pair<int, int>, int> number;
   std::vector<int> part(mesh.vertex_count());
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     constexpr int kSoftest = 20;
-    const double softer = std::log(stiffest[component[v]] / modulus[v]) / std::log(kSoft);
+    const double softer = std::log(stiffest[component[v]] / stiffness[v]) / std::log(kSoft);
     const int level = softer > 0 ? static_cast<int>(std::min<double>(softer, kSoftest)) : 0;
     part[v] = number.try_emplace({component[v], level}, static_cast<int>(number.size())).first->second;
   }

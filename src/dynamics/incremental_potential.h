@@ -71,8 +71,8 @@ class IncrementalPotential : public Objective {
   // moment of inertia about the centre [kg m^2] and the largest distance from there [m]: the sizes by which errors are
   // judged.
   void measure(const TetMesh& mesh);
-  // Divides the vertices into parts: bodies that no tet connects, and regions of a body whose moduli differ by more
-  // than kSoft. Each is judged by its own sizes. `growth` is scratch.
+  // Divides the vertices into parts: bodies that no tet connects, and regions of a body whose moduli times edge
+  // lengths differ by more than kSoft. Each is judged by its own sizes. `growth` is scratch.
   void measure_parts(const TetMesh& mesh, std::span<const double> modulus, std::span<double> growth);
   void add_part_norms(std::span<const double> v, bool is_exact);
   bool prepare_vertex_systems();

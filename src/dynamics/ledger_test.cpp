@@ -124,5 +124,43 @@ TEST(Ledger, AStableExplicitRunIsASuccess) {
   }
 }
 
+// A beam without weight whose far end is shaken by a pin, or by springs with moving targets; the last of 60 steps.
+StepReport last_step_of_shaken_beam(bool by_pin, double part_of_stable_step) {
+  const auto shaken = [by_pin] {
+    Model model = beam(1, {.material = "arap"});
+    const std::vector<int> end = vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 4 - 1e-9; });
+    const auto shake = [](const Vec3d& X, double t) { return X + Vec3d{{0, 0.1 * std::sin(20 * t), 0}}; };
+    if (by_pin) model.pins.push_back({"shaker", end, shake});
+    if (!by_pin)
+      model.loads.push_back(make_point_springs("pull", {{end[0], 500, [shake](double t) {
+                                                           return shake(Vec3d{{4, 0, 0}}, t);
+                                                         }}}));
+    return model;
+  };
+  const double stable = simulate(shaken(), {.integrator = "symplectic_euler"}).stable_step().h;
+  Simulation simulation = simulate(shaken(), {.h = part_of_stable_step * stable, .integrator = "symplectic_euler"});
+  StepReport report;
+  for (int i = 0; i < 60; ++i) report = simulation.step();
+  return report;
+}
+
+TEST(Ledger, JudgesExplicitRunsWithMovingPinsAndTargets) {
+  for (const bool by_pin : {true, false}) {
+    EXPECT_EQ(last_step_of_shaken_beam(by_pin, 0.9).status, Status::converged) << by_pin;
+    EXPECT_EQ(last_step_of_shaken_beam(by_pin, 1.2).status, Status::unstable) << by_pin;
+  }
+}
+
+TEST(Ledger, JudgesAnExplicitRunAlikeAfterARestart) {
+  const auto shaken = [] {
+    return simulate(damped_beam_with_moving_pins_and_targets(), {.h = 1e-3, .integrator = "symplectic_euler"});
+  };
+  Simulation whole = shaken(), resumed = shaken();
+  for (int i = 0; i < 5; ++i) whole.step();
+  EXPECT_GT(whole.snapshot().outside_work, 0);
+  resumed.restore(whole.snapshot());
+  EXPECT_EQ(resumed.snapshot().outside_work, whole.snapshot().outside_work);
+}
+
 }  // namespace
 }  // namespace aspic

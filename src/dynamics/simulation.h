@@ -72,6 +72,7 @@ class Simulation {
     int steps_taken = 0;
     double level = 0;               // of an adaptive step: its next part has the length h / 2^level
     std::optional<State> previous;  // where the last step or part began, when that is remembered
+    double outside_work = 0;  // by moving pins and targets of an explicit run, each step's as a positive number [J]
   };
   Snapshot snapshot() const;
   void restore(const Snapshot& snapshot);  // throws InvalidInput when the sizes do not fit the model

@@ -14,8 +14,8 @@
 namespace aspic {
 namespace {
 
-constexpr double kRichardson = 4.0 / 3;                     // 1 / (1 - 1/2^2)
-constexpr double kLeastMultiple = 0.1, kMostMultiple = 10;  // of the force whose error is known
+constexpr double kRichardson = 4.0 / 3;  // 1 / (1 - 1/2^2)
+constexpr double kMostMultiple = 10;     // of the force whose error is known
 
 class Refinement {
  public:
@@ -144,10 +144,10 @@ double factor_in_limit(const Wrench& coarse, const Wrench& fine) {
 
 Wrench scaled(const Wrench& w, double factor) { return {factor * w.force, factor * w.torque}; }
 
-// How many times `known` the other force is, along it.
+// How many times `known` the other force is, along it. A force against it is noise, and has no error.
 double multiple_of(const Vec3d& known, const Vec3d& other) {
   const double squares = dot(known, known);
-  return squares > 0 ? std::clamp(dot(known, other) / squares, kLeastMultiple, kMostMultiple) : 1;
+  return squares > 0 ? std::clamp(dot(known, other) / squares, 0.0, kMostMultiple) : 1;
 }
 
 void shift(Vec3d& value, Vec3d& deviation, const Vec3d& error) {
@@ -163,6 +163,11 @@ Wrench MeshError::for_force_on_mesh(const Vec3d& force) const {
 
 Wrench MeshError::for_force_in_limit(const Vec3d& force) const {
   return scaled(wrench, multiple_of(force_on_mesh + wrench.force, force));
+}
+
+double MeshError::force_factor() const {
+  const double on_mesh = length(force_on_mesh);
+  return on_mesh > 0 ? length(force_on_mesh + wrench.force) / on_mesh : 1;
 }
 
 double MeshError::relative_force_error() const {

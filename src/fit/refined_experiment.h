@@ -28,6 +28,7 @@ struct MeshError {
   // The error of another force on the same body: it grows with the force.
   Wrench for_force_on_mesh(const Vec3d& force) const;
   Wrench for_force_in_limit(const Vec3d& force) const;
+  double force_factor() const;  // |force in the limit| / |force on the mesh|; 1 without a force
   // |error of the force| over the smaller of both forces; 0 without a force.
   double relative_force_error() const;
 };

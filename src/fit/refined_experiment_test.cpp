@@ -99,6 +99,43 @@ TEST(RefinedExperiment, ErrorsAreTakenOffTheMeasurementsAndMakeThemLessCertain) 
   EXPECT_NEAR(better.cases[0].positions[0].deviation[1], std::sqrt(2.0) * 1e-5, 1e-12);
 }
 
+// Forces of one direction, of which the mesh makes 0.8 (or 2.5) times what they are in the limit of fine meshes.
+Experiment pushed(double measured) {
+  Experiment e = column(2);
+  e.cases[0].positions.clear();
+  e.cases[0].force = Vec3d{{0, 0, measured}};
+  e.cases[0].force_deviation = {{0.1, 0.1, 0.1}};
+  return e;
+}
+
+MeshErrors errors_of_force(double on_mesh, double in_limit) {
+  MeshErrors errors{{MeshError{}}, ""};
+  errors.cases[0].force_on_mesh = {{0, 0, on_mesh}};
+  errors.cases[0].wrench.force = {{0, 0, in_limit - on_mesh}};
+  return errors;
+}
+
+TEST(RefinedExperiment, CorrectedForcesKeepTheirSign) {
+  for (const double on_mesh : {-0.8, -2.5})
+    for (const double measured : {-24.2, -2.0, -0.2, -0.01, 0.0}) {
+      const LoadCase load = without_mesh_errors(pushed(measured), errors_of_force(on_mesh, -1)).cases[0];
+      EXPECT_LE((*load.force)[2], 0) << measured << " N where the mesh has " << on_mesh << " N of -1 N";
+      EXPECT_LE(std::abs((*load.force)[2]), 2.5 * std::abs(measured) + 1e-12);
+    }
+}
+
+TEST(RefinedExperiment, CorrectionsScaleWithTheForce) {
+  const MeshErrors errors = errors_of_force(-0.8, -1);
+  for (const double measured : {-0.05, -1.0, -5.0}) {
+    const LoadCase load = without_mesh_errors(pushed(measured), errors).cases[0];
+    EXPECT_NEAR((*load.force)[2], 0.8 * measured, 1e-12);
+    EXPECT_NEAR(load.force_deviation[2], std::hypot(0.1, 0.2 * measured / 3), 1e-12);
+    EXPECT_NEAR(errors.cases[0].for_force_on_mesh({{0, 0, 0.8 * measured}}).force[2], 0.2 * measured, 1e-12)
+        << "a prediction gets back what was taken off";
+  }
+  EXPECT_DOUBLE_EQ(errors.cases[0].relative_force_error(), 0.25);
+}
+
 TEST(RefinedExperiment, TellsWhyNothingIsKnown) {
   Experiment e = column(2);
   e.cases[0].gravity = {{0, 0, -1e5}};  // crushes it

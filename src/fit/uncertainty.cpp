@@ -54,15 +54,18 @@ void judge_noise(double misfit, int residuals, Posterior& result, Spectrum& s) {
     result.applied_factor = result.noise_factor;
     for (double& d : s.d) d /= result.noise_factor * result.noise_factor;
     result.warnings.push_back(formatted(
-        "the fit misses the measurements %.3g times further than their standard deviations allow: these are too "
-        "small, the weight of the regulariser is too large, or the model cannot do what the body does; all "
-        "deviations are raised by that factor",
-        result.noise_factor));
+        "|r|^2 is %.3g per reading, clearly more than 1: the standard deviations of the readings are too small, the "
+        "weight "
+        "of the regularizer is too large, or the model cannot do what the body does; all intervals are %.3g times "
+        "wider "
+        "for it",
+        misfit / residuals, result.noise_factor));
   } else if (misfit < lower) {
     result.warnings.push_back(formatted(
-        "the fit is %.3g times nearer to the measurements than their standard deviations say: these are too large, "
-        "or noise was fitted (a larger weight); the deviations are left as they are",
-        1 / std::max(result.noise_factor, 1e-300)));
+        "|r|^2 is %.3g per reading, clearly less than 1: the standard deviations, with those of a correction for the "
+        "mesh, "
+        "are too large, or noise was fitted (a larger weight helps); the intervals are not made narrower for it",
+        misfit / residuals));
   }
 }
 

@@ -193,7 +193,7 @@ TEST(Posterior, WidensWhenTheMeasurementsScatterMoreThanTheySay) {
   const Posterior posterior = f.posterior();
   EXPECT_NEAR(posterior.noise_factor, 3, 0.4);
   EXPECT_EQ(posterior.applied_factor, posterior.noise_factor);
-  EXPECT_THAT(posterior.warnings, testing::Contains(HasSubstr("all deviations are raised")));
+  EXPECT_THAT(posterior.warnings, testing::Contains(HasSubstr("per reading, clearly more than 1")));
   const Eigen::VectorXd exact =
       (f.data.J.transpose() * f.data.J / std::pow(posterior.noise_factor, 2) + f.belief.curvature)
           .inverse()
@@ -208,7 +208,7 @@ TEST(Posterior, DoesNotNarrowWhenTheyScatterLess) {
   const Posterior posterior = f.posterior();
   EXPECT_NEAR(posterior.noise_factor, 0.3, 0.05);
   EXPECT_EQ(posterior.applied_factor, 1);
-  EXPECT_THAT(posterior.warnings, testing::Contains(HasSubstr("too large")));
+  EXPECT_THAT(posterior.warnings, testing::Contains(HasSubstr("per reading, clearly less than 1")));
 }
 
 TEST(Posterior, TellsWhichWeightTheDataSupport) {

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/free_memory.h"
+#include "base/parallel.h"
 #include "linalg/multigrid.h"
 
 namespace aspic {
@@ -42,6 +43,27 @@ int search(const BlockPattern& p, std::vector<int>& queue, size_t begin, std::ve
   return levels;
 }
 
+// The rows of vertices that are held along some direction n: all their couplings K have n'K = 0. Where all couplings of
+// all rows have that, such as those of a chain of springs, it means nothing.
+std::vector<char> held_rows(const BlockSparse& H) {
+  constexpr double kFlat = 1e-14;  // of a determinant, beside the cube of the trace; its round-off is below 1e-16
+  const BlockPattern& p = *H.pattern;
+  std::vector<char> held(p.rows());
+  parallel_chunks(p.rows(), [&](int first, int last) {
+    for (int row = first; row < last; ++row) {
+      Mat3d squares{};
+      for (int64_t s = p.row_start[row]; s < p.diagonal(row); ++s)
+        squares = squares + H.block[s] * transpose(H.block[s]);
+      for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u)
+        squares = squares + transpose(H.block[p.upper_slot[u]]) * H.block[p.upper_slot[u]];
+      const double size = trace(squares);
+      held[row] = size == 0 || determinant((1 / size) * squares) <= kFlat;
+    }
+  });
+  if (std::all_of(held.begin(), held.end(), [](char h) { return h; })) std::fill(held.begin(), held.end(), 0);
+  return held;
+}
+
 std::string approximate(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2g", value);
@@ -75,16 +97,17 @@ CostPrediction predict_cholesky(const BlockPattern& pattern) {
 
 double predict_iterations(const BlockSparse& H) {
   const BlockPattern& p = *H.pattern;
+  const std::vector<char> held = held_rows(H);
   double uniform = 0, diagonal = 0;  // 1' H 1 and 1' D 1, over the rows away from pinned vertices
   for (int row = 0; row < p.rows(); ++row) {
     double sum = 0;
-    bool beside_pin = false;  // a coupling that was cleared
-    const auto add = [&](int64_t slot) {
+    bool beside_pin = held[row];
+    const auto add = [&](int64_t slot, int neighbour) {
       sum += trace(H.block[slot]);
-      beside_pin = beside_pin || squared_norm(H.block[slot]) == 0;
+      beside_pin = beside_pin || held[neighbour] || squared_norm(H.block[slot]) == 0;
     };
-    for (int64_t s = p.row_start[row]; s < p.diagonal(row); ++s) add(s);
-    for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u) add(p.upper_slot[u]);
+    for (int64_t s = p.row_start[row]; s < p.diagonal(row); ++s) add(s, p.column[s]);
+    for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u) add(p.upper_slot[u], p.upper_row[u]);
     if (beside_pin) continue;
     const double own = trace(H.block[p.diagonal(row)]);
     uniform += sum + own;

@@ -99,6 +99,7 @@ Checkpoint to_checkpoint(const Simulation& simulation, const std::string& scene,
                        {"start_qdot", std::move(start.qdot)},
                        {"start_time", {start.time}},
                        {"history", to_history(snapshot, vertex)},
+                       {"outside_work", {snapshot.outside_work}},
                        {"frame_times", frame_times}};
   return checkpoint;
 }
@@ -128,6 +129,7 @@ Simulation::Snapshot to_snapshot(const Checkpoint& checkpoint, const Model& mode
   snapshot.steps_taken = static_cast<int>(steps);
   snapshot.state = state_of(checkpoint, "", model);
   snapshot.start = state_of(checkpoint, "start_", model);
+  snapshot.outside_work = only_number(checkpoint, "outside_work");
   read_history(checkpoint.array("history"), model.numbering.vertex, snapshot);
   return snapshot;
 }

@@ -120,6 +120,7 @@ export class Lecture {
     );
     this.fill();
     this.list.querySelector("[aria-current]")?.scrollIntoView({ block: "nearest" });
+    this.root.scrollTop = 0; // where the panel itself scrolls, as on a phone, its text comes first
     this.page.emit("panel", lesson.panel);
     if (lesson.function) this.showFunction(lesson.function);
   }

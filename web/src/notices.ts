@@ -13,7 +13,7 @@ export function connectionText(failures: number): string {
   return failures < kGone
     ? "Connection lost, trying again."
     : "The program does not answer. It has probably ended: start aspic view again and open the address that it prints. " +
-        "This page goes on trying.";
+        "This page keeps trying.";
 }
 
 export function showNotices(root: HTMLElement, store: Store, page: Page): void {

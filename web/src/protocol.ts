@@ -14,7 +14,7 @@ export type Command = { id?: number } & (
   | { do: "play" }
   | { do: "pause" }
   | { do: "step" } // one time step
-  | { do: "iterate" } // one iteration of the minimiser; after the last one the step is complete
+  | { do: "iterate" } // one iteration of the minimizer; after the last one the step is complete
   | { do: "reset" }
   | { do: "rewind"; step: number } // to the end of a step that `timeline` still holds; 0 is the start
   | { do: "speed"; value: number } // simulated seconds per second of wall time that play aims at
@@ -136,7 +136,7 @@ export interface Scene {
   upper: Vec3;
   up: Vec3; // against gravity
   h: number; // [s]
-  implicit: boolean; // minimises
+  implicit: boolean; // minimizes
   solver: string; // methods in words
   potentials: string[]; // names of the terms of V, as in StepRow.potential
   fields: Field[];
@@ -361,7 +361,7 @@ export interface FunctionReply {
   text: string; // the status in words
   path: { x: number; y: number; value: MaybeNumber }[]; // iterates
   iterations: IterationRow[];
-  // The quadratic model that iteration `iteration` minimised, about its iterate.
+  // The quadratic model that iteration `iteration` minimized, about its iterate.
   model: { center: [number, number]; value: number; gradient: [number, number]; xx: number; xy: number; yy: number };
   curve: IterationReply["curve"];
   trials: TrialRow[];

@@ -78,7 +78,7 @@ function makeIterate(store: Store, page: Page): HTMLElement {
   const run = (): void => store.source.send({ do: "iterate" });
   return shortcutButton(
     page,
-    { key: "i", does: "One iteration of the minimiser", group: "Simulation", run },
+    { key: "i", does: "One iteration of the minimizer", group: "Simulation", run },
     { icon: "iterate", text: "1 iteration", steers: true },
   );
 }

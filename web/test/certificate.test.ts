@@ -67,6 +67,12 @@ test("what is bad is marked as such", () => {
   assert.deepEqual(bad(row(4, { min_det_F: -0.5 })), ["min det F"]);
 });
 
+test("moments name the pin and its moment", () => {
+  const moments = column("moments [N m]");
+  assert.equal(moments.value(row(1, { reactions: { "beam.wall": [0, 9.5, 0, 1, 2, 3] } })), "beam.wall (1, 2, 3)");
+  assert.equal(moments.value(kSteps[0]), null);
+});
+
 test("reactions name the pin and its force", () => {
   const reactions = column("reactions [N]");
   assert.equal(reactions.value(row(1, { reactions: { "beam.wall": [0, 9.5, 0, 1, 2, 3] } })), "beam.wall (0, 9.5, 0)");

@@ -10,6 +10,7 @@ import {
   groupCurve,
   groupsOf,
   histogram,
+  markerName,
   residuals,
   travel,
   unpackFit,
@@ -202,17 +203,60 @@ test("a tip that did not move points along its axis", () => {
   assert.equal(depthOf({ ...kTip, center: [0, 0.5, 0] }), 0.5);
 });
 
-test("the verdict never calls a failure a success", () => {
+test("the verdict is the program's, each reason once", () => {
   const what = head();
   assert.equal(closeness(6, 12), 1);
-  assert.equal(verdict(what).kind, "good");
+  assert.deepEqual(verdict({ ...what, verdict: { good: true, text: "Converged.", reasons: [] } }), { text: "Converged.", kind: "good", reasons: [] });
+  const text = "Do not rely on this material: E is at its bound.";
+  const reasons = [{ name: "at_bound", text: "E is at its bound" }, { name: "group_missed", text: "'a' is missed" }];
+  assert.deepEqual(verdict({ ...what, verdict: { good: false, text, reasons } }), { text, kind: "bad", reasons: ["'a' is missed"] });
+});
+
+test("without a verdict of the program nothing is called good", () => {
+  const what = head();
+  assert.equal(verdict(what).kind, "plain");
   assert.equal(verdict({ ...what, fit: { ...what.fit, success: false } }).kind, "bad");
-  const red = verdict({ ...what, verdict: { good: false, text: "Do not rely on it.", reasons: [{ name: "at_bound", text: "E is at its bound." }] } });
-  assert.deepEqual(red, { text: "Do not rely on it. E is at its bound.", kind: "bad" });
   assert.equal(verdict({ ...what, fit: { ...what.fit, interrupted: true } }).kind, "bad");
-  assert.equal(verdict({ ...what, fit: { ...what.fit, misfit: 60 } }).kind, "bad");
-  assert.match(verdict({ ...what, heldOut: { groups: [], position: 0.01, force: 0.21 } }).text, /has not seen/);
-  assert.equal(verdict({ ...what, heldOut: { groups: [], position: 0.01, force: 0.02 } }).kind, "good");
+});
+
+test("markers have the names of the data set", () => {
+  assert.equal(markerName({ ...head(), markerNames: ["nose", ""] }, 0), "nose");
+  assert.equal(markerName({ ...head(), markerNames: ["nose", ""] }, 1), "2");
+  assert.equal(markerName(head(), 1), "2");
+});
+
+// Pressed in a little and turned about the axis, deepest first.
+function twist(name: string, angle: number, more: Partial<Case> = {}): Case {
+  const torque = { measured: [0, -0.5 * angle, 0] as Vec3, deviation: [0.1, 0.02, 0.1] as Vec3, predicted: [0, -0.6 * angle, 0] as Vec3, heldOut: null };
+  return poke(name, "twist", 0.01, 0, { tip: { ...kTip, center: [0, 0.99, 0], turn: [0, -angle, 0] }, torque, ...more });
+}
+
+test("a twist is drawn as torque over angle", async () => {
+  const fit = await fitOf({ ...head(), cases: [twist("twist 2", 0.4), twist("twist 1", 0.2)] });
+  const curve = groupCurve(fit, { cases: [0, 1] });
+  assert.deepEqual([curve.xLabel, curve.xUnit, curve.yLabel, curve.yUnit], ["angle", "rad", "torque", "N m"]);
+  assert.deepEqual(curve.x, [0.2, 0.4]);
+  assert.deepEqual(curve.measured, [0.1, 0.2]);
+  assert.ok(curve.fitted.every((t, i) => Math.abs(t! - [0.12, 0.24][i]) < 1e-12));
+  assert.equal(curve.deviation[0], 0.02);
+});
+
+test("a twist without torques shows the motion of the markers", async () => {
+  const fit = await fitOf({ ...head(), cases: [twist("twist", 0.4, { torque: null })] });
+  const curve = groupCurve(fit, { cases: [0] });
+  assert.deepEqual([curve.xLabel, curve.yLabel, curve.yUnit], ["angle", "mean motion", "m"]);
+});
+
+test("a poke that turns a little stays force over depth", async () => {
+  const cases = [poke("a", "a", 0.2, 0, { tip: { ...kTip, center: [0, 0.8, 0], turn: [0, 0.01, 0] } })];
+  const curve = groupCurve(await fitOf({ ...head(), cases }), { cases: [0] });
+  assert.deepEqual([curve.xLabel, curve.yLabel], ["depth", "force"]);
+});
+
+test("residuals count torques", async () => {
+  const { all } = residuals(await fitOf({ ...head(), cases: [twist("twist", 0.4)] }));
+  assert.equal(all.length, 9);
+  assert.ok(Math.abs(all[7] + 0.04 / 0.02) < 1e-9);
 });
 
 test("damaged fits are refused", async () => {

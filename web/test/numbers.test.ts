@@ -53,3 +53,8 @@ test("CSV keeps every digit, and quotes names that need it", () => {
     `a,"b,""c"""\n1,\n${x},2\n`,
   );
 });
+
+test("numbers beyond all prefixes have powers of ten", () => {
+  assert.deepEqual(prefixOf(2.5e83), { factor: 1, letter: "" });
+  assert.deepEqual(ticks([0, 1e83, 2e83]), ["0", "1e83", "2e83"]);
+});

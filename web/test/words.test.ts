@@ -50,8 +50,8 @@ test("a rejected first trial is mentioned", () => {
   );
 });
 
-test("an explicit scheme minimises nothing", () => {
-  assert.match(stepText(stepRow(), false), /Nothing is minimised/);
+test("an explicit scheme minimizes nothing", () => {
+  assert.match(stepText(stepRow(), false), /Nothing is minimized/);
 });
 
 test("the lowest value has no place above the lowest value", () => {

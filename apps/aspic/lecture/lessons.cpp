@@ -73,8 +73,8 @@ const std::vector<Staging>& stagings() {
        .part = "",
        .look =
            "The thin wires are the edges of tets at the surface: come closer to see them. So that it moves while you "
-           "watch, this mesh has fewer tets than the slide's; aspic lecture 2 simulates more than 100 000. Press S: "
-           "the column \"took\" shows the wall time of each step.",
+           "watch, this mesh has fewer tets than the slide's; aspic lecture 2 simulates more than 100 000. Press S, "
+           "and choose the chart \"Time by stage over the iterations\": it shows the wall time of the step.",
        .panel = "microscope",
        .scene = "02_fine_mesh"},
       {.demonstration = "03_tissue",
@@ -130,7 +130,7 @@ const std::vector<Staging>& stagings() {
        .part = "",
        .look =
            "Left backward Euler, right the explicit scheme with the same h = 0.01 s. The explicit one explodes within "
-           "a few steps; backward Euler pays with a minimisation per step, and with some energy.",
+           "a few steps; backward Euler pays with a minimization per step, and with some energy.",
        .panel = "energy",
        .scene = "05_swing",
        .overrides = {"gravity=[0, 0, 0]"},
@@ -154,26 +154,26 @@ const std::vector<Staging>& stagings() {
        .part = "",
        .look =
            "Take one iteration at a time: the body moves a little, E falls, and the time stands still. Only when the "
-           "minimisation has converged the step is complete.",
+           "minimization has converged the step is complete.",
        .panel = "microscope",
        .scene = "05_swing"},
       {.demonstration = "33-34_explosion",
        .part = "explicit",
        .look = "The same mouse drags both: left implicit, right explicit. The explicit scheme explodes within a few "
-               "steps and ends; the implicit one goes on, and stays stable whatever you do with the mouse.",
+               "steps and ends; the implicit one continues, and stays stable whatever you do with the mouse.",
        .panel = "energy",
        .scene = "33_mouse",
        .overrides = {"spring=[]"},
        .comparison = {{{"time.integrator=symplectic_euler"}, "explicit"}},
        .drag = wild_drag()},
       {.demonstration = "33-34_explosion",
-       .part = "linearised",
-       .look = "The same mouse drags both: left one minimisation per step, right one linear system per step. Where the "
+       .part = "linearized",
+       .look = "The same mouse drags both: left one minimization per step, right one linear system per step. Where the "
                "body bends far the linear system is wrong, and energy comes out of nothing.",
        .panel = "energy",
        .scene = "33_mouse",
        .overrides = {"spring=[]"},
-       .comparison = {{{"time.integrator=linearly_implicit_euler"}, "linearised"}},
+       .comparison = {{{"time.integrator=linearly_implicit_euler"}, "linearized"}},
        .drag = wild_drag()},
       {.demonstration = "36-40_velocity_form",
        .part = "",

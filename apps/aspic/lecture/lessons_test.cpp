@@ -241,7 +241,7 @@ TEST_P(Explosion, IsThatOfTheOtherSchemeUnderTheSameMouse) {
   EXPECT_GT(opened.largest_energy("b"), 1e3 * opened.largest_energy("a"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Lessons, Explosion, testing::Values("explicit", "linearised"));
+INSTANTIATE_TEST_SUITE_P(Lessons, Explosion, testing::Values("explicit", "linearized"));
 
 TEST(Lessons, GradientDescentTakesMoreIterations) {
   Opened opened("38-42_gradient_descent_a step of a body");

@@ -6,8 +6,8 @@
 #include <system_error>
 
 #include "aspic/lecture/course.h"
+#include "aspic/shipped_files.h"
 #include "base/error.h"
-#include "io/external_program.h"
 #include "io/mesh_file.h"
 #include "io/tetrahedralise.h"
 #include "scene/scene_files.h"
@@ -16,23 +16,6 @@ namespace aspic::cli::lecture {
 namespace {
 
 namespace fs = std::filesystem;
-
-// `name` below the folder or one of those above it, or in the share folder of an installation there; else empty.
-fs::path found_above(fs::path folder, const fs::path& name) {
-  std::error_code error;
-  for (;;) {
-    for (const fs::path& place : {folder / name, folder / "share" / "aspic" / name})
-      if (fs::exists(place, error)) return place;
-    if (!folder.has_relative_path()) return {};
-    folder = folder.parent_path();
-  }
-}
-
-fs::path found(const fs::path& name) {
-  std::error_code error;
-  const fs::path near = found_above(fs::current_path(error), name);
-  return near.empty() ? found_above(program_folder(), name) : near;
-}
 
 double largest_extent(const std::vector<Vec3d>& X, const fs::path& path) {
   if (X.empty()) throw InvalidInput(path.string() + ": has no vertices");
@@ -80,7 +63,7 @@ std::vector<std::string> overrides_for(const fs::path& mesh) {
 
 }  // namespace
 
-Stage::Stage(const fs::path& mesh, fs::path cache) : scenes_(found("scenes/lecture")), cache_(std::move(cache)) {
+Stage::Stage(const fs::path& mesh, fs::path cache) : scenes_(shipped_file("scenes/lecture")), cache_(std::move(cache)) {
   if (scenes_.empty())
     throw InvalidInput(
         "the lecture's scenes are not found: there is no scenes/lecture in this folder, beside the program or in a "
@@ -92,8 +75,8 @@ Stage::Stage(const fs::path& mesh, fs::path cache) : scenes_(found("scenes/lectu
     note_ = "real mesh: " + mesh.string() + ", made one metre large";
     return;
   }
-  surface_ = found("assets/bunny.obj");
-  mesh_ = found("assets/bunny.mesh");
+  surface_ = shipped_file("assets/bunny.obj");
+  mesh_ = shipped_file("assets/bunny.mesh");
   if (mesh_.empty() && !surface_.empty()) {
     try {
       mesh_ = filled(surface_, 0, cache_);

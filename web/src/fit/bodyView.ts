@@ -216,6 +216,7 @@ export class BodyView {
       axes: true,
       gridStep: 0,
       bar,
+      bodies: [],
       labels: [],
       highlights: this.notes.map(({ at, words }) => ({ positions: [at], text: words })),
       dots: [],

@@ -111,7 +111,7 @@ export function caseChart(names: readonly string[], ofCase: readonly MaybeNumber
   chart.configure({
     label: "Root mean square of the residuals of each case",
     x: { label: "case", integer: true },
-    y: { label: "rms, in deviations" },
+    y: { label: "rms [standard deviations]" },
     curves: [
       { key: "rms", label: "of a case", colour: "series1", shape: "bars" },
       { key: "one", label: "as expected", meaning: "1: as close as the standard deviations say", colour: "series2", dash: [6, 4] },

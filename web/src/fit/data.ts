@@ -24,6 +24,15 @@ export interface Tip {
   touch: Vec3;
   center: Vec3;
   axis: Vec3;
+  turn?: Vec3; // rotation since the touch [rad]
+}
+
+// A force or a torque of the tip on the body.
+export interface Reading {
+  measured: Vec3;
+  deviation: Vec3;
+  predicted: Vec3 | null;
+  heldOut: Vec3 | null;
 }
 
 export interface Case {
@@ -36,7 +45,8 @@ export interface Case {
   pressure: number; // [Pa]
   gravity: number; // [m/s^2]
   tip: Tip | null;
-  force: { measured: Vec3; deviation: Vec3; predicted: Vec3 | null; heldOut: Vec3 | null } | null; // [N]
+  force: Reading | null; // [N]
+  torque?: Reading | null; // [N m]
 }
 
 export interface HeldOutGroup {
@@ -104,6 +114,7 @@ export interface FitHead {
   weights: WeightTrial[];
   notes: string[];
   warnings: string[];
+  markerNames?: string[]; // by the data set, in the order of the markers
   nextPoke: { site: Vec3; inward: Vec3; radius: number; depth: number; gain: MaybeNumber; words: string } | null;
 }
 
@@ -156,6 +167,13 @@ export function travel(tip: Tip): Vec3 {
   return [along[0] / unit, along[1] / unit, along[2] / unit];
 }
 
+function turnAxis(tip: Tip): Vec3 {
+  const turn = tip.turn ?? tip.axis;
+  const along = length(turn) > 1e-12 ? turn : tip.axis;
+  const unit = length(along) || 1;
+  return [along[0] / unit, along[1] / unit, along[2] / unit];
+}
+
 export const depthOf = (tip: Tip): number => length(minus(tip.center, tip.touch));
 
 // What a chart of one group shows: load against answer, with one standard deviation of what was measured.
@@ -180,18 +198,35 @@ interface Sample {
   heldOut: MaybeNumber;
 }
 
+type Answer = "force" | "torque" | "motion";
+
+const turnOf = (tip: Tip): number => length(tip.turn ?? [0, 0, 0]);
+
+// A tip that turns on the spot twists the body: its rim moves by more than its center.
+function isTwist(cases: readonly Case[]): boolean {
+  const largest = (of: (tip: Tip) => number): number => Math.max(0, ...cases.map((c) => (c.tip ? of(c.tip) : 0)));
+  return cases.every((c) => c.tip !== null) && largest((tip) => tip.radius * turnOf(tip)) > largest(depthOf);
+}
+
+const kAnswers: Record<Answer, { label: string; unit: string }> = {
+  force: { label: "force", unit: "N" },
+  torque: { label: "torque", unit: "N m" },
+  motion: { label: "mean motion", unit: "m" },
+};
+
 export function groupCurve(fit: Fit, group: { cases: number[] }): GroupCurve {
   const cases = group.cases.map((c) => fit.head.cases[c]);
-  const pokes = cases.every((c) => c.tip !== null);
-  const forces = pokes && cases.some((c) => c.force !== null);
-  const pressed = !pokes && cases.some((c) => c.pressure !== 0);
-  const samples = cases.map((c, i) => ({ ...(forces ? forceSample(c) : motionSample(fit, c)), x: loadOf(c, i, pokes, pressed) }));
+  const load = loadAxis(cases);
+  const isMeasured = (answer: "force" | "torque"): boolean => load.byTip && cases.some((c) => (c[answer] ?? null) !== null);
+  const answer = load.twists && isMeasured("torque") ? "torque" : isMeasured("force") && !load.twists ? "force" : "motion";
+  const sample = (c: Case): Omit<Sample, "x"> => (answer === "motion" ? motionSample(fit, c) : tipSample(c, answer));
+  const samples = cases.map((c, i) => ({ ...sample(c), x: load.of(c, i) }));
   samples.sort((a, b) => a.x - b.x);
   return {
-    xLabel: pokes ? "depth" : pressed ? "pressure" : "acceleration of gravity",
-    xUnit: pokes ? "m" : pressed ? "Pa" : "m/s²",
-    yLabel: forces ? "force" : "mean motion",
-    yUnit: forces ? "N" : "m",
+    xLabel: load.label,
+    xUnit: load.unit,
+    yLabel: kAnswers[answer].label,
+    yUnit: kAnswers[answer].unit,
     x: samples.map((s) => s.x),
     measured: samples.map((s) => s.measured),
     deviation: samples.map((s) => s.deviation),
@@ -201,17 +236,28 @@ export function groupCurve(fit: Fit, group: { cases: number[] }): GroupCurve {
   };
 }
 
-function loadOf(c: Case, i: number, pokes: boolean, pressed: boolean): number {
-  if (pokes && c.tip) return depthOf(c.tip);
-  if (pressed) return c.pressure;
-  return c.gravity || i;
+interface LoadAxis {
+  label: string;
+  unit: string;
+  byTip: boolean;
+  twists: boolean;
+  of: (c: Case, i: number) => number;
 }
 
-// Along the way of the tip, of the tip on the body: positive where it pushes.
-function forceSample(c: Case): Omit<Sample, "x"> {
-  if (!c.tip || !c.force) return { measured: null, deviation: 0, fitted: null, heldOut: null };
-  const way = travel(c.tip);
-  const { measured, deviation, predicted, heldOut } = c.force;
+function loadAxis(cases: readonly Case[]): LoadAxis {
+  const byTip = cases.every((c) => c.tip !== null);
+  if (isTwist(cases)) return { label: "angle", unit: "rad", byTip, twists: true, of: (c) => (c.tip ? turnOf(c.tip) : 0) };
+  if (byTip) return { label: "depth", unit: "m", byTip, twists: false, of: (c) => (c.tip ? depthOf(c.tip) : 0) };
+  if (cases.some((c) => c.pressure !== 0)) return { label: "pressure", unit: "Pa", byTip, twists: false, of: (c) => c.pressure };
+  return { label: "acceleration of gravity", unit: "m/s²", byTip, twists: false, of: (c, i) => c.gravity || i };
+}
+
+// Along the way of the tip, or about the axis that it turns about: positive where it pushes or twists the body.
+function tipSample(c: Case, answer: "force" | "torque"): Omit<Sample, "x"> {
+  const reading = c[answer];
+  if (!c.tip || !reading) return { measured: null, deviation: 0, fitted: null, heldOut: null };
+  const way = answer === "force" ? travel(c.tip) : turnAxis(c.tip);
+  const { measured, deviation, predicted, heldOut } = reading;
   return {
     measured: dot(measured, way),
     deviation: Math.hypot(way[0] * deviation[0], way[1] * deviation[1], way[2] * deviation[2]),
@@ -253,13 +299,17 @@ export function residuals(fit: Fit): Residuals {
     if (c.leftOut || !c.ok) return null;
     const own: number[] = [];
     for (let i = 3 * c.first; i < 3 * (c.first + c.count); ++i) own.push((predicted[i] - measured[i]) / deviation[i]);
-    if (c.force?.predicted)
-      for (let k = 0; k < 3; ++k) own.push((c.force.predicted[k] - c.force.measured[k]) / c.force.deviation[k]);
+    for (const reading of [c.force, c.torque])
+      if (reading?.predicted)
+        for (let k = 0; k < 3; ++k) own.push((reading.predicted[k] - reading.measured[k]) / reading.deviation[k]);
     all.push(...own);
     return own.length > 0 ? Math.sqrt(own.reduce((sum, r) => sum + r * r, 0) / own.length) : null;
   });
   return { all, ofCase };
 }
+
+// As the data set calls it.
+export const markerName = (head: FitHead, marker: number): string => head.markerNames?.[marker] || String(marker + 1);
 
 export interface WorstMarker {
   reading: number;
@@ -294,24 +344,18 @@ export function histogram(values: readonly number[], limit: number, bins: number
   return { middle: count.map((_, i) => -limit + (i + 0.5) * width), count };
 }
 
-// Held-out errors, of the peak, beyond which a material is not to be relied on.
-const kPoorPosition = 0.05;
-const kPoorForce = 0.1;
+export interface Said {
+  text: string;
+  kind: "good" | "bad" | "plain";
+  reasons: string[]; // beside the one that the text names
+}
 
-// What the numbers say, in one sentence.
-export function verdict(head: FitHead): { text: string; kind: "good" | "bad" | "plain" } {
-  const { fit, counts } = head;
-  if (head.verdict && !head.verdict.good)
-    return { text: [head.verdict.text, ...head.verdict.reasons.map(({ text }) => text)].join(" "), kind: "bad" };
-  if (fit.interrupted) return { text: "Interrupted: this is what was reached. The same command with --resume goes on.", kind: "bad" };
-  if (!fit.success) return { text: `Not converged: ${fit.words}. Do not rely on it.`, kind: "bad" };
-  const size = closeness(fit.misfit, counts.residuals);
-  if (size === null) return { text: fit.words, kind: "plain" };
-  if (size > 2.25)
-    return { text: "Converged, but it explains the readings worse than their standard deviations allow: the model is too simple, or the deviations are too small.", kind: "bad" };
-  const { position, force } = head.heldOut ?? { position: null, force: null };
-  if ((position ?? 0) > kPoorPosition || (force ?? 0) > kPoorForce)
-    return { text: "Converged, but it predicts badly what it has not seen: the readings do not determine this material. Fit fewer values, measure more, or trust it only where it was poked.", kind: "bad" };
-  if (size < 0.25) return { text: "Converged; the readings agree far better than their standard deviations say: those may be too large.", kind: "plain" };
-  return { text: "Converged; the fit explains the readings about as well as their standard deviations say it can.", kind: "good" };
+// The program's verdict. Reports of programs without one have no more than the status of the fit.
+export function verdict(head: FitHead): Said {
+  const { fit } = head;
+  const said = head.verdict?.text ?? "";
+  if (head.verdict) return { text: head.verdict.text, kind: head.verdict.good ? "good" : "bad", reasons: head.verdict.reasons.map(({ text }) => text).filter((text) => !said.includes(text)) };
+  if (fit.interrupted) return { text: "Interrupted: this is what was reached. The same command with --resume goes on.", kind: "bad", reasons: [] };
+  if (!fit.success) return { text: `Not converged: ${fit.words}. Do not rely on it.`, kind: "bad", reasons: [] };
+  return { text: fit.words, kind: "plain", reasons: [] };
 }

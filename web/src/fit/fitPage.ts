@@ -82,6 +82,11 @@ function words(title: string, list: readonly string[], className: string): HTMLE
   return element("div", { class: `words ${className}` }, element("h3", {}, title), element("ul", {}, ...list.map((text) => element("li", {}, text))));
 }
 
+function reasonList(reasons: readonly string[]): HTMLElement | null {
+  if (reasons.length === 0) return null;
+  return element("ul", {}, ...reasons.map((text) => element("li", {}, text)));
+}
+
 function figure(title: string, chart: Chart): HTMLElement {
   return element("figure", {}, element("figcaption", {}, title), chart.element);
 }
@@ -133,7 +138,7 @@ class FitReport {
     return section(
       "What was found",
       "",
-      element("p", { class: `verdict ${said.kind}` }, said.text),
+      element("div", { class: `verdict ${said.kind}` }, element("p", {}, said.text), reasonList(said.reasons)),
       cards(this.fit),
       element("div", { class: "columns" }, element("div", {}, valueTable(head.quantities)), element("div", {}, words("Warnings", head.warnings, "warnings"), next, words("What was assumed", head.notes, ""))),
     );
@@ -154,7 +159,7 @@ class FitReport {
     const groups = fit.head.heldOut?.groups ?? [];
     return section(
       "Measured against fitted",
-      "Bars are one standard deviation of what was measured. The dashed curve is predicted by a material that was fitted without that group.",
+      "Readings against what the fitted material predicts, with the correction for the mesh. Bars are one standard deviation of the reading and of that correction. The dashed curve is predicted by a material that was fitted without that group.",
       grid,
       groups.length > 0 ? heldOutTable(groups) : null,
     );

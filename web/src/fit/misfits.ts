@@ -8,7 +8,7 @@ import type { Vec3 } from "../protocol";
 import type { CameraRig } from "../view/cameras";
 import { makeArrows, makeBalls, type Arrow } from "./arrows";
 import { BodyView, type FittedBody, type Note } from "./bodyView";
-import { length, vectorAt, worstMarkers, type Fit, type WorstMarker } from "./data";
+import { length, markerName, vectorAt, worstMarkers, type Fit, type WorstMarker } from "./data";
 
 const kArrows = 60;
 const kRows = 10;
@@ -29,7 +29,7 @@ export class Misfits {
     this.view.showWires(false);
     const cases: [string, string][] = [["all", "all cases"], ...fit.head.cases.map((c, i): [string, string] => [String(i), c.name])];
     const pick = choice("worst markers of", "Whose errors are drawn", cases, "all", (value) => this.show(value === "all" ? null : Number(value)));
-    const titles = ["marker", "case", "error", "deviations"];
+    const titles = ["marker", "case", "error", "standard deviations"];
     this.element = element(
       "div",
       { class: "map-row misfits" },
@@ -58,14 +58,14 @@ export class Misfits {
       return { from, to: [0, 1, 2].map((k) => from[k] + scale * w.error[k]) as Vec3 };
     });
     const size = this.body.size;
-    const notes: Note[] = worst.slice(0, 1).map((w) => ({ at: vectorAt(rest, w.marker), words: `marker ${w.marker + 1}: ${withUnit(length(w.error), "m", 3)}` }));
+    const notes: Note[] = worst.slice(0, 1).map((w) => ({ at: vectorAt(rest, w.marker), words: `marker ${markerName(this.fit.head, w.marker)}: ${withUnit(length(w.error), "m", 3)}` }));
     this.view.mark([makeArrows(arrows, 0.005 * size, "#d55e00"), makeBalls(arrows.map((a) => a.from), 0.006 * size, "#1b1f27")], notes);
     this.note.textContent = worst.length > 0 ? `Arrows are drawn ${short(scale, 3)} times as long as the errors, at the markers' places at rest.` : "No positions were read in this case.";
     this.table.replaceChildren(...worst.slice(0, kRows).map((w) => this.row(w)));
   }
 
   private row(w: WorstMarker): HTMLElement {
-    const cells = [String(w.marker + 1), this.fit.head.cases[w.case].name, withUnit(length(w.error), "m", 3), short(w.sigmas, 3)];
+    const cells = [markerName(this.fit.head, w.marker), this.fit.head.cases[w.case].name, withUnit(length(w.error), "m", 3), short(w.sigmas, 3)];
     return element("tr", {}, ...cells.map((text, i) => element("td", { class: i > 1 ? "number" : "" }, text)));
   }
 }

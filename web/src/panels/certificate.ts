@@ -36,9 +36,10 @@ function boundBadness(row: StepRow): number {
   return row.energy_bound === "broken" ? Infinity : Number.MAX_VALUE;
 }
 
-function reactionText(row: StepRow): string | null {
+// Of each pin three of its six numbers: the force, or from the fourth on the moment.
+function reactionText(row: StepRow, first: 0 | 3): string | null {
   const pins = Object.entries(row.reactions ?? {});
-  const vector = (values: MaybeNumber[]): string => values.slice(0, 3).map((value) => short(value)).join(", ");
+  const vector = (values: MaybeNumber[]): string => values.slice(first, first + 3).map((value) => short(value)).join(", ");
   return pins.length ? pins.map(([pin, values]) => `${pin} (${vector(values)})`).join("; ") : null;
 }
 
@@ -74,7 +75,7 @@ export const kColumns: Column[] = [
   },
   {
     title: "iterations",
-    meaning: "of the minimiser",
+    meaning: "of the minimizer",
     value: (row) => row.iterations.length,
     worse: (row) => row.iterations.length,
   },
@@ -93,9 +94,15 @@ export const kColumns: Column[] = [
   },
   {
     title: "reactions [N]",
-    meaning: "force of each pin on its vertices (x, y, z); moments are in steps.csv",
-    value: reactionText,
-    whole: (row) => reactionText(row) ?? "",
+    meaning: "force of each pin on its vertices (x, y, z)",
+    value: (row) => reactionText(row, 0),
+    whole: (row) => reactionText(row, 0) ?? "",
+  },
+  {
+    title: "moments [N m]",
+    meaning: "moment of each pin's forces on its vertices about the origin (x, y, z)",
+    value: (row) => reactionText(row, 3),
+    whole: (row) => reactionText(row, 3) ?? "",
   },
   {
     title: "energy bound [J]",

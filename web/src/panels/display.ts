@@ -113,7 +113,7 @@ function addDisplay(folder: Folder, display: Display, views: () => View[]): void
   folder.add("clipOther", "Keep the other half");
   addNumbers(folder.within("Numbers and marks"));
   addLook(folder.within("Colors and light"));
-  folder.button("As at the start", () => display.change(kDefaults));
+  folder.button("Reset display", () => display.change(kDefaults));
 }
 
 function addNumbers(folder: Folder): void {

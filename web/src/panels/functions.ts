@@ -1,4 +1,4 @@
-// Functions of two variables, minimised by the simulation's own methods: the lecture's surfaces, from any start.
+// Functions of two variables, minimized by the simulation's own methods: the lecture's surfaces, from any start.
 import { Newest } from "../newest";
 import type { Page, Panel } from "../page";
 import type { FunctionQuestion, FunctionReply } from "../protocol";
@@ -44,7 +44,7 @@ class PlanarPanel implements FunctionsPanel {
   });
   private readonly where = element("strong");
   private readonly playButton = button("▶ play", "Goes through the iterations", () => this.togglePlay());
-  private readonly model = checkbox("quadratic model", "Shows the model that this iteration minimised", true, () =>
+  private readonly model = checkbox("quadratic model", "Shows the model that this iteration minimized", true, () =>
     this.draw(),
   );
   private readonly log = checkbox(

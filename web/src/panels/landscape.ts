@@ -95,7 +95,7 @@ class LandscapePanel implements Panel {
         null,
         implicit
           ? "There is nothing to see before the first iteration."
-          : "This scheme minimises nothing: there is no landscape.",
+          : "This scheme minimizes nothing: there is no landscape.",
       );
     }
     this.chosen.look();

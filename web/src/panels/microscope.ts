@@ -103,12 +103,12 @@ class MicroscopePanel implements Panel {
       { title: "step", meaning: "number of the time step; the newest is first", text: of((s) => String(s.step)) },
       {
         title: "status",
-        meaning: "how the minimisation ended",
+        meaning: "how the minimization ended",
         left: true,
         class: "status",
         text: of((s) => statusText(s)),
       },
-      { title: "it.", meaning: "iterations of the minimiser", text: of((s) => String(s.iterations.length)) },
+      { title: "it.", meaning: "iterations of the minimizer", text: of((s) => String(s.iterations.length)) },
       {
         title: "resid.",
         meaning: "norm of the forces that are left over, in parts of the threshold that it must be below",
@@ -145,6 +145,7 @@ class MicroscopePanel implements Panel {
       {
         title: "proj.",
         meaning: "elements whose Hessian was made definite",
+        class: "spare",
         text: of((it) => String(it.projected_elements)),
       },
       {
@@ -204,7 +205,7 @@ class MicroscopePanel implements Panel {
     if (!row)
       this.words.textContent = implicit
         ? "No step has been taken yet."
-        : "This scheme minimises nothing; no step has been taken yet.";
+        : "This scheme minimizes nothing; no step has been taken yet.";
     else if (underWay)
       this.words.textContent = `Step ${row.step} is under way; known so far: ${plural(row.iterations.length, "iteration")}.`;
     else this.words.textContent = `Step ${row.step}. ${stepText(row, implicit)}`;
@@ -216,7 +217,7 @@ class MicroscopePanel implements Panel {
     if (!this.charts.some((chart) => chart.name === "search")) return "";
     if (!this.chosen.iterationRow()) {
       const implicit = this.store.side(this.chosen.side)?.scene.implicit ?? true;
-      return implicit ? "No iteration is chosen." : "This scheme minimises nothing: there is no line search.";
+      return implicit ? "No iteration is chosen." : "This scheme minimizes nothing: there is no line search.";
     }
     this.chosen.look();
     const seen = this.chosen.seen;

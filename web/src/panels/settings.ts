@@ -60,7 +60,7 @@ export class Settings {
       { key: "z", does: "Undo the last change of a setting", group: "Simulation", run: () => void this.undo() },
       { text: "Undo", steers: true },
     );
-    const title = "Every setting as it was when the scene was loaded; the motion goes on from here";
+    const title = "Every setting as it was when the scene was loaded; the motion continues from here";
     this.resetter = button({ text: "Reset settings", title, steers: true }, () => void this.reset());
     const actions = element("div", { class: "setting-actions" }, this.undoer, this.resetter);
     actions.hidden = !store.source.live;

@@ -131,7 +131,7 @@ function overSteps(steps: readonly StepRow[], width: number): Plan {
       x: { label: "step", integer: true },
       y: { label: "iterations" },
       curves: [
-        curve("iterations", "iterations", "of the minimiser, per step", "series1", "line"),
+        curve("iterations", "iterations", "of the minimizer, per step", "series1", "line"),
         curve("failed", "not converged", "steps that did not converge", "bad", "points"),
       ],
     },
@@ -213,7 +213,7 @@ export class StepChart {
     const name = this.name as Exclude<ChartName, "search">;
     const plan = planOf(name, this.chosen, this.steps(), this.chart.width);
     this.plan = plan;
-    this.empty.textContent = plan.x.length === 0 ? "No iteration of a minimiser is known here." : "";
+    this.empty.textContent = plan.x.length === 0 ? "No iteration of a minimizer is known here." : "";
     this.chart.element.hidden = plan.x.length === 0;
     if (this.configured !== name) {
       this.configured = name;

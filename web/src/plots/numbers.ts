@@ -19,10 +19,12 @@ export interface Prefix {
   letter: string;
 }
 
+const kTooLarge = 1e15; // for a prefix: powers of ten tell more
+
 // The prefix with which a number of this size has one to three digits before its point.
 export function prefixOf(size: number): Prefix {
   const magnitude = Math.abs(size);
-  if (!(magnitude > 0) || !Number.isFinite(magnitude)) return { factor: 1, letter: "" };
+  if (!(magnitude > 0) || !(magnitude < kTooLarge)) return { factor: 1, letter: "" };
   const fits = kPrefixes.find(([factor]) => magnitude >= factor * (1 - 1e-12)) ?? kPrefixes[kPrefixes.length - 1]!;
   return { factor: fits[0], letter: fits[1] };
 }
@@ -48,7 +50,7 @@ export function withUnit(value: MaybeNumber | undefined, unit: string, digits = 
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return `0 ${unit}`;
   const size = Math.abs(value);
-  if (size < 1e-15 || size >= 1e15) return `${short(value, digits)} ${unit}`;
+  if (size < 1e-15 || size >= kTooLarge) return `${short(value, digits)} ${unit}`;
   const { factor, letter } = prefixOf(value);
   return `${short(value / factor, digits)} ${letter}${unit}`;
 }

@@ -1,4 +1,4 @@
-// How a minimisation went, in sentences that say no more than its numbers do.
+// How a minimization went, in sentences that say no more than its numbers do.
 import type { IterationRow, MaybeNumber, StepRow } from "../protocol";
 import { statusName } from "../names";
 import { plural, short, withUnit } from "./numbers";
@@ -49,7 +49,7 @@ function shortened(rows: readonly IterationRow[]): string {
 export function stepText(row: StepRow, implicit: boolean): string {
   if (row.words)
     return `${sentence(row.words.cause)}${row.words.place ? ` ${sentence(row.words.place)}` : ""}${row.words.remedy ? ` ${sentence(row.words.remedy)}` : ""}`;
-  if (!implicit) return "Nothing is minimised: this scheme computes the next positions from the forces at hand.";
+  if (!implicit) return "Nothing is minimized: this scheme computes the next positions from the forces at hand.";
   const count = plural(row.iterations.length, "iteration");
   if (!row.success)
     return `Not converged (${statusName(row.status)}) after ${count}${residualText(row) ? `: ${residualText(row)}` : ""}.`;

@@ -1,6 +1,7 @@
 // The body of one side on the stage, as its scene, its newest picture and the display want it.
 import type { Field, SideName } from "../protocol";
 import type { Side, Store } from "../store";
+import { bodyColours } from "./bodies";
 import { Body } from "./body";
 import type { Display } from "./display";
 import type { Style } from "./overlay";
@@ -79,6 +80,14 @@ export class Figure {
     const shown = this.coloured();
     if (shown) this.body?.colour(shown.range, this.display.map(shown.field));
     else this.body?.colourBodies(this.display.settings.bodyColour);
+  }
+
+  // Names and colors of several bodies.
+  bodies(): { name: string; colour: string }[] {
+    const names = this.side?.scene.bodies ?? [];
+    if (names.length < 2 || !this.body) return [];
+    const colours = bodyColours(this.display.settings.bodyColour, names.length);
+    return names.map((name, i) => ({ name, colour: colours[i]! }));
   }
 
   // What the body's colours mean.

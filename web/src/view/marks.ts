@@ -150,6 +150,18 @@ export function axes(ink: Ink, lens: Lens): void {
   }
 }
 
+// Names of bodies beside samples of their colors, in the upper left corner, as many as there is room for.
+export function bodyLegend(ink: Ink, lens: Lens, bodies: readonly { name: string; colour: string }[]): void {
+  const { em } = ink;
+  const room = Math.max(1, Math.floor(lens.height / (3 * em)));
+  bodies.slice(0, room).forEach(({ name, colour }, i) => {
+    const y = (1.6 + 1.5 * i) * em;
+    const left = bodies.length > room && i === room - 1 ? bodies.length - room : 0;
+    dot(ink, [1.4 * em, y], 0.45 * em, colour);
+    text(ink, left > 0 ? `${name} and ${left} more` : name, 2.3 * em, y);
+  });
+}
+
 export const kBarWidth = 8.5; // of the strip beside the view that belongs to the colour bar [em]
 
 // As few lines as the words need at this width.

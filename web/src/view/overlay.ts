@@ -12,6 +12,7 @@ export interface Marks {
   axes: boolean;
   gridStep: number; // [m]; 0: no grid
   bar: { field: Field; range: ColourRange; map: MapName } | null;
+  bodies: { name: string; colour: string }[]; // of the legend; empty: none
   labels: Label[];
   highlights: Highlight[];
   spring: { point: Vec3; target: Vec3; force: Vec3 | null } | null;
@@ -77,6 +78,7 @@ export class Overlay {
     marks.highlights(ink, lens, what.highlights, lens.width);
     if (what.axes) marks.axes(ink, lens);
     if (what.gridStep > 0) marks.gridNote(ink, lens, what.gridStep);
+    marks.bodyLegend(ink, lens, what.bodies);
     for (const dot of what.dots) marks.surfaceDot(ink, lens, dot.at, dot.normal, dot.ring);
     if (what.spring) marks.spring(ink, lens, what.spring.point, what.spring.target, what.spring.force);
     if (what.brush) marks.ring(ink, what.brush.at, what.brush.radius, what.brush.words);

@@ -280,6 +280,7 @@ export class View implements Touched {
       axes: settings.axes,
       gridStep: settings.ground && this.figure.body && this.stage ? this.stage.gridStep : 0,
       bar: shown && { ...shown, map: this.display.map(shown.field) },
+      bodies: shown ? [] : this.figure.bodies(),
       labels: this.labels(lens),
       highlights: [...this.highlights, ...this.card.marks],
       dots: this.dots(),

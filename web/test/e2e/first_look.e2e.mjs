@@ -45,6 +45,7 @@ test("two bodies have two colors", async () => {
     return found.blue > 500 && found.green > 500 && found;
   });
   assert.ok(blue < 20 * green && green < 20 * blue, `${blue} blue, ${green} green`);
+  await until("their names", () => page.evaluate(() => ["left", "right"].every((name) => window.drawnTexts.includes(name))));
   await keepPicture(page, "two_bodies");
   await close();
 });

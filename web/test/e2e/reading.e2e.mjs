@@ -143,7 +143,7 @@ test("every control of the view's display can be used, and nothing breaks", asyn
   }
   for (const button of await view.locator(".lil-controller button").all()) if (await button.isVisible()) await button.click();
   assert.deepEqual(errors, []);
-  await page.getByRole("button", { name: "As at the start" }).click();
+  await page.getByRole("button", { name: "Reset display" }).click();
   await page.keyboard.press("0");
   await findBody(opened);
   const { step } = opened.heard.state.a;

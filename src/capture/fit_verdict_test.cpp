@@ -1,0 +1,217 @@
+// Each reason of the verdict, from results that are made by hand: nothing is solved.
+#include "capture/fit_verdict.h"
+
+#include <gmock/gmock.h>
+
+#include "capture/capture_cases_test.h"
+
+namespace aspic {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const DataSet& three_pokes() {
+  static const DataSet data = test_data(3, 2);
+  return data;
+}
+
+// A fit that explains every reading to the last digit.
+FitOutcome perfect(const DataSet& data = three_pokes()) {
+  FitOutcome outcome;
+  outcome.report.status = Status::converged;
+  outcome.report.words = "converged";
+  for (const LoadCase& load : data.experiment.cases) {
+    CaseOutcome& own = outcome.cases.emplace_back();
+    own.ok = true;
+    for (const MarkerReading& reading : load.positions) {
+      own.markers.push_back(reading.position);
+      own.marker_deviation.push_back(reading.deviation);
+    }
+    own.wrench.force = *load.force;
+    own.force_deviation = load.force_deviation;
+    outcome.residuals += static_cast<int>(3 * (load.positions.size() + 1));
+  }
+  return outcome;
+}
+
+std::vector<std::string> reasons(const FitOutcome& outcome, const DataSet& data = three_pokes()) {
+  std::vector<std::string> names;
+  const FitVerdict judged = verdict(data, outcome);
+  EXPECT_EQ(judged.is_good(), judged.reasons.empty());
+  for (const FitReason& reason : judged.reasons) names.push_back(reason.name);
+  return names;
+}
+
+CrossValidation held_out(double position_error, double force_error) {
+  CrossValidation result;
+  result.position_error = position_error;
+  result.force_error = force_error;
+  return result;
+}
+
+// Of the third poke, by peaks of 0.01 m and 1 N.
+CrossValidation held_out_poke(double position_error, double force_error) {
+  const std::vector<LoadCase>& cases = three_pokes().experiment.cases;
+  CrossValidation result = held_out(position_error, force_error);
+  result.groups = {{.group = "poke 3",
+                    .ok = true,
+                    .readings = static_cast<int>(cases[4].positions.size() + cases[5].positions.size()),
+                    .forces = 2,
+                    .peak_motion = 0.01,
+                    .position_error = 0.01 * position_error,
+                    .peak_force = 1,
+                    .force_error = force_error}};
+  return result;
+}
+
+TEST(FitVerdict, IsGoodWhereEverythingIsExplained) {
+  const FitVerdict judged = verdict(three_pokes(), perfect());
+  EXPECT_TRUE(judged.is_good());
+  EXPECT_THAT(judged.text, HasSubstr("explains the readings"));
+}
+
+TEST(FitVerdict, InterruptedFitsAreNotGood) {
+  FitOutcome outcome = perfect();
+  outcome.interrupted = true;
+  EXPECT_THAT(reasons(outcome), ElementsAre("interrupted"));
+}
+
+TEST(FitVerdict, UnconvergedFitsAreNotGood) {
+  FitOutcome outcome = perfect();
+  outcome.report.status = Status::iteration_limit;
+  EXPECT_THAT(reasons(outcome), ElementsAre("not_converged"));
+}
+
+TEST(FitVerdict, MeshErrorsMustSettle) {
+  FitOutcome outcome = perfect();
+  outcome.mesh_errors_settle = false;
+  EXPECT_THAT(reasons(outcome), ElementsAre("mesh_not_settled"));
+}
+
+TEST(FitVerdict, ForcesThatTheMeshDoublesAreTooMany) {
+  FitOutcome outcome = perfect();
+  outcome.cases[4].relative_mesh_error = 0.9;
+  EXPECT_THAT(reasons(outcome), ElementsAre());
+  outcome.cases[4].relative_mesh_error = 1.1;
+  EXPECT_THAT(reasons(outcome), ElementsAre("mesh_too_coarse"));
+  EXPECT_THAT(verdict(three_pokes(), outcome).text, HasSubstr("'poke 3, depth 1': the mesh changes the force by"));
+}
+
+TEST(FitVerdict, ValuesAtTheirBoundsAreNotGood) {
+  FitOutcome outcome = perfect();
+  outcome.at_bound = {"young in 3 tets"};
+  EXPECT_THAT(reasons(outcome), ElementsAre("at_bound"));
+  EXPECT_THAT(verdict(three_pokes(), outcome).text, HasSubstr("young in 3 tets lies at its bound"));
+}
+
+TEST(FitVerdict, GroupsMissedByFourDeviationsAreNamed) {
+  FitOutcome outcome = perfect();
+  for (const size_t c : {2, 3}) outcome.cases[c].wrench.force[0] += 3.5 * 0.01;
+  EXPECT_THAT(reasons(outcome), ElementsAre()) << "3.5 deviations";
+  for (const size_t c : {2, 3}) outcome.cases[c].wrench.force[0] += 0.01;
+  EXPECT_THAT(reasons(outcome), ElementsAre("group_missed"));
+  EXPECT_THAT(verdict(three_pokes(), outcome).text, HasSubstr("the forces of 'poke 2' are missed by 4.5 standard"));
+}
+
+// The mean over all readings of a group would hide its few forces behind its many markers.
+TEST(FitVerdict, PositionsOfAGroupAreJudgedByThemselves) {
+  FitOutcome outcome = perfect();
+  for (const size_t c : {0, 1})
+    for (Vec3d& marker : outcome.cases[c].markers) marker[2] += 10 * 2e-5;
+  EXPECT_THAT(reasons(outcome), ElementsAre("group_missed"));
+  EXPECT_THAT(verdict(three_pokes(), outcome).text, HasSubstr("the positions of 'poke 1' are missed by 5.77"));
+}
+
+TEST(FitVerdict, TorquesOfAGroupAreJudgedToo) {
+  DataSet data = three_pokes();
+  data.experiment.cases[5].torque = Vec3d{{0, 0, 0.02}};
+  FitOutcome outcome = perfect(data);
+  outcome.cases[5].wrench.torque = {{0, 0, 0.0225}};
+  outcome.cases[5].torque_deviation = {{5e-4, 5e-4, 5e-4}};
+  EXPECT_THAT(reasons(outcome, data), ElementsAre("group_missed"));
+  EXPECT_THAT(verdict(data, outcome).text, HasSubstr("the torques of 'poke 3' are missed by 5 standard"));
+}
+
+TEST(FitVerdict, LeftOutGroupsDoNotCountAsMissed) {
+  FitOutcome outcome = perfect();
+  for (const size_t c : {2, 3}) outcome.cases[c].wrench.force[0] += 1, outcome.cases[c].left_out = true;
+  EXPECT_THAT(reasons(outcome), ElementsAre());
+}
+
+TEST(FitVerdict, FieldsThatPredictWorseThanOneValueAreNotGood) {
+  FitOutcome outcome = perfect();
+  outcome.held_out = held_out(0.04, 0.05);
+  outcome.held_out_of_one_value = held_out(0.04, 0.05);
+  EXPECT_THAT(reasons(outcome), ElementsAre());
+  outcome.held_out_of_one_value = held_out(0.03, 0.04);
+  EXPECT_THAT(reasons(outcome), ElementsAre("held_out_worse"));
+}
+
+// One poke of three with forces four times as large: the fit lies between them.
+TEST(FitVerdict, GroupsWhoseForcesContradictEachOtherAreNamed) {
+  FitOutcome outcome = perfect();
+  for (size_t c = 0; c < 6; ++c) {
+    outcome.cases[c].wrench.force = (c < 2 ? 0.8 : 1.1) * *three_pokes().experiment.cases[c].force;
+    outcome.cases[c].force_deviation = {{0.1, 0.1, 0.1}};
+  }
+  EXPECT_THAT(reasons(outcome), ElementsAre()) << "a ratio of 1.4";
+  for (const size_t c : {0, 1}) outcome.cases[c].wrench.force = 0.4 * *three_pokes().experiment.cases[c].force;
+  for (const size_t c : {0, 1}) outcome.cases[c].force_deviation = {{0.15, 0.15, 0.15}};
+  EXPECT_THAT(reasons(outcome), ElementsAre("groups_disagree"));
+  EXPECT_THAT(verdict(three_pokes(), outcome).text,
+              testing::AllOf(HasSubstr("'poke 1' ask for a body 2.75 times as stiff"), HasSubstr("'poke 2'")));
+}
+
+TEST(FitVerdict, TooManySquaresPerReadingAreNotGood) {
+  FitOutcome outcome = perfect();
+  outcome.report.misfit = 0.5 * 2.2 * outcome.residuals;
+  EXPECT_THAT(reasons(outcome), ElementsAre());
+  outcome.report.misfit = 0.5 * 2.3 * outcome.residuals;
+  EXPECT_THAT(reasons(outcome), ElementsAre("unexplained"));
+}
+
+TEST(FitVerdict, PoorHeldOutPredictionsAreNotGood) {
+  FitOutcome outcome = perfect();
+  outcome.held_out = held_out_poke(0.01, 1.97);
+  EXPECT_THAT(reasons(outcome), ElementsAre("predicts_badly"));
+  EXPECT_THAT(verdict(three_pokes(), outcome).text, HasSubstr("(positions) and 197 % (forces) beyond the noise"));
+  outcome.held_out = held_out_poke(0.06, 0.05);
+  EXPECT_THAT(reasons(outcome), ElementsAre("predicts_badly"));
+  outcome.held_out = held_out_poke(0.04, 0.09);
+  EXPECT_THAT(reasons(outcome), ElementsAre());
+}
+
+// A poke that moves the body little is read with a noise that is large beside it.
+TEST(FitVerdict, NoiseOfHeldOutReadingsIsNoPoorPrediction) {
+  DataSet data = three_pokes();
+  for (LoadCase& load : data.experiment.cases)
+    for (MarkerReading& reading : load.positions) reading.deviation = {{5e-4, 5e-4, 5e-4}};
+  FitOutcome outcome = perfect(data);
+  outcome.held_out = held_out_poke(0.09, 0.01);  // 8.7 % are noise
+  EXPECT_THAT(reasons(outcome, data), ElementsAre());
+  outcome.held_out = held_out_poke(0.11, 0.01);
+  EXPECT_THAT(reasons(outcome, data), ElementsAre("predicts_badly"));
+}
+
+TEST(FitVerdict, OneValueInPlaceOfAFieldIsNotGood) {
+  FitOutcome outcome = perfect();
+  outcome.against_field = {{"at_bound", "young in 3 tets lies at its bound"}};
+  EXPECT_THAT(reasons(outcome), ElementsAre("field_rejected"));
+  EXPECT_THAT(verdict(three_pokes(), outcome).text, HasSubstr("one value replaces the field: young in 3 tets"));
+}
+
+TEST(FitVerdict, OnlySomeReasonsSpeakAgainstAField) {
+  FitOutcome outcome = perfect();
+  outcome.report.misfit = 5.0 * outcome.residuals;
+  outcome.held_out = held_out_poke(0.2, 0.2);
+  EXPECT_THAT(reasons_against_field(three_pokes(), outcome), testing::IsEmpty());
+  outcome.held_out_of_one_value = held_out(0.1, 0.1);
+  outcome.mesh_errors_settle = false;
+  std::vector<std::string> names;
+  for (const FitReason& reason : reasons_against_field(three_pokes(), outcome)) names.push_back(reason.name);
+  EXPECT_THAT(names, ElementsAre("mesh_not_settled", "held_out_worse"));
+}
+
+}  // namespace
+}  // namespace aspic
