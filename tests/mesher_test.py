@@ -260,6 +260,7 @@ class Mesher(unittest.TestCase):
         self.expect_filled(self.folder / "corner.obj", 1 / 6, 0.01, 2, "--size", 0.2)
         width = math.tan(math.radians(1))
         write_tet(self.folder / "spike.obj", (1, 0, 0), (1, width, 0), (1, 0, width))
+        self.out.unlink()
         self.expect_error(2, ["spike.obj", "volume", "--size", "--max-tets"], self.folder / "spike.obj", "--time-limit", 60)
 
     def test_noisy_labels_end(self):
