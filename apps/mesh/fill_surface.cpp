@@ -86,7 +86,8 @@ class SurfaceFiller {
     if (!problem.empty()) problem = attempt(body, plan, 0.6, mesh);
     if (!problem.empty()) problem = attempt(body, planned(body, {}, Sides::any), 1, mesh);
     if (problem.empty()) return mesh;
-    throw InvalidInput(body_name(body) + ": " + problem_ + "; give a --size smaller than " + length(size_));
+    throw InvalidInput(body_name(body) + ": " + problem_ + "; give a --size smaller than " + length(size_) +
+                       ", or allow more than " + digits(options_.most_tets) + " tets with --max-tets");
   }
 
   // Returns why the tets are not the body; nothing when they are.
@@ -132,7 +133,7 @@ class SurfaceFiller {
   void add_note(int body, const Plan& plan) {
     const SizeRule& rule = plan.thin.rule;
     const double across = plan.thin.thickness / rule.smallest;
-    const bool has_few = rule.smallest < size_ && across < 1.9, is_flat = plan.stretch.factor > 1;
+    const bool has_few = rule.smallest < size_ && across<1.9, is_flat = plan.stretch.factor> 1;
     if (!has_few && !is_flat) return;
     result_.notes.push_back((bodies_.size() == 1 ? "" : "body " + std::to_string(body + 1) + ": ") + "it is " +
                             length(plan.thickness()) + " thin; " +

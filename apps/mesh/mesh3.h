@@ -1,8 +1,8 @@
 // What the three kinds of domain share: criteria from sizes, refinement, optimisation, and the way back to a TetMesh.
 #pragma once
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Mesh_complex_3_in_triangulation_3.h>
 #include <CGAL/Mesh_3/sliver_criteria.h>
+#include <CGAL/Mesh_complex_3_in_triangulation_3.h>
 #include <CGAL/Mesh_criteria_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Random.h>
@@ -147,7 +147,7 @@ template <class Domain, class Complex>
 void perturb(const Domain& domain, Complex& complex) {
   namespace p = CGAL::parameters;
   using Criterion = CountedMoves<typename Complex::Triangulation>;
-  constexpr long kMovesPerCell = 4;  // hundreds of times what blunt shapes need
+  constexpr long kMovesPerCell = 1;  // blunt shapes need a tenth of that
   long moves = kMovesPerCell * static_cast<long>(complex.number_of_cells_in_complex());
   try {
     CGAL::perturb_mesh_3(complex, domain, p::time_limit = 0, p::sliver_bound = kSliverBound,
@@ -161,7 +161,7 @@ void perturb(const Domain& domain, Complex& complex) {
 template <class Domain, class Complex>
 void optimize(const Domain& domain, Complex& complex) {
   namespace p = CGAL::parameters;
-  const double sweeps = 1e6 / static_cast<double>(1 + complex.number_of_cells_in_complex());
+  const double sweeps = 5e5 / static_cast<double>(1 + complex.number_of_cells_in_complex());
   const int iterations = static_cast<int>(std::clamp(sweeps, 10.0, 100.0));
   CGAL::odt_optimize_mesh_3(complex, domain, p::time_limit = 0, p::max_iteration_number = iterations);
   perturb(domain, complex);

@@ -8,7 +8,7 @@
 
 namespace aspic {
 
-Vec3d extent(const std::vector<Vec3d>& points);    // of the bounding box
+Vec3d extent(const std::vector<Vec3d>& points);     // of the bounding box
 double diagonal(const std::vector<Vec3d>& points);  // of the bounding box
 
 // Position in the file = origin + unit * position in the frame. The unit is a power of two.

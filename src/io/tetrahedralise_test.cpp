@@ -58,8 +58,8 @@ TEST_F(Tetrahedralise, LeavesDefaultsToTheProgram) {
 }
 
 TEST_F(Tetrahedralise, ReturnsTheNotesOfTheProgram) {
-  write_file(folder / "mesher", "#!/bin/sh\necho \"$1: it is thin\"; echo 'tets 6'; cp '" +
-                                    (folder / "tets.mesh").string() + "' \"$3\"");
+  write_file(folder / "mesher",
+             "#!/bin/sh\necho \"$1: it is thin\"; echo 'tets 6'; cp '" + (folder / "tets.mesh").string() + "' \"$3\"");
   fs::permissions(folder / "mesher", fs::perms::owner_all);
   EXPECT_THAT(tetrahedralise(surface, {.program = folder / "mesher"}).notes, testing::ElementsAre("it is thin"));
 }

@@ -214,7 +214,8 @@ LoadedMesh load_mesh(const fs::path& path, double size, MeshLoader& loader) {
       throw InvalidInput(path.string() + ", filled with edges of length " + number_text(size) + ": " + why +
                          " (choose a larger mesh_size)");
   loader.tell("filling " + path.filename().string() + " with tets");
-  Tetrahedralization filled = tetrahedralise(path, {.size = size, .seconds = loader.mesher_seconds, .program = loader.mesher});
+  Tetrahedralization filled =
+      tetrahedralise(path, {.size = size, .seconds = loader.mesher_seconds, .program = loader.mesher});
   const std::string length = size > 0 ? number_text(size) : "the diagonal of the bounding box / 25";
   loader.notes.push_back(path.filename().string() + ": a surface; filled with " +
                          std::to_string(filled.tets.tet_count()) + " tets of edge length " + length +

@@ -86,8 +86,9 @@ TEST(MeshAlone, ResolvedSceneGivesTheSameBits) {
 
 // A mesher that copies a prepared mesh to where it is told, with "-o".
 fs::path fake_mesher(const TestFolder& folder, const fs::path& prepared) {
-  const fs::path script = folder.write(
-      "mesher", "#!/bin/sh\nwhile [ \"$1\" != -o ]; do shift; done\ncp '" + prepared.string() + "' \"$2\"\n");
+  const fs::path script =
+      folder.write("mesher", "#!/bin/sh\necho \"$1: it is thin\"\nwhile [ \"$1\" != -o ]; do shift; done\ncp '" +
+                                 prepared.string() + "' \"$2\"\n");
   fs::permissions(script, fs::perms::owner_all);
   return script;
 }
@@ -99,6 +100,7 @@ TEST(MeshAlone, ASurfaceIsFilledOnceAndItsTetsAreKept) {
   const fs::path mesher = fake_mesher(folder, folder / "tets.mesh");
   Scene scene = load_scene(folder / "cube.obj", {.mesher = mesher});
   EXPECT_THAT(scene.notes, Contains(HasSubstr("a surface; filled with 48 tets")));
+  EXPECT_THAT(scene.notes, Contains("cube.obj: it is thin"));
   EXPECT_EQ(scene.skins[0].rest.vertex_count(), 26);
   EXPECT_THAT(scene.resolved, AllOf(HasSubstr("inputs/cube.msh"), HasSubstr("inputs/cube.skin.obj")));
 
