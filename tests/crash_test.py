@@ -263,20 +263,18 @@ class ReadOnly(Crash):
                 os.setgid(NOBODY)
                 os.setuid(NOBODY)
 
-        return subprocess.run([ASPIC, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=120,
-                              preexec_fn=drop)
+        return subprocess.run([self.folder / "aspic", *arguments], cwd=self.folder, capture_output=True, text=True,
+                              timeout=120, preexec_fn=drop)
 
     def test_an_error_names_the_place_and_nothing_changes(self):
         scene = self.scene(duration=0.05)
         self.aspic("run", scene, "--out", "run")
         self.write("cube.toml", CUBE)
+        shutil.copy(ASPIC, self.folder / "aspic")  # where everybody may start it, which is not so below root's home
         before = {p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}
         for folder in (self.folder, self.folder / "run"):
             os.chmod(folder, 0o555)
             self.addCleanup(os.chmod, folder, 0o755)
-        if subprocess.run([ASPIC, "--version"], capture_output=True).returncode or \
-                self.without_rights("--version").returncode:
-            self.skipTest("the program cannot be started by a user without rights here")
         for arguments, name in ((("run", scene, "--out", "new"), "new"), (("run", scene, "--out", "run", "--force"), "run/"),
                                 (("run", "run", "--resume"), "run/"), (("report", "run"), "report.html"),
                                 (("capture", "cube.toml", "-o", "data", *BENCH), "data")):

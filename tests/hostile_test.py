@@ -54,6 +54,13 @@ class Hostile(unittest.TestCase):
         (self.folder / "closed").chmod(0o755)
         shutil.rmtree(self.parent)
 
+    def open_to_all(self):
+        """The program where everybody may start it, which is not so below root's home."""
+        program = self.parent / "aspic"
+        if not program.exists():
+            shutil.copy(ASPIC, program)
+        return program
+
     def aspic(self, *arguments, code=None, user=0, memory=0):
         """As a user without rights, and with a limit of address space [bytes], where these are given."""
         def limit():
@@ -63,7 +70,7 @@ class Hostile(unittest.TestCase):
                 os.setgroups([])
                 os.setgid(user)
                 os.setuid(user)
-        done = subprocess.run([ASPIC, *arguments], cwd=self.folder, capture_output=True, timeout=60, preexec_fn=limit,
+        done = subprocess.run([self.open_to_all() if user else ASPIC, *arguments], cwd=self.folder, capture_output=True, timeout=60, preexec_fn=limit,
                               stdin=subprocess.DEVNULL)
         text = f"aspic {arguments}: {done.returncode}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}"
         self.assertIn(done.returncode, {0, 1, 2, 3, 4} if code is None else {code}, text)
@@ -90,8 +97,6 @@ class Names(Hostile):
 
 class Rights(Hostile):
     def test_a_folder_without_rights_is_named(self):
-        if subprocess.run([ASPIC, "--version"], capture_output=True, preexec_fn=lambda: os.setuid(NOBODY)).returncode:
-            self.skipTest("the program cannot be started by a user without rights here")
         for command in (["run"], ["check"], ["view", "--no-browser"], ["report"], ["fit"], ["capture"], ["fit-curves"]):
             for name in ("closed", "closed/x", "closed/x.toml"):
                 self.assertIn("closed", self.aspic(*command, name, code=2, user=NOBODY))

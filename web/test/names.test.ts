@@ -21,11 +21,11 @@ test("tooltips have no marks of Markdown", () => {
   assert.equal(plainText(text), "the scheme (integrators): bdf2 is second order");
 });
 
-test("every material names its source and can be simulated", () => {
+test("every material names its source or says that it is typical", () => {
   assert.equal(new Set(kMaterials.map(({ name }) => name)).size, kMaterials.length);
   for (const { name, young, poisson, density, source } of kMaterials) {
     assert.ok(young > 1e3 && young < 1e8 && poisson > 0 && poisson < 0.5, name);
     assert.ok(density > 500 && density < 2000, name);
-    assert.match(source, /Smooth-On|\(\d{4}\)/, name);
+    assert.match(source, /\(\d{4}\)|typical order of magnitude/, name);
   }
 });

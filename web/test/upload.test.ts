@@ -1,12 +1,21 @@
 import assert from "node:assert/strict";
-import { deflateRawSync } from "node:zlib";
+import { File } from "node:buffer"; // no global of Node.js 18
+import { Duplex } from "node:stream";
+import { createInflateRaw, deflateRawSync } from "node:zlib";
 import { test } from "node:test";
 import { shelvesOf } from "../src/gallery";
 import { isSceneOrMesh, mainFile, placed, prepareUpload } from "../src/upload";
 import { unzip } from "../src/unzip";
 
 const bytes = (text: string) => new TextEncoder().encode(text);
-const file = (name: string, text: string) => new File([text], name);
+const file = (name: string, text: string) => new File([text], name) as unknown as globalThis.File;
+
+// What Node.js 18 lacks: its DecompressionStream does not know "deflate-raw".
+globalThis.DecompressionStream = class {
+  constructor() {
+    return Duplex.toWeb(createInflateRaw());
+  }
+} as unknown as typeof DecompressionStream;
 
 test("the scene among several files is the one that is opened", () => {
   assert.equal(mainFile(["bunny.msh", "a/b/inner.toml", "a/outer.toml"]), "a/outer.toml");
