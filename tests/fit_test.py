@@ -209,14 +209,14 @@ class FitInterruption(FitCommand):
     def test_ctrl_c_keeps_what_was_reached_and_resumes_to_the_same_bits(self):
         code, said = self.interrupt(signal.SIGINT)
         self.assertEqual(code, 130)
-        self.assertIn("the same command with --resume goes on", said)
+        self.assertIn("the same command with --resume continues", said)
         self.assertTrue((self.folder / "part.vtu").exists())
         self.resume_and_compare()
 
     def test_kill_does_so_too(self):
         code, said = self.interrupt(signal.SIGTERM)
         self.assertEqual(code, 143)
-        self.assertIn("the same command with --resume goes on", said)
+        self.assertIn("the same command with --resume continues", said)
         self.assertTrue((self.folder / "part.vtu").exists())
 
     def test_kill_9_and_resume_give_the_same_bits(self):

@@ -40,7 +40,8 @@ LIBRARIES = {  # first part of a third-party header: the files that may include 
 
 root = pathlib.Path(__file__).resolve().parent.parent
 violations = []
-for path in sorted(p for folder in ("src", "apps", "bench", "tests") for p in (root / folder).rglob("*.[hc]*")):
+folders = [root / name for name in ("src", "apps", "bench", "tests")]
+for path in sorted(p for folder in folders for p in folder.rglob("*") if p.suffix in (".h", ".cpp")):
     name = path.relative_to(root).as_posix()
     module = name.split("/")[1] if name.startswith("src/") else None
     is_test = name.endswith(("_test.cpp", "_test.h"))

@@ -13,6 +13,7 @@ struct BodyDomain {
   std::vector<std::vector<Vec3d>> sharp;  // chains of points that stay edges
   std::vector<Vec3d> seeds;               // points of the surface from which refinement starts
   size_t most_vertices = 0;               // at which refinement stops
+  bool has_blade = false;                 // slivers are its shape: they are not optimized, which would take minutes
 };
 
 // Returns no tets when none fits.

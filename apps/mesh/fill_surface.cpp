@@ -114,7 +114,7 @@ class SurfaceFiller {
       plan = planned(body, {*normal, factor}, Sides::opposite);
     }
     if (!plan.thin.problem.empty())
-      throw InvalidInput(body_name(body) + ": it is " + length(plan.thickness()) + " thin, and " + problem +
+      throw InvalidInput(body_name(body) + ": it is " + length(plan.thickness()) + " thick, and " + problem +
                          "; allow more with --max-tets, or thicken it");
     return plan;
   }
@@ -136,7 +136,7 @@ class SurfaceFiller {
     const bool has_few = rule.smallest < size_ && across<1.9, is_flat = plan.stretch.factor> 1;
     if (!has_few && !is_flat) return;
     result_.notes.push_back((bodies_.size() == 1 ? "" : "body " + std::to_string(body + 1) + ": ") + "it is " +
-                            length(plan.thickness()) + " thin; " +
+                            length(plan.thickness()) + " thick; " +
                             (has_few ? digits(across) + " tets across instead of two" : "") +
                             (has_few && is_flat ? ", and " : "") +
                             (is_flat ? "tets are " + digits(plan.stretch.factor) + " times as wide as thick" : "") +
@@ -146,7 +146,8 @@ class SurfaceFiller {
   TetMesh refined(const Plan& plan, const SizeRule& rule, double predicted) {
     const LocalSize size(plan.samples, rule);
     least_size_ = size.least();
-    BodyDomain domain{plan.surface, size, {}, seeds(plan.samples), 0};
+    BodyDomain domain{plan.surface, size, {}, seeds(plan.samples)};
+    domain.has_blade = has_blade(plan.surface);
     if (options_.has_sharp_edges) domain.sharp = sharp_chains(plan.surface, rule.size);
     domain.most_vertices = static_cast<size_t>(1e4 + predicted);  // several times what refinement needs
     TetMesh mesh = fill_body(domain);

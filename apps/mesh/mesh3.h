@@ -174,18 +174,19 @@ struct Filling {
   const Domain& domain;
   const Field& edge;  // target edge lengths
   const Seeds<Domain>& seeds;
-  size_t most_vertices;  // at which refinement stops
+  size_t most_vertices;   // at which refinement stops
+  bool optimizes = true;  // what refinement leaves
 };
 
 // `is_complete`: whether refinement ended before it stopped.
 template <class Domain, class Field>
-TetMesh refined(const Filling<Domain, Field>& filling, bool optimizes, bool& is_complete) {
+TetMesh refined(const Filling<Domain, Field>& filling, bool& is_complete) {
   namespace p = CGAL::parameters;
   using Triangulation = typename CGAL::Mesh_triangulation_3<Domain, Kernel>::type;
   using Complex = typename ComplexOf<Domain, Triangulation>::type;
   using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
   CGAL::get_default_random() = CGAL::Random(0);
-  const auto& [domain, edge, seeds, most_vertices] = filling;
+  const auto& [domain, edge, seeds, most_vertices, optimizes] = filling;
   const Scaled<Field> radius(edge, kRadiusPerEdge), distance(edge, kRadiusPerEdge * kDistancePerRadius);
   const Criteria criteria(p::edge_size = Scaled<Field>(edge, kProtectedPerEdge), p::facet_angle = 25,
                           p::facet_size = radius, p::facet_distance = distance, p::cell_radius_edge_ratio = 2.2,
@@ -203,11 +204,12 @@ TetMesh refined(const Filling<Domain, Field>& filling, bool optimizes, bool& is_
 // CGAL's optimizers can break the triangulation between many protected edges. Its assertions, which are part of every
 // build of this program, notice; then the tets stay as refinement left them.
 template <class Domain, class Field>
-TetMesh filled(const Filling<Domain, Field>& filling, bool& is_complete) {
+TetMesh filled(Filling<Domain, Field> filling, bool& is_complete) {
   try {
-    return refined(filling, true, is_complete);
+    return refined(filling, is_complete);
   } catch (const CGAL::Failure_exception&) {
-    return refined(filling, false, is_complete);
+    filling.optimizes = false;
+    return refined(filling, is_complete);
   }
 }
 

@@ -12,12 +12,14 @@ namespace {
 using Chain = std::vector<int>;  // vertices; the first is also the last of a closed one
 
 constexpr double kSharp = 0.643;   // cosine of 50 degrees, between the normals beside an edge
+constexpr double kBlade = -0.94;   // minus the cosine of 20 degrees, between the normals beside an edge
 constexpr double kStraight = 0.5;  // cosine of 60 degrees, between two edges of a chain
 
-std::vector<std::array<int, 2>> sharp_edges(const TriMesh& body) {
+// The edges beside which the cosine between the normals is less than `most`.
+std::vector<std::array<int, 2>> sharp_edges(const TriMesh& body, double most) {
   std::vector<std::array<int, 2>> edges;
   for_each_edge(edge_uses(body.triangles), [&](const EdgeUse* first, const EdgeUse* last) {
-    if (last - first == 2 && dot(unit_normal(body, first[0].triangle), unit_normal(body, first[1].triangle)) < kSharp)
+    if (last - first == 2 && dot(unit_normal(body, first[0].triangle), unit_normal(body, first[1].triangle)) < most)
       edges.push_back(first->edge);
   });
   return edges;
@@ -131,7 +133,7 @@ std::vector<bool> in_needles(const TriMesh& body, const std::vector<Chain>& chai
 }  // namespace
 
 std::vector<std::vector<Vec3d>> sharp_chains(const TriMesh& body, double size) {
-  std::vector<std::array<int, 2>> edges = sharp_edges(body);
+  std::vector<std::array<int, 2>> edges = sharp_edges(body, kSharp);
   while (prune(body, size / 2, edges)) {
   }
   const std::vector<Chain> chains = SharpGraph(body, edges).chains();
@@ -148,5 +150,7 @@ std::vector<std::vector<Vec3d>> sharp_chains(const TriMesh& body, double size) {
   }
   return lines;
 }
+
+bool has_blade(const TriMesh& body) { return !sharp_edges(body, kBlade).empty(); }
 
 }  // namespace aspic

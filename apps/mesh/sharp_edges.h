@@ -11,4 +11,7 @@ namespace aspic {
 // a surface that is rough rather than sharp.
 std::vector<std::vector<Vec3d>> sharp_chains(const TriMesh& body, double size);
 
+// Whether two triangles meet at less than 20 degrees, inside of the body.
+bool has_blade(const TriMesh& body);
+
 }  // namespace aspic

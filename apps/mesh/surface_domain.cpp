@@ -62,7 +62,8 @@ TetMesh fill_body(const BodyDomain& body) {
   bool is_complete = false;  // an incomplete mesh is judged like any other
   const BodySize edge(body.size);
   const Seeds<Domain> starts = seeds(domain, body.seeds);
-  TetMesh tets = filled(Filling<Domain, BodySize>{domain, edge, starts, body.most_vertices}, is_complete);
+  TetMesh tets =
+      filled(Filling<Domain, BodySize>{domain, edge, starts, body.most_vertices, !body.has_blade}, is_complete);
   tets.region.clear();
   return tets;
 }

@@ -83,6 +83,12 @@ std::string said(const fs::path& messages) {
   return text.empty() ? "it gave no reason" : text;
 }
 
+// What it said of its failure, within a message of ours.
+std::string complaint(const fs::path& messages) {
+  const std::string text = said(messages);
+  return text.starts_with("error: ") ? text.substr(7) : text;
+}
+
 }  // namespace
 
 TemporaryFolder::TemporaryFolder() {
@@ -127,12 +133,12 @@ std::string run_program(const ExternalCommand& command) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return said(command.messages);
   const std::string subject = command.about + ": " + command.name;
   if (WIFEXITED(status) && WEXITSTATUS(status) == command.out_of_time)
-    throw TimeLimitPassed(subject + " ran out of time: " + said(command.messages));
+    throw TimeLimitPassed(subject + " ran out of time: " + complaint(command.messages));
   std::string end = " failed: ";
   if (WIFSIGNALED(status))
     end = std::string(" was ended by the signal '") + ::strsignal(WTERMSIG(status)) + "' (" + command.after_signal +
           "): ";
-  throw InvalidInput(subject + end + said(command.messages));
+  throw InvalidInput(subject + end + complaint(command.messages));
 }
 
 }  // namespace aspic

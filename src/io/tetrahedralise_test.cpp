@@ -65,7 +65,7 @@ TEST_F(Tetrahedralise, ReturnsTheNotesOfTheProgram) {
 }
 
 TEST_F(Tetrahedralise, PassesTheTimeLimitAndItsFailure) {
-  write_file(folder / "mesher", "#!/bin/sh\necho \"$4 $5: too slow\" >&2; exit 4");
+  write_file(folder / "mesher", "#!/bin/sh\necho \"error: $4 $5: too slow\" >&2; exit 4");
   fs::permissions(folder / "mesher", fs::perms::owner_all);
   EXPECT_THROW(tetrahedralise(surface, {.seconds = 2.5, .program = folder / "mesher"}), TimeLimitPassed);
   EXPECT_THAT(message_of([&] { tetrahedralise(surface, {.seconds = 2.5, .program = folder / "mesher"}); }),

@@ -4,6 +4,7 @@ import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
+import { fileURLToPath } from "node:url";
 import { aspic, downloaded, findBody, frames, keepPicture, openSession, pressAndWait, startProgram, temporaryFolder } from "./harness.mjs";
 
 const program = await startProgram("scenes/cantilever.toml");
@@ -115,7 +116,7 @@ test("the gallery opens a scene and remembers it", async () => {
   await dialog.waitFor({ state: "detached" });
   await page.keyboard.press("Shift+O");
   await dialog.locator("section").filter({ hasText: "Opened before" }).getByRole("button", { name: /^twist\.toml/ }).waitFor();
-  await dialog.getByRole("textbox").fill(join(import.meta.dirname, "../../../scenes/cantilever.toml"));
+  await dialog.getByRole("textbox").fill(fileURLToPath(new URL("../../../scenes/cantilever.toml", import.meta.url)));
   await page.keyboard.press("Enter");
   await until("the first scene", ({ scenes }) => scenes.a.name === "cantilever");
   await close();
