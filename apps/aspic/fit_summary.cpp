@@ -92,7 +92,7 @@ void print_fit(std::FILE* stream, const DataSet& data, const FitOutcome& outcome
   print_values(stream, outcome);
   print_parts(stream, outcome);
   if (outcome.posterior && outcome.posterior->ok)
-    fmt::print(stream, "learnt     the data determine {:.1f} of {} directions of the material\n",
+    fmt::print(stream, "learned    the data determine {:.1f} of {} directions of the material\n",
                outcome.posterior->informed, outcome.unknowns);
   print_held_out(stream, outcome);
   if (outcome.next_poke) fmt::print(stream, "next poke  {}\n", outcome.next_poke->words);

@@ -35,7 +35,7 @@ function cards({ head }: Fit): HTMLElement {
   if (fit.uniformMisfit !== null) list.append(card("one value for all", short(closeness(fit.uniformMisfit, counts.residuals), 3), "the same of a body of one material"));
   if (heldOut && (heldOut.position ?? -1) >= 0) list.append(card("held-out positions", percent(heldOut.position), "error of what was not fitted, of the peak motion"));
   if (heldOut && (heldOut.force ?? -1) >= 0) list.append(card("held-out forces", percent(heldOut.force), "error of what was not fitted, of the peak force"));
-  if (fit.informed !== null) list.append(card("learnt", `${short(fit.informed, 3)} of ${counts.unknowns}`, "directions of the material that the data determine"));
+  if (fit.informed !== null) list.append(card("learned", `${short(fit.informed, 3)} of ${counts.unknowns}`, "directions of the material that the data determine"));
   return list;
 }
 

@@ -39,7 +39,7 @@ function fieldsOf(fit: Fit): { values: Field[]; doubts: Field[] } {
       const label = q.isLog ? "factor" : "deviation";
       add(doubts, `${q.name}.deviation`, `${name}: ${q.isLog ? "known within a factor" : "deviation, as fitted"}`, label, "", numbers, "cividis", false);
     }
-    if (fit.arrays.has(reduction)) add(doubts, `${q.name}.reduction`, `${name}: learnt, from 0 nothing to 1 all`, "learnt", "", fit.floats(reduction), "blue_orange", false, [0, 1]);
+    if (fit.arrays.has(reduction)) add(doubts, `${q.name}.reduction`, `${name}: learned, from 0 nothing to 1 all`, "learned", "", fit.floats(reduction), "blue_orange", false, [0, 1]);
   }
   return { values, doubts };
 }
