@@ -147,7 +147,7 @@ template <class Domain, class Complex>
 void perturb(const Domain& domain, Complex& complex) {
   namespace p = CGAL::parameters;
   using Criterion = CountedMoves<typename Complex::Triangulation>;
-  constexpr long kMovesPerCell = 1;  // blunt shapes need a tenth of that
+  constexpr long kMovesPerCell = 1;
   long moves = kMovesPerCell * static_cast<long>(complex.number_of_cells_in_complex());
   try {
     CGAL::perturb_mesh_3(complex, domain, p::time_limit = 0, p::sliver_bound = kSliverBound,

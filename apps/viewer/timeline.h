@@ -16,8 +16,8 @@ struct Moment {
   int step = 0;  // taken so far
   State state;
   std::optional<State> previous;  // see Simulation::Snapshot
-  double level = 0;               // likewise
-  double outside_work = 0;        // likewise
+  double level = 0;               // see Simulation::Snapshot
+  double outside_work = 0;        // see Simulation::Snapshot
   double start_time = 0, h = 0;   // [s] see Side::snapshot_of
   std::string integrator;
   Grab grab;                                     // resting, after what was done at this moment

@@ -355,7 +355,7 @@ export function verdict(head: FitHead): Said {
   const { fit } = head;
   const said = head.verdict?.text ?? "";
   if (head.verdict) return { text: head.verdict.text, kind: head.verdict.good ? "good" : "bad", reasons: head.verdict.reasons.map(({ text }) => text).filter((text) => !said.includes(text)) };
-  if (fit.interrupted) return { text: "Interrupted: this is what was reached. The same command with --resume goes on.", kind: "bad", reasons: [] };
+  if (fit.interrupted) return { text: "Interrupted: this is what was reached. The same command with --resume continues.", kind: "bad", reasons: [] };
   if (!fit.success) return { text: `Not converged: ${fit.words}. Do not rely on it.`, kind: "bad", reasons: [] };
   return { text: fit.words, kind: "plain", reasons: [] };
 }
