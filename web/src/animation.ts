@@ -2,7 +2,7 @@
 import { element, labelled, messageOf, openDialog, saveFile } from "./dom";
 import { Gif } from "./gif";
 import type { Page } from "./page";
-import type { FileReply, Query, Recording, SideName } from "./protocol";
+import type { FileReply, Query, Recording, SideName, State } from "./protocol";
 import type { Store } from "./store";
 import { bytesOf } from "./upload";
 import { fileName, type Video } from "./video";
@@ -58,19 +58,29 @@ async function saveAnimation(store: Store, page: Page, side: SideName, format: F
   page.notice(`${reply.name}: ${reply.note ?? ""}`);
 }
 
-// The program repeats what was done; the promise is fulfilled when that begins.
+// The program repeats the session. The promise is fulfilled when it begins; `atEnd` is called once, after the last picture.
 async function repeatSession(store: Store, atEnd: () => void): Promise<void> {
   if (!store.steers) throw new Error("This page watches; take the steering to repeat the session.");
   const recording = await store.source.ask<Recording>({ ask: "recording" });
   if (recording.steps === 0) throw new Error("nothing has moved yet; play first, then export");
-  await store.source.request({ do: "replay", recording });
-  let began = store.state?.replaying ?? false;
-  const stop = store.on("state", ({ replaying, a }) => {
-    began ||= replaying;
-    if (replaying || !(began || a.step >= recording.steps)) return;
+  // A short session may end before the reply to the request is here, so the states are watched from before it.
+  let [began, accepted, ended] = [false, false, false];
+  const look = ({ replaying, a }: State): void => {
+    began ||= replaying || a.step < recording.steps;
+    if (ended || replaying || !accepted || !(began || a.step >= recording.steps)) return;
+    ended = true;
     stop();
     requestAnimationFrame(() => requestAnimationFrame(atEnd));
-  });
+  };
+  const stop = store.on("state", look);
+  try {
+    await store.source.request({ do: "replay", recording });
+  } catch (reason) {
+    stop();
+    throw reason;
+  }
+  accepted = true;
+  if (began && store.state) look(store.state);
 }
 
 async function videoOfSession(store: Store, video: Video): Promise<void> {

@@ -12,12 +12,16 @@ export type DrawViews = () => Layers[];
 
 const kFramesPerSecond = 30;
 const kBitsPerSecond = 8_000_000;
+const kChunk = 250; // of a recording [ms]
+const kLongestWait = 30_000; // for the first picture of a slow encoder [ms]
 const kTypes = ["video/mp4;codecs=avc1", "video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
 
 export function fileName(name: string, extension: string): string {
   const plain = name.replace(/[^\w.-]+/g, "_").replace(/^[_.]+|_+$/g, "");
   return `${plain || "aspic"}.${extension}`;
 }
+
+const hasPicture = (chunks: Blob[]): boolean => chunks.some(({ size }) => size > 0);
 
 // The views beside each other, over the background of the page.
 function compose(target: HTMLCanvasElement, views: Layers[]): void {
@@ -45,6 +49,16 @@ function compose(target: HTMLCanvasElement, views: Layers[]): void {
   });
 }
 
+// A picture in the middle of a canvas, as large as fits: a video keeps its size when the page's layout changes.
+function drawWithin(target: HTMLCanvasElement, picture: HTMLCanvasElement): void {
+  const context = target.getContext("2d")!;
+  const scale = Math.min(target.width / picture.width, target.height / picture.height);
+  const [width, height] = [scale * picture.width, scale * picture.height];
+  context.fillStyle = getComputedStyle(document.body).backgroundColor;
+  context.fillRect(0, 0, target.width, target.height);
+  context.drawImage(picture, (target.width - width) / 2, (target.height - height) / 2, width, height);
+}
+
 export function makeScreenshotButton(store: Store, page: Page, draw: DrawViews): HTMLButtonElement {
   const run = (): void => {
     const canvas = element("canvas");
@@ -66,7 +80,9 @@ export class Video {
   readonly opener: HTMLButtonElement;
   readonly indicator: HTMLButtonElement; // while it records
   private recorder: MediaRecorder | null = null;
+  private chunks: Blob[] = [];
   private started = 0;
+  private ended = Infinity; // when the reader ended it; a slow encoder may still have no picture then
 
   constructor(
     private readonly store: Store,
@@ -112,35 +128,44 @@ export class Video {
     recorder.ondataavailable = (event) => chunks.push(event.data);
     recorder.onstop = () => {
       stream.getTracks().forEach((track) => track.stop());
-      if (chunks.every((chunk) => chunk.size === 0)) return this.page.notice("The video has no picture: it was too short.", "error");
+      if (!hasPicture(chunks)) return this.page.notice("The browser made no picture of the video.", "error");
       const extension = type.startsWith("video/mp4") ? "mp4" : "webm";
       saveFile(fileName(this.store.side("a")?.scene.name ?? "", extension), new Blob(chunks, { type }));
     };
     recorder.onerror = () => {
       this.page.notice("The browser ended the video.", "error");
-      this.stop();
+      this.finish();
     };
-    recorder.start(1000);
+    recorder.start(kChunk);
     this.recorder = recorder;
-    this.started = performance.now();
-    this.follow(canvas);
+    this.chunks = chunks;
+    [this.started, this.ended] = [performance.now(), Infinity];
+    this.follow(canvas, element("canvas"));
   }
 
-  private follow(canvas: HTMLCanvasElement): void {
+  private follow(canvas: HTMLCanvasElement, picture: HTMLCanvasElement): void {
     if (!this.recorder) return;
     try {
-      compose(canvas, this.draw());
+      compose(picture, this.draw());
+      drawWithin(canvas, picture);
     } catch {
-      return this.stop(); // the views are gone
+      return this.finish(); // the views are gone
     }
+    const wait = performance.now() - this.ended;
+    if (wait >= 0 && (hasPicture(this.chunks) || wait > kLongestWait)) return this.finish();
     const seconds = Math.floor((performance.now() - this.started) / 1000);
     this.indicator.hidden = false;
     this.indicator.textContent = `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
     this.opener.textContent = "End the video";
-    requestAnimationFrame(() => this.follow(canvas));
+    requestAnimationFrame(() => this.follow(canvas, picture));
   }
 
+  // Ends the video as soon as it has a picture.
   stop(): void {
+    this.ended = Math.min(this.ended, performance.now());
+  }
+
+  private finish(): void {
     if (this.recorder?.state === "recording") this.recorder.stop();
     this.recorder = null;
     this.indicator.hidden = true;
