@@ -1,0 +1,110 @@
+#include "dynamics/modes.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "dynamics/incremental_potential.h"
+#include "linalg/cholesky.h"
+#include "linalg/smallest_eigenpairs.h"
+
+namespace aspic {
+namespace {
+
+// Of the squared rate of uniform growth, which is E / (density size^2) within a small factor. The shift makes
+// K + shift M definite for free bodies, too; round-off in lambda is the machine precision times (shift + lambda)^2 / shift.
+constexpr double kShift = 1e-4;
+constexpr double kRigid = 1e-10;  // squared rates below this fraction of that of growth are round-off
+
+struct DeadlinePassed {};
+
+// K + shift M with the rows of held vertices cleared.
+BlockSparse shifted_stiffness(IncrementalPotential& E, std::span<const double> x, double shift) {
+  for (Energy* V : E.potential()) V->begin_step({.start = x});
+  E.begin_step(x, shift, 1);
+  return E.evaluate_hessian(x, {Definiteness::exact});
+}
+
+// The squared rate [1/s^2] of uniform growth about the center of the vertices.
+double growth_rate(const Model& model, const IncrementalPotential& E) {
+  Vec3d center{};
+  for (const Vec3d& X : model.mesh.rest) center = center + (1.0 / static_cast<double>(model.mesh.rest.size())) * X;
+  double inertia = 0;
+  const std::span<const double> mass = model.mass->vertex_mass();
+  for (size_t v = 0; v < mass.size(); ++v)
+    inertia += mass[v] * dot(model.mesh.rest[v] - center, model.mesh.rest[v] - center);
+  return E.growth_stiffness() / inertia;
+}
+
+int free_dimension(const Pins& pins) {
+  double trace = 0;
+  for (int v = 0; v < pins.vertex_count(); ++v)
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3d unit{};
+      unit[axis] = 1;
+      trace += pins.free_part(v, unit)[axis];
+    }
+  return static_cast<int>(std::lround(trace));
+}
+
+Modes to_modes(Eigenpairs pairs, double growth) {
+  Modes found{.status = pairs.converged ? ModesStatus::converged : ModesStatus::unconverged, .modes = {}};
+  for (size_t k = 0; k < pairs.values.size(); ++k) {
+    const double squared_rate = pairs.values[k];
+    if (squared_rate < -kRigid * growth) return {.status = ModesStatus::indefinite, .modes = {}};
+    const bool is_rigid = squared_rate < kRigid * growth;
+    if (is_rigid) ++found.rigid;
+    found.modes.push_back(
+        {is_rigid ? 0 : std::sqrt(squared_rate) / (2 * std::numbers::pi), std::move(pairs.vectors[k])});
+  }
+  return found;
+}
+
+}  // namespace
+
+Modes vibration_modes(const Model& model, std::span<const double> x, int count, const Deadline& deadline) {
+  const Pins pins(model.pins, x);
+  IncrementalPotential E(model, pins);
+  const double growth = growth_rate(model, E);
+  ShiftedPencil pencil{.size = static_cast<int>(x.size()), .dimension = free_dimension(pins), .shift = kShift * growth};
+  if (pencil.dimension == 0) return {.status = ModesStatus::all_held, .modes = {}};
+  if (!(growth > 0) || !std::isfinite(growth)) return {.status = ModesStatus::indefinite, .modes = {}};
+
+  const BlockSparse K = shifted_stiffness(E, x, pencil.shift);
+  Cholesky cholesky;
+  cholesky.analyze(*K.pattern);
+  if (!cholesky.factorize(K))
+    return {.status = cholesky.refused() ? ModesStatus::out_of_memory : ModesStatus::indefinite, .modes = {}};
+
+  pencil.project = [&](std::span<double> u) { pins.set_zero(u); };
+  pencil.multiply_mass = [&](std::span<const double> u, std::span<double> Mu) { model.mass->multiply(u, Mu); };
+  pencil.solve = [&](std::span<const double> b, std::span<double> u) {
+    if (deadline.has_passed()) throw DeadlinePassed();
+    cholesky.solve(b, u, 0);
+  };
+  try {
+    return to_modes(smallest_eigenpairs(pencil, count), growth);
+  } catch (const DeadlinePassed&) {
+    return {.status = ModesStatus::interrupted, .modes = {}};
+  }
+}
+
+std::string message(ModesStatus status) {
+  switch (status) {
+    case ModesStatus::converged:
+      return "converged";
+    case ModesStatus::all_held:
+      return "pins hold every vertex, so nothing can vibrate; hold fewer vertices";
+    case ModesStatus::indefinite:
+      return "the stiffness matrix at the start has a negative eigenvalue or a vertex has no mass, so vibrations about "
+             "the start do not exist; begin at rest or in a stable equilibrium";
+    case ModesStatus::out_of_memory:
+      return "the factorized stiffness matrix does not fit into the free memory; use a coarser mesh";
+    case ModesStatus::unconverged:
+      return "the eigenvalue iteration did not converge; ask for another number of modes";
+    case ModesStatus::interrupted:
+      return "the time limit passed before the modes were found";
+  }
+  return "";
+}
+
+}  // namespace aspic
