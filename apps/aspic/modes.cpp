@@ -28,6 +28,7 @@ namespace fs = std::filesystem;
 struct ModesArguments {
   fs::path input, out;
   std::vector<std::string> overrides;
+  std::string about = "rest";
   int count = 10, threads = 0;  // 0: all cores
   double time_limit = 0;        // [s]; 0: none
   bool force = false, json = false;
@@ -57,6 +58,12 @@ double largest_displacement(std::span<const double> shape) {
   return std::sqrt(square);
 }
 
+void move_to_rest(Simulation& simulation) {
+  State rest = simulation.state();
+  for (size_t i = 0; i < rest.q.size(); ++i) rest.q[i] = simulation.model().mesh.rest[i / 3][static_cast<int>(i % 3)];
+  simulation.restore({.state = rest, .start = rest});
+}
+
 // Moves the simulation to start + amplitude * shape, as step `number` at the time `number`. The amplitude is halved
 // until no tet is inverted.
 Frame show_mode(Simulation& simulation, const State& start, const Mode& mode, int number) {
@@ -65,7 +72,6 @@ Frame show_mode(Simulation& simulation, const State& start, const Mode& mode, in
   while (true) {
     Simulation::Snapshot snapshot{.state = start, .start = start, .steps_taken = number};
     snapshot.state.time = number;
-    std::fill(snapshot.state.qdot.begin(), snapshot.state.qdot.end(), 0.0);
     for (size_t i = 0; i < mode.shape.size(); ++i) snapshot.state.q[i] += amplitude / largest * mode.shape[i];
     simulation.restore(snapshot);
     StepReport report = simulation.start_report();
@@ -80,7 +86,8 @@ void write_frames(const ModesArguments& arguments, Scene& scene, const Modes& fo
   const fs::path out = arguments.out.empty() ? fs::path("out") / (scene.name + "_modes") : arguments.out;
   scene.output.every = 0;
   scene.output.vtu = true;
-  const State start = scene.simulation.state();
+  State start = scene.simulation.state();
+  std::fill(start.qdot.begin(), start.qdot.end(), 0.0);
   RunDirectory directory =
       RunDirectory::create(out, scene, arguments.force ? ExistingRun::overwrite : ExistingRun::refuse);
   CsvFile table = CsvFile::create(out / "modes.csv", {"mode", "frequency", "rigid", "amplitude"});
@@ -88,8 +95,8 @@ void write_frames(const ModesArguments& arguments, Scene& scene, const Modes& fo
     const int number = static_cast<int>(k) + 1;
     const Frame frame = show_mode(scene.simulation, start, found.modes[k], number);
     directory.on_step(frame.report, scene.simulation);
-    table.append(CsvRow().add(number).add(found.modes[k].frequency).add(number <= found.rigid ? 1 : 0).add(
-        frame.amplitude));
+    table.append(
+        CsvRow().add(number).add(found.modes[k].frequency).add(number <= found.rigid ? 1 : 0).add(frame.amplitude));
   }
   table.close();
   directory.finish(scene.simulation);
@@ -100,9 +107,8 @@ void write_frames(const ModesArguments& arguments, Scene& scene, const Modes& fo
 void print_json(const Modes& found) {
   nlohmann::ordered_json list = nlohmann::json::array();
   for (size_t k = 0; k < found.modes.size(); ++k)
-    list.push_back({{"mode", k + 1},
-                    {"frequency", found.modes[k].frequency},
-                    {"rigid", static_cast<int>(k) < found.rigid}});
+    list.push_back(
+        {{"mode", k + 1}, {"frequency", found.modes[k].frequency}, {"rigid", static_cast<int>(k) < found.rigid}});
   fmt::print("{}\n", nlohmann::ordered_json{{"rigid", found.rigid}, {"modes", list}}.dump(2));
 }
 
@@ -118,8 +124,7 @@ void print_table(const Modes& found, int wanted) {
   if (found.rigid > 0)
     fmt::print("{} {} no stiffness: pins and springs leave {} free\n", found.rigid,
                found.rigid == 1 ? "mode has" : "modes have", found.rigid == 1 ? "this motion" : "these motions");
-  if (static_cast<int>(found.modes.size()) < wanted)
-    fmt::print("the model has only {} modes\n", found.modes.size());
+  if (static_cast<int>(found.modes.size()) < wanted) fmt::print("the model has only {} modes\n", found.modes.size());
 }
 
 int compute(const ModesArguments& arguments) {
@@ -129,8 +134,8 @@ int compute(const ModesArguments& arguments) {
   Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides, .mesher_seconds = arguments.time_limit});
   if (!arguments.json)
     for (const std::string& note : scene.notes) fmt::print("note: {}\n", note);
-  const Modes found =
-      vibration_modes(scene.simulation.model(), scene.simulation.state().q, arguments.count, limit);
+  if (arguments.about == "rest") move_to_rest(scene.simulation);
+  const Modes found = vibration_modes(scene.simulation.model(), scene.simulation.state().q, arguments.count, limit);
   if (found.status != ModesStatus::converged) {
     fmt::print(stderr, "error: {}: {}\n", printable(arguments.input.string()), message(found.status));
     if (found.status == ModesStatus::interrupted) return exit_time_limit;
@@ -152,8 +157,9 @@ Examples:
   aspic modes bunny.mesh --count 20 --json
   aspic view out/beam_modes                      frame 3 is mode 3
 
-The vibrations are small and undamped, about the positions at which the scene starts; pins are held. A motion without
-stiffness, such as each of the six rigid motions of a free body, has the frequency 0.
+The vibrations are small and undamped, about the rest shape without stress; pins are held. With --about start they are
+about the positions at which the scene starts, and stress there changes the frequencies. A motion without stiffness,
+such as each of the six rigid motions of a free body, has the frequency 0.
 
 Files: modes.csv (mode, frequency [Hz], rigid, amplitude [m]) and a directory like that of a run, in which step k is
 mode k, scaled to displacements of at most a tenth of the model's size. ParaView opens run.pvd.
@@ -161,6 +167,8 @@ mode k, scaled to displacements of at most a tenth of the model's size. ParaView
 Exit codes: 0 done, 2 bad input, 3 not converged, 4 --time-limit came first.)");
   command->add_option("INPUT", arguments->input, "Scene (.toml) or mesh")->required();
   command->add_option("--count", arguments->count, "Number of modes, 10 by default")->check(CLI::Range(1, 10000));
+  command->add_option("--about", arguments->about, "Positions about which to vibrate: rest (default) or start")
+      ->check(CLI::IsMember({"rest", "start"}));
   command->add_option("--set", arguments->overrides, "Override values: material.young=2e5; several may follow")
       ->allow_extra_args(false);
   command->add_option("--out", arguments->out, "Directory of the results; out/NAME_modes by default");

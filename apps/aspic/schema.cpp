@@ -9,7 +9,8 @@
 namespace aspic::cli {
 
 void add_schema(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("schema", "Prints the JSON Schema of scenes, with which editors complete them");
+  CLI::App* command =
+      app.add_subcommand("schema", "Prints the JSON Schema of scenes, with which editors complete them");
   command->footer(R"(
 Example:
   aspic schema > aspic.schema.json

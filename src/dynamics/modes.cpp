@@ -11,7 +11,8 @@ namespace aspic {
 namespace {
 
 // Of the squared rate of uniform growth, which is E / (density size^2) within a small factor. The shift makes
-// K + shift M definite for free bodies, too; round-off in lambda is the machine precision times (shift + lambda)^2 / shift.
+// K + shift M definite for free bodies, too; round-off in lambda is the machine precision times (shift + lambda)^2 /
+// shift.
 constexpr double kShift = 1e-4;
 constexpr double kRigid = 1e-10;  // squared rates below this fraction of that of growth are round-off
 
@@ -19,7 +20,7 @@ struct DeadlinePassed {};
 
 // K + shift M with the rows of held vertices cleared.
 BlockSparse shifted_stiffness(IncrementalPotential& E, std::span<const double> x, double shift) {
-  for (Energy* V : E.potential()) V->begin_step({.start = x});
+  E.tell_potential({.start = x});
   E.begin_step(x, shift, 1);
   return E.evaluate_hessian(x, {Definiteness::exact});
 }
@@ -95,8 +96,9 @@ std::string message(ModesStatus status) {
     case ModesStatus::all_held:
       return "pins hold every vertex, so nothing can vibrate; hold fewer vertices";
     case ModesStatus::indefinite:
-      return "the stiffness matrix at the start has a negative eigenvalue or a vertex has no mass, so vibrations about "
-             "the start do not exist; begin at rest or in a stable equilibrium";
+      return "the stiffness matrix has a negative eigenvalue, or a vertex has no mass, so there are no vibrations "
+             "about "
+             "these positions; choose the rest shape or a stable equilibrium";
     case ModesStatus::out_of_memory:
       return "the factorized stiffness matrix does not fit into the free memory; use a coarser mesh";
     case ModesStatus::unconverged:

@@ -16,11 +16,11 @@ struct Mode {
 
 enum class ModesStatus {
   converged,
-  all_held,      // pins leave nothing to vibrate
-  indefinite,    // the positions are unstable, or a vertex has neither mass nor stiffness
-  out_of_memory, // the factorization needs more memory than is free
+  all_held,       // pins leave nothing to vibrate
+  indefinite,     // the positions are unstable, or a vertex has neither mass nor stiffness
+  out_of_memory,  // the factorization needs more memory than is free
   unconverged,
-  interrupted,   // the deadline passed
+  interrupted,  // the deadline passed
 };
 
 struct Modes {

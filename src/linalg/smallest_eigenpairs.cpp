@@ -1,7 +1,7 @@
 #include "linalg/smallest_eigenpairs.h"
 
-#include <Eigen/Eigenvalues>
 #include <Spectra/SymGEigsShiftSolver.h>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -106,7 +106,7 @@ Found lanczos(const ShiftedPencil& pencil, int count, int subspace, const Matrix
   ScaledMass M(pencil, mass);
   DeflatedInverse inverse(pencil, mass / size, known);
   Spectra::SymGEigsShiftSolver<DeflatedInverse, ScaledMass, Spectra::GEigsMode::ShiftInvert> solver(inverse, M, count,
-                                                                                                  subspace, 0);
+                                                                                                    subspace, 0);
   solver.init(start.data());
   solver.compute(Spectra::SortRule::LargestMagn, kRestarts, kTolerance, Spectra::SortRule::SmallestAlge);
   if (solver.info() != Spectra::CompInfo::Successful) return {.converged = false, .values = {}, .vectors = {}};
@@ -159,8 +159,7 @@ Found largest(const ShiftedPencil& pencil, int count, int subspace) {
     const int wanted = std::max(1, count - static_cast<int>(found.values.size()));
     const Found more = lanczos(pencil, wanted, subspace, found.vectors);
     if (!more.converged) return more;
-    const bool is_complete =
-        found.values.size() >= count && more.values[0] <= found.values[count - 1] * (1 + kBelow);
+    const bool is_complete = found.values.size() >= count && more.values[0] <= found.values[count - 1] * (1 + kBelow);
     if (is_complete) return found;
     found = merged(found, more);
   }

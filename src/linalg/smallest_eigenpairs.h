@@ -12,7 +12,7 @@ struct ShiftedPencil {
   int size = 0;
   int dimension = 0;  // of the subspace
   double shift = 0;
-  std::function<void(std::span<double> x)> project;                                  // onto the subspace
+  std::function<void(std::span<double> x)> project;                                   // onto the subspace
   std::function<void(std::span<const double> x, std::span<double> y)> multiply_mass;  // y = M x
   std::function<void(std::span<const double> b, std::span<double> x)> solve;          // (K + shift M) x = b
 };

@@ -75,8 +75,7 @@ TEST(SmallestEigenpairs, FindEveryCopyOfRepeatedValues) {
   const int n = 400;
   VectorXd values(n);
   for (int i = 0; i < n; ++i) values[i] = i < 6 ? 0 : i < 9 ? 1 : 2 + i / 2;
-  const Eigenpairs found =
-      smallest_eigenpairs(pencil_of(values.asDiagonal(), MatrixXd::Identity(n, n), 1e-2), 12);
+  const Eigenpairs found = smallest_eigenpairs(pencil_of(values.asDiagonal(), MatrixXd::Identity(n, n), 1e-2), 12);
   ASSERT_TRUE(found.converged);
   for (int k = 0; k < 12; ++k) EXPECT_NEAR(found.values[k], values[k], 1e-9) << k;
 }

@@ -93,7 +93,8 @@ Json without(const std::vector<std::string>& keys) {
   return {{"properties", properties}};
 }
 
-// Exactly one of: a group with its required keys and none of the other groups, or no group at all where that is allowed.
+// Exactly one of: a group with its required keys and none of the other groups, or no group at all where that is
+// allowed.
 Json one_group(const Schema& all, const Alternatives& rule) {
   const auto required_of = [&](const std::vector<std::string>& group) {
     Json names = Json::array();
@@ -132,10 +133,8 @@ Json object(const Schema& all, const Section& section) {
     properties[key.name] = property(key);
     if (key.required && !is_alternative(rule, key.name)) required.push_back(key.name);
   }
-  Json schema = {{"type", "object"},
-                 {"description", section.about},
-                 {"properties", properties},
-                 {"additionalProperties", false}};
+  Json schema = {
+      {"type", "object"}, {"description", section.about}, {"properties", properties}, {"additionalProperties", false}};
   if (!required.empty()) schema["required"] = required;
   if (rule) schema["oneOf"] = one_group(all, *rule);
   return schema;
