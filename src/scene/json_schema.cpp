@@ -43,17 +43,36 @@ Json list_of(const Json& items, int count = 0) {  // 0: any length
   return schema;
 }
 
-Json any_of(const Json& schemas) { return schemas.size() == 1 ? schemas[0] : Json{{"anyOf", schemas}}; }
+// A value that fits one of the schemas. Most keywords apply to values of one type alone, so schemas of different types
+// become one: a validator can then name the key at fault.
+Json any_of(const Json& schemas) {
+  if (schemas.size() == 1) return schemas[0];
+  Json merged, types = Json::array();
+  for (const Json& schema : schemas)
+    for (const auto& [keyword, value] : schema.items()) {
+      if (keyword == "type") {
+        types.push_back(value);
+      } else if (keyword == "enum" || (merged.contains(keyword) && merged[keyword] != value)) {
+        return {{"anyOf", schemas}};
+      } else {
+        merged[keyword] = value;
+      }
+    }
+  merged["type"] = types;
+  return merged;
+}
 
-Json reference(const std::string& section) { return {{"$ref", "#/definitions/" + section}}; }
+Json table_of(const std::string& section) {
+  return {{"type", "object"}, {"allOf", {{{"$ref", "#/definitions/" + section}}}}};
+}
 
 // One schema for each kind of value that the key accepts.
 Json kinds(const Key& key) {
   const Json number = in_range("number", key.range), integer = in_range("integer", key.range);
   const Json formula = {{"type", "string"}, {"minLength", 1}};
-  const Json text = key.choices.empty() ? formula : Json{{"enum", key.choices}};
+  const Json text = key.choices.empty() ? formula : Json{{"type", "string"}, {"enum", key.choices}};
   const Json numbers = list_of(number, 3), formulas = list_of(any_of({number, formula}), 3);
-  const Json table = key.table.empty() ? Json() : reference(key.table);
+  const Json table = key.table.empty() ? Json() : table_of(key.table);
   const std::pair<unsigned, Json> all[] = {
       {kInteger, integer},
       {kNumber, number},
@@ -77,8 +96,7 @@ Json kinds(const Key& key) {
 }
 
 Json property(const Key& key) {
-  const Json accepted = kinds(key);
-  Json schema = accepted.size() == 1 && accepted[0].contains("$ref") ? Json{{"allOf", accepted}} : any_of(accepted);
+  Json schema = any_of(kinds(key));
   std::string text = key.meaning;
   if (!key.unit.empty()) text += " [" + key.unit + "]";
   if (!key.reason.empty()) text += " (default: " + key.reason + ")";
@@ -87,36 +105,24 @@ Json property(const Key& key) {
   return schema;
 }
 
-Json without(const std::vector<std::string>& keys) {
-  Json properties = Json::object();
-  for (const std::string& key : keys) properties[key] = false;
-  return {{"properties", properties}};
-}
-
-// Exactly one of: a group with its required keys and none of the other groups, or no group at all where that is
-// allowed.
-Json one_group(const Schema& all, const Alternatives& rule) {
-  const auto required_of = [&](const std::vector<std::string>& group) {
-    Json names = Json::array();
-    for (const std::string& name : group)
-      if (all.key(rule.section, name).required) names.push_back(name);
-    return names;
-  };
-  std::vector<std::string> every;
-  Json choices = Json::array();
+// A key of one group excludes the keys of the others and needs the required ones of its own.
+void add_alternatives(const Schema& all, const Alternatives& rule, Json& schema) {
+  Json any = Json::array();
+  bool is_needed = rule.required;
   for (const auto& group : rule.groups) {
-    every.insert(every.end(), group.begin(), group.end());
-    std::vector<std::string> others;
+    Json excluded = Json::object(), required = Json::array();
     for (const auto& other : rule.groups)
-      if (&other != &group) others.insert(others.end(), other.begin(), other.end());
-    Json choice = without(others), any = Json::array();
-    for (const std::string& name : group) any.push_back({{"required", {name}}});
-    choice["anyOf"] = any;
-    if (const Json required = required_of(group); !required.empty()) choice["required"] = required;
-    choices.push_back(choice);
+      if (&other != &group)
+        for (const std::string& name : other) excluded[name] = false;
+    for (const std::string& name : group)
+      if (all.key(rule.section, name).required) required.push_back(name);
+    for (const std::string& name : group) {
+      schema["dependencies"][name] = {{"properties", excluded}, {"required", required}};
+      any.push_back({{"required", {name}}});
+    }
+    is_needed = is_needed || (&group == &rule.groups.front() && !required.empty());
   }
-  if (!rule.required && required_of(rule.groups.front()).empty()) choices.push_back(without(every));
-  return choices;
+  if (is_needed) schema["anyOf"] = any;
 }
 
 bool is_alternative(const Alternatives* rule, const std::string& name) {
@@ -133,10 +139,9 @@ Json object(const Schema& all, const Section& section) {
     properties[key.name] = property(key);
     if (key.required && !is_alternative(rule, key.name)) required.push_back(key.name);
   }
-  Json schema = {
-      {"type", "object"}, {"description", section.about}, {"properties", properties}, {"additionalProperties", false}};
+  Json schema = {{"description", section.about}, {"properties", properties}, {"additionalProperties", false}};
   if (!required.empty()) schema["required"] = required;
-  if (rule) schema["oneOf"] = one_group(all, *rule);
+  if (rule) add_alternatives(all, *rule, schema);
   return schema;
 }
 
@@ -144,7 +149,7 @@ Json object(const Schema& all, const Section& section) {
 
 std::string scene_json_schema() {
   const Schema& all = scene_schema();
-  Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "Aspic scene"}};
+  Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "Aspic scene"}, {"type", "object"}};
   Json definitions = Json::object();
   for (const Section& section : all.sections) {
     if (section.name == "scene")
