@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "dynamics/incremental_potential.h"
 #include "linalg/cholesky.h"
@@ -25,15 +26,25 @@ BlockSparse shifted_stiffness(IncrementalPotential& E, std::span<const double> x
   return E.evaluate_hessian(x, {Definiteness::exact});
 }
 
-// The squared rate [1/s^2] of uniform growth about the center of the vertices.
+// The squared rate u' K u / u' M u [1/s^2] of uniform growth u of the rest shape. K is that of the elasticity alone:
+// stiff springs, such as those that stand for pins, say nothing of the lowest modes.
 double growth_rate(const Model& model, const IncrementalPotential& E) {
   Vec3d center{};
-  for (const Vec3d& X : model.mesh.rest) center = center + (1.0 / static_cast<double>(model.mesh.rest.size())) * X;
-  double inertia = 0;
-  const std::span<const double> mass = model.mass->vertex_mass();
-  for (size_t v = 0; v < mass.size(); ++v)
-    inertia += mass[v] * dot(model.mesh.rest[v] - center, model.mesh.rest[v] - center);
-  return E.growth_stiffness() / inertia;
+  for (const Vec3d& X : model.mesh.rest) center = center + (1.0 / model.mesh.vertex_count()) * X;
+  std::vector<double> rest, growth;
+  for (const Vec3d& X : model.mesh.rest)
+    for (int axis = 0; axis < 3; ++axis) {
+      rest.push_back(X[axis]);
+      growth.push_back(X[axis] - center[axis]);
+    }
+  BlockSparse K(E.pattern());
+  for (size_t k = 0; k < model.elasticity.size(); ++k) E.potential()[k].add_hessian(rest, 1, {Definiteness::exact}, K);
+  std::vector<double> force(growth.size()), momentum(growth.size());
+  K.multiply(growth, force);
+  model.mass->multiply(growth, momentum);
+  const double stiffness = std::inner_product(growth.begin(), growth.end(), force.begin(), 0.0);
+  const double inertia = std::inner_product(growth.begin(), growth.end(), momentum.begin(), 0.0);
+  return (stiffness > 0 ? stiffness : E.growth_stiffness()) / inertia;
 }
 
 int free_dimension(const Pins& pins) {
@@ -80,7 +91,7 @@ Modes vibration_modes(const Model& model, std::span<const double> x, int count, 
   pencil.multiply_mass = [&](std::span<const double> u, std::span<double> Mu) { model.mass->multiply(u, Mu); };
   pencil.solve = [&](std::span<const double> b, std::span<double> u) {
     if (deadline.has_passed()) throw DeadlinePassed();
-    cholesky.solve(b, u, 0);
+    cholesky.solve(b, u, 1e-12);
   };
   try {
     return to_modes(smallest_eigenpairs(pencil, count), growth);
