@@ -26,6 +26,7 @@ LIBRARIES = {  # first part of a third-party header: the files that may include 
     "muParser.h": r"src/scene/expression\.cpp",
     "toml++": r"src/scene/.*\.cpp",
     "nlohmann": r"src/scene/.*\.cpp|apps/.*|tests/.*|.*_test\.cpp",
+    "expat.h": r"src/io/.*\.cpp",
     "zlib.h": r"src/io/.*\.cpp|.*_test\.h",
     "boost": r"apps/viewer/server\w*\.(h|cpp)|.*_test\.cpp",
     "CGAL": r"apps/mesh/.*",

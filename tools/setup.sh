@@ -8,7 +8,7 @@ log_dir=$root/build/log
 core_programs="g++ cmake ninja-build:ninja ccache"
 plot_programs="gnuplot-nox:gnuplot"
 core_packages="libeigen3-dev libspectra-dev libmetis-dev libmuparser-dev libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
-  libfmt-dev zlib1g-dev"
+  libfmt-dev zlib1g-dev libexpat1-dev"
 mesher_packages="libcgal-dev"
 viewer_programs="nodejs:node npm"
 viewer_packages="libboost-dev"
