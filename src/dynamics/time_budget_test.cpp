@@ -50,7 +50,7 @@ const std::vector<std::string>& budgeted_integrators() {
     std::vector<std::string> found;
     for (const std::string& name : integrator_names()) {
       const auto integrator = make_integrator(name);
-      if (integrator->is_implicit() && !integrator->takes_one_iteration()) found.push_back(name);
+      if (integrator->facts().is_implicit && !integrator->facts().takes_one_iteration) found.push_back(name);
     }
     return found;
   }();
@@ -122,7 +122,7 @@ TEST(TimeBudget, IsRefusedInWordsWhereItMeansNothing) {
   using testing::AllOf, testing::HasSubstr;
   for (const char* integrator : {"rk4", "linearly_implicit_euler"})
     EXPECT_THAT(refusal({.integrator = integrator, .solver = {}}), AllOf(HasSubstr("budget"), HasSubstr(integrator)));
-  EXPECT_THAT(refusal({.adaptive = {.tolerance = 1e-3}, .solver = {}}), HasSubstr("time.adaptive"));
+  EXPECT_THAT(refusal({.adaptive = {.tolerance = 1e-3}, .solver = {}}), HasSubstr("adaptive"));
   EXPECT_THAT(refusal({.solver = {.minimize = {}, .time_budget = -1}}), HasSubstr("positive"));
   SimulationOptions options;
   options.solver.minimize.line_search.test = DecreaseTest::none;
