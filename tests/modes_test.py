@@ -90,7 +90,8 @@ class Modes(CommandLine):
         self.assertEqual([row["mode"] for row in rows], ["1", "2", "3"])
         self.assertEqual(len(list((self.folder / "out/beam_modes/frames").iterdir())), 4)
         self.assertIn("holds a run already", self.aspic("modes", "beam.toml", code=2).stderr)
-        self.assertIn("before its first checkpoint",
+        self.aspic("report", "out/beam_modes", "-o", "modes.html")
+        self.assertIn("Steps are modes",
                       self.aspic("run", "beam.toml", "--out", "out/beam_modes", "--resume", code=2).stderr)
 
     def test_start_contributes_its_stress(self):

@@ -84,6 +84,7 @@ Frame show_mode(Simulation& simulation, const State& start, const Mode& mode, in
 
 void write_frames(const ModesArguments& arguments, Scene& scene, const Modes& found) {
   const fs::path out = arguments.out.empty() ? fs::path("out") / (scene.name + "_modes") : arguments.out;
+  scene.resolved += "# Steps are modes: this run cannot be continued.\n";  // another scene, so --resume refuses
   scene.output.every = 0;
   scene.output.vtu = true;
   State start = scene.simulation.state();
@@ -100,8 +101,6 @@ void write_frames(const ModesArguments& arguments, Scene& scene, const Modes& fo
   }
   table.close();
   directory.finish(scene.simulation);
-  std::error_code ignored;  // no run can continue from a mode
-  fs::remove(out / "checkpoint.bin", ignored);
 }
 
 void print_json(const Modes& found) {

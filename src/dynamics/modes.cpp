@@ -1,6 +1,8 @@
 #include "dynamics/modes.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -15,7 +17,7 @@ namespace {
 // K + shift M definite for free bodies, too; round-off in lambda is the machine precision times (shift + lambda)^2 /
 // shift.
 constexpr double kShift = 1e-4;
-constexpr double kRigid = 1e-10;  // squared rates below this fraction of that of growth are round-off
+constexpr double kRigid = 1e-10;  // the same fraction of squared rates that count as zero
 
 struct DeadlinePassed {};
 
@@ -58,12 +60,22 @@ int free_dimension(const Pins& pins) {
   return static_cast<int>(std::lround(trace));
 }
 
-Modes to_modes(Eigenpairs pairs, double growth) {
+// The squared rates that double precision cannot tell from zero: the machine precision times the largest one, for which
+// each vertex has a bound.
+double round_off(const Model& model, const Pins& pins, const BlockSparse& K) {
+  double largest = 0;
+  for (int v = 0; v < pins.vertex_count(); ++v)
+    if (!pins.holds(v))
+      largest = std::max(largest, trace(K.block[K.pattern->diagonal(v)]) / model.mass->vertex_mass()[v]);
+  return 16 * std::numeric_limits<double>::epsilon() * largest;
+}
+
+Modes to_modes(Eigenpairs pairs, double zero) {
   Modes found{.status = pairs.converged ? ModesStatus::converged : ModesStatus::unconverged, .modes = {}};
   for (size_t k = 0; k < pairs.values.size(); ++k) {
     const double squared_rate = pairs.values[k];
-    if (squared_rate < -kRigid * growth) return {.status = ModesStatus::indefinite, .modes = {}};
-    const bool is_rigid = squared_rate < kRigid * growth;
+    if (squared_rate < -zero) return {.status = ModesStatus::indefinite, .modes = {}};
+    const bool is_rigid = squared_rate < zero;
     if (is_rigid) ++found.rigid;
     found.modes.push_back(
         {is_rigid ? 0 : std::sqrt(squared_rate) / (2 * std::numbers::pi), std::move(pairs.vectors[k])});
@@ -94,7 +106,7 @@ Modes vibration_modes(const Model& model, std::span<const double> x, int count, 
     cholesky.solve(b, u, 1e-12);
   };
   try {
-    return to_modes(smallest_eigenpairs(pencil, count), growth);
+    return to_modes(smallest_eigenpairs(pencil, count), std::max(kRigid * growth, round_off(model, pins, K)));
   } catch (const DeadlinePassed&) {
     return {.status = ModesStatus::interrupted, .modes = {}};
   }
@@ -107,7 +119,8 @@ std::string message(ModesStatus status) {
     case ModesStatus::all_held:
       return "pins hold every vertex, so nothing can vibrate; hold fewer vertices";
     case ModesStatus::indefinite:
-      return "the stiffness matrix has a negative eigenvalue, or a vertex has no mass, so there are no vibrations "
+      return "the stiffness matrix is zero or has a negative eigenvalue, or a vertex has no mass, so there are no "
+             "vibrations "
              "about "
              "these positions; choose the rest shape or a stable equilibrium";
     case ModesStatus::out_of_memory:

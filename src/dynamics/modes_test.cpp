@@ -32,6 +32,23 @@ TEST(VibrationModes, SingleTetHasSixOthers) {
   EXPECT_EQ(found.modes.size(), 12u);
 }
 
+TEST(VibrationModes, BodiesOfVeryDifferentStiffnessAreAllRigid) {
+  TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2});
+  const int tets = mesh.tet_count(), vertices = mesh.vertex_count();
+  for (int t = 0; t < tets; ++t) {
+    Tet tet = mesh.tets[t];
+    for (int& v : tet) v += vertices;
+    mesh.tets.push_back(tet);
+  }
+  for (int v = 0; v < vertices; ++v) mesh.rest.push_back(mesh.rest[v] + Vec3d{{3, 0, 0}});
+  Model model = make_model(mesh, {.young = 1e6, .density = 1e-3});
+  for (int t = tets; t < 2 * tets; ++t) model.density[t] = 1e4;
+  model.mass = std::make_unique<MassMatrix>(model.mesh, model.density, MassKind::consistent);
+  const Modes found = modes_at_rest(model, 13);
+  ASSERT_EQ(found.status, ModesStatus::converged);
+  EXPECT_EQ(found.rigid, 12);
+}
+
 // Quarter turns map this mesh to itself, so both bending directions have one frequency.
 TEST(VibrationModes, SquareColumnHasPairs) {
   Model model = make_model(make_box({{-0.5, -0.5, 0}}, {{0.5, 0.5, 6}}, {2, 2, 12}, BoxCut::five), {});

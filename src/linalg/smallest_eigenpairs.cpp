@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kTolerance = 1e-10;      // residual of an eigenpair of (K + shift M)^-1 M, relative to its eigenvalue
-constexpr double kProbeTolerance = 1e-3;  // where only the eigenvalue counts, whose error is the square of this
+constexpr double kProbeTolerance = 1e-6;  // where only the eigenvalue counts, whose error is the square of this
 constexpr double kBelow = 1e-7;           // relative difference of eigenvalues that counts as smaller
 constexpr int kRestarts = 500;
 
