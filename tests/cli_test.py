@@ -116,7 +116,7 @@ class CommandLine(unittest.TestCase):
 class Help(CommandLine):
     def test_every_level_has_examples(self):
         for arguments in ([], ["run"], ["check"], ["convert"], ["materials"], ["minimize"], ["capture"], ["fit"], ["fit-curves"],
-                          ["closed-loop"], ["verify"], ["completion"]):
+                          ["closed-loop"], ["verify"], ["modes"], ["schema"], ["completion"]):
             text = self.aspic(*arguments, "--help").stdout
             self.assertIn("Examples:", text)
             self.assertIn(" ".join(["  aspic", *arguments]), text)

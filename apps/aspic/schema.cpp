@@ -12,7 +12,7 @@ void add_schema(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("schema", "Prints the JSON Schema of scenes, with which editors complete them");
   command->footer(R"(
-Example:
+Examples:
   aspic schema > aspic.schema.json
 
 With '#:schema ./aspic.schema.json' as its first line a scene is completed and checked while it is written, in every
