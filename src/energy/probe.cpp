@@ -268,7 +268,7 @@ class ProbeTerm : public Probe {
 
 }  // namespace
 
-PlacedTip::PlacedTip(const TipPose& pose) : pose(with_unit_axis(pose)), turn(rotation_matrix(pose.rotation)) {}
+PlacedTip::PlacedTip(const TipPose& wanted) : pose(with_unit_axis(wanted)), turn(rotation_matrix(wanted.rotation)) {}
 
 std::unique_ptr<Probe> make_probe(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip,
                                   const TipPose& touch) {
