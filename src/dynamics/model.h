@@ -21,13 +21,16 @@ struct BodyRange {
   int first_tet = 0, tet_count = 0;
 };
 
+// Where a point moves: its position at the time [s], from that at the start [m].
+using Motion = std::function<Vec3d(const Vec3d& start, double time)>;
+
 // Vertices whose displacements along the directions are prescribed exactly, as those of x(t) = motion(x at the start,
 // t). All the directions that hold one vertex, those of several pins included, are linearly independent.
 struct Pin {
   std::string name;
   std::vector<int> vertices;
-  std::function<Vec3d(const Vec3d& start, double time)> motion;  // empty: fixed where it starts
-  std::vector<Vec3d> directions = {};                            // orthonormal; empty: all
+  Motion motion;                       // empty: fixed where it starts
+  std::vector<Vec3d> directions = {};  // orthonormal; empty: all
 };
 
 struct Model {

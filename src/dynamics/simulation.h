@@ -39,6 +39,7 @@ class Simulation {
   // options that the integrator has no use for, and for a model that cannot be simulated: a vertex without mass in
   // dynamics, a start with infinite energy.
   Simulation(Model model, State initial, SimulationOptions options);
+  explicit Simulation(Model model, SimulationOptions options = {});  // starts at rest, see at_rest()
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;

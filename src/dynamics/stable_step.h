@@ -3,9 +3,11 @@
 #include <span>
 #include <string_view>
 
-#include "dynamics/incremental_potential.h"
-
 namespace aspic {
+
+class IncrementalPotential;
+class Pins;
+struct Model;
 
 // The longest step with which a scheme bears x'' + c x' + k x = 0 [s]; infinite where c = k = 0. [1/s, 1/s^2]
 double symplectic_euler_limit(double c, double k);

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/energy_bound.h"
 #include "dynamics/initial_guess.h"
 #include "math/small.h"
 #include "optimize/minimize.h"
@@ -28,6 +27,15 @@ struct Resultants {
   std::vector<Resultant> bodies;  // of each body: all pins and loads on it, the mean over the step; 0 in equilibrium
   double time = 0;                // over which the means are taken so far [s]
 };
+
+// Whether a step of backward Euler kept the bound that the scheme guarantees.
+enum class EnergyBound {
+  none,            // another scheme, or a step that was dropped
+  not_guaranteed,  // the minimiser ended above E at q_s, or q_s has no energy
+  holds,
+  broken,
+};
+std::string_view to_string(EnergyBound bound);
 
 struct StepReport : Work {  // of all its solves, and of what is reported here
   int step = 0;             // 1 for the first
