@@ -6,7 +6,7 @@
 #include <cstdio>
 
 int main() {
-  const double edge = 0.1;  // [m]
+  constexpr double edge = 0.1;  // [m]
   aspic::Simulation simulation(aspic::ModelBuilder(aspic::make_box({0, 0, 0}, {edge, edge, edge}, {4, 4, 4}))
                                    .material("neo_hookean", {.young = 5e3 /* [Pa] */, .poisson = 0.4})
                                    .density(1000)           // [kg/m^3]

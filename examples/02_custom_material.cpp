@@ -35,8 +35,8 @@ struct TissueEnergy {
 using Tissue = FromEnergy<TissueEnergy>;
 
 int main() {
-  const double length = 0.1, width = 0.02;         // [m]
-  const double pull = 0.06, seconds = 1;           // how far the end is pulled [m], how long it takes [s]
+  constexpr double length = 0.1, width = 0.02;     // [m]
+  constexpr double pull = 0.06, seconds = 1;       // how far the end is pulled [m], how long it takes [s]
   const MaterialParameters skin{{2e4, 8e4}, {3}};  // the same in every tet; it need not be
   Model model = ModelBuilder(make_box({0, 0, 0}, {length, width, width}, {10, 2, 2}))
                     .material(custom_material<Tissue>("tissue", 1), skin)
