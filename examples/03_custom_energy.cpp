@@ -13,17 +13,17 @@ class Floor : public Energy {
   explicit Floor(double stiffness) : k_(stiffness) {}
   std::string_view name() const override { return "floor"; }
 
-  double value(Positions x) const override {
+  double value(Positions x, const Context&) const override {
     double V = 0;
     for (size_t i = 1; i < x.size(); i += 3) V += 0.5 * k_ * depth(x[i]) * depth(x[i]);
     return V;
   }
-  void add_gradient(Positions x, double scale, std::span<double> g) const override {
+  void add_gradient(Positions x, const Context&, double scale, std::span<double> g) const override {
     for (size_t i = 1; i < x.size(); i += 3) g[i] += scale * k_ * depth(x[i]);
   }
   // A vertex is coupled to nothing but itself, so the diagonal blocks are enough.
   void bind(const BlockPattern& pattern) override { pattern_ = &pattern; }
-  int add_hessian(Positions x, double scale, const Projection&, BlockSparse& H) const override {
+  int add_hessian(Positions x, const Context&, double scale, const Projection&, BlockSparse& H) const override {
     for (int v = 0; v < pattern_->rows(); ++v)
       if (depth(x[3 * v + 1]) < 0) H.block[pattern_->diagonal(v)](1, 1) += scale * k_;
     return 0;  // nothing had to be projected: the energy is convex

@@ -45,10 +45,10 @@ int main() {
       solver->solve(g, d, 0);  // H d = g, then turned round
       double slope = 0;
       for (size_t i = 0; i < d.size(); ++i) slope -= g[i] * d[i];
-      const double value = E.value(q);
+      const Evaluation at_q = E.evaluate(q);
       for (double alpha = 1;; alpha *= 0.5) {
         for (size_t i = 0; i < q.size(); ++i) trial[i] = q[i] - alpha * d[i];
-        if (E.value(trial) <= value + 1e-4 * alpha * slope + E.value_round_off() || alpha < 1e-10) break;
+        if (E.value(trial) <= at_q.value + at_q.round_off + 1e-4 * alpha * slope || alpha < 1e-10) break;
       }
       q = trial;
     }

@@ -153,13 +153,13 @@ class Terrace : public Energy {
  public:
   explicit Terrace(double height /* [J] */) : height_(height) {}
   std::string_view name() const override { return "terrace"; }
-  double value(Positions x) const override {
+  double value(Positions x, const Context&) const override {
     double sum = 0;
     for (size_t i = 0; i < x.size(); i += 3) sum += x[i] < 0 ? 0 : height_;
     return sum;
   }
-  void add_gradient(Positions, double, std::span<double>) const override {}
-  int add_hessian(Positions, double, const Projection&, BlockSparse&) const override { return 0; }
+  void add_gradient(Positions, const Context&, double, std::span<double>) const override {}
+  int add_hessian(Positions, const Context&, double, const Projection&, BlockSparse&) const override { return 0; }
 
  private:
   double height_;

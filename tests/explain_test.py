@@ -163,9 +163,8 @@ class Explain(Explanations):
     def test_a_tolerance_below_round_off(self):
         self.scene(solver="[solver]\ntolerance = 1e-17")
         self.assertIn("round_off", self.run_scene())  # as good as converged, and called what it is
-        for method in ('"lbfgs"\npreconditioner = "mass"', '"vertex_descent"'):
-            self.scene(solver=f'[solver]\ntolerance = 1e-17\nmethod = {method}')
-            self.assert_cured(self.run_scene(code=3), "round-off alone is", change="solver.tolerance=")
+        self.scene(solver='[solver]\ntolerance = 1e-17\nmethod = "lbfgs"\npreconditioner = "mass"')
+        self.assert_cured(self.run_scene(code=3), "round-off alone is", change="solver.tolerance=")
         self.scene(solver='[solver]\ntolerance = 1e-17\nmethod = "gradient_descent"')
         self.assert_cured(self.run_scene(code=3), "without the Hessian", change="solver.method=")
 

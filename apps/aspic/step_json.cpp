@@ -38,7 +38,6 @@ std::string step_json(const StepReport& report, const Explanation& why, const Si
       {"hessians", report.hessians},
       {"projected_hessians", report.projected_hessians},
       {"elements", report.elements},
-      {"vertex_sweeps", report.vertex_sweeps},
       {"factorizations", report.factorizations},
       {"linear_iterations", report.linear_iterations},
       {"products", report.products},

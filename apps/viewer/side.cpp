@@ -128,8 +128,8 @@ Progress Side::complete(const StepReport& report) {
 
 Progress Side::step(const Consent& go_on) {
   iterations_.begin();
-  steered_.mouse->set(acting(), time());
-  steered_.tip->set(acting_poke(), time());
+  steered_.mouse->set(acting());
+  steered_.tip->set(acting_poke());
   const auto observe = [&](const LiveIteration& live) {
     iterations_.add(live);
     return go_on();
@@ -148,8 +148,8 @@ Progress Side::iterate(const Consent& go_on) {
   int count = 0;
   iterations_.begin();
   std::vector<double> iterate;
-  steered_.mouse->set(acting(), time());
-  steered_.tip->set(acting_poke(), time());
+  steered_.mouse->set(acting());
+  steered_.tip->set(acting_poke());
   const auto observe = [&](const LiveIteration& live) {
     if (count == shown) iterate.assign(live.x_next.begin(), live.x_next.end());
     if (count++ > shown) return false;
@@ -192,8 +192,8 @@ StepReport Side::repeat(int step, const IterationObserver& observe, const Consen
         fmt::format("step {} was taken with other settings or pins than now, so it cannot be repeated", step));
   const Simulation::Snapshot now = simulation().snapshot();
   simulated().restore(snapshot_of(*before));
-  steered_.mouse->set(after ? after->acted : acting(), before->state.time);
-  steered_.tip->set(after ? after->poked : acting_poke(), before->state.time);
+  steered_.mouse->set(after ? after->acted : acting());
+  steered_.tip->set(after ? after->poked : acting_poke());
   const StepReport report = simulated().step(observe, go_on);
   simulated().restore(now);
   let_mouse_rest();
@@ -217,7 +217,7 @@ Side::Change Side::prepared(const std::string& override_text, const Announce& an
   change.reloaded = load_steered(steered_.path, change.overrides, announce, steered_.most_tets);
   if (change.reloaded->scene.simulation.model().mesh.vertex_count() != model().mesh.vertex_count())
     throw InvalidInput(fmt::format("{} changes the mesh; load the scene anew with it", override_text));
-  change.reloaded->tip->set(resting_poke(), time());
+  change.reloaded->tip->set(resting_poke());
   return change;
 }
 

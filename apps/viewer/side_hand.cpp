@@ -33,7 +33,7 @@ Grab Side::acting() const {
   return grab;
 }
 
-void Side::let_mouse_rest() { steered_.mouse->set(resting(), time()); }
+void Side::let_mouse_rest() { steered_.mouse->set(resting()); }
 
 void Side::change_grab(const Grab& grab) {
   leave_step();

@@ -21,12 +21,12 @@ Poke Side::acting_poke() const {
   return poke;
 }
 
-void Side::let_tip_rest() { steered_.tip->set(resting_poke(), time()); }
+void Side::let_tip_rest() { steered_.tip->set(resting_poke()); }
 
 void Side::change_poke(const Poke& poke) {
   const std::vector<double>& q = simulation().state().q;
   const double before = steered_.tip->value(q);
-  steered_.tip->set(poke, time());
+  steered_.tip->set(poke);
   leave_step();
   tip_jumps_ += steered_.tip->value(q) - before;
   poke_ = poke;

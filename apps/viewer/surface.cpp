@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "energy/incidence.h"
+#include "mesh/incidence.h"
 #include "mesh/surface.h"
 #include "mesh/tet_shape.h"
 #include "mesh/topology.h"

@@ -13,7 +13,7 @@ constexpr double kAccelerationTolerance = 1e-12;  // the mass matrix is well con
 void Acceleration::add_damping(const StepTools& tools, std::span<const double> q, std::span<const double> v, double h,
                                double scale) {
   for (size_t i = 0; i < q.size(); ++i) drift_[i] = q[i] + h * v[i];
-  for (const Energy* D : tools.E.damping()) D->add_gradient(drift_, scale, damping_);
+  for (const ActiveTerm& D : tools.E.damping()) D.add_gradient(drift_, scale, damping_);
 }
 
 bool Acceleration::solve(const StepTools& tools, double time, std::span<const double> q, std::span<const double> v,
@@ -22,9 +22,9 @@ bool Acceleration::solve(const StepTools& tools, double time, std::span<const do
   const size_t n = q.size();
   for (auto* w : {&gradient_, &damping_, &drift_, &force_, &scratch_}) w->assign(n, 0.0);
   const StepContext context{q, tools.h, time};
-  tell_potential(tools.E, context);
-  tell_damping(tools.E, context);
-  for (const Energy* V : tools.E.potential()) V->add_gradient(q, 1, gradient_);
+  tools.E.tell_potential(context);
+  tools.E.tell_damping(context);
+  for (const ActiveTerm& V : tools.E.potential()) V.add_gradient(q, 1, gradient_);
   ++work.gradients;
   if (difference == DampingDifference::forward) {
     add_damping(tools, q, v, tools.h, 1);

@@ -78,11 +78,5 @@ TEST(Counts, ProductsWithTheMatrixAreThoseOfTheLinearSolves) {
   EXPECT_EQ(step("cholesky").linear_iterations, 0);
 }
 
-TEST(Counts, VertexDescentCountsItsSweeps) {
-  const StepReport report = simulate(beam(2), {.solver = {.method = "vertex_descent"}}).step();
-  EXPECT_GE(report.vertex_sweeps, report.iterations);
-  EXPECT_EQ(report.hessians, 0);
-}
-
 }  // namespace
 }  // namespace aspic

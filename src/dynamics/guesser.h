@@ -22,7 +22,7 @@ struct GuessContext {
 
 struct Guess {
   InitialGuess used = InitialGuess::current;
-  KnownValue value;  // of E there
+  Evaluation value;  // of E there
 };
 
 class Guesser {  // holds the scratch vectors

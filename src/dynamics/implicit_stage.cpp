@@ -17,7 +17,7 @@ MinimizeOptions one_iteration(const MinimizeOptions& options) {
 }
 
 void note_end(const IncrementalPotential& E, const MinimizeReport& report, StepSolve& solve) {
-  solve.decrement = std::max(solve.decrement, report.decrement / E.gradient_unit());
+  solve.decrement = std::max(solve.decrement, report.decrement / E.scales().gradient_unit);
 }
 
 }  // namespace
@@ -84,8 +84,8 @@ bool ImplicitStage::solve(const StepTools& tools, const PinPath* path, const Sta
   const double beta = options.beta;
   predict(tools, path, options);
   const StepContext context{a, beta, options.time, tools.start.q};
-  tell_potential(tools.E, context);
-  tell_damping(tools.E, context);
+  tools.E.tell_potential(context);
+  tools.E.tell_damping(context);
   tools.E.begin_step(predicted_, 1, beta * beta);
   if (!solve.add(minimize(tools, options, q, v, solve))) return false;
 

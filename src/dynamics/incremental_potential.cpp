@@ -23,8 +23,6 @@ constexpr double kLeastStrain = 1e-9;
 // one whose tets are smaller by less to 1e-2, since forces grow with areas.
 constexpr double kSoft = 100;
 
-constexpr int kVerticesPerTask = 16;  // some 400 tets
-
 double squared(const Vec3d& v) { return dot(v, v); }
 
 BlockPattern pattern_of(const Model& model) {
@@ -93,12 +91,14 @@ std::vector<int> parts_of(const TetMesh& mesh, std::span<const double> modulus) 
 
 IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
     : model_(model), pins_(pins), pattern_(pattern_of(model)), H_(pattern_) {
-  for (const auto& V : model.elasticity) potential_.push_back(V.get());
-  for (const auto& V : model.loads) potential_.push_back(V.get());
-  for (const auto& D : model.damping) damping_.push_back(D.get());
   model.mass->bind(pattern_);
-  for (Energy* V : potential_) V->bind(pattern_);
-  for (Energy* D : damping_) D->bind(pattern_);
+  const auto add = [this](Energy& term, std::vector<ActiveTerm>& terms) {
+    term.bind(pattern_);
+    terms.emplace_back(term);
+  };
+  for (const auto& V : model.elasticity) add(*V, potential_);
+  for (const auto& V : model.loads) add(*V, potential_);
+  for (const auto& D : model.damping) add(*D, damping_);
   for (auto* v : {&predicted_, &offset_, &term_}) v->resize(3 * pattern_.rows());
   for (Parts* parts : {&last_, &of_iterate_}) {
     parts->values.resize(potential_.size());
@@ -110,6 +110,14 @@ IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
   measure(model.mesh);
 }
 
+void IncrementalPotential::tell_potential(const StepContext& step) {
+  for (ActiveTerm& V : potential_) V.begin_step(step);
+}
+
+void IncrementalPotential::tell_damping(const StepContext& step) {
+  for (ActiveTerm& D : damping_) D.begin_step(step);
+}
+
 void IncrementalPotential::begin_step(std::span<const double> predicted, double inertia, double factor) {
   predicted_.assign(predicted.begin(), predicted.end());
   inertia_ = inertia;
@@ -118,14 +126,13 @@ void IncrementalPotential::begin_step(std::span<const double> predicted, double 
   gradient_round_off_ = 0;  // known after the first Hessian
 }
 
-double IncrementalPotential::value(std::span<const double> q) {
+Evaluation IncrementalPotential::evaluate(std::span<const double> q) {
   double E = 0, magnitude = factor_ * growth_stiffness_;
   const auto add = [&](double term) { E += term, magnitude += std::abs(term); };
   if (inertia_ != 0) add(0.5 * inertia_ * model_.mass->squared_distance(q, predicted_));
-  for (size_t k = 0; k < potential_.size(); ++k) add(factor_ * (last_.values[k] = potential_[k]->value(q)));
-  for (const Energy* D : damping_) add(factor_ * D->value(q));
-  value_round_off_ = kEpsilon * magnitude;
-  return E;
+  for (size_t k = 0; k < potential_.size(); ++k) add(factor_ * (last_.values[k] = potential_[k].value(q)));
+  for (const ActiveTerm& D : damping_) add(factor_ * D.value(q));
+  return {E, kEpsilon * magnitude};
 }
 
 void IncrementalPotential::gradient(std::span<const double> q, std::span<double> g) {
@@ -148,8 +155,8 @@ void IncrementalPotential::gradient(std::span<const double> q, std::span<double>
   }
   std::fill(last_.gradient.begin(), last_.gradient.end(), 0.0);
   std::fill(last_.damping.begin(), last_.damping.end(), 0.0);
-  for (const Energy* V : potential_) add_term_gradient(*V, q, g, last_.gradient);
-  for (const Energy* D : damping_) add_term_gradient(*D, q, g, last_.damping);
+  for (const ActiveTerm& V : potential_) add_term_gradient(V, q, g, last_.gradient);
+  for (const ActiveTerm& D : damping_) add_term_gradient(D, q, g, last_.damping);
   pins_.set_zero(g);
 }
 
@@ -179,8 +186,8 @@ const BlockSparse& IncrementalPotential::evaluate_hessian(std::span<const double
   } else {
     H_.set_zero();
   }
-  for (const Energy* V : potential_) projected_elements_ += V->add_hessian(q, factor_, projection, H_);
-  for (const Energy* D : damping_) projected_elements_ += D->add_hessian(q, factor_, projection, H_);
+  for (const ActiveTerm& V : potential_) projected_elements_ += V.add_hessian(q, factor_, projection, H_);
+  for (const ActiveTerm& D : damping_) projected_elements_ += D.add_hessian(q, factor_, projection, H_);
   pins_.set_identity(H_);
 
   gradient_round_off_ = gradient_round_off_at(q);
@@ -242,7 +249,7 @@ void IncrementalPotential::add_part_norms(std::span<const double> v, bool is_exa
 }
 
 void IncrementalPotential::measure_parts(std::span<const double> g, std::span<GradientPart> parts) {
-  if (parts_.empty()) return Objective::measure_parts(g, parts);
+  if (parts_.empty()) return whole_.measure_parts(g, parts);
   for (Part& part : parts_) part.sum = 0;
   for (int i = 0; i < pattern_.rows(); ++i) parts_[part_of_[i]].sum += squared(point(g, i));
   for (size_t k = 0; k < parts_.size(); ++k) parts[k] = {std::sqrt(parts_[k].sum), parts_[k].scale};
@@ -262,7 +269,7 @@ double IncrementalPotential::lost_accuracy(std::span<const double> q, std::span<
 }
 
 double IncrementalPotential::relative_decrement(std::span<const double> g, std::span<const double> d) {
-  if (parts_.empty()) return Objective::relative_decrement(g, d);
+  if (parts_.empty()) return whole_.relative_decrement(g, d);
   for (Part& part : parts_) part.sum = 0;
   for (int i = 0; i < pattern_.rows(); ++i) parts_[part_of_[i]].sum += aspic::dot(point(g, i), point(d, i));
   double largest = 0;  // coupled parts may gain from each other's decrease
@@ -273,46 +280,18 @@ double IncrementalPotential::relative_decrement(std::span<const double> g, std::
   return std::sqrt(largest);
 }
 
-const BlockSparse* IncrementalPotential::metric() {
+const BlockSparse& IncrementalPotential::metric() {
   if (!metric_) {
     metric_.emplace(pattern_);
     model_.mass->add_to(1, *metric_);
     pins_.set_identity(*metric_);
   }
-  return &*metric_;
-}
-
-bool IncrementalPotential::prepare_vertex_systems() {
-  bool all = true;
-  for (Energy* V : potential_) all = V->prepare_vertex_systems(pattern_.rows()) && all;
-  for (Energy* D : damping_) all = D->prepare_vertex_systems(pattern_.rows()) && all;
-  return all;
-}
-
-bool IncrementalPotential::vertex_systems(std::span<const double> q, std::span<const int> vertices, std::span<Vec3d> g,
-                                          std::span<Mat3d> H) {
-  if (!offers_vertex_systems_) offers_vertex_systems_ = prepare_vertex_systems();
-  if (!*offers_vertex_systems_) return false;
-  const int count = static_cast<int>(vertices.size());
-  parallel_for((count + kVerticesPerTask - 1) / kVerticesPerTask, [&](int task) {
-    const int first = task * kVerticesPerTask, size = std::min(kVerticesPerTask, count - first);
-    const auto own = vertices.subspan(first, size);
-    const auto own_g = g.subspan(first, size);
-    const auto own_H = H.subspan(first, size);
-    std::fill(own_g.begin(), own_g.end(), Vec3d{});
-    std::fill(own_H.begin(), own_H.end(), Mat3d{});
-    if (inertia_ != 0) model_.mass->add_vertex_systems(inertia_, q, predicted_, own, own_g, own_H);
-    for (const Energy* V : potential_) V->add_vertex_systems(q, factor_, own, own_g, own_H);
-    for (const Energy* D : damping_) D->add_vertex_systems(q, factor_, own, own_g, own_H);
-    for (int k = 0; k < size; ++k)
-      own_g[k] = pins_.free_part(own[k], own_g[k]), own_H[k] = pins_.with_identity(own[k], own_H[k]);
-  });
-  return true;
+  return *metric_;
 }
 
 double IncrementalPotential::max_step(std::span<const double> q, std::span<const double> d) {
   double alpha = std::numeric_limits<double>::infinity();
-  for (const Energy* V : potential_) alpha = std::min(alpha, V->max_step(q, d));
+  for (const ActiveTerm& V : potential_) alpha = std::min(alpha, V.energy().max_step(q, d));
   return alpha;
 }
 
@@ -327,10 +306,10 @@ double IncrementalPotential::free_norm(std::span<const double> v) const {
   }));
 }
 
-void IncrementalPotential::add_term_gradient(const Energy& term, std::span<const double> q, std::span<double> g,
+void IncrementalPotential::add_term_gradient(const ActiveTerm& term, std::span<const double> q, std::span<double> g,
                                              std::span<double> sum) {
   term.add_gradient(q, factor_, term_);
-  const bool is_exact = term.has_constant_gradient();
+  const bool is_exact = term.energy().has_constant_gradient();
   add_part_norms(term_, is_exact);
   const double squared = parallel_sum(pattern_.rows(), [&](int first, int last) {
     double square = 0;
@@ -366,7 +345,7 @@ void IncrementalPotential::measure(const TetMesh& mesh) {
   const std::vector<double> unit = unit_stiffness(mesh);
   std::vector<double> modulus(unit.size());
   for (size_t k = 0; k < potential_.size(); ++k) {
-    potential_[k]->add_hessian(rest, 1, {Definiteness::absolute}, H_);
+    potential_[k].add_hessian(rest, 1, {Definiteness::absolute}, H_);
     if (k + 1 == model_.elasticity.size())
       for (int v = 0; v < pattern_.rows(); ++v) modulus[v] = trace(H_.block[pattern_.diagonal(v)]) / unit[v];
   }

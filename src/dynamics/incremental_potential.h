@@ -12,29 +12,30 @@
 
 namespace aspic {
 
-class IncrementalPotential : public Objective {
+class IncrementalPotential : public Objective, public HasMetric, public HasParts {
  public:
   IncrementalPotential(const Model& model, const Pins& pins);
 
-  // The terms must have been told of the step (Energy::begin_step) before.
+  // Before begin_step: the step in which the terms of V, and those of D, are evaluated from now on.
+  void tell_potential(const StepContext& step);
+  void tell_damping(const StepContext& step);
   void begin_step(std::span<const double> predicted, double inertia /* w */, double factor /* f */);
 
-  double value(std::span<const double> q) override;
+  Evaluation evaluate(std::span<const double> q) override;
   void gradient(std::span<const double> q, std::span<double> g) override;
   const BlockSparse& evaluate_hessian(std::span<const double> q, const Projection& projection) override;
   void note_iterate(std::span<const double> q) override;
-  int projected_elements() const override { return projected_elements_; }
-  const BlockSparse* metric() override;  // M, with the rows of the identity for pinned vertices
-  const BlockPattern* coupling() override { return &pattern_; }
-  bool vertex_systems(std::span<const double> q, std::span<const int> vertices, std::span<Vec3d> g,
-                      std::span<Mat3d> H) override;
+  const BlockSparse& metric() override;  // M, with the rows of the identity for pinned vertices
   double max_step(std::span<const double> q, std::span<const double> d) override;
-  // The energy of doubling the body in size, in the units of E: offsets of the potential do not count.
-  double x_scale() const override { return radius_; }
-  double value_scale() const override { return inertia_ * growth_inertia_ + factor_ * growth_stiffness_; }
-  double gradient_scale() const override { return gradient_scale_; }
-  double gradient_unit() const override { return factor_; }  // g is a force times f
-  double gradient_round_off() const override { return gradient_round_off_; }
+  // x: the radius of the body. value: the energy of doubling the body in size, in the units of E: offsets of the
+  // potential do not count. gradient_unit: g is a force times f.
+  ObjectiveScales scales() const override {
+    return {.x = radius_,
+            .value = inertia_ * growth_inertia_ + factor_ * growth_stiffness_,
+            .gradient = gradient_scale_,
+            .gradient_unit = factor_,
+            .gradient_round_off = gradient_round_off_};
+  }
   int part_count() const override { return parts_.empty() ? 1 : static_cast<int>(parts_.size()); }
   void measure_parts(std::span<const double> g, std::span<GradientPart> parts) override;
   double part_round_off(int part) const override {
@@ -43,8 +44,7 @@ class IncrementalPotential : public Objective {
   double lost_accuracy(std::span<const double> q, std::span<const GradientPart> parts) override;
   double relative_decrement(std::span<const double> g, std::span<const double> d) override;
   int part_of(int vertex) const { return part_of_.empty() ? 0 : part_of_[vertex]; }
-  double value_round_off() const override { return value_round_off_; }
-  double growth_stiffness() const { return growth_stiffness_; }  // of V, see value_scale() [J]
+  double growth_stiffness() const { return growth_stiffness_; }  // of V, see scales() [J]
 
   // The part of |g| at q, where the gradient was evaluated last, that is noise: of positions, by the stiffness of the
   // last Hessian or of the body at rest, and of the sum of forces.
@@ -58,8 +58,9 @@ class IncrementalPotential : public Objective {
   bool add_known_forces(std::span<const double> q, double weight, std::span<double> gradient,
                         std::span<double> damping) const;
 
-  const std::vector<Energy*>& potential() const { return potential_; }  // the terms of V
-  const std::vector<Energy*>& damping() const { return damping_; }
+  const std::vector<ActiveTerm>& potential() const { return potential_; }  // the terms of V: elasticity, then loads
+  std::span<const ActiveTerm> loads() const { return std::span(potential_).subspan(model_.elasticity.size()); }
+  const std::vector<ActiveTerm>& damping() const { return damping_; }
   const BlockPattern& pattern() const { return pattern_; }
 
  private:
@@ -75,8 +76,7 @@ class IncrementalPotential : public Objective {
   // lengths differ by more than kSoft. Each is judged by its own sizes. `growth` is scratch.
   void measure_parts(const TetMesh& mesh, std::span<const double> modulus, std::span<double> growth);
   void add_part_norms(std::span<const double> v, bool is_exact);
-  bool prepare_vertex_systems();
-  void add_term_gradient(const Energy& term, std::span<const double> q, std::span<double> g, std::span<double> sum);
+  void add_term_gradient(const ActiveTerm& term, std::span<const double> q, std::span<double> g, std::span<double> sum);
   double free_norm(std::span<const double> v) const;
   double gradient_round_off_at(std::span<const double> q);
 
@@ -88,12 +88,12 @@ class IncrementalPotential : public Objective {
   };
 
   const Model& model_;
+  WholePart whole_{*this};  // where there is one part
   const Pins& pins_;
-  std::vector<Energy*> potential_, damping_;
+  std::vector<ActiveTerm> potential_, damping_;
   BlockPattern pattern_;
   BlockSparse H_;
-  std::optional<BlockSparse> metric_;          // made when it is first asked for
-  std::optional<bool> offers_vertex_systems_;  // likewise
+  std::optional<BlockSparse> metric_;  // made when it is first asked for
 
   std::vector<Part> parts_;   // empty: there is one
   std::vector<int> part_of_;  // of each vertex, unless there is one
@@ -103,9 +103,8 @@ class IncrementalPotential : public Objective {
   double inertia_ = 1, factor_ = 1;
   double growth_stiffness_ = 0, growth_inertia_ = 0, radius_ = 0;
   double rest_stiffness_ = 0, mass_norm_ = 0;  // of the diagonal blocks [N/m] and [kg]
-  int projected_elements_ = 0;
-  double exact_scale_ = 0;  // see Part::exact
-  double gradient_scale_ = 0, gradient_round_off_ = 0, value_round_off_ = 0;
+  double exact_scale_ = 0;                     // see Part::exact
+  double gradient_scale_ = 0, gradient_round_off_ = 0;
   // Scratch. offset: w (q - q~). term: one term's gradient; zero between terms. largest: |q| by chunks.
   std::vector<double> offset_, term_, largest_;
 };

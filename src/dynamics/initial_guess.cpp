@@ -78,8 +78,9 @@ Guess Guesser::guess(const StepTools& tools, InitialGuess wanted, const GuessCon
                      MinimizeReport& work) {
   const bool is_other = wanted != InitialGuess::best && wanted != InitialGuess::current;
   if (is_other && propose(tools, wanted, known)) {
-    const KnownValue value = evaluate(tools.E, trial_, work);
-    if (std::isfinite(value.E)) {
+    const Evaluation value = tools.E.evaluate(trial_);
+    ++work.values;
+    if (std::isfinite(value.value)) {
       std::copy(trial_.begin(), trial_.end(), q.begin());
       return {wanted, value};
     }
@@ -91,9 +92,11 @@ Guess Guesser::guess(const StepTools& tools, InitialGuess wanted, const GuessCon
   for (const InitialGuess candidate : kAhead) {
     if (candidate == InitialGuess::last_increment && !known.tries_last_increment) continue;
     if (!propose(tools, candidate, known)) continue;
-    const KnownValue value = evaluate(tools.E, trial_, work);
+    const Evaluation value = tools.E.evaluate(trial_);
+    ++work.values;
     // A body at rest flies nowhere; the comparison fails for NaN.
-    if (!(candidate == InitialGuess::extrapolated ? value.E <= best.value.E : value.E < best.value.E)) continue;
+    if (!(candidate == InitialGuess::extrapolated ? value.value <= best.value.value : value.value < best.value.value))
+      continue;
     std::copy(trial_.begin(), trial_.end(), q.begin());
     best = {candidate, value};
   }

@@ -63,15 +63,15 @@ void StepForces::add_bounds(const SolveTools& tools, Asked asked, double weight,
   tools.E.add_part_noise(x, weight, round_offs);
   if (asked == Asked::nothing || judges_direction(tools.options.criterion)) return;
   const std::span<const double> bounds = tools.minimizer.thresholds();
-  for (size_t k = 0; k < thresholds.size(); ++k) thresholds[k] += weight * (bounds[k] / tools.E.gradient_unit());
+  for (size_t k = 0; k < thresholds.size(); ++k) thresholds[k] += weight * (bounds[k] / tools.E.scales().gradient_unit);
 }
 
 void StepForces::add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc,
                      Work& work) {
   if (!E.add_known_forces(x, weight, gradient, damping)) {
     ++work.gradients;
-    for (const Energy* V : E.potential()) V->add_gradient(x, weight, gradient);
-    for (const Energy* D : E.damping()) D->add_gradient(x, weight, damping);
+    for (const ActiveTerm& V : E.potential()) V.add_gradient(x, weight, gradient);
+    for (const ActiveTerm& D : E.damping()) D.add_gradient(x, weight, damping);
   }
   for (size_t i = 0; i < acc.size(); ++i) acceleration[i] += weight * acc[i];
 }
@@ -116,14 +116,6 @@ void Integrator::set_pin_velocity(const Pins& pins, double h, State& state) cons
   pins.place(state.time + h, next);
   for (size_t i = 0; i < next.size(); ++i) next[i] = (next[i] - state.q[i]) / h;
   pins.copy_held(next, state.qdot);
-}
-
-void tell_potential(const IncrementalPotential& E, const StepContext& context) {
-  for (Energy* V : E.potential()) V->begin_step(context);
-}
-
-void tell_damping(const IncrementalPotential& E, const StepContext& context) {
-  for (Energy* D : E.damping()) D->begin_step(context);
 }
 
 }  // namespace aspic

@@ -96,8 +96,4 @@ std::unique_ptr<Integrator> make_tr_bdf2();
 std::unique_ptr<Integrator> make_bdf2();
 std::unique_ptr<Integrator> make_rk4();
 
-// Tells the terms of V, and those of D, that they are about to be evaluated at context.time.
-void tell_potential(const IncrementalPotential& E, const StepContext& context);
-void tell_damping(const IncrementalPotential& E, const StepContext& context);
-
 }  // namespace aspic

@@ -30,11 +30,12 @@ void add_work(const MinimizeReport& spent, MinimizeReport& work) {
   work.retreats += spent.retreats;
 }
 
-KnownValue lead_pins(const StepTools& tools, double time, std::span<const double> from, std::span<double> q,
+Evaluation lead_pins(const StepTools& tools, double time, std::span<const double> from, std::span<double> q,
                      MinimizeReport& work) {
   tools.pins.place(time, q);
-  const KnownValue at_once = evaluate(tools.E, q, work);
-  if (std::isfinite(at_once.E)) return at_once;
+  const Evaluation at_once = tools.E.evaluate(q);
+  ++work.values;
+  if (std::isfinite(at_once.value)) return at_once;
   const std::vector<double> to(q.begin(), q.end());
 
   std::vector<double> reached(from.begin(), from.end()), trial = reached, between = reached;
@@ -44,8 +45,9 @@ KnownValue lead_pins(const StepTools& tools, double time, std::span<const double
     for (size_t k = 0; k < trial.size(); ++k) between[k] = next < 1 ? from[k] + next * (to[k] - from[k]) : to[k];
     trial = reached;
     tools.pins.copy_held(between, trial);
-    const KnownValue there = evaluate(tools.E, trial, work);
-    if (!std::isfinite(there.E)) {
+    const Evaluation there = tools.E.evaluate(trial);
+    ++work.values;
+    if (!std::isfinite(there.value)) {
       part /= 2;
       continue;
     }

@@ -25,10 +25,11 @@ class LongSum {
 };
 
 // V += sign * (energy of each load), and their sum.
-double add_load_energies(const Model& model, std::span<const double> x, double sign, std::vector<double>& V) {
+double add_load_energies(std::span<const ActiveTerm> loads, std::span<const double> x, double sign,
+                         std::vector<double>& V) {
   double sum = 0;
-  for (size_t k = 0; k < model.loads.size(); ++k) {
-    const double value = model.loads[k]->value(x);
+  for (size_t k = 0; k < loads.size(); ++k) {
+    const double value = loads[k].value(x);
     V[k] += sign * value;
     sum += value;
   }
@@ -48,17 +49,16 @@ double kinetic_energy(const MassMatrix& mass, std::span<const double> qdot, std:
 // where it starts, and for schemes of higher order the mean of that and of the body where it ends.
 double Ledger::target_work(const StepTools& tools, int order, const State& end, double& loads_before,
                            StepReport& report) {
-  const Model& model = tools.model;
   const State& start = tools.start;
   const StepContext before{start.q, tools.h, start.time}, after{start.q, tools.h, tools.end_time};
-  const size_t loads = model.loads.size();
+  const size_t loads = tools.E.loads().size();
   for (auto* v : {&early_, &late_}) v->assign(loads, 0.0);
-  tell_potential(tools.E, before);
-  loads_before = add_load_energies(model, start.q, -1, early_);
-  const double at_end = order > 1 ? add_load_energies(model, end.q, -1, late_) : 0;
-  tell_potential(tools.E, after);
-  const double early = add_load_energies(model, start.q, 1, early_) - loads_before;
-  const double late = order > 1 ? add_load_energies(model, end.q, 1, late_) - at_end : 0;
+  tools.E.tell_potential(before);
+  loads_before = add_load_energies(tools.E.loads(), start.q, -1, early_);
+  const double at_end = order > 1 ? add_load_energies(tools.E.loads(), end.q, -1, late_) : 0;
+  tools.E.tell_potential(after);
+  const double early = add_load_energies(tools.E.loads(), start.q, 1, early_) - loads_before;
+  const double late = order > 1 ? add_load_energies(tools.E.loads(), end.q, 1, late_) - at_end : 0;
   report.target_work.resize(loads);
   for (size_t k = 0; k < loads; ++k) report.target_work[k] += order > 1 ? (early_[k] + late_[k]) / 2 : early_[k];
   return order > 1 ? (early + late) / 2 : early;
@@ -120,13 +120,13 @@ void Ledger::allow_moved_pins(const StepTools& tools, const State& end, BoundedE
   double V = 0, D = 0, T = 0;
   moved_ = start.q;
   tools.pins.copy_held(end.q, moved_);
-  for (const Energy* term : tools.E.potential()) {
-    const double value = term->value(moved_);
+  for (const ActiveTerm& term : tools.E.potential()) {
+    const double value = term.value(moved_);
     V += value, bounded.magnitude += std::abs(value);
   }
   ++work.values;
-  tell_damping(tools.E, {start.q, tools.h, tools.end_time, start.q});
-  for (const Energy* term : tools.E.damping()) D += term->value(moved_);
+  tools.E.tell_damping({start.q, tools.h, tools.end_time, start.q});
+  for (const ActiveTerm& term : tools.E.damping()) D += term.value(moved_);
   for (size_t i = 0; i < moved_.size(); ++i) moved_[i] = (moved_[i] - start.q[i]) / tools.h - start.qdot[i];
   T = kinetic_energy(*tools.model.mass, moved_, momentum_);
   bounded.allowed = V + D + T;
@@ -166,7 +166,7 @@ void Ledger::add_resultants(const StepTools& tools, const State& end, const Step
   }
   load_.resize(end.q.size());
   for (size_t k = 0; k < model.loads.size(); ++k) {
-    model.loads[k]->add_gradient(end.q, -1, load_);
+    tools.E.loads()[k].add_gradient(end.q, -1, load_);
     sums.loads[k] = {};
     for (int v = 0; v < tools.pins.vertex_count(); ++v) add(v, point(load_, v), sums.loads[k]);
     std::fill(load_.begin(), load_.end(), 0.0);
@@ -221,7 +221,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   report.potential_total = 0;
   for (const double V : elastic_energies(tools.model, end.q, tools.E.known_values(end.q), report))
     report.potential.push_back(V);
-  for (const auto& V : tools.model.loads) report.potential.push_back(V->value(end.q));
+  for (const ActiveTerm& V : tools.E.loads()) report.potential.push_back(V.value(end.q));
   for (const double V : report.potential) report.potential_total += V;
   report.kinetic = kinetic_energy(*tools.model.mass, end.qdot, momentum_);
 

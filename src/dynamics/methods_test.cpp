@@ -102,7 +102,7 @@ TEST(Methods, KnowingMoreOfTheCurvatureTakesFewerIterations) {
   }
   EXPECT_LE(iterations["newton"], iterations["newton_cg"]);
   EXPECT_LE(iterations["newton"], iterations["lbfgs"]);
-  for (const std::string method : {"lbfgs", "nonlinear_cg", "vertex_descent"})
+  for (const std::string method : {"lbfgs", "nonlinear_cg"})
     EXPECT_LT(5 * iterations[method], iterations["gradient_descent"]) << method;
 }
 
@@ -192,63 +192,6 @@ TEST(Newton, OneHeldVertexHasAnEquilibriumByEverySolver) {
   }
 }
 
-// Offers no systems of single vertices.
-class Opaque : public Energy {
- public:
-  explicit Opaque(std::unique_ptr<Energy> term) : term_(std::move(term)) {}
-  std::string_view name() const override { return "opaque"; }
-  double value(Positions x) const override { return term_->value(x); }
-  void add_gradient(Positions x, double scale, std::span<double> g) const override { term_->add_gradient(x, scale, g); }
-  void add_couplings(Couplings& couplings) const override { term_->add_couplings(couplings); }
-  void bind(const BlockPattern& pattern) override { term_->bind(pattern); }
-  int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override {
-    return term_->add_hessian(x, scale, projection, H);
-  }
-
- private:
-  std::unique_ptr<Energy> term_;
-};
-
-TEST(VertexDescent, TakesTermsThatOfferNoSystemsOfSingleVerticesFromTheWholeGradient) {
-  std::vector<double> expected;
-  for (const bool opaque : {false, true}) {
-    Model model = beam(1);
-    if (opaque) model.loads[0] = std::make_unique<Opaque>(std::move(model.loads[0]));
-    Simulation simulation = simulate(std::move(model), {.solver = {.method = "vertex_descent"}});
-    EXPECT_TRUE(is_success(simulation.step().status));
-    if (!opaque) expected = simulation.state().q;
-    EXPECT_EQ(simulation.solver_description().find("whole gradients") != std::string::npos, opaque);
-    // The same numbers summed in another order.
-    for (size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(simulation.state().q[i], expected[i], 1e-12);
-  }
-}
-
-TEST(IncrementalPotential, SystemsOfSingleVerticesArePartsOfGradientAndHessian) {
-  Model model = damped_beam_with_moving_pins_and_targets();
-  const State start = at_rest(model.mesh);
-  const Pins pins(model.pins, start.q);
-  IncrementalPotential E(model, pins);
-  std::vector<double> x = start.q;
-  for (size_t i = 0; i < x.size(); ++i) x[i] += 0.02 * std::sin(3.0 * static_cast<double>(i));
-  for (Energy* V : E.potential()) V->begin_step({start.q, 0.01, 0.1});
-  for (Energy* D : E.damping()) D->begin_step({start.q, 0.01, 0.1});
-  E.begin_step(start.q, 1, 1e-4);
-  std::vector<double> g(x.size());
-  E.gradient(x, g);
-  const BlockSparse& H = E.hessian(x, {});
-  std::vector<int> all(x.size() / 3);
-  std::iota(all.begin(), all.end(), 0);
-  std::vector<Vec3d> vertex_g(all.size());
-  std::vector<Mat3d> vertex_H(all.size());
-  ASSERT_TRUE(E.vertex_systems(x, all, vertex_g, vertex_H));
-  const double largest = std::sqrt(E.dot(g, g));
-  for (const int v : all) {
-    for (int r = 0; r < 3; ++r) EXPECT_NEAR(vertex_g[v][r], g[3 * v + r], 1e-12 * largest);
-    const Mat3d& block = H.block[H.pattern->diagonal(v)];
-    EXPECT_LT(std::sqrt(squared_norm(vertex_H[v] - block)), 1e-12 * std::sqrt(squared_norm(block)));
-  }
-}
-
 TEST(IncrementalPotential, ItsMetricIsTheMassWithTheIdentityForPinnedVertices) {
   const Model model = beam(1);
   const State start = at_rest(model.mesh);
@@ -257,12 +200,12 @@ TEST(IncrementalPotential, ItsMetricIsTheMassWithTheIdentityForPinnedVertices) {
   std::vector<double> v(start.q.size()), product(v.size()), expected(v.size());
   for (size_t i = 0; i < v.size(); ++i)
     v[i] = pins.holds(static_cast<int>(i / 3)) ? 0 : std::cos(static_cast<double>(i));
-  E.metric()->multiply(v, product);
+  E.metric().multiply(v, product);
   model.mass->multiply(v, expected);
   pins.set_zero(expected);
   for (size_t i = 0; i < v.size(); ++i) EXPECT_NEAR(product[i], expected[i], 1e-12);
   for (size_t i = 0; i < v.size(); ++i) v[i] = pins.holds(static_cast<int>(i / 3)) ? 2 : 0;
-  E.metric()->multiply(v, product);
+  E.metric().multiply(v, product);
   EXPECT_EQ(product, v);
 }
 

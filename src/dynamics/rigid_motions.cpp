@@ -103,8 +103,9 @@ class Body {
       for (int r = 0; r < 3; ++r)
         moved[3 * static_cast<size_t>(v) + r] += kPart * size_ * (m.t + cross(m.w, arm(v)))[r];
     for (const auto& V : model_.loads) {
-      V->add_gradient(x_, 1, here);
-      V->add_gradient(moved, 1, there);
+      const ActiveTerm load(*V);
+      load.add_gradient(x_, 1, here);
+      load.add_gradient(moved, 1, there);
     }
     double largest = 0, change = 0;
     for (size_t i = 0; i < here.size(); ++i) {

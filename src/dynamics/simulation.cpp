@@ -134,10 +134,10 @@ struct Simulation::Impl {
     start_energy = aspic::kinetic_energy(*model.mass, start.qdot, start_force) + kRoundOff * E->growth_stiffness();
     start_force.assign(start.q.size(), 0.0);
     for (const auto& V : model.elasticity) start_energy += std::abs(V->value(start.q));
-    for (const auto& V : model.loads)
-      if (!V->has_constant_gradient()) start_energy += std::abs(V->value(start.q));  // such as springs
+    for (const ActiveTerm& V : E->loads())
+      if (!V.energy().has_constant_gradient()) start_energy += std::abs(V.value(start.q));  // such as springs
     // A convex V falls by at most -dV/dx (x - x at the start).
-    for (const auto& V : model.loads) V->add_gradient(start.q, 1, start_force);
+    for (const ActiveTerm& V : E->loads()) V.add_gradient(start.q, 1, start_force);
     // First-order schemes give a body at rest this much in the first step, in which some of them do not move it.
     const std::span<const double> mass = model.mass->vertex_mass();
     for (size_t i = 0; i < start_force.size(); ++i)
@@ -158,8 +158,8 @@ struct Simulation::Impl {
     constexpr double kBlownUp = 10;
     if (integrator->is_implicit()) return false;
     load_force.assign(start.q.size(), 0.0);
-    for (const auto& V : model.loads)
-      if (V->has_constant_gradient()) V->add_gradient(state.q, 1, load_force);
+    for (const ActiveTerm& V : E->loads())
+      if (V.energy().has_constant_gradient()) V.add_gradient(state.q, 1, load_force);
     double allowed = start_energy + outside_work, reached = report.kinetic;
     for (size_t i = 0; i < start_force.size(); ++i)
       allowed += (std::abs(start_force[i]) + std::abs(load_force[i])) * std::abs(state.q[i] - start.q[i]);
@@ -189,7 +189,7 @@ struct Simulation::Impl {
   }
 
   // Tells the terms of V the time, as between steps.
-  void stand_at(double time) const { tell_potential(*E, {state.q, integrator->is_static() ? 0 : options.h, time}); }
+  void stand_at(double time) const { E->tell_potential({state.q, integrator->is_static() ? 0 : options.h, time}); }
 
   // The body stays where the step began, though time and moving targets may go on to `time`; a scheme of several steps
   // begins anew.
@@ -207,7 +207,7 @@ struct Simulation::Impl {
     const StepTools stand_still = tools(with.observe, with.go_on, time);
     stand_at(time);
     forces.reset(state.q.size());
-    for (const Energy* V : E->potential()) V->add_gradient(state.q, 1, forces.gradient);
+    for (const ActiveTerm& V : E->potential()) V.add_gradient(state.q, 1, forces.gradient);
     ledger.add(stand_still, *integrator, state, forces, report);
   }
 
@@ -317,7 +317,7 @@ double Simulation::kinetic_energy() const {
 
 std::vector<double> Simulation::potential_energies() const {
   std::vector<double> energies;
-  for (const Energy* V : impl_->E->potential()) energies.push_back(V->value(impl_->state.q));
+  for (const ActiveTerm& V : impl_->E->potential()) energies.push_back(V.value(impl_->state.q));
   return energies;
 }
 

@@ -109,7 +109,7 @@ double rk4_limit(double c, double k) {
   return low / rate;
 }
 
-StableStep stable_step(IncrementalPotential& E, const Model& model, const Pins& pins, std::span<const double> x,
+StableStep stable_step(const IncrementalPotential& E, const Model& model, const Pins& pins, std::span<const double> x,
                        std::string_view integrator) {
   BlockSparse M(E.pattern());
   model.mass->add_to(1, M);
@@ -117,14 +117,12 @@ StableStep stable_step(IncrementalPotential& E, const Model& model, const Pins& 
   const auto solver = make_linear_solver("auto");
   solver->analyze(E.pattern());
   if (!solver->factorize(M)) return {.h = 0};
-  BlockSparse C(E.pattern());
-  for (Energy* D : E.damping()) {
-    D->begin_step({.start = x, .h = 1, .shape = x});
-    D->add_hessian(x, 1, {Definiteness::clamped}, C);
-    D->begin_step({.start = x});  // h = 0: no damping
-  }
-  E.begin_step(x, 0, 1);
-  PowerIteration iteration(M, C, E.hessian(x, {Definiteness::clamped}), pins, *solver);
+  BlockSparse C(E.pattern()), K(E.pattern());
+  for (const ActiveTerm& D : E.damping())
+    ActiveTerm(D.energy(), {.start = x, .h = 1, .shape = x}).add_hessian(x, 1, {Definiteness::clamped}, C);
+  for (const ActiveTerm& V : E.potential()) V.add_hessian(x, 1, {Definiteness::clamped}, K);
+  pins.set_identity(K);
+  PowerIteration iteration(M, C, K, pins, *solver);
   const bool is_rk4 = integrator == "rk4";
   const StableStep stable = iteration.run(x.size(), 2, is_rk4);
   if (!is_rk4 || E.damping().empty()) return stable;

@@ -23,9 +23,8 @@ struct StableStep {
 // Of rk4, or else of symplectic Euler, for small motions about the positions x, by power iteration. That of symplectic
 // Euler is the h at which 4 is the largest eigenvalue of M^-1 (h^2 K + 2 h C); a few per cent too long at most. That of
 // rk4 is the lower one of what the motion found so and the fastest vibration bear: with damping the scheme may bear
-// still less. Without damping, C = 0, they are 2 and sqrt(8) / (highest angular frequency). Overwrites what E and the
-// damping terms were told by begin_step.
-StableStep stable_step(IncrementalPotential& E, const Model& model, const Pins& pins, std::span<const double> x,
+// still less. Without damping, C = 0, they are 2 and sqrt(8) / (highest angular frequency).
+StableStep stable_step(const IncrementalPotential& E, const Model& model, const Pins& pins, std::span<const double> x,
                        std::string_view integrator);
 
 }  // namespace aspic

@@ -125,27 +125,34 @@ class Dashpots : public Energy {
  public:
   explicit Dashpots(std::vector<double> c /* [kg/s] */) : c_(std::move(c)) {}
   std::string_view name() const override { return "dashpots"; }
-  void begin_step(const StepContext& step) override {
-    h_ = step.h, start_.assign(step.start.begin(), step.start.end());
+  std::unique_ptr<Context> make_context() const override { return std::make_unique<Start>(); }
+  void begin_step(const StepContext& step, Context& context) const override {
+    Energy::begin_step(step, context);
+    static_cast<Start&>(context).x.assign(step.start.begin(), step.start.end());
   }
-  double value(Positions x) const override {
+  double value(Positions x, const Context& context) const override {
+    const std::vector<double>& start = static_cast<const Start&>(context).x;
     double sum = 0;
-    for (size_t i = 0; i < x.size(); ++i) sum += rate(i) / 2 * (x[i] - start_[i]) * (x[i] - start_[i]);
+    for (size_t i = 0; i < x.size(); ++i) sum += rate(i, context) / 2 * (x[i] - start[i]) * (x[i] - start[i]);
     return sum;
   }
-  void add_gradient(Positions x, double scale, std::span<double> g) const override {
-    for (size_t i = 0; i < x.size(); ++i) g[i] += scale * rate(i) * (x[i] - start_[i]);
+  void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
+    const std::vector<double>& start = static_cast<const Start&>(context).x;
+    for (size_t i = 0; i < x.size(); ++i) g[i] += scale * rate(i, context) * (x[i] - start[i]);
   }
-  int add_hessian(Positions, double scale, const Projection&, BlockSparse& H) const override {
+  int add_hessian(Positions, const Context& context, double scale, const Projection&, BlockSparse& H) const override {
     for (size_t v = 0; v < c_.size(); ++v)
-      for (int r = 0; r < 3; ++r) H.block[H.pattern->diagonal(static_cast<int>(v))](r, r) += scale * rate(3 * v);
+      for (int r = 0; r < 3; ++r)
+        H.block[H.pattern->diagonal(static_cast<int>(v))](r, r) += scale * rate(3 * v, context);
     return 0;
   }
 
  private:
-  double rate(size_t i) const { return h_ > 0 ? c_[i / 3] / h_ : 0; }
-  std::vector<double> c_, start_;
-  double h_ = 0;
+  struct Start : Context {
+    std::vector<double> x;
+  };
+  double rate(size_t i, const Context& context) const { return context.h > 0 ? c_[i / 3] / context.h : 0; }
+  std::vector<double> c_;
 };
 
 // One vertex vibrates undamped, the others are damped critically: what limits symplectic Euler does not limit rk4.

@@ -69,8 +69,8 @@ class StepCheck {
     const double h = simulation.options().h;
     const bool is_static = simulation.options().integrator == "quasi_static";
     const StepContext context{state_.q, is_static ? 0 : h, state_.time + h};
-    for (Energy* V : E_.potential()) V->begin_step(context);
-    for (Energy* D : E_.damping()) D->begin_step(context);
+    E_.tell_potential(context);
+    E_.tell_damping(context);
     std::vector<double> predicted = state_.q;
     if (!is_static)
       for (size_t i = 0; i < predicted.size(); ++i) predicted[i] += h * state_.qdot[i];
@@ -82,8 +82,8 @@ class StepCheck {
   std::vector<TermDerivatives> run() {
     for (const NamedState& at : states()) {
       const std::vector<std::string> names = simulation_.potential_names();
-      for (size_t k = 0; k < names.size(); ++k) check(names[k], at, differentiable(*E_.potential()[k], E_.pattern()));
-      for (const Energy* D : E_.damping()) check(std::string(D->name()), at, differentiable(*D, E_.pattern()));
+      for (size_t k = 0; k < names.size(); ++k) check(names[k], at, differentiable(E_.potential()[k], E_.pattern()));
+      for (const ActiveTerm& D : E_.damping()) check(std::string(D.name()), at, differentiable(D, E_.pattern()));
       if (inertia_ != 0) check("inertia", at, inertia());
       check_E(at);
     }
@@ -155,7 +155,7 @@ class StepCheck {
 
 }  // namespace
 
-Differentiable differentiable(const Energy& V, const BlockPattern& pattern) {
+Differentiable differentiable(const ActiveTerm& V, const BlockPattern& pattern) {
   return {.value = [&V](std::span<const double> x) { return V.value(x); },
           .gradient =
               [&V](std::span<const double> x, std::span<double> g) {

@@ -10,7 +10,7 @@
 namespace aspic {
 
 // Refers to both; V must have been bound to the pattern.
-Differentiable differentiable(const Energy& V, const BlockPattern& pattern);
+Differentiable differentiable(const ActiveTerm& V, const BlockPattern& pattern);
 
 struct TermDerivatives {
   std::string term;   // a name of Simulation::potential_names(), of a damping term, "inertia", or "E"

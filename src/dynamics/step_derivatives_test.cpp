@@ -43,12 +43,12 @@ class Wrong : public Energy {
   Wrong(int entry, double gradient_factor, double hessian_factor)
       : entry_(entry), gradient_factor_(gradient_factor), hessian_factor_(hessian_factor) {}
   std::string_view name() const override { return "wrong"; }
-  double value(Positions x) const override { return 50 * (x[entry_] - 0.5) * (x[entry_] - 0.5); }
-  void add_gradient(Positions x, double scale, std::span<double> g) const override {
+  double value(Positions x, const Context&) const override { return 50 * (x[entry_] - 0.5) * (x[entry_] - 0.5); }
+  void add_gradient(Positions x, const Context&, double scale, std::span<double> g) const override {
     g[entry_] += scale * gradient_factor_ * 100 * (x[entry_] - 0.5);
   }
   void bind(const BlockPattern& pattern) override { slot_ = pattern.diagonal(entry_ / 3); }
-  int add_hessian(Positions, double scale, const Projection&, BlockSparse& H) const override {
+  int add_hessian(Positions, const Context&, double scale, const Projection&, BlockSparse& H) const override {
     H.block[slot_](entry_ % 3, entry_ % 3) += scale * hessian_factor_ * 100;
     return 0;
   }

@@ -9,27 +9,29 @@
 
 namespace aspic {
 
-class VelocityForm : public Objective {
+class VelocityForm : public Objective, public HasMetric {
  public:
   // `E` has begun its step; q_t is where the step starts. Both stay while this is used.
   VelocityForm(IncrementalPotential& E, std::span<const double> start /* q_t */, double h)
       : E_(E), start_(start), h_(h), q_(start.size()), dq_(start.size()) {}
 
-  double value(std::span<const double> v) override { return E_.value(position(v)) / (h_ * h_); }  // [J]
-  void gradient(std::span<const double> v, std::span<double> g) override;                         // [N s]
-  const BlockSparse& evaluate_hessian(std::span<const double> v, const Projection& projection) override {
-    return E_.hessian(position(v), projection);  // M + h^2 d2V/dq2 [kg]
+  Evaluation evaluate(std::span<const double> v) override {  // [J]
+    const Evaluation E = E_.evaluate(position(v));
+    return {E.value / (h_ * h_), E.round_off / (h_ * h_)};
   }
-  int projected_elements() const override { return E_.projected_elements(); }
+  void gradient(std::span<const double> v, std::span<double> g) override;  // [N s]
+  const BlockSparse& evaluate_hessian(std::span<const double> v, const Projection& projection) override {
+    const BlockSparse& H = E_.hessian(position(v), projection);  // M + h^2 d2V/dq2 [kg]
+    projected_elements_ = E_.projected_elements();
+    return H;
+  }
   double max_step(std::span<const double> v, std::span<const double> d) override;
 
-  const BlockSparse* metric() override { return E_.metric(); }
-  double x_scale() const override { return E_.x_scale() / h_; }
-  double value_scale() const override { return E_.value_scale() / (h_ * h_); }
-  double gradient_scale() const override { return E_.gradient_scale() / h_; }
-  double gradient_unit() const override { return E_.gradient_unit() / h_; }
-  double value_round_off() const override { return E_.value_round_off() / (h_ * h_); }
-  double gradient_round_off() const override { return E_.gradient_round_off() / h_; }
+  const BlockSparse& metric() override { return E_.metric(); }
+  ObjectiveScales scales() const override {
+    const ObjectiveScales s = E_.scales();
+    return {s.x / h_, s.value / (h_ * h_), s.gradient / h_, s.gradient_unit / h_, s.gradient_round_off / h_};
+  }
 
   // q = q_t + h v and back. The span that position() returns is valid until the next call.
   std::span<const double> position(std::span<const double> v);

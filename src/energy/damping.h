@@ -21,8 +21,8 @@ class Damping : public Energy {
   virtual int coefficient_count() const = 0;
   virtual const TetElasticity* elasticity() const { return nullptr; }  // whose parameters D depends on
   virtual double mass_factor(int /*vertex*/) const { return 0; }  // a of a part a/(2h) |x - start|_M^2 around a vertex
-  // For the step that was begun last, which starts where coefficients are taken.
-  virtual void add_derivatives(Positions x, std::span<const double> w, double scale,
+  // For a step that starts where coefficients are taken.
+  virtual void add_derivatives(Positions x, const Context& context, std::span<const double> w, double scale,
                                const DampingGradients& gradients) const = 0;
 };
 

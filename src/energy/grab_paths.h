@@ -19,22 +19,19 @@ struct GrabPath {
 
 class GrabPaths : public Energy {
  public:
-  explicit GrabPaths(std::vector<GrabPath> paths) : paths_(std::move(paths)), springs_(paths_.size()) {}
+  explicit GrabPaths(std::vector<GrabPath> paths) : paths_(std::move(paths)) {}
 
   std::string_view name() const override { return "grab"; }
 
-  void begin_step(const StepContext& step) override;
-  double value(Positions x) const override;
-  void add_gradient(Positions x, double scale, std::span<double> g) const override;
+  double value(Positions x, const Context& context) const override;
+  void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override;
   void bind(const BlockPattern& pattern) override;
-  int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override;
-  bool prepare_vertex_systems(int) override { return true; }
-  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
-                          std::span<Mat3d> H) const override;
+  int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
+                  BlockSparse& H) const override;
 
  private:
   std::vector<GrabPath> paths_;
-  std::vector<GrabSpring> springs_;  // one per path, as it acts now
+  std::vector<GrabBlocks> blocks_;  // of each path
 };
 
 }  // namespace aspic

@@ -18,33 +18,38 @@ struct Grab {
 
   Vec3d target(double time) const;
   Vec3d point(Positions x) const;
+  double value(Positions x, const Vec3d& target) const;
+  void add_gradient(Positions x, const Vec3d& target, double scale, std::span<double> g) const;
+};
+
+// Where the 3x3 blocks of a grab are stored.
+class GrabBlocks {
+ public:
+  GrabBlocks() = default;
+  GrabBlocks(const Grab& grab, const BlockPattern& pattern);
+  void add_hessian(const Grab& grab, double scale, BlockSparse& H) const;
+
+ private:
+  std::array<std::array<int64_t, 4>, 4> slot_{};  // blocks (i, j), of the larger vertex and the smaller
 };
 
 class GrabSpring : public Energy {
  public:
   std::string_view name() const override { return "mouse"; }
 
-  // At that time, until the next step begins.
-  void set(const Grab& grab, double time);
+  void set(const Grab& grab);
   const Grab& grab() const { return grab_; }
-  Vec3d force(Positions x) const;  // on the body [N]
 
-  void begin_step(const StepContext& step) override { target_ = grab_.target(step.time); }
-  double value(Positions x) const override;
-  void add_gradient(Positions x, double scale, std::span<double> g) const override;
+  double value(Positions x, const Context& context) const override;
+  void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override;
   void bind(const BlockPattern& pattern) override;
-  int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override;
-  bool prepare_vertex_systems(int) override { return true; }
-  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
-                          std::span<Mat3d> H) const override;
+  int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
+                  BlockSparse& H) const override;
 
  private:
-  void find_slots();
-
   Grab grab_;
-  Vec3d target_{};
   const BlockPattern* pattern_ = nullptr;
-  std::array<std::array<int64_t, 4>, 4> slot_{};  // blocks (i, j), of the larger vertex and the smaller
+  GrabBlocks blocks_;
 };
 
 }  // namespace aspic

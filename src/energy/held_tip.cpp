@@ -19,27 +19,25 @@ HeldTip::~HeldTip() = default;
 std::unique_ptr<Probe> HeldTip::made(const Touch& touch) const {
   std::unique_ptr<Probe> probe = make_probe(mesh_, surface_, touch.tip, touch.rest);
   if (pattern_) probe->bind(*pattern_);
-  if (vertex_count_) probe->prepare_vertex_systems(*vertex_count_);
   return probe;
 }
 
-void HeldTip::set(const Poke& poke, double time) {
+void HeldTip::set(const Poke& poke) {
   if (poke.touch != poke_.touch) probe_ = poke.touch ? made(*poke.touch) : nullptr;
   poke_ = poke;
-  if (probe_) probe_->set_pose(poke_.pose(time));
+  if (probe_) probe_->set_pose(poke_.to);
 }
 
+double HeldTip::value(Positions x) const { return probe_ ? probe_->value_at(PlacedTip(poke_.to), x) : 0; }
 Wrench HeldTip::wrench(Positions x) const { return probe_ ? probe_->wrench(x) : Wrench{}; }
 int HeldTip::touched_points(Positions x) const { return probe_ ? probe_->touched_points(x) : 0; }
 
-void HeldTip::begin_step(const StepContext& step) {
-  if (probe_) probe_->set_pose(poke_.pose(step.time));
+double HeldTip::value(Positions x, const Context& context) const {
+  return probe_ ? probe_->value_at(PlacedTip(poke_.pose(context.time)), x) : 0;
 }
 
-double HeldTip::value(Positions x) const { return probe_ ? probe_->value(x) : 0; }
-
-void HeldTip::add_gradient(Positions x, double scale, std::span<double> g) const {
-  if (probe_) probe_->add_gradient(x, scale, g);
+void HeldTip::add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const {
+  if (probe_) probe_->add_gradient_at(PlacedTip(poke_.pose(context.time)), x, scale, g);
 }
 
 void HeldTip::bind(const BlockPattern& pattern) {
@@ -47,18 +45,9 @@ void HeldTip::bind(const BlockPattern& pattern) {
   if (probe_) probe_->bind(pattern);
 }
 
-int HeldTip::add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const {
-  return probe_ ? probe_->add_hessian(x, scale, projection, H) : 0;
-}
-
-bool HeldTip::prepare_vertex_systems(int vertex_count) {
-  vertex_count_ = vertex_count;
-  return !probe_ || probe_->prepare_vertex_systems(vertex_count);
-}
-
-void HeldTip::add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
-                                 std::span<Mat3d> H) const {
-  if (probe_) probe_->add_vertex_systems(x, scale, vertices, g, H);
+int HeldTip::add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
+                         BlockSparse& H) const {
+  return probe_ ? probe_->add_hessian_at(PlacedTip(poke_.pose(context.time)), x, scale, projection, H) : 0;
 }
 
 }  // namespace aspic

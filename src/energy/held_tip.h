@@ -2,7 +2,6 @@
 // between steps.
 #pragma once
 #include <memory>
-#include <optional>
 
 #include "energy/probe.h"
 
@@ -31,21 +30,19 @@ class HeldTip : public Energy {
 
   std::string_view name() const override { return "probe"; }
 
-  // At that time, until the next step begins. Throws InvalidInput for a touch as make_probe does; nothing has changed
-  // then.
-  void set(const Poke& poke, double time);
+  // Throws InvalidInput for a touch as make_probe does; nothing has changed then.
+  void set(const Poke& poke);
   const Poke& poke() const { return poke_; }
+  // Where the poke ends:
+  double value(Positions x) const;        // [J]
   Wrench wrench(Positions x) const;       // of the tip on the body
   int touched_points(Positions x) const;  // of the surface; 0: the tip is in the air, or there is none
 
-  void begin_step(const StepContext& step) override;
-  double value(Positions x) const override;
-  void add_gradient(Positions x, double scale, std::span<double> g) const override;
+  double value(Positions x, const Context&) const override;
+  void add_gradient(Positions x, const Context&, double scale, std::span<double> g) const override;
   void bind(const BlockPattern& pattern) override;
-  int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override;
-  bool prepare_vertex_systems(int vertex_count) override;
-  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
-                          std::span<Mat3d> H) const override;
+  int add_hessian(Positions x, const Context&, double scale, const Projection& projection,
+                  BlockSparse& H) const override;
 
  private:
   std::unique_ptr<Probe> made(const Touch& touch) const;
@@ -55,7 +52,6 @@ class HeldTip : public Energy {
   Poke poke_;
   std::unique_ptr<Probe> probe_;  // of the poke; null without a tip
   const BlockPattern* pattern_ = nullptr;
-  std::optional<int> vertex_count_;  // once vertex systems were asked for
 };
 
 }  // namespace aspic

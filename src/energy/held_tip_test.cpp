@@ -54,14 +54,13 @@ TEST(HeldTip, WithoutATouchIsNothing) {
   HeldTip V(mesh());
   const std::vector<double> x = rest();
   std::vector<double> g(x.size());
-  V.add_gradient(x, 1, g);
+  ActiveTerm(V).add_gradient(x, 1, g);
   EXPECT_EQ(V.value(x), 0);
   EXPECT_EQ(g, std::vector<double>(x.size(), 0.0));
   EXPECT_EQ(V.touched_points(x), 0);
-  EXPECT_TRUE(V.prepare_vertex_systems(mesh().vertex_count()));
 }
 
-// Bound, and asked for vertex systems, before there was a tip.
+// Bound before there was a tip.
 TEST(HeldTip, IsTheProbeThatItHolds) {
   const BlockPattern blocks = pattern();
   const std::vector<double> x = rest();
@@ -69,50 +68,44 @@ TEST(HeldTip, IsTheProbeThatItHolds) {
     const Poke poke = pressed(0.1, contact);
     HeldTip V(mesh());
     V.bind(blocks);
-    ASSERT_TRUE(V.prepare_vertex_systems(mesh().vertex_count()));
-    V.set(poke, 9);
+    V.set(poke);
+    ActiveTerm term(V, {.start = x, .h = 1, .time = 9});
     const auto probe =
         make_probe(mesh(), boundary_triangles(mesh(), 0, mesh().tet_count()), poke.touch->tip, poke.touch->rest);
     probe->bind(blocks);
     probe->set_pose(poke.to);
     EXPECT_GT(V.value(x), 0);
     EXPECT_EQ(V.value(x), probe->value(x));
+    EXPECT_EQ(term.value(x), probe->value(x));
     std::vector<double> g(x.size()), wanted(x.size());
-    V.add_gradient(x, 2, g);
+    term.add_gradient(x, 2, g);
     probe->add_gradient(x, 2, wanted);
     EXPECT_EQ(g, wanted);
     BlockSparse H(blocks), K(blocks);
-    V.add_hessian(x, 1, {Definiteness::exact}, H);
+    term.add_hessian(x, 1, {Definiteness::exact}, H);
     probe->add_hessian(x, 1, {Definiteness::exact}, K);
     for (size_t b = 0; b < H.block.size(); ++b) EXPECT_EQ(squared_norm(H.block[b] - K.block[b]), 0);
     for (int r = 0; r < 3; ++r) EXPECT_EQ(V.wrench(x).force[r], probe->wrench(x).force[r]);
 
-    std::vector<Vec3d> gv(1, Vec3d{});
-    std::vector<Mat3d> Hv(1, Mat3d{});
-    const std::vector<int> vertex = {mesh().vertex_count() - 1};
-    V.add_vertex_systems(x, 2, vertex, gv, Hv);
-    for (int r = 0; r < 3; ++r) EXPECT_NEAR(gv[0][r], g[3 * vertex[0] + r], 1e-12);
-
-    V.set(poke, 0);
-    V.begin_step({.start = x, .h = 1, .time = 2});  // halfway
+    term.begin_step({.start = x, .h = 1, .time = 2});  // halfway
     probe->set_pose(poke.pose(2));
-    EXPECT_EQ(V.value(x), probe->value(x));
-    V.set({}, 0);
-    EXPECT_EQ(V.value(x), 0);
+    EXPECT_EQ(term.value(x), probe->value(x));
+    V.set({});
+    EXPECT_EQ(term.value(x), 0);
   }
 }
 
 TEST(HeldTip, ABadTouchChangesNothing) {
   HeldTip V(mesh());
   const Poke good = pressed(0.1);
-  V.set(good, 9);
+  V.set(good);
   const std::vector<double> x = rest();
   const double before = V.value(x);
   Poke bad = good;
   Touch away = *good.touch;
   away.rest.center[2] += 5;  // glued to nothing
   bad.touch = std::make_shared<const Touch>(away);
-  EXPECT_THROW(V.set(bad, 9), InvalidInput);
+  EXPECT_THROW(V.set(bad), InvalidInput);
   EXPECT_EQ(V.value(x), before);
   EXPECT_EQ(V.poke().touch, good.touch);
 }

@@ -11,51 +11,56 @@ namespace {
 class LinearLoad : public Energy {
  public:
   LinearLoad(std::string name, std::vector<double> force, AddForces varying)
-      : name_(std::move(name)), force_(std::move(force)), varying_(std::move(varying)) {
-    if (!varying_) return;
-    constant_ = force_;
-    varying_(time_, force_);
-  }
+      : name_(std::move(name)), constant_(std::move(force)), varying_(std::move(varying)) {}
 
   std::string_view name() const override { return name_; }
   bool has_constant_gradient() const override { return true; }
 
-  void begin_step(const StepContext& step) override {
-    if (!varying_ || step.time == time_) return;
-    time_ = step.time;
-    std::copy(constant_.begin(), constant_.end(), force_.begin());
-    varying_(time_, force_);
+  std::unique_ptr<Context> make_context() const override {
+    if (!varying_) return Energy::make_context();
+    auto forces = std::make_unique<Forces>();
+    evaluate(*forces);
+    return forces;
+  }
+  void begin_step(const StepContext& step, Context& context) const override {
+    const bool is_other_time = step.time != context.time;
+    Energy::begin_step(step, context);
+    if (varying_ && is_other_time) evaluate(static_cast<Forces&>(context));
   }
 
-  double value(Positions x) const override {
+  double value(Positions x, const Context& context) const override {
+    const std::span<const double> f = force(context);
     return -parallel_sum(static_cast<int>(x.size()), [&](int first, int last) {
       double sum = 0;
-      for (int i = first; i < last; ++i) sum += force_[i] * x[i];
+      for (int i = first; i < last; ++i) sum += f[i] * x[i];
       return sum;
     });
   }
 
-  void add_gradient(Positions x, double scale, std::span<double> g) const override {
+  void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
+    const std::span<const double> f = force(context);
     parallel_chunks(static_cast<int>(x.size()), [&](int first, int last) {
-      for (int i = first; i < last; ++i) g[i] -= scale * force_[i];
+      for (int i = first; i < last; ++i) g[i] -= scale * f[i];
     });
   }
 
-  int add_hessian(Positions, double, const Projection&, BlockSparse&) const override { return 0; }
-
-  bool prepare_vertex_systems(int) override { return true; }
-  void add_vertex_systems(Positions, double scale, std::span<const int> vertices, std::span<Vec3d> g,
-                          std::span<Mat3d>) const override {
-    for (size_t k = 0; k < vertices.size(); ++k)
-      for (int r = 0; r < 3; ++r) g[k][r] -= scale * force_[3 * vertices[k] + r];
-  }
+  int add_hessian(Positions, const Context&, double, const Projection&, BlockSparse&) const override { return 0; }
 
  private:
+  struct Forces : Context {
+    std::vector<double> force;  // at the time [N]
+  };
+  void evaluate(Forces& forces) const {
+    forces.force.assign(constant_.begin(), constant_.end());
+    varying_(forces.time, forces.force);
+  }
+  std::span<const double> force(const Context& context) const {
+    return varying_ ? static_cast<const Forces&>(context).force : constant_;
+  }
+
   std::string name_;
-  std::vector<double> force_;  // at the time [N]
-  std::vector<double> constant_;
+  std::vector<double> constant_;  // [N]
   AddForces varying_;
-  double time_ = 0;
 };
 
 }  // namespace

@@ -88,18 +88,6 @@ double MassMatrix::squared_distance(std::span<const double> x, std::span<const d
   });
 }
 
-void MassMatrix::add_vertex_systems(double scale, std::span<const double> x, std::span<const double> origin,
-                                    std::span<const int> vertices, std::span<Vec3d> g, std::span<Mat3d> H) const {
-  for (size_t i = 0; i < vertices.size(); ++i)
-    for (int64_t k = row_start_[vertices[i]]; k < row_start_[vertices[i] + 1]; ++k) {
-      const int j = column_[k];
-      const double m = scale * entry_[k];
-      for (int r = 0; r < 3; ++r) g[i][r] += m * (x[3 * j + r] - origin[3 * j + r]);
-      if (j == vertices[i])
-        for (int r = 0; r < 3; ++r) H[i](r, r) += m;
-    }
-}
-
 void MassMatrix::add_couplings(Couplings& couplings) const {
   for (int i = 0; i < rows(); ++i)
     for (int64_t k = row_start_[i]; column_[k] < i; ++k) couplings.emplace_back(i, column_[k]);

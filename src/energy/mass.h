@@ -20,9 +20,6 @@ class MassMatrix {
 
   void multiply(std::span<const double> x, std::span<double> y) const;                  // y = M x; 3 numbers per vertex
   double squared_distance(std::span<const double> x, std::span<const double> y) const;  // (x - y)' M (x - y)
-  // g[k] += scale (M (x - origin))_v, H[k] += scale M_vv I for v = vertices[k].
-  void add_vertex_systems(double scale, std::span<const double> x, std::span<const double> origin,
-                          std::span<const int> vertices, std::span<Vec3d> g, std::span<Mat3d> H) const;
   void add_couplings(Couplings& couplings) const;
   void bind(const BlockPattern& target);               // remembers where add_to writes
   void add_to(double scale, BlockSparse& H) const;     // H += scale M

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "energy/incidence.h"
 #include "math/definite.h"
 
 namespace aspic {
@@ -55,9 +54,9 @@ class PatchPressure : public Pressure {
     return sum;
   }
 
-  double value(Positions x) const override { return pressure_ * swept_volume(x); }
+  double value(Positions x, const Context&) const override { return pressure_ * swept_volume(x); }
 
-  void add_gradient(Positions x, double scale, std::span<double> g) const override {
+  void add_gradient(Positions x, const Context&, double scale, std::span<double> g) const override {
     for (size_t t = 0; t < patch_.size(); ++t) {
       const std::array<Vec3d, 3> forces = sweep(x, t).gradient();
       for (int i = 0; i < 3; ++i)
@@ -80,7 +79,8 @@ class PatchPressure : public Pressure {
         }
   }
 
-  int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override {
+  int add_hessian(Positions x, const Context&, double scale, const Projection& projection,
+                  BlockSparse& H) const override {
     int projected = 0;
     for (size_t t = 0; t < patch_.size(); ++t) {
       Mat9d K = hessian(sweep(x, t));
@@ -92,25 +92,6 @@ class PatchPressure : public Pressure {
       add_blocks(t, scale, K, H);
     }
     return projected;
-  }
-
-  bool prepare_vertex_systems(int vertex_count) override {
-    if (around_.is_made()) return true;
-    std::vector<std::pair<int, int>> ends;
-    for (size_t t = 0; t < patch_.size(); ++t)
-      for (const int v : patch_[t]) ends.emplace_back(v, static_cast<int>(t));
-    around_ = {vertex_count, ends};
-    return true;
-  }
-
-  // The swept volume is linear in the position of one corner, so blocks on the diagonal are zero.
-  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
-                          std::span<Mat3d>) const override {
-    for (size_t k = 0; k < vertices.size(); ++k)
-      for (const int t : around_.around(vertices[k])) {
-        const auto corner = std::ranges::find(patch_[t], vertices[k]) - patch_[t].begin();
-        g[k] = g[k] + (scale * pressure_) * sweep(x, t).gradient()[corner];
-      }
   }
 
  private:
@@ -146,7 +127,6 @@ class PatchPressure : public Pressure {
   std::vector<std::array<Vec3d, 3>> rest_;  // X of the corners of each triangle
   double pressure_;
   std::vector<std::array<int64_t, 9>> slot_;  // blocks (i, j), of the larger vertex and the smaller
-  Incidence around_;
 };
 
 }  // namespace

@@ -14,7 +14,7 @@
 
 namespace aspic {
 
-class Pressure : public Energy {
+class Pressure : public SteadyEnergy {
  public:
   virtual void set_pressure(double pressure) = 0;  // [Pa]
   virtual double pressure() const = 0;

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "energy/incidence.h"
 #include "energy/surface_parts.h"
 #include "energy/tip_depth.h"
 #include "math/symmetric_eigen.h"
@@ -85,30 +84,24 @@ struct Patch {
 class ProbeTerm : public Probe {
  public:
   ProbeTerm(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip, const TipPose& touch)
-      : tip_(tip), touch_(with_unit_axis(touch)) {
+      : tip_(tip), touch_(with_unit_axis(touch)), placed_(touch) {
     for (const Triangle& triangle : surface) add_patch(mesh, triangle);
-    set_pose(touch);
   }
 
   std::string_view name() const override { return "probe"; }
   bool touches_something() const { return !patches_.empty(); }
 
-  void set_pose(const TipPose& pose) override {
-    pose_ = with_unit_axis(pose);
-    const Mat3d R = rotation_matrix(pose_.rotation);
-    target_.resize(offset_.size());
-    for (size_t i = 0; i < offset_.size(); ++i) target_[i] = pose_.center + R * offset_[i];
-  }
-  const TipPose& pose() const override { return pose_; }
+  void set_pose(const TipPose& pose) override { placed_ = PlacedTip(pose); }
+  const PlacedTip& placed() const override { return placed_; }
 
-  double value(Positions x) const override {
+  double value_at(const PlacedTip& tip, Positions x) const override {
     double V = 0;
-    for_each_touched(x, [&](const Patch&, const Barycentric&, const Vec3d&, const Response& r) { V += r.value; });
+    for_each_touched(tip, x, [&](const Patch&, const Barycentric&, const Vec3d&, const Response& r) { V += r.value; });
     return V;
   }
 
-  void add_gradient(Positions x, double scale, std::span<double> g) const override {
-    for_each_touched(x, [&](const Patch& patch, const Barycentric& b, const Vec3d&, const Response& r) {
+  void add_gradient_at(const PlacedTip& tip, Positions x, double scale, std::span<double> g) const override {
+    for_each_touched(tip, x, [&](const Patch& patch, const Barycentric& b, const Vec3d&, const Response& r) {
       for (int i = 0; i < 3; ++i) add_at(g, patch.vertices[i], scale * b[i], r.gradient);
     });
   }
@@ -128,9 +121,10 @@ class ProbeTerm : public Probe {
         }
   }
 
-  int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override {
+  int add_hessian_at(const PlacedTip& tip, Positions x, double scale, const Projection& projection,
+                     BlockSparse& H) const override {
     int projected = 0;
-    for_each_touched(x, [&](const Patch& patch, const Barycentric& b, const Vec3d&, const Response& r) {
+    for_each_touched(tip, x, [&](const Patch& patch, const Barycentric& b, const Vec3d&, const Response& r) {
       Mat3d K = r.hessian;
       const auto covers = [&](int v) { return projection.covers(v); };
       if (is_sliding() && projection.kind != Definiteness::exact && std::ranges::any_of(patch.vertices, covers))
@@ -143,49 +137,29 @@ class ProbeTerm : public Probe {
     return projected;
   }
 
-  bool prepare_vertex_systems(int vertex_count) override {
-    if (around_.is_made()) return true;
-    std::vector<std::pair<int, int>> ends;
-    for (size_t k = 0; k < patches_.size(); ++k)
-      for (const int v : patches_[k].vertices) ends.emplace_back(v, static_cast<int>(k));
-    around_ = {vertex_count, ends};
-    return true;
-  }
-
-  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
-                          std::span<Mat3d> H) const override {
-    for (size_t k = 0; k < vertices.size(); ++k)
-      for (const int p : around_.around(vertices[k]))
-        for_each_touched_of(patches_[p], x, [&](const Patch& patch, const Barycentric& b, const Vec3d&, const auto& r) {
-          const auto corner = std::ranges::find(patch.vertices, vertices[k]) - patch.vertices.begin();
-          g[k] = g[k] + (scale * b[corner]) * r.gradient;
-          add_block(H[k], scale * b[corner] * b[corner], r.hessian);
-        });
-  }
-
   Wrench wrench(Positions x) const override {
     Wrench sum;
-    for_each_touched(x, [&](const Patch&, const Barycentric&, const Vec3d& p, const Response& r) {
+    for_each_touched(placed_, x, [&](const Patch&, const Barycentric&, const Vec3d& p, const Response& r) {
       sum.force = sum.force - r.gradient;
-      sum.torque = sum.torque - cross(p - pose_.center, r.gradient);
+      sum.torque = sum.torque - cross(p - placed_.pose.center, r.gradient);
     });
     return sum;
   }
 
   Wrench wrench_product(Positions x, std::span<const double> dx) const override {
     Wrench sum;
-    for_each_touched(x, [&](const Patch& patch, const Barycentric& b, const Vec3d& p, const Response& r) {
+    for_each_touched(placed_, x, [&](const Patch& patch, const Barycentric& b, const Vec3d& p, const Response& r) {
       const Vec3d dp = combine(corners_of(dx, patch.vertices), b), dg = r.hessian * dp;
       sum.force = sum.force - dg;
-      sum.torque = sum.torque - cross(dp, r.gradient) - cross(p - pose_.center, dg);
+      sum.torque = sum.torque - cross(dp, r.gradient) - cross(p - placed_.pose.center, dg);
     });
     return sum;
   }
 
   void add_wrench_transposed(Positions x, const Wrench& wbar, double scale, std::span<double> xbar) const override {
-    for_each_touched(x, [&](const Patch& patch, const Barycentric& b, const Vec3d& p, const Response& r) {
+    for_each_touched(placed_, x, [&](const Patch& patch, const Barycentric& b, const Vec3d& p, const Response& r) {
       // w . (dp x g) = dp . (g x w),  w . (u x dg) = dg . (w x u)
-      const Vec3d gbar = wbar.force + cross(wbar.torque, p - pose_.center);
+      const Vec3d gbar = wbar.force + cross(wbar.torque, p - placed_.pose.center);
       const Vec3d pbar = cross(r.gradient, wbar.torque) + r.hessian * gbar;
       for (int i = 0; i < 3; ++i) add_at(xbar, patch.vertices[i], -scale * b[i], pbar);
     });
@@ -193,7 +167,7 @@ class ProbeTerm : public Probe {
 
   int touched_points(Positions x) const override {
     int count = 0;
-    for_each_touched(x, [&](const Patch&, const Barycentric&, const Vec3d&, const Response&) { ++count; });
+    for_each_touched(placed_, x, [&](const Patch&, const Barycentric&, const Vec3d&, const Response&) { ++count; });
     return count;
   }
 
@@ -232,22 +206,20 @@ class ProbeTerm : public Probe {
 
   // Calls visit(patch, barycentric, p, response) for the points that the tip acts on.
   template <class Visit>
-  void for_each_touched(Positions x, Visit visit) const {
-    for (const Patch& patch : patches_) for_each_touched_of(patch, x, visit);
-  }
-
-  template <class Visit>
-  void for_each_touched_of(const Patch& patch, Positions x, Visit visit) const {
-    const Corners c = corners_of(x, patch.vertices);
-    if (is_sliding() && depth(tip_, pose_, c[0]).value < -longest_edge(c)) return;
-    for (size_t i = 0; i < patch.points->size(); ++i) {
-      const Barycentric& b = (*patch.points)[i];
-      const Vec3d p = combine(c, b);
-      if (is_sliding()) {
-        const Depth d = depth(tip_, pose_, p);
-        if (d.value > 0) visit(patch, b, p, pushed(d, tip_.stiffness * patch.area));
-      } else if (const double w = weight_[patch.first + i]; w > 0) {
-        visit(patch, b, p, pulled(p - target_[patch.first + i], w * tip_.stiffness * patch.area));
+  void for_each_touched(const PlacedTip& tip, Positions x, Visit visit) const {
+    for (const Patch& patch : patches_) {
+      const Corners c = corners_of(x, patch.vertices);
+      if (is_sliding() && depth(tip_, tip.pose, c[0]).value < -longest_edge(c)) continue;
+      for (size_t i = 0; i < patch.points->size(); ++i) {
+        const Barycentric& b = (*patch.points)[i];
+        const Vec3d p = combine(c, b);
+        if (is_sliding()) {
+          const Depth d = depth(tip_, tip.pose, p);
+          if (d.value > 0) visit(patch, b, p, pushed(d, tip_.stiffness * patch.area));
+        } else if (const double w = weight_[patch.first + i]; w > 0) {
+          const Vec3d target = tip.pose.center + tip.turn * offset_[patch.first + i];
+          visit(patch, b, p, pulled(p - target, w * tip_.stiffness * patch.area));
+        }
       }
     }
   }
@@ -285,16 +257,18 @@ class ProbeTerm : public Probe {
   }
 
   Tip tip_;
-  TipPose touch_, pose_;
+  TipPose touch_;
+  PlacedTip placed_;
   PartCentroids centroids_;
   std::vector<Patch> patches_;
-  std::vector<double> weight_;          // of the points of a bonded tip
-  std::vector<Vec3d> offset_, target_;  // X - c_touch, and where it wants to be
+  std::vector<double> weight_;  // of the points of a bonded tip
+  std::vector<Vec3d> offset_;   // of them: X - c_touch
   std::vector<std::array<int64_t, 9>> slot_;
-  Incidence around_;
 };
 
 }  // namespace
+
+PlacedTip::PlacedTip(const TipPose& pose) : pose(with_unit_axis(pose)), turn(rotation_matrix(pose.rotation)) {}
 
 std::unique_ptr<Probe> make_probe(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip,
                                   const TipPose& touch) {

@@ -34,20 +34,43 @@ struct TipPose {
   Vec3d rotation{};        // vector of the rotation about the centre since the touch [rad]
 };
 
+struct PlacedTip {
+  explicit PlacedTip(const TipPose& pose);  // throws InvalidInput for an axis of length 0
+  TipPose pose;                             // with an axis of length 1
+  Mat3d turn;                               // the rotation as a matrix
+};
+
 struct Wrench {
   Vec3d force{};   // of the tip on the body [N]
   Vec3d torque{};  // about the centre of the tip [N m]
 };
 
-class Probe : public Energy {
+class Probe : public SteadyEnergy {
  public:
+  using SteadyEnergy::add_gradient, SteadyEnergy::add_hessian, SteadyEnergy::value;
   virtual void set_pose(const TipPose& pose) = 0;
-  virtual const TipPose& pose() const = 0;
+  virtual const PlacedTip& placed() const = 0;
+  const TipPose& pose() const { return placed().pose; }
   virtual Wrench wrench(Positions x) const = 0;
   // d(wrench)/dx . dx, and its transpose: xbar += scale (d(wrench)/dx)' wbar. 3 numbers per vertex.
   virtual Wrench wrench_product(Positions x, std::span<const double> dx) const = 0;
   virtual void add_wrench_transposed(Positions x, const Wrench& wbar, double scale, std::span<double> xbar) const = 0;
   virtual int touched_points(Positions x) const = 0;  // of the surface; 0: the tip is in the air
+
+  // V and its derivatives where the tip is elsewhere than at pose().
+  virtual double value_at(const PlacedTip& tip, Positions x) const = 0;
+  virtual void add_gradient_at(const PlacedTip& tip, Positions x, double scale, std::span<double> g) const = 0;
+  virtual int add_hessian_at(const PlacedTip& tip, Positions x, double scale, const Projection& projection,
+                             BlockSparse& H) const = 0;
+
+  double value(Positions x, const Context&) const override { return value_at(placed(), x); }
+  void add_gradient(Positions x, const Context&, double scale, std::span<double> g) const override {
+    add_gradient_at(placed(), x, scale, g);
+  }
+  int add_hessian(Positions x, const Context&, double scale, const Projection& projection,
+                  BlockSparse& H) const override {
+    return add_hessian_at(placed(), x, scale, projection, H);
+  }
 };
 
 // How far from the surface of a bonded tip the glue reaches, relative to the radius. It thins out over the second half

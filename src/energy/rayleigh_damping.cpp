@@ -1,7 +1,5 @@
 #include "energy/rayleigh_damping.h"
 
-#include <optional>
-
 #include "base/parallel.h"
 
 namespace aspic {
@@ -19,47 +17,43 @@ class RayleighDamping : public Damping {
 
   void bind(const BlockPattern& pattern) override {
     mass_.bind(pattern);
-    C_.emplace(pattern);
-    for (auto* v : {&u_, &Cu_, &Mu_}) v->resize(3 * pattern.rows());
-    start_.resize(3 * pattern.rows());
+    pattern_ = &pattern;
   }
 
-  void begin_step(const StepContext& step) override {
-    h_ = step.h;
-    start_.assign(step.start.begin(), step.start.end());
-    mass_.assign_to(mass_factor_, *C_);
+  std::unique_ptr<Context> make_context() const override { return std::make_unique<Start>(*pattern_); }
+  void begin_step(const StepContext& step, Context& context) const override {
+    Energy::begin_step(step, context);
+    Start& start = static_cast<Start&>(context);
+    start.x.assign(step.start.begin(), step.start.end());
+    mass_.assign_to(mass_factor_, start.C);
     const Positions x = step.shape.empty() ? step.start : step.shape;
-    shape_.assign(x.begin(), x.end());
-    if (stiffness_factor_ > 0) elasticity_->add_hessian(x, stiffness_factor_, {kDefiniteness}, *C_);
+    start.shape.assign(x.begin(), x.end());
+    if (stiffness_factor_ > 0) elasticity_->add_hessian(x, stiffness_factor_, {kDefiniteness}, start.C);
   }
 
-  double value(Positions x) const override {
-    if (h_ == 0) return 0;
-    multiply(x);
-    const double D = parallel_sum(static_cast<int>(u_.size()), [&](int first, int last) {
-      double sum = 0;
-      for (int i = first; i < last; ++i) sum += u_[i] * Cu_[i];
-      return sum;
-    });
-    return D / (2 * h_);
+  double value(Positions x, const Context& context) const override {
+    if (context.h == 0) return 0;
+    const auto& [u, Cu] = product(x, static_cast<const Start&>(context));
+    return dot(u, Cu) / (2 * context.h);
   }
 
-  void add_gradient(Positions x, double scale, std::span<double> g) const override {
-    if (h_ == 0) return;
-    multiply(x);
+  void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
+    if (context.h == 0) return;
+    const std::vector<double>& Cu = product(x, static_cast<const Start&>(context)).Cu;
     parallel_chunks(static_cast<int>(g.size()), [&](int first, int last) {
-      for (int i = first; i < last; ++i) g[i] += scale / h_ * Cu_[i];
+      for (int i = first; i < last; ++i) g[i] += scale / context.h * Cu[i];
     });
   }
 
   void add_couplings(Couplings& couplings) const override { mass_.add_couplings(couplings); }
 
-  int add_hessian(Positions, double scale, const Projection&, BlockSparse& H) const override {
-    if (h_ == 0) return 0;
+  int add_hessian(Positions, const Context& context, double scale, const Projection&, BlockSparse& H) const override {
+    if (context.h == 0) return 0;
+    const BlockSparse& C = static_cast<const Start&>(context).C;
     const BlockPattern& p = *H.pattern;
     parallel_chunks(p.rows(), [&](int first, int last) {
       for (int64_t k = p.row_start[first]; k < p.row_start[last]; ++k)
-        for (int i = 0; i < 9; ++i) H.block[k].a[i] += scale / h_ * C_->block[k].a[i];
+        for (int i = 0; i < 9; ++i) H.block[k].a[i] += scale / context.h * C.block[k].a[i];
     });
     return 0;
   }
@@ -69,45 +63,28 @@ class RayleighDamping : public Damping {
   double mass_factor(int vertex) const override { return mass_.vertex_mass()[vertex] > 0 ? mass_factor_ : 0; }
 
   // h w . dD/dx = w' (a M + b K(x_start)) u
-  void add_derivatives(Positions x, std::span<const double> w, double scale,
+  void add_derivatives(Positions x, const Context& context, std::span<const double> w, double scale,
                        const DampingGradients& gradients) const override {
-    if (h_ == 0) return;
-    const double s = scale / h_;
+    if (context.h == 0) return;
+    const Start& start = static_cast<const Start&>(context);
+    const double s = scale / context.h;
+    std::vector<double> u(x.size()), product_of(x.size());
+    for (size_t i = 0; i < x.size(); ++i) u[i] = x[i] - start.x[i];
     if (!gradients.coefficients.empty()) {
-      multiply(x);
-      mass_.multiply(u_, Mu_);
-      const double wMu = dot(w, Mu_);
+      mass_.multiply(u, product_of);
+      const double wMu = dot(w, product_of);
+      start.C.multiply(u, product_of);
       gradients.coefficients[0] += s * wMu;
       if (stiffness_factor_ > 0)
-        gradients.coefficients[1] += s * (dot(w, Cu_) - mass_factor_ * wMu) / stiffness_factor_;
+        gradients.coefficients[1] += s * (dot(w, product_of) - mass_factor_ * wMu) / stiffness_factor_;
     }
     if (!gradients.start.empty()) {
-      C_->multiply(w, Cu_);
-      for (size_t i = 0; i < x.size(); ++i) gradients.start[i] -= s * Cu_[i];
+      start.C.multiply(w, product_of);
+      for (size_t i = 0; i < x.size(); ++i) gradients.start[i] -= s * product_of[i];
     }
     if (stiffness_factor_ == 0) return;
-    for (size_t i = 0; i < x.size(); ++i) u_[i] = x[i] - start_[i];
-    elasticity_->add_hessian_derivatives(shape_, w, u_, kDefiniteness, s * stiffness_factor_, gradients.start,
+    elasticity_->add_hessian_derivatives(start.shape, w, u, kDefiniteness, s * stiffness_factor_, gradients.start,
                                          gradients.elastic);
-  }
-
-  bool prepare_vertex_systems(int) override { return true; }
-  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
-                          std::span<Mat3d> H) const override {
-    if (h_ == 0) return;
-    const BlockPattern& p = *C_->pattern;
-    const auto moved = [&](int j) {
-      return Vec3d{{x[3 * j] - start_[3 * j], x[3 * j + 1] - start_[3 * j + 1], x[3 * j + 2] - start_[3 * j + 2]}};
-    };
-    for (size_t k = 0; k < vertices.size(); ++k) {
-      const int v = vertices[k];
-      Vec3d Cu{};
-      for (int64_t s = p.row_start[v]; s < p.row_start[v + 1]; ++s) Cu = Cu + C_->block[s] * moved(p.column[s]);
-      for (int64_t u = p.upper_start[v]; u < p.upper_start[v + 1]; ++u)
-        Cu = Cu + transpose(C_->block[p.upper_slot[u]]) * moved(p.upper_row[u]);
-      g[k] = g[k] + (scale / h_) * Cu;
-      H[k] = H[k] + (scale / h_) * C_->block[p.diagonal(v)];
-    }
   }
 
  private:
@@ -121,20 +98,30 @@ class RayleighDamping : public Damping {
     });
   }
 
-  void multiply(Positions x) const {
+  struct Start : Context {  // of the step
+    explicit Start(const BlockPattern& pattern) : C(pattern) {}
+    std::vector<double> x, shape;  // at the start of the step, and where K is taken
+    BlockSparse C;                 // a M + b K(shape) [kg/s]
+  };
+
+  struct Product {
+    std::vector<double> u, Cu;  // u = x - start.x
+  };
+  static const Product& product(Positions x, const Start& start) {
+    thread_local Product scratch;
+    Product& p = scratch;  // of this thread, for all
+    p.u.resize(x.size()), p.Cu.resize(x.size());
     parallel_chunks(static_cast<int>(x.size()), [&](int first, int last) {
-      for (int i = first; i < last; ++i) u_[i] = x[i] - start_[i];
+      for (int i = first; i < last; ++i) p.u[i] = x[i] - start.x[i];
     });
-    C_->multiply(u_, Cu_);
+    start.C.multiply(p.u, p.Cu);
+    return p;
   }
 
   MassMatrix mass_;
   const TetElasticity* elasticity_;
   double mass_factor_, stiffness_factor_;
-  double h_ = 0;                             // [s]
-  std::vector<double> start_, shape_;        // x at the start of the step, and where K is taken
-  std::optional<BlockSparse> C_;             // a M + b K(x_start) [kg/s]
-  mutable std::vector<double> u_, Cu_, Mu_;  // scratch; u = x - x_start
+  const BlockPattern* pattern_ = nullptr;
 };
 
 }  // namespace

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "energy/incidence.h"
-
 namespace aspic {
 namespace {
 
@@ -15,66 +13,57 @@ void add_at(std::span<double> g, int vertex, double scale, const Vec3d& v) {
 class PointSprings : public Energy {
  public:
   PointSprings(std::string name, std::vector<PointSpring> springs)
-      : name_(std::move(name)), springs_(std::move(springs)), target_(springs_.size()), slot_(springs_.size()) {
-    follow(0);
-  }
+      : name_(std::move(name)), springs_(std::move(springs)), slot_(springs_.size()) {}
 
   std::string_view name() const override { return name_; }
 
-  void begin_step(const StepContext& step) override { follow(step.time); }
+  std::unique_ptr<Context> make_context() const override {
+    auto targets = std::make_unique<Targets>();
+    PointSprings::begin_step({}, *targets);
+    return targets;
+  }
+  void begin_step(const StepContext& step, Context& context) const override {
+    Energy::begin_step(step, context);
+    std::vector<Vec3d>& target = static_cast<Targets&>(context).target;
+    target.resize(springs_.size());
+    for (size_t s = 0; s < springs_.size(); ++s) target[s] = springs_[s].target(step.time);
+  }
 
-  double value(Positions x) const override {
+  double value(Positions x, const Context& context) const override {
     double V = 0;
     for (size_t s = 0; s < springs_.size(); ++s) {
-      const Vec3d u = point(x, springs_[s].vertex) - target_[s];
+      const Vec3d u = point(x, springs_[s].vertex) - target(context, s);
       V += 0.5 * springs_[s].stiffness * dot(u, u);
     }
     return V;
   }
 
-  void add_gradient(Positions x, double scale, std::span<double> g) const override {
+  void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
     for (size_t s = 0; s < springs_.size(); ++s)
-      add_at(g, springs_[s].vertex, scale * springs_[s].stiffness, point(x, springs_[s].vertex) - target_[s]);
+      add_at(g, springs_[s].vertex, scale * springs_[s].stiffness, point(x, springs_[s].vertex) - target(context, s));
   }
 
   void bind(const BlockPattern& pattern) override {
     for (size_t s = 0; s < springs_.size(); ++s) slot_[s] = pattern.diagonal(springs_[s].vertex);
   }
 
-  int add_hessian(Positions, double scale, const Projection&, BlockSparse& H) const override {
+  int add_hessian(Positions, const Context&, double scale, const Projection&, BlockSparse& H) const override {
     for (size_t s = 0; s < springs_.size(); ++s)
       for (int r = 0; r < 3; ++r) H.block[slot_[s]](r, r) += scale * springs_[s].stiffness;
     return 0;
   }
 
-  bool prepare_vertex_systems(int vertex_count) override {
-    if (around_.is_made()) return true;
-    std::vector<std::pair<int, int>> ends;
-    for (size_t s = 0; s < springs_.size(); ++s) ends.emplace_back(springs_[s].vertex, static_cast<int>(s));
-    around_ = {vertex_count, ends};
-    return true;
-  }
-
-  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
-                          std::span<Mat3d> H) const override {
-    for (size_t k = 0; k < vertices.size(); ++k)
-      for (const int s : around_.around(vertices[k])) {
-        const double stiffness = scale * springs_[s].stiffness;
-        g[k] = g[k] + stiffness * (point(x, vertices[k]) - target_[s]);
-        for (int r = 0; r < 3; ++r) H[k](r, r) += stiffness;
-      }
-  }
-
  private:
-  void follow(double time) {
-    for (size_t s = 0; s < springs_.size(); ++s) target_[s] = springs_[s].target(time);
+  struct Targets : Context {
+    std::vector<Vec3d> target;  // of each spring at the time [m]
+  };
+  static const Vec3d& target(const Context& context, size_t spring) {
+    return static_cast<const Targets&>(context).target[spring];
   }
 
   std::string name_;
   std::vector<PointSpring> springs_;
-  std::vector<Vec3d> target_;
   std::vector<int64_t> slot_;
-  Incidence around_;
 };
 
 class VertexSprings : public Energy {
@@ -87,7 +76,7 @@ class VertexSprings : public Energy {
 
   std::string_view name() const override { return name_; }
 
-  double value(Positions x) const override {
+  double value(Positions x, const Context&) const override {
     double V = 0;
     for (const Spring& s : springs_) {
       const double stretch = length(x, s) - s.rest_length;
@@ -96,7 +85,7 @@ class VertexSprings : public Energy {
     return V;
   }
 
-  void add_gradient(Positions x, double scale, std::span<double> g) const override {
+  void add_gradient(Positions x, const Context&, double scale, std::span<double> g) const override {
     for (const Spring& s : springs_) {
       const Vec3d tension = pull(x, s);
       add_at(g, s.a, scale, tension);
@@ -114,7 +103,8 @@ class VertexSprings : public Energy {
                   pattern.slot(springs_[i].a, springs_[i].b)};
   }
 
-  int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override {
+  int add_hessian(Positions x, const Context&, double scale, const Projection& projection,
+                  BlockSparse& H) const override {
     int projected = 0;
     for (size_t i = 0; i < springs_.size(); ++i) {
       const Spring& s = springs_[i];
@@ -131,27 +121,6 @@ class VertexSprings : public Energy {
       }
     }
     return projected;
-  }
-
-  bool prepare_vertex_systems(int vertex_count) override {
-    if (around_.is_made()) return true;
-    std::vector<std::pair<int, int>> ends;
-    for (size_t i = 0; i < springs_.size(); ++i) {
-      ends.emplace_back(springs_[i].a, static_cast<int>(i));
-      ends.emplace_back(springs_[i].b, static_cast<int>(i));
-    }
-    around_ = {vertex_count, ends};
-    return true;
-  }
-
-  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
-                          std::span<Mat3d> H) const override {
-    for (size_t k = 0; k < vertices.size(); ++k)
-      for (const int i : around_.around(vertices[k])) {
-        const Spring& s = springs_[i];
-        g[k] = g[k] + (vertices[k] == s.a ? scale : -scale) * pull(x, s);
-        H[k] = H[k] + scale * block(x, s, stretch_across(x, s));
-      }
   }
 
  private:
@@ -182,7 +151,6 @@ class VertexSprings : public Energy {
   std::string name_;
   std::vector<Spring> springs_;
   std::vector<std::array<int64_t, 3>> slot_;  // blocks (a, a), (b, b), (a, b)
-  Incidence around_;
 };
 
 }  // namespace

@@ -60,11 +60,19 @@ class StrainRateDamping : public TetTerm<GreenStrainRate, Damping> {
         first_(first),
         count_(static_cast<int>(parameters.size())) {}
 
-  void begin_step(const StepContext& step) override {
-    start_.assign(step.start.begin(), step.start.end());
+  std::unique_ptr<Context> make_context() const override {
+    auto start = std::make_unique<Start>();
+    start->params = params_;
+    return start;
+  }
+
+  void begin_step(const StepContext& step, Context& context) const override {
+    Energy::begin_step(step, context);
+    Start& start = static_cast<Start&>(context);
+    start.x.assign(step.start.begin(), step.start.end());
     parallel_for(batch_count(), [&](int i) {
       const Mat3<Pack> E = GreenStrainRate::green_strain(F(i, step.start));
-      auto& p = params_[i];
+      auto& p = start.params[i];
       p.per_step = Pack(step.h > 0 ? 1 / step.h : 0.0);
       p.xx = E(0, 0), p.yy = E(1, 1), p.zz = E(2, 2);
       p.xy = E(0, 1), p.yz = E(1, 2), p.zx = E(2, 0);
@@ -74,16 +82,17 @@ class StrainRateDamping : public TetTerm<GreenStrainRate, Damping> {
   int coefficient_count() const override { return count_; }
 
   // w . dD/dx = k W : F (E - E_start), k = eta / h, and dE_start = sym(F_start' dF_start).
-  void add_derivatives(Positions x, std::span<const double> w, double scale,
+  void add_derivatives(Positions x, const Context& context, std::span<const double> w, double scale,
                        const DampingGradients& gradients) const override {
+    const Start& start = static_cast<const Start&>(context);
     for_each_batch([&](int i) {
       const TetBatch& tets = batches_[i];
-      const auto& p = params_[i];
+      const auto& p = start.params[i];
       const Mat3<Pack> F_i = F(i, x), W = F(i, w), FtW = transpose(F_i) * W;
       const Pack weight = Pack(scale) * tets.volume * p.per_step;
       if (!gradients.start.empty()) {
         const Mat3<Pack> symmetric = Pack(0.5) * (FtW + transpose(FtW));
-        tets.scatter_gradient(F(i, start_) * symmetric, -weight * p.viscosity, gradients.start);
+        tets.scatter_gradient(F(i, start.x) * symmetric, -weight * p.viscosity, gradients.start);
       }
       if (gradients.coefficients.empty()) return;
       const Pack rate = weight * inner(FtW, GreenStrainRate::increment(F_i, p));
@@ -92,8 +101,15 @@ class StrainRateDamping : public TetTerm<GreenStrainRate, Damping> {
   }
 
  private:
+  struct Start : Context {  // of the step
+    std::vector<double> x;
+    std::vector<Params<Pack>> params;  // E_start and 1/h
+  };
+  const std::vector<Params<Pack>>& params(const Context& context) const override {
+    return static_cast<const Start&>(context).params;
+  }
+
   int first_, count_;
-  std::vector<double> start_;  // of the step
 };
 
 }  // namespace

@@ -19,7 +19,7 @@ struct TetFields {
   std::vector<double> von_mises;       // [Pa]
 };
 
-class TetElasticity : public Energy {
+class TetElasticity : public SteadyEnergy {
  public:
   virtual double min_det_F(Positions x) const = 0;
   virtual void evaluate(Positions x, TetFields& fields) const = 0;  // writes the entries of this term's tets

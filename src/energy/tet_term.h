@@ -16,7 +16,6 @@
 #include "energy/energy.h"
 #include "energy/law_hessian.h"
 #include "energy/tet_batch.h"
-#include "energy/vertex_tets.h"
 #include "material/law_eigen.h"
 #include "material/material.h"
 #include "math/definite.h"
@@ -29,6 +28,7 @@ class TetTerm : public Base {
  public:
   template <class T>
   using Params = typename M::template Params<T>;
+  using Context = Energy::Context;
 
   // Tets [first, first + parameters.size()) of the mesh.
   TetTerm(std::string name, const TetMesh& mesh, int first, std::span<const Params<double>> parameters)
@@ -47,15 +47,17 @@ class TetTerm : public Base {
 
   std::string_view name() const override { return name_; }
 
-  double value(Positions x) const override {
-    const double V = reduce([&](int i) { return sum(batches_[i].volume * M::psi(F(i, x), params_[i])); },
+  double value(Positions x, const Context& context) const override {
+    const std::vector<Params<Pack>>& p = params(context);
+    const double V = reduce([&](int i) { return sum(batches_[i].volume * M::psi(F(i, x), p[i])); },
                             [](double a, double b) { return a + b; }, 0.0);
     return std::isnan(V) ? INFINITY : V;  // zero-volume lanes of an infinite density
   }
 
-  void add_gradient(Positions x, double scale, std::span<double> g) const override {
+  void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
+    const std::vector<Params<Pack>>& p = params(context);
     for_each_batch(
-        [&](int i) { batches_[i].scatter_gradient(M::pk1(F(i, x), params_[i]), Pack(scale) * batches_[i].volume, g); });
+        [&](int i) { batches_[i].scatter_gradient(M::pk1(F(i, x), p[i]), Pack(scale) * batches_[i].volume, g); });
   }
 
   void add_couplings(Couplings& couplings) const override {
@@ -69,31 +71,17 @@ class TetTerm : public Base {
     parallel_for(batch_count(), [&](int i) { batches_[i].bind(pattern); });
   }
 
-  int add_hessian(Positions x, double scale, const Projection& projection, BlockSparse& H) const override {
-    projected_.assign(batches_.size(), 0);
+  int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
+                  BlockSparse& H) const override {
+    const std::vector<Params<Pack>>& p = params(context);
+    thread_local std::vector<char> scratch;  // per batch: how many lanes were projected
+    std::vector<char>& projected = scratch;  // of this thread, for all
+    projected.assign(batches_.size(), 0);
     for_each_batch([&](int i) {
       if (i + 1 < batch_count()) batches_[i + 1].prefetch_blocks(H);
-      projected_[i] = add_batch_hessian(i, x, scale, projection, H);
+      projected[i] = add_batch_hessian(i, x, p[i], Pack(scale), projection, H);
     });
-    return std::accumulate(projected_.begin(), projected_.end(), 0);
-  }
-
-  bool prepare_vertex_systems(int vertex_count) override {
-    if (!corners_.is_made()) corners_ = corners_around_vertices(batches_, vertex_count);
-    return true;
-  }
-
-  void add_vertex_systems(Positions x, double scale, std::span<const int> vertices, std::span<Vec3d> g,
-                          std::span<Mat3d> H) const override {
-    for (size_t k = 0; k < vertices.size(); ++k) {
-      const std::span<const int> around = corners_.around(vertices[k]);
-      for (size_t i = 0; i < around.size(); i += kPackWidth) {
-        const auto corners = around.subspan(i, std::min<size_t>(kPackWidth, around.size() - i));
-        const VertexPack tets = gather_corners(batches_, x, corners);
-        const Params<Pack> p = gather_params<M>(params_, corners);
-        add_vertex_system(tets, M::pk1(tets.F, p), M::hessian(tets.F, p), scale, g[k], H[k]);
-      }
-    }
+    return std::accumulate(projected.begin(), projected.end(), 0);
   }
 
  protected:
@@ -110,16 +98,21 @@ class TetTerm : public Base {
   // One number per batch, combined in the order of the batches.
   template <class Body, class Combine>
   double reduce(const Body& body, const Combine& combine, double start) const {
-    partial_.resize(group_count());
+    thread_local std::vector<double> scratch;
+    std::vector<double>& partial = scratch;  // of this thread, for all
+    partial.resize(group_count());
     parallel_for(group_count(), [&](int group) {
       double result = start;
       for_group(group, [&](int i) { result = combine(result, body(i)); });
-      partial_[group] = result;
+      partial[group] = result;
     });
     double result = start;
-    for (const double p : partial_) result = combine(result, p);
+    for (const double p : partial) result = combine(result, p);
     return result;
   }
+
+  // Of each batch, in a step.
+  virtual const std::vector<Params<Pack>>& params(const Energy::Context&) const { return params_; }
 
   std::vector<TetBatch> batches_;
   std::vector<Params<Pack>> params_;
@@ -157,20 +150,21 @@ class TetTerm : public Base {
   }
 
   // Returns how many lanes were projected.
-  char add_batch_hessian(int i, Positions x, double scale, const Projection& projection, BlockSparse& H) const {
+  char add_batch_hessian(int i, Positions x, const Params<Pack>& p, Pack scale, const Projection& projection,
+                         BlockSparse& H) const {
     const TetBatch& tets = batches_[i];
-    const Pack weight = Pack(scale) * tets.volume;
+    const Pack weight = scale * tets.volume;
     if constexpr (requires { typename M::Law; }) {
       if (projection.kind == Definiteness::exact) {
         const Mat3<Pack> Ds = tets.edges(x);
-        const LawBlocks blocks(tets, Ds, M::law_derivatives(Ds * tets.rest_inverse, params_[i]), weight);
+        const LawBlocks blocks(tets, Ds, M::law_derivatives(Ds * tets.rest_inverse, p), weight);
         tets.scatter_blocks([&](int u, int v) { return blocks.block(u, v); }, H);
         return 0;
       }
     }
     const Mat3<Pack> F_i = F(i, x);
-    Mat9<Pack> A = M::hessian(F_i, params_[i]);
-    const unsigned projected = project(A, F_i, params_[i], tets.lanes_covered(projection), projection.kind);
+    Mat9<Pack> A = M::hessian(F_i, p);
+    const unsigned projected = project(A, F_i, p, tets.lanes_covered(projection), projection.kind);
     tets.scatter_hessian(A, weight, H);
     return static_cast<char>(std::popcount(projected));
   }
@@ -219,9 +213,6 @@ class TetTerm : public Base {
   std::string name_;
   size_t tets_per_group_;
   ColorClasses colors_;
-  Incidence corners_;                    // for single vertices
-  mutable std::vector<double> partial_;  // scratch of reduce
-  mutable std::vector<char> projected_;  // per batch: lanes projected by the last Hessian
 };
 
 }  // namespace aspic

@@ -50,8 +50,8 @@ struct Equilibrium::Impl {
 
   void tell_terms(std::span<const double> at) {
     const StepContext context{at, 0, 0};
-    tell_potential(E, context);
-    tell_damping(E, context);
+    E.tell_potential(context);
+    E.tell_damping(context);
     E.begin_step(at, 0, 1);
   }
 

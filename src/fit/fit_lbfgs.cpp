@@ -12,13 +12,17 @@ namespace {
 // Its decrements are by a rough Hessian, so that one alone may be small by chance.
 constexpr int kSuccessive = 5;
 
-class FitObjective : public Objective {
+class FitObjective : public Objective, public HasPreconditioner {
  public:
   FitObjective(FitRun& run, FitPoint& at) : run_(run), at_(at), trial_(at), origin_(at.p) {}
 
-  double value(std::span<const double> p) override {
-    if (is_same(p, at_)) return at_.objective(run_.weight);
-    return run_.evaluate(p, trial_) ? trial_.objective(run_.weight) : INFINITY;
+  Evaluation evaluate(std::span<const double> p) override {
+    if (is_same(p, at_)) return at_iterate();
+    return {run_.evaluate(p, trial_) ? trial_.objective(run_.weight) : INFINITY, at_iterate().round_off};
+  }
+  Evaluation at_iterate() const {
+    const double value = at_.objective(run_.weight);
+    return {value, 1e-10 * std::abs(value)};
   }
   void gradient(std::span<const double> p, std::span<double> g) override {
     const FitPoint& point = is_same(p, at_) ? at_ : trial_;
@@ -34,7 +38,6 @@ class FitObjective : public Objective {
   double max_step(std::span<const double>, std::span<const double> d) override {
     return run_.options.max_step / std::max(largest_entry(d), 1e-300);
   }
-  double value_round_off() const override { return 1e-10 * std::abs(at_.objective(run_.weight)); }
 
   // s R'' at the first iterate, with the curvature s of f along the first direction.
   bool precondition(std::span<const double> r, std::span<double> z) override {
@@ -92,8 +95,7 @@ Status fit_by_lbfgs(FitRun& run, FitPoint& at, FitGoal& goal) {
                                 .criterion = Criterion::first_gradient,
                                 .line_search = {.tolerance = 1e-6},
                                 .deadline = run.options.deadline};
-  const MinimizeReport report =
-      minimizer.minimize(f, direction, p, {at.objective(run.weight), f.value_round_off()}, options, observe);
+  const MinimizeReport report = minimizer.minimize(f, direction, p, f.at_iterate(), options, observe);
   return report.status == Status::interrupted ? ended : report.status;
 }
 

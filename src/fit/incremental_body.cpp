@@ -83,7 +83,7 @@ void IncrementalBody::add_loads() {
 
 std::vector<double> IncrementalBody::residual(std::span<const double> x, double& size) const {
   std::vector<double> load(x.size(), 0.0), inner(x.size(), 0.0);
-  for (const auto& energy : energies_) energy->add_gradient(x, 1, load);
+  for (const auto& energy : energies_) ActiveTerm(*energy).add_gradient(x, 1, load);
   body_.add_gradient(x, inner);
   clear_held(load);
   clear_held(inner);
@@ -121,7 +121,8 @@ bool IncrementalBody::factorize() {
   if (!matrix_) matrix_ = std::make_unique<BlockSparse>(pattern_);
   matrix_->set_zero();
   body_.add_stiffness(x_, *matrix_);
-  for (const auto& energy : energies_) energy->add_hessian(x_, 1, {.kind = Definiteness::clamped}, *matrix_);
+  for (const auto& energy : energies_)
+    ActiveTerm(*energy).add_hessian(x_, 1, {.kind = Definiteness::clamped}, *matrix_);
   for (int r = 0; r < pattern_.rows(); ++r)
     for (int64_t s = pattern_.row_start[r]; s < pattern_.row_start[r + 1]; ++s)
       if (held_[r] || held_[pattern_.column[s]])

@@ -46,7 +46,7 @@ std::optional<Vec3d> acceleration_of_weight(const Model& model, std::span<const 
     }
   if (!load) return Vec3d{};
   std::vector<double> force(q.size()), weight(q.size());
-  load->add_gradient(q, -1, force);
+  ActiveTerm(*load).add_gradient(q, -1, force);
   Vec3d total{};
   for (size_t i = 0; i < force.size(); ++i) total[i % 3] += force[i];
   const Vec3d acceleration = (1 / model.mass->total()) * total;
@@ -195,7 +195,7 @@ struct Trajectory::Impl {
     for (size_t i = 0; i < mu.size(); ++i) qbar[i] = Mmu[i] - vbar[i] / h;
     for (size_t i = 0; i < mu.size(); ++i) vbar[i] = h * Mmu[i];
     theta.add_gradient(after.q, mu, -f, gradient.elastic);
-    for (size_t k = 0; k < model.damping.size(); ++k) add_damping(damping(k), f, gradient.damping[k], gradient);
+    for (size_t k = 0; k < model.damping.size(); ++k) add_damping(k, f, gradient.damping[k], gradient);
     if (weight) add_density(f, gradient.density);
     pins.set_zero(qbar);
     report.adjoint_seconds += stopwatch.lap();
@@ -205,8 +205,8 @@ struct Trajectory::Impl {
   // As the integrator does.
   void tell_step() {
     const StepContext context{now.q, options.h, time_of(point + 1), now.q};
-    tell_potential(E, context);
-    tell_damping(E, context);
+    E.tell_potential(context);
+    E.tell_damping(context);
     for (size_t i = 0; i < moved.size(); ++i) moved[i] = now.q[i] + options.h * now.qdot[i];
     E.begin_step(moved, 1, options.h * options.h);
   }
@@ -223,12 +223,14 @@ struct Trajectory::Impl {
                                          : "the adjoint system was not solved");
   }
 
-  void add_damping(const Damping& D, double f, std::span<double> coefficients, TrajectoryGradient& gradient) {
+  void add_damping(size_t k, double f, std::span<double> coefficients, TrajectoryGradient& gradient) {
+    const Damping& D = damping(k);
     std::span<double> elastic;
-    for (size_t k = 0; k < model.elasticity.size(); ++k)
-      if (model.elasticity[k].get() == D.elasticity())
-        elastic = std::span(gradient.elastic).subspan(theta.of_term(k), theta.of_term(k + 1) - theta.of_term(k));
-    D.add_derivatives(after.q, mu, -f, {.start = qbar, .coefficients = coefficients, .elastic = elastic});
+    for (size_t b = 0; b < model.elasticity.size(); ++b)
+      if (model.elasticity[b].get() == D.elasticity())
+        elastic = std::span(gradient.elastic).subspan(theta.of_term(b), theta.of_term(b + 1) - theta.of_term(b));
+    D.add_derivatives(after.q, E.damping()[k].context(), mu, -f,
+                      {.start = qbar, .coefficients = coefficients, .elastic = elastic});
   }
 
   // mu' dg/drho: of the inertia, the weight, and damping proportional to mass.

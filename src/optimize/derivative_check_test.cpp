@@ -33,10 +33,10 @@ class Quartic : public Objective {
   int wrong_gradient = -1, wrong_row = -1, wrong_column = -1;
   double factor = 1.001;  // by which it is wrong
   Quartic() : pattern_(make_pattern(14, couplings())), H_(pattern_) {}
-  double value(std::span<const double> x) override {
+  Evaluation evaluate(std::span<const double> x) override {
     double sum = 0;
     for (size_t i = 0; i + 1 < x.size(); ++i) sum += std::pow(x[i], 4) + x[i] * x[i + 1] * x[i + 1];
-    return sum;
+    return {sum};
   }
   void gradient(std::span<const double> x, std::span<double> g) override {
     std::fill(g.begin(), g.end(), 0.0);

@@ -14,13 +14,7 @@ double allowed_value(double value, double alpha, double slope, const LineSearchO
 
 }  // namespace
 
-KnownValue evaluate(Objective& E, std::span<const double> x, Work& work) {
-  ++work.values;
-  const double value = E.value(x);
-  return {value, E.value_round_off()};
-}
-
-LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<const double> d, const KnownValue& value,
+LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<const double> d, const Evaluation& value,
                            double slope, const LineSearchOptions& options, std::span<double> trial,
                            std::span<double> trial_gradient, std::vector<Trial>& trials) {
   LineSearchResult result;
@@ -28,10 +22,11 @@ LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<co
   double alpha = std::min(options.alpha_max, E.max_step(x, d));
   while (alpha >= options.tolerance) {
     for (size_t i = 0; i < x.size(); ++i) trial[i] = x[i] + alpha * d[i];
-    Trial& now = trials.emplace_back(Trial{alpha, E.value(trial), allowed_value(value.E, alpha, slope, options)});
+    const Evaluation there = E.evaluate(trial);
+    Trial& now = trials.emplace_back(Trial{alpha, there.value, allowed_value(value.value, alpha, slope, options)});
     if (options.test == DecreaseTest::none) {
       now.accepted = true;
-    } else if (std::abs(now.value - value.E) <= value.round_off && value.E - now.bound <= value.round_off) {
+    } else if (std::abs(now.value - value.value) <= value.round_off && value.value - now.bound <= value.round_off) {
       E.gradient(trial, trial_gradient);
       ++result.gradients;
       now.by_slope = true;
@@ -41,7 +36,7 @@ LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<co
     }
     if (now.accepted) {
       result.alpha = alpha;
-      result.value = {now.value, E.value_round_off()};
+      result.value = there;
       result.gradient_known = now.by_slope;
       return result;
     }

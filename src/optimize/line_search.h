@@ -24,14 +24,6 @@ struct LineSearchOptions {
   Deadline deadline = {};  // no further trial afterwards; the first is made
 };
 
-// What E is at x.
-struct KnownValue {
-  double E = 0;
-  double round_off = 0;  // the part of it that is noise
-};
-
-KnownValue evaluate(Objective& E, std::span<const double> x, Work& work);
-
 struct Trial {
   double alpha = 0;
   double value = 0;       // E(x + alpha d)
@@ -42,7 +34,7 @@ struct Trial {
 
 struct LineSearchResult {
   double alpha = 0;             // 0: stuck
-  KnownValue value;             // at x + alpha d
+  Evaluation value;             // at x + alpha d
   int gradients = 0;            // evaluated
   bool gradient_known = false;  // `trial_gradient` holds the gradient at the accepted trial
 };
@@ -50,7 +42,7 @@ struct LineSearchResult {
 // Near convergence the differences of E drown in round-off; a trial whose value lies within that noise, when the
 // decrease that is asked for does too, is judged by the slope there (approximate Wolfe condition, [Hager and Zhang
 // 2005]). `trial` receives x + alpha d, and `trials` every one that was made.
-LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<const double> d, const KnownValue& value,
+LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<const double> d, const Evaluation& value,
                            double slope /* g.d */, const LineSearchOptions& options, std::span<double> trial,
                            std::span<double> trial_gradient, std::vector<Trial>& trials);
 

@@ -65,7 +65,8 @@ struct Minimizer::Progress {
   std::span<double> x;
   const MinimizeOptions& options;
   MinimizeReport report;
-  KnownValue value;
+  HasParts& parts;
+  Evaluation value;
   double slope = 0;             // g.d
   LineSearchResult step;        // the last one
   bool last_direction = false;  // the criterion holds for it
@@ -83,7 +84,7 @@ double threshold(const Objective& E, const MinimizeOptions& options, double scal
     case Criterion::first_gradient:
       return options.tolerance * first_gradient_norm;
     case Criterion::absolute:
-      return options.tolerance * E.gradient_unit();
+      return options.tolerance * E.scales().gradient_unit;
     default:
       return options.tolerance;
   }
@@ -97,7 +98,7 @@ double largest_displacement(std::span<const double> d) {
 }
 
 // What a criterion that looks at the direction sees of it.
-double direction_size(Objective& E, const MinimizeOptions& options, std::span<const double> g,
+double direction_size(HasParts& E, const MinimizeOptions& options, std::span<const double> g,
                       std::span<const double> d) {
   switch (options.criterion) {
     case Criterion::velocity:
@@ -137,7 +138,7 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
   const MinimizeOptions& options = at.options;
   MinimizeReport& report = at.report;
   InnerAccuracy accuracy = inner_accuracy(at);
-  if (options.line_search.test != DecreaseTest::none) accuracy.value = at.value.E;
+  if (options.line_search.test != DecreaseTest::none) accuracy.value = at.value.value;
   LineSearchOptions line_search = options.line_search;
   line_search.deadline = options.deadline.earlier_by(cost_.gradient);
   const double begin = options.deadline.now();
@@ -154,7 +155,7 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
     trials_.clear();
     if (at.slope < 0) {
       if (at.judges_direction()) {
-        report.reached = direction_size(E, options, g_, d_);
+        report.reached = direction_size(at.parts, options, g_, d_);
         const DirectionReport& made = iteration.direction;
         if (!made.kept) at.is_modified = made.projected_elements > 0;
         at.last_direction = is_near_minimum(at, made);
@@ -168,7 +169,7 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
       if (at.step.alpha > 0) return true;
       report.status = Status::stuck;
       if (at.last_direction) return report.status = Status::converged, false;
-      for (size_t k = 0; k < parts_.size(); ++k) round_offs_[k] = E.part_round_off(static_cast<int>(k));
+      for (size_t k = 0; k < parts_.size(); ++k) round_offs_[k] = at.parts.part_round_off(static_cast<int>(k));
       if (is_at_round_off(at, kRoundOffMargin)) return report.status = Status::round_off, false;
     }
     if (iteration.direction.stopped || line_search.deadline.has_passed()) return report.status = Status::budget, false;
@@ -180,8 +181,8 @@ bool Minimizer::find_step(Progress& at, Iteration& iteration) {
 void Minimizer::take_step(Progress& at, Iteration& iteration) {
   Stopwatch stopwatch;
   const double begin = at.options.deadline.now();
-  at.report.gradient_round_off = at.E.gradient_round_off();  // of the last Hessian
-  for (size_t k = 0; k < parts_.size(); ++k) round_offs_[k] = at.E.part_round_off(static_cast<int>(k));
+  at.report.gradient_round_off = at.E.scales().gradient_round_off;  // of the last Hessian
+  for (size_t k = 0; k < parts_.size(); ++k) round_offs_[k] = at.parts.part_round_off(static_cast<int>(k));
   std::swap_ranges(trial_.begin(), trial_.end(), at.x.begin());
   at.value = at.step.value;
   if (!at.step.gradient_known) {
@@ -190,14 +191,14 @@ void Minimizer::take_step(Progress& at, Iteration& iteration) {
   }
   at.E.note_iterate(at.x);
   g_.swap(trial_gradient_);
-  at.E.measure_parts(g_, parts_);
+  at.parts.measure_parts(g_, parts_);
   iteration.alpha = at.step.alpha;
   iteration.gradient_seconds = stopwatch.lap();
   if (!at.step.gradient_known) cost_.gradient = at.options.deadline.now() - begin;
 }
 
 // Where g_ belongs to the first iterate.
-void Minimizer::begin_parts(Objective& E) {
+void Minimizer::begin_parts(HasParts& E) {
   const size_t count = E.part_count();
   parts_.resize(count);
   for (auto* v : {&first_norms_, &thresholds_, &round_offs_}) v->resize(count);
@@ -262,15 +263,13 @@ bool Minimizer::is_at_round_off(const Progress& at, double margin) const {
 
 MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std::span<double> x,
                                    const MinimizeOptions& options, const IterationObserver& observe) {
-  Work work;
-  const KnownValue value = evaluate(E, x, work);
-  MinimizeReport report = minimize(E, direction, x, value, options, observe);
-  report.add(work);
+  MinimizeReport report = minimize(E, direction, x, E.evaluate(x), options, observe);
+  ++report.values;
   return report;
 }
 
 MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std::span<double> x,
-                                   const KnownValue& value, const MinimizeOptions& options,
+                                   const Evaluation& value, const MinimizeOptions& options,
                                    const IterationObserver& observe) {
   if (judges_direction(options.criterion) && !direction.estimates_minimiser())
     throw InvalidInput("criterion = '" + std::string(to_string(options.criterion)) +
@@ -280,14 +279,16 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
   trials_.reserve(64);
   direction.begin();
 
-  Progress at{E, direction, x, options, {}, value};
+  WholePart whole(E);
+  auto* parts = dynamic_cast<HasParts*>(&E);
+  Progress at{E, direction, x, options, {}, parts ? *parts : whole, value};
   MinimizeReport& report = at.report;
   E.gradient(x, g_);
-  begin_parts(E);
+  begin_parts(at.parts);
   report.gradients = 1;
   for (int i = 0;; ++i) {
     report.iterations = i;
-    report.value = at.value.E;
+    report.value = at.value.value;
     report.gradient_norm = std::sqrt(E.dot(g_, g_));
     if (i == 0) report.first_gradient_norm = report.gradient_norm;
     judge_parts(at);
@@ -295,7 +296,7 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
     if (!std::isfinite(report.value) || !std::isfinite(report.gradient_norm)) return ended(Status::undefined);
     if (at.last_direction || report.gradient_norm == 0) return ended(Status::converged);
     if (!at.judges_direction() && report.reached <= report.threshold) {
-      if (options.criterion == Criterion::scale) report.lost_accuracy = E.lost_accuracy(x, parts_);
+      if (options.criterion == Criterion::scale) report.lost_accuracy = at.parts.lost_accuracy(x, parts_);
       return ended(report.lost_accuracy > 0 ? Status::round_off : Status::converged);
     }
     if (is_at_round_off(at, 1)) return ended(Status::round_off);

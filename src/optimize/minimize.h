@@ -35,8 +35,8 @@ enum class Criterion {
   // Of the gradient of every part of the objective by itself, such as every body:
   scale,           // |g| <= tolerance * GradientPart::scale: for a time step, the forces that balance
   first_gradient,  // |g| <= tolerance * |g at the first iterate|
-  absolute,        // |g| <= tolerance * objective.gradient_unit(): for a time step, newtons
-  decrement,       // Newton decrement: sqrt(-g.d / 2) <= tolerance * sqrt(objective.value_scale())
+  absolute,        // |g| <= tolerance * ObjectiveScales::gradient_unit: for a time step, newtons
+  decrement,       // Newton decrement: sqrt(-g.d / 2) <= tolerance * sqrt(ObjectiveScales::value)
   velocity,        // largest |d of a vertex| <= tolerance * h
   acceleration,    // largest |d of a vertex| <= tolerance * h^2
 };
@@ -83,7 +83,7 @@ struct MinimizeReport : Work {
   double reached = 0,
          threshold = 0;           // what the criterion looks at (|g| of the worst part, or a size of d), and its bound
   double gradient_round_off = 0;  // the part of |g| that is noise
-  double lost_accuracy = 0;       // see Objective::lost_accuracy(); the status is then round_off
+  double lost_accuracy = 0;       // see HasParts::lost_accuracy(); the status is then round_off
   double decrement = 0;           // -g.d / 2 of the last iteration; 0 without one
   int trials = 0, retreats = 0, projected_hessians = 0, projected_elements = 0;
 };
@@ -96,7 +96,7 @@ class Minimizer {  // holds the scratch vectors, so that repeated calls allocate
   MinimizeReport minimize(Objective& E, SearchDirection& direction, std::span<double> x, const MinimizeOptions& options,
                           const IterationObserver& observe = {});
   // The same where E(x) is known already.
-  MinimizeReport minimize(Objective& E, SearchDirection& direction, std::span<double> x, const KnownValue& value,
+  MinimizeReport minimize(Objective& E, SearchDirection& direction, std::span<double> x, const Evaluation& value,
                           const MinimizeOptions& options, const IterationObserver& observe = {});
 
   // The bound of |g| for each part in the last minimization, where the criterion judges the gradient.
@@ -115,7 +115,7 @@ class Minimizer {  // holds the scratch vectors, so that repeated calls allocate
   bool find_step(Progress& at, Iteration& iteration);
   void take_step(Progress& at, Iteration& iteration);
 
-  void begin_parts(Objective& E);
+  void begin_parts(HasParts& E);
   void judge_parts(Progress& at);
   bool is_near_minimum(const Progress& at, const DirectionReport& made) const;
   InnerAccuracy inner_accuracy(const Progress& at) const;

@@ -80,9 +80,9 @@ TEST(Minimize, AnIndefiniteHessianIsProjectedOnDemandAndRefusedWhenExact) {
 // Not a number beyond a distance of two.
 class Island : public Rosenbrock {
  public:
-  double value(std::span<const double> x) override {
-    const double E = x[0] * x[0] + x[1] * x[1] < 4 ? Rosenbrock::value(x) : NAN;
-    met_nan = met_nan || std::isnan(E);
+  Evaluation evaluate(std::span<const double> x) override {
+    const Evaluation E = x[0] * x[0] + x[1] * x[1] < 4 ? Rosenbrock::evaluate(x) : Evaluation{NAN};
+    met_nan = met_nan || std::isnan(E.value);
     return E;
   }
   bool met_nan = false;
@@ -139,8 +139,9 @@ class Deceptive : public Rosenbrock {
     Rosenbrock::gradient(x, g);
     for (double& gi : g) gi = -gi;
   }
-  double gradient_round_off() const override { return gradient_round_off_; }
-  double gradient_scale() const override { return gradient_scale_; }
+  ObjectiveScales scales() const override {
+    return {.gradient = gradient_scale_, .gradient_round_off = gradient_round_off_};
+  }
 
  private:
   double gradient_round_off_, gradient_scale_;
@@ -206,12 +207,11 @@ TEST(LineSearch, TextbookAndSlideTestsDifferByAlpha) {
 // f(x) = 8 x^2 + 1e9, whose differences near the minimum are lost in the round-off of 1e9.
 class DrownedParabola : public Objective {
  public:
-  double value(std::span<const double> x) override { return 8 * x[0] * x[0] + 1e9; }
+  Evaluation evaluate(std::span<const double> x) override { return {8 * x[0] * x[0] + 1e9, 1e-7}; }
   void gradient(std::span<const double> x, std::span<double> g) override { g[0] = 16 * x[0]; }
   const BlockSparse& evaluate_hessian(std::span<const double>, const Projection&) override {
     throw std::logic_error("not needed");
   }
-  double value_round_off() const override { return 1e-7; }
 };
 
 TEST(LineSearch, DescendsWhereDifferencesOfTheValueAreLostInRoundOff) {
@@ -251,7 +251,7 @@ TEST(Minimize, AShortDirectionNearASaddleIsNoConvergence) {
 // Time that passes with every evaluation.
 class Timed : public Rosenbrock {
  public:
-  double value(std::span<const double> x) override { return ++time, Rosenbrock::value(x); }
+  Evaluation evaluate(std::span<const double> x) override { return ++time, Rosenbrock::evaluate(x); }
   void gradient(std::span<const double> x, std::span<double> g) override { ++time, Rosenbrock::gradient(x, g); }
   const BlockSparse& evaluate_hessian(std::span<const double> x, const Projection& projection) override {
     return ++time, Rosenbrock::evaluate_hessian(x, projection);

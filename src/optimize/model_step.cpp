@@ -23,14 +23,14 @@ double ModelStep::along(Objective& E, std::span<const double> x, std::span<const
   const double size = largest_entry(p);
   if (!(size > 0) || !std::isfinite(size)) return 0;
   for (auto* v : {&ahead_, &gradient_}) v->resize(x.size());
-  const double width = kWidth * std::max(1e-3 * E.x_scale(), largest_entry(x)) / size;
+  const double width = kWidth * std::max(1e-3 * E.scales().x, largest_entry(x)) / size;
   for (size_t i = 0; i < x.size(); ++i) ahead_[i] = x[i] + width * p[i];
   E.gradient(ahead_, gradient_);
   ++report.gradients;
   for (size_t i = 0; i < x.size(); ++i) gradient_[i] -= g[i];
   const double curvature = E.dot(gradient_, p) / width;
   const double step = -E.dot(g, p) / curvature;
-  const double chosen = curvature > 0 && std::isfinite(step) ? step : (last_ > 0 ? 2 * last_ : E.x_scale()) / size;
+  const double chosen = curvature > 0 && std::isfinite(step) ? step : (last_ > 0 ? 2 * last_ : E.scales().x) / size;
   last_ = chosen * size;
   return chosen;
 }

@@ -13,7 +13,7 @@ class ModelStep {
  public:
   void begin() { last_ = 0; }
   // Where there is no positive curvature: so long that the largest displacement is that of the last step, doubled (of
-  // the first step: E.x_scale()).
+  // the first step: E.scales().x).
   double along(Objective& E, std::span<const double> x, std::span<const double> g, std::span<const double> p,
                DirectionReport& report);
 

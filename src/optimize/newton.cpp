@@ -148,7 +148,7 @@ double Newton::lengthen(const Place& at, std::span<double> d, DirectionReport& r
   double slope = at.E.dot(at.g, d), size = 0;
   for (const double di : d) size = std::max(size, std::abs(di));
   for (double length = 2; 4 * (end - *at.value - slope) < -slope; length *= 2, slope *= 2) {
-    if (reach < length || length * size > at.E.x_scale()) break;
+    if (reach < length || length * size > at.E.scales().x) break;
     const double further = value_ahead(at, 2, d, report);
     if (!(further < end)) break;
     for (double& di : d) di *= 2;

@@ -119,7 +119,7 @@ TEST(Newton, OnDemandLeavesASaddleInFewIterations) {
 
 class CountedTwoBump : public TwoBump {
  public:
-  double value(std::span<const double> x) override { return ++values, TwoBump::value(x); }
+  Evaluation evaluate(std::span<const double> x) override { return ++values, TwoBump::evaluate(x); }
   int values = 0;
 };
 
@@ -133,7 +133,7 @@ TEST(Newton, CountsItsEvaluationsAhead) {
     f.gradient(x, g);
     DirectionReport report;
     InnerAccuracy accuracy;
-    if (is_known) accuracy.value = f.TwoBump::value(x);
+    if (is_known) accuracy.value = f.TwoBump::evaluate(x).value;
     direction.begin();
     EXPECT_TRUE(direction.compute(f, x, g, accuracy, d, report));
     EXPECT_TRUE(report.projected);

@@ -14,12 +14,12 @@ double Objective::dot(std::span<const double> a, std::span<const double> b) {
   });
 }
 
-void Objective::measure_parts(std::span<const double> g, std::span<GradientPart> parts) {
-  parts[0] = {std::sqrt(dot(g, g)), gradient_scale()};
+void WholePart::measure_parts(std::span<const double> g, std::span<GradientPart> parts) {
+  parts[0] = {std::sqrt(E_.dot(g, g)), E_.scales().gradient};
 }
 
-double Objective::relative_decrement(std::span<const double> g, std::span<const double> d) {
-  return std::sqrt(-dot(g, d) / 2 / value_scale());
+double WholePart::relative_decrement(std::span<const double> g, std::span<const double> d) {
+  return std::sqrt(-E_.dot(g, d) / 2 / E_.scales().value);
 }
 
 }  // namespace aspic

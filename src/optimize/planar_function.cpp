@@ -39,10 +39,9 @@ QuadraticModel PlanarFunction::model(const Planar& p, Definiteness kind) const {
   return model;
 }
 
-double PlanarFunction::value(std::span<const double> x) {
+Evaluation PlanarFunction::evaluate(std::span<const double> x) {
   const double f = at({x[0], x[1]});
-  value_round_off_ = 4 * kEpsilon * std::abs(f);
-  return f + x[2] * x[2] / 2;
+  return {f + x[2] * x[2] / 2, 4 * kEpsilon * std::abs(f)};
 }
 
 void PlanarFunction::gradient(std::span<const double> x, std::span<double> g) {
@@ -55,7 +54,7 @@ void PlanarFunction::gradient(std::span<const double> x, std::span<double> g) {
 const BlockSparse& PlanarFunction::evaluate_hessian(std::span<const double> x, const Projection& projection) {
   PlanarHessian H = hessian_at({x[0], x[1]});
   gradient_round_off_ = kEpsilon * std::hypot(x[0], x[1]) * std::hypot(H.xx, std::sqrt(2) * H.xy, H.yy);
-  projected_ = projection.covers(0) && make_definite(H, projection.kind);
+  projected_elements_ = projection.covers(0) && make_definite(H, projection.kind);
   H_.block[0] = {{H.xx, H.xy, 0, H.xy, H.yy, 0, 0, 0, 1}};
   return H_;
 }

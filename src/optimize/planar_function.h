@@ -33,18 +33,15 @@ class PlanarFunction : public Objective {
   virtual PlanarHessian hessian_at(const Planar& p) const = 0;
   QuadraticModel model(const Planar& p, Definiteness kind = Definiteness::exact) const;
 
-  double value(std::span<const double> x) override;
+  Evaluation evaluate(std::span<const double> x) override;
   void gradient(std::span<const double> x, std::span<double> g) override;
   const BlockSparse& evaluate_hessian(std::span<const double> x, const Projection& projection) override;
-  int projected_elements() const override { return projected_; }
-  double value_round_off() const override { return value_round_off_; }
-  double gradient_round_off() const override { return gradient_round_off_; }
+  ObjectiveScales scales() const override { return {.gradient_round_off = gradient_round_off_}; }
 
  private:
   BlockPattern pattern_;
   BlockSparse H_;
-  int projected_ = 0;
-  double value_round_off_ = 0, gradient_round_off_ = 0;
+  double gradient_round_off_ = 0;
 };
 
 }  // namespace aspic

@@ -51,7 +51,7 @@ std::string Preconditioner::description() const {
 
 bool Preconditioner::apply(Objective& E, std::span<const double> x, std::span<const double> r, std::span<double> z,
                            DirectionReport& report) {
-  if (kind_ == PreconditionerKind::own) return E.precondition(r, z);
+  if (kind_ == PreconditionerKind::own) return dynamic_cast<HasPreconditioner&>(E).precondition(r, z);
   if (!is_made_) is_definite_ = make(E, x, report);
   is_made_ = true;
   if (!is_definite_) return false;
@@ -70,10 +70,10 @@ bool Preconditioner::apply(Objective& E, std::span<const double> x, std::span<co
 }
 
 bool Preconditioner::make(Objective& E, std::span<const double> x, DirectionReport& report) {
-  const BlockSparse* metric = kind_ == PreconditionerKind::mass ? E.metric() : nullptr;
+  auto* metric = kind_ == PreconditionerKind::mass ? dynamic_cast<HasMetric*>(&E) : nullptr;
   is_identity_ = kind_ == PreconditionerKind::none || (kind_ == PreconditionerKind::mass && !metric);
   if (is_identity_) return true;
-  if (metric) return factorize(*metric, report);
+  if (metric) return factorize(metric->metric(), report);
   Stopwatch stopwatch;
   const bool whole = kind_ == PreconditionerKind::hessian;
   const BlockSparse& H = E.hessian(x, {whole ? Definiteness::clamped : Definiteness::exact});

@@ -15,10 +15,10 @@ namespace aspic {
 
 enum class PreconditionerKind {
   none,      // the identity
-  mass,      // Objective::metric()
+  mass,      // HasMetric
   diagonal,  // the 3x3 diagonal blocks of the Hessian, each made definite
   hessian,   // the Hessian with clamped elements
-  own,       // Objective::precondition()
+  own,       // HasPreconditioner
 };
 std::string_view to_string(PreconditionerKind kind);
 std::vector<PreconditionerKind> all_preconditioners();  // that any objective can have: all but `own`

@@ -10,7 +10,6 @@
 #include "optimize/newton.h"
 #include "optimize/nonlinear_cg.h"
 #include "optimize/preconditioner.h"
-#include "optimize/vertex_descent.h"
 
 namespace aspic {
 namespace {
@@ -50,7 +49,6 @@ Direction make_nonlinear_cg(const SolverOptions& options) {
 Direction make_gradient_descent(const SolverOptions& options) {
   return std::make_unique<GradientDescent>(preconditioner(options, "gradient_descent"));
 }
-Direction make_vertex_descent(const SolverOptions&) { return std::make_unique<VertexDescent>(); }
 
 const std::vector<Method>& methods() {
   using enum PreconditionerKind;
@@ -64,7 +62,6 @@ const std::vector<Method>& methods() {
       {.name = "lbfgs", .make = make_lbfgs, .preconditioner = hessian},
       {.name = "nonlinear_cg", .make = make_nonlinear_cg, .preconditioner = hessian},
       {.name = "gradient_descent", .make = make_gradient_descent, .preconditioner = none},
-      {.name = "vertex_descent", .make = make_vertex_descent},
   };
   return table;
 }

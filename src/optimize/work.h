@@ -6,7 +6,6 @@ namespace aspic {
 
 struct Work {
   int values = 0, gradients = 0, hessians = 0;  // evaluations, each over all elements
-  int vertex_sweeps = 0;                        // systems of single vertices, each vertex once: 4 corners per tet
   int factorizations = 0, linear_iterations = 0;
   int products = 0, cycles = 0;  // of linear solves: with the matrix, of multigrid
 
@@ -14,7 +13,6 @@ struct Work {
     values += other.values;
     gradients += other.gradients;
     hessians += other.hessians;
-    vertex_sweeps += other.vertex_sweeps;
     factorizations += other.factorizations;
     linear_iterations += other.linear_iterations;
     products += other.products;

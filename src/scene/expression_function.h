@@ -16,7 +16,7 @@ class ExpressionFunction : public PlanarFunction {
   double at(const Planar& p) const override { return formula_.evaluate({{p[0], p[1], 0}}); }
   Planar gradient_at(const Planar& p) const override;
   PlanarHessian hessian_at(const Planar& p) const override;
-  double gradient_round_off() const override { return gradient_round_off_; }
+  ObjectiveScales scales() const override { return {.gradient_round_off = gradient_round_off_}; }
   void gradient(std::span<const double> x, std::span<double> g) override;
 
  private:

@@ -45,7 +45,6 @@ std::vector<std::string> step_columns(const Simulation& simulation) {
                                       "element_values",
                                       "element_gradients",
                                       "element_hessians",
-                                      "vertex_sweeps",
                                       "factorizations",
                                       "linear_iterations",
                                       "products",
@@ -74,7 +73,6 @@ CsvRow step_row(const StepReport& report) {
   row.add(report.values).add(report.gradients).add(report.hessians).add(report.projected_hessians);
   for (const int evaluations : {report.values, report.gradients, report.hessians})
     row.add(static_cast<double>(evaluations) * report.elements);
-  row.add(report.vertex_sweeps);
   row.add(report.factorizations).add(report.linear_iterations).add(report.products).add(report.cycles);
   row.add(to_string(report.initial_guess)).add(report.substeps).add(report.rejected);
   row.add(report.residual).add(report.residual_threshold).add(report.min_det_F).add(report.kinetic);

@@ -112,7 +112,6 @@ std::vector<Case> minimisers() {
                      kSagging,
                      {},
                      true});
-  cases.push_back({"vertex_descent", solver("max_iterations = 20\nmethod = \"vertex_descent\"")});
   for (const char* criterion : {"first_gradient", "decrement"})
     cases.push_back({criterion, solver("criterion = \"" + std::string(criterion) + "\"")});
   cases.push_back({"velocity", solver("criterion = \"velocity\"\ntolerance = <1e-5 m/s>")});
@@ -183,8 +182,7 @@ std::vector<Case> hands() {
                  .stiffness = 400 * s.of("N/m"),
                  .from = from,
                  .to = to,
-                 .to_time = 0.05 * s.of("s")},
-                0);
+                 .to_time = 0.05 * s.of("s")});
     model.loads.push_back(std::move(spring));
   };
   const auto poke = [](Model& model, const Scales& s) {
@@ -195,7 +193,7 @@ std::vector<Case> hands() {
     Poke into{.touch = std::make_shared<Touch>(Touch{disc, touch, touch}), .from = touch, .to = touch};
     into.to.center = touch.center - m * Vec3d{{0, 0.03, 0}};
     into.to_time = 0.05 * s.of("s");
-    tip->set(into, 0);
+    tip->set(into);
     model.loads.push_back(std::move(tip));
   };
   return {{"mouse", "", kSagging, grab}, {"probe", "", kSagging, poke}};

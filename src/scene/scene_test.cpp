@@ -73,7 +73,7 @@ TEST(Scene, TheLinearisedIntegratorTakesOneIterationOfNewtonsMethodAndOfNoOther)
   const auto refused = [](const std::string& solver) {
     return refusal("[time]\nintegrator = \"linearly_implicit_euler\"\n[solver]\n" + solver + kCube);
   };
-  for (const char* method : {"lbfgs", "nonlinear_cg", "gradient_descent", "vertex_descent"}) {
+  for (const char* method : {"lbfgs", "nonlinear_cg", "gradient_descent"}) {
     const std::string name = std::string("\"") + method + "\"";
     EXPECT_THAT(refused("method = " + name + "\n"),
                 AllOf(HasSubstr("beam.toml:4:"), HasSubstr(method), HasSubstr("newton and newton_cg can")));
@@ -303,7 +303,7 @@ TEST(Scene, SolverChoicesThatTheMethodHasNoUseForAreErrorsWithTheirPlace) {
   EXPECT_THAT(refused("method = \"lbfgs\"\ndefiniteness = \"clamped\"\n"),
               AllOf(HasSubstr("beam.toml:3:"), HasSubstr("definiteness = 'clamped'"), HasSubstr("newton, newton_cg")));
   EXPECT_THAT(refused("preconditioner = \"mass\"\n"), AllOf(HasSubstr("beam.toml:2:"), HasSubstr("nonlinear_cg")));
-  EXPECT_THAT(refused("linear = \"cholesky\"\nmethod = \"vertex_descent\"\n"), HasSubstr("beam.toml:2:"));
+  EXPECT_THAT(refused("linear = \"cholesky\"\nmethod = \"newton_cg\"\n"), HasSubstr("beam.toml:2:"));
   EXPECT_THAT(refused("method = \"nonlinear_cg\"\ncriterion = \"velocity\"\n"),
               AllOf(HasSubstr("beam.toml:3:"), HasSubstr("newton or newton_cg")));
   EXPECT_THAT(refused("fallback = [\"lbfgs\", \"gradient_decent\"]\n"),

@@ -15,28 +15,36 @@ Vec3d acceleration(const Vec3d& X, double t) { return -9 * std::sin(3 * t + 0.5)
 
 class AffineLoad : public Energy {
  public:
-  AffineLoad(const MassMatrix& mass, const TetMesh& mesh, const Energy& elasticity)
-      : mass_(mass), mesh_(mesh), elasticity_(elasticity), force_(3 * mesh.rest.size()) {}
+  AffineLoad(const MassMatrix& mass, const TetMesh& mesh, const TetElasticity& elasticity)
+      : mass_(mass), mesh_(mesh), elasticity_(elasticity) {}
   std::string_view name() const override { return "affine_load"; }
-  void begin_step(const StepContext& step) override {
-    mass_.multiply(at_vertices(mesh_, [&](const Vec3d& X) { return acceleration(X, step.time); }), force_);
-    elasticity_.add_gradient(at_vertices(mesh_, [&](const Vec3d& X) { return moved(X, step.time); }), 1, force_);
+  std::unique_ptr<Context> make_context() const override { return std::make_unique<Force>(); }
+  void begin_step(const StepContext& step, Context& context) const override {
+    std::vector<double>& f = static_cast<Force&>(context).f;
+    f.resize(3 * mesh_.rest.size());
+    mass_.multiply(at_vertices(mesh_, [&](const Vec3d& X) { return acceleration(X, step.time); }), f);
+    elasticity_.add_gradient(at_vertices(mesh_, [&](const Vec3d& X) { return moved(X, step.time); }), 1, f);
   }
-  double value(Positions x) const override {
+  double value(Positions x, const Context& context) const override {
+    const std::vector<double>& f = static_cast<const Force&>(context).f;
     double V = 0;
-    for (size_t i = 0; i < x.size(); ++i) V -= force_[i] * x[i];
+    for (size_t i = 0; i < f.size(); ++i) V -= f[i] * x[i];
     return V;
   }
-  void add_gradient(Positions, double scale, std::span<double> g) const override {
-    for (size_t i = 0; i < g.size(); ++i) g[i] -= scale * force_[i];
+  void add_gradient(Positions, const Context& context, double scale, std::span<double> g) const override {
+    const std::vector<double>& f = static_cast<const Force&>(context).f;
+    for (size_t i = 0; i < f.size(); ++i) g[i] -= scale * f[i];
   }
-  int add_hessian(Positions, double, const Projection&, BlockSparse&) const override { return 0; }
+  int add_hessian(Positions, const Context&, double, const Projection&, BlockSparse&) const override { return 0; }
 
  private:
+  struct Force : Context {
+    std::vector<double> f;  // at the time [N]; empty before the first step
+  };
+
   const MassMatrix& mass_;
   TetMesh mesh_;
-  const Energy& elasticity_;
-  std::vector<double> force_;
+  const TetElasticity& elasticity_;
 };
 
 }  // namespace

@@ -34,7 +34,7 @@ void check_differences(const Subject& subject, Findings& found) {
     V->add_couplings(couplings);
     const BlockPattern pattern = make_pattern(mesh.vertex_count(), couplings);
     V->bind(pattern);
-    const DerivativeReport report = check_derivatives(differentiable(*V, pattern), x, {.length = 0.3});
+    const DerivativeReport report = check_derivatives(differentiable(ActiveTerm(*V), pattern), x, {.length = 0.3});
     for (const auto& [name, check] : {std::pair("gradient", &report.gradient), {"Hessian", &report.hessian}}) {
       found.expect_small(info.name + ": smallest error of the " + name, check->smallest_error, 1e-6,
                          "where the error h^2 of the difference meets its round-off 1e-16 / h");

@@ -12,15 +12,15 @@ class PlaneHold : public Energy {
     for (const int v : vertices_) z_.push_back(mesh.rest[v][axis]);
   }
   std::string_view name() const override { return "plane_hold"; }
-  double value(Positions x) const override {
+  double value(Positions x, const Context&) const override {
     double V = 0;
     for (size_t k = 0; k < z_.size(); ++k) V += stiffness_ / 2 * distance(x, k) * distance(x, k);
     return V;
   }
-  void add_gradient(Positions x, double scale, std::span<double> g) const override {
+  void add_gradient(Positions x, const Context&, double scale, std::span<double> g) const override {
     for (size_t k = 0; k < z_.size(); ++k) g[3 * vertices_[k] + axis_] += scale * stiffness_ * distance(x, k);
   }
-  int add_hessian(Positions, double scale, const Projection&, BlockSparse& H) const override {
+  int add_hessian(Positions, const Context&, double scale, const Projection&, BlockSparse& H) const override {
     for (const int v : vertices_) H.block[H.pattern->diagonal(v)](axis_, axis_) += scale * stiffness_;
     return 0;
   }

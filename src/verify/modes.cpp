@@ -65,7 +65,7 @@ class Eigenproblem {
         E_(model, pins_),
         solver_(make_linear_solver("cholesky")) {
     E_.begin_step(rest_, 0, 1);
-    K_ = std::make_unique<BlockSparse>(E_.evaluate_hessian(rest_, {Definiteness::exact}));
+    K_ = std::make_unique<BlockSparse>(E_.hessian(rest_, {Definiteness::exact}));
     solver_->analyze(*K_->pattern);
     if (!solver_->factorize(*K_)) throw std::runtime_error("the stiffness matrix is not positive definite");
   }

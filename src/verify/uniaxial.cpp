@@ -24,7 +24,7 @@ struct Forces {
   double inner;          // on the vertex inside
 };
 
-Forces forces_of(const TetMesh& mesh, const Energy& elasticity, double l, double t) {
+Forces forces_of(const TetMesh& mesh, const TetElasticity& elasticity, double l, double t) {
   std::vector<double> g(3 * mesh.rest.size());
   elasticity.add_gradient(at_vertices(mesh,
                                       [l, t](const Vec3d& X) {

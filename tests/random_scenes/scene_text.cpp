@@ -68,16 +68,15 @@ class SceneText {
     if (draw_.chance(0.15)) line("tolerance", draw_.size(1e-14, 1e-1));
     if (is_explicit_) return;
     const bool is_newton = integrator_ == "linearly_implicit_euler" || draw_.chance(0.7);
-    const std::string method = is_newton
-                                   ? draw_.one_of({"newton", "newton", "newton_cg"})
-                                   : draw_.one_of({"lbfgs", "nonlinear_cg", "gradient_descent", "vertex_descent"});
+    const std::string method = is_newton ? draw_.one_of({"newton", "newton", "newton_cg"})
+                                         : draw_.one_of({"lbfgs", "nonlinear_cg", "gradient_descent"});
     line("method", in_quotes(method));
     if (is_newton) {
       choice(0.6, "definiteness", {"on_demand", "progressive", "clamped", "absolute", "exact"});
       if (method == "newton") choice(0.4, "linear", {"cholesky", "multigrid", "block_jacobi"});
       choice(0.15, "criterion", {"decrement", "velocity", "acceleration", "first_gradient", "absolute"});
     } else {
-      if (method != "vertex_descent") choice(0.7, "preconditioner", {"none", "mass", "diagonal", "hessian"});
+      choice(0.7, "preconditioner", {"none", "mass", "diagonal", "hessian"});
       choice(0.15, "criterion", {"first_gradient", "absolute"});
     }
     if (integrator_ == "linearly_implicit_euler") return;

@@ -32,7 +32,6 @@ const kChoices: Record<string, string> = {
   lbfgs: "L-BFGS",
   nonlinear_cg: "Nonlinear CG",
   gradient_descent: "Gradient descent",
-  vertex_descent: "Vertex descent",
   auto: "Automatic",
   on_demand: "Clamped on demand",
   progressive: "Clamped progressively",

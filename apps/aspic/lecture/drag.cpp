@@ -18,7 +18,7 @@ const Energy& leash_of(const Model& model) {
 }
 
 // The force with which the cursor pulls [N].
-Vec3d pull(const Energy& leash, const Vector& q) {
+Vec3d pull(const ActiveTerm& leash, const Vector& q) {
   Vector g(q.size(), 0.0);
   leash.add_gradient(q, 1, g);
   Vec3d force{};
@@ -27,7 +27,7 @@ Vec3d pull(const Energy& leash, const Vector& q) {
 }
 
 // The same as the derivative of the springs' energy when the whole body is shifted [N].
-Vec3d pull_by_differences(const Energy& leash, const Vector& q) {
+Vec3d pull_by_differences(const ActiveTerm& leash, const Vector& q) {
   Vec3d force{};
   constexpr double kShift = 1e-3;  // [m]: any width is exact for a quadratic V
   for (int r = 0; r < 3; ++r) {
@@ -46,7 +46,7 @@ void show_drag(const Stage& stage, Sheet& sheet) {
   Scene scene = stage.on_real_mesh("25_drag");
   sheet.keep(scene);
   Simulation& simulation = scene.simulation;
-  const Energy& leash = leash_of(simulation.model());
+  ActiveTerm leash(leash_of(simulation.model()));
   const Vector rest = simulation.state().q;
   Vector held(rest.size(), 0.0);  // not zero where a spring is tied
   leash.add_gradient(Vector(rest.size(), 1e3), 1, held);
@@ -59,6 +59,7 @@ void show_drag(const Stage& stage, Sheet& sheet) {
   std::vector<TriMesh> frames = {surface_at(simulation.model(), rest)};
   const Run result = run(simulation, scene.steps, [&](const StepReport& report) {
     const Vector& q = simulation.state().q;
+    leash.begin_step({.start = q, .time = report.time});
     const Vec3d F = pull(leash, q);
     mismatch = std::max(mismatch, length(F - pull_by_differences(leash, q)));
     time.push_back(report.time);

@@ -17,8 +17,8 @@ OpenStep::OpenStep(Scene opened)
       pins(model().pins, scene.simulation.snapshot().start.q),
       E(model(), pins) {
   const double end = scene.simulation.state().time + h;
-  for (Energy* V : E.potential()) V->begin_step({q_t, h, end});
-  for (Energy* D : E.damping()) D->begin_step({q_t, h, end});
+  E.tell_potential({q_t, h, end});
+  E.tell_damping({q_t, h, end});
   E.begin_step(predicted, 1, h * h);
   pins.place(end, start);
   pins.place(end, predicted);
@@ -39,14 +39,14 @@ double OpenStep::smallest_mass() const {
 Vector gradient_of_potential(const Model& model, std::span<const double> q) {
   Vector g(q.size(), 0.0);
   for (const auto& V : model.elasticity) V->add_gradient(q, 1, g);
-  for (const auto& V : model.loads) V->add_gradient(q, 1, g);
+  for (const auto& V : model.loads) ActiveTerm(*V).add_gradient(q, 1, g);
   return g;
 }
 
 double potential(const Model& model, std::span<const double> q) {
   double sum = 0;
   for (const auto& V : model.elasticity) sum += V->value(q);
-  for (const auto& V : model.loads) sum += V->value(q);
+  for (const auto& V : model.loads) sum += ActiveTerm(*V).value(q);
   return sum;
 }
 

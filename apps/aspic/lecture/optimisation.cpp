@@ -71,7 +71,7 @@ void show_optimisation(const Stage& stage, Sheet& sheet) {
   step.E.gradient(root.q, g_root);
   step.E.gradient(minimiser, g_minimum);
   // E is at least as curved as the inertia where V is convex, so a gradient g is left over at most g / m from the root.
-  const double bound = (norm(g_root) + norm(g_minimum) + 2 * step.E.gradient_round_off()) / step.smallest_mass();
+  const double bound = (norm(g_root) + norm(g_minimum) + 2 * step.E.scales().gradient_round_off) / step.smallest_mass();
   sheet.at_most("|root of the equation - minimiser of E|", largest(plus(root.q, -1, minimiser)), bound, "m",
                 "what is left of both gradients over the least eigenvalue of M");
   sheet.at_most("the bound itself", bound, 1e-3 * largest(plus(minimiser, -1, step.q_t)), "m",

@@ -19,7 +19,10 @@ namespace {
 class Rescaled : public Objective {
  public:
   Rescaled(Objective& E, double unit) : E_(E), unit_(unit) {}
-  double value(std::span<const double> x) override { return E_.value(x) / unit_; }
+  Evaluation evaluate(std::span<const double> x) override {
+    const Evaluation E = E_.evaluate(x);
+    return {E.value / unit_, E.round_off / unit_};
+  }
   void gradient(std::span<const double> x, std::span<double> g) override {
     E_.gradient(x, g);
     for (double& gi : g) gi /= unit_;
@@ -29,8 +32,7 @@ class Rescaled : public Objective {
     for (Mat3d& block : H_->block) block = (1 / unit_) * block;
     return *H_;
   }
-  double gradient_scale() const override { return E_.gradient_scale() / unit_; }
-  double value_round_off() const override { return E_.value_round_off() / unit_; }
+  ObjectiveScales scales() const override { return {.gradient = E_.scales().gradient / unit_}; }
 
  private:
   Objective& E_;
@@ -94,7 +96,7 @@ void show_velocity_form(const Stage& stage, Sheet& sheet) {
   Newton newton_q(make_linear_solver("cholesky")), newton_v(make_linear_solver("cholesky"));
   const auto q = iterates(step.E, newton_q, step.start, 50), v = iterates(form, newton_v, v0, 50);
   // A gradient is known to its round-off, and so the solution of H d = -g to that over the least eigenvalue of H >= M.
-  const double noise = 4 * step.E.gradient_round_off() / step.smallest_mass() + 4 * kEpsilon * largest(step.q_t);
+  const double noise = 4 * step.E.scales().gradient_round_off / step.smallest_mass() + 4 * kEpsilon * largest(step.q_t);
   sheet.show("Newton iterations", static_cast<double>(q.size()) - 1, "");
   sheet.at_most("Newton: largest distance between the iterates of both forms", distance(q, v, form), noise, "m",
                 "round-off of the gradient over the least eigenvalue of M");

@@ -22,7 +22,6 @@ const kMethods = [
   ["gradient_descent", "gradient descent"],
   ["lbfgs", "L-BFGS"],
   ["nonlinear_cg", "nonlinear CG"],
-  ["vertex_descent", "vertex descent"],
 ] as const;
 const kDefiniteness = ["auto", "on_demand", "progressive", "clamped", "absolute", "exact"].map(
   (name) => [name, name.replace("_", " ")] as const,

@@ -1,4 +1,4 @@
-#include "energy/incidence.h"
+#include "mesh/incidence.h"
 
 #include <numeric>
 
