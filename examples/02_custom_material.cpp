@@ -3,13 +3,10 @@
 // Soft tissue stiffens exponentially when stretched [Demiray 1972]:
 //   psi = mu / (2 b) (exp(b (I1 - 3 - 2 ln J)) - 1) + lambda / 2 (ln J)^2,   I1 = tr(F'F), J = det F.
 // A bar of it is pulled to 1.6 times its length; the force grows faster and faster.
-#include <cstdio>
+#include <aspic/aspic.h>
+#include <aspic/custom_material.h>
 
-#include "dynamics/simulation.h"
-#include "energy/material_term.h"
-#include "material/barrier.h"
-#include "material/from_energy.h"
-#include "mesh/generators.h"
+#include <cstdio>
 
 using namespace aspic;
 

@@ -32,10 +32,6 @@ struct ElasticConstants {
 // Returns the parameters of one tet. Throws InvalidInput when the constants do not suit the material.
 MaterialParameters material_parameters(const std::string& material, const ElasticConstants& constants);
 
-// Makes the elastic energy of tets [first, first + parameters.size()) of the mesh.
-using ElasticityMaker = std::function<std::unique_ptr<TetElasticity>(const TetMesh& mesh, int first,
-                                                                     std::span<const MaterialParameters> parameters)>;
-
 class ModelBuilder {
  public:
   explicit ModelBuilder(TetMesh mesh, std::string body = "body");

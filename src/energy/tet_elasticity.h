@@ -1,5 +1,6 @@
 // V(x) = sum over tets of volume * psi(F), F = Ds Dm^-1: linear tetrahedra of any registered material.
 #pragma once
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -44,6 +45,10 @@ class TetElasticity : public SteadyEnergy {
 // Tets [first, first + parameters.size()) of the mesh. The mesh is only read here.
 std::unique_ptr<TetElasticity> make_tet_elasticity(std::string_view material, const TetMesh& mesh, int first,
                                                    std::span<const MaterialParameters> parameters);
+
+// Makes the elastic energy of tets [first, first + parameters.size()) of the mesh.
+using ElasticityMaker = std::function<std::unique_ptr<TetElasticity>(const TetMesh& mesh, int first,
+                                                                     std::span<const MaterialParameters> parameters)>;
 
 // Kelvin-Voigt damping, rotation invariant: D(x) = h sum volume eta/2 |Edot|^2 with Edot = (E - E_start) / h and
 // E = (F'F - I) / 2. `viscosity` is eta of each tet [Pa s]; they are the term's coefficients.
