@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "dynamics/model_builder.h"
 #include "energy/linear_load.h"
 #include "energy/pressure.h"
 #include "mesh/surface.h"
@@ -92,14 +93,13 @@ const LoadCase& LoadedBody::readable(const Experiment& experiment, const LoadCas
 }
 
 Model LoadedBody::make_model(const std::string& material, std::span<const MaterialParameters> parameters) {
-  Model model;
-  model.mesh = experiment_.mesh;
   const TetMesh& mesh = experiment_.mesh;
-  model.bodies = {{"body", 0, mesh.vertex_count(), 0, mesh.tet_count()}};
-  model.density = experiment_.density;
-  model.mass = std::make_unique<MassMatrix>(mesh, model.density, MassKind::lumped);
-  model.elasticity.push_back(make_tet_elasticity(material, mesh, 0, parameters));
-  model.pins.push_back({"fixed", experiment_.fixed, {}});
+  Model model = ModelBuilder(mesh)
+                    .material(material, parameters)
+                    .density(experiment_.density)
+                    .mass(MassKind::lumped)
+                    .pin("fixed", experiment_.fixed)
+                    .build();
   const auto add_scaled = [&](std::unique_ptr<Energy> load) {
     auto scaled = std::make_unique<ScaledLoad>(std::move(load));
     scaled_.push_back(scaled.get());
