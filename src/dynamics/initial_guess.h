@@ -1,4 +1,4 @@
-// Where the minimisation of a step starts.
+// The initial guess of a step's minimization.
 #pragma once
 #include <string>
 #include <string_view>
@@ -7,8 +7,8 @@
 namespace aspic {
 
 enum class InitialGuess {
-  none,            // nothing is minimised: explicit schemes
-  best,            // the lowest energy of those below, but for zero
+  none,            // explicit schemes: nothing is minimized
+  best,            // that of lowest energy among those below except zero
   zero,            // no displacement: the shape at rest
   current,         // q
   extrapolated,    // q + h qdot, the flight without forces
@@ -17,7 +17,7 @@ enum class InitialGuess {
 };
 std::string_view to_string(InitialGuess guess);
 
-std::vector<std::string> initial_guess_names();             // those to choose from
+std::vector<std::string> initial_guess_names();             // the names that options accept
 InitialGuess initial_guess_named(const std::string& name);  // throws InvalidInput for an unknown name
 
 }  // namespace aspic
