@@ -59,7 +59,7 @@ class Comparer {
                            "; compare methods with an implicit one of one minimisation per step, such as "
                            "backward_euler");
     };
-    require(simulation_.is_implicit(), "minimises nothing");
+    require(simulation_.integrator().is_implicit, "minimises nothing");
     require(integrator != "linearly_implicit_euler", "takes one iteration, wherever it leads");
     require(integrator != "tr_bdf2", "minimises twice per step, the second time from what the first one left");
     require(integrator != "bdf2" || options_.step > 1, "minimises twice in its first step (try --step 2)");
@@ -167,7 +167,7 @@ class Comparer {
     result.excess = result.work.empty() ? 0 : excess / (result.work.front().value - reference.objective);
 
     const double gradients = result.report.objective_gradient + reference.objective_gradient;
-    const bool is_static = simulation_.options().integrator == "quasi_static";
+    const bool is_static = simulation_.integrator().is_static();
     result.allowed_distance = is_static ? INFINITY : gradients / std::sqrt(smallest_mass_eigenvalue(mass));
     const double noise = 1e-12 * std::abs(reference.objective);
     const bool energies_agree = std::abs(excess) <= gradients * std::sqrt(norm) + noise;

@@ -149,7 +149,7 @@ class Runner {
       }
       record(report);
       // The body stays where it was, and an explicit scheme, which has nothing else to try, would fail again.
-      has_blown_up_ = report.status == Status::undefined && !simulation.is_implicit();
+      has_blown_up_ = report.status == Status::undefined && !simulation.integrator().is_implicit;
       if (has_blown_up_) break;
     }
     directory_.finish(simulation);
@@ -292,7 +292,7 @@ int run(const RunArguments& arguments) {
                    .interrupted = interrupt_signal() != 0,
                    .time_limit = runner.has_run_out() ? arguments.time_limit : 0,
                    .blown_up = runner.has_blown_up(),
-                   .solver = scene.simulation.is_implicit() ? scene.simulation.solver_description() : "",
+                   .solver = scene.simulation.integrator().is_implicit ? scene.simulation.solver_description() : "",
                    .inverted = inverted_tets(scene.simulation),
                    .state_hash = state_hash(scene.simulation.state(), scene.simulation.model().numbering.vertex),
                    .pins = pin_names(scene.simulation.model()),

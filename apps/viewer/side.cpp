@@ -122,7 +122,7 @@ Progress Side::complete(const StepReport& report) {
   now.acted = acted;
   now.poked = std::move(poked);
   timeline_.add(std::move(now));
-  is_blown_up_ = report.status == Status::undefined && !simulation().is_implicit();
+  is_blown_up_ = report.status == Status::undefined && !simulation().integrator().is_implicit;
   return is_blown_up_ ? Progress::blown_up : Progress::stepped;
 }
 

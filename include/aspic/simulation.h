@@ -3,6 +3,7 @@
 #pragma once
 #include "dynamics/incremental_potential.h"
 #include "dynamics/initial_guess.h"
+#include "dynamics/integrator_facts.h"
 #include "dynamics/pins.h"
 #include "dynamics/simulation.h"
 #include "dynamics/stable_step.h"

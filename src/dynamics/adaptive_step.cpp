@@ -72,7 +72,7 @@ AdaptiveStep::Verdict AdaptiveStep::attempt(Integrator& integrator, const StepTo
   if (!taken) return std::swap(whole_, first_), unsuccessful();
 
   const double h = whole.h * size / kTicks;
-  error_ = error(whole.pins, h) / (std::pow(2, integrator.order()) - 1) / (static_cast<double>(size) / kTicks);
+  error_ = error(whole.pins, h) / (std::pow(2, integrator.facts().order) - 1) / (static_cast<double>(size) / kTicks);
   if (error_ <= 1) return Verdict::accepted;
   failure_ = Status::inaccurate;
   std::swap(whole_, first_);
@@ -103,7 +103,7 @@ void AdaptiveStep::keep(Integrator& integrator, const StepTools& whole, Ledger& 
   const int half = size / 2;
   const auto enter = [&](const StepTools& tools, const Part& part) {
     const BoundedEnergies bounded = ledger.add(tools, integrator, part.end, part.forces, report);
-    if (integrator.is_backward_euler()) judge(bounded, part.solve.work.value / (tools.h * tools.h), report);
+    if (integrator.facts().is_backward_euler) judge(bounded, part.solve.work.value / (tools.h * tools.h), report);
   };
   enter(tools_of_part(whole, now_, nullptr, first, half), first_);
   enter(tools_of_part(whole, first_.end, nullptr, first + half, half), second_);
@@ -137,7 +137,7 @@ StepSolve AdaptiveStep::advance(Integrator& integrator, const StepTools& whole, 
     if (verdict == Verdict::accepted) {
       keep(integrator, whole, ledger, done, size, report);
       done += size;
-      const double predicted = error_ * std::pow(2, integrator.order());  // of twice the length, in its share
+      const double predicted = error_ * std::pow(2, integrator.facts().order);  // of twice the length, in its share
       if (level_ > 0 && done % (2 * size) == 0 && predicted <= kGrowthSafety) --level_;
       continue;
     }

@@ -38,7 +38,7 @@ Outcome run(const std::string& integrator, double tolerance, double h = 0.1, int
 
 TEST(AdaptiveStep, MeetsItsToleranceWithEveryScheme) {
   for (const std::string& integrator : adaptive_integrator_names()) {
-    const bool first_order = make_integrator(integrator)->order() == 1;
+    const bool first_order = make_integrator(integrator)->facts().order == 1;
     const double tolerance = first_order ? 1e-3 : 1e-5;
     const Outcome result = run(integrator, tolerance);
     // Errors of ten steps, which an oscillator neither damps nor amplifies; the estimate is asymptotic.

@@ -50,7 +50,7 @@ class Explainer {
         return not_held(*motion);
     switch (report_.status) {
       case Status::undefined:
-        if (!simulation_.is_implicit()) return blow_up();
+        if (!simulation_.integrator().is_implicit) return blow_up();
         return std::isfinite(report_.objective) && report_.iterations > 0 ? undefined_end() : undefined_start();
       case Status::stuck:
         return stuck();
@@ -77,7 +77,7 @@ class Explainer {
   }
 
  private:
-  bool is_static() const { return simulation_.options().integrator == "quasi_static"; }
+  bool is_static() const { return simulation_.integrator().is_static(); }
   bool is_newton() const { return solver_.method.starts_with("newton"); }
   Explanation not_held(const RigidMotion& motion) const {
     const std::string body = model_.bodies.size() > 1 ? "body '" + model_.bodies[motion.body].name + "'" : "the body";
@@ -112,12 +112,13 @@ class Explainer {
     const StableStep stable = simulation_.stable_step();
     const double h = simulation_.options().h;
     const std::string& name = simulation_.options().integrator;
+    const bool gains_energy = simulation_.integrator().gains_energy;
     const std::string end = report_.status == Status::unstable
                                 ? "has made more than ten times the energy that the body can have"
                                 : "left the range of numbers";
-    if (name == "forward_euler" && h < stable.h)
-      return {"forward_euler adds energy in every step, however short, and " + end,
-              "time.integrator = \"forward_euler\"", "time.integrator = \"symplectic_euler\" or \"backward_euler\""};
+    if (gains_energy && h < stable.h)
+      return {name + " adds energy in every step, however short, and " + end, "time.integrator = \"" + name + "\"",
+              "time.integrator = \"symplectic_euler\" or \"backward_euler\""};
     if (h < stable.h)
       return {
           "the explicit scheme " + name + " " + end,
@@ -129,9 +130,9 @@ class Explainer {
         stable.is_damping ? " is damped most strongly: the damping allows no longer steps"
                           : " vibrates fastest, at " + text(stable.frequency) + " Hz: small, stiff or light tets";
     return {cause, stable.vertex < 0 ? "" : vertex_name(model_, stable.vertex) + place,
-            (name == "forward_euler" ? "" : "time.step = " + text(stable.h / 2) + " or less, or ") +
+            (gains_energy ? "" : "time.step = " + text(stable.h / 2) + " or less, or ") +
                 "time.integrator = \"backward_euler\"" +
-                (name == "forward_euler" ? ", as forward_euler adds energy in shorter steps, too" : "")};
+                (gains_energy ? ", as " + name + " adds energy in shorter steps, too" : "")};
   }
 
   // The positions at the start of the step, with the pins where they are at its end.
@@ -181,10 +182,10 @@ class Explainer {
   Explanation undefined_end() const {
     const std::string& name = simulation_.options().integrator;
     const std::string remedy = "time.integrator = \"backward_euler\", whose line search stays where there is energy";
-    if (name == "linearly_implicit_euler")
+    if (simulation_.integrator().takes_one_iteration)
       return {"one Newton iteration without a line search went to where the material has no energy",
               "time.integrator = \"" + name + "\"", remedy};
-    if (name == "midpoint" || name == "trapezoid" || name == "tr_bdf2" || name == "bdf2")
+    if (simulation_.integrator().ends_beyond_minimum)
       return {"the step of " + name + " goes on beyond what it minimised, to where the material has no energy",
               "time.integrator = \"" + name + "\"", remedy};
     if (solver_.minimize.line_search.test == DecreaseTest::none)

@@ -9,8 +9,7 @@ namespace {
 
 class ExplicitEuler : public Integrator {
  public:
-  int order() const override { return 1; }
-  bool is_implicit() const override { return false; }
+  using Integrator::Integrator;
 
   StepSolve advance(const StepTools& tools, State& end, StepForces& forces) override {
     const State& start = tools.start;
@@ -67,7 +66,7 @@ class ExplicitEuler : public Integrator {
 // qdot_new = qdot + h a(q),  q_new = q + h qdot_new
 class SymplecticEuler : public ExplicitEuler {
  public:
-  std::string_view name() const override { return "symplectic_euler"; }
+  SymplecticEuler() : ExplicitEuler({.name = "symplectic_euler", .is_implicit = false}) {}
 
  protected:
   bool moves_with_old_velocity() const override { return false; }
@@ -82,7 +81,7 @@ class SymplecticEuler : public ExplicitEuler {
 // q_new = q + h qdot,  qdot_new = qdot + h a(q)
 class ForwardEuler : public ExplicitEuler {
  public:
-  std::string_view name() const override { return "forward_euler"; }
+  ForwardEuler() : ExplicitEuler({.name = "forward_euler", .is_implicit = false, .gains_energy = true}) {}
 
  protected:
   bool moves_with_old_velocity() const override { return true; }

@@ -11,10 +11,7 @@ namespace {
 // q_new = argmin 1/2 (q - q~)' M (q - q~) + h^2 V(q),  q~ = q_t + h qdot_t,  qdot_new = (q_new - q_t) / h
 class BackwardEuler : public Integrator {
  public:
-  std::string_view name() const override { return "backward_euler"; }
-  int order() const override { return 1; }
-  bool is_implicit() const override { return true; }
-  bool is_backward_euler() const override { return true; }
+  explicit BackwardEuler(const IntegratorFacts& facts) : Integrator(facts) {}
 
   StepSolve advance(const StepTools& tools, State& end, StepForces& forces) override {
     StepSolve solve;
@@ -27,7 +24,7 @@ class BackwardEuler : public Integrator {
                                .time = tools.end_time,
                                .ahead = tools.h,
                                .tries_last_increment = false,  // it is the extrapolated one
-                               .once = takes_one_iteration()};
+                               .once = facts().takes_one_iteration};
     stage_.solve(tools, nullptr, options, end.q, end.qdot, acceleration_, solve, forces);
     end.time = tools.end_time;
     return solve;
@@ -38,23 +35,12 @@ class BackwardEuler : public Integrator {
   std::vector<double> acceleration_;
 };
 
-// One Newton iteration from the current state, without line search [Baraff 1998].
-class LinearlyImplicitEuler : public BackwardEuler {
- public:
-  std::string_view name() const override { return "linearly_implicit_euler"; }
-  bool chooses_guess() const override { return false; }
-  bool takes_one_iteration() const override { return true; }
-};
-
 // q* = a + beta v*,  v* = b + beta acc(q*, v*) with a = (4 q_n - q_(n-1)) / 3, b = (4 v_n - v_(n-1)) / 3, beta = 2h/3
 // [Hairer 1996, section V.1]. The first step, which has no past, is one of TR-BDF2: of the same order, as
 // quick to damp what is stiff, and like BDF2 exact for a constant acceleration.
 class Bdf2 : public Integrator {
  public:
-  std::string_view name() const override { return "bdf2"; }
-  int order() const override { return 2; }
-  bool is_implicit() const override { return true; }
-  bool is_multistep() const override { return true; }
+  Bdf2() : Integrator({.name = "bdf2", .order = 2, .is_multistep = true, .ends_beyond_minimum = true}) {}
   void set_pin_velocity(const Pins& pins, double h, State& state) const override {
     start_->set_pin_velocity(pins, h, state);
   }
@@ -71,7 +57,7 @@ class Bdf2 : public Integrator {
     StepSolve solve;
     forces.reset(n);
     end = now;
-    path_.sample(tools.pins, now.time, tools.end_time, pin_path_points(order()));
+    path_.sample(tools.pins, now.time, tools.end_time, pin_path_points(facts().order));
     const StageOptions options{.beta = 2 * tools.h / 3, .time = tools.end_time, .ahead = tools.h};
     stage_.solve(tools, &path_, options, end.q, end.qdot, acceleration_, solve, forces);
     end.time = tools.end_time;
@@ -88,10 +74,7 @@ class Bdf2 : public Integrator {
 // q_new = argmin V(q)
 class QuasiStatic : public Integrator {
  public:
-  std::string_view name() const override { return "quasi_static"; }
-  int order() const override { return 0; }
-  bool is_implicit() const override { return true; }
-  bool is_static() const override { return true; }
+  QuasiStatic() : Integrator({.name = "quasi_static", .order = 0}) {}
 
   StepSolve advance(const StepTools& tools, State& end, StepForces& forces) override {
     const State& start = tools.start;
@@ -123,8 +106,14 @@ class QuasiStatic : public Integrator {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_backward_euler() { return std::make_unique<BackwardEuler>(); }
-std::unique_ptr<Integrator> make_linearly_implicit_euler() { return std::make_unique<LinearlyImplicitEuler>(); }
+std::unique_ptr<Integrator> make_backward_euler() {
+  return std::make_unique<BackwardEuler>(IntegratorFacts{.name = "backward_euler", .is_backward_euler = true});
+}
+// One Newton iteration from the current state, without line search [Baraff 1998].
+std::unique_ptr<Integrator> make_linearly_implicit_euler() {
+  return std::make_unique<BackwardEuler>(
+      IntegratorFacts{.name = "linearly_implicit_euler", .takes_one_iteration = true, .is_backward_euler = true});
+}
 std::unique_ptr<Integrator> make_bdf2() { return std::make_unique<Bdf2>(); }
 std::unique_ptr<Integrator> make_quasi_static() { return std::make_unique<QuasiStatic>(); }
 

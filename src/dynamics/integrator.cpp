@@ -9,26 +9,9 @@
 namespace aspic {
 namespace {
 
-struct Entry {
-  std::string name;
-  std::unique_ptr<Integrator> (*make)();
-};
-
-const std::vector<Entry>& entries() {
-  static const std::vector<Entry> table = {
-      {"backward_euler", make_backward_euler},
-      {"linearly_implicit_euler", make_linearly_implicit_euler},
-      {"bdf2", make_bdf2},
-      {"tr_bdf2", make_tr_bdf2},
-      {"midpoint", make_midpoint},
-      {"trapezoid", make_trapezoid},
-      {"symplectic_euler", make_symplectic_euler},
-      {"forward_euler", make_forward_euler},
-      {"rk4", make_rk4},
-      {"quasi_static", make_quasi_static},
-  };
-  return table;
-}
+constexpr std::array kSchemes = {
+    make_backward_euler, make_linearly_implicit_euler, make_bdf2,          make_tr_bdf2, make_midpoint,
+    make_trapezoid,      make_symplectic_euler,        make_forward_euler, make_rk4,     make_quasi_static};
 
 // From the best to the worst.
 int badness(Status status) {
@@ -90,24 +73,24 @@ namespace {
 template <class Predicate>
 std::vector<std::string> names_where(const Predicate& holds) {
   std::vector<std::string> names;
-  for (const Entry& entry : entries())
-    if (holds(*entry.make())) names.push_back(entry.name);
+  for (const auto& make : kSchemes)
+    if (const IntegratorFacts facts = make()->facts(); holds(facts)) names.emplace_back(facts.name);
   return names;
 }
 
 }  // namespace
 
 std::vector<std::string> integrator_names() {
-  return names_where([](const Integrator&) { return true; });
+  return names_where([](const IntegratorFacts&) { return true; });
 }
 
 std::vector<std::string> adaptive_integrator_names() {
-  return names_where([](const Integrator& i) { return !i.is_static() && !i.is_multistep(); });
+  return names_where([](const IntegratorFacts& i) { return !i.is_static() && !i.is_multistep; });
 }
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name) {
-  for (const Entry& entry : entries())
-    if (entry.name == name) return entry.make();
+  for (const auto& make : kSchemes)
+    if (auto integrator = make(); integrator->facts().name == name) return integrator;
   throw InvalidInput("integrator = '" + std::string(name) + "' is unknown" + suggestion(name, integrator_names()));
 }
 

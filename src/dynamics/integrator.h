@@ -6,6 +6,7 @@
 
 #include "dynamics/guesser.h"
 #include "dynamics/incremental_potential.h"
+#include "dynamics/integrator_facts.h"
 #include "dynamics/state.h"
 #include "dynamics/step_report.h"
 #include "linalg/linear_solver.h"
@@ -67,20 +68,17 @@ struct StepSolve {
 
 class Integrator {
  public:
+  explicit Integrator(const IntegratorFacts& facts) : facts_(facts) {}
   virtual ~Integrator() = default;
-  virtual std::string_view name() const = 0;
-  virtual int order() const = 0;  // in time, for smooth motions
-  virtual bool is_implicit() const = 0;
-  virtual bool is_static() const { return false; }
-  virtual bool is_multistep() const { return false; }  // uses StepTools::previous, a step of the same length ago
-  virtual bool chooses_guess() const { return is_implicit(); }  // whether StepTools::guess is heeded
-  virtual bool takes_one_iteration() const { return false; }    // of Newton's method, in place of a minimisation
-  virtual bool is_backward_euler() const { return false; }      // however its E is minimised
+  const IntegratorFacts& facts() const { return facts_; }
   // Gives the pinned vertices of the first state the velocities of their pins, as the scheme sees them: here those with
   // which they reach their places at the end of the first step.
   virtual void set_pin_velocity(const Pins& pins, double h, State& state) const;
   // Writes the state at the end of the step, and what acted in it.
   virtual StepSolve advance(const StepTools& tools, State& end, StepForces& forces) = 0;
+
+ private:
+  IntegratorFacts facts_;
 };
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name);  // throws InvalidInput for an unknown name

@@ -52,7 +52,7 @@ TEST(Integrators, AreOfTheirOrderWithDampingAndAMovingTarget) {
   for (const std::string& integrator : integrators_in_time()) {
     const double h = 0.004;
     EXPECT_NEAR(std::log2(driven_oscillator_error(integrator, h) / driven_oscillator_error(integrator, h / 2)),
-                make_integrator(integrator)->order(), 0.1)
+                make_integrator(integrator)->facts().order, 0.1)
         << integrator;
   }
 }

@@ -180,7 +180,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   for (auto* v : {&Ma_, &momentum_, &residual_}) v->assign(n, 0.0);
   moved_.resize(n);  // before any pin moves: a later step allocates nothing
   double potential_before = 0;
-  const double target = target_work(tools, integrator.order(), end, potential_before, report);
+  const double target = target_work(tools, integrator.facts().order, end, potential_before, report);
   for (const double V : elastic_energies(tools.model, start.q, {}, report)) potential_before += V;
   const double kinetic_before = kinetic_energy(*tools.model.mass, start.qdot, momentum_);
   tools.model.mass->multiply(forces.acceleration, Ma_);
@@ -244,7 +244,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
                              .reached = report.potential_total + jump,
                              .magnitude = magnitude,
                              .round_off = round_off + kLastDigits * tools.E.growth_stiffness()};
-  if (pins_moved && integrator.is_backward_euler()) allow_moved_pins(tools, end, bounded, report);
+  if (pins_moved && integrator.facts().is_backward_euler) allow_moved_pins(tools, end, bounded, report);
   return bounded;
 }
 

@@ -41,6 +41,6 @@ inline Model damped_beam_with_moving_pins_and_targets(int n = 2) {  // n >= 2
       .build();
 }
 
-inline bool is_explicit(const std::string& integrator) { return !make_integrator(integrator)->is_implicit(); }
+inline bool is_explicit(const std::string& integrator) { return !make_integrator(integrator)->facts().is_implicit; }
 
 }  // namespace aspic::testing_models

@@ -12,42 +12,43 @@ namespace aspic {
 namespace {
 
 // Implicit midpoint: conserves momenta and, where forces are linear, energy.
-constexpr Tableau kMidpoint = {.name = "midpoint", .order = 2, .stages = 1, .A = {{0.5}}, .b = {1}};
+constexpr Tableau kMidpoint = {
+    .facts = {.name = "midpoint", .order = 2, .ends_beyond_minimum = true}, .stages = 1, .A = {{0.5}}, .b = {1}};
 
 // Trapezoidal rule, Newmark's method with beta = 1/4 and gamma = 1/2 [Newmark 1959].
-constexpr Tableau kTrapezoid = {.name = "trapezoid", .order = 2, .stages = 2, .A = {{0}, {0.5, 0.5}}, .b = {0.5, 0.5}};
+constexpr Tableau kTrapezoid = {.facts = {.name = "trapezoid", .order = 2, .ends_beyond_minimum = true},
+                                .stages = 2,
+                                .A = {{0}, {0.5, 0.5}},
+                                .b = {0.5, 0.5}};
 
 // The trapezoidal rule to t + gamma h, then BDF2 to t + h, with gamma such that both stages have one beta
 // [Bank 1985; Hosea 1996].
 constexpr double kGamma = 2 - std::numbers::sqrt2, kD = kGamma / 2, kW = std::numbers::sqrt2 / 4;
-constexpr Tableau kTrBdf2 = {
-    .name = "tr_bdf2", .order = 2, .stages = 3, .A = {{0}, {kD, kD}, {kW, kW, kD}}, .b = {kW, kW, kD}};
+constexpr Tableau kTrBdf2 = {.facts = {.name = "tr_bdf2", .order = 2, .ends_beyond_minimum = true},
+                             .stages = 3,
+                             .A = {{0}, {kD, kD}, {kW, kW, kD}},
+                             .b = {kW, kW, kD}};
 
 // The classical method.
-constexpr Tableau kRk4 = {.name = "rk4",
-                          .order = 4,
+constexpr Tableau kRk4 = {.facts = {.name = "rk4", .order = 4, .is_implicit = false, .stability = StabilityLimit::rk4},
                           .stages = 4,
                           .A = {{0}, {0.5}, {0, 0.5}, {0, 0, 1}},
                           .b = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}};
 
 class RungeKutta : public Integrator {
  public:
-  explicit RungeKutta(const Tableau& tableau) : t_(tableau) {
+  explicit RungeKutta(const Tableau& tableau) : Integrator(tableau.facts), t_(tableau) {
     for (int i = 0; i < t_.stages; ++i) {
-      is_implicit_ = is_implicit_ || t_.A[i][i] > 0;
       for (int j = 0; j <= i; ++j) c_[i] += t_.A[i][j];
       if (std::abs(c_[i] - 1) < 1e-14) c_[i] = 1;  // the step's end exactly
     }
     const double* last = t_.A[t_.stages - 1];
     ends_with_last_stage_ = std::equal(last, last + t_.stages, t_.b);
   }
-  std::string_view name() const override { return t_.name; }
-  int order() const override { return t_.order; }
-  bool is_implicit() const override { return is_implicit_; }
 
   void set_pin_velocity(const Pins& pins, double h, State& state) const override {
     PinPath path;
-    path.sample(pins, state.time, state.time + h, pin_path_points(t_.order));
+    path.sample(pins, state.time, state.time + h, pin_path_points(facts().order));
     path.place_velocity(state.time, state.qdot);
   }
 
@@ -55,7 +56,7 @@ class RungeKutta : public Integrator {
     const State& start = tools.start;
     resize(start.q.size());
     forces.reset(start.q.size());
-    path_.sample(tools.pins, start.time, tools.end_time, pin_path_points(t_.order));
+    path_.sample(tools.pins, start.time, tools.end_time, pin_path_points(facts().order));
     StepSolve solve;
     for (int i = 0; i < t_.stages; ++i) {
       const bool ok = t_.A[i][i] > 0 ? solve_implicitly(tools, i, solve, forces) : evaluate(tools, i, solve, forces);
@@ -120,7 +121,7 @@ class RungeKutta : public Integrator {
     std::fill(acc_[i].begin(), acc_[i].end(), 0.0);
     path_.place_acceleration(time, acc_[i]);
     MinimizeReport report;
-    report.iterations = is_implicit_ ? 0 : 1;
+    report.iterations = facts().is_implicit ? 0 : 1;
     const bool solved =
         force_.solve(tools, time, q_[i], v_[i], DampingDifference::central, t_.b[i], acc_[i], forces, report);
     forces.add_round_off(tools.E, t_.b[i] * force_.noise());
@@ -149,8 +150,8 @@ class RungeKutta : public Integrator {
   }
 
   Tableau t_;
+  bool ends_with_last_stage_ = false;
   std::array<double, kMostStages> c_{};  // the stages' times, in steps
-  bool is_implicit_ = false, ends_with_last_stage_ = false;
 
   std::array<std::vector<double>, kMostStages> q_, v_, acc_;
   ImplicitStage stage_;

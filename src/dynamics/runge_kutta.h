@@ -15,8 +15,8 @@ namespace aspic {
 inline constexpr int kMostStages = 4;
 
 struct Tableau {
-  std::string_view name;
-  int order = 1, stages = 1;
+  IntegratorFacts facts;
+  int stages = 1;
   double A[kMostStages][kMostStages] = {};  // lower triangular
   double b[kMostStages] = {};
 };

@@ -38,10 +38,10 @@ struct Simulation::Impl {
     if (!(options.h > 0) || !std::isfinite(options.h))
       throw InvalidInput("time.step = " + std::to_string(options.h) + "; it must be positive");
     require_possible(options);
-    if (!integrator->is_static()) require_mass(model, *pins);
+    if (!integrator->facts().is_static()) require_mass(model, *pins);
     pins->place(state.time, state.q);
     require_finite_energy(model, state.q);
-    if (!integrator->is_static()) integrator->set_pin_velocity(*pins, options.h, state);
+    if (!integrator->facts().is_static()) integrator->set_pin_velocity(*pins, options.h, state);
     if (options.adaptive.tolerance > 0) adaptive.emplace(model, options.adaptive.tolerance, remembers());
     ledger.begin(model, state.q);
     measure_start();
@@ -51,7 +51,7 @@ struct Simulation::Impl {
   bool remembers() const {
     const bool by_guess =
         guess == InitialGuess::best || guess == InitialGuess::last_increment || guess == InitialGuess::accelerated;
-    return integrator->is_multistep() || (by_guess && integrator->chooses_guess());
+    return integrator->facts().is_multistep || (by_guess && integrator->facts().chooses_guess());
   }
 
   // A product, not a sum of steps, so that the end of a run is met exactly.
@@ -104,9 +104,9 @@ struct Simulation::Impl {
     } else {
       if (!adaptive) {
         const BoundedEnergies bounded = ledger.add(with, *integrator, state, forces, report);
-        if (integrator->is_backward_euler()) judge(bounded, solved.work.value / (options.h * options.h), report);
+        if (integrator->facts().is_backward_euler) judge(bounded, solved.work.value / (options.h * options.h), report);
       }
-      if (!integrator->is_implicit()) outside_work += outside_work_of(report);
+      if (!integrator->facts().is_implicit) outside_work += outside_work_of(report);
       note_lost_velocity(with, report);
       if (!is_finite(report)) {
         if (is_success(report.status)) report.status = Status::undefined;
@@ -127,7 +127,7 @@ struct Simulation::Impl {
 
   // The energies from which a run began, with which has_blown_up() compares.
   void measure_start() {
-    if (integrator->is_implicit()) return;
+    if (integrator->facts().is_implicit) return;
     constexpr double kRoundOff = 1e-12;  // of elastic energies, beside the stiffness of the body
     stand_at(start.time);
     start_force.assign(start.q.size(), 0.0);
@@ -156,7 +156,7 @@ struct Simulation::Impl {
   // their squares.
   bool has_blown_up(const StepReport& report) {
     constexpr double kBlownUp = 10;
-    if (integrator->is_implicit()) return false;
+    if (integrator->facts().is_implicit) return false;
     load_force.assign(start.q.size(), 0.0);
     for (const ActiveTerm& V : E->loads())
       if (V.energy().has_constant_gradient()) V.add_gradient(state.q, 1, load_force);
@@ -169,7 +169,7 @@ struct Simulation::Impl {
 
   // Velocities are differences of positions, which are known to their last digit.
   void note_lost_velocity(const StepTools& with, StepReport& report) const {
-    if (!integrator->is_implicit() || integrator->is_static() || !is_success(report.status)) return;
+    if (!integrator->facts().is_implicit || integrator->facts().is_static() || !is_success(report.status)) return;
     double position = 0, speed = 0, change = 0;
     for (size_t i = 0; i < state.q.size(); ++i) {
       position = std::max(position, std::abs(state.q[i]));
@@ -189,7 +189,9 @@ struct Simulation::Impl {
   }
 
   // Tells the terms of V the time, as between steps.
-  void stand_at(double time) const { E->tell_potential({state.q, integrator->is_static() ? 0 : options.h, time}); }
+  void stand_at(double time) const {
+    E->tell_potential({state.q, integrator->facts().is_static() ? 0 : options.h, time});
+  }
 
   // The body stays where the step began, though time and moving targets may go on to `time`; a scheme of several steps
   // begins anew.
@@ -341,7 +343,7 @@ void Simulation::set_solver(const SolverOptions& solver) {
 
 void Simulation::set_pins(std::vector<Pin> pins) {
   const Pins wanted(pins, impl_->start.q);
-  if (!impl_->integrator->is_static()) require_mass(impl_->model, wanted);
+  if (!impl_->integrator->facts().is_static()) require_mass(impl_->model, wanted);
   impl_->model.pins = std::move(pins);
   *impl_->pins = Pins(impl_->model.pins, impl_->start.q);
   impl_->E = std::make_unique<IncrementalPotential>(impl_->model, *impl_->pins);
@@ -351,11 +353,11 @@ void Simulation::set_pins(std::vector<Pin> pins) {
   impl_->stand_at(impl_->state.time);
 }
 
-bool Simulation::is_implicit() const { return impl_->integrator->is_implicit(); }
+const IntegratorFacts& Simulation::integrator() const { return impl_->integrator->facts(); }
 
 StableStep Simulation::stable_step() const {
   const StableStep stable =
-      aspic::stable_step(*impl_->E, impl_->model, *impl_->pins, impl_->start.q, impl_->options.integrator);
+      aspic::stable_step(*impl_->E, impl_->model, *impl_->pins, impl_->start.q, integrator().stability);
   impl_->stand_at(impl_->state.time);
   return stable;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/integrator_facts.h"
 #include "dynamics/model.h"
 #include "dynamics/stable_step.h"
 #include "dynamics/state.h"
@@ -62,7 +63,7 @@ class Simulation {
   double kinetic_energy() const;                     // [J]
   std::vector<double> potential_energies() const;    // [J]
   TetFields tet_fields() const;
-  bool is_implicit() const;                // the integrator minimises
+  const IntegratorFacts& integrator() const;
   StableStep stable_step() const;          // of an explicit integrator, at the initial state
   std::string solver_description() const;  // the methods and their choices with reasons, for logs
 

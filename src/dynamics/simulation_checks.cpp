@@ -26,7 +26,7 @@ std::optional<SolverConflict> budget_conflict(const SimulationOptions& options, 
   std::string reason;
   if (!(budget > 0) || !std::isfinite(budget))
     reason = "must be positive, or 0 for none";
-  else if (!integrator.is_implicit() || integrator.takes_one_iteration())
+  else if (!integrator.facts().is_implicit || integrator.facts().takes_one_iteration)
     reason = "says nothing to integrator = '" + options.integrator + "', which takes as long as it takes";
   else if (options.adaptive.tolerance > 0)
     reason = "and time.adaptive exclude each other: a step is divided until it is accurate, however long that takes";
@@ -76,22 +76,22 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
 std::optional<SolverConflict> find_conflict(const SimulationOptions& options) {
   const std::unique_ptr<Integrator> integrator = make_integrator(options.integrator);
   const std::string name = "integrator = '" + options.integrator + "'";
-  if (options.adaptive.tolerance > 0 && (integrator->is_static() || integrator->is_multistep()))
-    return SolverConflict{"adaptive",
-                          name + " cannot divide its steps (time.adaptive): " +
-                              (integrator->is_static() ? "it knows no time" : "it needs steps of one length") + "; " +
-                              joined(adaptive_integrator_names()) + " can"};
+  if (options.adaptive.tolerance > 0 && (integrator->facts().is_static() || integrator->facts().is_multistep))
+    return SolverConflict{
+        "adaptive", name + " cannot divide its steps (time.adaptive): " +
+                        (integrator->facts().is_static() ? "it knows no time" : "it needs steps of one length") + "; " +
+                        joined(adaptive_integrator_names()) + " can"};
   const InitialGuess guess = initial_guess_named(options.initial_guess);
   const std::string chosen_guess = "solver.initial_guess = '" + options.initial_guess + "'";
-  if (guess != InitialGuess::best && !integrator->chooses_guess())
+  if (guess != InitialGuess::best && !integrator->facts().chooses_guess())
     return SolverConflict{"initial_guess", chosen_guess + " says nothing to " + name + ": " +
-                                               (integrator->is_implicit() ? "it starts from the current positions"
-                                                                          : "it minimises nothing")};
-  if ((guess == InitialGuess::extrapolated || guess == InitialGuess::accelerated) && integrator->is_static())
+                                               (integrator->facts().is_implicit ? "it starts from the current positions"
+                                                                                : "it minimises nothing")};
+  if ((guess == InitialGuess::extrapolated || guess == InitialGuess::accelerated) && integrator->facts().is_static())
     return SolverConflict{"initial_guess",
                           chosen_guess + " needs velocities, of which " + name + " knows none; try 'last_increment'"};
   if (auto conflict = budget_conflict(options, *integrator)) return conflict;
-  if (!integrator->takes_one_iteration()) return std::nullopt;
+  if (!integrator->facts().takes_one_iteration) return std::nullopt;
   const auto unfit = [&](const char* option, const std::string& method) {
     return SolverConflict{option, std::string("solver.") + option + " = '" + method + "' does not do for " + name +
                                       ", which is one iteration of Newton's method: newton and newton_cg can"};

@@ -28,7 +28,7 @@ std::vector<SimulationOptions> all_ways() {
   for (const std::string& integrator : integrator_names()) {
     const SimulationOptions plain{.h = is_explicit(integrator) ? 1e-4 : 0.01, .integrator = integrator, .solver = {}};
     ways.push_back(plain);
-    if (make_integrator(integrator)->chooses_guess()) {
+    if (make_integrator(integrator)->facts().chooses_guess()) {
       ways.push_back(plain);
       ways.back().initial_guess = "last_increment";
     }

@@ -110,7 +110,7 @@ double rk4_limit(double c, double k) {
 }
 
 StableStep stable_step(const IncrementalPotential& E, const Model& model, const Pins& pins, std::span<const double> x,
-                       std::string_view integrator) {
+                       StabilityLimit limit) {
   BlockSparse M(E.pattern());
   model.mass->add_to(1, M);
   pins.set_identity(M);
@@ -123,7 +123,7 @@ StableStep stable_step(const IncrementalPotential& E, const Model& model, const 
   for (const ActiveTerm& V : E.potential()) V.add_hessian(x, 1, {Definiteness::clamped}, K);
   pins.set_identity(K);
   PowerIteration iteration(M, C, K, pins, *solver);
-  const bool is_rk4 = integrator == "rk4";
+  const bool is_rk4 = limit == StabilityLimit::rk4;
   const StableStep stable = iteration.run(x.size(), 2, is_rk4);
   if (!is_rk4 || E.damping().empty()) return stable;
   const StableStep fastest = iteration.run(x.size(), 0, is_rk4);

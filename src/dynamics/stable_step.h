@@ -1,7 +1,8 @@
 // The largest stable time step of an explicit scheme.
 #pragma once
 #include <span>
-#include <string_view>
+
+#include "dynamics/integrator_facts.h"
 
 namespace aspic {
 
@@ -25,6 +26,6 @@ struct StableStep {
 // rk4 is the lower one of what the motion found so and the fastest vibration bear: with damping the scheme may bear
 // still less. Without damping, C = 0, they are 2 and sqrt(8) / (highest angular frequency).
 StableStep stable_step(const IncrementalPotential& E, const Model& model, const Pins& pins, std::span<const double> x,
-                       std::string_view integrator);
+                       StabilityLimit limit);
 
 }  // namespace aspic

@@ -67,7 +67,7 @@ class StepCheck {
         edge_(mean_edge(model_.mesh)),
         tolerance_(tolerance) {
     const double h = simulation.options().h;
-    const bool is_static = simulation.options().integrator == "quasi_static";
+    const bool is_static = simulation.integrator().is_static();
     const StepContext context{state_.q, is_static ? 0 : h, state_.time + h};
     E_.tell_potential(context);
     E_.tell_damping(context);

@@ -16,10 +16,10 @@ TEST(TemporalOrder, IsThatOfTheSchemeWhereverPinsCarryTheBodyAlong) {
   for (const std::string& integrator : verify::integrators_in_time()) {
     const auto scheme = make_integrator(integrator);
     for (const Held held : {Held::nowhere, Held::on_one_face, Held::on_the_boundary}) {
-      const double h = scheme->order() == 4 ? 0.04 : 0.01;
+      const double h = scheme->facts().order == 4 ? 0.04 : 0.01;
       const double coarse = affine_motion_error(integrator, h, held);
       const double fine = affine_motion_error(integrator, h / 2, held);
-      EXPECT_NEAR(std::log2(coarse / fine), scheme->order(), 0.2)
+      EXPECT_NEAR(std::log2(coarse / fine), scheme->facts().order, 0.2)
           << integrator << " " << static_cast<int>(held) << ": " << coarse << " " << fine;
       EXPECT_GT(fine, 1e-10) << integrator << ": no error to measure an order by";
     }

@@ -50,7 +50,7 @@ const std::vector<std::string>& budgeted_integrators() {
     std::vector<std::string> found;
     for (const std::string& name : integrator_names()) {
       const auto integrator = make_integrator(name);
-      if (integrator->is_implicit() && !integrator->takes_one_iteration()) found.push_back(name);
+      if (integrator->facts().is_implicit && !integrator->facts().takes_one_iteration) found.push_back(name);
     }
     return found;
   }();

@@ -11,7 +11,7 @@ namespace aspic::verify {
 
 std::vector<std::string> integrators_in_time() {
   std::vector<std::string> names = integrator_names();
-  std::erase_if(names, [](const std::string& name) { return make_integrator(name)->is_static(); });
+  std::erase_if(names, [](const std::string& name) { return make_integrator(name)->facts().is_static(); });
   return names;
 }
 

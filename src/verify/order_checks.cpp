@@ -26,7 +26,7 @@ const char* words(Held held) {
 void check_time_order(const Subject& subject, Findings& found) {
   Plot plot{"error after 0.4 s, one face held", "time step h [s]", "largest error [m]", Scales::logarithmic, {}};
   for (const std::string& integrator : integrators_in_time()) {
-    const int order = make_integrator(integrator)->order();
+    const int order = make_integrator(integrator)->facts().order;
     const std::string taken = subject.taken_for(integrator);
     for (const Held held : {Held::on_one_face, Held::nowhere, Held::on_the_boundary}) {
       Curve curve{integrator, {}, {}, CurveStyle::line_and_points};
@@ -46,7 +46,7 @@ void check_time_order(const Subject& subject, Findings& found) {
 
 void check_driven_order(const Subject& subject, Findings& found) {
   for (const std::string& integrator : integrators_in_time()) {
-    const int order = make_integrator(integrator)->order();
+    const int order = make_integrator(integrator)->facts().order;
     const double h = 0.004;
     const std::string taken = subject.taken_for(integrator);
     found.expect(integrator + ": order",
@@ -79,7 +79,7 @@ void check_time_floor(const Subject& subject, Findings& found) {
     for (int i = 0; i < 6; ++i)
       errors.push_back(affine_motion_error(subject.taken_for(integrator), 0.01 / (1 << i), Held::on_one_face));
     found.expect_small(integrator + ", 10 to 0.3 ms: error without its first five terms",
-                       without_terms(errors, make_integrator(integrator)->order()), 1e-10,
+                       without_terms(errors, make_integrator(integrator)->facts().order), 1e-10,
                        "nothing but the powers of h from the order on, down to the accuracy of the solves", "m");
   }
 }

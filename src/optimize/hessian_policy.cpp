@@ -1,0 +1,175 @@
+#include "optimize/hessian_policy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "optimize/progressive_projection.h"
+
+namespace aspic {
+namespace {
+
+class FixedHessian : public HessianPolicy {
+ public:
+  explicit FixedHessian(Definiteness kind) : kind_(kind) {}
+  bool compute(NewtonSystem& system, NewtonTask& task) override { return system.solve(task, {kind_}); }
+
+ private:
+  Definiteness kind_;
+};
+
+class ProgressiveHessian : public HessianPolicy {
+ public:
+  void begin() override {
+    tighten_next_ = false;
+    projection_.begin();
+  }
+
+  bool compute(NewtonSystem& system, NewtonTask& task) override {
+    // Relaxed only once a direction was of use: else a retreat would take back what it gains, and never end.
+    std::exchange(tighten_next_, false) ? projection_.tighten(task.g) : projection_.relax();
+    for (;; projection_.tighten(task.g)) {
+      const Projection projection = projection_.at(task.g);
+      task.report.projected = task.report.projected || projection.kind != Definiteness::exact;
+      if (system.solve(task, projection)) return true;
+      if (projection_.is_complete() || system.is_late(task.report)) return false;
+    }
+  }
+
+  bool retreat() override { return tighten_next_ = !projection_.is_complete(); }
+
+ private:
+  ProgressiveProjection projection_;
+  bool tighten_next_ = false;
+};
+
+class HessianOnDemand : public HessianPolicy {
+ public:
+  void begin() override {
+    skip_exact_ = is_modified_ = false;
+    absolute_left_ = 0;
+    absolute_span_ = kAbsoluteSpan;
+    modified_in_a_row_ = 0;
+  }
+
+  bool compute(NewtonSystem& system, NewtonTask& task) override {
+    is_modified_ = std::exchange(skip_exact_, false);
+    if (!is_modified_ && system.solve(task, {Definiteness::exact})) {
+      modified_in_a_row_ = 0;
+      return true;
+    }
+    if (system.is_late(task.report)) return false;
+    const double gained = task.value ? last_value_ - *task.value : 0;
+    if (task.value) last_value_ = *task.value;
+    const bool creeps = task.value && !is_modified_ && modified_in_a_row_ >= kPatience;
+    ++modified_in_a_row_;
+    if (creeps && leaves_saddle(system, task, gained)) return true;
+    if (system.is_late(task.report)) return false;
+    is_modified_ = task.report.projected = true;
+    return solve_modified(system, task);
+  }
+
+  bool retreat() override { return skip_exact_ = !is_modified_; }
+
+ private:
+  static constexpr int kAbsoluteSpan = 8;  // directions; twice as many after each further one that overshoots
+  static constexpr int kPatience = 2;      // directions of modified Hessians in a row before truncated ones are tried
+
+  // Modified Hessians are too stiff near a saddle: the iterates leave it at a creep. A truncated direction of the exact
+  // Hessian is used where it gains as much as the last step did.
+  bool leaves_saddle(NewtonSystem& system, NewtonTask& task, double gained) {
+    if (!system.solve_truncated(task)) return false;
+    return task.report.truncated = *task.value - lengthen(task) >= gained;
+  }
+
+  // Where elements are inverted or far from their volume, negative eigenvalues are as large as positive ones. Clamped,
+  // they leave a direction that reaches too far; their absolute values hold it back [Chen2024Filtering]. Elsewhere
+  // those are too stiff.
+  bool solve_modified(NewtonSystem& system, NewtonTask& task) {
+    const auto is_unjudged = [&] { return !task.value || system.is_late(task.report); };
+    if (absolute_left_ == 0) {
+      if (!system.solve(task, {Definiteness::clamped})) return false;
+      if (is_unjudged() || lengthen(task) <= *task.value) return true;
+      absolute_left_ = absolute_span_;
+      absolute_span_ *= 2;
+    }
+    --absolute_left_;
+    if (!system.solve(task, {Definiteness::absolute})) return false;
+    if (!is_unjudged()) lengthen(task);
+    return true;
+  }
+
+  // Doubles d for as long as the parabola through E at its start and its end has its minimum beyond twice d, and E
+  // falls. Returns E at its end, or where terms of E forbid that, at the end of the part they allow.
+  double lengthen(NewtonTask& task) {
+    const double reach = task.E.max_step(task.x, task.d);
+    double end = value_ahead(task, std::min(1.0, reach));
+    double slope = task.E.dot(task.g, task.d), size = 0;
+    for (const double di : task.d) size = std::max(size, std::abs(di));
+    for (double length = 2; 4 * (end - *task.value - slope) < -slope; length *= 2, slope *= 2) {
+      if (reach < length || length * size > task.E.scales().x) break;
+      const double further = value_ahead(task, 2);
+      if (!(further < end)) break;
+      for (double& di : task.d) di *= 2;
+      end = further;
+    }
+    return end;
+  }
+
+  // E at x + alpha d
+  double value_ahead(NewtonTask& task, double alpha) {
+    ahead_.resize(task.x.size());
+    for (size_t i = 0; i < ahead_.size(); ++i) ahead_[i] = task.x[i] + alpha * task.d[i];
+    ++task.report.values;
+    return task.E.value(ahead_);
+  }
+
+  bool skip_exact_ = false;    // of the next direction, after a retreat
+  bool is_modified_ = false;   // the Hessian of the last direction
+  int absolute_left_ = 0;      // the next so many modified Hessians are absolute
+  int absolute_span_ = 0;      // and how many will be when a direction overshoots again
+  int modified_in_a_row_ = 0;  // directions that are not of the exact Hessian
+  double last_value_ = 0;      // E at the last iterate with such a direction
+  std::vector<double> ahead_;
+};
+
+}  // namespace
+
+std::string_view to_string(NewtonDefiniteness definiteness) {
+  switch (definiteness) {
+    case NewtonDefiniteness::exact:
+      return "exact";
+    case NewtonDefiniteness::clamped:
+      return "clamped";
+    case NewtonDefiniteness::absolute:
+      return "absolute";
+    case NewtonDefiniteness::on_demand:
+      return "on_demand";
+    case NewtonDefiniteness::progressive:
+      return "progressive";
+  }
+  return "unknown";
+}
+
+std::vector<NewtonDefiniteness> all_definiteness() {
+  return {NewtonDefiniteness::on_demand, NewtonDefiniteness::progressive, NewtonDefiniteness::clamped,
+          NewtonDefiniteness::absolute, NewtonDefiniteness::exact};
+}
+
+std::unique_ptr<HessianPolicy> make_hessian_policy(NewtonDefiniteness definiteness) {
+  switch (definiteness) {
+    case NewtonDefiniteness::exact:
+      return std::make_unique<FixedHessian>(Definiteness::exact);
+    case NewtonDefiniteness::clamped:
+      return std::make_unique<FixedHessian>(Definiteness::clamped);
+    case NewtonDefiniteness::absolute:
+      return std::make_unique<FixedHessian>(Definiteness::absolute);
+    case NewtonDefiniteness::on_demand:
+      return std::make_unique<HessianOnDemand>();
+    case NewtonDefiniteness::progressive:
+      return std::make_unique<ProgressiveHessian>();
+  }
+  return nullptr;
+}
+
+}  // namespace aspic

@@ -1,0 +1,93 @@
+#include "optimize/newton_system.h"
+
+#include "base/stopwatch.h"
+
+namespace aspic {
+
+void NewtonSystem::begin() {
+  kept_.drop();
+  solver_->begin();
+}
+
+void NewtonSystem::begin_direction(const Deadline& deadline, bool is_first, double gradient_norm) {
+  deadline_ = deadline;
+  is_first_ = is_first;
+  gradient_norm_ = gradient_norm;
+  exact_ = nullptr;
+  solver_->set_deadline(deadline);
+  semidefinite_solver_.set_deadline(deadline);
+}
+
+bool NewtonSystem::solve(NewtonTask& task, const Projection& projection) {
+  DirectionReport& report = task.report;
+  Stopwatch stopwatch;
+  const BlockSparse& H = task.E.hessian(task.x, projection);
+  ++report.hessians;
+  report.kept = false;
+  report.projected_elements += task.E.projected_elements();
+  report.hessian_seconds += stopwatch.lap();
+  if (is_late(report)) return false;
+  if (analyzed_version_ != H.pattern->version) {
+    solver_->analyze(*H.pattern);
+    analyzed_version_ = H.pattern->version;
+  }
+  ++report.factorizations;
+  const bool is_definite = solver_->factorize(H);
+  report.factorize_seconds += stopwatch.lap();
+  const bool is_exact = projection.kind == Definiteness::exact;
+  exact_ = is_exact ? &H : nullptr;
+  if (is_definite && solve_factorized(task)) {
+    if (is_exact && !report.truncated && !report.stopped) kept_.keep(task.E, H, task.x);
+    return true;
+  }
+  const bool is_modified = !is_exact && projection.vertices.empty();
+  return is_modified && !truncates_ && !is_late(report) && solve_semidefinite(H, task);
+}
+
+bool NewtonSystem::solve_truncated(NewtonTask& task) { return exact_ && solve_semidefinite(*exact_, task); }
+
+// By conjugate gradients, which bear directions that H does not resist, such as rotations about a single pinned vertex.
+bool NewtonSystem::solve_semidefinite(const BlockSparse& H, NewtonTask& task) {
+  DirectionReport& report = task.report;
+  Stopwatch stopwatch;
+  if (semidefinite_version_ != H.pattern->version) {
+    semidefinite_solver_.analyze(*H.pattern);
+    semidefinite_version_ = H.pattern->version;
+  }
+  if (!semidefinite_solver_.factorize(H)) return false;
+  const SolveReport solved = semidefinite_solver_.solve(task.g, task.d, task.forcing);
+  report.stopped = report.stopped || solved.stopped;
+  report.add(solved);
+  report.solve_seconds += stopwatch.lap();
+  report.truncated = report.truncated || solved.indefinite;
+  for (double& di : task.d) di = -di;
+  return solved.ok || solved.indefinite || solved.stopped;
+}
+
+bool NewtonSystem::solve_with_kept(NewtonTask& task, const InnerAccuracy& accuracy) {
+  if (kept_.serves(gradient_norm_, accuracy)) {
+    kept_.restore(task.E);
+    task.report.kept = solve_factorized(task);
+    if (task.report.kept) return true;
+  }
+  kept_.drop();
+  return false;
+}
+
+bool NewtonSystem::solve_factorized(NewtonTask& task) {
+  DirectionReport& report = task.report;
+  Stopwatch stopwatch;
+  const double begin = deadline_.now();
+  const SolveReport solved = solver_->solve(task.g, task.d, task.forcing);
+  if (solved.iterations > 0) report.stoppable_seconds += deadline_.now() - begin;
+  report.stopped = report.stopped || solved.stopped;
+  report.add(solved);
+  report.solve_seconds += stopwatch.lap();
+  if (solved.indefinite ? !truncates_ : !solved.ok && !solved.stopped) return false;
+  report.truncated = report.truncated || solved.indefinite;
+  kept_.note_solve(gradient_norm_, solved.relative_residual);
+  for (double& di : task.d) di = -di;
+  return true;
+}
+
+}  // namespace aspic
