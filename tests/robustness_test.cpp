@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "dynamics/explanation.h"
+#include "scene/explanation.h"
 #include "io/mesh_file.h"
 #include "material/registry.h"
 #include "mesh/doctor.h"

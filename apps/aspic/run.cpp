@@ -17,7 +17,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/printable.h"
-#include "dynamics/explanation.h"
+#include "scene/explanation.h"
 #include "dynamics/state_hash.h"
 #include "io/input_file.h"
 #include "scene/run_directory.h"

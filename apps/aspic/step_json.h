@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/explanation.h"
+#include "scene/explanation.h"
 
 namespace aspic::cli {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/explanation.h"
+#include "scene/explanation.h"
 #include "dynamics/simulation.h"
 #include "viewer/arguments.h"
 

@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "base/parallel.h"
-#include "dynamics/explanation.h"
+#include "scene/explanation.h"
 #include "dynamics/models_test.h"
 
 namespace aspic {

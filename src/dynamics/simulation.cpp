@@ -36,7 +36,7 @@ struct Simulation::Impl {
         E(std::make_unique<IncrementalPotential>(model, *pins)) {
     options.solver.minimize.h = options.h;
     if (!(options.h > 0) || !std::isfinite(options.h))
-      throw InvalidInput("time.step = " + std::to_string(options.h) + "; it must be positive");
+      throw InvalidInput("h = " + std::to_string(options.h) + "; it must be positive");
     require_possible(options);
     if (!integrator->facts().is_static()) require_mass(model, *pins);
     pins->place(state.time, state.q);

@@ -29,11 +29,11 @@ std::optional<SolverConflict> budget_conflict(const SimulationOptions& options, 
   else if (!integrator.facts().is_implicit || integrator.facts().takes_one_iteration)
     reason = "says nothing to integrator = '" + options.integrator + "', which takes as long as it takes";
   else if (options.adaptive.tolerance > 0)
-    reason = "and time.adaptive exclude each other: a step is divided until it is accurate, however long that takes";
+    reason = "and adaptive steps exclude each other: a step is divided until it is accurate, however long that takes";
   else if (options.solver.minimize.line_search.test == DecreaseTest::none)
     reason = "needs a line search, which test = 'none' turns off: else E may rise before time is up";
   if (reason.empty()) return std::nullopt;
-  return SolverConflict{"time_budget", "solver.time_budget = " + std::to_string(budget) + " " + reason};
+  return SolverConflict{"time_budget", "time_budget = " + std::to_string(budget) + " " + reason};
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
           "smaller initial deformation or another material");
     throw InvalidInput("the initial shape has infinite energy: " + std::to_string(inverted.size()) +
                        " tets are inverted or flat (" + listed(model.numbering.tet.to_user(inverted)) +
-                       "); set material.model = \"stable_neo_hookean\", which tolerates inversion, or choose a "
+                       "); choose the material stable_neo_hookean, which tolerates inversion, or choose a "
                        "smaller initial deformation");
   }
 }
@@ -78,11 +78,11 @@ std::optional<SolverConflict> find_conflict(const SimulationOptions& options) {
   const std::string name = "integrator = '" + options.integrator + "'";
   if (options.adaptive.tolerance > 0 && (integrator->facts().is_static() || integrator->facts().is_multistep))
     return SolverConflict{
-        "adaptive", name + " cannot divide its steps (time.adaptive): " +
+        "adaptive", name + " cannot divide its steps: " +
                         (integrator->facts().is_static() ? "it knows no time" : "it needs steps of one length") + "; " +
                         joined(adaptive_integrator_names()) + " can"};
   const InitialGuess guess = initial_guess_named(options.initial_guess);
-  const std::string chosen_guess = "solver.initial_guess = '" + options.initial_guess + "'";
+  const std::string chosen_guess = "initial_guess = '" + options.initial_guess + "'";
   if (guess != InitialGuess::best && !integrator->facts().chooses_guess())
     return SolverConflict{"initial_guess", chosen_guess + " says nothing to " + name + ": " +
                                                (integrator->facts().is_implicit ? "it starts from the current positions"
@@ -93,7 +93,7 @@ std::optional<SolverConflict> find_conflict(const SimulationOptions& options) {
   if (auto conflict = budget_conflict(options, *integrator)) return conflict;
   if (!integrator->facts().takes_one_iteration) return std::nullopt;
   const auto unfit = [&](const char* option, const std::string& method) {
-    return SolverConflict{option, std::string("solver.") + option + " = '" + method + "' does not do for " + name +
+    return SolverConflict{option, std::string(option) + " = '" + method + "' does not do for " + name +
                                       ", which is one iteration of Newton's method: newton and newton_cg can"};
   };
   if (!estimates_minimiser(options.solver.method)) return unfit("method", options.solver.method);
@@ -105,7 +105,7 @@ std::optional<SolverConflict> find_conflict(const SimulationOptions& options) {
 void require_possible(const SimulationOptions& options) {
   const double tolerance = options.adaptive.tolerance;
   if (!(tolerance >= 0) || !std::isfinite(tolerance))
-    throw InvalidInput("time.adaptive.tolerance = " + std::to_string(tolerance) +
+    throw InvalidInput("adaptive.tolerance = " + std::to_string(tolerance) +
                        "; it must be positive, or 0 for none");
   if (const auto conflict = find_conflict(options)) throw InvalidInput(conflict->reason);
 }

@@ -122,7 +122,7 @@ TEST(TimeBudget, IsRefusedInWordsWhereItMeansNothing) {
   using testing::AllOf, testing::HasSubstr;
   for (const char* integrator : {"rk4", "linearly_implicit_euler"})
     EXPECT_THAT(refusal({.integrator = integrator, .solver = {}}), AllOf(HasSubstr("budget"), HasSubstr(integrator)));
-  EXPECT_THAT(refusal({.adaptive = {.tolerance = 1e-3}, .solver = {}}), HasSubstr("time.adaptive"));
+  EXPECT_THAT(refusal({.adaptive = {.tolerance = 1e-3}, .solver = {}}), HasSubstr("adaptive"));
   EXPECT_THAT(refusal({.solver = {.minimize = {}, .time_budget = -1}}), HasSubstr("positive"));
   SimulationOptions options;
   options.solver.minimize.line_search.test = DecreaseTest::none;

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <map>
 
-#include "dynamics/explanation.h"
+#include "scene/explanation.h"
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
 #include "io/mesh_file.h"

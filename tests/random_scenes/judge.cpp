@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "dynamics/explanation.h"
+#include "scene/explanation.h"
 #include "material/registry.h"
 #include "random_scenes/draw.h"
 

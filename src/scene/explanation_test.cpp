@@ -1,4 +1,4 @@
-#include "dynamics/explanation.h"
+#include "scene/explanation.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "dynamics/explanation.h"
+#include "scene/explanation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ std::string residual_place(const Model& model, const StepReport& report, std::sp
 }
 
 // Of its volume: a tet is crushed to nothing below it.
-constexpr double kCrushed = 1e-9;
+constexpr double kPressedFlat = 1e-9;
 
 // Forces that are left over are round-off up to so many times what that is estimated to be.
 constexpr double kNearRoundOff = 1000;
@@ -146,7 +146,7 @@ class Explainer {
   Explanation pressed_by_pins() const {
     const std::vector<double> x = placed();
     const WorstTet worst = most_squashed(model_.mesh, x);
-    if (worst.tet < 0 || worst.det_F > kCrushed || !is_pinned(worst.tet)) return {};
+    if (worst.tet < 0 || worst.det_F > kPressedFlat || !is_pinned(worst.tet)) return {};
     if (std::all_of(model_.elasticity.begin(), model_.elasticity.end(),
                     [&](const auto& V) { return std::isfinite(V->value(x)); }))
       return {};
