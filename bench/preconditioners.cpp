@@ -20,6 +20,7 @@
 #include "linalg/linear_solver.h"
 #include "mesh/generators.h"
 #include "mesh/numbering.h"
+#include "mesh/vertices.h"
 #include "optimize/minimize.h"
 #include "optimize/newton.h"
 
@@ -150,11 +151,7 @@ std::vector<double> recovering(IncrementalPotential& E, std::vector<double> x, c
 
 void measure(const std::string& name, const TetMesh& mesh, const Case& c, const std::string& linear) {
   const Model model = make_model(mesh, c);
-  const std::vector<double> rest = [&] {
-    std::vector<double> x;
-    for (const Vec3d& X : mesh.rest) x.insert(x.end(), {X[0], X[1], X[2]});
-    return x;
-  }();
+  const std::vector<double> rest = rest_positions(mesh);
   const Pins pins(model.pins, rest);
   IncrementalPotential E(model, pins);
   std::vector<double> x = rest;

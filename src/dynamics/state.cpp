@@ -6,7 +6,7 @@ namespace aspic {
 
 State at_rest(const TetMesh& mesh) {
   State state;
-  state.q = at_vertices(mesh, [](const Vec3d& X) { return X; });
+  state.q = rest_positions(mesh);
   state.qdot.assign(state.q.size(), 0.0);
   return state;
 }

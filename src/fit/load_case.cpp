@@ -9,19 +9,13 @@
 #include "energy/linear_load.h"
 #include "energy/pressure.h"
 #include "mesh/surface.h"
+#include "mesh/vertices.h"
 
 namespace aspic {
 namespace {
 
 constexpr double kSmallestPart = 1.0 / 64;  // of a load
 constexpr char kAxis[] = "xyz";
-
-std::vector<double> positions(const std::vector<Vec3d>& points) {
-  std::vector<double> x;
-  x.reserve(3 * points.size());
-  for (const Vec3d& p : points) x.insert(x.end(), {p[0], p[1], p[2]});
-  return x;
-}
 
 Vec3d at(const SurfacePoint& point, std::span<const double> x) {
   Vec3d sum{};
@@ -69,7 +63,7 @@ LoadedBody::LoadedBody(const Experiment& experiment, const LoadCase& load, const
                        std::span<const MaterialParameters> parameters, const EquilibriumOptions& options)
     : experiment_(experiment),
       load_(readable(experiment, load)),
-      rest_(positions(experiment.mesh.rest)),
+      rest_(rest_positions(experiment.mesh)),
       equilibrium_(make_model(material, parameters), rest_, options) {
   for (auto* v : {&dx_, &xbar_, &start_}) v->resize(rest_.size());
   prediction_.x = rest_;

@@ -19,4 +19,8 @@ std::vector<double> at_vertices(const TetMesh& mesh, const std::function<Vec3d(c
   return values;
 }
 
+std::vector<double> rest_positions(const TetMesh& mesh) {
+  return at_vertices(mesh, [](const Vec3d& X) { return X; });
+}
+
 }  // namespace aspic

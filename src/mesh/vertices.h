@@ -16,4 +16,7 @@ std::vector<int> vertices_where(const TetMesh& mesh, const Predicate& predicate)
 // Returns f(X) of every vertex, 3 numbers per vertex.
 std::vector<double> at_vertices(const TetMesh& mesh, const std::function<Vec3d(const Vec3d& X)>& f);
 
+// Returns X of every vertex, 3 numbers per vertex [m].
+std::vector<double> rest_positions(const TetMesh& mesh);
+
 }  // namespace aspic
