@@ -2,6 +2,7 @@
 // its two slots (direction and step length) left open.
 #pragma once
 #include <functional>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -92,6 +93,11 @@ using IterationObserver = std::function<bool(const LiveIteration&)>;  // false: 
 
 class Minimizer {  // holds the scratch vectors, so that repeated calls allocate nothing
  public:
+  Minimizer();
+  ~Minimizer();
+  Minimizer(Minimizer&&) noexcept;
+  Minimizer& operator=(Minimizer&&) noexcept;
+
   // Throws InvalidInput when the criterion judges directions and those of the method say nothing about the distance.
   MinimizeReport minimize(Objective& E, SearchDirection& direction, std::span<double> x, const MinimizeOptions& options,
                           const IterationObserver& observe = {});
@@ -100,32 +106,11 @@ class Minimizer {  // holds the scratch vectors, so that repeated calls allocate
                           const MinimizeOptions& options, const IterationObserver& observe = {});
 
   // The bound of |g| for each part in the last minimization, where the criterion judges the gradient.
-  std::span<const double> thresholds() const { return thresholds_; }
+  std::span<const double> thresholds() const;
 
  private:
-  struct Progress;
-  // What the last iteration took, by the clock of the deadline: is there time for another one? [s]
-  struct Cost {
-    double direction = 0, line_search = 0, gradient = 0;
-    double stoppable = 0;  // of the direction
-
-    double to_finish() const { return line_search + gradient; }  // once there is a direction
-    double at_least() const { return direction - stoppable + to_finish(); }
-  };
-  bool find_step(Progress& at, Iteration& iteration);
-  void take_step(Progress& at, Iteration& iteration);
-
-  void begin_parts(HasParts& E);
-  void judge_parts(Progress& at);
-  bool is_near_minimum(const Progress& at, const DirectionReport& made) const;
-  InnerAccuracy inner_accuracy(const Progress& at) const;
-  bool is_at_round_off(const Progress& at, double margin) const;
-
-  std::vector<double> g_, d_, trial_, trial_gradient_;
-  std::vector<GradientPart> parts_;                            // of g_
-  std::vector<double> first_norms_, thresholds_, round_offs_;  // of each part
-  std::vector<Trial> trials_;
-  Cost cost_;  // from one minimisation to the next
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace aspic
