@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "dynamics/model_builder.h"
 #include "dynamics/pins.h"
 #include "energy/linear_load.h"
 #include "energy/pressure.h"
@@ -305,15 +306,8 @@ void add_linear_load(Model& model, const char* name, std::vector<LoadGroup> grou
   model.loads.push_back(make_linear_load(name, std::move(constant), add));  // a formula that fails at 0 fails here
 }
 
-void add_gravity(Model& model, const Vec3d& gravity) {
-  std::vector<double> force;
-  for (const double mass : model.mass->vertex_mass())
-    for (int r = 0; r < 3; ++r) force.push_back(mass * gravity[r]);
-  add_linear_load(model, "gravity", std::move(force));
-}
-
 void add_loads(Builder& builder, const Vec3d& gravity) {
-  add_gravity(builder.model, gravity);
+  add_linear_load(builder.model, "gravity", weights(*builder.model.mass, gravity));
   std::vector<LoadGroup> per_volume, per_area;
   for (const PlacedBody& body : builder.bodies) {
     add_body_forces(builder, body, per_volume);
