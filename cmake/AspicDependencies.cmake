@@ -2,6 +2,7 @@
 include(CMakeFindDependencyMacro)
 find_dependency(Threads)
 find_dependency(ZLIB)
+find_dependency(EXPAT)
 
 # Neither of these has a CMake package that one can count on.
 find_library(METIS_LIBRARY metis REQUIRED)

@@ -794,6 +794,8 @@ class Lecture(CommandLine):
 
     def test_all_pages_are_summed_up(self):
         self.lecture("all", "--mesh", self.mesh(6))
+        if "render" in self.aspic("--help").stdout:  # formulas are made with the viewer's page
+            self.assertIn("<math", (self.folder / "out/lecture/index.html").read_text())
         with open(self.folder / "out/lecture/lecture.json") as file:
             summary = json.load(file)
         verdicts = {page["page"]: page["verdict"] for page in summary["pages"]}

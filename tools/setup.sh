@@ -7,14 +7,14 @@ log_dir=$root/build/log
 # A name after ':' is the program to look for where it is not called like its package.
 core_programs="g++ cmake ninja-build:ninja ccache"
 plot_programs="gnuplot-nox:gnuplot"
-core_packages="libeigen3-dev libmetis-dev libmuparser-dev libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
-  libfmt-dev zlib1g-dev"
+core_packages="libeigen3-dev libspectra-dev libmetis-dev libmuparser-dev libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
+  libfmt-dev zlib1g-dev libexpat1-dev"
 mesher_packages="libcgal-dev"
 viewer_programs="nodejs:node npm"
 viewer_packages="libboost-dev"
 case "${ASPIC_VIEWER-}" in 0 | OFF) viewer_programs= viewer_packages= ;; esac
 test_programs="python3 chromium ffmpeg $plot_programs"
-test_packages="libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libsuitesparse-dev python3-meshio"
+test_packages="libgtest-dev libgmock-dev libbenchmark-dev libsuitesparse-dev python3-meshio python3-jsonschema"
 bench_packages="libbenchmark-dev"
 fuzz_programs="clang:clang++" # with libFuzzer and its sanitizers, which clang recommends and we name
 fuzz_packages="libclang-rt-14-dev llvm-14"

@@ -1,10 +1,11 @@
-// node build.mjs OUT: the whole page, scripts and styles included, as one HTML file, and packed as OUT.gz. Needs no
-// server and no network.
+// node build.mjs OUT: the whole page, scripts and styles included, as one HTML file, packed as OUT.gz, and beside it the
+// formulas as formulas.inc. Needs no server and no network.
 import { build } from "esbuild";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
+import { formulasIn, mathml } from "./mathml.mjs";
 
 const root = dirname(fileURLToPath(import.meta.url));
 const out = process.argv[2] ?? join(root, "page.html");
@@ -16,6 +17,7 @@ const result = await build({
   format: "iife",
   target: "es2022",
   loader: { ".css": "css" },
+  plugins: [mathml],
   outdir: "memory",
   write: false,
   legalComments: "inline",
@@ -28,5 +30,10 @@ const page = readFileSync(join(root, "src/index.html"), "utf8")
   .replace("<!-- style -->", () => `<style>${text(".css")}</style>`)
   .replace("<!-- script -->", () => `<script>${script}</script>`);
 mkdirSync(dirname(out), { recursive: true });
+// For the pages that the program writes itself: the entries of a table in C++.
+const entries = formulasIn(join(root, "src/formulas.json")).map(
+  ([name, list]) => `{"${name}", {${list.map((formula) => `R"math(${formula})math"`).join(", ")}}},\n`,
+);
+writeFileSync(join(dirname(out), "formulas.inc"), entries.join(""));
 writeFileSync(out, page);
 writeFileSync(`${out}.gz`, gzipSync(page, { level: 9 }));

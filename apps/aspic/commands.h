@@ -32,6 +32,8 @@ void add_closed_loop(CLI::App& app, Action& action);
 void add_minimize(CLI::App& app, Action& action);
 void add_capture(CLI::App& app, Action& action);
 void add_lecture(CLI::App& app, Action& action);
+void add_modes(CLI::App& app, Action& action);
+void add_schema(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
 void add_completion(CLI::App& app, Action& action);
 void add_viewer_commands(CLI::App& app, Action& action);  // view, report, render

@@ -115,7 +115,9 @@ int run_program(int argc, char** argv) {
   add_closed_loop(app, action);
   add_minimize(app, action);
   add_capture(app, action);
+  add_modes(app, action);
   add_lecture(app, action);
+  add_schema(app, action);
   add_verify(app, action);
   add_viewer_commands(app, action);
   add_completion(app, action);

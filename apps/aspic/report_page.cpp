@@ -163,6 +163,8 @@ void ReportPage::heading(std::string_view text) {
 
 void ReportPage::paragraph(std::string_view text) { body_ += fmt::format("<p>{}</p>\n", escaped(text)); }
 
+void ReportPage::formula(std::string_view mathml) { body_ += fmt::format("<p>{}</p>\n", mathml); }
+
 void ReportPage::code(std::string_view text) { body_ += fmt::format("<pre>{}</pre>\n", escaped(text)); }
 
 void ReportPage::verdict(Verdict verdict, std::string_view label, std::string_view text) {

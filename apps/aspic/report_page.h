@@ -26,7 +26,8 @@ class ReportPage {
 
   void heading(std::string_view text);  // entry of the table of contents
   void paragraph(std::string_view text);
-  void code(std::string_view text);  // a command or a formula, as it is
+  void formula(std::string_view mathml);  // as it is
+  void code(std::string_view text);       // a command or a formula, as it is
   void verdict(Verdict verdict, std::string_view label, std::string_view text);
   void table(const std::vector<std::string>& header, const std::vector<std::vector<Cell>>& rows);
   void figures(const std::vector<Figure>& row);  // side by side where there is room; throws InvalidInput

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "io/child_process.h"
 #include "io/external_program.h"
-#include "viewer/child_process.h"
 #include "viewer/server.h"
 
 namespace aspic::viewer {
@@ -136,15 +136,16 @@ RenderEnd draw_in_browser(const PageOfPictures& page, const Pictures& pictures, 
   const TemporaryFolder folder;
   Server server({.page = page.page,
                  .post = [&](const std::string& path, std::string_view body) { return arrivals.receive(path, body); }});
-  ChildProcess browser(browser_command(folder.path(), server.address() + page.query), folder.path() / "messages",
-                       Input::none);
+  ChildProcess browser({.command = browser_command(folder.path(), server.address() + page.query),
+                        .messages = folder.path() / "messages",
+                        .lifetime = Lifetime::own_group});
   while (!arrivals.wait(kPeriod)) {
     if (!go_on()) return RenderEnd::interrupted;
     if (!browser.is_running())
-      throw InvalidInput("the browser ended before the pictures were drawn: " + browser.said());
+      throw InvalidInput("the browser ended before the pictures were drawn: " + browser.message());
     if (arrivals.is_silent())
       throw InvalidInput(fmt::format("the browser sent nothing for {} s; smaller pictures are drawn faster: {}",
-                                     kLongestSilence.count(), browser.said()));
+                                     kLongestSilence.count(), browser.message()));
   }
   return RenderEnd::done;
 }

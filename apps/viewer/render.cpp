@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "io/child_process.h"
 #include "io/external_program.h"
-#include "viewer/child_process.h"
 
 namespace aspic::viewer {
 namespace {
@@ -53,7 +53,10 @@ struct VideoFile::Impl {
   Impl(fs::path target, double frames_per_second)
       : path(std::move(target)),
         unfinished(path.parent_path() / fmt::format(".aspic-{}{}", ::getpid(), path.extension().string())) {
-    ffmpeg.emplace(command(frames_per_second), folder.path() / "messages", Input::pipe);
+    ffmpeg.emplace(Launch{.command = command(frames_per_second),
+                          .messages = folder.path() / "messages",
+                          .has_input = true,
+                          .lifetime = Lifetime::own_group});
   }
   ~Impl() {
     ffmpeg.reset();  // before its file goes
@@ -85,7 +88,7 @@ struct VideoFile::Impl {
   [[noreturn]] void fail() {
     ffmpeg->close_input();
     ffmpeg->wait();
-    throw InvalidInput(path.string() + ": ffmpeg failed: " + ffmpeg->said());
+    throw InvalidInput(path.string() + ": ffmpeg failed: " + ffmpeg->message());
   }
 
   fs::path path, unfinished;
@@ -110,7 +113,7 @@ void VideoFile::add(std::string_view png) {
 
 void VideoFile::finish() {
   impl_->ffmpeg->close_input();
-  if (!impl_->ffmpeg->wait()) impl_->fail();
+  if (impl_->ffmpeg->wait() != 0) impl_->fail();
   std::error_code error;
   fs::rename(impl_->unfinished, impl_->path, error);
   if (error) throw InvalidInput(impl_->path.string() + ": cannot be written: " + error.message());

@@ -1,7 +1,12 @@
 #include "io/xml.h"
 
+#include <expat.h>
+
 #include <algorithm>
 #include <array>
+#include <climits>
+#include <memory>
+#include <new>
 
 #include "base/error.h"
 #include "base/printable.h"
@@ -10,165 +15,93 @@
 namespace aspic {
 namespace {
 
-constexpr int kMaxDepth = 32;
+constexpr size_t kMaxDepth = 32;
 constexpr int kMaxElements = 100000;  // bounds the memory that a hostile file can claim
 
 constexpr std::array<std::pair<std::string_view, char>, 5> kEntities = {
     {{"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}}};
 
-bool is_name_character(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
-         c == '.' || c == ':';
-}
-
-class Parser {
+// Builds the tree from Expat's events. Exceptions must not pass through Expat, so errors are kept.
+class Builder {
  public:
-  Parser(std::string_view document, const std::string& file, std::string_view verbatim)
-      : document_(document), file_(file), verbatim_(verbatim) {}
+  Builder(std::string_view document, const std::string& file, std::string_view verbatim)
+      : document_(document), file_(file), verbatim_(verbatim), parser_(XML_ParserCreate(nullptr), XML_ParserFree) {
+    if (!parser_) throw std::bad_alloc();
+    XML_SetUserData(parser_.get(), this);
+    XML_SetElementHandler(
+        parser_.get(),
+        [](void* self, const char* name, const char** attributes) { of(self).begin_element(name, attributes); },
+        [](void* self, const char*) { of(self).open_.pop_back(); });
+    XML_SetCharacterDataHandler(parser_.get(), [](void* self, const char* text, int size) {
+      of(self).add_text({text, static_cast<size_t>(size)});
+    });
+    XML_SetStartDoctypeDeclHandler(parser_.get(), [](void* self, const char*, const char*, const char*, int) {
+      of(self).refuse("DOCTYPE is not supported");
+    });
+    XML_SetStartCdataSectionHandler(parser_.get(), [](void* self) { of(self).refuse("CDATA is not supported"); });
+  }
 
-  XmlElement parse_document() {
-    if (document_.starts_with("\xEF\xBB\xBF")) advance(3);  // byte order mark
-    skip_blanks_and_remarks();
-    if (at_end() || document_[position_] != '<') fail("not an XML file: no element found");
-    XmlElement root = parse_element(1);
-    skip_blanks_and_remarks();
-    if (!ended_ && !at_end()) fail("text after the end of <" + root.name + ">");
-    return root;
+  XmlElement root() {
+    constexpr size_t kChunk = INT_MAX;
+    for (size_t first = 0; first == 0 || first < document_.size(); first += kChunk) {
+      const std::string_view chunk = document_.substr(first, kChunk);
+      const bool is_last = first + chunk.size() == document_.size();
+      if (XML_Parse(parser_.get(), chunk.data(), static_cast<int>(chunk.size()), is_last) != XML_STATUS_OK) break;
+    }
+    if (XML_GetErrorCode(parser_.get()) != XML_ERROR_NONE && !has_ended_) fail();
+    return std::move(root_);
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InvalidInput(file_ + ":" + std::to_string(line_) + ": " + what);
+  static Builder& of(void* self) { return *static_cast<Builder*>(self); }
+  size_t position() const { return static_cast<size_t>(XML_GetCurrentByteIndex(parser_.get())); }
+  int line() const { return static_cast<int>(XML_GetCurrentLineNumber(parser_.get())); }
+
+  void refuse(const std::string& error) {
+    error_ = error;
+    XML_StopParser(parser_.get(), XML_FALSE);
   }
 
-  bool at_end() const { return position_ >= document_.size(); }
-  std::string_view rest() const { return document_.substr(position_); }
-
-  void advance(size_t count) {
-    const std::string_view passed = document_.substr(position_, count);
-    line_ += static_cast<int>(std::count(passed.begin(), passed.end(), '\n'));
-    position_ += passed.size();
+  [[noreturn]] void fail() const {
+    std::string what = error_.empty() ? XML_ErrorString(XML_GetErrorCode(parser_.get())) : error_;
+    if (elements_ == 0 && error_.empty()) what.insert(0, "not an XML file: ");
+    if (!open_.empty())
+      what += ", in <" + printable(open_.back()->name) + "> from line " + std::to_string(open_.back()->line);
+    throw InvalidInput(file_ + ":" + std::to_string(line()) + ": " + what);
   }
 
-  void advance_past(std::string_view end, const char* what) {
-    const size_t found = document_.find(end, position_);
-    if (found == std::string_view::npos) fail(std::string(what) + " is not closed");
-    advance(found + end.size() - position_);
+  void begin_element(const char* name, const char** attributes) {
+    if (open_.size() >= kMaxDepth) return refuse("elements nest deeper than " + std::to_string(kMaxDepth));
+    if (++elements_ > kMaxElements) return refuse("more than " + std::to_string(kMaxElements) + " elements");
+    XmlElement& element = open_.empty() ? root_ : open_.back()->children.emplace_back();
+    element.name = name;
+    element.line = line();
+    for (; *attributes; attributes += 2) element.attributes.emplace_back(attributes[0], printable(attributes[1]));
+    open_.push_back(&element);
+    const std::string_view tag = document_.substr(position(), XML_GetCurrentByteCount(parser_.get()));
+    if (name != verbatim_ || tag.ends_with("/>")) return;
+    element.text = document_.substr(position() + tag.size());
+    has_ended_ = true;
+    XML_StopParser(parser_.get(), XML_FALSE);
   }
 
-  void skip_blanks() {
-    while (!at_end() && is_blank(document_[position_])) advance(1);
-  }
-
-  bool skip_remark() {
-    if (rest().starts_with("<!--")) return advance_past("-->", "a comment"), true;
-    if (rest().starts_with("<?")) return advance_past("?>", "a processing instruction"), true;
-    if (rest().starts_with("<!")) fail("DOCTYPE and CDATA are not supported");
-    return false;
-  }
-
-  void skip_blanks_and_remarks() {
-    if (ended_) return;
-    do skip_blanks();
-    while (skip_remark());
-  }
-
-  std::string parse_name() {
-    const size_t start = position_;
-    while (!at_end() && is_name_character(document_[position_])) ++position_;
-    if (position_ == start) fail("a name is missing");
-    return std::string(document_.substr(start, position_ - start));
-  }
-
-  std::string unescaped(std::string_view text) const {
-    std::string plain;
-    for (size_t i = 0; i < text.size();) {
-      if (text[i] != '&') {
-        plain += text[i++];
-        continue;
-      }
-      const auto entity = std::find_if(kEntities.begin(), kEntities.end(),
-                                       [&](const auto& known) { return text.substr(i).starts_with(known.first); });
-      if (entity == kEntities.end()) fail("unknown entity in an attribute");
-      plain += entity->second;
-      i += entity->first.size();
-    }
-    return plain;
-  }
-
-  std::pair<std::string, std::string> parse_attribute() {
-    std::string name = parse_name();
-    skip_blanks();
-    if (at_end() || document_[position_] != '=') fail("attribute " + name + " has no value");
-    advance(1);
-    skip_blanks();
-    if (at_end() || (document_[position_] != '"' && document_[position_] != '\'')) {
-      fail("the value of attribute " + name + " is not quoted");
-    }
-    const size_t start = position_ + 1;
-    const size_t end = document_.find(document_[position_], start);
-    if (end == std::string_view::npos) fail("the value of attribute " + name + " is not closed");
-    std::string value = printable(unescaped(document_.substr(start, end - start)));
-    advance(end + 1 - position_);
-    return {std::move(name), std::move(value)};
-  }
-
-  XmlElement parse_element(int depth) {
-    if (depth > kMaxDepth) fail("elements nest deeper than " + std::to_string(kMaxDepth));
-    if (++elements_ > kMaxElements) fail("more than " + std::to_string(kMaxElements) + " elements");
-    XmlElement element;
-    element.line = line_;
-    advance(1);  // <
-    element.name = parse_name();
-    for (;;) {
-      skip_blanks();
-      if (at_end()) fail("<" + element.name + "> is not closed");
-      if (rest().starts_with("/>")) return advance(2), element;
-      if (document_[position_] == '>') break;
-      element.attributes.push_back(parse_attribute());
-    }
-    advance(1);
-    if (element.name == verbatim_) {
-      element.text = rest();
-      position_ = document_.size();
-      ended_ = true;
-    } else {
-      parse_content(element, depth);
-    }
-    return element;
-  }
-
-  void parse_content(XmlElement& element, int depth) {
-    while (!ended_) {
-      skip_blanks();
-      if (at_end()) fail("<" + element.name + "> from line " + std::to_string(element.line) + " is not closed");
-      if (document_[position_] != '<') {
-        const size_t end = std::min(document_.find('<', position_), document_.size());
-        if (element.text.empty()) element.text = document_.substr(position_, end - position_);
-        advance(end - position_);
-      } else if (rest().starts_with("</")) {
-        return parse_end_tag(element);
-      } else if (!skip_remark()) {
-        element.children.push_back(parse_element(depth + 1));
-      }
-    }
-  }
-
-  void parse_end_tag(const XmlElement& element) {
-    advance(2);
-    const std::string name = parse_name();
-    if (name != element.name) fail("</" + name + "> where </" + element.name + "> was expected");
-    skip_blanks();
-    if (at_end() || document_[position_] != '>') fail("</" + name + " is not closed");
-    advance(1);
+  void add_text(std::string_view piece) {
+    XmlElement& element = *open_.back();
+    if (!element.text.empty() || std::all_of(piece.begin(), piece.end(), is_blank)) return;
+    const char* end = document_.data() + document_.size();
+    const char* first = std::find_if_not(document_.data() + position(), end, is_blank);
+    element.text = {first, std::find(first, end, '<')};
   }
 
   std::string_view document_;
   const std::string& file_;
   std::string_view verbatim_;
-  size_t position_ = 0;
-  int line_ = 1, elements_ = 0;
-  bool ended_ = false;  // by the verbatim element
+  std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser_;
+  XmlElement root_;
+  std::vector<XmlElement*> open_;  // from the root to the innermost element
+  int elements_ = 0;
+  bool has_ended_ = false;  // by the verbatim element
+  std::string error_;
 };
 
 }  // namespace
@@ -188,7 +121,7 @@ const XmlElement* XmlElement::child(std::string_view wanted) const {
 }
 
 XmlElement parse_xml(std::string_view document, const std::string& file, std::string_view verbatim) {
-  return Parser(document, file, verbatim).parse_document();
+  return Builder(document, file, verbatim).root();
 }
 
 std::string xml_escaped(std::string_view text) {

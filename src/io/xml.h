@@ -1,4 +1,5 @@
-// As much of XML as VTK files need: elements, attributes and text. No DTD, no namespaces, no custom entities.
+// XML as VTK files use it: elements, attributes and text, parsed by Expat. DTDs, and with them entity definitions, and
+// CDATA are refused.
 #pragma once
 #include <string>
 #include <string_view>

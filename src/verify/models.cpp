@@ -25,6 +25,18 @@ void take_steps(Simulation& simulation, int count, const std::string& what) {
   }
 }
 
+std::vector<Mode> lowest_modes(const Model& model, int count) {
+  Modes found = vibration_modes(model, at_rest(model.mesh).q, count);
+  if (found.status != ModesStatus::converged) throw std::runtime_error(message(found.status));
+  return std::move(found.modes);
+}
+
+std::vector<double> frequencies(const Model& model, int count) {
+  std::vector<double> found;
+  for (const Mode& mode : lowest_modes(model, count)) found.push_back(mode.frequency);
+  return found;
+}
+
 double largest(std::span<const double> values) {
   double most = 0;
   for (const double x : values) {

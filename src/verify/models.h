@@ -3,8 +3,10 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "dynamics/model_builder.h"
+#include "dynamics/modes.h"
 #include "dynamics/simulation.h"
 
 namespace aspic::verify {
@@ -28,6 +30,10 @@ inline Simulation simulate(Model model, SimulationOptions options = {}) {  // fr
 
 // Throws std::runtime_error, naming `what`, when one of the steps does not converge.
 void take_steps(Simulation& simulation, int count, const std::string& what);
+
+// The `count` lowest vibrations about rest. Throws std::runtime_error when they cannot be computed.
+std::vector<Mode> lowest_modes(const Model& model, int count);
+std::vector<double> frequencies(const Model& model, int count);  // of lowest_modes() [Hz]
 
 double largest(std::span<const double> values);  // absolute value; NaN when there is one
 double largest_difference(std::span<const double> a, std::span<const double> b);  // of entries; same sizes

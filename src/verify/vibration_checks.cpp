@@ -6,7 +6,6 @@
 #include "mesh/generators.h"
 #include "verify/families.h"
 #include "verify/layers.h"
-#include "verify/modes.h"
 #include "verify/statics.h"
 
 namespace aspic::verify {

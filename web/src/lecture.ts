@@ -1,6 +1,7 @@
 // Lecture mode: the pages of the lecture as a list, each opening its demonstration. A recorded mouse plays; the reader
 // takes over by dragging the body.
 import { button, element, messageOf } from "./dom";
+import { formulaElements } from "./formulas";
 import type { Page } from "./page";
 import type { FunctionQuestion, Lesson } from "./protocol";
 import { shortcutButton } from "./shortcuts";
@@ -116,6 +117,7 @@ export class Lecture {
     this.card.replaceChildren(
       element("h2", {}, `${pagesText(lesson)}: ${lesson.title}`),
       element("p", { class: "claim" }, lesson.claim),
+      ...formulaElements(lesson.id),
       element("p", {}, lesson.look),
     );
     this.fill();

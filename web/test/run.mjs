@@ -5,6 +5,7 @@ import { mkdtempSync, readdirSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { mathml } from "../mathml.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const tests = readdirSync(here).filter((name) => name.endsWith(".test.ts"));
@@ -17,6 +18,7 @@ await build({
   outdir: out,
   outExtension: { ".js": ".mjs" },
   loader: { ".css": "empty" },
+  plugins: [mathml],
   logLevel: "warning",
 });
 const run = spawnSync(process.execPath, ["--test", ...tests.map((name) => join(out, name.replace(/\.ts$/, ".mjs")))], { stdio: "inherit" });

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "aspic/lecture/formulas.h"
 #include "io/atomic_file.h"
 
 namespace aspic::cli::lecture {
@@ -125,6 +126,7 @@ void add_result(ReportPage& page, const Result& result) {
   page.verdict(result.sheet.passes() ? Verdict::pass : Verdict::fail, result.sheet.passes() ? "pass" : "fail",
                fmt::format("{:.1f} s", result.seconds));
   page.paragraph(d.claim);
+  for (const std::string& formula : formulas_of(d.key)) page.formula(formula);
   page.code(fmt::format("aspic lecture {}", d.pages.front()));
   for (const std::string& remark : result.sheet.remarks()) page.paragraph(remark);
   std::vector<std::vector<Cell>> rows;

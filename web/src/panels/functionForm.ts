@@ -1,4 +1,5 @@
 // What is asked of the functions panel: which function, from where, by which method.
+import { formulaElements } from "../formulas";
 import { choice, element, numberField } from "../plots/dom";
 import type { FunctionQuestion, SettingValue } from "../protocol";
 
@@ -104,6 +105,7 @@ const kDefaults: Record<string, SettingValue> = {
 
 export class FunctionForm {
   readonly element = element("form", { class: "functions-form", "aria-label": "Function and method" });
+  private readonly shown = element("div");
   readonly error = element("div", { class: "plot-error", role: "alert", id: "function-error" });
   private readonly formula = element("input", {
     type: "text",
@@ -126,7 +128,6 @@ export class FunctionForm {
 
   constructor(private readonly changed: () => void) {
     this.formula.value = "cosh(x) + (y - x)^2";
-    this.formula.hidden = true;
     this.formula.addEventListener("change", changed);
     this.element.addEventListener("submit", (event) => {
       event.preventDefault();
@@ -147,9 +148,11 @@ export class FunctionForm {
       this.number("max_iterations", "at most", "Iterations", { min: 1, max: 500, step: 1 }),
     ];
     const row = (...children: HTMLElement[]): HTMLElement => element("div", { class: "pair" }, ...children);
+    this.showFormula();
     this.element.append(
       row(this.name.element),
       this.formula,
+      this.shown,
       this.error,
       row(this.x.element, this.y.element),
       row(...method),
@@ -181,7 +184,7 @@ export class FunctionForm {
     const named = kFunctions.some(([name]) => name === question.name && name !== "formula");
     this.name.select.value = named ? question.name : "formula";
     if (!named) this.formula.value = question.name;
-    this.formula.hidden = named;
+    this.showFormula();
     [this.x.input.valueAsNumber, this.y.input.valueAsNumber] = question.start;
     const settings = { ...kDefaults, ...question.settings };
     this.others = Object.fromEntries(
@@ -191,9 +194,16 @@ export class FunctionForm {
     for (const [key, input] of this.numbers) input.value = brief(Number(settings[key]));
   }
 
-  private nameChanged(): void {
+  // A named function is shown as a formula; any other is typed.
+  private showFormula(): void {
     const name = this.name.select.value;
     this.formula.hidden = name !== "formula";
+    this.shown.replaceChildren(...formulaElements(name));
+  }
+
+  private nameChanged(): void {
+    const name = this.name.select.value;
+    this.showFormula();
     [this.x.input.valueAsNumber, this.y.input.valueAsNumber] = kStarts[name]!;
     this.changed();
   }

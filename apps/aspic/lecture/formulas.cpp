@@ -1,0 +1,17 @@
+#include "aspic/lecture/formulas.h"
+
+#include <map>
+
+namespace aspic::cli::lecture {
+
+std::vector<std::string> formulas_of(const std::string& key) {
+  static const std::map<std::string, std::vector<std::string>> formulas = {
+#ifdef ASPIC_FORMULAS
+#include ASPIC_FORMULAS
+#endif
+  };
+  const auto found = formulas.find(key);
+  return found == formulas.end() ? std::vector<std::string>{} : found->second;
+}
+
+}  // namespace aspic::cli::lecture

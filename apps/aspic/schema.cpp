@@ -1,0 +1,28 @@
+// `aspic schema`: the keys of scenes as JSON Schema.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "aspic/commands.h"
+#include "scene/json_schema.h"
+
+namespace aspic::cli {
+
+void add_schema(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("schema", "Prints the JSON Schema of scenes, with which editors complete them");
+  command->footer(R"(
+Example:
+  aspic schema > aspic.schema.json
+
+With '#:schema ./aspic.schema.json' as its first line a scene is completed and checked while it is written, in every
+editor that uses Taplo, such as VS Code with the extension Even Better TOML.)");
+  command->callback([&action] {
+    action = [] {
+      fmt::print("{}\n", scene_json_schema());
+      return exit_done;
+    };
+  });
+}
+
+}  // namespace aspic::cli

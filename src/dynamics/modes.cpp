@@ -1,0 +1,136 @@
+#include "dynamics/modes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "dynamics/incremental_potential.h"
+#include "linalg/cholesky.h"
+#include "linalg/smallest_eigenpairs.h"
+
+namespace aspic {
+namespace {
+
+// Of the squared rate of uniform growth, which is E / (density size^2) within a small factor. The shift makes
+// K + shift M definite for free bodies, too; round-off in lambda is the machine precision times (shift + lambda)^2 /
+// shift.
+constexpr double kShift = 1e-4;
+constexpr double kRigid = 1e-10;  // the same fraction of squared rates that count as zero
+
+struct DeadlinePassed {};
+
+// K + shift M with the rows of held vertices cleared.
+BlockSparse shifted_stiffness(IncrementalPotential& E, std::span<const double> x, double shift) {
+  E.tell_potential({.start = x});
+  E.begin_step(x, shift, 1);
+  return E.evaluate_hessian(x, {Definiteness::exact});
+}
+
+// The squared rate u' K u / u' M u [1/s^2] of uniform growth u of the rest shape. K is that of the elasticity alone:
+// stiff springs, such as those that stand for pins, say nothing of the lowest modes.
+double growth_rate(const Model& model, const IncrementalPotential& E) {
+  Vec3d center{};
+  for (const Vec3d& X : model.mesh.rest) center = center + (1.0 / model.mesh.vertex_count()) * X;
+  std::vector<double> rest, growth;
+  for (const Vec3d& X : model.mesh.rest)
+    for (int axis = 0; axis < 3; ++axis) {
+      rest.push_back(X[axis]);
+      growth.push_back(X[axis] - center[axis]);
+    }
+  BlockSparse K(E.pattern());
+  for (size_t k = 0; k < model.elasticity.size(); ++k) E.potential()[k].add_hessian(rest, 1, {Definiteness::exact}, K);
+  std::vector<double> force(growth.size()), momentum(growth.size());
+  K.multiply(growth, force);
+  model.mass->multiply(growth, momentum);
+  const double stiffness = std::inner_product(growth.begin(), growth.end(), force.begin(), 0.0);
+  const double inertia = std::inner_product(growth.begin(), growth.end(), momentum.begin(), 0.0);
+  return (stiffness > 0 ? stiffness : E.growth_stiffness()) / inertia;
+}
+
+int free_dimension(const Pins& pins) {
+  double trace = 0;
+  for (int v = 0; v < pins.vertex_count(); ++v)
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3d unit{};
+      unit[axis] = 1;
+      trace += pins.free_part(v, unit)[axis];
+    }
+  return static_cast<int>(std::lround(trace));
+}
+
+// The squared rates that double precision cannot tell from zero: the machine precision times the largest one, for which
+// each vertex has a bound.
+double round_off(const Model& model, const Pins& pins, const BlockSparse& K) {
+  double largest = 0;
+  for (int v = 0; v < pins.vertex_count(); ++v)
+    if (!pins.holds(v))
+      largest = std::max(largest, trace(K.block[K.pattern->diagonal(v)]) / model.mass->vertex_mass()[v]);
+  return 16 * std::numeric_limits<double>::epsilon() * largest;
+}
+
+Modes to_modes(Eigenpairs pairs, double zero) {
+  Modes found{.status = pairs.converged ? ModesStatus::converged : ModesStatus::unconverged, .modes = {}};
+  for (size_t k = 0; k < pairs.values.size(); ++k) {
+    const double squared_rate = pairs.values[k];
+    if (squared_rate < -zero) return {.status = ModesStatus::indefinite, .modes = {}};
+    const bool is_rigid = squared_rate < zero;
+    if (is_rigid) ++found.rigid;
+    found.modes.push_back(
+        {is_rigid ? 0 : std::sqrt(squared_rate) / (2 * std::numbers::pi), std::move(pairs.vectors[k])});
+  }
+  return found;
+}
+
+}  // namespace
+
+Modes vibration_modes(const Model& model, std::span<const double> x, int count, const Deadline& deadline) {
+  const Pins pins(model.pins, x);
+  IncrementalPotential E(model, pins);
+  const double growth = growth_rate(model, E);
+  ShiftedPencil pencil{.size = static_cast<int>(x.size()), .dimension = free_dimension(pins), .shift = kShift * growth};
+  if (pencil.dimension == 0) return {.status = ModesStatus::all_held, .modes = {}};
+  if (!(growth > 0) || !std::isfinite(growth)) return {.status = ModesStatus::indefinite, .modes = {}};
+
+  const BlockSparse K = shifted_stiffness(E, x, pencil.shift);
+  Cholesky cholesky;
+  cholesky.analyze(*K.pattern);
+  if (!cholesky.factorize(K))
+    return {.status = cholesky.refused() ? ModesStatus::out_of_memory : ModesStatus::indefinite, .modes = {}};
+
+  pencil.project = [&](std::span<double> u) { pins.set_zero(u); };
+  pencil.multiply_mass = [&](std::span<const double> u, std::span<double> Mu) { model.mass->multiply(u, Mu); };
+  pencil.solve = [&](std::span<const double> b, std::span<double> u) {
+    if (deadline.has_passed()) throw DeadlinePassed();
+    cholesky.solve(b, u, 1e-12);
+  };
+  try {
+    return to_modes(smallest_eigenpairs(pencil, count), std::max(kRigid * growth, round_off(model, pins, K)));
+  } catch (const DeadlinePassed&) {
+    return {.status = ModesStatus::interrupted, .modes = {}};
+  }
+}
+
+std::string message(ModesStatus status) {
+  switch (status) {
+    case ModesStatus::converged:
+      return "converged";
+    case ModesStatus::all_held:
+      return "pins hold every vertex, so nothing can vibrate; hold fewer vertices";
+    case ModesStatus::indefinite:
+      return "the stiffness matrix is zero or has a negative eigenvalue, or a vertex has no mass, so there are no "
+             "vibrations "
+             "about "
+             "these positions; choose the rest shape or a stable equilibrium";
+    case ModesStatus::out_of_memory:
+      return "the factorized stiffness matrix does not fit into the free memory; use a coarser mesh";
+    case ModesStatus::unconverged:
+      return "the eigenvalue iteration did not converge; ask for another number of modes";
+    case ModesStatus::interrupted:
+      return "the time limit passed before the modes were found";
+  }
+  return "";
+}
+
+}  // namespace aspic

@@ -1,0 +1,18 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import { formulasOf } from "../src/formulas";
+
+test("formulas are bundled as MathML", () => {
+  const [formula] = formulasOf("rosenbrock");
+  assert.match(formula!, /^<math.*<msup>.*<\/math>$/s);
+  assert.doesNotMatch(formula!, /<script|href|temml-error/);
+});
+
+test("parts of a demonstration share its formulas", () => {
+  assert.equal(formulasOf("43-51_quadratic_model_surface").length, 2);
+  assert.deepEqual(formulasOf("43-51_quadratic_model"), formulasOf("43-51_quadratic_model_surface"));
+});
+
+test("pages without formulas have none", () => {
+  assert.deepEqual(formulasOf("02_fine_mesh"), []);
+});
