@@ -10,8 +10,7 @@
 #include "bench/machine.h"
 #include "bench/program.h"
 #include "bench/stopwatch.h"
-#include "energy/linear_load.h"
-#include "energy/rayleigh_damping.h"
+#include "dynamics/model_builder.h"
 #include "fit/equilibrium.h"
 #include "fit/trajectory.h"
 #include "mesh/generators.h"
@@ -28,33 +27,13 @@ struct Arguments {
 };
 
 Model make_beam(int n, const Arguments& arguments) {
-  Model model;
-  model.mesh = make_box({{0, 0, 0}}, {{4, 1, 1}}, {4 * n, n, n});
-  const TetMesh& mesh = model.mesh;
-  model.bodies = {{"beam", 0, mesh.vertex_count(), 0, mesh.tet_count()}};
-  model.density.assign(mesh.tet_count(), 1000.0);
-  model.mass = std::make_unique<MassMatrix>(mesh, model.density, MassKind::consistent);
-  const MaterialParameters p{lame_from_young_poisson(arguments.young, 0.4), {}};
-  model.elasticity.push_back(
-      make_tet_elasticity(arguments.material, mesh, 0, std::vector<MaterialParameters>(mesh.tet_count(), p)));
-  std::vector<double> weight(3 * mesh.rest.size());
-  for (int t = 0; t < mesh.tet_count(); ++t) add_body_force(mesh, t, 1000.0 * Vec3d{{0, -9.81, 0}}, weight);
-  model.loads.push_back(make_linear_load("gravity", weight));
-  if (arguments.stiffness_damping > 0)
-    model.damping.push_back(
-        make_rayleigh_damping(*model.mass, 0.1, model.elasticity[0].get(), arguments.stiffness_damping));
-  Pin wall{.name = "wall", .vertices = {}, .motion = {}};
-  for (int v = 0; v < mesh.vertex_count(); ++v)
-    if (mesh.rest[v][0] < 1e-9) wall.vertices.push_back(v);
-  model.pins.push_back(wall);
-  return model;
-}
-
-State at_rest(const TetMesh& mesh) {
-  State state;
-  for (const Vec3d& X : mesh.rest) state.q.insert(state.q.end(), {X[0], X[1], X[2]});
-  state.qdot.assign(state.q.size(), 0.0);
-  return state;
+  ModelBuilder builder(make_box({{0, 0, 0}}, {{4, 1, 1}}, {4 * n, n, n}), "beam");
+  builder.material(arguments.material, {.young = arguments.young, .poisson = 0.4})
+      .density(1000)
+      .gravity({{0, -9.81, 0}})
+      .pin("wall", [](const Vec3d& X) { return X[0] < 1e-9; });
+  if (arguments.stiffness_damping > 0) builder.rayleigh_damping(0.1, arguments.stiffness_damping);
+  return builder.build();
 }
 
 struct Cost {

@@ -3,24 +3,27 @@
 #include <utility>
 
 #include "bench/machine.h"
-#include "bench/model.h"
+#include "dynamics/model_builder.h"
 
 namespace aspic::bench {
 
 Simulation make_beam_simulation(const BeamProblem& problem, const std::string& linear) {
-  TetMesh mesh = make_beam(problem.n);
+  const TetMesh mesh = make_beam(problem.n);
   std::vector<int> clamped;
   for (int i = 0; i < mesh.vertex_count(); ++i)
     if (is_clamped(mesh, i)) clamped.push_back(i);
-  State start = at_rest(mesh);
-  Model model = make_model(std::move(mesh), {.young = problem.young, .poisson = kPoisson, .density = kDensity},
-                           std::move(clamped));
   SimulationOptions options;
   options.h = problem.time_step;
   options.solver.linear = linear;
   options.solver.minimize.criterion = Criterion::first_gradient;
   options.solver.minimize.tolerance = problem.tolerance;
-  return {std::move(model), std::move(start), options};
+  return Simulation(ModelBuilder(mesh)
+                        .material("neo_hookean_log", {.young = problem.young, .poisson = kPoisson})
+                        .density(kDensity)
+                        .gravity({0, -9.81, 0})
+                        .pin("clamp", std::move(clamped))
+                        .build(),
+                    options);
 }
 
 AspicRun run_aspic(const BeamProblem& problem, const std::string& linear) {

@@ -10,12 +10,12 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "bench/machine.h"
-#include "bench/model.h"
 #include "bench/program.h"
 #include "bench/results.h"
 #include "bench/shapes.h"
 #include "bench/step_counts.h"
 #include "bench/stopwatch.h"
+#include "dynamics/model_builder.h"
 #include "dynamics/simulation.h"
 
 namespace aspic::bench {
@@ -82,8 +82,13 @@ Simulation make_simulation(const Arguments& arguments, const TetMesh& mesh, cons
   options.solver.linear = arguments.linear;
   options.solver.minimize.criterion = Criterion::first_gradient;
   options.solver.minimize.tolerance = arguments.tolerance;
-  return {make_model(mesh, {.young = c.young, .poisson = arguments.poisson}, std::move(feet)), std::move(start),
-          options};
+  Model model = ModelBuilder(mesh)
+                    .material("neo_hookean_log", {.young = c.young, .poisson = arguments.poisson})
+                    .density(1000)
+                    .gravity({0, -9.81, 0})
+                    .pin("feet", std::move(feet))
+                    .build();
+  return Simulation(std::move(model), std::move(start), options);
 }
 
 struct Measured {

@@ -17,6 +17,7 @@
 #include "energy/tet_elasticity.h"
 #include "io/mesh_file.h"
 #include "linalg/cholesky.h"
+#include "mesh/vertices.h"
 
 namespace {
 
@@ -36,8 +37,7 @@ Problem make_problem(const TetMesh& mesh) {
   const auto elasticity =
       make_tet_elasticity("neo_hookean_log", mesh, 0, std::vector<MaterialParameters>(mesh.tet_count(), parameters));
   MassMatrix mass(mesh, std::vector<double>(mesh.tet_count(), bench::kDensity), MassKind::lumped);
-  std::vector<double> x;
-  for (const Vec3d& X : mesh.rest) x.insert(x.end(), {X[0], X[1], X[2]});
+  const std::vector<double> x = rest_positions(mesh);
   Couplings couplings;
   elasticity->add_couplings(couplings);
   mass.add_couplings(couplings);

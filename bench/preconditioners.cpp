@@ -15,10 +15,12 @@
 #include "bench/shapes.h"
 #include "bench/stopwatch.h"
 #include "dynamics/incremental_potential.h"
+#include "dynamics/model_builder.h"
 #include "io/mesh_file.h"
 #include "linalg/linear_solver.h"
 #include "mesh/generators.h"
 #include "mesh/numbering.h"
+#include "mesh/vertices.h"
 #include "optimize/minimize.h"
 #include "optimize/newton.h"
 
@@ -103,11 +105,6 @@ TetMesh lying_mesh(const std::string& name, const std::string& folder) {
 }
 
 Model make_model(const TetMesh& mesh, const Case& c) {
-  Model model;
-  model.mesh = mesh;
-  model.bodies = {{"body", 0, mesh.vertex_count(), 0, mesh.tet_count()}};
-  model.density.assign(mesh.tet_count(), kDensity);
-  model.mass = std::make_unique<MassMatrix>(mesh, model.density, MassKind::lumped);
   std::vector<MaterialParameters> parameters;
   for (int t = 0; t < mesh.tet_count(); ++t) {
     Vec3d center{};
@@ -115,11 +112,12 @@ Model make_model(const TetMesh& mesh, const Case& c) {
     const double checkers = std::sin(25 * center[0]) * std::sin(25 * center[1]) * std::sin(25 * center[2]);
     parameters.push_back({.lame = lame_from_young_poisson(c.young * (checkers > 0 ? c.contrast : 1), c.poisson)});
   }
-  model.elasticity.push_back(make_tet_elasticity("neo_hookean", mesh, 0, parameters));
-  Pin& pin = model.pins.emplace_back();
-  for (int i = 0; i < mesh.vertex_count(); ++i)
-    if (mesh.rest[i][0] < 0.05) pin.vertices.push_back(i);
-  return model;
+  return ModelBuilder(mesh)
+      .material("neo_hookean", parameters)
+      .density(kDensity)
+      .mass(MassKind::lumped)
+      .pin("end", [](const Vec3d& X) { return X[0] < 0.05; })
+      .build();
 }
 
 Vec3d moved(const std::string& state, const Vec3d& X) {
@@ -153,11 +151,7 @@ std::vector<double> recovering(IncrementalPotential& E, std::vector<double> x, c
 
 void measure(const std::string& name, const TetMesh& mesh, const Case& c, const std::string& linear) {
   const Model model = make_model(mesh, c);
-  const std::vector<double> rest = [&] {
-    std::vector<double> x;
-    for (const Vec3d& X : mesh.rest) x.insert(x.end(), {X[0], X[1], X[2]});
-    return x;
-  }();
+  const std::vector<double> rest = rest_positions(mesh);
   const Pins pins(model.pins, rest);
   IncrementalPotential E(model, pins);
   std::vector<double> x = rest;

@@ -10,6 +10,7 @@
 #include "mesh/numbering.h"
 #include "mesh/surface.h"
 #include "mesh/tet_shape.h"
+#include "mesh/vertices.h"
 
 namespace aspic::bench {
 namespace {
@@ -94,8 +95,7 @@ Experiment experiment_on(const VirtualCapture& setup, int cells) {
   Experiment e;
   e.mesh = cube(setup.side, cells);
   e.density.assign(e.mesh.tets.size(), kDensity);
-  for (int v = 0; v < e.mesh.vertex_count(); ++v)
-    if (e.mesh.rest[v][2] == 0) e.fixed.push_back(v);
+  e.fixed = vertices_where(e.mesh, [](const Vec3d& X) { return X[2] == 0; });
   const std::vector<Triangle> surface = boundary_triangles(e.mesh, 0, e.mesh.tet_count());
   for (const Vec3d& p : marker_points(setup)) e.markers.push_back(locate(e.mesh, surface, p));
   for (int site = 0; site < setup.pokes; ++site) e.cases.push_back(poke(setup, site));

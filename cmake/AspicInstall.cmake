@@ -3,7 +3,12 @@ include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/aspic)
 
 install(TARGETS aspic EXPORT aspic-targets)
-install(DIRECTORY src/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/aspic FILES_MATCHING PATTERN "*.h" PATTERN "*_test.h" EXCLUDE)
+# Only the headers of include/aspic are installed, each with the text of what it names from src/ in it.
+install(CODE "
+  execute_process(COMMAND \"${CMAKE_COMMAND}\" \"-DHEADERS=${CMAKE_SOURCE_DIR}/include/aspic\" \"-DSOURCES=${CMAKE_SOURCE_DIR}/src\"
+                          \"-DOUTPUT=${CMAKE_BINARY_DIR}/include/aspic\" -P \"${CMAKE_SOURCE_DIR}/cmake/PublicHeaders.cmake\"
+                  COMMAND_ERROR_IS_FATAL ANY)")
+install(DIRECTORY ${CMAKE_BINARY_DIR}/include/aspic DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT aspic-targets NAMESPACE aspic:: DESTINATION ${package_dir})
 
 configure_package_config_file(cmake/aspic-config.cmake.in ${CMAKE_BINARY_DIR}/aspic-config.cmake

@@ -3,13 +3,10 @@
 // Soft tissue stiffens exponentially when stretched [Demiray 1972]:
 //   psi = mu / (2 b) (exp(b (I1 - 3 - 2 ln J)) - 1) + lambda / 2 (ln J)^2,   I1 = tr(F'F), J = det F.
 // A bar of it is pulled to 1.6 times its length; the force grows faster and faster.
-#include <cstdio>
+#include <aspic/aspic.h>
+#include <aspic/custom_material.h>
 
-#include "dynamics/simulation.h"
-#include "energy/material_term.h"
-#include "material/barrier.h"
-#include "material/from_energy.h"
-#include "mesh/generators.h"
+#include <cstdio>
 
 using namespace aspic;
 
@@ -35,36 +32,22 @@ struct TissueEnergy {
 using Tissue = FromEnergy<TissueEnergy>;
 
 int main() {
-  const double density = 1000;                     // [kg/m^3]
-  const double length = 0.1, width = 0.02;         // [m]
-  const double pull = 0.06, seconds = 1;           // how far the end is pulled [m], how long it takes [s]
+  constexpr double length = 0.1, width = 0.02;     // [m]
+  constexpr double pull = 0.06, seconds = 1;       // how far the end is pulled [m], how long it takes [s]
   const MaterialParameters skin{{2e4, 8e4}, {3}};  // the same in every tet; it need not be
+  Model model = ModelBuilder(make_box({0, 0, 0}, {length, width, width}, {10, 2, 2}))
+                    .material(custom_material<Tissue>("tissue", 1), skin)
+                    .density(1000)  // [kg/m^3]
+                    .pin("fixed", [](const Vec3d& X) { return X[0] == 0; })
+                    .pin(
+                        "pulled", [](const Vec3d& X) { return X[0] == length; },
+                        [](const Vec3d& X, double t) {
+                          return X + Vec3d{{pull * t / seconds, 0, 0}};
+                        })
+                    .build();
 
-  Model model;
-  model.mesh = make_box({0, 0, 0}, {length, width, width}, {10, 2, 2});
-  const TetMesh& mesh = model.mesh;
-  model.bodies = {{"bar", 0, mesh.vertex_count(), 0, mesh.tet_count()}};
-  model.density.assign(mesh.tet_count(), density);
-  model.mass = std::make_unique<MassMatrix>(mesh, model.density, MassKind::consistent);
-  const std::vector<MaterialParameters> parameters(mesh.tet_count(), skin);
-  model.elasticity.push_back(std::make_unique<MaterialTerm<Tissue>>("tissue", mesh, 0, parameters, 1));
-
-  Pin fixed{.name = "fixed", .vertices = {}, .motion = {}};
-  Pin pulled{.name = "pulled", .vertices = {}, .motion = [&](const Vec3d& X, double t) {
-               return X + Vec3d{pull * t / seconds, 0, 0};
-             }};
-  State start;
-  for (int i = 0; i < mesh.vertex_count(); ++i) {
-    const Vec3d& X = mesh.rest[i];
-    if (X[0] == 0) fixed.vertices.push_back(i);
-    if (X[0] == length) pulled.vertices.push_back(i);
-    start.q.insert(start.q.end(), {X[0], X[1], X[2]});
-  }
-  start.qdot.assign(start.q.size(), 0.0);
-  model.pins = {fixed, pulled};
-
-  // Each step of a quasi-static pull minimises V itself.
-  Simulation simulation(std::move(model), start, {.h = 0.05, .integrator = "quasi_static", .solver = {}});
+  // Each step of a quasi-static pull minimizes V itself.
+  Simulation simulation(std::move(model), {.h = 0.05, .integrator = "quasi_static", .solver = {}});
   double first_force = 0, force = 0, before = 0;  // [N]
   for (int i = 1; i <= 20; ++i) {
     const StepReport report = simulation.step();

@@ -1,12 +1,10 @@
 // An energy of your own: a floor that pushes back. Every vertex below y = 0 adds
 //   V = k/2 y^2,   dV/dy = k y,   d2V/dy2 = k,
 // to the potential. A jelly cube is dropped onto it, and every step still minimises one function.
+#include <aspic/aspic.h>
+
 #include <algorithm>
 #include <cstdio>
-
-#include "dynamics/simulation.h"
-#include "energy/linear_load.h"
-#include "mesh/generators.h"
 
 using namespace aspic;
 
@@ -38,26 +36,15 @@ class Floor : public Energy {
 };
 
 int main() {
-  const double density = 1000;            // [kg/m^3]
   const double edge = 0.1, height = 0.2;  // [m]
-  const MaterialParameters jelly{.lame = lame_from_young_poisson(2e4 /* [Pa] */, 0.4)};
-
-  Model model;
-  model.mesh = make_box({0, 0, 0}, {edge, edge, edge}, {4, 4, 4});
-  const TetMesh& mesh = model.mesh;
-  model.bodies = {{"jelly", 0, mesh.vertex_count(), 0, mesh.tet_count()}};
-  model.density.assign(mesh.tet_count(), density);
-  model.mass = std::make_unique<MassMatrix>(mesh, model.density, MassKind::consistent);
-  model.elasticity.push_back(
-      make_tet_elasticity("neo_hookean_log", mesh, 0, std::vector<MaterialParameters>(mesh.tet_count(), jelly)));
-  std::vector<double> weight(3 * mesh.vertex_count());  // [N]
-  for (int t = 0; t < mesh.tet_count(); ++t) add_body_force(mesh, t, {0, -9.81 * density, 0}, weight);
-  model.loads.push_back(make_linear_load("gravity", weight));
-  model.loads.push_back(std::make_unique<Floor>(500 /* [N/m] for each vertex */));
-
-  State start;
-  for (const Vec3d& X : mesh.rest) start.q.insert(start.q.end(), {X[0], X[1] + height, X[2]});
-  start.qdot.assign(start.q.size(), 0.0);
+  Model model = ModelBuilder(make_box({0, 0, 0}, {edge, edge, edge}, {4, 4, 4}))
+                    .material("neo_hookean_log", {.young = 2e4 /* [Pa] */, .poisson = 0.4})
+                    .density(1000)           // [kg/m^3]
+                    .gravity({0, -9.81, 0})  // [m/s^2]
+                    .load(std::make_unique<Floor>(500 /* [N/m] for each vertex */))
+                    .build();
+  State start = at_rest(model.mesh);
+  for (size_t i = 1; i < start.q.size(); i += 3) start.q[i] += height;
 
   Simulation simulation(std::move(model), start, {.h = 0.005, .solver = {}});
   double deepest = 0, highest_after = -1;  // lowest vertex so far; how high that is after the bounce

@@ -2,11 +2,9 @@
 // [Polyak 1964]) remembers where it was going,
 //   d = -g + beta d_before,
 // and needs far fewer iterations than d = -g in the curved valley of Rosenbrock's function.
-#include <cstdio>
+#include <aspic/optimize.h>
 
-#include "optimize/gradient_descent.h"
-#include "optimize/minimize.h"
-#include "optimize/test_functions.h"
+#include <cstdio>
 
 using namespace aspic;
 
@@ -52,8 +50,8 @@ int iterations(SearchDirection& direction) {
 }
 
 int main() {
-  GradientDescent plain;
+  const auto plain = make_search_direction({.method = "gradient_descent"});
   HeavyBall ball(0.8);
-  const int without = iterations(plain), with = iterations(ball);
+  const int without = iterations(*plain), with = iterations(ball);
   return with > 0 && with < without / 2 ? 0 : 1;
 }

@@ -1,38 +1,23 @@
-// The lecture's loop written out: for each time step, minimise
+// The lecture's loop written out: for each time step, minimize
 //   E(q) = 1/2 (q - q~)' M (q - q~) + h^2 V(q),   q~ = q + h qdot,
 // by Newton's method with backtracking line search. `Simulation` does the same with more care; both must agree.
+#include <aspic/aspic.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
 
-#include "dynamics/incremental_potential.h"
-#include "dynamics/simulation.h"
-#include "energy/linear_load.h"
-#include "linalg/linear_solver.h"
-#include "mesh/generators.h"
-
 using namespace aspic;
 using Vector = std::vector<double>;
 
 Model hanging_bar() {
-  Model model;
-  model.mesh = make_box({0, 0, 0}, {0.4, 0.1, 0.1}, {8, 2, 2});
-  const TetMesh& mesh = model.mesh;
-  model.bodies = {{"bar", 0, mesh.vertex_count(), 0, mesh.tet_count()}};
-  model.density.assign(mesh.tet_count(), 1000.0);  // [kg/m^3]
-  model.mass = std::make_unique<MassMatrix>(mesh, model.density, MassKind::consistent);
-  const MaterialParameters rubber{.lame = lame_from_young_poisson(1e5 /* [Pa] */, 0.4)};
-  model.elasticity.push_back(
-      make_tet_elasticity("neo_hookean", mesh, 0, std::vector<MaterialParameters>(mesh.tet_count(), rubber)));
-  Vector weight(3 * mesh.vertex_count());  // [N]
-  for (int t = 0; t < mesh.tet_count(); ++t) add_body_force(mesh, t, {0, -9810, 0}, weight);
-  model.loads.push_back(make_linear_load("gravity", weight));
-  Pin wall{.name = "wall", .vertices = {}, .motion = {}};
-  for (int i = 0; i < mesh.vertex_count(); ++i)
-    if (mesh.rest[i][0] == 0) wall.vertices.push_back(i);
-  model.pins.push_back(wall);
-  return model;
+  return ModelBuilder(make_box({0, 0, 0}, {0.4, 0.1, 0.1}, {8, 2, 2}))
+      .material("neo_hookean", {.young = 1e5 /* [Pa] */, .poisson = 0.4})
+      .density(1000)           // [kg/m^3]
+      .gravity({0, -9.81, 0})  // [m/s^2]
+      .pin("wall", [](const Vec3d& X) { return X[0] == 0; })
+      .build();
 }
 
 double norm(const Vector& v) { return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0)); }
@@ -40,9 +25,7 @@ double norm(const Vector& v) { return std::sqrt(std::inner_product(v.begin(), v.
 int main() {
   const double h = 0.01;  // [s]
   Model model = hanging_bar();
-  State start;
-  for (const Vec3d& X : model.mesh.rest) start.q.insert(start.q.end(), {X[0], X[1], X[2]});
-  start.qdot.assign(start.q.size(), 0.0);
+  const State start = at_rest(model.mesh);
 
   const Pins pins(model.pins, start.q);
   IncrementalPotential E(model, pins);
@@ -74,7 +57,7 @@ int main() {
       std::printf("t = %.2f s: the tip is at y = %.6f m (%d iterations)\n", step * h, q.end()[-2], iteration);
   }
 
-  Simulation simulation(hanging_bar(), start, {.h = h, .solver = {}});
+  Simulation simulation(hanging_bar(), {.h = h, .solver = {}});
   for (int step = 0; step < 20; ++step) simulation.step();
   double difference = 0;
   for (size_t i = 0; i < q.size(); ++i) difference = std::max(difference, std::abs(q[i] - simulation.state().q[i]));

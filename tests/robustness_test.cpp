@@ -266,7 +266,7 @@ TEST(Robustness, EveryNumberOfASceneMustBeFinite) {
           kCube + "deform = { scale = BAD }\n", kCube + "material = { young = BAD }\n",
           kCube + "material = { young = \"0 / (X - X)\" }\n", kCube + "damping = { mass = BAD }\n",
           kCube + "[[body.spring]]\nedges = true\nstiffness = BAD\n",
-          kCube + "[[body.traction]]\nwhere = \"all\"\npressure = BAD\n",
+          kCube + "[[body.traction]]\nwhere = \"all\"\ndead_pressure = BAD\n",
           kCube + "[[body.force]]\nvalue = [BAD, 0, 0]\n",
           kCube + "[[body.pin]]\nwhere = \"all\"\nmotion = { linear = { velocity = [BAD, 0, 0] } }\n"}) {
       std::string text = line;

@@ -1,4 +1,4 @@
-// Bad input: thrown at the edges only (files, scenes, command line), never by the numerical core.
+// The exception for bad input: values, files, scenes. Numerical failures are a Status in a report instead.
 #pragma once
 #include <stdexcept>
 #include <string>
@@ -9,8 +9,7 @@ namespace aspic {
 
 // The message names the place (file:line:column where there is one), the value and the remedy, in one line:
 //   beam.toml:12:3: poisson = 0.5; neo_hookean needs -1 < poisson < 0.5 (try 0.49)
-// Messages quote files, so what a terminal would obey or JSON could not hold is shown as \xNN (printable.h), and a line
-// has at most kLongestMessage bytes: where it has more, its middle is left out.
+// Control characters are shown as \xNN. Lines longer than kLongestMessage bytes are shortened in the middle.
 class InvalidInput : public std::runtime_error {
  public:
   static constexpr size_t kLongestMessage = 4000;
@@ -19,10 +18,10 @@ class InvalidInput : public std::runtime_error {
   explicit InvalidInput(const std::vector<std::string>& messages);  // one per line
 };
 
-// The entry of `known` closest to `word` by edit distance; empty when none is close enough to be meant.
+// Returns the entry of `known` closest to `word` by edit distance; empty if none is close.
 std::string nearest_name(std::string_view word, const std::vector<std::string>& known);
 
-// " (did you mean 'young'?)" or, when nothing is near, " (known: a, b, c)".
+// Returns " (did you mean 'young'?)" or, if no known name is close, " (known: a, b, c)".
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace aspic

@@ -118,12 +118,10 @@ Model hanging_boxes(const std::vector<Box>& boxes) {
       if (box.rest[v][0] < b.at[0] + 1e-3 * b.size) held.push_back(first + v);
     mesh.rest.insert(mesh.rest.end(), box.rest.begin(), box.rest.end());
     for (const Tet& t : box.tets) mesh.tets.push_back({t[0] + first, t[1] + first, t[2] + first, t[3] + first});
-    parameters.resize(mesh.tets.size(), parameters_of("neo_hookean_log", 1e5 * b.size, 0.3));
+    parameters.resize(mesh.tets.size(),
+                      material_parameters("neo_hookean_log", {.young = 1e5 * b.size, .poisson = 0.3}));
   }
-  Model model = make_model(mesh, {});
-  model.elasticity[0] = make_tet_elasticity("neo_hookean_log", model.mesh, 0, parameters);
-  model.pins.push_back({"wall", held, {}});
-  return model;
+  return model_of(mesh).material("neo_hookean_log", parameters).pin("wall", held).build();
 }
 
 // The state of the last box after five steps.
@@ -173,17 +171,15 @@ TEST(Criteria, ASoftRegionOfAStiffBodyConverges) {
   const auto hung = [](double stiff) {  // the left half is stiff, the right half soft
     const TetMesh mesh = make_box({}, {{0.4, 0.1, 0.1}}, {8, 2, 2});
     std::vector<MaterialParameters> parameters;
-    std::vector<int> held;
     for (const Tet& tet : mesh.tets) {
       double x = 0;
       for (const int v : tet) x += mesh.rest[v][0] / 4;
-      parameters.push_back(parameters_of("neo_hookean_log", x < 0.2 ? stiff : 1e4, 0.3));
+      parameters.push_back(material_parameters("neo_hookean_log", {.young = x < 0.2 ? stiff : 1e4, .poisson = 0.3}));
     }
-    for (int v = 0; v < mesh.vertex_count(); ++v)
-      if (mesh.rest[v][0] < 1e-6) held.push_back(v);
-    Model model = make_model(mesh, {});
-    model.elasticity[0] = make_tet_elasticity("neo_hookean_log", model.mesh, 0, parameters);
-    model.pins.push_back({"wall", held, {}});
+    Model model = model_of(mesh)
+                      .material("neo_hookean_log", parameters)
+                      .pin("wall", [](const Vec3d& X) { return X[0] < 1e-6; })
+                      .build();
     SimulationOptions options;
     options.integrator = "quasi_static";
     Simulation simulation = simulate(std::move(model), options);
@@ -233,9 +229,7 @@ TEST(Criteria, AFingerOnALargeBlockMoves) {
 // A body whose weight is less than the round-off of its elastic forces.
 TEST(Criteria, ForcesHiddenByRoundOffAreNamed) {
   const TetMesh mesh = make_box({}, {{0.1, 0.1, 0.1}}, {2, 2, 2});
-  Model model = make_model(mesh, {});
-  model.elasticity[0] = make_tet_elasticity("neo_hookean", model.mesh, 0,
-                                            std::vector(mesh.tets.size(), parameters_of("neo_hookean", 1e19, 0.3)));
+  Model model = make_model(mesh, {.material = "neo_hookean", .young = 1e19, .poisson = 0.3});
   SimulationOptions options;
   options.initial_guess = "current";
   Simulation simulation = simulate(std::move(model), options);

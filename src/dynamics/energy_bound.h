@@ -6,19 +6,9 @@
 //   V(q_s) + D(q_s) + 1/2 |u - v_t|_M^2,   D: the potential of damping; targets are where they end.
 // Both sides come from the ledger and E from the minimiser: a step that breaks the bound shows a wrong energy.
 #pragma once
-#include <string_view>
+#include "dynamics/step_report.h"
 
 namespace aspic {
-
-struct StepReport;
-
-enum class EnergyBound {
-  none,            // another scheme, or a step that was dropped
-  not_guaranteed,  // the minimiser ended above E at q_s, or q_s has no energy
-  holds,
-  broken,
-};
-std::string_view to_string(EnergyBound bound);
 
 // What the ledger knows of a step of backward Euler. [J]
 struct BoundedEnergies {

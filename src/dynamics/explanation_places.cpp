@@ -1,4 +1,5 @@
 #include "dynamics/explanation_places.h"
+#include "mesh/vertices.h"
 
 #include <algorithm>
 #include <array>
@@ -53,8 +54,7 @@ std::string tet_name(const Model& model, int tet) {
 }
 
 WorstTet most_squashed(const TetMesh& mesh, std::span<const double> x) {
-  std::vector<double> rest;
-  for (const Vec3d& X : mesh.rest) rest.insert(rest.end(), {X[0], X[1], X[2]});
+  const std::vector<double> rest = rest_positions(mesh);
   WorstTet worst;
   for (int t = 0; t < mesh.tet_count(); ++t) {
     const double det_F = signed_volume(mesh, t, x) / signed_volume(mesh, t, rest);

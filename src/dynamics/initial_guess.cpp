@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "dynamics/guesser.h"
 #include "dynamics/integrator.h"
 #include "dynamics/lead_pins.h"
 

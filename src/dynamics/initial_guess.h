@@ -1,20 +1,14 @@
-// Where the minimisation of a step starts.
+// The initial guess of a step's minimization.
 #pragma once
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "dynamics/state.h"
-#include "optimize/minimize.h"
-
 namespace aspic {
 
-struct StepTools;
-
 enum class InitialGuess {
-  none,            // nothing is minimised: explicit schemes
-  best,            // the lowest energy of those below, but for zero
+  none,            // explicit schemes: nothing is minimized
+  best,            // that of lowest energy among those below except zero
   zero,            // no displacement: the shape at rest
   current,         // q
   extrapolated,    // q + h qdot, the flight without forces
@@ -23,37 +17,7 @@ enum class InitialGuess {
 };
 std::string_view to_string(InitialGuess guess);
 
-std::vector<std::string> initial_guess_names();             // those to choose from
+std::vector<std::string> initial_guess_names();             // the names that options accept
 InitialGuess initial_guess_named(const std::string& name);  // throws InvalidInput for an unknown name
-
-// What is known when a minimisation for a later time starts.
-struct GuessContext {
-  std::span<const double> q, qdot;         // the latest positions and velocities
-  double ahead = 0;                        // from them to the minimisation's time [s]; 0 in statics
-  double time = 0;                         // of the minimisation [s]
-  std::span<const double> predicted = {};  // q~ of the stage
-  double beta = 0;                         // of the stage, whose end is q~ + beta^2 acc [s]; 0 in statics
-  bool tries_last_increment = true;        // `best` does; not where it is the extrapolated guess
-};
-
-struct Guess {
-  InitialGuess used = InitialGuess::current;
-  Evaluation value;  // of E there
-};
-
-class Guesser {  // holds the scratch vectors
- public:
-  // Writes the start into `q` and says which it was. Pinned vertices stand where they are at the time. A guess of
-  // infinite energy gives way to the best; when all are infinite, the pins are led (see lead_pins). Adds what was spent
-  // to `work`.
-  Guess guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
-              MinimizeReport& work);
-
- private:
-  // Writes the candidate into trial_; false when there is none.
-  bool propose(const StepTools& tools, InitialGuess candidate, const GuessContext& known);
-
-  std::vector<double> trial_;
-};
 
 }  // namespace aspic

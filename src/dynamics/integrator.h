@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "dynamics/guesser.h"
 #include "dynamics/incremental_potential.h"
-#include "dynamics/initial_guess.h"
 #include "dynamics/integrator_facts.h"
 #include "dynamics/state.h"
 #include "dynamics/step_report.h"

@@ -1,4 +1,4 @@
-// What is known of a time integrator before it takes a step.
+// The properties of a time integrator.
 #pragma once
 #include <string_view>
 

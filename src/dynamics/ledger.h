@@ -9,6 +9,7 @@
 #pragma once
 #include <vector>
 
+#include "dynamics/energy_bound.h"
 #include "dynamics/integrator.h"
 #include "dynamics/step_report.h"
 

@@ -21,23 +21,26 @@ struct BodyRange {
   int first_tet = 0, tet_count = 0;
 };
 
-// Vertices whose displacements along the directions are prescribed exactly, as those of x(t) = motion(x at the start,
-// t). All the directions that hold one vertex, those of several pins included, are linearly independent.
+// Where a point moves: its position at the time [s], from that at the start [m].
+using Motion = std::function<Vec3d(const Vec3d& start, double time)>;
+
+// A Dirichlet condition: prescribes the displacements of vertices along some directions, as those of x(t) = motion(x at
+// the start, t). Requires that all directions that hold one vertex, by this or other pins, are linearly independent.
 struct Pin {
   std::string name;
   std::vector<int> vertices;
-  std::function<Vec3d(const Vec3d& start, double time)> motion;  // empty: fixed where it starts
-  std::vector<Vec3d> directions = {};                            // orthonormal; empty: all
+  Motion motion;                       // empty: fixed where it starts
+  std::vector<Vec3d> directions = {};  // orthonormal; empty: all
 };
 
 struct Model {
   TetMesh mesh;  // all bodies one after another
-  // What the user calls the vertices and tets. Everything in the model and the state is in the order of the mesh;
-  // messages and files are in the user's.
+  // The user's numbers of vertices and tets, which messages and files use. Everything in the model and the state is in
+  // the order of the mesh.
   Numbering numbering;
   std::vector<BodyRange> bodies;
   std::vector<double> density;  // one per tet [kg/m^3]
-  // Constants to export with the results, one per tet: "young" [Pa], "poisson" [1] and the like.
+  // Fields to export with the results by name, one number per tet: "young" [Pa], "poisson" [1].
   std::vector<std::pair<std::string, std::vector<double>>> tet_fields;
   std::unique_ptr<MassMatrix> mass;
   std::vector<std::unique_ptr<TetElasticity>> elasticity;  // one per body

@@ -1,4 +1,4 @@
-// The prescribed vertices of a model: which they are, and where they are at a time.
+// The Dirichlet conditions of a model: which vertices are held, along which directions, and where they are at a time.
 // A vertex with the prescribed directions n_k has M = sum of n_k n_k'. P = M^+ M projects onto what is held, Q = 1 - P
 // onto what is free, and M^+ (sum over the directions of one pin) is the share of that pin: 1 where it is the only one.
 #pragma once
@@ -9,7 +9,7 @@
 
 namespace aspic {
 
-// Whether a vertex can be held along all of them; their lengths are 1.
+// Returns whether unit directions are linearly independent.
 bool are_independent(std::span<const Vec3d> directions);
 
 class Pins {
@@ -19,7 +19,7 @@ class Pins {
   int vertex_count() const { return static_cast<int>(kind_.size()); }
   bool holds(int vertex) const { return kind_[vertex] == kHeld; }  // in all directions
   bool is_free(int vertex) const { return kind_[vertex] == kFree; }
-  bool holds(int vertex, int axis) const;  // along the axis, or along a direction that has a part of it
+  bool holds(int vertex, int axis) const;  // along a direction with a component along the axis
   bool any_moves() const;
 
   Vec3d held_part(int vertex, const Vec3d& v) const;                         // P v

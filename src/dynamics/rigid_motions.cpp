@@ -17,7 +17,7 @@ constexpr double kUnchanged = 1e-6;
 constexpr Vec3d kAxes[] = {{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}};
 
 // u(x) = t + w x (x - c) / L
-struct Motion {
+struct Twist {
   Vec3d t{}, w{};
 };
 
@@ -31,14 +31,14 @@ class Body {
     size_ = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2], 1e-300}) / 2;
   }
 
-  std::optional<Motion> free_motion() const {
+  std::optional<Twist> free_motion() const {
     for (const int count : {3, 6})
-      for (const Motion& motion : free_of_pins(count))
+      for (const Twist& motion : free_of_pins(count))
         if (!is_resisted_by_loads(motion)) return motion;
     return std::nullopt;
   }
 
-  RigidMotion described(const Motion& m, int body) const {
+  RigidMotion described(const Twist& m, int body) const {
     const double turn = std::sqrt(dot(m.w, m.w));
     if (turn < 1e-6) return {body, upright(m.t)};
     return {body, upright(m.w), true, rounded(center_ + (size_ / (turn * turn)) * cross(m.w, m.t), 1e-9 * size_)};
@@ -69,7 +69,7 @@ class Body {
   }
 
   // The motions that leave all pins where they are: of the first 3 parameters (translations), or of all 6.
-  std::vector<Motion> free_of_pins(int count) const {
+  std::vector<Twist> free_of_pins(int count) const {
     std::vector<double> A(static_cast<size_t>(count) * count);
     double trace = 0;
     for (const Pin& pin : model_.pins)
@@ -84,11 +84,11 @@ class Body {
         }
       }
     const DenseEigen eigen = dense_eigen(count, A);
-    std::vector<Motion> motions;
+    std::vector<Twist> motions;
     for (int k = 0; k < count; ++k) {
       if (eigen.values[k] > kFree * trace) continue;
       const double* q = &eigen.vectors[static_cast<size_t>(count) * k];
-      Motion m{{{q[0], q[1], q[2]}}, {}};
+      Twist m{{{q[0], q[1], q[2]}}, {}};
       if (count == 6) m.w = {{q[3], q[4], q[5]}};
       motions.push_back(m);
     }
@@ -96,7 +96,7 @@ class Body {
   }
 
   // Loads such as springs to points differ where the body is moved by a small part of its size.
-  bool is_resisted_by_loads(const Motion& m) const {
+  bool is_resisted_by_loads(const Twist& m) const {
     constexpr double kPart = 1e-2;
     std::vector<double> moved(x_.begin(), x_.end()), here(x_.size()), there(x_.size());
     for (int v = first(); v < end(); ++v)
@@ -135,7 +135,7 @@ std::optional<RigidMotion> free_rigid_motion(const Model& model, std::span<const
   for (size_t b = 0; b < bodies.size(); ++b) {
     if (bodies[b].vertex_count == 0) continue;
     const Body body(model, x, bodies[b]);
-    if (const std::optional<Motion> motion = body.free_motion()) return body.described(*motion, static_cast<int>(b));
+    if (const std::optional<Twist> motion = body.free_motion()) return body.described(*motion, static_cast<int>(b));
   }
   return std::nullopt;
 }

@@ -267,6 +267,10 @@ Simulation::Simulation(Model model, State initial, SimulationOptions options) {
                        std::to_string(initial.qdot.size()) + " entries; the model needs " + std::to_string(n));
   impl_ = std::make_unique<Impl>(std::move(model), std::move(initial), std::move(options));
 }
+Simulation::Simulation(Model model, SimulationOptions options) {
+  State start = at_rest(model.mesh);
+  *this = Simulation(std::move(model), std::move(start), std::move(options));
+}
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;

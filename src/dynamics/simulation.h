@@ -14,9 +14,9 @@
 
 namespace aspic {
 
-// Steps are divided into parts of h / 2^k as an error estimate asks for.
+// Adaptive time steps: a step is divided into substeps of h / 2^k according to an error estimate.
 struct AdaptiveOptions {
-  double tolerance = 0;  // error that a step may add, relative to the size of each body; 0: steps are taken whole
+  double tolerance = 0;  // error per step relative to the size of each body; 0: no substeps
 };
 
 struct SimulationOptions {
@@ -29,17 +29,18 @@ struct SimulationOptions {
 };
 
 std::vector<std::string> integrator_names();
-std::vector<std::string> adaptive_integrator_names();  // those whose steps can be divided
+std::vector<std::string> adaptive_integrator_names();  // those with an error estimate
 
-// What the integrator cannot do or has no use for: "adaptive", "initial_guess", or a member of SolverOptions.
+// Returns an option that the integrator does not support: "adaptive", "initial_guess", or a member of SolverOptions.
 std::optional<SolverConflict> find_conflict(const SimulationOptions& options);
 
 class Simulation {
  public:
-  // `initial` holds one entry per vertex of the model. Throws InvalidInput for an unknown name in the options, for
-  // options that the integrator has no use for, and for a model that cannot be simulated: a vertex without mass in
+  // `initial` has 3 numbers per vertex of the model. Throws InvalidInput for an unknown name in the options, for
+  // options that the integrator does not support, and for a model that cannot be simulated: a vertex without mass in
   // dynamics, a start with infinite energy.
   Simulation(Model model, State initial, SimulationOptions options);
+  explicit Simulation(Model model, SimulationOptions options = {});  // starts at rest, see at_rest()
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
@@ -48,7 +49,7 @@ class Simulation {
   // clock is dropped with the status `interrupted`. A limit that is not met changes no bit; within a factorisation
   // nothing is stopped.
   StepReport step(const IterationObserver& observe = {}, const Consent& go_on = {}, double time_limit = kNoTimeLimit);
-  // From the next step on; both throw InvalidInput as the constructor does, and change nothing then.
+  // Change the subsequent steps. Both throw InvalidInput as the constructor does, and then change nothing.
   void set_solver(const SolverOptions& solver);
   void set_pins(std::vector<Pin> pins);
 
@@ -58,25 +59,25 @@ class Simulation {
   int steps_taken() const;
 
   std::vector<std::string> potential_names() const;  // one per entry of StepReport::potential
-  StepReport start_report() const;  // of the state at the start, as step 0: energies, det F, nothing of a solve
-  double kinetic_energy() const;    // [J]
-  std::vector<double> potential_energies() const;  // [J]
+  StepReport start_report() const;                   // step 0: energies and det F of the initial state
+  double kinetic_energy() const;                     // [J]
+  std::vector<double> potential_energies() const;    // [J]
   TetFields tet_fields() const;
   const IntegratorFacts& integrator() const;
-  StableStep stable_step() const;          // at the start: what an explicit integrator can take
-  std::string solver_description() const;  // the methods and what each of them chose, and why
+  StableStep stable_step() const;          // of an explicit integrator, at the initial state
+  std::string solver_description() const;  // the methods and their choices with reasons, for logs
 
-  // Everything that the next steps depend on besides model and options; restoring continues to the same bits.
+  // Everything that subsequent steps depend on besides model and options. Steps after restore() have the same bits.
   struct Snapshot {
     State state;
     State start;  // the state at time 0, to which pins and ledger refer
     int steps_taken = 0;
-    double level = 0;               // of an adaptive step: its next part has the length h / 2^level
-    std::optional<State> previous;  // where the last step or part began, when that is remembered
-    double outside_work = 0;  // by moving pins and targets of an explicit run, each step's as a positive number [J]
+    double level = 0;               // the next substep has the length h / 2^level
+    std::optional<State> previous;  // at the start of the last step or substep, if the integrator keeps it
+    double outside_work = 0;        // sum over steps of |work of moving pins and targets|, explicit schemes [J]
   };
   Snapshot snapshot() const;
-  void restore(const Snapshot& snapshot);  // throws InvalidInput when the sizes do not fit the model
+  void restore(const Snapshot& snapshot);  // throws InvalidInput if the sizes do not match the model
 
  private:
   struct Impl;

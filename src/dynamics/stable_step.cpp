@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "dynamics/incremental_potential.h"
 #include "linalg/linear_solver.h"
 
 namespace aspic {

@@ -1,21 +1,24 @@
-// How long a step an explicit scheme survives.
+// The largest stable time step of an explicit scheme.
 #pragma once
 #include <span>
 
-#include "dynamics/incremental_potential.h"
 #include "dynamics/integrator_facts.h"
 
 namespace aspic {
 
-// The longest step with which a scheme bears x'' + c x' + k x = 0 [s]; infinite where c = k = 0. [1/s, 1/s^2]
+class IncrementalPotential;
+class Pins;
+struct Model;
+
+// Return the largest stable step of x'' + c x' + k x = 0 [s]; infinite if c = k = 0. Units: c [1/s], k [1/s^2].
 double symplectic_euler_limit(double c, double k);
 double rk4_limit(double c, double k);  // |R(h lambda)| <= 1, R = 1 + z + z^2/2 + z^3/6 + z^4/24 [Hairer 1996]
 
 struct StableStep {
-  double h = 0;             // up to which the scheme is stable [s]; infinite without stiffness
-  int vertex = -1;          // which that motion moves most
-  double frequency = 0;     // of that motion without damping [Hz]
-  bool is_damping = false;  // it is damping, more than stiffness, that allows no longer steps
+  double h = 0;             // the largest stable step [s]; infinite without stiffness
+  int vertex = -1;          // with the largest displacement in the critical motion
+  double frequency = 0;     // of the critical motion without damping [Hz]
+  bool is_damping = false;  // damping, more than stiffness, limits the step
 };
 
 // Of rk4, or else of symplectic Euler, for small motions about the positions x, by power iteration. That of symplectic

@@ -1,4 +1,4 @@
-// What is known of a step after it was taken. A step that did not converge says so here.
+// The record of a time step. Its status is a success only if the step converged.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -6,14 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/energy_bound.h"
 #include "dynamics/initial_guess.h"
 #include "math/small.h"
 #include "optimize/minimize.h"
 
 namespace aspic {
 
-using Consent = std::function<bool()>;  // asked between the parts of an adaptive step; empty: always given
+using Consent = std::function<bool()>;  // called between substeps; empty: always true
 inline constexpr double kNoTimeLimit = std::numeric_limits<double>::infinity();
 
 struct Resultant {
@@ -21,48 +20,57 @@ struct Resultant {
   Vec3d moment{};  // about the origin [N m]
 };
 
-// The forces that act from outside, each as a sum over vertices.
+// External forces, each summed over its vertices.
 struct Resultants {
-  std::vector<Resultant> pins;    // of each of Model::pins: what it exerts on its vertices, the mean over the step
+  std::vector<Resultant> pins;    // of each of Model::pins on its vertices, mean over the step
   std::vector<Resultant> loads;   // of each of Model::loads, at the end of the step
-  std::vector<Resultant> bodies;  // of each body: all pins and loads on it, the mean over the step; 0 in equilibrium
-  double time = 0;                // over which the means are taken so far [s]
+  std::vector<Resultant> bodies;  // of all pins and loads on each body, mean over the step; 0 in equilibrium
+  double time = 0;                // duration of the means so far [s]
 };
 
-struct StepReport : Work {  // of all its solves, and of what is reported here
+// Whether a step of backward Euler kept the bound that the scheme guarantees.
+enum class EnergyBound {
+  none,            // another scheme, or a step that was dropped
+  not_guaranteed,  // the minimiser ended above E at q_s, or q_s has no energy
+  holds,
+  broken,
+};
+std::string_view to_string(EnergyBound bound);
+
+struct StepReport : Work {  // of all solves of the step and of this report
   int step = 0;             // 1 for the first
   double time = 0;          // at the end of the step [s]
 
   Status status = Status::converged;
   Criterion criterion = Criterion::scale;
-  int iterations = 0, trials = 0, projected_hessians = 0;  // of all its solves
-  int elements = 0;                                        // tets: what an evaluation goes over
+  int iterations = 0, trials = 0, projected_hessians = 0;  // sums over all solves
+  int elements = 0;                                        // number of tets per evaluation
   double objective = 0, objective_gradient = 0;            // E and |g| at the end of the last minimisation
-  InitialGuess initial_guess = InitialGuess::none;         // where that started
-  int substeps = 1, rejected = 0;                          // parts it was taken in; parts tried that were too long
-  double residual = 0;  // |M a + dV/dx + dD/dx| over the free vertices; of parts the largest [N]
-  // Of the part of the model that is farthest from its threshold, such as one of several bodies:
-  double residual_threshold = 0;  // the residual that was asked for [N]; 0 for a scheme without a solve
-  double residual_round_off = 0;  // the part of a residual that double precision cannot tell from zero [N]
-  int worst_vertex = -1;          // where most of the residual is left
-  double worst_residual = 0;      // its size there [N]
-  double lost_accuracy = 0;       // of weight, inertia or velocities, hidden by round-off: from 1e-3 to 1; else 0
-  double decrement = 0;           // -g.d / 2 of the last iteration, of solves the largest; 0 without one [J]
+  InitialGuess initial_guess = InitialGuess::none;         // of that minimization
+  int substeps = 1, rejected = 0;                          // accepted and rejected
+  double residual = 0;  // |M a + dV/dx + dD/dx| over the free vertices; maximum over substeps [N]
+  // Of the body or region that is farthest from its threshold:
+  double residual_threshold = 0;  // the residual required [N]; 0 for explicit schemes
+  double residual_round_off = 0;  // the round-off floor of the residual [N]
+  int worst_vertex = -1;          // with the largest residual
+  double worst_residual = 0;      // its residual [N]
+  double lost_accuracy = 0;       // share of weight, inertia or velocities lost to round-off, if above 1e-3; else 0
+  double decrement = 0;           // -g.d / 2 of the last iteration, maximum over solves [J]; 0 without iterations
   double min_det_F = 0;
 
   // The ledger: kinetic + potential changes by pin_work - damping_loss - numerical_loss + residual_work. [J]
   double kinetic = 0;
   std::vector<double> potential;  // one per term of V, named by Simulation::potential_names()
   double potential_total = 0;
-  double pin_work = 0;              // by moving pins and moving targets of springs, in this step
-  std::vector<double> target_work;  // of that, by the moving targets of each of Model::loads
-  double damping_loss = 0;          // by damping terms, in this step
-  double numerical_loss = 0;        // by the integrator, in this step
-  double residual_work = 0;         // by the forces that the solve left over
-  double ledger_error = 0;          // what does not add up
+  double pin_work = 0;              // of moving pins and moving targets in this step
+  std::vector<double> target_work;  // the share of the moving targets of each of Model::loads
+  double damping_loss = 0;          // of damping terms in this step
+  double numerical_loss = 0;        // of the integrator in this step
+  double residual_work = 0;         // of the residual forces
+  double ledger_error = 0;          // the difference of both sides
   Resultants resultants;
   EnergyBound energy_bound = EnergyBound::none;
-  double energy_slack = 0;       // by how much the bound holds; 0 where there is none [J]
+  double energy_slack = 0;       // bound minus energy; 0 without a bound [J]
   std::uint64_t state_hash = 0;  // of the state at the end, see state_hash()
   double seconds = 0;            // wall time of the step
 };

@@ -15,7 +15,7 @@ constexpr double kStep = 0.01;
 // The first step of a beam that begins to fall, with a velocity.
 class Velocities : public ::testing::Test {
  protected:
-  Velocities() : model(testing_models::beam(2)), state(testing_models::at_rest(model.mesh)) {
+  Velocities() : model(testing_models::beam(2)), state(at_rest(model.mesh)) {
     for (size_t i = 0; i < state.qdot.size(); ++i) state.qdot[i] = 0.3 * std::sin(static_cast<double>(i));
     pins.set_zero(state.qdot);
     for (size_t i = 0; i < state.q.size(); ++i) predicted.push_back(state.q[i] + kStep * state.qdot[i]);

@@ -1,5 +1,5 @@
-// Terms D(x; start) that dissipate: incremental potentials of a step from `start`, with what the gradient of a
-// trajectory needs to know of them.
+// Dissipative terms D(x; start): incremental potentials of a step from `start`, with the derivatives that the gradient
+// of a trajectory needs.
 #pragma once
 #include <span>
 
@@ -9,7 +9,7 @@ namespace aspic {
 
 class TetElasticity;
 
-// Of w . dD/dx: where its derivatives are added. Spans may be empty: not wanted.
+// Where the derivatives of w . dD/dx are added. Empty spans are skipped.
 struct DampingGradients {
   std::span<double> start;         // with respect to the start of the step, 3 per vertex
   std::span<double> coefficients;  // to those of the term, coefficient_count() of them

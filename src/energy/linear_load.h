@@ -1,5 +1,5 @@
 // V(x) = -sum f_i . x_i: gravity, body forces, dead tractions and pressures; forces that do not follow the body.
-// Forces that depend on the time work on the body where it stands when they change, as targets that move do.
+// When a force changes in time, its work includes the change of V at the current positions.
 #pragma once
 #include <functional>
 #include <memory>
@@ -12,11 +12,11 @@
 namespace aspic {
 
 std::unique_ptr<Energy> make_linear_load(std::string name, std::vector<double> force);  // 3 per vertex [N]
-// Adds what acts at the time to the forces, 3 per vertex [N].
+// Adds the forces at the given time [s] to `force`, 3 per vertex [N].
 using AddForces = std::function<void(double time, std::span<double> force)>;
 std::unique_ptr<Energy> make_linear_load(std::string name, std::vector<double> constant, AddForces varying);
 
-// Nodal forces, 3 per vertex, added into `force`:
+// Add nodal forces to `force`, 3 per vertex [N].
 void add_body_force(const TetMesh& mesh, int tet, const Vec3d& force_density, std::span<double> force);  // [N/m^3]
 // A traction [Pa] over a triangle with corners X (in the rest shape); a pressure p is the traction -p n.
 void add_traction(const std::vector<Vec3d>& X, const Triangle& triangle, const Vec3d& traction,

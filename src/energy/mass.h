@@ -21,7 +21,7 @@ class MassMatrix {
   void multiply(std::span<const double> x, std::span<double> y) const;                  // y = M x; 3 numbers per vertex
   double squared_distance(std::span<const double> x, std::span<const double> y) const;  // (x - y)' M (x - y)
   void add_couplings(Couplings& couplings) const;
-  void bind(const BlockPattern& target);               // remembers where add_to writes
+  void bind(const BlockPattern& target);               // finds the slots where add_to writes
   void add_to(double scale, BlockSparse& H) const;     // H += scale M
   void assign_to(double scale, BlockSparse& H) const;  // H = scale M
 

@@ -19,13 +19,13 @@ namespace aspic {
 template <class M>
 class MaterialTerm : public TetTerm<M, TetElasticity> {
   using Term = TetTerm<M, TetElasticity>;
-  using Term::batch_count, Term::batches_, Term::F, Term::for_each_batch, Term::params_, Term::reduce;
+  using Term::batch_count, Term::batches_, Term::F, Term::for_each_batch, Term::material_, Term::params_, Term::reduce;
 
  public:
   // Tets [first, first + parameters.size()) of the mesh. Of MaterialParameters::extra, the material has `extra`.
   MaterialTerm(std::string name, const TetMesh& mesh, int first, std::span<const MaterialParameters> parameters,
-               int extra)
-      : Term(std::move(name), mesh, first, own_params(parameters)),
+               int extra, M material = {})
+      : Term(std::move(name), mesh, first, own_params(parameters), std::move(material)),
         first_(first),
         parameter_count_(2 + extra),
         parameters_(parameters.begin(), parameters.end()) {}
@@ -38,8 +38,8 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
   void evaluate(Positions x, TetFields& fields) const override {
     parallel_for(batch_count(), [&](int i) {
       const Mat3<Pack> Fi = F(i, x);
-      const Pack psi = M::psi(Fi, params_[i]), J = determinant(Fi);
-      const Mat3<Pack> cauchy = (Pack(1.0) / J) * (M::pk1(Fi, params_[i]) * transpose(Fi));
+      const Pack psi = material_.psi(Fi, params_[i]), J = determinant(Fi);
+      const Mat3<Pack> cauchy = (Pack(1.0) / J) * (material_.pk1(Fi, params_[i]) * transpose(Fi));
       for (int l = 0; l < batches_[i].count; ++l) write(batches_[i].tet[l], l, psi, J, cauchy, fields);
     });
   }
@@ -96,7 +96,7 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
       };
       const Mat3<Pack> U = F(i, u), W = F(i, w);
       const unsigned all = (1U << kPackWidth) - 1;
-      const Mat9<Pack> A = definiteness == Definiteness::exact ? Mat9<Pack>{} : M::hessian(F_i, params_[i]);
+      const Mat9<Pack> A = definiteness == Definiteness::exact ? Mat9<Pack>{} : material_.hessian(F_i, params_[i]);
       const unsigned raised = definiteness == Definiteness::exact ? 0 : indefinite_lanes(A) & all;
       if (raised != all) add(lanes_from_bits<Pack>(all & ~raised), U, W);
       if (raised == 0) return;
@@ -142,19 +142,19 @@ class MaterialTerm : public TetTerm<M, TetElasticity> {
   // dP where parameter k changes at rate(k) and F stays.
   template <class Rate>
   Mat3<Pack> stress_rate(int i, Positions x, const Rate& rate) const {
-    return rates(M::pk1(constant_matrix(F(i, x)), M::params(moving_parameters<Pack>(i, rate))));
+    return rates(material_.pk1(constant_matrix(F(i, x)), M::params(moving_parameters<Pack>(i, rate))));
   }
 
   // The derivative of U : A W with respect to F, A = dP/dF: by symmetry the mixed second derivative of P along U and W.
   Mat3<Pack> second_stress_rate(int i, const Mat3<Pack>& F_i, const Mat3<Pack>& U, const Mat3<Pack>& W) const {
     const auto p = broadcast_params<M, Dual<Dual<Pack>>, Dual<Pack>>(broadcast_params<M, Dual<Pack>, Pack>(params_[i]));
-    return rates(rates(M::pk1(dual_matrix(dual_matrix(F_i, U), constant_matrix(W)), p)));
+    return rates(rates(material_.pk1(dual_matrix(dual_matrix(F_i, U), constant_matrix(W)), p)));
   }
 
   // d(A W)/dtheta_k
   Mat3<Pack> second_parameter_rate(int i, const Mat3<Pack>& F_i, const Mat3<Pack>& W, int k) const {
     const auto p = moving_parameters<Dual<Pack>>(i, [k](int j) { return Dual<Pack>(j == k ? 1.0 : 0.0); });
-    return rates(rates(M::pk1(constant_matrix(dual_matrix(F_i, W)), M::params(p))));
+    return rates(rates(material_.pk1(constant_matrix(dual_matrix(F_i, W)), M::params(p))));
   }
 
   // Where parameter k changes at rate(k).

@@ -37,39 +37,34 @@ struct Sweep {
   }
 };
 
-class PatchPressure : public Pressure {
+// The volume swept by a patch, its derivatives, and where its blocks are stored.
+class SweptVolume {
  public:
-  PatchPressure(const TetMesh& mesh, std::vector<Triangle> patch, double pressure)
-      : patch_(std::move(patch)), pressure_(pressure) {
+  SweptVolume(const TetMesh& mesh, std::vector<Triangle> patch) : patch_(std::move(patch)) {
     for (const Triangle& t : patch_) rest_.push_back({mesh.rest[t[0]], mesh.rest[t[1]], mesh.rest[t[2]]});
   }
 
-  std::string_view name() const override { return "pressure"; }
-  void set_pressure(double pressure) override { pressure_ = pressure; }
-  double pressure() const override { return pressure_; }
-
-  double swept_volume(Positions x) const override {
+  double value(Positions x) const {
     double sum = 0;
     for (size_t t = 0; t < patch_.size(); ++t) sum += sweep(x, t).volume();
     return sum;
   }
 
-  double value(Positions x, const Context&) const override { return pressure_ * swept_volume(x); }
-
-  void add_gradient(Positions x, const Context&, double scale, std::span<double> g) const override {
+  // g += scale pressure d(volume)/dx
+  void add_gradient(Positions x, double pressure, double scale, std::span<double> g) const {
     for (size_t t = 0; t < patch_.size(); ++t) {
       const std::array<Vec3d, 3> forces = sweep(x, t).gradient();
       for (int i = 0; i < 3; ++i)
-        for (int r = 0; r < 3; ++r) g[3 * patch_[t][i] + r] += scale * pressure_ * forces[i][r];
+        for (int r = 0; r < 3; ++r) g[3 * patch_[t][i] + r] += scale * pressure * forces[i][r];
     }
   }
 
-  void add_couplings(Couplings& couplings) const override {
+  void add_couplings(Couplings& couplings) const {
     for (const Triangle& t : patch_)
       for (int i = 0; i < 3; ++i) couplings.emplace_back(t[i], t[(i + 1) % 3]);
   }
 
-  void bind(const BlockPattern& pattern) override {
+  void bind(const BlockPattern& pattern) {
     slot_.resize(patch_.size());
     for (size_t t = 0; t < patch_.size(); ++t)
       for (int i = 0; i < 3; ++i)
@@ -79,11 +74,11 @@ class PatchPressure : public Pressure {
         }
   }
 
-  int add_hessian(Positions x, const Context&, double scale, const Projection& projection,
-                  BlockSparse& H) const override {
+  // H += scale pressure d2(volume)/dx2; returns how many elements were projected.
+  int add_hessian(Positions x, double pressure, double scale, const Projection& projection, BlockSparse& H) const {
     int projected = 0;
     for (size_t t = 0; t < patch_.size(); ++t) {
-      Mat9d K = hessian(sweep(x, t));
+      Mat9d K = hessian(sweep(x, t), pressure);
       const auto covers = [&](int v) { return projection.covers(v); };
       if (projection.kind != Definiteness::exact && std::ranges::any_of(patch_[t], covers)) {
         const bool is_clamped = projection.kind == Definiteness::clamped;
@@ -105,11 +100,11 @@ class PatchPressure : public Pressure {
     return {(1.0 / 3) * (u0 + u1 + u2), A, w1, w2};
   }
 
-  Mat9d hessian(const Sweep& s) const {
+  static Mat9d hessian(const Sweep& s, double pressure) {
     Mat9d K{};
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
-        if (i != j) add_cross(K, i, j, pressure_ * s.twist(i, j));
+        if (i != j) add_cross(K, i, j, pressure * s.twist(i, j));
     return K;
   }
 
@@ -124,15 +119,69 @@ class PatchPressure : public Pressure {
   }
 
   std::vector<Triangle> patch_;
-  std::vector<std::array<Vec3d, 3>> rest_;  // X of the corners of each triangle
-  double pressure_;
+  std::vector<std::array<Vec3d, 3>> rest_;    // X of the corners of each triangle
   std::vector<std::array<int64_t, 9>> slot_;  // blocks (i, j), of the larger vertex and the smaller
+};
+
+class SteadyPressure : public Pressure {
+ public:
+  SteadyPressure(SweptVolume volume, double pressure) : volume_(std::move(volume)), pressure_(pressure) {}
+
+  std::string_view name() const override { return "pressure"; }
+  void set_pressure(double pressure) override { pressure_ = pressure; }
+  double pressure() const override { return pressure_; }
+  double swept_volume(Positions x) const override { return volume_.value(x); }
+
+  double value(Positions x, const Context&) const override { return pressure_ * volume_.value(x); }
+  void add_gradient(Positions x, const Context&, double scale, std::span<double> g) const override {
+    volume_.add_gradient(x, pressure_, scale, g);
+  }
+  void add_couplings(Couplings& couplings) const override { volume_.add_couplings(couplings); }
+  void bind(const BlockPattern& pattern) override { volume_.bind(pattern); }
+  int add_hessian(Positions x, const Context&, double scale, const Projection& projection,
+                  BlockSparse& H) const override {
+    return volume_.add_hessian(x, pressure_, scale, projection, H);
+  }
+
+ private:
+  SweptVolume volume_;
+  double pressure_;
+};
+
+class VaryingPressure : public Energy {
+ public:
+  VaryingPressure(std::string name, SweptVolume volume, PressureOfTime pressure)
+      : name_(std::move(name)), volume_(std::move(volume)), pressure_(std::move(pressure)) {}
+
+  std::string_view name() const override { return name_; }
+  double value(Positions x, const Context& context) const override {
+    return pressure_(context.time) * volume_.value(x);
+  }
+  void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
+    volume_.add_gradient(x, pressure_(context.time), scale, g);
+  }
+  void add_couplings(Couplings& couplings) const override { volume_.add_couplings(couplings); }
+  void bind(const BlockPattern& pattern) override { volume_.bind(pattern); }
+  int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
+                  BlockSparse& H) const override {
+    return volume_.add_hessian(x, pressure_(context.time), scale, projection, H);
+  }
+
+ private:
+  std::string name_;
+  SweptVolume volume_;
+  PressureOfTime pressure_;
 };
 
 }  // namespace
 
 std::unique_ptr<Pressure> make_pressure(const TetMesh& mesh, std::vector<Triangle> patch, double pressure) {
-  return std::make_unique<PatchPressure>(mesh, std::move(patch), pressure);
+  return std::make_unique<SteadyPressure>(SweptVolume(mesh, std::move(patch)), pressure);
+}
+
+std::unique_ptr<Energy> make_pressure(std::string name, const TetMesh& mesh, std::vector<Triangle> patch,
+                                      PressureOfTime pressure) {
+  return std::make_unique<VaryingPressure>(std::move(name), SweptVolume(mesh, std::move(patch)), std::move(pressure));
 }
 
 }  // namespace aspic

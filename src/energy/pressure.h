@@ -6,7 +6,9 @@
 // every vertex inside a patch, and for any patch that moves along its normals at rest. At the rim of an open patch they
 // also hold the side walls that the motion draws: of second order in the displacement where the rim moves sideways.
 #pragma once
+#include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "energy/energy.h"
@@ -21,7 +23,12 @@ class Pressure : public SteadyEnergy {
   virtual double swept_volume(Positions x) const = 0;  // outwards [m^3]
 };
 
+// A pressure in time: t [s] to p [Pa].
+using PressureOfTime = std::function<double(double)>;
+
 // `patch`: boundary triangles of the mesh, outward oriented.
 std::unique_ptr<Pressure> make_pressure(const TetMesh& mesh, std::vector<Triangle> patch, double pressure);
+std::unique_ptr<Energy> make_pressure(std::string name, const TetMesh& mesh, std::vector<Triangle> patch,
+                                      PressureOfTime pressure);
 
 }  // namespace aspic

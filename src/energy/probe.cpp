@@ -10,6 +10,7 @@
 #include "energy/surface_parts.h"
 #include "energy/tip_depth.h"
 #include "math/symmetric_eigen.h"
+#include "mesh/vertices.h"
 
 namespace aspic {
 namespace {
@@ -268,7 +269,7 @@ class ProbeTerm : public Probe {
 
 }  // namespace
 
-PlacedTip::PlacedTip(const TipPose& pose) : pose(with_unit_axis(pose)), turn(rotation_matrix(pose.rotation)) {}
+PlacedTip::PlacedTip(const TipPose& wanted) : pose(with_unit_axis(wanted)), turn(rotation_matrix(wanted.rotation)) {}
 
 std::unique_ptr<Probe> make_probe(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip,
                                   const TipPose& touch) {
@@ -288,9 +289,7 @@ std::unique_ptr<Probe> make_probe(const TetMesh& mesh, std::span<const Triangle>
 
 int touched_points_at_rest(const TetMesh& mesh, std::span<const Triangle> surface, const Tip& tip,
                            const TipPose& touch) {
-  std::vector<double> x;
-  for (const Vec3d& X : mesh.rest) x.insert(x.end(), {X[0], X[1], X[2]});
-  return ProbeTerm(mesh, surface, tip, touch).touched_points(x);
+  return ProbeTerm(mesh, surface, tip, touch).touched_points(rest_positions(mesh));
 }
 
 }  // namespace aspic

@@ -9,7 +9,8 @@
 
 namespace aspic {
 
-// Its coefficients are a and, where it is not 0, b.
+// Has the coefficients a and, if it is not 0, b. `elasticity` may be null if b = 0; mass and elasticity must outlive
+// the term.
 std::unique_ptr<Damping> make_rayleigh_damping(const MassMatrix& mass, double mass_factor /* a [1/s] */,
                                                const TetElasticity* elasticity, double stiffness_factor /* b [s] */);
 

@@ -1,5 +1,6 @@
 // V(x) = sum over tets of volume * psi(F), F = Ds Dm^-1: linear tetrahedra of any registered material.
 #pragma once
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -21,10 +22,11 @@ struct TetFields {
 
 class TetElasticity : public SteadyEnergy {
  public:
-  virtual double min_det_F(Positions x) const = 0;
+  virtual double min_det_F(Positions x) const = 0;                  // smallest det F of all tets [1]
   virtual void evaluate(Positions x, TetFields& fields) const = 0;  // writes the entries of this term's tets
 
-  // theta: per tet mu, lambda and what MaterialInfo::extra names. Below, this term's tets one after another.
+  // Derivatives with respect to the parameters theta: mu, lambda and those of MaterialInfo::extra for each tet of this
+  // term, one tet after another.
   virtual int parameter_count() const = 0;                                          // of one tet
   virtual std::span<const MaterialParameters> parameters() const = 0;               // one per tet
   virtual void set_parameters(std::span<const MaterialParameters> parameters) = 0;  // one per tet
@@ -34,19 +36,24 @@ class TetElasticity : public SteadyEnergy {
                                    std::span<double> g) const = 0;
   virtual void add_parameter_gradient(Positions x, std::span<const double> w, double scale,
                                       std::span<double> gradient) const = 0;
-  // Of u . H(x) w, H the Hessian as add_hessian makes it: dx += scale d/dx, gradient += scale d/dtheta. Either may be
-  // empty: not wanted.
+  // Derivatives of u . H(x) w, where H is the Hessian of add_hessian: dx += scale d/dx, gradient += scale d/dtheta. An
+  // empty span is skipped.
   virtual void add_hessian_derivatives(Positions x, std::span<const double> u, std::span<const double> w,
                                        Definiteness definiteness, double scale, std::span<double> dx,
                                        std::span<double> gradient) const = 0;
 };
 
-// Tets [first, first + parameters.size()) of the mesh. The mesh is only read here.
+// Makes the elastic energy of tets [first, first + parameters.size()) of the mesh, which need not outlive it. Throws
+// InvalidInput for an unknown material.
 std::unique_ptr<TetElasticity> make_tet_elasticity(std::string_view material, const TetMesh& mesh, int first,
                                                    std::span<const MaterialParameters> parameters);
 
+// The same for a material that is given in another way.
+using ElasticityMaker = std::function<std::unique_ptr<TetElasticity>(const TetMesh& mesh, int first,
+                                                                     std::span<const MaterialParameters> parameters)>;
+
 // Kelvin-Voigt damping, rotation invariant: D(x) = h sum volume eta/2 |Edot|^2 with Edot = (E - E_start) / h and
-// E = (F'F - I) / 2. `viscosity` is eta of each tet [Pa s]; they are the term's coefficients.
+// E = (F'F - I) / 2. `viscosity` is eta of each tet [Pa s], the coefficients of the term.
 std::unique_ptr<Damping> make_strain_rate_damping(const TetMesh& mesh, int first, std::span<const double> viscosity);
 
 }  // namespace aspic

@@ -31,8 +31,9 @@ class TetTerm : public Base {
   using Context = Energy::Context;
 
   // Tets [first, first + parameters.size()) of the mesh.
-  TetTerm(std::string name, const TetMesh& mesh, int first, std::span<const Params<double>> parameters)
-      : batches_((parameters.size() + kPackWidth - 1) / kPackWidth),
+  TetTerm(std::string name, const TetMesh& mesh, int first, std::span<const Params<double>> parameters, M material = {})
+      : material_(std::move(material)),
+        batches_((parameters.size() + kPackWidth - 1) / kPackWidth),
         params_(batches_.size()),
         name_(std::move(name)),
         tets_per_group_(group_size(parameters.size())) {
@@ -49,15 +50,16 @@ class TetTerm : public Base {
 
   double value(Positions x, const Context& context) const override {
     const std::vector<Params<Pack>>& p = params(context);
-    const double V = reduce([&](int i) { return sum(batches_[i].volume * M::psi(F(i, x), p[i])); },
+    const double V = reduce([&](int i) { return sum(batches_[i].volume * material_.psi(F(i, x), p[i])); },
                             [](double a, double b) { return a + b; }, 0.0);
     return std::isnan(V) ? INFINITY : V;  // zero-volume lanes of an infinite density
   }
 
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
     const std::vector<Params<Pack>>& p = params(context);
-    for_each_batch(
-        [&](int i) { batches_[i].scatter_gradient(M::pk1(F(i, x), p[i]), Pack(scale) * batches_[i].volume, g); });
+    for_each_batch([&](int i) {
+      batches_[i].scatter_gradient(material_.pk1(F(i, x), p[i]), Pack(scale) * batches_[i].volume, g);
+    });
   }
 
   void add_couplings(Couplings& couplings) const override {
@@ -114,6 +116,7 @@ class TetTerm : public Base {
   // Of each batch, in a step.
   virtual const std::vector<Params<Pack>>& params(const Energy::Context&) const { return params_; }
 
+  [[no_unique_address]] M material_;  // empty but for a CustomDensity
   std::vector<TetBatch> batches_;
   std::vector<Params<Pack>> params_;
 
@@ -163,7 +166,7 @@ class TetTerm : public Base {
       }
     }
     const Mat3<Pack> F_i = F(i, x);
-    Mat9<Pack> A = M::hessian(F_i, p);
+    Mat9<Pack> A = material_.hessian(F_i, p);
     const unsigned projected = project(A, F_i, p, tets.lanes_covered(projection), projection.kind);
     tets.scatter_hessian(A, weight, H);
     return static_cast<char>(std::popcount(projected));

@@ -6,6 +6,7 @@
 #include "energy/pressure.h"
 #include "fit/columns.h"
 #include "mesh/surface.h"
+#include "mesh/vertices.h"
 
 namespace aspic {
 namespace {
@@ -22,7 +23,7 @@ TipPose mixed(const TipPose& a, const TipPose& b, double part) {
 IncrementalBody::IncrementalBody(const Experiment& experiment, const LoadCase& load, const StrainSpaceModuli& moduli,
                                  const BickelOptions& options)
     : experiment_(experiment), load_(load), options_(options), body_(experiment.mesh, moduli, options.rule) {
-  for (const Vec3d& X : experiment.mesh.rest) x_.insert(x_.end(), {X[0], X[1], X[2]});
+  x_ = rest_positions(experiment.mesh);
   held_.assign(experiment.mesh.rest.size(), false);
   for (const int v : experiment.fixed) held_[v] = true;
   add_loads();

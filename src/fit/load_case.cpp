@@ -5,22 +5,17 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "dynamics/model_builder.h"
 #include "energy/linear_load.h"
 #include "energy/pressure.h"
 #include "mesh/surface.h"
+#include "mesh/vertices.h"
 
 namespace aspic {
 namespace {
 
 constexpr double kSmallestPart = 1.0 / 64;  // of a load
 constexpr char kAxis[] = "xyz";
-
-std::vector<double> positions(const std::vector<Vec3d>& points) {
-  std::vector<double> x;
-  x.reserve(3 * points.size());
-  for (const Vec3d& p : points) x.insert(x.end(), {p[0], p[1], p[2]});
-  return x;
-}
 
 Vec3d at(const SurfacePoint& point, std::span<const double> x) {
   Vec3d sum{};
@@ -68,7 +63,7 @@ LoadedBody::LoadedBody(const Experiment& experiment, const LoadCase& load, const
                        std::span<const MaterialParameters> parameters, const EquilibriumOptions& options)
     : experiment_(experiment),
       load_(readable(experiment, load)),
-      rest_(positions(experiment.mesh.rest)),
+      rest_(rest_positions(experiment.mesh)),
       equilibrium_(make_model(material, parameters), rest_, options) {
   for (auto* v : {&dx_, &xbar_, &start_}) v->resize(rest_.size());
   prediction_.x = rest_;
@@ -92,14 +87,13 @@ const LoadCase& LoadedBody::readable(const Experiment& experiment, const LoadCas
 }
 
 Model LoadedBody::make_model(const std::string& material, std::span<const MaterialParameters> parameters) {
-  Model model;
-  model.mesh = experiment_.mesh;
   const TetMesh& mesh = experiment_.mesh;
-  model.bodies = {{"body", 0, mesh.vertex_count(), 0, mesh.tet_count()}};
-  model.density = experiment_.density;
-  model.mass = std::make_unique<MassMatrix>(mesh, model.density, MassKind::lumped);
-  model.elasticity.push_back(make_tet_elasticity(material, mesh, 0, parameters));
-  model.pins.push_back({"fixed", experiment_.fixed, {}});
+  Model model = ModelBuilder(mesh)
+                    .material(material, parameters)
+                    .density(experiment_.density)
+                    .mass(MassKind::lumped)
+                    .pin("fixed", experiment_.fixed)
+                    .build();
   const auto add_scaled = [&](std::unique_ptr<Energy> load) {
     auto scaled = std::make_unique<ScaledLoad>(std::move(load));
     scaled_.push_back(scaled.get());

@@ -25,10 +25,10 @@ std::vector<MaterialParameters> uneven(int tets, double factor) {
 }
 
 Model gel_cube(const Vec3d& gravity = {}) {
-  Model model = make_model(make_box({{0, 0, 0}}, {{kSize, kSize, kSize}}, {4, 4, 4}),
-                           {.material = "stable_neo_hookean", .young = 1e4, .poisson = 0.45, .gravity = gravity});
-  model.pins.push_back({"floor", vertices_where(model.mesh, [](const Vec3d& X) { return X[2] < 1e-9; }), {}});
-  return model;
+  return model_of(make_box({{0, 0, 0}}, {{kSize, kSize, kSize}}, {4, 4, 4}),
+                  {.material = "stable_neo_hookean", .young = 1e4, .poisson = 0.45, .gravity = gravity})
+      .pin("floor", [](const Vec3d& X) { return X[2] < 1e-9; })
+      .build();
 }
 
 std::vector<double> solved_with_factor(Equilibrium& body, double factor) {

@@ -55,25 +55,23 @@ struct Swinging {
   }
 
   Model model() const {
-    Model model;
-    model.mesh = mesh;
-    model.bodies = {{"beam", 0, mesh.vertex_count(), 0, mesh.tet_count()}};
-    model.density = density;
-    model.mass = std::make_unique<MassMatrix>(mesh, density, mass);
-    model.elasticity.push_back(make_tet_elasticity(material, mesh, 0, elastic));
-    std::vector<double> weight(start.q.size());
-    for (int t = 0; t < mesh.tet_count(); ++t) add_body_force(mesh, t, density[t] * Vec3d{{1, -9.81, 0}}, weight);
-    model.loads.push_back(make_linear_load("gravity", weight));
-    model.loads.push_back(make_point_springs("pull", {{mesh.vertex_count() - 1, 500, [](double t) {
-                                                         return Vec3d{{1.5, 3 * t, 0.2}};
-                                                       }}}));
-    model.damping.push_back(
-        make_rayleigh_damping(*model.mass, mass_factor, model.elasticity[0].get(), stiffness_factor));
+    Model model = ModelBuilder(mesh)
+                      .material(material, elastic)
+                      .density(density)
+                      .mass(mass)
+                      .gravity({{1, -9.81, 0}})
+                      .load(make_point_springs("pull", {{mesh.vertex_count() - 1, 500,
+                                                         [](double t) {
+                                                           return Vec3d{{1.5, 3 * t, 0.2}};
+                                                         }}}))
+                      .rayleigh_damping(mass_factor, stiffness_factor)
+                      .pin("wall", [](const Vec3d& X) { return X[0] < 1e-9; })
+                      .pin("crank", std::vector{mesh.vertex_count() / 2},
+                           [](const Vec3d& X, double t) {
+                             return X + Vec3d{{0, 0.05 * std::sin(8 * t), 0}};
+                           })
+                      .build();
     model.damping.push_back(make_strain_rate_damping(mesh, 0, viscosity));
-    model.pins.push_back({"wall", vertices_where(mesh, [](const Vec3d& X) { return X[0] < 1e-9; }), {}});
-    model.pins.push_back({"crank", {mesh.vertex_count() / 2}, [](const Vec3d& X, double t) {
-                            return X + Vec3d{{0, 0.05 * std::sin(8 * t), 0}};
-                          }});
     if (slides) {
       model.pins[0].directions = {{{0.6, 0.8, 0}}, {{0, 0, 1}}};
       model.pins[1].directions = {{{0, 1, 0}}};

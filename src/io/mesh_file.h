@@ -1,4 +1,4 @@
-// Mesh files by their extension. Readers give what the file says, unrepaired: the doctor judges it.
+// Reads and writes mesh files; the extension selects the format. Readers repair nothing.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -16,14 +16,15 @@ struct MeshFormat {
 };
 const std::vector<MeshFormat>& mesh_formats();
 
-// Tets when the file has any, otherwise its triangles (quads are split). A .node/.ele pair is named by either file.
-// Throws InvalidInput with file, line (or byte offset) and remedy.
+// Returns the tets of the file, or its triangles if it has no tets; quads are split. Either file names a .node/.ele
+// pair. Throws InvalidInput with file, line (or byte offset) and remedy.
 std::variant<TetMesh, TriMesh> read_mesh(const std::filesystem::path& path);
-TetMesh read_tet_mesh(const std::filesystem::path& path);  // an error for a file without tets
-TriMesh read_tri_mesh(const std::filesystem::path& path);  // of a tet mesh: its boundary
+TetMesh read_tet_mesh(const std::filesystem::path& path);  // throws InvalidInput if the file has no tets
+TriMesh read_tri_mesh(const std::filesystem::path& path);  // the boundary of a tet mesh
 
 enum class FileEncoding { ascii, binary };
-// Numbers are written so that they read back to the same bits. The file appears whole or not at all.
+// Reading the file back gives the same bits. The file appears whole or not at all. Throws InvalidInput if it cannot be
+// written.
 void write_mesh(const std::filesystem::path& path, const TetMesh& mesh, FileEncoding encoding = FileEncoding::ascii);
 void write_mesh(const std::filesystem::path& path, const TriMesh& mesh, FileEncoding encoding = FileEncoding::ascii);
 

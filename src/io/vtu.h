@@ -11,7 +11,7 @@
 
 namespace aspic {
 
-// How a field is stored: single precision halves what is only looked at.
+// The type of the stored numbers.
 enum class FieldType { float64, float32, int32 };
 
 struct Field {
@@ -22,25 +22,25 @@ struct Field {
 };
 
 struct Vtu {
-  TetMesh mesh;       // points are the positions written; region when the file has a "region" cell field
+  TetMesh mesh;       // points as rest positions; region if the file has a "region" cell field
   TriMesh triangles;  // triangle cells, when there are no tets
   std::vector<Field> point_fields, cell_fields;
-  std::vector<Field> file_fields;  // <FieldData>: numbers of the whole file, of any length; text is passed over
+  std::vector<Field> file_fields;  // <FieldData>, of any length; text is skipped
 };
 
-// Ascii, inline base64 and appended, raw or zlib-compressed. Quads are split; lines and points are passed over; any
-// other cell is an error, as are counts, indices and sizes that do not fit. Throws InvalidInput with file and line.
+// Reads ascii, inline base64 and appended data, raw or zlib-compressed. Splits quads and skips lines and points. Throws
+// InvalidInput with file and line for other cells and for counts, indices and sizes that do not match.
 Vtu read_vtu(const std::filesystem::path& path);
 Vtu parse_vtu(std::string_view contents, const std::string& file);  // `file` is for messages
-// The points alone, 3 numbers each: much less work where the cells are known.
+// Reads the points alone, 3 numbers each.
 std::vector<double> read_vtu_points(const std::filesystem::path& path);
 
-// Inline base64, zlib-compressed; positions in double precision. The same input gives the same bytes.
+// Writes inline base64, zlib-compressed; points in double precision. Equal input gives equal bytes.
 void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,
                const std::vector<Field>& point_fields, const std::vector<Field>& cell_fields,
                const std::vector<Field>& file_fields = {});
 
-// A time series: (time [s], file name relative to the index).
+// Writes the index of a time series: (time [s], file name relative to the index).
 void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames);
 
 }  // namespace aspic

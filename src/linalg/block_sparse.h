@@ -15,15 +15,15 @@ using Couplings = std::vector<std::pair<int, int>>;  // vertex pairs that share 
 struct BlockPattern {
   std::vector<int64_t> row_start;  // rows + 1 entries
   std::vector<int> column;         // columns c <= r of each row, ascending; the last one is the diagonal
-  // The same blocks seen from above the diagonal: for each row r, the rows below it that have a block in column r.
+  // The transposed pattern: for each row r, the rows below it that have a block in column r, and the slots of these.
   std::vector<int64_t> upper_start;
   std::vector<int> upper_row;
   std::vector<int64_t> upper_slot;
   uint64_t version = 0;  // differs between any two patterns made in this process
 
-  // What solvers may build coarse spaces from; empty where it is not known.
+  // Geometry and stiffness for the coarse spaces of multigrid; empty if unknown.
   std::vector<Vec3d> rest_position;  // of each row's vertex [m]
-  std::vector<double> rest_modulus;  // of the material around each row's vertex [Pa], but for a common factor
+  std::vector<double> rest_modulus;  // of the material around each row's vertex, up to a common factor [Pa]
 
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
   int64_t block_count() const { return static_cast<int64_t>(column.size()); }

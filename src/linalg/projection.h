@@ -1,16 +1,16 @@
-// What becomes of the negative curvature of a Hessian that is a sum over elements.
+// Modified Hessians: how elements with negative eigenvalues are treated.
 #pragma once
 #include <span>
 
 namespace aspic {
 
-// Of an element whose Hessian has negative eigenvalues: leave it, raise them to a small positive number, or take their
-// absolute value.
+// exact: unchanged; clamped: negative eigenvalues are raised to a small positive number; absolute: their absolute
+// values.
 enum class Definiteness { exact, clamped, absolute };
 
 struct Projection {
   Definiteness kind = Definiteness::exact;
-  std::span<const char> vertices = {};  // only elements with a vertex marked here are touched; empty: all of them
+  std::span<const char> vertices = {};  // only elements with a marked vertex are modified; empty: all elements
 
   bool covers(int vertex) const { return vertices.empty() || vertices[vertex]; }
 };

@@ -1,4 +1,4 @@
-// Small-strain elastic constants. Every material reproduces them at rest, whatever its own parameters are.
+// Small-strain elastic constants. Every material has this linearization at rest.
 #pragma once
 
 namespace aspic {

@@ -1,4 +1,4 @@
-// The materials that scenes, the command line and other languages know by name.
+// The materials of the library and their parameters.
 #pragma once
 #include <array>
 #include <string>
@@ -11,7 +11,7 @@ namespace aspic {
 
 inline constexpr int kMaxExtraParameters = 13;
 
-// The parameters of one tet: small-strain constants, and what only some materials have (MaterialInfo::extra).
+// The parameters of one tet: small-strain constants [Pa], and further ones in the order of MaterialInfo::extra.
 template <class T>
 struct MaterialParametersOver {
   LameOver<T> lame;
@@ -27,13 +27,12 @@ struct ExtraParameter {
 struct MaterialInfo {
   std::string name;     // "neo_hookean"
   std::string formula;  // the energy density, one line of plain text
-  std::string remarks;  // basin of convergence, limits, source; one or two sentences
+  std::string remarks;  // limits and source; one or two sentences
   std::vector<ExtraParameter> extra;
   bool barrier = false;  // +inf for det F <= 0
 };
 
 const std::vector<MaterialInfo>& materials();
-
-const MaterialInfo& material_info(std::string_view name);  // throws InvalidInput with the nearest known name
+const MaterialInfo& material_info(std::string_view name);  // throws InvalidInput for an unknown name
 
 }  // namespace aspic

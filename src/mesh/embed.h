@@ -12,10 +12,10 @@ struct Embedding {
   int outside = 0;                             // skin vertices that no tet contains
 };
 
-// A skin vertex outside every tet is extrapolated from the nearest one.
+// Finds the tet of each skin vertex. Vertices outside every tet are extrapolated from the nearest one.
 Embedding embed(const TetMesh& cage, const TriMesh& skin);
 
-// Skin positions for cage positions x (3 per vertex) into `skin_x` (3 per skin vertex).
+// Computes the positions of the skin, 3 per skin vertex [m], from those of the cage, 3 per vertex [m].
 void carry(const Embedding& embedding, std::span<const double> x, std::span<double> skin_x);
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// Meshes of simple shapes. Sizes are in metres; counts are at least 1 (ASPIC_CHECK).
+// Meshes of simple shapes. Units: sizes in m. Requires positive sizes and counts of at least 1.
 #pragma once
 #include "mesh/tet_mesh.h"
 
@@ -12,14 +12,14 @@ enum class BoxCut {
 // [lower, upper] cut into cells[0] x cells[1] x cells[2]. Vertex (i, j, k) has index (i (ny + 1) + j) (nz + 1) + k.
 TetMesh make_box(const Vec3d& lower, const Vec3d& upper, const std::array<int, 3>& cells, BoxCut cut = BoxCut::kuhn);
 
-// Round solids with roughly `size` long edges. All volumes are positive at any size, and the smallest dihedral angle
-// does not fall with it: for size <= the smallest dimension, 33 degrees in the cylinder, 36 in the sphere, and in the
-// torus 28, 23, 10 for minor / major radius = 0.3, 0.5, 0.8.
+// Round solids with edges of about `size` [m]. All volumes are positive. If size is at most the smallest dimension, the
+// smallest dihedral angle is 33 degrees in the cylinder, 36 in the sphere, and in the torus 28, 23 and 10 for minor /
+// major radius = 0.3, 0.5 and 0.8.
 TetMesh make_cylinder(double radius, double height, double size);           // axis z from 0 to height
 TetMesh make_sphere(double radius, double size);                            // about the origin
 TetMesh make_torus(double major_radius, double minor_radius, double size);  // about the z axis; minor < major
 
-// How many tets they have, before any is made; infinite for sizes that no number of tets fills.
+// Return the number of tets without making them; infinite if no number of tets suffices.
 double tets_in_cylinder(double radius, double height, double size);
 double tets_in_torus(double major_radius, double minor_radius, double size);
 

@@ -1,5 +1,5 @@
-// Two numberings of the same mesh: the one that the user's files and selections speak, and the one in which the mesh is
-// stored and worked through, where neighbours in space are near each other in memory.
+// Two numberings of one mesh: that of the user's files and selections, and that of storage, in which neighbors in space
+// are near each other in memory.
 #pragma once
 #include <span>
 #include <vector>
@@ -8,22 +8,22 @@
 
 namespace aspic {
 
-// A permutation of the vertices or the tets. A new one changes nothing.
+// A permutation of the vertices or the tets; the identity by default.
 class Renumbering {
  public:
   Renumbering() = default;
-  explicit Renumbering(std::vector<int> user_of_stored);  // the user's number of each element, in the order of storage
+  explicit Renumbering(std::vector<int> user_of_stored);  // the user's number of each stored element
 
   int to_user(int stored) const { return user_.empty() ? stored : user_[stored]; }
   int from_user(int user) const { return stored_.empty() ? user : stored_[user]; }
   std::vector<int> to_user(std::vector<int> stored) const;  // ascending
 
-  // Values of every element, `components` each, one element after another.
+  // Reorders values of all elements, `components` numbers per element.
   std::vector<double> to_user(std::span<const double> stored, int components = 1) const;
   std::vector<double> from_user(std::span<const double> user, int components = 1) const;
 
   bool is_identity() const { return user_.empty(); }
-  // The elements of another part behind those of this one; `count` and `more` of them.
+  // Appends the permutation of `more` elements to this one, which has `count`.
   void append(int count, const Renumbering& part, int more);
 
  private:

@@ -19,16 +19,16 @@ struct LineSearchOptions {
   double alpha_max = 1;
   double sufficient_decrease = 1e-4;  // c, in (0, 1)
   double shrink = 0.5;                // p, in (0, 1)
-  double tolerance = 1e-10;           // tol: smaller steps are given up as stuck
+  double tolerance = 1e-10;           // tol: the search is stuck at smaller steps
   DecreaseTest test = DecreaseTest::textbook;
-  Deadline deadline = {};  // no further trial afterwards; the first is made
+  Deadline deadline = {};  // no trials afterwards, except the first
 };
 
 struct Trial {
   double alpha = 0;
   double value = 0;       // E(x + alpha d)
   double bound = 0;       // the largest value that the test accepts
-  bool by_slope = false;  // the difference to E(x) drowns in round-off: judged by the slope at the trial
+  bool by_slope = false;  // the difference to E(x) is below round-off; judged by the slope at the trial
   bool accepted = false;
 };
 
@@ -39,9 +39,9 @@ struct LineSearchResult {
   bool gradient_known = false;  // `trial_gradient` holds the gradient at the accepted trial
 };
 
-// Near convergence the differences of E drown in round-off; a trial whose value lies within that noise, when the
-// decrease that is asked for does too, is judged by the slope there (approximate Wolfe condition, [Hager and Zhang
-// 2005]). `trial` receives x + alpha d, and `trials` every one that was made.
+// Searches along d from x. Near convergence differences of E are below round-off: if both the difference and the
+// required decrease are, the slope at the trial decides (approximate Wolfe condition, [Hager and Zhang 2005]). Writes x
+// + alpha d to `trial`, its gradient to `trial_gradient` if computed, and all trials to `trials`.
 LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<const double> d, const Evaluation& value,
                            double slope /* g.d */, const LineSearchOptions& options, std::span<double> trial,
                            std::span<double> trial_gradient, std::vector<Trial>& trials);

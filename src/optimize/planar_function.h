@@ -1,5 +1,4 @@
-// A smooth function f(x, y) as an objective of the minimisers. Vectors are padded to one whole 3x3 block: z takes no
-// part, so that the minimum is at z = 0.
+// A smooth function f(x, y) as an objective. Vectors are padded to one 3x3 block; the minimum is at z = 0.
 #pragma once
 #include <array>
 #include <string>
@@ -15,7 +14,7 @@ struct PlanarHessian {
   double xx = 0, xy = 0, yy = 0;
 };
 
-// The quadratic approximation of a function about a point: what Newton's method minimises.
+// The quadratic approximation of a function about a point: the function that Newton's method minimizes.
 struct QuadraticModel {
   Planar center{};
   double value = 0;

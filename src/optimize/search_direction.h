@@ -1,4 +1,4 @@
-// Where to go next: the open slot "d = ?" of the minimisation loop.
+// Search directions: the open slot "d = ?" of the minimization loop.
 #pragma once
 #include <optional>
 #include <span>
@@ -12,41 +12,43 @@
 namespace aspic {
 
 struct DirectionReport : Work {
-  int projected_elements = 0;    // whose Hessians were made definite
-  bool projected = false;        // a projected Hessian was used where the exact one was wanted
-  bool kept = false;             // the Hessian of an iteration before served once more
+  int projected_elements = 0;    // with modified Hessians
+  bool projected = false;        // a modified Hessian replaced the exact one
+  bool kept = false;             // the Hessian of an earlier iteration was reused
   bool truncated = false;        // the linear solve ended at a direction of negative curvature
   bool stopped = false;          // the deadline passed
-  double stoppable_seconds = 0;  // by the deadline's clock, of what could have been stopped
+  double stoppable_seconds = 0;  // time of the part that a deadline can stop, by its clock
   double hessian_seconds = 0, factorize_seconds = 0, solve_seconds = 0;  // wall time
 };
 
-// What the minimiser asks and knows. Relative residuals between which an inner solve may choose: as loose as the method
-// bears, and no tighter than is enough for the end of the minimisation [Kelley 1995, eq. 6.20].
+// The accuracy of inner linear solves: the relative residual lies between `enough`, which suffices for the end of the
+// minimization, and `loosest` [Kelley 1995, eq. 6.20].
 struct InnerAccuracy {
   double loosest = 0.1;
   double enough = 0;
-  Deadline deadline = {};            // of the computation: a solve that can be stopped by then is, and d is what it has
-  std::optional<double> value = {};  // E(x), where steps are judged by E
+  Deadline deadline = {};            // iterative solves stop there and return their iterate as d
+  std::optional<double> value = {};  // E(x), if known
 };
 
 class SearchDirection {
  public:
   virtual ~SearchDirection() = default;
   virtual std::string_view name() const = 0;
-  virtual std::string description() const { return std::string(name()); }  // with what it decided, and why
+  virtual std::string description() const {
+    return std::string(name());
+  }  // with its choices and their reasons, for logs
 
-  // A minimisation begins: forget the last one.
+  // Starts a minimization: drops everything kept from the last one.
   virtual void begin() {}
-  // Writes d; false when no descent direction could be found. Inner solves need be no more exact than
-  // `accuracy` says.
+  // Computes the direction d at x from the gradient g, 3 numbers per block row each. Returns false if no descent
+  // direction was found.
   virtual bool compute(Objective& E, std::span<const double> x, std::span<const double> g,
                        const InnerAccuracy& accuracy, std::span<double> d, DirectionReport& report) = 0;
-  // The last direction was of no use: none was found, or no step along it decreases E. True: compute again, there is a
-  // more cautious way.
+  // Called if there was no direction, or no step along it decreases E. Returns true if a more cautious direction
+  // exists: compute() is then called again.
   virtual bool retreat() { return false; }
 
-  // Whether x + d estimates the minimiser, so that the size of d tells how far it is.
+  // Returns whether x + d estimates the minimizer, so that |d| estimates the distance to it.
   virtual bool estimates_minimiser() const { return false; }
 };
 

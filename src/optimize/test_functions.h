@@ -37,13 +37,13 @@ class Quadratic : public PlanarFunction {
   PlanarHessian H_;
 };
 
-// What is known of a function.
+// Facts about a test function.
 struct TestFunction {
   std::string name, formula, remarks;
   Planar minimizer{};
   double minimum = 0;
-  Planar start{};           // from where it is usually minimised
-  Planar lower{}, upper{};  // the region that is worth looking at
+  Planar start{};           // the usual initial guess
+  Planar lower{}, upper{};  // the region to plot
 };
 std::vector<TestFunction> test_functions();
 TestFunction test_function_info(const std::string& name);                     // throws InvalidInput: an unknown name

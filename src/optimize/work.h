@@ -1,4 +1,4 @@
-// How much was computed. Counts, unlike times, are the same in every run.
+// Counts of the work done. Unlike times, they are the same in every run.
 #pragma once
 #include "linalg/linear_solver.h"
 

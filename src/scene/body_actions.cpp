@@ -6,8 +6,10 @@
 #include <optional>
 
 #include "base/error.h"
+#include "dynamics/model_builder.h"
 #include "dynamics/pins.h"
 #include "energy/linear_load.h"
+#include "energy/pressure.h"
 #include "energy/rayleigh_damping.h"
 #include "energy/springs.h"
 #include "mesh/surface.h"
@@ -29,6 +31,7 @@ struct Builder {
   std::vector<std::string>& notes;
   std::vector<PointSpring> point_springs;
   std::vector<Spring> springs;
+  int pressures = 0;  // that were added
 
   SelectionScope scope(const PlacedBody& body) const { return {body.mesh, up, body.name()}; }
 };
@@ -178,7 +181,7 @@ class LoadDensity {
       vector_.emplace(*value, ExpressionVariables::position_and_time);
       place_ = value->place;
     } else {
-      const Value& p = scene["pressure"];
+      const Value& p = scene["dead_pressure"];
       pressure_.emplace(p.is_text() ? p.text() : number_text(p.number()), ExpressionVariables::position_and_time);
       place_ = p.place;
     }
@@ -241,6 +244,37 @@ void add_tractions(const Builder& builder, const PlacedBody& body, std::vector<L
   }
 }
 
+// Each is a term of its own: pressure, pressure_2, ...
+void add_pressures(Builder& builder, const PlacedBody& body) {
+  const Array& pressures = list_of(body, "pressure");
+  if (pressures.empty()) return;
+  const std::vector<Triangle> boundary = boundary_triangles(body.mesh, 0, body.mesh.tet_count());
+  for (const Value& scene : pressures) {
+    const Value& value = scene["value"];
+    const Expression p(value.is_text() ? value.text() : number_text(value.number()),
+                       ExpressionVariables::position_and_time);
+    if (p.depends_on_position())
+      throw error_at(value.place,
+                     "value: a pressure that follows the surface is the same all over it, so its formula "
+                     "may use t alone (a load of X, Y, Z that keeps its direction: dead_pressure of a "
+                     "[[body.traction]])");
+    std::vector<Triangle> patch = select_triangles(scene["where"], builder.scope(body), boundary);
+    for (Triangle& t : patch)
+      for (int& v : t) v = body.model_vertex(v);
+    const int number = ++builder.pressures;
+    const auto of_time = [p, place = value.place](double t) {
+      try {
+        return p.at({}, t);
+      } catch (const InvalidInput& e) {  // maybe long after the scene was read
+        throw error_at(place, e.what());
+      }
+    };
+    of_time(0);
+    builder.model.loads.push_back(make_pressure(number == 1 ? "pressure" : "pressure_" + std::to_string(number),
+                                                builder.model.mesh, std::move(patch), of_time));
+  }
+}
+
 void add_body_forces(const Builder& builder, const PlacedBody& body, std::vector<LoadGroup>& groups) {
   for (const Value& scene : list_of(body, "force")) {
     LoadGroup group{LoadDensity(scene), {}};
@@ -272,20 +306,14 @@ void add_linear_load(Model& model, const char* name, std::vector<LoadGroup> grou
   model.loads.push_back(make_linear_load(name, std::move(constant), add));  // a formula that fails at 0 fails here
 }
 
-void add_gravity(Model& model, const Vec3d& gravity) {
-  std::vector<double> force;
-  for (const double mass : model.mass->vertex_mass())
-    for (int r = 0; r < 3; ++r) force.push_back(mass * gravity[r]);
-  add_linear_load(model, "gravity", std::move(force));
-}
-
 void add_loads(Builder& builder, const Vec3d& gravity) {
-  add_gravity(builder.model, gravity);
+  add_linear_load(builder.model, "gravity", weights(*builder.model.mass, gravity));
   std::vector<LoadGroup> per_volume, per_area;
   for (const PlacedBody& body : builder.bodies) {
     add_body_forces(builder, body, per_volume);
     add_tractions(builder, body, per_area);
     add_springs(builder, body);
+    add_pressures(builder, body);
   }
   Model& model = builder.model;
   add_linear_load(model, "body_force", std::move(per_volume));
@@ -317,7 +345,7 @@ void add_damping(PlacedBody& body, size_t index, MassKind kind, SceneFiles& file
 void add_actions(std::vector<PlacedBody>& bodies, const Vec3d& gravity, MassKind mass, SceneFiles& files, Model& model,
                  std::vector<std::string>& notes) {
   const double g = std::sqrt(dot(gravity, gravity));
-  Builder builder{bodies, g > 0 ? (-1 / g) * gravity : Vec3d{{0, 1, 0}}, model, notes, {}, {}};
+  Builder builder{bodies, g > 0 ? (-1 / g) * gravity : Vec3d{{0, 1, 0}}, model, notes, {}, {}, 0};
   for (const PlacedBody& body : bodies) add_pins(builder, body);
   add_loads(builder, gravity);
   add_grabs(bodies, model);

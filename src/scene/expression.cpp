@@ -202,6 +202,11 @@ double Expression::at(const Vec3d& X, double t) const {
 
 bool Expression::depends_on_time() const { return impl_->parser.GetUsedVar().count("t") > 0; }
 
+bool Expression::depends_on_position() const {
+  const auto& used = impl_->parser.GetUsedVar();
+  return used.size() > used.count("t");
+}
+
 const std::string& Expression::text() const { return impl_->text; }
 
 std::vector<NamedMeaning> expression_functions() {

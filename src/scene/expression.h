@@ -28,6 +28,7 @@ class Expression {
   double evaluate(const Vec3d& X, double t = 0) const;  // the same, but infinite or NaN where it is not defined
   bool holds_at(const Vec3d& X) const { return at(X) != 0; }
   bool depends_on_time() const;
+  bool depends_on_position() const;
   const std::string& text() const;
 
  private:

@@ -10,6 +10,7 @@
 #include "material/registry.h"
 #include "mesh/locate.h"
 #include "mesh/tet_shape.h"
+#include "mesh/vertices.h"
 #include "scene/schema.h"
 #include "scene/tables.h"
 #include "scene/value.h"
@@ -118,11 +119,9 @@ void write_material(const std::filesystem::path& path, const FittedMaterial& mat
       ASPIC_CHECK(numbers.size() == material.mesh.tets.size());
       fields.push_back({name, 1, numbers});
     }
-  std::vector<double> points;
-  for (const Vec3d& X : material.mesh.rest) points.insert(points.end(), {X[0], X[1], X[2]});
   std::vector<Field> model;
   if (!material.model.empty()) model.push_back({kModelField + material.model, 1, {1}, FieldType::int32});
-  write_vtu(path, points, material.mesh.tets, {}, fields, model);
+  write_vtu(path, rest_positions(material.mesh), material.mesh.tets, {}, fields, model);
 }
 
 MaterialSampling sampling(const FittedMaterial& material, std::span<const Vec3d> centroids) {

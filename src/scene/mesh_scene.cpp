@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "mesh/vertices.h"
 #include "scene/overrides.h"
 #include "scene/placement.h"
 #include "scene/sag.h"
@@ -53,9 +54,7 @@ Stiffness stiffness_for(const TetMesh& mesh, double base) {
   const Box box = bounding_box(mesh.rest);
   const double height = std::max(box.upper[1] - box.lower[1], 1e-9);
   const double least = kDensity * kGravity * height / kStrain;
-  std::vector<int> held;
-  for (int v = 0; v < mesh.vertex_count(); ++v)
-    if (mesh.rest[v][1] <= box.lower[1] + base * height) held.push_back(v);
+  std::vector<int> held = vertices_where(mesh, [&](const Vec3d& X) { return X[1] <= box.lower[1] + base * height; });
   const double depth = sag(mesh, std::move(held),
                            {.young = least, .poisson = kPoisson, .density = kDensity, .gravity = {{0, -kGravity, 0}}});
   const double share = depth / (kSag * largest_extent(box));

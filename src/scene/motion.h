@@ -1,14 +1,11 @@
 // Prescribed motions of pins and of the targets of springs.
 #pragma once
-#include <functional>
 #include <vector>
 
-#include "math/small.h"
+#include "dynamics/model.h"
 #include "scene/value.h"
 
 namespace aspic {
-
-using Motion = std::function<Vec3d(const Vec3d& start, double time)>;
 
 // Empty for "fixed". `starts` are the positions at time 0, whose mean is the default centre of a rotation.
 Motion make_motion(const Value& motion, const std::vector<Vec3d>& starts);

@@ -7,7 +7,6 @@
 #include <fstream>
 #include <map>
 
-#include "scene/explanation.h"
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
 #include "io/mesh_file.h"
@@ -15,6 +14,7 @@
 #include "io/vtu.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
+#include "scene/explanation.h"
 #include "scene/run_directory.h"
 #include "scene/scene_cases_test.h"
 #include "scene/value.h"
@@ -89,7 +89,7 @@ class Files {
             vertices({20, 31}) + "\nstiffness = 200\ntarget = [3, 2, 1]\n" + "[[body.spring]]\nbetween = [[" +
             vertex(25) + ", " + vertex(40) + "]]\nstiffness = 300\n" + "[[body.spring]]\nbetween = [[" + vertex(50) +
             ", 2]]\nto_body = \"box\"\nstiffness = 400\n" + "[[body.traction]]\nwhere = " + vertices(lowest()) +
-            "\npressure = 50\n" + "[[body.force]]\nwhere = " + vertices(lowest()) + "\nvalue = [0, 100, \"X\"]\n" +
+            "\ndead_pressure = 50\n" + "[[body.force]]\nwhere = " + vertices(lowest()) + "\nvalue = [0, 100, \"X\"]\n" +
             "[[body]]\nname = \"box\"\nshape = { box = { lower = [4, 0, 0], upper = [5, 1, 1], cells = [2, 1, 1] } "
             "}\n" +
             "skin = \"skin.obj\"\ntranslate = [0, 0.5, 0]\n");

@@ -1,4 +1,4 @@
-// The results of a run: one directory that ParaView, Blender and a spreadsheet can open, valid at every instant.
+// The results of a run in one directory, which ParaView, Blender and spreadsheets can open. It is valid at all times.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -14,7 +14,8 @@ class RunDirectory {
   // Creates the directory with scene.toml, frame 0 and the indices. Throws InvalidInput when it exists (unless
   // overwrite, which only ever removes files that a run writes) or cannot be written.
   static RunDirectory create(const std::filesystem::path& path, const Scene& scene, ExistingRun existing);
-  // Continues an earlier run: restores the simulation from the newest readable checkpoint and drops later frames.
+  // Continues an earlier run: restores the simulation from the newest readable checkpoint and removes later frames.
+  // Throws InvalidInput if there is no run to continue.
   static RunDirectory resume(const std::filesystem::path& path, Scene& scene);
   ~RunDirectory();
   RunDirectory(RunDirectory&&) noexcept;
@@ -24,7 +25,7 @@ class RunDirectory {
   void finish(const Simulation& simulation);                             // last checkpoint, indices, closes files
 
   const std::filesystem::path& path() const;
-  std::filesystem::path trace_folder(int first_step) const;  // where a trace that begins after that step belongs
+  std::filesystem::path trace_folder(int first_step) const;  // folder of a trace that begins after the step
 
  private:
   struct Impl;
@@ -32,7 +33,7 @@ class RunDirectory {
   std::unique_ptr<Impl> impl_;
 };
 
-// The resolved scene of a run directory, to be loaded before resuming.
+// Returns the path of the resolved scene of a run directory, which resume() needs.
 std::filesystem::path scene_of_run(const std::filesystem::path& run);
 
 }  // namespace aspic

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "base/error.h"
-#include "energy/linear_load.h"
+#include "dynamics/model_builder.h"
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
 #include "io/folder_test.h"
@@ -27,33 +27,24 @@ constexpr double kDensity = 1000;  // [kg/m^3]
 
 // A soft bar of 16 vertices, held at x = 0, that sags under gravity.
 Model sagging_bar() {
-  Model model;
-  model.mesh = make_box({{0, 0, 0}}, {{3, 1, 1}}, {3, 1, 1});
-  const int tets = model.mesh.tet_count();
-  model.bodies = {{"soft bar", 0, model.mesh.vertex_count(), 0, tets}};
-  model.density.assign(static_cast<size_t>(tets), kDensity);
-  model.tet_fields = {{"young", std::vector<double>(static_cast<size_t>(tets), 1e5)}};
-  model.mass = std::make_unique<MassMatrix>(model.mesh, model.density, MassKind::consistent);
-  const std::vector<MaterialParameters> parameters(static_cast<size_t>(tets), {lame_from_young_poisson(1e5, 0.3), {}});
-  model.elasticity.push_back(make_tet_elasticity("neo_hookean", model.mesh, 0, parameters));
-  std::vector<double> force(3 * static_cast<size_t>(model.mesh.vertex_count()), 0.0);
-  for (int t = 0; t < tets; ++t) add_body_force(model.mesh, t, {{0, -9.81 * kDensity, 0}}, force);
-  model.loads.push_back(make_linear_load("gravity", force));
-  model.pins = {{"wall", {0, 1, 2, 3}, {}}};
+  Model model = ModelBuilder(make_box({{0, 0, 0}}, {{3, 1, 1}}, {3, 1, 1}), "soft bar")
+                    .material("neo_hookean", {.young = 1e5, .poisson = 0.3})
+                    .density(kDensity)
+                    .gravity({{0, -9.81, 0}})
+                    .pin("wall", {0, 1, 2, 3})
+                    .build();
+  model.tet_fields = {{"young", std::vector<double>(model.density.size(), 1e5)}};
   return model;
 }
 
 Scene sagging_scene(const OutputOptions& output = {.checkpoint_every = 0}, const SimulationOptions& options = {}) {
   Model model = sagging_bar();
-  State state;
-  for (const Vec3d& X : model.mesh.rest) state.q.insert(state.q.end(), X.a, X.a + 3);
-  state.qdot.assign(state.q.size(), 0.0);
   const BoundarySurface boundary = boundary_surface(model.mesh);
   Skin skin{boundary.surface, embed(model.mesh, boundary.surface), "soft bar"};
   return {.name = "bar",
           .resolved = "name = \"bar\"\nyoung = 1e5\n",
           .notes = {},
-          .simulation = Simulation(std::move(model), std::move(state), options),
+          .simulation = Simulation(std::move(model), options),
           .skins = {std::move(skin)},
           .steps = kRunSteps,
           .output = output,

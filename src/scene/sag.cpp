@@ -4,9 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "dynamics/model_builder.h"
 #include "dynamics/simulation.h"
-#include "energy/linear_load.h"
-#include "material/lame.h"
 #include "mesh/components.h"
 
 namespace aspic {
@@ -34,35 +33,22 @@ std::vector<int> with_loose_parts(const TetMesh& mesh, std::vector<int> held) {
   return held;
 }
 
-Model model_of(TetMesh mesh, std::vector<int> held, const SagOptions& options) {
-  Model model;
-  model.mesh = std::move(mesh);
-  const int tets = model.mesh.tet_count();
-  model.bodies = {{"body", 0, model.mesh.vertex_count(), 0, tets}};
-  model.density.assign(tets, options.density);
-  model.mass = std::make_unique<MassMatrix>(model.mesh, model.density, MassKind::lumped);
-  const std::vector<MaterialParameters> parameters(tets, {lame_from_young_poisson(options.young, options.poisson), {}});
-  model.elasticity.push_back(make_tet_elasticity("linear", model.mesh, 0, parameters));
-  std::vector<double> weight;
-  for (const double mass : model.mass->vertex_mass())
-    for (int r = 0; r < 3; ++r) weight.push_back(mass * options.gravity[r]);
-  model.loads.push_back(make_linear_load("gravity", std::move(weight)));
-  model.pins.push_back({"held", std::move(held), {}});
-  return model;
-}
-
 }  // namespace
 
 double sag(TetMesh mesh, std::vector<int> held, const SagOptions& options) {
-  State start;
-  for (const Vec3d& X : mesh.rest) start.q.insert(start.q.end(), {X[0], X[1], X[2]});
-  start.qdot.assign(start.q.size(), 0.0);
-  const std::vector<double> X = start.q;
+  const std::vector<double> X = at_rest(mesh).q;
   std::vector<int> fixed = with_loose_parts(mesh, std::move(held));
   // The end of a long step, so that what hangs by a hinge has an answer, too.
   SimulationOptions statics{.h = kLongStep, .integrator = "backward_euler"};
   statics.solver.minimize.tolerance = 1e-3;
-  Simulation simulation(model_of(std::move(mesh), std::move(fixed), options), std::move(start), statics);
+  Simulation simulation(ModelBuilder(std::move(mesh))
+                            .material("linear", {.young = options.young, .poisson = options.poisson})
+                            .density(options.density)
+                            .mass(MassKind::lumped)
+                            .gravity(options.gravity)
+                            .pin("held", std::move(fixed))
+                            .build(),
+                        statics);
   if (!is_success(simulation.step().status)) return std::numeric_limits<double>::quiet_NaN();
   const std::vector<double>& q = simulation.state().q;
   double largest = 0;

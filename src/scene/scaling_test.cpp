@@ -157,7 +157,7 @@ std::vector<Case> materials_and_loads() {
                    kSagging + "[[body.spring]]\nwhere = \"X > <0.3999 m>\"\nstiffness = <300 N/m>\n" +
                        "motion = { linear = { velocity = [0, 0, <2 m/s>] } }\n"});
   cases.push_back({"loaded", "",
-                   kSagging + "[[body.traction]]\nwhere = \"Y > <0.0999 m>\"\npressure = <500 Pa>\n" +
+                   kSagging + "[[body.traction]]\nwhere = \"Y > <0.0999 m>\"\ndead_pressure = <500 Pa>\n" +
                        "[[body.force]]\nvalue = [0, 0, <2e4 N/m^3>]\n"});
   cases.push_back(
       {"thrown", "", kBeam + kRubber + "velocity = [<1 m/s>, <2 m/s>, 0]\n" + "angular_velocity = [0, 0, <5 1/s>]\n"});

@@ -1,4 +1,4 @@
-// From a TOML file, or from a mesh alone, to a simulation that is ready to run.
+// Makes a simulation from a TOML scene, or from a mesh file alone.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -29,47 +29,47 @@ struct Skin {
 
 struct Scene {
   std::string name;                // file name without extension
-  std::string resolved;            // TOML with every default filled in: rerunning it gives the same bits
-  std::vector<std::string> notes;  // each default that was chosen, with its reason; warnings of the doctor
+  std::string resolved;            // TOML with all defaults filled in; running it gives the same bits
+  std::vector<std::string> notes;  // chosen defaults with reasons; warnings about meshes
   Simulation simulation;           // its model is renumbered; model().numbering leads back to the user's numbers
   std::vector<Skin> skins;         // one per body
   int steps = 0;                   // of the whole run
   OutputOptions output;
-  // What `resolved` refers to, by the names it uses there ("inputs/bunny.msh"): files to copy, and meshes that were
-  // made from a surface.
+  // The inputs of `resolved` by their names there ("inputs/bunny.msh"): files to copy, and meshes that were made from a
+  // surface.
   std::vector<std::pair<std::string, std::filesystem::path>> input_files = {};
   std::vector<std::pair<std::string, TetMesh>> generated_meshes = {};
 };
 
-// Puts them below `folder`, beside which `resolved` can be run again. Throws InvalidInput.
+// Writes the inputs below `folder`, so that `resolved` can be run from there. Throws InvalidInput.
 void write_inputs(const Scene& scene, const std::filesystem::path& folder);
 
-// Told what is about to be done when that takes more than a moment: "checking 5821794 tets of body 'liver'".
+// Called before work that takes seconds, with a description: "checking 5821794 tets of body 'liver'".
 using Announce = std::function<void(const std::string& what)>;
 
-// How many tets all bodies together may have.
+// The maximum number of tets of all bodies together.
 struct TetLimit {
   double tets = 2e7;
-  std::string why = "are generated";  // after "at most 2e+07"
-  bool counts_files = false;          // meshes that are read, too, not only those that are generated
-  std::int64_t memory = std::numeric_limits<std::int64_t>::max();  // [bytes] to be taken, however much more is free
+  std::string why = "are generated";                               // after "at most 2e+07"
+  bool counts_files = false;                                       // applies to meshes that are read, too
+  std::int64_t memory = std::numeric_limits<std::int64_t>::max();  // maximum memory [bytes]
 };
 
 struct SceneOptions {
   std::vector<std::string> overrides = {};  // "material.young=2e5", "time.step=0.005", "body.bunny.scale=2"
-  std::filesystem::path mesher = {};        // aspic-mesh; empty: found by itself
+  std::filesystem::path mesher = {};        // path of aspic-mesh; empty: searched
   bool allow_outside = false;               // read files from outside the scene's folder and the folder above it
-  Announce announce = {};                   // empty: nobody listens
+  Announce announce = {};                   // empty: not called
   TetLimit limit = {};
   double mesher_seconds = 0;               // wall time after which filling a surface fails; 0: the mesher's default
-  std::function<void(Model&)> amend = {};  // adds to the model what no scene can name; called before it is simulated
+  std::function<void(Model&)> amend = {};  // changes the model before it is simulated
 };
 
 // A .toml file is a scene; any mesh file becomes one with sensible defaults. Throws InvalidInput with file, line,
 // column, value, remedy and nearest known name.
 Scene load_scene(const std::filesystem::path& path, const SceneOptions& options = {});
 
-// The same schema as a page: docs/scene.md is this text.
+// Returns the reference of all scene keys, docs/scene.md.
 std::string scene_reference();
 
 }  // namespace aspic

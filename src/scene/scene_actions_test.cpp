@@ -60,6 +60,24 @@ TEST(ScenePins, HoldingADirectionTwiceIsRefused) {
   EXPECT_THAT(refusal(kCube + pin("where = \"all\"\naxes = \"y\"\ndirection = [0, 0, 1]")), HasSubstr("direction"));
 }
 
+// Under pressure on all sides the Cauchy stress is -p I, on the areas as they are then: those of a dead load are
+// larger.
+TEST(SceneLoads, APressureFollowsTheSurfaceADeadOneDoesNot) {
+  const auto stress_under = [](const std::string& load_text) {
+    Scene scene =
+        load("gravity = [0, 0, 0]\n[time]\nstep = 1\nintegrator = \"quasi_static\"\n[solver]\ntolerance = 1e-10\n" +
+             kCube + "material = { young = 1e4, poisson = 0.2 }\n" + pin("where = { vertices = [0] }") + load_text);
+    const StepReport report = scene.simulation.step();
+    EXPECT_TRUE(is_success(report.status));
+    EXPECT_LT(std::abs(report.ledger_error), 1e-9 * std::abs(report.potential_total));
+    return scene.simulation.tet_fields().cauchy[0];
+  };
+  EXPECT_NEAR(stress_under("[[body.pressure]]\nwhere = \"all\"\nvalue = \"-1000 * t\"\n"), 1000, 1e-4);
+  EXPECT_LT(stress_under("[[body.traction]]\nwhere = \"all\"\ndead_pressure = -1000\n"), 970);
+  EXPECT_THAT(refusal(kCube + "[[body.pressure]]\nwhere = \"all\"\nvalue = \"100 * X\"\n"),
+              AllOf(HasSubstr("beam.toml:6:"), HasSubstr("dead_pressure")));
+}
+
 TEST(SceneLoads, FollowTheTimeAndWorkInTheLedger) {
   const std::string text =
       "gravity = [0, 0, 0]\n[time]\nstep = 0.5\nintegrator = \"quasi_static\"\n" + kCube + pin("where = \"x < 0.1\"");
@@ -75,7 +93,7 @@ TEST(SceneLoads, FollowTheTimeAndWorkInTheLedger) {
   };
   const std::string face = "[[body.traction]]\nwhere = \"x > 0.999\"\n";
   EXPECT_NEAR(pulled(face + "value = [\"100 * t\", 0, 0]\n", 2), 100, 1e-9);
-  EXPECT_NEAR(pulled(face + "pressure = \"-100 * t * (1 + 0 * Y)\"\n", 1), 50, 1e-9);
+  EXPECT_NEAR(pulled(face + "dead_pressure = \"-100 * t * (1 + 0 * Y)\"\n", 1), 50, 1e-9);
   EXPECT_NEAR(pulled("[[body.force]]\nvalue = [\"10 * min(t, 0.6)\", 0, 0]\n", 2), 6, 1e-9);
 }
 

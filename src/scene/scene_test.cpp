@@ -134,9 +134,9 @@ TEST(Scene, TractionAndPressureAddUpToForceTimesArea) {
   };
   const Vec3d expected{{50 * 0.1 / 1000, 0, 0}};
   EXPECT_LT(distance(velocity("[[body.traction]]\nwhere = \"x > 0.999\"\nvalue = [50, 0, 0]\n"), expected), 1e-12);
-  EXPECT_LT(distance(velocity("[[body.traction]]\nwhere = \"x < 0.001\"\npressure = \"50\"\n"), expected), 1e-12);
+  EXPECT_LT(distance(velocity("[[body.traction]]\nwhere = \"x < 0.001\"\ndead_pressure = \"50\"\n"), expected), 1e-12);
   EXPECT_LT(distance(velocity("[[body.force]]\nvalue = [50, 0, 0]\n"), expected), 1e-12);
-  EXPECT_LT(distance(velocity("[[body.traction]]\nwhere = \"all\"\npressure = 50\n"), {{0, 0, 0}}), 1e-12);
+  EXPECT_LT(distance(velocity("[[body.traction]]\nwhere = \"all\"\ndead_pressure = 50\n"), {{0, 0, 0}}), 1e-12);
 }
 
 TEST(Scene, PinsMoveAsTold) {
@@ -197,7 +197,7 @@ TEST(Scene, ASelectionOfNothingIsRefusedWithTheExtent) {
                     HasSubstr("from (0, 0, 0) to (1, 1, 1)")));
   EXPECT_THAT(refusal(kCube + "[[body.pin]]\nwhere = { vertices = [27] }\n"),
               AllOf(HasSubstr("27"), HasSubstr("beyond the last vertex of body 'cube', 26")));
-  EXPECT_THAT(refusal(kCube + "[[body.traction]]\nwhere = { vertices = [0, 1] }\npressure = 1\n"),
+  EXPECT_THAT(refusal(kCube + "[[body.traction]]\nwhere = { vertices = [0, 1] }\ndead_pressure = 1\n"),
               HasSubstr("no boundary triangle"));
   EXPECT_THAT(refusal(kCube + "[[body.force]]\nwhere = \"z > 5\"\nvalue = [0, 0, 0]\n"), HasSubstr("no tet"));
   EXPECT_THAT(refusal(kCube + "[[body.pin]]\nwhere = \"1 / x\"\n"), AllOf(HasSubstr(":5:"), HasSubstr("inf")));

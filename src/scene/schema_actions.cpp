@@ -32,10 +32,11 @@ void add_damping(Schema& s) {
 }
 
 void add_where(Schema& s) {
-  s.sections.push_back({"where", "where = ... of a pin, spring, traction or force",
-                        "A selection by rest position: of vertices; of boundary triangles (by centroid) for a "
-                        "traction; of tets (by centroid) for a force. One that selects nothing is an error. A string "
-                        "is a formula of X, Y, Z (or x, y, z) that is not 0 for what is meant: \"y > 0.9 && x < 0\"."});
+  s.sections.push_back(
+      {"where", "where = ... of a pin, spring, traction, pressure or force",
+       "A selection by rest position: of vertices; of boundary triangles (by centroid) for a "
+       "traction or pressure; of tets (by centroid) for a force. One that selects nothing is an error. A string "
+       "is a formula of X, Y, Z (or x, y, z) that is not 0 for what is meant: \"y > 0.9 && x < 0\"."});
   add_keys(s, "where",
            {{.name = "box", .accepts = kTable, .table = "region_box", .meaning = "inside a box"},
             {.name = "sphere", .accepts = kTable, .table = "region_sphere", .meaning = "inside a sphere"},
@@ -248,11 +249,21 @@ void add_loads(Schema& s) {
            .unit = "Pa",
            .meaning = "of the centroid (X, Y, Z) of each triangle and of the time t"});
   add_key(s, "traction",
-          {.name = "pressure",
+          {.name = "dead_pressure",
            .accepts = kNumber | kMovingExpression,
            .unit = "Pa",
            .meaning = "against the outward normal at rest; of the centroid (X, Y, Z) and of the time t"});
-  s.alternatives.push_back({"traction", {{"value"}, {"pressure"}}, true});
+  s.alternatives.push_back({"traction", {{"value"}, {"dead_pressure"}}, true});
+
+  s.sections.push_back({"pressure", "[[body.pressure]]",
+                        "A pressure that follows the surface: it stays normal to it and acts on its deformed area."});
+  add_key(s, "pressure", where_key());
+  add_key(s, "pressure",
+          {.name = "value",
+           .accepts = kNumber | kMovingExpression,
+           .unit = "Pa",
+           .required = true,
+           .meaning = "against the outward normal: positive presses; the same all over the surface, of the time t"});
 
   s.sections.push_back({"force", "[[body.force]]", "A force per volume of the rest shape."});
   Key everywhere = where_key();

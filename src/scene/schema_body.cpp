@@ -75,7 +75,11 @@ void add_body(Schema& s) {
        {.name = "pin", .accepts = kTables, .table = "pin", .meaning = "vertices whose positions are prescribed"},
        {.name = "spring", .accepts = kTables, .table = "spring", .meaning = "springs"},
        {.name = "grab", .accepts = kTables, .table = "grab", .meaning = "points that a hand pulls along a path"},
-       {.name = "traction", .accepts = kTables, .table = "traction", .meaning = "dead loads on the surface"},
+       {.name = "traction",
+        .accepts = kTables,
+        .table = "traction",
+        .meaning = "loads on the surface that keep their direction"},
+       {.name = "pressure", .accepts = kTables, .table = "pressure", .meaning = "pressures that follow the surface"},
        {.name = "force", .accepts = kTables, .table = "force", .meaning = "dead loads per volume"}});
   s.alternatives.push_back({"body", {{"mesh", "mesh_size"}, {"shape"}}, true});
 }

@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "base/error.h"
 #include "mesh/tet_shape.h"
+#include "mesh/vertices.h"
 #include "scene/expression.h"
 #include "scene/placement.h"
 #include "scene/tables.h"
 
 namespace aspic {
 namespace {
-
-using Predicate = std::function<bool(const Vec3d&)>;
 
 // Selections by height reach a little further than their fraction, so that a flat base is whole despite round-off.
 constexpr double kHeightSlack = 1e-9;

@@ -23,12 +23,13 @@ const std::vector<double> kLoads = {.25, .5, 1, 1.5, 2, 3, 4, 5.5, 7.5, 10};
 // The drops of a strip of length 1 and height 1/40 with n cells through it.
 std::vector<double> drops(int n, const std::string& material, const std::vector<TipLoad>& loads) {
   const double height = 1.0 / 40, width = height / n;
-  Model model = make_model(make_layer(40 * n, n, width,
-                                      [height](double x, double y) {
-                                        return std::array{x, (y - 0.5) * height};
-                                      }),
-                           {.material = material, .young = 1, .poisson = 0, .gravity = {}});
-  model.pins.push_back({"wall", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] < 1e-9; }), {}});
+  Model model = model_of(make_layer(40 * n, n, width,
+                                    [height](double x, double y) {
+                                      return std::array{x, (y - 0.5) * height};
+                                    }),
+                         {.material = material, .young = 1, .poisson = 0, .gravity = {}})
+                    .pin("wall", [](const Vec3d& X) { return X[0] < 1e-9; })
+                    .build();
   model.loads.push_back(make_plane_hold(model.mesh, 1e3 * width));  // so narrow a strip would buckle sideways
   const double area = height * width, inertia = width * height * height * height / 12;
   model.loads.push_back(make_growing_load(

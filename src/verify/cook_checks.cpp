@@ -22,11 +22,12 @@ double tip(int n, const Cook& cook, const std::string& taken) {
   const TetMesh mesh = make_layer(n, n, thickness, [](double x, double y) {
     return std::array{48 * x, 44 * x + y * (44 - 28 * x)};
   });
-  Model model = make_model(mesh, {.material = taken, .young = cook.young, .poisson = cook.poisson, .gravity = {}});
-  model.pins.push_back({"wall", vertices_where(mesh, [](const Vec3d& X) { return X[0] < 1e-9; }), {}});
-  model.loads.push_back(make_plane_hold(mesh, 1e5 * cook.young));
-  model.loads.push_back(
-      make_growing_load(traction_on(mesh, [](const Vec3d& X) { return X[0] > 48 - 1e-9; }, {{0, cook.traction, 0}})));
+  const auto is_loaded = [](const Vec3d& X) { return X[0] > 48 - 1e-9; };
+  Model model = model_of(mesh, {.material = taken, .young = cook.young, .poisson = cook.poisson, .gravity = {}})
+                    .pin("wall", [](const Vec3d& X) { return X[0] < 1e-9; })
+                    .load(make_plane_hold(mesh, 1e5 * cook.young))
+                    .load(make_growing_load(traction_on(mesh, is_loaded, {{0, cook.traction, 0}})))
+                    .build();
   const std::vector<int> middle =
       vertices_where(mesh, [](const Vec3d& X) { return X[0] > 48 - 1e-9 && std::abs(X[1] - 52) < 1e-9; });
   const Simulation simulation = equilibrium(std::move(model), 2, "Cook's membrane", 1e-9);

@@ -27,8 +27,9 @@ void check_differences(const Subject& subject, Findings& found) {
   Findings orders;  // after the errors
   for (const MaterialInfo& info : materials()) {
     const std::string taken = subject.taken_for(info.name);
-    auto V = make_tet_elasticity(taken, mesh, 0,
-                                 std::vector<MaterialParameters>(mesh.tet_count(), parameters_of(taken, 1, 0.4)));
+    auto V = make_tet_elasticity(
+        taken, mesh, 0,
+        std::vector<MaterialParameters>(mesh.tet_count(), material_parameters(taken, {.young = 1, .poisson = 0.4})));
     Couplings couplings;
     V->add_couplings(couplings);
     const BlockPattern pattern = make_pattern(mesh.vertex_count(), couplings);

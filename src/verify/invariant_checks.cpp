@@ -27,7 +27,7 @@ std::vector<double> deformed(const TetMesh& mesh) {
 std::unique_ptr<TetElasticity> heterogeneous(const std::string& material, const TetMesh& mesh) {
   std::vector<MaterialParameters> parameters;
   for (int t = 0; t < mesh.tet_count(); ++t)
-    parameters.push_back(parameters_of(material, 1 + 0.1 * t, 0.1 + 0.004 * t));
+    parameters.push_back(material_parameters(material, {.young = 1 + 0.1 * t, .poisson = 0.1 + 0.004 * t}));
   return make_tet_elasticity(material, mesh, 0, parameters);
 }
 

@@ -113,7 +113,8 @@ SpaceError manufactured_error(const std::string& material, const std::string& ta
   Model model = make_model(mesh, {.material = taken, .young = 1, .poisson = poisson, .gravity = {}});
   model.pins.push_back(
       {"boundary", boundary_vertices(mesh), [](const Vec3d& X, double t) { return (1 - t) * X + t * Exact(X).x; }});
-  model.loads.push_back(make_growing_load(load_of(material, parameters_of(material, 1, poisson), mesh, rest)));
+  model.loads.push_back(make_growing_load(
+      load_of(material, material_parameters(material, {.young = 1, .poisson = poisson}), mesh, rest)));
   const Simulation simulation = equilibrium(std::move(model), 2, material);
   SpaceError error{1.0 / n, 0, 0};
   const std::vector<Point> points = quadrature();

@@ -18,7 +18,7 @@ std::string number(double x) {
 StretchedBox measured(const Subject& subject, const std::string& material, double poisson, double l,
                       const Uniaxial& expected) {
   const std::string taken = subject.taken_for(material);
-  return stretched_box(taken, parameters_of(taken, 1, poisson), l, expected.lateral);
+  return stretched_box(taken, material_parameters(taken, {.young = 1, .poisson = poisson}), l, expected.lateral);
 }
 
 void check_table(const Subject& subject, Findings& found) {

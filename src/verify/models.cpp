@@ -4,61 +4,16 @@
 #include <stdexcept>
 
 #include "base/check.h"
-#include "energy/linear_load.h"
-#include "material/lame.h"
 
 namespace aspic::verify {
 
-MaterialParameters parameters_of(const std::string& material, double young, double poisson) {
-  MaterialParameters p{lame_from_young_poisson(young, poisson), {}};
-  const auto& extra = material_info(material).extra;
-  for (size_t k = 0; k < extra.size(); ++k) p.extra[k] = extra[k].fallback;
-  return p;
-}
-
-Model make_model(TetMesh mesh, const ModelOptions& options) {
-  Model model;
-  model.mesh = std::move(mesh);
-  const int tets = model.mesh.tet_count(), vertices = model.mesh.vertex_count();
-  model.bodies = {{"body", 0, vertices, 0, tets}};
-  model.density.assign(tets, options.density);
-  model.mass = std::make_unique<MassMatrix>(model.mesh, model.density, options.mass);
-  const std::vector<MaterialParameters> parameters(tets,
-                                                   parameters_of(options.material, options.young, options.poisson));
-  model.elasticity.push_back(make_tet_elasticity(options.material, model.mesh, 0, parameters));
-  std::vector<double> weight;
-  for (int v = 0; v < vertices; ++v)
-    for (int r = 0; r < 3; ++r) weight.push_back(model.mass->vertex_mass()[v] * options.gravity[r]);
-  model.loads.push_back(make_linear_load("gravity", weight));
-  return model;
-}
-
-std::vector<int> vertices_where(const TetMesh& mesh, const std::function<bool(const Vec3d&)>& predicate) {
-  std::vector<int> vertices;
-  for (int v = 0; v < mesh.vertex_count(); ++v)
-    if (predicate(mesh.rest[v])) vertices.push_back(v);
-  return vertices;
-}
-
-std::vector<double> at_vertices(const TetMesh& mesh, const std::function<Vec3d(const Vec3d&)>& f) {
-  std::vector<double> values;
-  for (const Vec3d& X : mesh.rest) {
-    const Vec3d v = f(X);
-    values.insert(values.end(), {v[0], v[1], v[2]});
-  }
-  return values;
-}
-
-State at_rest(const TetMesh& mesh) {
-  State state;
-  state.q = at_vertices(mesh, [](const Vec3d& X) { return X; });
-  state.qdot.assign(state.q.size(), 0.0);
-  return state;
-}
-
-Simulation simulate(Model model, SimulationOptions options) {
-  State start = at_rest(model.mesh);
-  return Simulation(std::move(model), std::move(start), std::move(options));
+ModelBuilder model_of(TetMesh mesh, const ModelOptions& options) {
+  ModelBuilder builder(std::move(mesh));
+  builder.material(options.material, {.young = options.young, .poisson = options.poisson})
+      .density(options.density)
+      .mass(options.mass)
+      .gravity(options.gravity);
+  return builder;
 }
 
 void take_steps(Simulation& simulation, int count, const std::string& what) {

@@ -1,10 +1,11 @@
 // Small models that several checks and tests share, and steps that must succeed.
 #pragma once
-#include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "dynamics/model_builder.h"
 #include "dynamics/modes.h"
 #include "dynamics/simulation.h"
 
@@ -17,15 +18,15 @@ struct ModelOptions {
   Vec3d gravity{{0, -9.81, 0}};  // [m/s^2]
 };
 
-// The constants of one tet; what only some materials have takes its default.
-MaterialParameters parameters_of(const std::string& material, double young, double poisson);
-// One body of all the tets, with its weight as the first load; nothing is held.
-Model make_model(TetMesh mesh, const ModelOptions& options);
+// Returns the builder of one body of all the tets, with its weight as the first load; nothing is held yet.
+ModelBuilder model_of(TetMesh mesh, const ModelOptions& options = {});
+inline Model make_model(TetMesh mesh, const ModelOptions& options) {
+  return model_of(std::move(mesh), options).build();
+}
 
-std::vector<int> vertices_where(const TetMesh& mesh, const std::function<bool(const Vec3d&)>& predicate);
-std::vector<double> at_vertices(const TetMesh& mesh, const std::function<Vec3d(const Vec3d&)>& f);  // 3 per vertex
-State at_rest(const TetMesh& mesh);
-Simulation simulate(Model model, SimulationOptions options = {});  // from rest
+inline Simulation simulate(Model model, SimulationOptions options = {}) {  // from rest
+  return Simulation(std::move(model), std::move(options));
+}
 
 // Throws std::runtime_error, naming `what`, when one of the steps does not converge.
 void take_steps(Simulation& simulation, int count, const std::string& what);

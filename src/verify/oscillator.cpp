@@ -4,26 +4,18 @@
 
 #include "base/check.h"
 #include "energy/rayleigh_damping.h"
-#include "energy/springs.h"
 
 namespace aspic::verify {
 
 Model oscillator_model(const OscillatorOptions& options) {
-  Model model;
-  model.mesh.rest = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}};
-  model.mesh.tets = {{0, 1, 2, 3}};
-  model.bodies = {{"tet", 0, 4, 0, 1}};
-  model.density = {24};
-  model.mass = std::make_unique<MassMatrix>(model.mesh, model.density, MassKind::lumped);
-  model.elasticity.push_back(make_tet_elasticity("neo_hookean", model.mesh, 0, std::vector<MaterialParameters>(1)));
-  std::vector<PointSpring> springs;
-  for (int v = 0; v < 4; ++v) {
-    const Vec3d rest = model.mesh.rest[v];
-    springs.push_back({v, options.stiffness, [rest, offset = options.offset](double t) {
-                         return rest + Vec3d{{offset(t), 0, 0}};
-                       }});
-  }
-  model.loads.push_back(make_point_springs("springs", springs));
+  const auto target = [offset = options.offset](const Vec3d& X, double t) { return X + Vec3d{{offset(t), 0, 0}}; };
+  Model model = ModelBuilder({{{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}, {{0, 1, 2, 3}}, {}})
+                    .material("neo_hookean", std::vector<MaterialParameters>(1))  // without stiffness
+                    .density(24)
+                    .mass(MassKind::lumped)
+                    .springs(
+                        "springs", [](const Vec3d&) { return true; }, options.stiffness, target)
+                    .build();
   if (options.damping > 0) model.damping.push_back(make_rayleigh_damping(*model.mass, options.damping, nullptr, 0));
   return model;
 }

@@ -13,14 +13,11 @@ namespace {
 
 constexpr double kLayerYoung = 1e7;  // [Pa], with 1000 kg/m^3: waves of 100 m/s
 
-Model clamped_layer(TetMesh mesh, const std::string& material, double young, double poisson, double density) {
-  const auto wall = vertices_where(mesh, [](const Vec3d& X) { return X[0] < 1e-9; });
-  auto hold = make_plane_hold(mesh, 1e3 * young);
-  Model model = make_model(
-      std::move(mesh), {.material = material, .young = young, .poisson = poisson, .density = density, .gravity = {}});
-  model.pins.push_back({"wall", wall, {}});
-  model.loads.push_back(std::move(hold));
-  return model;
+Model clamped_layer(const TetMesh& mesh, const std::string& material, double young, double poisson, double density) {
+  return model_of(mesh, {.material = material, .young = young, .poisson = poisson, .density = density, .gravity = {}})
+      .pin("wall", [](const Vec3d& X) { return X[0] < 1e-9; })
+      .load(make_plane_hold(mesh, 1e3 * young))
+      .build();
 }
 
 // A strip 1 m long and 0.05 m high of n cells through its height.
@@ -53,13 +50,12 @@ void check_bar(const Subject& subject, Findings& found) {
   std::vector<std::vector<double>> by_mesh;
   for (const int n : {8, 16, 32}) {
     TetMesh mesh = make_box({{0, 0, 0}}, {{1, 0.02, 0.02}}, {n, 1, 1});
-    const auto wall = vertices_where(mesh, [](const Vec3d& X) { return X[0] < 1e-9; });
-    Model model =
-        make_model(mesh, {.material = material, .young = subject.stiffness * kLayerYoung, .poisson = 0, .gravity = {}});
-    model.pins.push_back({"wall", wall, {}});
-    // Held sideways: this bar does not bend.
-    model.loads.push_back(make_plane_hold(mesh, 1e3 * kLayerYoung));
-    model.loads.push_back(make_plane_hold(mesh, 1e3 * kLayerYoung, 1));
+    const Model model =
+        model_of(mesh, {.material = material, .young = subject.stiffness * kLayerYoung, .poisson = 0, .gravity = {}})
+            .pin("wall", [](const Vec3d& X) { return X[0] < 1e-9; })
+            .load(make_plane_hold(mesh, 1e3 * kLayerYoung))  // held sideways: this bar does not bend
+            .load(make_plane_hold(mesh, 1e3 * kLayerYoung, 1))
+            .build();
     by_mesh.push_back(frequencies(model, 2));
   }
   expect_limits(found, {"first", "second"}, {25, 75}, {1e-4, 1e-3}, by_mesh,

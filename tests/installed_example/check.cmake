@@ -1,5 +1,6 @@
-# cmake -DBUILD=... -DSOURCE=... -DWORK=... -DGENERATOR=... -P check.cmake
-# Installs into an empty prefix, builds the example against what lies there, runs it.
+# cmake -DBUILD=... -DROOT=... -DWORK=... -DGENERATOR=... -DCOMPILER=... -P check.cmake
+# Installs into an empty prefix, checks which headers lie there, builds the examples against them and runs two.
+cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${WORK})
 function(step what)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
@@ -10,10 +11,44 @@ function(step what)
 endfunction()
 
 step("installing" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-step("configuring the example" ${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR}
-     -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=${WORK}/prefix)
-step("building the example" ${CMAKE_COMMAND} --build ${WORK}/build)
-step("running the example" ${WORK}/build/installed_example)
+
+file(GLOB_RECURSE installed RELATIVE ${WORK}/prefix/include ${WORK}/prefix/include/*)
+file(GLOB public RELATIVE ${ROOT}/include ${ROOT}/include/aspic/*.h)
+if(NOT installed STREQUAL public)
+  message(FATAL_ERROR "installed headers: ${installed}\npublic headers: ${public}")
+endif()
+foreach(header ${installed})
+  file(STRINGS ${WORK}/prefix/include/${header} includes REGEX "^ *# *include *\"")
+  foreach(include ${includes})
+    string(REGEX REPLACE ".*\"(.*)\".*" "\\1" included ${include})
+    if(NOT included IN_LIST installed)
+      message(FATAL_ERROR "${header} includes ${included}, which is not installed")
+    endif()
+  endforeach()
+endforeach()
+
+# The length of what the compiler reads stands for the time that it takes.
+function(count_lines header result)
+  file(WRITE ${WORK}/lines.cpp "#include <${header}>\n")
+  execute_process(COMMAND ${COMPILER} -std=c++20 -E -P -I${WORK}/prefix/include ${WORK}/lines.cpp OUTPUT_VARIABLE text
+                  COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX REPLACE "[^\n]" "" newlines "${text}")
+  string(LENGTH "${newlines}" lines)
+  set(${result} ${lines} PARENT_SCOPE)
+endfunction()
+count_lines(vector of_vector)
+count_lines(aspic/aspic.h of_aspic)
+math(EXPR limit "6 * ${of_vector}")
+message(STATUS "lines after the preprocessor: ${of_aspic}, of <vector>: ${of_vector}")
+if(of_aspic GREATER limit)
+  message(FATAL_ERROR "aspic.h has ${of_aspic} lines after the preprocessor; at most 6 times those of <vector>: ${limit}")
+endif()
+
+step("configuring the examples" ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK}/build -G ${GENERATOR}
+     -DCMAKE_PREFIX_PATH=${WORK}/prefix -DINCLUDE_FOLDER=${WORK}/prefix/include -DEXAMPLES=${ROOT}/examples -DCMAKE_CXX_COMPILER=${COMPILER})
+step("building the examples" ${CMAKE_COMMAND} --build ${WORK}/build)
+step("running the first example" ${WORK}/build/01_hello)
+step("running the example with a custom material" ${WORK}/build/02_custom_material)
 if(NOT EXISTS ${WORK}/prefix/bin/aspic)
   message(FATAL_ERROR "the program aspic was not installed")
 endif()

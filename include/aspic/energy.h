@@ -1,0 +1,10 @@
+// Terms of the potential energy V(x), each with gradient and Hessian. Derive from Energy to add your own.
+#pragma once
+#include "energy/damping.h"
+#include "energy/energy.h"
+#include "energy/linear_load.h"
+#include "energy/mass.h"
+#include "energy/pressure.h"
+#include "energy/rayleigh_damping.h"
+#include "energy/springs.h"
+#include "energy/tet_elasticity.h"

@@ -1,0 +1,3 @@
+// Small dense algebra: vectors and matrices of three dimensions over any scalar.
+#pragma once
+#include "math/small.h"

@@ -1,0 +1,7 @@
+// Tetrahedral meshes: plain data, generators of simple shapes, mesh files, and selection of vertices.
+#pragma once
+#include "io/mesh_file.h"
+#include "mesh/generators.h"
+#include "mesh/numbering.h"
+#include "mesh/tet_mesh.h"
+#include "mesh/vertices.h"

@@ -1,0 +1,5 @@
+// A model is what does not change in time: mesh, mass, the terms of V, pins. A state is what does.
+#pragma once
+#include "dynamics/model.h"
+#include "dynamics/model_builder.h"
+#include "dynamics/state.h"

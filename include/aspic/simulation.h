@@ -1,0 +1,10 @@
+// Simulation advances a model in time, one minimization per step. IncrementalPotential is the function E that a step
+// minimizes, for loops of one's own.
+#pragma once
+#include "dynamics/incremental_potential.h"
+#include "dynamics/initial_guess.h"
+#include "dynamics/integrator_facts.h"
+#include "dynamics/pins.h"
+#include "dynamics/simulation.h"
+#include "dynamics/stable_step.h"
+#include "dynamics/step_report.h"

@@ -1,0 +1,43 @@
+// Computes the initial guess of a step's minimization.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "dynamics/initial_guess.h"
+#include "optimize/minimize.h"
+
+namespace aspic {
+
+struct StepTools;
+
+// What is known when a minimisation for a later time starts.
+struct GuessContext {
+  std::span<const double> q, qdot;         // the latest positions and velocities
+  double ahead = 0;                        // from them to the minimisation's time [s]; 0 in statics
+  double time = 0;                         // of the minimisation [s]
+  std::span<const double> predicted = {};  // q~ of the stage
+  double beta = 0;                         // of the stage, whose end is q~ + beta^2 acc [s]; 0 in statics
+  bool tries_last_increment = true;        // `best` does; not where it is the extrapolated guess
+};
+
+struct Guess {
+  InitialGuess used = InitialGuess::current;
+  Evaluation value;  // of E there
+};
+
+class Guesser {  // holds the scratch vectors
+ public:
+  // Writes the start into `q` and says which it was. Pinned vertices stand where they are at the time. A guess of
+  // infinite energy gives way to the best; when all are infinite, the pins are led (see lead_pins). Adds what was spent
+  // to `work`.
+  Guess guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
+              MinimizeReport& work);
+
+ private:
+  // Writes the candidate into trial_; false when there is none.
+  bool propose(const StepTools& tools, InitialGuess candidate, const GuessContext& known);
+
+  std::vector<double> trial_;
+};
+
+}  // namespace aspic

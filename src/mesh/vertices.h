@@ -1,0 +1,22 @@
+// Vertices of a mesh chosen by where they are, and values computed at all of them.
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "mesh/tet_mesh.h"
+
+namespace aspic {
+
+// A question about a point X of the rest shape [m].
+using Predicate = std::function<bool(const Vec3d& X)>;
+
+// Returns the vertices that satisfy the predicate, ascending; empty when there are none.
+std::vector<int> vertices_where(const TetMesh& mesh, const Predicate& predicate);
+
+// Returns f(X) of every vertex, 3 numbers per vertex.
+std::vector<double> at_vertices(const TetMesh& mesh, const std::function<Vec3d(const Vec3d& X)>& f);
+
+// Returns X of every vertex, 3 numbers per vertex [m].
+std::vector<double> rest_positions(const TetMesh& mesh);
+
+}  // namespace aspic

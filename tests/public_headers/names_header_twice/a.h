@@ -1,0 +1,3 @@
+// An axle.
+#pragma once
+#include "part/axle.h"

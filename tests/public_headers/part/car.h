@@ -1,0 +1,5 @@
+#pragma once
+#include "part/wheel.h"
+struct Car {
+  Wheel wheels[4];
+};

@@ -1,0 +1,3 @@
+// A car, without its wheels.
+#pragma once
+#include "part/car.h"
