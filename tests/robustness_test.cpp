@@ -4,11 +4,11 @@
 #include <cmath>
 #include <sstream>
 
-#include "scene/explanation.h"
 #include "io/mesh_file.h"
 #include "material/registry.h"
 #include "mesh/doctor.h"
 #include "mesh/generators.h"
+#include "scene/explanation.h"
 #include "scene/scene_cases_test.h"
 
 namespace aspic {

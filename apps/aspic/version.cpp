@@ -22,10 +22,11 @@ std::string version_text() {
 #else
   text += "assertions  off\n";
 #endif
-  text +=
-      fmt::format("libraries   CLI11 {}, fmt {}.{}.{}, nlohmann_json {}.{}.{}; METIS, Eigen, Spectra, muParser, toml++, zlib, Expat",
-                  CLI11_VERSION, FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100,
-                  NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH);
+  text += fmt::format(
+      "libraries   CLI11 {}, fmt {}.{}.{}, nlohmann_json {}.{}.{}; METIS, Eigen, Spectra, muParser, toml++, zlib, "
+      "Expat",
+      CLI11_VERSION, FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100, NLOHMANN_JSON_VERSION_MAJOR,
+      NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH);
   return text;
 }
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/explanation.h"
 #include "dynamics/simulation.h"
+#include "scene/explanation.h"
 #include "viewer/arguments.h"
 
 namespace aspic::viewer {

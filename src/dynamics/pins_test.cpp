@@ -9,8 +9,8 @@
 #include <tuple>
 
 #include "base/parallel.h"
-#include "scene/explanation.h"
 #include "dynamics/models_test.h"
+#include "scene/explanation.h"
 
 namespace aspic {
 namespace {

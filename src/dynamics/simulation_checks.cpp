@@ -66,10 +66,8 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
       throw InvalidInput(
           "the initial shape has infinite energy: its strain is more than the material can take; choose a "
           "smaller initial deformation or another material");
-    throw InvalidInput("the initial shape has infinite energy: " + std::to_string(inverted.size()) +
-                       " tets are inverted or flat (" + listed(model.numbering.tet.to_user(inverted)) +
-                       "); choose the material stable_neo_hookean, which tolerates inversion, or choose a "
-                       "smaller initial deformation");
+    throw InvertedStart("the initial shape has infinite energy: " + std::to_string(inverted.size()) +
+                        " tets are inverted or flat (" + listed(model.numbering.tet.to_user(inverted)) + ")");
   }
 }
 
@@ -105,8 +103,7 @@ std::optional<SolverConflict> find_conflict(const SimulationOptions& options) {
 void require_possible(const SimulationOptions& options) {
   const double tolerance = options.adaptive.tolerance;
   if (!(tolerance >= 0) || !std::isfinite(tolerance))
-    throw InvalidInput("adaptive.tolerance = " + std::to_string(tolerance) +
-                       "; it must be positive, or 0 for none");
+    throw InvalidInput("adaptive.tolerance = " + std::to_string(tolerance) + "; it must be positive, or 0 for none");
   if (const auto conflict = find_conflict(options)) throw InvalidInput(conflict->reason);
 }
 

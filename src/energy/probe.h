@@ -36,8 +36,8 @@ struct TipPose {
 
 struct PlacedTip {
   explicit PlacedTip(const TipPose& wanted);  // throws InvalidInput for an axis of length 0
-  TipPose pose;                             // with an axis of length 1
-  Mat3d turn;                               // the rotation as a matrix
+  TipPose pose;                               // with an axis of length 1
+  Mat3d turn;                                 // the rotation as a matrix
 };
 
 struct Wrench {

@@ -36,6 +36,8 @@ std::vector<int> with_loose_parts(const TetMesh& mesh, std::vector<int> held) {
 }  // namespace
 
 double sag(TetMesh mesh, std::vector<int> held, const SagOptions& options) {
+  for (int t = 0; t < mesh.tet_count(); ++t)
+    if (!(volume(mesh, t) > 0)) return std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> X = at_rest(mesh).q;
   std::vector<int> fixed = with_loose_parts(mesh, std::move(held));
   // The end of a long step, so that what hangs by a hinge has an answer, too.

@@ -12,7 +12,8 @@ struct SagOptions {
 };
 
 // The largest displacement of the mesh, fixed at the vertices `held`, in linear elasticity, where it is inversely
-// proportional to Young's modulus [m]. Parts that hold none of these vertices do not count. NaN where there is none.
+// proportional to Young's modulus [m]. Parts that hold none of these vertices do not count. NaN where there is
+// none, and for a mesh with inverted tets.
 double sag(TetMesh mesh, std::vector<int> held, const SagOptions& options);
 
 }  // namespace aspic

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/printable.h"
 #include "dynamics/integrator.h"
+#include "dynamics/simulation_checks.h"
 #include "scene/body_actions.h"
 #include "scene/body_material.h"
 #include "scene/body_notes.h"
@@ -101,6 +102,11 @@ class SceneBuilder {
               output_of(*source_.document.find("output")),
               std::move(files_.kept_files),
               std::move(files_.kept_meshes)};
+    } catch (const InvertedStart& e) {
+      throw InvalidInput(
+          source_.file + ": " + e.cause() +
+          "; set material.model = \"stable_neo_hookean\", which tolerates inversion, or choose a smaller "
+          "initial deformation");
     } catch (const InvalidInput& e) {
       throw InvalidInput(source_.file + ": " + e.what());
     }

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "scene/explanation.h"
 #include "material/registry.h"
 #include "random_scenes/draw.h"
+#include "scene/explanation.h"
 
 namespace aspic {
 namespace {
