@@ -57,7 +57,7 @@ bool bench_statics(int n, const std::string& linear, const Arguments& arguments)
   Equilibrium body(std::move(first), rest,
                    {.tolerance = arguments.tolerance, .linear = linear, .adjoint = linear, .solves = 1});
   std::vector<double> thetabar(static_cast<size_t>(body.parameters_per_tet()) * tets);
-  for (int run = 0; run <= arguments.runs; ++run) {  // the first one analyses
+  for (int run = 0; run <= arguments.runs; ++run) {  // the first one analyzes
     body.set_x(rest);
     Stopwatch stopwatch;
     const MinimizeReport report = body.solve();

@@ -1,4 +1,4 @@
-// The sparse Cholesky factorisation on one and two threads, beside CHOLMOD's where it is installed, in alternation.
+// The sparse Cholesky factorization on one and two threads, beside CHOLMOD's where it is installed, in alternation.
 // usage: bench_cholesky [mesh file]...   by default beams and cubes
 // The time of one thread is processor time [ms], that of two is wall time as a share of the wall time of one; least of
 // several runs. Which BLAS CHOLMOD uses is up to the system (LD_LIBRARY_PATH).

@@ -1,4 +1,4 @@
-// CHOLMOD beside the project's own factorisation; without the library its times are zero.
+// CHOLMOD beside the project's own factorization; without the library its times are zero.
 #pragma once
 #include <algorithm>
 #include <limits>

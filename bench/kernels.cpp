@@ -114,7 +114,7 @@ void Registry::add_elements(const std::string& material) const {
   }
 }
 
-// As the minimiser does them: in chunks, with sums in the order of the chunks.
+// As the minimizer does them: in chunks, with sums in the order of the chunks.
 void Registry::add_vectors() const {
   const Place place = place_;
   add("dot", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {

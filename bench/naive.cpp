@@ -1,4 +1,4 @@
-// The beam as one would first write it with Eigen: triplets into a new matrix and a factorisation from scratch in each
+// The beam as one would first write it with Eigen: triplets into a new matrix and a factorization from scratch in each
 // iteration, one loop over the tets for everything, dense 9x12 matrices for the chain rule.
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
@@ -78,7 +78,7 @@ class NaiveBeam {
     weight_ = mass_ * gravity;
   }
 
-  // Minimises E(x) = 1/2 (x - x~)' M (x - x~) + h^2 V(x) with Newton's method; returns the number of iterations.
+  // Minimizes E(x) = 1/2 (x - x~)' M (x - x~) + h^2 V(x) with Newton's method; returns the number of iterations.
   int step() {
     const VectorXd predicted = q_ + h_ * v_;
     VectorXd x = q_;

@@ -51,7 +51,7 @@ std::vector<int> shuffled_order(size_t count) {
   return order;
 }
 
-// Breadth first from a vertex far out, neighbours of low degree first, all reversed [CuthillMcKee1969].
+// Breadth first from a vertex far out, neighbors of low degree first, all reversed [CuthillMcKee1969].
 std::vector<int> reverse_cuthill_mckee(const TetMesh& mesh) {
   const int n = mesh.vertex_count();
   std::vector<std::vector<int>> neighbours(n);

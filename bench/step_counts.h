@@ -17,7 +17,7 @@ struct NamedCount {
   long StepCounts::*count;
 };
 inline constexpr std::array<NamedCount, 9> kCounts = {{
-    {"iterations", &StepCounts::iterations},                // of the minimiser
+    {"iterations", &StepCounts::iterations},                // of the minimizer
     {"trials", &StepCounts::trials},                        // of the line search
     {"values", &StepCounts::values},                        // evaluations of E, each over all elements
     {"gradients", &StepCounts::gradients},                  // likewise

@@ -1,6 +1,6 @@
 // An energy of your own: a floor that pushes back. Every vertex below y = 0 adds
 //   V = k/2 y^2,   dV/dy = k y,   d2V/dy2 = k,
-// to the potential. A jelly cube is dropped onto it, and every step still minimises one function.
+// to the potential. A jelly cube is dropped onto it, and every step still minimizes one function.
 #include <aspic/aspic.h>
 
 #include <algorithm>

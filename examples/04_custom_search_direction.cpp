@@ -13,7 +13,7 @@ class HeavyBall : public SearchDirection {
   explicit HeavyBall(double beta) : beta_(beta) {}
   std::string_view name() const override { return "heavy_ball"; }
 
-  void begin() override { before_.clear(); }  // a new minimisation remembers nothing
+  void begin() override { before_.clear(); }  // a new minimization remembers nothing
 
   bool compute(Objective& E, std::span<const double>, std::span<const double> g, const InnerAccuracy&,
                std::span<double> d, DirectionReport&) override {

@@ -13,7 +13,7 @@ enum ExitCode {
   exit_done = 0,
   exit_internal_error = 1,
   exit_bad_input = 2,
-  exit_unconverged = 3,  // a step, a minimisation; of a check of derivatives: one is wrong; of verify: a row fails
+  exit_unconverged = 3,  // a step, a minimization; of a check of derivatives: one is wrong; of verify: a row fails
   exit_time_limit = 4,   // of `aspic run`: its --time-limit came first
   exit_signal = 128,     // plus the number of the signal: 130 after ctrl-C, 143 after a plain kill
 };

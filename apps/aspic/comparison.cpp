@@ -49,7 +49,7 @@ class Comparer {
   }
 
  private:
-  // Where a step is one minimisation, all methods have the same minimiser to find. A later stage begins with what an
+  // Where a step is one minimization, all methods have the same minimizer to find. A later stage begins with what an
   // earlier one left, and one iteration looks for none.
   void require_one_minimisation() const {
     const std::string& integrator = simulation_.options().integrator;
@@ -151,7 +151,7 @@ class Comparer {
   }
 
   // E lies above its quadratic form M wherever V is convex, so |x - x*|_M <= |g(x)| / sqrt(smallest eigenvalue of M):
-  // a method that is further away than its own gradient and that of the reference allow found another minimiser.
+  // a method that is further away than its own gradient and that of the reference allow found another minimizer.
   void judge(const StepReport& reference, MethodResult& result) const {
     const std::vector<double>& x = simulation_.state().q;
     std::vector<double> dx(x.size()), Mdx(x.size());

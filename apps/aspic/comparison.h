@@ -42,7 +42,7 @@ struct ComparisonOptions {
 };
 
 // Brings the simulation to the start of the step by its own method and solves it by each of them. Throws InvalidInput
-// for an unknown method and for a step that is not one minimisation.
+// for an unknown method and for a step that is not one minimization.
 Comparison compare_methods(Simulation& simulation, const ComparisonOptions& options);
 
 }  // namespace aspic::cli

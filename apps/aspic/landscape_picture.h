@@ -1,4 +1,4 @@
-// E around an iteration of a minimisation, as pictures.
+// E around an iteration of a minimization, as pictures.
 #pragma once
 #include "aspic/plot.h"
 #include "scene/trace.h"

@@ -17,7 +17,7 @@ enum class Wires { none, thin };
 struct ShadedSurface {
   std::string caption;
   TriMesh surface;
-  std::vector<double> values = {};  // one per triangle or one per vertex; grey where not finite; empty: one colour
+  std::vector<double> values = {};  // one per triangle or one per vertex; gray where not finite; empty: one color
 };
 
 struct MeshPicture {
@@ -26,7 +26,7 @@ struct MeshPicture {
   Vec3d eye = {{0.6, -1, 0.45}};      // direction from the surfaces to the eye
   Vec3d up = {{0, 0, 1}};
   Wires wires = Wires::thin;
-  std::string value_label = {};                          // of the colour bar, with the unit
+  std::string value_label = {};                          // of the color bar, with the unit
   std::optional<double> value_min = {}, value_max = {};  // found from the values where not given
   PictureSize size = {800, 480};                         // twice as many pixels; no higher than the panels need
 };

@@ -100,7 +100,7 @@ TEST_F(MeshPictures, ColoursRunFromTheSmallestToTheLargestValue) {
   const auto purple = [](const Pixel& p) { return p[2] > p[1] && p[0] > p[1]; };
   const auto green = [](const Pixel& p) { return p[1] > p[0] && p[1] > p[2]; };
   const auto yellow = [](const Pixel& p) { return p[0] > 150 && p[1] > 130 && p[2] < 100; };
-  const auto half = row.begin() + 300;  // two panels of a little more than 300 pixels, and the colour bar
+  const auto half = row.begin() + 300;  // two panels of a little more than 300 pixels, and the color bar
   EXPECT_TRUE(purple(row[20])) << "the least value, on the left";
   EXPECT_GT(std::count_if(row.begin(), half, green), 50) << "those between";
   EXPECT_GT(std::count_if(row.begin(), half, yellow), 10) << "the largest";

@@ -1,4 +1,4 @@
-// A method of minimisation as one word: NAME[:OPTION...], such as newton:clamped or lbfgs:diagonal.
+// A method of minimization as one word: NAME[:OPTION...], such as newton:clamped or lbfgs:diagonal.
 #pragma once
 #include <string>
 #include <vector>

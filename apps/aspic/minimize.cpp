@@ -1,4 +1,4 @@
-// `aspic minimize`: the minimisers of the simulation on functions of two variables.
+// `aspic minimize`: the minimizers of the simulation on functions of two variables.
 #include "aspic/minimize.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// A minimisation of a function of two variables, step by step: for the table and pictures of `aspic minimize`, and for
+// A minimization of a function of two variables, step by step: for the table and pictures of `aspic minimize`, and for
 // comparisons of methods.
 #pragma once
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace aspic::cli {
 
-// The function that is minimised and what is known of it.
+// The function that is minimized and what is known of it.
 struct Problem {
   std::string name, formula;
   std::unique_ptr<PlanarFunction> function;
@@ -45,7 +45,7 @@ Minimization minimize(const Problem& problem, const SolverOptions& options, cons
 // A contour map with the paths and the rejected trials of several methods. Throws InvalidInput.
 void draw_paths(const std::filesystem::path& path, const std::string& title, const Problem& problem,
                 const std::vector<Minimization>& methods);
-// The surface, and over it the quadratic model that an iteration minimised. Throws InvalidInput.
+// The surface, and over it the quadratic model that an iteration minimized. Throws InvalidInput.
 void draw_model(const std::filesystem::path& path, const Problem& problem, const Minimization& done, int iteration);
 
 }  // namespace aspic::cli

@@ -1,4 +1,4 @@
-// Pictures of a minimisation in the plane.
+// Pictures of a minimization in the plane.
 #include <fmt/format.h>
 
 #include <algorithm>

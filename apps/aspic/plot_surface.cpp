@@ -58,7 +58,7 @@ std::string joined(const std::vector<double>& values) {
   return text;
 }
 
-// The curves of gnuplot's contours lie in a table; each is drawn with the colour of its rank among the levels.
+// The curves of gnuplot's contours lie in a table; each is drawn with the color of its rank among the levels.
 void add_contours(Gnuplot& plot, const SampledFunction& f) {
   const std::vector<double> at = levels(f);
   plot.add("set contour base\nset cntrparam linear\nunset surface\nset cntrparam levels discrete " + joined(at));
@@ -82,7 +82,7 @@ void draw(const std::filesystem::path& path, const ContourMap& map) {
   add_contours(plot, f);
   plot.add(fmt::format("set xrange {}\nset yrange {}", range(f.x.front(), f.x.back()), range(f.y.front(), f.y.back())));
   std::string layers = "plot $contours using 1:2:(rank($3)) with lines lw 1 lc palette notitle";
-  int next = 1;  // blue is the contours' colour
+  int next = 1;  // blue is the contours' color
   for (const PlanarPath& line : map.paths) {
     const std::string ink = color(next);
     next = next % 6 + 1;

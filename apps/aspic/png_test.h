@@ -28,7 +28,7 @@ inline unsigned big_endian(const std::string& bytes, size_t at) {
   return value;
 }
 
-// Each byte was stored as its difference to what its neighbours predict [PNG, 9.2].
+// Each byte was stored as its difference to what its neighbors predict [PNG, 9.2].
 inline int predicted(int filter, int left, int above, int corner) {
   const int p = left + above - corner, a = std::abs(p - left), b = std::abs(p - above), c = std::abs(p - corner);
   const int paeth = a <= b && a <= c ? left : b <= c ? above : corner;

@@ -16,7 +16,7 @@ using LabelledDomain = CGAL::Labeled_mesh_domain_3<Kernel>;
 // Relative to the bounding box: how well intersections with the surface are located.
 inline constexpr double kSurfaceTolerance = 1e-5;
 
-// Labels at the centres of a grid of cells over the bounding box, the crossings between unlike neighbours, and from
+// Labels at the centers of a grid of cells over the bounding box, the crossings between unlike neighbors, and from
 // them some points on the surface of every connected component that the grid can see.
 class LabelGrid {
  public:

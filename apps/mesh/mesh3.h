@@ -1,4 +1,4 @@
-// What the three kinds of domain share: criteria from sizes, refinement, optimisation, and the way back to a TetMesh.
+// What the three kinds of domain share: criteria from sizes, refinement, optimization, and the way back to a TetMesh.
 #pragma once
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Mesh_3/sliver_criteria.h>
@@ -34,7 +34,7 @@ inline constexpr double kRadiusPerEdge = 0.75;
 inline constexpr double kDistancePerRadius = 0.15;
 // Largest diameter of the balls around sharp edges.
 inline constexpr double kProtectedPerEdge = 1;
-inline constexpr double kSliverBound = 12;  // [degrees] smallest dihedral angle that the optimisers aim for
+inline constexpr double kSliverBound = 12;  // [degrees] smallest dihedral angle that the optimizers aim for
 
 // Points that the refinement starts from, given rather than shot at random, so that no component is missed.
 template <class Domain>

@@ -137,7 +137,7 @@ TEST(Bench, AFitFindsTheStifferHalfAndIsSimulated) {
   EXPECT_GT(number(fit["stiffest"]) / number(fit["softest"]), 2);
   EXPECT_FALSE(fit["iterations"].empty());
 
-  // Shown as colours.
+  // Shown as colors.
   EXPECT_EQ(page.scene()["field"], "fitted_young");
   const Picture picture = page.picture();
   double soft = 0, stiff = 0;

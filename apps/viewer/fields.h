@@ -1,4 +1,4 @@
-// The scalar fields that colour a surface.
+// The scalar fields that color a surface.
 #pragma once
 #include <span>
 #include <string>

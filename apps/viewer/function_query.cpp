@@ -61,7 +61,7 @@ SolverOptions options_of(const Json& settings) {
   return options;
 }
 
-struct Seen {  // of the minimisation
+struct Seen {  // of the minimization
   std::vector<IterationRow> rows;
   Json path = Json::array();
   std::vector<CurvePoint> curve;

@@ -1,4 +1,4 @@
-// The minimisation of a function of two variables, for the functions panel.
+// The minimization of a function of two variables, for the functions panel.
 #pragma once
 #include "viewer/arguments.h"
 

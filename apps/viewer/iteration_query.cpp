@@ -29,7 +29,7 @@ double scalar_product(std::span<const double> a, std::span<const double> b) {
 }
 
 // Follows a step while it is repeated, and looks around one of its iterations while that is there. A step of several
-// stages is several minimisations: iterations are counted over all of them, and the path is that of the one meant.
+// stages is several minimizations: iterations are counted over all of them, and the path is that of the one meant.
 class Look {
  public:
   Look(int iteration, double sufficient_decrease, int tets, const Consent& go_on)
@@ -55,8 +55,8 @@ class Look {
   const Consent& go_on_;
 
   int count_ = 0;
-  std::vector<Iterate> before_;  // of this minimisation, until the plane is known
-  bool is_of_path_ = true;       // no later minimisation has begun
+  std::vector<Iterate> before_;  // of this minimization, until the plane is known
+  bool is_of_path_ = true;       // no later minimization has begun
   double value_ = 0, alpha_ = 0;
   std::vector<Trial> tried_;
   std::vector<CurvePoint> curve_;

@@ -183,7 +183,7 @@ TEST(Questions, AboutAnIterationAreAnsweredForAnyStepThatIsHeldAndChangeNothing)
     EXPECT_NEAR(reply["path"][2]["t"].get<double>(), 0, 1e-9);
     if (step > 6) continue;
     const Json& row = page.rows()[step - 1];
-    EXPECT_EQ(reply["value"], row["iterations"][1]["value"]);  // the very same minimisation
+    EXPECT_EQ(reply["value"], row["iterations"][1]["value"]);  // the very same minimization
     EXPECT_EQ(reply["alpha"], row["iterations"][1]["alpha"]);
     EXPECT_EQ(reply["path"].size(), row["iterations"].size() + 1);
   }

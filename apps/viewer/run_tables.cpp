@@ -160,7 +160,7 @@ std::vector<TraceFolder> trace_folders(const RunLayout& layout) {
   return folders;
 }
 
-// Finds the iteration that a row of a trace is about: a step of several minimisations counts from 0 in each.
+// Finds the iteration that a row of a trace is about: a step of several minimizations counts from 0 in each.
 class IterationFinder {
  public:
   explicit IterationFinder(const StepRow& step) {

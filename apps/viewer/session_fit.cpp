@@ -1,4 +1,4 @@
-// The commands of the fit: begun, watched as colours on the body, and simulated.
+// The commands of the fit: begun, watched as colors on the body, and simulated.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -133,7 +133,7 @@ struct Session::Impl {
   void stop_fit(Arguments&);
   void simulate_fit(Arguments&);
   void note_fit(const FitNews& told);
-  void show_fit();  // as colours
+  void show_fit();  // as colors
   void forget_fit();
   void save_material(const std::filesystem::path& folder);
   void require_saved_material() const;  // by what side b is made of; throws InvalidInput

@@ -13,7 +13,7 @@ namespace {
 constexpr int kNeighbours = 12;
 constexpr size_t kMostListed = 5;         // of one kind; the rest is counted
 constexpr double kOffSurface = 0.02;      // of the body's size
-constexpr double kSuspicious = 6;         // times what neighbours differ by
+constexpr double kSuspicious = 6;         // times what neighbors differ by
 constexpr double kNoticeable = 0.05;      // of the largest motion of the case
 constexpr double kReach = 2;              // of a tip, in radii, within which the surface goes its way
 constexpr double kFar = 1;                // of the body's size: a motion that is none
@@ -60,16 +60,16 @@ std::array<Vec3d, 4> solve(std::array<Row4, 4> A, std::array<Vec3d, 4> b) {
 }
 
 struct Expected {
-  Vec3d u{};          // of the marker, by its neighbours
-  double spread = 0;  // median of what the neighbours differ by from such a field
-  double range = 0;   // median of what the neighbours differ by from the marker's expected motion
+  Vec3d u{};          // of the marker, by its neighbors
+  double spread = 0;  // median of what the neighbors differ by from such a field
+  double range = 0;   // median of what the neighbors differ by from the marker's expected motion
 };
 
-// The field u = c + B (X - X_i) / reach that has the least sum of differences |u_j - u| over the neighbours, by
-// reweighted least squares: a neighbour that is an outlier itself hardly counts.
+// The field u = c + B (X - X_i) / reach that has the least sum of differences |u_j - u| over the neighbors, by
+// reweighted least squares: a neighbor that is an outlier itself hardly counts.
 Expected expected(const std::vector<Vec3d>& X, const std::vector<Vec3d>& u, int i, const std::vector<int>& near) {
   constexpr int kSweeps = 8;
-  constexpr double kRidge = 1e-3;  // neighbours in a plane leave the slope across it open
+  constexpr double kRidge = 1e-3;  // neighbors in a plane leave the slope across it open
   const double reach = norm(X[near.back()] - X[i]);
   const auto terms = [&](int j) {
     const Vec3d r = (reach > 0 ? 1 / reach : 0) * (X[j] - X[i]);
@@ -258,7 +258,7 @@ class PositionDiagnosis {
     }
     for (size_t i = 0; i < u.size(); ++i) {
       const double tolerated = kSuspicious * (spread[i] + norm(readings[i].deviation));
-      // The top of a sharp dent differs from its neighbours, but no more than they among themselves, nor than a tip
+      // The top of a sharp dent differs from its neighbors, but no more than they among themselves, nor than a tip
       // that goes so far moves a point so near.
       if (excess[i] > std::max({tolerated, kNoticeable * largest, range[i], by_tip(experiment_.cases[c], X[i])}) &&
           ++outliers_ <= kMostListed)

@@ -28,7 +28,7 @@ class FitFolder {
 
   // A row of history.csv. A resumed fit repeats its first rows, which are there already.
   void add(FitStage stage, const FitIteration& iteration);
-  // weights.csv: the weights of the regulariser that were tried.
+  // weights.csv: the weights of the regularizer that were tried.
   void add_weights(const FitReport& report);
   void finish();  // nothing remains to be resumed
 

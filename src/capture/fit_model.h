@@ -1,4 +1,4 @@
-// What one stage of a fit minimises: a model with its unknowns, its prior and its memory.
+// What one stage of a fit minimizes: a model with its unknowns, its prior and its memory.
 #pragma once
 #include <memory>
 #include <optional>

@@ -134,7 +134,7 @@ void Journal::save_state() {
                                  .integers = {{"journal_bytes", static_cast<std::int64_t>(out_.size())}}});
 }
 
-// The last thing that was replayed is a linearisation: from the state there, the model finds the same equilibria and
+// The last thing that was replayed is a linearization: from the state there, the model finds the same equilibria and
 // matrices again.
 void Journal::catch_up() {
   if (!is_behind_) return;

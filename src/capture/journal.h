@@ -23,7 +23,7 @@ enum class JournalStart { anew, resume };
 
 class Journal : public LeastSquares {
  public:
-  // Writes `stem`.journal and, at every linearisation, `stem`.state; both belong to `fingerprint`. Refers to `model`.
+  // Writes `stem`.journal and, at every linearization, `stem`.state; both belong to `fingerprint`. Refers to `model`.
   // Throws InvalidInput when it cannot resume from the files.
   Journal(LeastSquares& model, ModelState state, std::filesystem::path stem, const std::string& fingerprint,
           JournalStart start);
@@ -41,7 +41,7 @@ class Journal : public LeastSquares {
   bool is_replaying() const { return position_ < end_; }
   // From here on nothing is written: what follows an interruption is no part of the fit.
   void stop_writing();
-  // Brings the model to where the last linearisation was, had that been answered from the file.
+  // Brings the model to where the last linearization was, had that been answered from the file.
   void catch_up();
 
   static void remove(const std::filesystem::path& stem);

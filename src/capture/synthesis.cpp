@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kTipRadius = 0.08;       // relative to the size of the body
 constexpr double kUsualGravity = 9.81;    // [m/s^2]
-constexpr double kLeastArm = 0.01;        // of a force about the centre of the tip, relative to its radius
+constexpr double kLeastArm = 0.01;        // of a force about the center of the tip, relative to its radius
 constexpr double kLeastDeviation = 1e-4;  // of exact data, relative to the largest motion or force
 
 double volume_of(const TetMesh& mesh) {
@@ -235,7 +235,7 @@ class Bench {
     if (load.tip && options_.forces) load.force = found.wrench.force;
     if (load.tip && options_.torques) load.torque = found.wrench.torque;
     largest_force_ = std::max(largest_force_, norm(found.wrench.force));
-    // About the centre of a sphere without friction it vanishes; no gauge tells that.
+    // About the center of a sphere without friction it vanishes; no gauge tells that.
     const double arm = load.tip ? kLeastArm * load.tip->radius : 0;
     largest_torque_ = std::max({largest_torque_, norm(found.wrench.torque), arm * norm(found.wrench.force)});
     data().cases.push_back(std::move(load));

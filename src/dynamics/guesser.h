@@ -10,11 +10,11 @@ namespace aspic {
 
 struct StepTools;
 
-// What is known when a minimisation for a later time starts.
+// What is known when a minimization for a later time starts.
 struct GuessContext {
   std::span<const double> q, qdot;         // the latest positions and velocities
-  double ahead = 0;                        // from them to the minimisation's time [s]; 0 in statics
-  double time = 0;                         // of the minimisation [s]
+  double ahead = 0;                        // from them to the minimization's time [s]; 0 in statics
+  double time = 0;                         // of the minimization [s]
   std::span<const double> predicted = {};  // q~ of the stage
   double beta = 0;                         // of the stage, whose end is q~ + beta^2 acc [s]; 0 in statics
   bool tries_last_increment = true;        // `best` does; not where it is the extrapolated guess

@@ -1,4 +1,4 @@
-// Backward Euler, its linearisation, the second-order backward difference, and the static limit.
+// Backward Euler, its linearization, the second-order backward difference, and the static limit.
 #include <algorithm>
 
 #include "dynamics/implicit_stage.h"

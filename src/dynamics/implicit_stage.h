@@ -37,7 +37,7 @@ class ImplicitStage {
                           std::span<const double> v, StepSolve& solve);
 
   Guesser guesser_;
-  std::vector<double> predicted_, q_;  // q~, the minimiser's positions
+  std::vector<double> predicted_, q_;  // q~, the minimizer's positions
 };
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// E(q) = w/2 (q - q~)' M (q - q~) + f (V(q) + D(q)): its minimiser is the end of an implicit time step.
+// E(q) = w/2 (q - q~)' M (q - q~) + f (V(q) + D(q)): its minimizer is the end of an implicit time step.
 //   backward Euler: w = 1, f = h^2, q~ = q_t + h qdot_t          statics: w = 0, f = 1
 // What pins hold is no variable: the gradient is zero along it, and the Hessian that of the identity (see pins.h).
 #pragma once
@@ -52,7 +52,7 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   // noise[k] += weight * that of part k [N].
   void add_part_noise(std::span<const double> q, double weight, std::span<double> noise) const;
 
-  // What is known of the iterate at which a minimisation ended: nothing there need be evaluated again. Empty elsewhere.
+  // What is known of the iterate at which a minimization ended: nothing there need be evaluated again. Empty elsewhere.
   std::span<const double> known_values(std::span<const double> q) const;  // of the terms of V [J]
   // gradient += weight dV/dx, damping += weight dD/dx [N]; false where they are not known.
   bool add_known_forces(std::span<const double> q, double weight, std::span<double> gradient,
@@ -69,7 +69,7 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
     std::vector<double> gradient, damping;  // f dV/dx and f dD/dx
   };
   // Sets the second derivative of V along a uniform growth of the body at rest, a modulus times the volume [J], its
-  // moment of inertia about the centre [kg m^2] and the largest distance from there [m]: the sizes by which errors are
+  // moment of inertia about the center [kg m^2] and the largest distance from there [m]: the sizes by which errors are
   // judged.
   void measure(const TetMesh& mesh);
   // Divides the vertices into parts: bodies that no tet connects, and regions of a body whose moduli times edge

@@ -14,7 +14,7 @@
 
 namespace aspic {
 
-// What minimisations work with.
+// What minimizations work with.
 struct SolveTools {
   const Model& model;
   const Pins& pins;

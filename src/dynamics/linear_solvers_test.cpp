@@ -11,7 +11,7 @@ namespace {
 
 using namespace testing_models;
 
-// 1 029 vertices, more than multigrid factorises on its coarsest level; stiff, so that the choice of `auto` counts.
+// 1 029 vertices, more than multigrid factorizes on its coarsest level; stiff, so that the choice of `auto` counts.
 Simulation stiff_beam(const std::string& linear) {
   return simulate(beam(6, {.young = 1e8}), {.h = 0.02, .solver = {.linear = linear, .minimize = {.tolerance = 1e-9}}});
 }

@@ -1,4 +1,4 @@
-// Every method of minimisation on elastic bodies.
+// Every method of minimization on elastic bodies.
 #include <gtest/gtest.h>
 
 #include <algorithm>

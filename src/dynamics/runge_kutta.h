@@ -2,7 +2,7 @@
 //   q_i = q + h sum_j A_ij v_j,  v_i = v + h sum_j A_ij acc_j,
 // and the step ends in
 //   q_new = q + h sum_i b_i v_i,  v_new = v + h sum_i b_i acc_i.
-// A stage with A_ii = 0 is explicit, and a solve with the mass matrix; one with A_ii > 0 is a minimisation with
+// A stage with A_ii = 0 is explicit, and a solve with the mass matrix; one with A_ii > 0 is a minimization with
 // beta = h A_ii (see implicit_stage.h) [Hairer 1996, section IV.6].
 #pragma once
 #include <memory>

@@ -182,7 +182,7 @@ struct Simulation::Impl {
     report.status = Status::round_off;
   }
 
-  // A minimisation that stopped early leaves a state to go on from; a step divided for its accuracy does not.
+  // A minimization that stopped early leaves a state to go on from; a step divided for its accuracy does not.
   bool can_go_on(Status status) const {
     if (status == Status::interrupted || status == Status::undefined) return false;
     return !adaptive || is_success(status);
@@ -347,7 +347,7 @@ void Simulation::set_pins(std::vector<Pin> pins) {
   impl_->model.pins = std::move(pins);
   *impl_->pins = Pins(impl_->model.pins, impl_->start.q);
   impl_->E = std::make_unique<IncrementalPotential>(impl_->model, *impl_->pins);
-  // What was factorised has other rows of the identity.
+  // What was factorized has other rows of the identity.
   impl_->direction = make_search_direction(impl_->options.solver);
   impl_->integrator = make_integrator(impl_->options.integrator);
   impl_->stand_at(impl_->state.time);

@@ -1,4 +1,4 @@
-// Advances a model in time, one minimisation per step.
+// Advances a model in time, one minimization per step.
 #pragma once
 #include <memory>
 #include <optional>
@@ -46,7 +46,7 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
 
   // A step that the observer stops, that may not go on, or that takes longer than `time_limit` [s] of the options'
-  // clock is dropped with the status `interrupted`. A limit that is not met changes no bit; within a factorisation
+  // clock is dropped with the status `interrupted`. A limit that is not met changes no bit; within a factorization
   // nothing is stopped.
   StepReport step(const IterationObserver& observe = {}, const Consent& go_on = {}, double time_limit = kNoTimeLimit);
   // Change the subsequent steps. Both throw InvalidInput as the constructor does, and then change nothing.

@@ -43,7 +43,7 @@ class PowerIteration {
 
   StableStep run(size_t size, double weight, bool is_rk4) {
     for (auto* v : {&u_, &Mu_, &Ku_, &Cu_}) v->resize(size);
-    // Neighbours move against each other in the fastest vibration.
+    // Neighbors move against each other in the fastest vibration.
     for (size_t i = 0; i < size; ++i) u_[i] = std::cos(2.4 * static_cast<double>(i)) + 0.1;
     pins_.set_zero(u_);
     StableStep stable{.h = std::numeric_limits<double>::infinity()};

@@ -1,4 +1,4 @@
-// Whether everything that the next step minimises has the derivatives it claims: each term of V and of the damping, the
+// Whether everything that the next step minimizes has the derivatives it claims: each term of V and of the damping, the
 // inertia, and their sum E.
 #pragma once
 #include <string>

@@ -31,7 +31,7 @@ struct Resultants {
 // Whether a step of backward Euler kept the bound that the scheme guarantees.
 enum class EnergyBound {
   none,            // another scheme, or a step that was dropped
-  not_guaranteed,  // the minimiser ended above E at q_s, or q_s has no energy
+  not_guaranteed,  // the minimizer ended above E at q_s, or q_s has no energy
   holds,
   broken,
 };
@@ -45,7 +45,7 @@ struct StepReport : Work {  // of all solves of the step and of this report
   Criterion criterion = Criterion::scale;
   int iterations = 0, trials = 0, projected_hessians = 0;  // sums over all solves
   int elements = 0;                                        // number of tets per evaluation
-  double objective = 0, objective_gradient = 0;            // E and |g| at the end of the last minimisation
+  double objective = 0, objective_gradient = 0;            // E and |g| at the end of the last minimization
   InitialGuess initial_guess = InitialGuess::none;         // of that minimization
   int substeps = 1, rejected = 0;                          // accepted and rejected
   double residual = 0;  // |M a + dV/dx + dD/dx| over the free vertices; maximum over substeps [N]

@@ -14,7 +14,7 @@ using namespace testing_models;
 
 struct BudgetedStep {
   StepReport report;
-  double first_value = 0;  // E at the start of the last minimisation
+  double first_value = 0;  // E at the start of the last minimization
   double time = 0;         // that the step took
   bool stopped_within_solve = false;
 };

@@ -6,14 +6,14 @@
 namespace aspic {
 namespace {
 
-// Enough for threads to share a colour; few enough that the places in which the fronts work fit into a cache.
+// Enough for threads to share a color; few enough that the places in which the fronts work fit into a cache.
 constexpr int64_t kFronts = 8;
 
 }  // namespace
 
-// Fronts advance through equal parts of the list. A colour takes the next group of each front, or lets the front wait
-// where the group would touch one that is already in. Neighbours in the list so come soon after each other, while what
-// they share is still in a cache; with as few colours as possible, each would pass over the whole mesh.
+// Fronts advance through equal parts of the list. A color takes the next group of each front, or lets the front wait
+// where the group would touch one that is already in. Neighbors in the list so come soon after each other, while what
+// they share is still in a cache; with as few colors as possible, each would pass over the whole mesh.
 ColorClasses color_groups(std::span<const std::vector<int>> vertices_of_group, int vertex_count) {
   const int64_t groups = static_cast<int64_t>(vertices_of_group.size());
   std::vector<int> next, end;

@@ -1,4 +1,4 @@
-// Groups of elements that may scatter at the same time: no two groups of one colour share a vertex. Colours are worked
+// Groups of elements that may scatter at the same time: no two groups of one color share a vertex. Colors are worked
 // through in order, so every vertex receives its contributions in an order that does not depend on the threads.
 #pragma once
 #include <span>
@@ -6,7 +6,7 @@
 
 namespace aspic {
 
-using ColorClasses = std::vector<std::vector<int>>;  // the groups of each colour, ascending
+using ColorClasses = std::vector<std::vector<int>>;  // the groups of each color, ascending
 
 // vertices_of_group[i] lists the vertices that group i touches; repeats allowed.
 ColorClasses color_groups(std::span<const std::vector<int>> vertices_of_group, int vertex_count);

@@ -26,12 +26,12 @@ struct Tip {
   double stiffness = 0;  // k of the layer [Pa/m]
 };
 
-// Where the tip is: the centre of the sphere or of the flat end, the way it points, and how it has turned since it
+// Where the tip is: the center of the sphere or of the flat end, the way it points, and how it has turned since it
 // touched the body at rest.
 struct TipPose {
   Vec3d center{};          // [m]
   Vec3d axis{{0, 0, -1}};  // out of the tip; of any length but 0
-  Vec3d rotation{};        // vector of the rotation about the centre since the touch [rad]
+  Vec3d rotation{};        // vector of the rotation about the center since the touch [rad]
 };
 
 struct PlacedTip {
@@ -42,7 +42,7 @@ struct PlacedTip {
 
 struct Wrench {
   Vec3d force{};   // of the tip on the body [N]
-  Vec3d torque{};  // about the centre of the tip [N m]
+  Vec3d torque{};  // about the center of the tip [N m]
 };
 
 class Probe : public SteadyEnergy {

@@ -90,7 +90,7 @@ class TetTerm : public Base {
   Mat3<Pack> F(int batch, Positions x) const { return batches_[batch].deformation_gradient(x); }
   int batch_count() const { return static_cast<int>(batches_.size()); }
 
-  // Batches that scatter: colour after colour, the groups of a colour in parallel.
+  // Batches that scatter: color after color, the groups of a color in parallel.
   template <class Body>
   void for_each_batch(const Body& body) const {
     for (const std::vector<int>& groups : colors_)
@@ -121,17 +121,17 @@ class TetTerm : public Base {
   std::vector<Params<Pack>> params_;
 
  private:
-  // Tets [first, first + count), neighbours near each other.
+  // Tets [first, first + count), neighbors near each other.
   static std::vector<int> locality_order(const TetMesh& mesh, int first, size_t count) {
     std::vector<int> order = morton_order(centroids(mesh, first, count));
     for (int& tet : order) tet += first;
     return order;
   }
 
-  // Coarse enough for threads and to meet again what is in a cache, fine enough to colour small meshes.
+  // Coarse enough for threads and to meet again what is in a cache, fine enough to color small meshes.
   static size_t group_size(size_t tets) { return std::clamp<size_t>(std::bit_floor(tets / 128), 128, 1024); }
 
-  // A batch takes each k-th tet of the group: lanes that are neighbours would add to the same blocks, and each would
+  // A batch takes each k-th tet of the group: lanes that are neighbors would add to the same blocks, and each would
   // have to wait for the sum of the one before.
   template <class ParametersOf>
   void fill_group(int group, const TetMesh& mesh, std::span<const int> tets, const ParametersOf& parameters_of) {

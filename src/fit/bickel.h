@@ -1,6 +1,6 @@
 // The mode of [Bickel 2009], to compare with: per example a linear co-rotated material that explains it, the moduli
 // interpolated in strain space, simulated by incremental loading. Marked non-conservative: what it predicts is not the
-// minimiser of an energy and depends on the path (docs/bickel.md). Also simpler baselines.
+// minimizer of an energy and depends on the path (docs/bickel.md). Also simpler baselines.
 #pragma once
 #include <string>
 #include <vector>
@@ -40,7 +40,7 @@ ExplainedCase explain(const Experiment& experiment, int load_case, const BickelO
 struct BickelPrediction {
   bool ok = false;
   std::string failure;
-  CasePrediction prediction;  // `solve` is of no meaning: nothing is minimised
+  CasePrediction prediction;  // `solve` is of no meaning: nothing is minimized
   int iterations = 0;
   double work = 0;  // done on the body in the increments [J]
 };

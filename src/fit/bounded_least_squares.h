@@ -1,6 +1,6 @@
 // Levenberg-Marquardt within bounds, for few unknowns of which some may end exactly at a bound: coefficients that must
 // not be negative. (fit.h maps bounded quantities smoothly to the whole line, where a bound is infinitely far away.)
-// Each iteration minimises the damped Gauss-Newton model over the box, exactly [Nocedal 2006, alg. 16.3].
+// Each iteration minimizes the damped Gauss-Newton model over the box, exactly [Nocedal 2006, alg. 16.3].
 #pragma once
 #include <span>
 #include <vector>

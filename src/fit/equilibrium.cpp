@@ -123,7 +123,7 @@ struct Equilibrium::Impl {
     return report;
   }
 
-  // The elastic terms hold those of the last solve or those of the linearisation.
+  // The elastic terms hold those of the last solve or those of the linearization.
   void use(const std::vector<MaterialParameters>& wanted) {
     if (in_force == &wanted) return;
     theta.set(wanted);

@@ -18,7 +18,7 @@ struct EquilibriumOptions {
   int max_iterations = 200;          // of Newton's method
   std::string linear = "auto";       // solver of Newton's steps
   std::string adjoint = "auto";      // solver of tangents and adjoints, see linear_solver_names()
-  int solves = 20;                   // of those per linearisation, roughly; for "auto"
+  int solves = 20;                   // of those per linearization, roughly; for "auto"
   double adjoint_tolerance = 1e-11;  // relative residual of those; above what round-off leaves
 };
 
@@ -39,9 +39,9 @@ class Equilibrium {
   std::span<const double> x() const;
   void set_x(std::span<const double> x);
 
-  // Linearises: makes K at x(), for the parameters in force. False: it is not positive definite, so x() is no stable
-  // equilibrium, or it cannot be factorised; there are no derivatives then. What follows belongs to this point until
-  // the next linearisation, whatever is solved between.
+  // Linearizes: makes K at x(), for the parameters in force. False: it is not positive definite, so x() is no stable
+  // equilibrium, or it cannot be factorized; there are no derivatives then. What follows belongs to this point until
+  // the next linearization, whatever is solved between.
   bool factorize();
   std::span<const double> linearized_x() const;                                 // empty: there are no derivatives
   SolveReport solve_stiffness(std::span<const double> b, std::span<double> u);  // K u = b, u = 0 on pinned vertices

@@ -1,4 +1,4 @@
-// Which weight of the regulariser the data support: the one under which they are most probable [MacKay 1992].
+// Which weight of the regularizer the data support: the one under which they are most probable [MacKay 1992].
 #pragma once
 #include <span>
 

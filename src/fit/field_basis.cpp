@@ -11,13 +11,13 @@
 namespace aspic {
 namespace {
 
-// How far a radial function reaches, in the largest distance of a tet from the nearest centre. Every tet then lies well
+// How far a radial function reaches, in the largest distance of a tet from the nearest center. Every tet then lies well
 // inside the support of a function, and some overlap.
 constexpr double kReach = 2.5;
 
 struct Centres {
   std::vector<Vec3d> at;
-  double radius = 0;  // the largest distance of a point from the nearest centre
+  double radius = 0;  // the largest distance of a point from the nearest center
 };
 
 // Farthest-point sampling, from the point next to the middle of all.

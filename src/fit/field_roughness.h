@@ -2,7 +2,7 @@
 // L = V^(1/3) they are numbers that depend neither on its size nor on how finely it is cut:
 //   H1               L^2 / (2 V) int |grad z|^2
 //   total variation  L / V int (sqrt(|grad z|^2 + eps^2) - eps)
-// In a tet, |grad z|^2 = s = 3/4 sum over its four neighbours of ((z_a - z_b) / |X_a - X_b|)^2, X the centroids: exact
+// In a tet, |grad z|^2 = s = 3/4 sum over its four neighbors of ((z_a - z_b) / |X_a - X_b|)^2, X the centroids: exact
 // on the average over the directions of the gradient, and what two-point fluxes are made of.
 #pragma once
 #include <limits>
@@ -30,7 +30,7 @@ class FieldRoughness {
   // g += a normal random vector of covariance A(z).
   void add_noise(std::span<const double> z, std::mt19937_64& random, std::span<double> g) const;
 
-  // A(z) as a matrix: three entries for each pair of neighbours.
+  // A(z) as a matrix: three entries for each pair of neighbors.
   std::vector<MatrixPlace> places() const;
   std::vector<double> entries(std::span<const double> z) const;
 

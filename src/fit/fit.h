@@ -1,4 +1,4 @@
-// Minimises |r(p)|^2 / 2 + weight R(p): the material that explains the measurements.
+// Minimizes |r(p)|^2 / 2 + weight R(p): the material that explains the measurements.
 #pragma once
 #include <functional>
 #include <string>
@@ -18,7 +18,7 @@ struct FitOptions {
   int max_iterations = 100;          // in all
   int max_inner = 100;               // of conjugate gradients, per iteration
   double max_step = 3;               // of any entry of p, per iteration: log E by 3, E by 20
-  double weight = -1;                // of the regulariser; < 0: chosen by `weight_rule`
+  double weight = -1;                // of the regularizer; < 0: chosen by `weight_rule`
   std::string weight_rule = "auto";  // weight_rule_names(); auto: "prior" (1) for few unknowns, else "discrepancy"
   double first_weight = 0;           // where a rule begins; 0: where the prior and the data are about as strong
   int starts = 1;                    // from how many guesses; the best is kept

@@ -1,4 +1,4 @@
-// L-BFGS in the inner product of the prior: the library's minimiser, on f with the preconditioner s R''. One gradient
+// L-BFGS in the inner product of the prior: the library's minimizer, on f with the preconditioner s R''. One gradient
 // per iteration and no product with J'J: for when products cost more than iterations.
 #include <cmath>
 

@@ -143,7 +143,7 @@ TEST_P(Methods, FindFewUnknownsFromExactData) {
   EXPECT_EQ(report.method, GetParam());
 }
 
-// The minimiser of a quadratic is where its gradient is 0, found by differences of nothing but the definition.
+// The minimizer of a quadratic is where its gradient is 0, found by differences of nothing but the definition.
 TEST_P(Methods, EndWhereTheGradientIsZero) {
   Bar bar;
   CurvedModel model(bar.map.size(), 40, 0, 0.1);

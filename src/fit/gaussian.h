@@ -22,7 +22,7 @@ class PriorGaussian : public Gaussian {
  public:
   static constexpr double kWidest = 100;  // of what is fitted, where R says nothing: log E +- 100
 
-  // Refers to the regulariser. weight >= 0.
+  // Refers to the regularizer. weight >= 0.
   PriorGaussian(Regularizer& regularizer, double weight, std::span<const double> p);
 
   int size() const override { return static_cast<int>(p_.size()); }

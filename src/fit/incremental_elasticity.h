@@ -3,7 +3,7 @@
 //   stress = stress_0 + C(E(e_0), nu(e_0)) (e - e_0),   forces = -volume R stress b,   e = R'F - I
 // or, with StressRule::total, stress = C(E(e_0), nu(e_0)) e: the moduli are those of the whole way from rest.
 // NOT the gradient of an energy: what the stress is depends on the path, a closed loop leaves work and stress behind,
-// and there is no value to minimise (docs/bickel.md).
+// and there is no value to minimize (docs/bickel.md).
 #pragma once
 #include <span>
 #include <vector>

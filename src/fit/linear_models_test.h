@@ -100,7 +100,7 @@ inline QuadraticBelief chain_belief(int n, double smooth, double deviation, doub
   return {G, Eigen::VectorXd::Constant(n, guess)};
 }
 
-// m averages over a few neighbours of n values, each with an own weight.
+// m averages over a few neighbors of n values, each with an own weight.
 inline LinearModel averages(int n, int m, double strength, unsigned seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(0, 1);

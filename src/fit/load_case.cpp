@@ -192,7 +192,7 @@ void LoadedBody::restore(std::span<const double> x) {
   prediction_.x = accepted_;
 }
 
-// What comes next depends on nothing but the point of the linearisation, whatever was tried since.
+// What comes next depends on nothing but the point of the linearization, whatever was tried since.
 bool LoadedBody::linearize(std::span<const MaterialParameters> parameters) {
   equilibrium_.set_x(accepted_);
   prediction_.x = accepted_;

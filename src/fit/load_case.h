@@ -33,7 +33,7 @@ class LoadedBody {
   std::span<const double> accepted() const { return accepted_; }
   void restore(std::span<const double> x);  // as if x had been found and accepted
   bool is_linearized() const { return !equilibrium_.linearized_x().empty(); }
-  // x where it is linearised + dx/dtheta dtheta; false: that could not be solved.
+  // x where it is linearized + dx/dtheta dtheta; false: that could not be solved.
   bool predict(std::span<const double> dtheta, std::span<double> x);
   bool multiply(std::span<const double> dtheta, std::span<double> dr);
   bool add_transposed(std::span<const double> w, std::span<double> thetabar);

@@ -69,7 +69,7 @@ class Misfit : public LeastSquares {
 
   int unknowns() const override;
   int residual_count() const override;
-  // Each case starts from the equilibrium of the last linearisation, corrected by the tangent, or else from its last
+  // Each case starts from the equilibrium of the last linearization, corrected by the tangent, or else from its last
   // one; when that fails, the load is applied in parts. The first time, each starts from the case before it in its
   // group.
   bool evaluate(std::span<const double> p, std::span<double> r) override;
@@ -84,7 +84,7 @@ class Misfit : public LeastSquares {
   std::vector<std::pair<int, int>> residuals_by_case() const override;
 
   // The equilibria of the last successful evaluate(), one case after another; empty before. A misfit that is given
-  // them, evaluated and linearised at the same p goes on to the same bits.
+  // them, evaluated and linearized at the same p goes on to the same bits.
   std::vector<double> state() const;
   void set_state(std::span<const double> x);
 

@@ -31,7 +31,7 @@ Independent one_by_one(const ParameterMap& map, int unknown, const std::vector<d
   return Independent(std::move(precision));
 }
 
-// What is moved by one more linearisation is not known better than that.
+// What is moved by one more linearization is not known better than that.
 void widen(PartsEstimate& estimate, std::span<const double> before) {
   for (size_t t = 0; t < before.size(); ++t)
     estimate.deviation[t] = std::hypot(estimate.deviation[t], estimate.mean[t] - before[t]);

@@ -16,7 +16,7 @@ struct Parts {
   double squares = 0;     // |r|^2 there
 };
 
-// `count` parts of `unknown`, which is one per tet, beginning where the field p gathers. Each pass linearises the model
+// `count` parts of `unknown`, which is one per tet, beginning where the field p gathers. Each pass linearizes the model
 // at the mean of the samples of the one before; by what the last one still moved, deviations are larger.
 Parts find_parts(LeastSquares& model, const ParameterMap& map, const TetMesh& mesh, std::span<const double> p,
                  int unknown, int count, const PartsOptions& options = {});

@@ -13,7 +13,7 @@ namespace aspic {
 namespace {
 
 constexpr double kWidest = 2;       // of a level about where it began: a deviation of log E
-constexpr double kLargestMove = 1;  // of a level, from one linearisation to the next
+constexpr double kLargestMove = 1;  // of a level, from one linearization to the next
 
 struct Neighbour {
   int tet;

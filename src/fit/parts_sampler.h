@@ -1,5 +1,5 @@
 // A body of few materials, each of one stiffness, whose places are not known: what the data say of both, about a point
-// where the model is linearised. Samples are drawn by Gibbs' method [Geman and Geman 1984] from
+// where the model is linearized. Samples are drawn by Gibbs' method [Geman and Geman 1984] from
 //   exp(-|r|^2 / 2 - surface * sum over faces between unlike tets of (area / mean area)),
 // |r|^2 in the directions that the data see. Their mean is the best estimate in mean square; tets near an interface get
 // a value between those of both sides, and a deviation that says so.
@@ -13,9 +13,9 @@
 namespace aspic {
 
 struct PartsOptions {
-  int passes = 3;        // linearisations
+  int passes = 3;        // linearizations
   int rank = 400;        // directions of the last one, at most; a quarter as many of those before
-  int sweeps = 1000;     // over all tets, per linearisation, after a quarter as many that are thrown away
+  int sweeps = 1000;     // over all tets, per linearization, after a quarter as many that are thrown away
   double surface = 1.2;  // per face between unlike tets, of mean area [nats]: a speck of one tet costs four of these
   unsigned seed = 3;
 };
@@ -29,7 +29,7 @@ struct PartsEstimate {
 // The values about which z gathers, by volume, ascending: k-means in one dimension. Fewer, where some coincide.
 std::vector<double> gathered_levels(std::span<const double> z, std::span<const double> volume, int count);
 
-// `spectrum` and `gradient` (J'r) where the model was linearised; z are the entries from `first` on there, one per tet,
+// `spectrum` and `gradient` (J'r) where the model was linearized; z are the entries from `first` on there, one per tet,
 // and all else stays. `noise_factor`: by which standard deviations are raised.
 PartsEstimate sample_parts(const TetMesh& mesh, const Spectrum& spectrum, std::span<const double> gradient, int first,
                            std::span<const double> z, std::vector<double> levels, double noise_factor,

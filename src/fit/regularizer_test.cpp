@@ -41,7 +41,7 @@ ParameterMap map_of(const TetMesh& mesh, std::vector<Unknown> unknowns) {
                       std::move(unknowns));
 }
 
-// z = g.X has L^2 / (2 V) int |g|^2 = |g|^2 / 2 in the unit cube; faces on its surface have no neighbours, which costs
+// z = g.X has L^2 / (2 V) int |g|^2 = |g|^2 / 2 in the unit cube; faces on its surface have no neighbors, which costs
 // a part of the order of the size of a tet.
 TEST(FieldRoughness, OfALinearFieldTendsToItsIntegral) {
   double before = kInfinity;

@@ -25,7 +25,7 @@ struct SpectrumOptions {
   unsigned seed = 1;
 };
 
-// Where `data` is linearised. Beyond `dense`, directions are found by random sampling [Halko 2011] and their values by
+// Where `data` is linearized. Beyond `dense`, directions are found by random sampling [Halko 2011] and their values by
 // Nystroem's approximation, which never says more than the data: what it misses makes the posterior wider.
 Spectrum spectrum(LeastSquares& data, Gaussian& before, const SpectrumOptions& options = {});
 

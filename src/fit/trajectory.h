@@ -27,7 +27,7 @@ struct TrajectoryOptions {
   int stored_states = 100;          // at a time; steps between them are repeated
 };
 
-// The part of a state in what is minimised, for point 0 (the start) to `steps`: returns its value and adds its
+// The part of a state in what is minimized, for point 0 (the start) to `steps`: returns its value and adds its
 // derivatives to qbar and vbar, 3 numbers per vertex; empty when only the value is wanted. It may be called for the
 // same point more than once.
 using TrajectoryObjective = std::function<double(int point, const State& state, std::span<double> qbar,  //

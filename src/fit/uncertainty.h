@@ -37,13 +37,13 @@ struct Posterior {
   bool scale_is_unknown = false;               // no force, weight or pressure: only ratios of stiffness are known
   double noise_factor = 1;            // the measurements scatter so many times more than their standard deviations say
   double applied_factor = 1;          // by which the deviations were raised for that
-  double suggested_weight = 0;        // of the regulariser, by what was learnt; 0: none
+  double suggested_weight = 0;        // of the regularizer, by what was learnt; 0: none
   double log_evidence = 0;            // of the data under the weight, up to a constant
   std::vector<std::string> warnings;  // in words, for people
   std::shared_ptr<PosteriorGaussian> belief;
 };
 
-// Evaluates and linearises `data` at the p of the fit; with tips, a Misfit WithUncertainLayers, made for this. The
+// Evaluates and linearizes `data` at the p of the fit; with tips, a Misfit WithUncertainLayers, made for this. The
 // posterior's `belief` refers to the prior.
 Posterior posterior(LeastSquares& data, Regularizer& prior, double weight, const ParameterMap& map, const TetMesh& mesh,
                     std::span<const double> p, const PosteriorOptions& options = {});

@@ -47,7 +47,7 @@ class ObjReader {
       text_.require_on_line("a vertex coordinate");
       coordinate = text_.number("a vertex coordinate");
     }
-    content_.vertices.push_back(vertex);  // a weight or a colour may follow
+    content_.vertices.push_back(vertex);  // a weight or a color may follow
     leave_line();
   }
 

@@ -42,7 +42,7 @@ MeshContent parse_off(const std::string& file, std::string_view contents) {
     if (corners.size() < 3) text.fail("a face has fewer than three corners; remove it");
     for (int& corner : corners) corner = text.index("a corner of a face", 0, vertices);
     add_fan(corners, content.triangles);
-    text.skip_line();  // a colour may follow
+    text.skip_line();  // a color may follow
   }
   return content;
 }

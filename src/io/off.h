@@ -1,4 +1,4 @@
-// Object File Format (Geomview): polygons as text. Colours, normals and texture coordinates are not kept.
+// Object File Format (Geomview): polygons as text. Colors, normals and texture coordinates are not kept.
 #pragma once
 #include <string>
 #include <string_view>

@@ -49,7 +49,7 @@ class MatrixRestriction {
     bool is_reached = false;
   };
   struct Scratch {
-    std::vector<int> place;  // of an aggregate in `neighbours`; -1: not there
+    std::vector<int> place;  // of an aggregate in `neighbors`; -1: not there
     std::vector<Neighbour> neighbours;
   };
   class Task;

@@ -16,7 +16,7 @@ struct Aggregates {
   std::span<const int> members(int a) const { return std::span(member).subspan(start[a], start[a + 1] - start[a]); }
 };
 
-// Whether neighbours of these stiffnesses hang together only weakly.
+// Whether neighbors of these stiffnesses hang together only weakly.
 inline bool is_jump(double modulus, double other) { return modulus >= 10 * other || other >= 10 * modulus; }
 
 struct AggregationInput {
@@ -28,7 +28,7 @@ struct AggregationInput {
 };
 
 // Halves the vertices along the longest side of their box until the parts are small and short enough, splits what does
-// not hang together, and gives crumbs to the neighbour they touch most.
+// not hang together, and gives crumbs to the neighbor they touch most.
 Aggregates make_aggregates(const AggregationInput& input);
 
 }  // namespace aspic

@@ -12,7 +12,7 @@
 namespace aspic {
 namespace {
 
-// Flops of a factorisation that take as long as one iteration with block-Jacobi per row: 25 ns at 60 Gflop/s, both
+// Flops of a factorization that take as long as one iteration with block-Jacobi per row: 25 ns at 60 Gflop/s, both
 // measured on one AVX-512 core; their ratio differs little between machines.
 constexpr double kFlopsPerIteration = 1500;
 // Two digits with multigrid cost as much as so many iterations with block-Jacobi: about eight cycles of three, and a

@@ -1,4 +1,4 @@
-// Chooses between a factorisation and conjugate gradients, and their preconditioner, by predicted cost.
+// Chooses between a factorization and conjugate gradients, and their preconditioner, by predicted cost.
 #pragma once
 #include <array>
 
@@ -7,7 +7,7 @@
 
 namespace aspic {
 
-// What a Cholesky factorisation will cost, from the graph alone and in linear time, without an elimination order.
+// What a Cholesky factorization will cost, from the graph alone and in linear time, without an elimination order.
 struct CostPrediction {
   double flops = 0;
   double bytes = 0;
@@ -20,14 +20,14 @@ CostPrediction predict_cholesky(const BlockPattern& pattern);
 double predict_iterations(const BlockSparse& H);
 double predict_iterations(const BlockSparse& H, std::vector<char>& scratch);
 
-// Chooses for each sequence of matrices, by its first one, what is predicted to be cheapest: a factorisation, conjugate
+// Chooses for each sequence of matrices, by its first one, what is predicted to be cheapest: a factorization, conjugate
 // gradients with multigrid, or with block-Jacobi. A choice that turns out wrong gives way to the next in the order
 // block_jacobi, multigrid, cholesky, the last if its factor fits into memory. The matrices at hand decide, never clocks
 // or earlier sequences, so a resumed run takes the same path; only where the factor comes close to the memory that is
 // free may two runs differ.
 class AutoSolver : public LinearSolver {
  public:
-  // `solves`: how many right-hand sides share a factorisation, roughly.
+  // `solves`: how many right-hand sides share a factorization, roughly.
   explicit AutoSolver(int64_t memory_limit = std::numeric_limits<int64_t>::max(), int solves = 1);
 
   std::string_view name() const override { return "auto"; }
@@ -60,7 +60,7 @@ class AutoSolver : public LinearSolver {
   const BlockSparse* H_ = nullptr;
   CostPrediction prediction_;
   bool fits_ = false;        // the factor, into memory
-  double affordable_ = 0;    // iterations with block-Jacobi that cost as much as a factorisation, per solve
+  double affordable_ = 0;    // iterations with block-Jacobi that cost as much as a factorization, per solve
   double expected_ = 0;      // iterations with block-Jacobi for two digits; 0: not looked at
   bool has_chosen_ = false;  // for a sequence of this pattern
   bool is_chosen_ = false;   // for this sequence
@@ -69,7 +69,7 @@ class AutoSolver : public LinearSolver {
   std::vector<char> held_;  // scratch
 };
 
-// The factorisation that a solver is, or has chosen; null: none.
+// The factorization that a solver is, or has chosen; null: none.
 Cholesky* as_cholesky(LinearSolver& solver);
 
 }  // namespace aspic

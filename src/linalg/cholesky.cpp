@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// A substitution is bound by reading L twice. Flops of a factorisation that take as long, per entry of L: measured on
+// A substitution is bound by reading L twice. Flops of a factorization that take as long, per entry of L: measured on
 // beams of 425 to 8 281 vertices.
 constexpr double kFlopsPerEntry = 40;
 

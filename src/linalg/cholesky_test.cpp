@@ -16,7 +16,7 @@ using namespace test;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// Factorises, solves and compares with Eigen's dense Cholesky. Both errors are bounded by n eps cond(H); the matrices
+// Factorizes, solves and compares with Eigen's dense Cholesky. Both errors are bounded by n eps cond(H); the matrices
 // here have a condition below 1e5.
 void expect_dense_solution(const Matrix& H, unsigned seed) {
   const int n = 3 * H.rows();

@@ -25,7 +25,7 @@ constexpr int kPackedFromRows = 192;   // smaller products read A where it lies
 constexpr double kParallelFrom = 3e5;  // multiplications and additions: about 10 us on one core
 constexpr int kPackedColumns = 96;     // per task; a multiple of kTileColumns
 constexpr int kNarrowRows = 256;       // of a narrow panel per task; a multiple of every pack width
-constexpr int kBaseColumns = 12;       // narrower panels are factorised directly
+constexpr int kBaseColumns = 12;       // narrower panels are factorized directly
 static_assert(LowerMatrix::kStrip % kTileColumns == 0 && LowerMatrix::kStrip % kTileRows == 0);
 static_assert(kRowBlock % kTileRows == 0 && kReadAhead >= kTileRows);
 

@@ -1,4 +1,4 @@
-// Dense kernels of the sparse factorisation, on column-major lower trapezoids whose sizes are multiples of 3.
+// Dense kernels of the sparse factorization, on column-major lower trapezoids whose sizes are multiples of 3.
 // Arrays must be readable for kReadAhead doubles past their last entry: edge tiles load whole SIMD lanes and drop them.
 #pragma once
 #include <cstddef>

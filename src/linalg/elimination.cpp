@@ -66,7 +66,7 @@ std::vector<int> postorder(const std::vector<int>& parent) {
   return result;
 }
 
-// Entries of each column of L, diagonal included: row j of L is the part of the tree between its earlier neighbours
+// Entries of each column of L, diagonal included: row j of L is the part of the tree between its earlier neighbors
 // and j.
 std::vector<int> column_counts(const BlockPattern& p, const std::vector<int>& order, const std::vector<int>& position,
                                const std::vector<int>& parent) {
@@ -84,7 +84,7 @@ std::vector<int> column_counts(const BlockPattern& p, const std::vector<int>& or
 // Entries of a trapezoid of `width` columns with `below` rows under its triangle.
 double trapezoid(double width, double below) { return width * (width + 1) / 2 + width * below; }
 
-// Merging neighbours in the tree stores zeros but makes larger dense blocks; the shares are those of CHOLMOD's
+// Merging neighbors in the tree stores zeros but makes larger dense blocks; the shares are those of CHOLMOD's
 // relaxed supernodes, in blocks of 3 [Chen et al. 2008].
 bool worth_merging(int width, double zeros, double entries) {
   if (width <= 2) return true;

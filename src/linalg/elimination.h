@@ -1,5 +1,5 @@
-// The symbolic side of a sparse Cholesky factorisation, on the graph of the blocks: which columns of L have the same
-// rows and are factorised together (supernodes), and what that will cost.
+// The symbolic side of a sparse Cholesky factorization, on the graph of the blocks: which columns of L have the same
+// rows and are factorized together (supernodes), and what that will cost.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -10,8 +10,8 @@ namespace aspic {
 
 struct CholeskyAnalysis {
   int64_t nnz = 0;    // entries of L that are stored, explicit zeros included
-  int64_t bytes = 0;  // all that the numeric factorisation allocates: L, update matrices, index lists
-  double flops = 0;   // of one numeric factorisation; a multiplication and an addition count as two
+  int64_t bytes = 0;  // all that the numeric factorization allocates: L, update matrices, index lists
+  double flops = 0;   // of one numeric factorization; a multiplication and an addition count as two
 };
 
 struct Supernodes {
@@ -22,7 +22,7 @@ struct Supernodes {
   std::vector<int64_t> row_start;    // row lists below the columns: count() + 1 entries
   std::vector<int> row;              // ascending within a supernode; empty until list_rows()
   std::vector<int> in_parent;        // where the parent's front has this row
-  std::vector<int> run_end;          // entries from here to there are neighbours in the parent's front, too
+  std::vector<int> run_end;          // entries from here to there are neighbors in the parent's front, too
   std::vector<int64_t> value_start;  // where the dense panel of a supernode begins: count() + 1 entries
   CholeskyAnalysis cost;
 
@@ -36,7 +36,7 @@ double factor_flops(int64_t columns, int64_t below);  // of a dense panel and it
 // Elimination tree, column counts, relaxed supernodes and their cost for this order of elimination (made postorder).
 Supernodes find_supernodes(const BlockPattern& pattern, std::vector<int> order);
 
-// The row lists take memory of their own, so they are made only when a factorisation is wanted.
+// The row lists take memory of their own, so they are made only when a factorization is wanted.
 void list_rows(const BlockPattern& pattern, Supernodes& supernodes);
 
 }  // namespace aspic

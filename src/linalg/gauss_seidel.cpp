@@ -12,7 +12,7 @@
 namespace aspic {
 namespace {
 
-// Multiplications, of some 0.1 ns each. A loop over the tasks of a colour is shared where that takes longer than
+// Multiplications, of some 0.1 ns each. A loop over the tasks of a color is shared where that takes longer than
 // waking.
 constexpr double kWorkPerTask = 12'000, kWorkWorthSharing = 40'000;
 constexpr int kPrefetchAhead = 4096;  // bytes; takes 6 % off the benchmark beam of 95 000 vertices

@@ -1,5 +1,5 @@
 // Symmetric Gauss-Seidel sweeps in single precision, as the smoother of a multigrid cycle. Vertices are visited group
-// by group: groups of one colour do not touch and run in parallel, so the result does not depend on the threads.
+// by group: groups of one color do not touch and run in parallel, so the result does not depend on the threads.
 #pragma once
 #include <span>
 #include <vector>
@@ -53,7 +53,7 @@ class GaussSeidel {
   double work_per_vertex_ = 0;  // multiplications of a visit, on average
   std::vector<int> order_;
   std::vector<Range> range_;
-  std::vector<std::vector<Range>> tasks_;  // per colour
+  std::vector<std::vector<Range>> tasks_;  // per color
   Triangle lower_, upper_;
   std::vector<float> own_, inverse_;  // the diagonal blocks of the vertices and their inverses
 };

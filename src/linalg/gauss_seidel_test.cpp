@@ -171,7 +171,7 @@ TEST(GaussSeidel, VisitsGroupByGroupAndEveryVertexOnce) {
 
 TEST(GaussSeidel, HasTheSameBitsForAnyThreadCount) {
   for (const int rows_per_vertex : {1, 4}) {
-    const Matrix H = rows_per_vertex == 1 ? spring_lattice({.nx = 40, .ny = 15, .nz = 15})  // thousands of a colour
+    const Matrix H = rows_per_vertex == 1 ? spring_lattice({.nx = 40, .ny = 15, .nz = 15})  // thousands of a color
                                           : vertex_matrix(3000, 4, 9);
     const Groups groups = make_groups(graph_of_vertices(*H.pattern, rows_per_vertex), 4);
     GaussSeidel smoother;

@@ -10,7 +10,7 @@ namespace aspic {
 
 struct Graph {
   std::vector<int64_t> start;  // vertex_count() + 1
-  std::vector<int> neighbour;  // of vertex v: neighbour[start[v]] ... ascending, without v
+  std::vector<int> neighbour;  // of vertex v: neighbor[start[v]] ... ascending, without v
   int vertex_count() const { return static_cast<int>(start.size()) - 1; }
   std::span<const int> around(int v) const { return std::span(neighbour).subspan(start[v], start[v + 1] - start[v]); }
 };
@@ -20,7 +20,7 @@ Graph graph_of(const BlockPattern& pattern);
 // The graph of groups: those touch which have members that touch. group[v] < 0: v is in none.
 Graph quotient(const Graph& graph, std::span<const int> group, int groups);
 
-// Greedy: each vertex, in order, takes the first colour that none of its neighbours has. One colour per vertex.
+// Greedy: each vertex, in order, takes the first color that none of its neighbors has. One color per vertex.
 std::vector<int> greedy_coloring(const Graph& graph);
 
 }  // namespace aspic

@@ -70,7 +70,7 @@ TEST(GreedyColoring, NeighboursDifferAndNoColourIsHigherThanNeeded) {
     const std::vector<int> color = greedy_coloring(graph);
     ASSERT_EQ(static_cast<int>(color.size()), rows);
     for (int v = 0; v < rows; ++v) {
-      std::set<int> before;  // colours of the neighbours that chose first
+      std::set<int> before;  // colors of the neighbors that chose first
       for (const int w : graph.around(v)) {
         EXPECT_NE(color[v], color[w]);
         if (w < v) before.insert(color[w]);

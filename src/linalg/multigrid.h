@@ -1,5 +1,5 @@
 // A multigrid cycle for elasticity as a preconditioner: coarse spaces of affine displacements of aggregates of the rest
-// shape, Gauss-Seidel as the smoother, a dense factorisation on the coarsest level. Coarse levels are solved by two
+// shape, Gauss-Seidel as the smoother, a dense factorization on the coarsest level. Coarse levels are solved by two
 // or three steps of conjugate gradients preconditioned by the cycle below (K-cycle, [Notay and Vassilevski 2008]),
 // because functions that jump between aggregates are stiffer than the motions they stand for. The cycle runs in single
 // precision; coarse matrices are made in double.
@@ -19,7 +19,7 @@ namespace aspic {
 struct MultigridOptions {
   int aggregate_size = 48;        // rows of the matrix
   int coarse_aggregate_size = 8;  // aggregates, from then on
-  int coarsest_rows = 256;        // at most, on the level that is factorised; where rows that do not hang together are
+  int coarsest_rows = 256;        // at most, on the level that is factorized; where rows that do not hang together are
                                   // more, they are smoothed only
 };
 

@@ -20,7 +20,7 @@ TEST(RowColoring, EachRowHasOneColourThatNoNeighbourHas) {
   const BlockPattern pattern = make_pattern(35, couplings);
   const auto colors = color_rows(pattern);
   EXPECT_GE(colors.size(), 3u);  // there are triangles
-  EXPECT_LE(colors.size(), 4u);  // a row has at most three neighbours before it
+  EXPECT_LE(colors.size(), 4u);  // a row has at most three neighbors before it
   std::vector<int> color_of_row(35, -1);
   for (size_t color = 0; color < colors.size(); ++color) {
     EXPECT_TRUE(std::is_sorted(colors[color].begin(), colors[color].end()));

@@ -24,7 +24,7 @@ struct Neighbours {
 
 }  // namespace
 
-// Greedy: each free row takes free neighbours, or those of a neighbour; what stands alone fills up blocks in the end.
+// Greedy: each free row takes free neighbors, or those of a neighbor; what stands alone fills up blocks in the end.
 void ScalarCholesky::put_together(std::span<const MatrixPlace> places) {
   const int rows = static_cast<int>(slot_.size());
   const Neighbours graph(rows, places);

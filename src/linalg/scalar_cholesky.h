@@ -1,5 +1,5 @@
 // Sparse Cholesky for symmetric matrices of plain numbers, such as those of a field with one value per element: rows
-// that touch are put together in threes, for the factorisation of blocks.
+// that touch are put together in threes, for the factorization of blocks.
 #pragma once
 #include <memory>
 #include <span>

@@ -74,7 +74,7 @@ class Layout {
   int64_t kept_ = 0, end_ = 0;
 };
 
-// Neighbouring subtrees share a task while they are small.
+// Neighboring subtrees share a task while they are small.
 std::vector<Subtrees::Task> cut_tasks(const Supernodes& s, const std::vector<double>& flops, double limit) {
   std::vector<Subtrees::Task> tasks;
   int begin = 0;

@@ -1,4 +1,4 @@
-// Which part of a multifrontal factorisation runs where: subtrees of the elimination tree, each on one thread, then the
+// Which part of a multifrontal factorization runs where: subtrees of the elimination tree, each on one thread, then the
 // tree above them, whose dense work is shared. It depends on the tree alone, so the bits of the factor do too.
 #pragma once
 #include <cstdint>

@@ -58,7 +58,7 @@ TEST(Subtrees, OfManyBodiesShareTasks) {
   EXPECT_TRUE(t.top.empty());
 }
 
-// Replays a factorisation; tasks may run at the same time, so what any of them holds at any moment must be disjoint
+// Replays a factorization; tasks may run at the same time, so what any of them holds at any moment must be disjoint
 // from all that another one ever uses.
 TEST(Subtrees, UpdateMatricesThatLiveAtTheSameTimeDoNotOverlap) {
   const Supernodes s = supernodes_of(spring_lattice({.nx = 16, .ny = 10, .nz = 10}));

@@ -16,7 +16,7 @@ Disc make_disc(int rings);
 
 // The prisms between copies of the disc, three tets each: vertex v of copy k has index k * points + v. With `closed`
 // the last copy is joined to the first. Each side of a prism is cut from the smaller disc vertex below to the larger
-// above, so neighbours match.
+// above, so neighbors match.
 std::vector<Tet> swept_tets(const Disc& disc, int copies, bool closed);
 
 }  // namespace aspic

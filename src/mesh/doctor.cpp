@@ -161,7 +161,7 @@ std::vector<int> overlapping_tets(const TetMesh& mesh) {
     return true;
   };
   parallel_chunks(mesh.tet_count(), [&](int first, int last) {
-    constexpr int kTogether = 16;  // neighbours share the way through the tree
+    constexpr int kTogether = 16;  // neighbors share the way through the tree
     std::vector<int> near;
     for (int i = first; i < last; i += kTogether) {
       const auto tets = tree.items().subspan(i, std::min(kTogether, last - i));

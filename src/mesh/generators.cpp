@@ -22,7 +22,7 @@ double coordinate(double lower, double upper, int i, int cells) {
 }
 
 // Walks from the corner (i, j, k) to the opposite one along the axes in all six orders: every tet shares the main
-// diagonal of its cell, and the faces of neighbouring cells are cut alike.
+// diagonal of its cell, and the faces of neighboring cells are cut alike.
 void add_kuhn_cell(const Grid& grid, int i, int j, int k, std::vector<Tet>& tets) {
   constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   constexpr bool kOdd[6] = {false, true, true, false, false, true};

@@ -1,4 +1,4 @@
-// A ball from the icosahedron: each of its 20 tets (centre, face) is subdivided regularly, and the shells are pushed
+// A ball from the icosahedron: each of its 20 tets (center, face) is subdivided regularly, and the shells are pushed
 // out onto spheres. The map is scale-free along the radius, so the quality does not fall with the size of the tets.
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ constexpr int kIcosahedronFaces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {
                                           {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
                                           {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
 
-using Weights = std::array<int, 3>;  // of the corners of a face; their sum is the shell, 0 at the centre
+using Weights = std::array<int, 3>;  // of the corners of a face; their sum is the shell, 0 at the center
 
 class Ball {
  public:

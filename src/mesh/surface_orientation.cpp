@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-// Neighbours across edges that exactly two triangles share, and whether the two agree there.
+// Neighbors across edges that exactly two triangles share, and whether the two agree there.
 struct Neighbour {
   int triangle;
   bool agrees;

@@ -32,7 +32,7 @@ void for_each_edge(const std::vector<EdgeUse>& uses, Visit visit) {
 struct SurfaceTopology {
   std::vector<int> open;                   // triangles with an edge that no other triangle shares
   std::vector<int> non_manifold;           // triangles with an edge shared by more than two
-  std::vector<int> disagreeing;            // triangles whose neighbour runs along the common edge in the same direction
+  std::vector<int> disagreeing;            // triangles whose neighbor runs along the common edge in the same direction
   std::vector<int> non_manifold_vertices;  // whose triangles form several fans
   int open_edges = 0, non_manifold_edges = 0;
   int holes = 0;  // connected groups of open edges

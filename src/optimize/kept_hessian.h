@@ -1,5 +1,5 @@
 // The Hessian of an iteration before, for the last digits, where its quadratic approximation is good enough that
-// another step with it ends the minimisation: Shamanskii's method [Kelley 1995, section 5.4.3].
+// another step with it ends the minimization: Shamanskii's method [Kelley 1995, section 5.4.3].
 #pragma once
 #include <cstdint>
 #include <span>

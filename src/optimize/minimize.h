@@ -1,4 +1,4 @@
-// Gradient-based minimisation: choose a direction, choose how far, repeat until converged. The lecture's loop, with
+// Gradient-based minimization: choose a direction, choose how far, repeat until converged. The lecture's loop, with
 // its two slots (direction and step length) left open.
 #pragma once
 #include <functional>
@@ -30,7 +30,7 @@ inline constexpr int kStatusCount = 10;
 std::string_view to_string(Status status);
 inline bool is_success(Status status) { return status == Status::converged || status == Status::round_off; }
 
-// What must be small. The last three look at the direction d, of a method for which x + d estimates the minimiser,
+// What must be small. The last three look at the direction d, of a method for which x + d estimates the minimizer,
 // where the Hessian is positive definite; the step along it is still taken.
 enum class Criterion {
   // Of the gradient of every part of the objective by itself, such as every body:
@@ -60,7 +60,7 @@ struct Iteration {
   double value = 0;          // E before the step
   double gradient_norm = 0;  // |g| before the step
   double decrement = 0;      // Newton decrement: -g.d / 2
-  double alpha = 0;          // accepted step length; 0 when there was none, which ends the minimisation
+  double alpha = 0;          // accepted step length; 0 when there was none, which ends the minimization
   int trials = 0;            // evaluations by the line search
   int gradients = 0;         // evaluations in all
   int retreats = 0;          // how often a direction was of no use and another way was taken

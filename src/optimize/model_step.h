@@ -7,7 +7,7 @@
 
 namespace aspic {
 
-// The minimiser along p of the quadratic with the slope and the curvature of E at x: -g.p / p'Hp. The curvature is a
+// The minimizer along p of the quadratic with the slope and the curvature of E at x: -g.p / p'Hp. The curvature is a
 // difference of gradients over a short way, which costs one gradient.
 class ModelStep {
  public:

@@ -10,7 +10,7 @@ namespace {
 
 // Relative residual of an iterative solve: B may be rough, but must be the same matrix each time.
 constexpr double kTolerance = 1e-2;
-constexpr int kSolves = 20;  // per minimisation, roughly
+constexpr int kSolves = 20;  // per minimization, roughly
 
 std::unique_ptr<LinearSolver> solver_for(PreconditionerKind kind, std::string_view linear) {
   if (kind == PreconditionerKind::hessian) return make_linear_solver(linear, kSolves);

@@ -1,5 +1,5 @@
 // A symmetric positive definite matrix B that stands for the Hessian: first-order methods step along -B^-1 g instead of
-// -g. It is made at the first iterate of a minimisation and kept to its end.
+// -g. It is made at the first iterate of a minimization and kept to its end.
 #pragma once
 #include <memory>
 #include <optional>

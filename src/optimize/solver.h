@@ -1,4 +1,4 @@
-// How a function is minimised, by names: the methods and what each of them can be told.
+// How a function is minimized, by names: the methods and what each of them can be told.
 #pragma once
 #include <memory>
 #include <optional>

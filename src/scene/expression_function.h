@@ -1,4 +1,4 @@
-// A formula of x and y as a function to be minimised.
+// A formula of x and y as a function to be minimized.
 #pragma once
 #include "optimize/planar_function.h"
 #include "scene/expression.h"

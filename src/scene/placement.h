@@ -28,7 +28,7 @@ AffineMap from_placed(const Value& body, Frame frame);  // placed points to that
 // The shape at time 0 of the placed rest shape X. Files are remembered under `stem`.
 std::vector<Vec3d> deformed(Value& body, const std::vector<Vec3d>& X, SceneFiles& files, const std::string& stem);
 
-// velocity(X) + omega x (x - centre of mass)
+// velocity(X) + omega x (x - center of mass)
 std::vector<Vec3d> velocities(const Value& body, const std::vector<Vec3d>& X, const std::vector<Vec3d>& x,
                               std::span<const double> vertex_mass);
 

@@ -1,4 +1,4 @@
-// One frame of a run as an unstructured grid: all bodies, with the fields that a viewer colours by.
+// One frame of a run as an unstructured grid: all bodies, with the fields that a viewer colors by.
 #pragma once
 #include <filesystem>
 

@@ -1,4 +1,4 @@
-// What every minimisation of a run did, trial by trial: tables, JSON lines, and landscapes of E where they are asked
+// What every minimization of a run did, trial by trial: tables, JSON lines, and landscapes of E where they are asked
 // for. The files are described in docs/formats.md.
 #pragma once
 #include <filesystem>
@@ -36,7 +36,7 @@ class Trace {
   // Writes into `folder`, which is created. Throws InvalidInput when that cannot be done.
   explicit Trace(std::filesystem::path folder, TraceOptions options = {});
 
-  // To be called by the observer of the minimisation.
+  // To be called by the observer of the minimization.
   void on_iteration(int step, const LiveIteration& iteration);
   void close();  // everything is on the disk afterwards
 
@@ -55,7 +55,7 @@ class Trace {
   std::vector<Landscape> landscapes_;
   CsvFile iterations_, trials_, timings_;
   OutputFile json_;
-  int step_ = 0, solve_ = 0;  // a step of several stages is several minimisations
+  int step_ = 0, solve_ = 0;  // a step of several stages is several minimizations
 };
 
 }  // namespace aspic

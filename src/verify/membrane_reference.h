@@ -18,7 +18,7 @@ InvariantLaw split_law(double mu, std::function<std::array<double, 2>(double J)>
 
 // How far (48, 52) moves up when the membrane (0, 0), (48, 44), (48, 60), (0, 44), clamped at x = 0, bears the dead
 // traction (0, traction) at x = 48. cells x cells elements of nine nodes that crowd towards the clamped corners;
-// Newton's method in five parts with a banded factorisation of its own. Throws std::runtime_error when it does not
+// Newton's method in five parts with a banded factorization of its own. Throws std::runtime_error when it does not
 // converge.
 double membrane_reference(const InvariantLaw& law, double traction, int cells);
 

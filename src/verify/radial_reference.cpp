@@ -15,7 +15,7 @@ using Real = long double;
 constexpr Real kH = 1e-5L;   // of differences
 constexpr int kSteps = 400;  // of the Runge-Kutta method; even
 
-// Minimises the integral of R^m W(R, r, r') over R from a to b.
+// Minimizes the integral of R^m W(R, r, r') over R from a to b.
 class Radial {
  public:
   using Density = std::function<Real(Real R, Real r, Real s)>;  // s = r'

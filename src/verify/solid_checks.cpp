@@ -35,7 +35,7 @@ TriMesh octahedral_sphere(int cuts) {
 }
 
 // Layers of prisms over a triangulated unit sphere, from radius a to b; each prism is cut into three tets by the order
-// of the numbers of its corners, so neighbours agree.
+// of the numbers of its corners, so neighbors agree.
 TetMesh hollow_sphere(const TriMesh& surface, int layers, double a, double b) {
   TetMesh mesh;
   const int n = surface.vertex_count();

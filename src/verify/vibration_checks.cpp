@@ -117,7 +117,7 @@ double swing_period(const std::string& integrator, double h) {
       {"hinge", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] == 0 && X[1] == 0; }), {}});
   const std::vector<double> weights(model.mass->vertex_mass().begin(), model.mass->vertex_mass().end());
   Simulation simulation = simulate(std::move(model), {.h = h, .integrator = integrator, .solver = {}});
-  // The centre of mass turns back where its angular velocity about z changes its sign.
+  // The center of mass turns back where its angular velocity about z changes its sign.
   const auto turning = [&] {
     double rate = 0;
     for (size_t v = 0; v < weights.size(); ++v) {
@@ -142,7 +142,7 @@ double swing_period(const std::string& integrator, double h) {
 }
 
 void check_pendulum(const Subject& subject, Findings& found) {
-  // About the edge: I / m = (l^2 + w^2) / 3, the centre at the distance d and at the angle of its diagonal.
+  // About the edge: I / m = (l^2 + w^2) / 3, the center at the distance d and at the angle of its diagonal.
   const double l = 1, w = 0.1, d = std::hypot(l, w) / 2, inertia = (l * l + w * w) / 3;
   const double angle = std::numbers::pi / 2 + std::atan2(w, l);  // from hanging
   const double reference = 4 * std::comp_ellint_1(std::sin(angle / 2)) * std::sqrt(inertia / (9.81 * d));

@@ -1,5 +1,5 @@
 // Pictures of meshes for a program that sends them one by one: panels side by side, seen from one direction in one
-// scale, with a colour bar. apps/aspic/mesh_picture.h says what they may be.
+// scale, with a color bar. apps/aspic/mesh_picture.h says what they may be.
 import { Vector3, type Quaternion } from "three";
 import { Pack } from "./pack";
 import type { Tell } from "./program";
@@ -145,7 +145,7 @@ class Painter {
   }
 
   private draw(panel: Panel, lens: Lens, outlook: Outlook, head: MeshPicture): void {
-    // Where colours are values, neither glare nor the colour of insides hides them.
+    // Where colors are values, neither glare nor the color of insides hides them.
     const meaning: Partial<DisplaySettings> = panel.values ? { shininess: 0, inside: "same" } : {};
     const settings: DisplaySettings = { ...kDefaults, wires: head.wires, ground: false, ...meaning };
     const { stage } = this;

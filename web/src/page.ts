@@ -17,7 +17,7 @@ export interface ChosenIteration {
 interface Events {
   chosen: ChosenIteration; // in the microscope
   highlight: Highlight[]; // on the body of side a
-  theme: "light" | "dark"; // plots read their colours again
+  theme: "light" | "dark"; // plots read their colors again
   panel: Panel["name"]; // to be opened in the dock
   layout: void; // sizes have changed
   notice: { text: string; kind: "info" | "error" };

@@ -282,13 +282,13 @@ export interface CaptureFit {
 // The tip that touches the body.
 export interface ProbeState extends TipChoice {
   stiffness: number; // of the layer between tip and body [Pa/m]
-  begun: Vec3; // its centre when it touched [m]: of the sphere, or of the flat end
+  begun: Vec3; // its center when it touched [m]: of the sphere, or of the flat end
   center: Vec3; // now
   axis: Vec3; // out of the tip, into the body
   depth: number; // now [m]
   wanted: number; // by the end of the next step [m]
   force: Vec3; // of the tip on the body [N]
-  torque: Vec3; // about its centre [N m]
+  torque: Vec3; // about its center [N m]
   points: number; // of the surface that it touches
 }
 

@@ -79,7 +79,7 @@ function started(store: Store): Promise<void> {
   });
 }
 
-// In a video the same colour stands for the same value throughout.
+// In a video the same color stands for the same value throughout.
 async function colour(request: RenderRequest, source: RecordedSource, display: Display, fields: Field[]): Promise<void> {
   const field = fields.find(({ name }) => name === request.colour);
   if (!field) throw new Error(`--colour: the run has no field '${request.colour}'; choose one of ${fields.map(({ name }) => name).join(", ")}`);
@@ -103,7 +103,7 @@ async function draw(request: RenderRequest, source: RecordedSource, tell: Tell):
   view.renderSize(request.width, request.height);
   const scene = store.side("a")?.scene;
   if (!scene) throw new Error("the recording has no scene");
-  if (request.step !== null) await source.request({ do: "rewind", step: request.step }); // whose range colours it
+  if (request.step !== null) await source.request({ do: "rewind", step: request.step }); // whose range colors it
   view.drawNow();
   if (request.colour !== "") await colour(request, source, display, scene.fields);
   aim(display.camera("a"), request, source, scene.up);

@@ -67,7 +67,7 @@ async function highestPoint(page) {
   throw new Error("no body under the mouse");
 }
 
-// The bunny, coloured by its displacement and dragged by an ear, with the minimisation of each step.
+// The bunny, colored by its displacement and dragged by an ear, with the minimization of each step.
 async function drawViewer(browser) {
   const address = await startProgram("scenes/bunny.toml", ["--set", "body.0.deform.displacement=[0, 0, 0]"]);
   const page = await openPage(browser, address, 800);

@@ -1,4 +1,4 @@
-// Pages 43 to 51: Newton's method minimises the quadratic approximation.
+// Pages 43 to 51: Newton's method minimizes the quadratic approximation.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Pages 36 to 40: the same minimisation over velocities.
+// Pages 36 to 40: the same minimization over velocities.
 #include <fmt/format.h>
 
 #include <algorithm>

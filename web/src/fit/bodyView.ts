@@ -1,4 +1,4 @@
-// The body of a fit in 3-D: coloured by a quantity of its tets, whole or cut open, with arrows and balls on it. The
+// The body of a fit in 3-D: colored by a quantity of its tets, whole or cut open, with arrows and balls on it. The
 // cameras of all views of a page move together.
 import "../view/view.css";
 import * as THREE from "three";
@@ -16,7 +16,7 @@ import { disposeOf } from "./arrows";
 import { bodyBelow, boundaryOf, type Boundary, type Plane, type Soup, type TetMesh } from "./cut";
 
 export interface Shown {
-  label: string; // of the colour bar
+  label: string; // of the color bar
   unit: string;
   values: Float32Array; // one per tet
   map: MapName;
@@ -98,7 +98,7 @@ export class BodyView {
     this.stage = this.makeStage();
     this.stage?.place({ lower: fitted.lower, upper: fitted.upper, up: fitted.up });
     rig.on("changed", () => this.redraw());
-    new ResizeObserver(() => this.applyDisplay()).observe(this.element); // also once it is in the page, whose colours it takes
+    new ResizeObserver(() => this.applyDisplay()).observe(this.element); // also once it is in the page, whose colors it takes
     this.listen();
     this.rebuild();
   }

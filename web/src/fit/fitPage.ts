@@ -119,7 +119,7 @@ class FitReport {
     const body = new FittedBody({ points: fit.floats("points"), tets: fit.indices("tets") }, upward(fit));
     const rig = new CameraRig();
     rig.show(fit.head.name, body.lower, body.upper, body.up);
-    rig.pan(-0.12, 0, 1); // to the left of the colour bar, by a part of the view's height
+    rig.pan(-0.12, 0, 1); // to the left of the color bar, by a part of the view's height
     const maps = new Maps(fit, body, rig);
     const misfits = new Misfits(fit, body, rig);
     const root = element("main", { class: "fit" }, this.found(), this.maps(maps), this.loads(), this.residuals(misfits), this.made());

@@ -136,7 +136,7 @@ function addLook(folder: Folder): void {
   folder.colour("background", "Background");
 }
 
-// The field that colours the body, and the range of its colours.
+// The field that colors the body, and the range of its colors.
 function addField(folder: Folder, display: Display, views: () => View[]): void {
   const fields = (): Choices => {
     const known = display.fields.map((field) => [field.label, field.name] as const);

@@ -1,4 +1,4 @@
-// A 2-D chart in the page's colours: curves over x, a legend whose entries show the values under the cursor and hide
+// A 2-D chart in the page's colors: curves over x, a legend whose entries show the values under the cursor and hide
 // their curves, and a picture of the whole.
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
@@ -75,7 +75,7 @@ export class Chart {
     this.readLegend();
   }
 
-  // Colours or the font may be others now.
+  // Colors or the font may be others now.
   retheme(): void {
     if (!sameLook(this.look, palette(this.element))) this.rebuild();
   }

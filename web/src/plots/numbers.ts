@@ -63,7 +63,7 @@ function decimalsOf(gap: number): number {
   return Math.min(12, enough);
 }
 
-// Texts of an axis' ticks, with as many decimals as tell neighbours apart.
+// Texts of an axis' ticks, with as many decimals as tell neighbors apart.
 export function ticks(values: readonly (number | null)[], factor = 1): string[] {
   const known = values.filter((v): v is number => v !== null).map((v) => v / factor);
   const gap = known.length > 1 ? Math.abs(known[1]! - known[0]!) : 1;

@@ -1,4 +1,4 @@
-// The page's colours, as the style sheet has them now.
+// The page's colors, as the style sheet has them now.
 const kNames = {
   text: "--text",
   faint: "--faint",

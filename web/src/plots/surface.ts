@@ -59,7 +59,7 @@ export class SurfaceView {
     this.build();
   }
 
-  // Colours or the font may be others now.
+  // Colors or the font may be others now.
   retheme(): void {
     if (!sameLook(this.colours, palette(this.element))) this.build();
   }

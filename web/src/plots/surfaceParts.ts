@@ -10,7 +10,7 @@ export class Frame {
   readonly depth: number;
   readonly tall = 0.95;
   readonly height: (value: number) => number; // in [0, 1]
-  readonly shade: (value: number) => number; // colour, in [0, 1]
+  readonly shade: (value: number) => number; // color, in [0, 1]
 
   constructor(
     readonly grid: Grid,

@@ -131,14 +131,14 @@ export class Body {
     this.lines.depthTest = !settings.wiresOnTop;
   }
 
-  // Values take the colours of a range; null: the body has its own colour.
+  // Values take the colors of a range; null: the body has its own color.
   colour(range: ColourRange | null, map: MapName): void {
     this.uniforms.fieldShown.value = range !== null;
-    this.surface.specular.setScalar(range ? 0.3 * this.gloss : this.gloss); // glare hides colours
+    this.surface.specular.setScalar(range ? 0.3 * this.gloss : this.gloss); // glare hides colors
     if (!range) return;
     this.showMap(map, () => mapTexels(map, 256));
     const [low, high] = range.log ? [Math.log(range.low), Math.log(range.high)] : [range.low, range.high];
-    // A constant field has the colour in the middle.
+    // A constant field has the color in the middle.
     this.uniforms.fieldLow.value = high > low ? low : low - 0.5;
     this.uniforms.fieldScale.value = high > low ? 1 / (high - low) : 1;
     this.uniforms.fieldLog.value = range.log;

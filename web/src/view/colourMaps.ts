@@ -1,5 +1,5 @@
-// Colour maps as a few stops; colours in between are mixed in sRGB. Viridis and cividis (Nuñez, Anderton, Renslow 2018)
-// are even in lightness and told apart with any kind of colour vision, as blue and orange are.
+// Color maps as a few stops; colors in between are mixed in sRGB. Viridis and cividis (Nuñez, Anderton, Renslow 2018)
+// are even in lightness and told apart with any kind of color vision, as blue and orange are.
 export const kMapNames = ["viridis", "cividis", "blue_orange"] as const;
 export type MapName = (typeof kMapNames)[number];
 

@@ -97,7 +97,7 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
     this.emit("changed", undefined);
   }
 
-  // The colours keep the range that they have now.
+  // The colors keep the range that they have now.
   fixRange(): void {
     const field = this.fields.find((candidate) => candidate.name === this.field);
     const range = field && this.range(field);

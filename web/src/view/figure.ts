@@ -58,7 +58,7 @@ export class Figure {
     this.stage?.moved();
   }
 
-  // What a side is like after it blew up says nothing about the other one: the colours are the other one's.
+  // What a side is like after it blew up says nothing about the other one: the colors are the other one's.
   takeState(): void {
     const wasLost = this.lost;
     this.lost = this.isLost();
@@ -90,7 +90,7 @@ export class Figure {
     return names.map((name, i) => ({ name, colour: colours[i]! }));
   }
 
-  // What the body's colours mean.
+  // What the body's colors mean.
   coloured(): { field: Field; range: ColourRange } | null {
     const field = this.field();
     const range = field && this.display.range(field);

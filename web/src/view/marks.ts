@@ -10,7 +10,7 @@ import { unitText, valueText } from "./values";
 
 export interface Ink {
   context: CanvasRenderingContext2D;
-  text: string; // colours
+  text: string; // colors
   halo: string;
   accent: string;
   em: number; // height of text [px]
@@ -162,7 +162,7 @@ export function bodyLegend(ink: Ink, lens: Lens, bodies: readonly { name: string
   });
 }
 
-export const kBarWidth = 8.5; // of the strip beside the view that belongs to the colour bar [em]
+export const kBarWidth = 8.5; // of the strip beside the view that belongs to the color bar [em]
 
 // As few lines as the words need at this width.
 function wrapped(ink: Ink, words: string, width: number): string[] {
@@ -181,7 +181,7 @@ export function paragraph(ink: Ink, lens: Lens, words: string, x: number, y: num
   lines.forEach((line, i) => text(ink, line, x, y + 1.25 * i * ink.em));
 }
 
-// The colours of a field with ticks, in a strip right of the view: nothing of the body is behind it.
+// The colors of a field with ticks, in a strip right of the view: nothing of the body is behind it.
 export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange, map: MapName): void {
   const { em } = ink;
   ink.context.fillStyle = ink.halo;

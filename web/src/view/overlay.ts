@@ -1,4 +1,4 @@
-// The 2-D canvas over a view: axes, colour bar, numbers, highlights, the mouse's spring and brush.
+// The 2-D canvas over a view: axes, color bar, numbers, highlights, the mouse's spring and brush.
 import type { Highlight } from "../page";
 import type { Field, Vec3 } from "../protocol";
 import type { MapName } from "./colourMaps";
@@ -29,7 +29,7 @@ export interface Dot {
 }
 
 export interface Style {
-  text: string; // colours
+  text: string; // colors
   background: string;
   accent: string;
   grid: string;
@@ -69,7 +69,7 @@ export class Overlay {
 
   draw(lens: Lens, style: Style, what: Marks): void {
     const { context } = this;
-    const ratio = this.canvas.height / lens.height; // it is wider than what the lens sees, where there is a colour bar
+    const ratio = this.canvas.height / lens.height; // it is wider than what the lens sees, where there is a color bar
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, this.canvas.width / ratio, lens.height);
     context.font = `${style.em}px ${style.font}`;

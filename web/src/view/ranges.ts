@@ -1,4 +1,4 @@
-// The range of values that a colour map spans, and the ticks of its bar.
+// The range of values that a color map spans, and the ticks of its bar.
 
 export interface ColourRange {
   low: number;
@@ -8,7 +8,7 @@ export interface ColourRange {
 
 const kShrink = 0.03; // of the gap, per picture
 
-// Grows at once and shrinks slowly, so that colours do not flicker while the body moves.
+// Grows at once and shrinks slowly, so that colors do not flicker while the body moves.
 export class RunningRange {
   private readonly latest = new Map<string, { min: number; max: number }>(); // by side
   private low = Infinity;

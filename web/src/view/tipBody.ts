@@ -15,7 +15,7 @@ export class TipBody {
 
   constructor() {
     this.root.visible = false;
-    this.disc.position.y = 0.175; // its flat end is at the centre of the tip
+    this.disc.position.y = 0.175; // its flat end is at the center of the tip
     for (const part of [this.sphere, this.disc, this.rod]) part.castShadow = true;
     this.root.add(this.sphere, this.disc, this.rod);
   }

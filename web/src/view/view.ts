@@ -249,7 +249,7 @@ export class View implements Touched {
     return this.fixedSize ?? [this.host.clientWidth, this.host.clientHeight];
   }
 
-  // Beside the body, for the colour bar.
+  // Beside the body, for the color bar.
   private strip(): number {
     return this.figure.coloured() ? kBarWidth * this.style.em : 0;
   }

@@ -107,7 +107,7 @@ function listener() {
   return heard;
 }
 
-// What an image shows: how much its brightness varies (its standard deviation; 0: a single colour), and a number that
+// What an image shows: how much its brightness varies (its standard deviation; 0: a single color), and a number that
 // differs where images do.
 function lookAtImages() {
   window.lookAt = (image) => {
@@ -295,7 +295,7 @@ export async function findBody({ page }, view = 0) {
 // Of a WebGL canvas in a page that `keepsPixels`.
 export const shownBy = (canvas) => canvas.evaluate((element) => (element.checkVisibility() ? window.lookAt(element) : { contrast: 0, print: 0 }));
 
-// Anything but one colour.
+// Anything but one color.
 export const isDrawn = async (canvas) => (await shownBy(canvas)).contrast > 3;
 
 // What stands on the screen, of an element of a page that is still.
@@ -306,7 +306,7 @@ export async function keepPicture(page, name) {
   if (process.env.ASPIC_PICTURES) await page.screenshot({ path: join(process.env.ASPIC_PICTURES, `${name}.png`) });
 }
 
-// How much the brightness of a PNG varies: 0 for one of a single colour.
+// How much the brightness of a PNG varies: 0 for one of a single color.
 export const contrast = (page, png) =>
   page.evaluate(async (base64) => {
     const image = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))]));

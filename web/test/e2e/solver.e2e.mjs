@@ -1,4 +1,4 @@
-// The minimisation under the microscope: iterations one by one, their tables, curves and landscapes; plane functions.
+// The minimization under the microscope: iterations one by one, their tables, curves and landscapes; plane functions.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
