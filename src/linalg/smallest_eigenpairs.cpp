@@ -82,8 +82,8 @@ struct Found {
 
 int subspace_size(int count) { return std::max(2 * count, count + 10); }
 
-VectorXd start_vector(const ShiftedPencil& pencil) {
-  Spectra::SimpleRandom<double> random(0);
+VectorXd start_vector(const ShiftedPencil& pencil, int run) {
+  Spectra::SimpleRandom<double> random(1 + 7919 * run);  // a seed of 0 means 1
   VectorXd x = random.random_vec(pencil.size);
   pencil.project(entries(x));
   return x;
@@ -101,9 +101,16 @@ double typical_value(const ShiftedPencil& pencil, VectorXd x) {
   return size;
 }
 
+struct LanczosOptions {
+  int count = 1;
+  double tolerance = kTolerance;
+  int run = 0;  // each run has a start vector of its own
+};
+
 // The `count` largest eigenvalues that are left when the eigenvectors `known` are removed.
-Found lanczos(const ShiftedPencil& pencil, int count, const MatrixXd& known, double tolerance) {
-  const VectorXd start = start_vector(pencil);
+Found lanczos(const ShiftedPencil& pencil, const MatrixXd& known, const LanczosOptions& options) {
+  const auto [count, tolerance, run] = options;
+  const VectorXd start = start_vector(pencil, run);
   const double mass = start.dot(times_mass(pencil, start)) / start.squaredNorm();
   const double size = typical_value(pencil, start);
   ScaledMass M(pencil, mass);
@@ -155,17 +162,18 @@ Found merged(const Found& a, const Found& b) {
   return {.values = values(order), .vectors = vectors(Eigen::all, order)};
 }
 
-// A Krylov space holds one vector of each eigenspace, and round-off alone brings the others.
+// A Krylov space holds one vector of each eigenspace: the part of its start vector there. Runs with other start vectors
+// find the other copies of a repeated eigenvalue.
 Found largest(const ShiftedPencil& pencil, int count) {
   Found found{.values = VectorXd(0), .vectors = MatrixXd(pencil.size, 0)};
-  while (true) {
+  for (int run = 0;;) {
     const int wanted = std::max(1, count - static_cast<int>(found.values.size()));
     if (found.values.size() >= count) {
-      const Found probe = lanczos(pencil, 1, found.vectors, kProbeTolerance);
+      const Found probe = lanczos(pencil, found.vectors, {.tolerance = kProbeTolerance, .run = run++});
       if (!probe.converged) return probe;
       if (probe.values[0] <= found.values[count - 1] * (1 + kBelow)) return found;
     }
-    const Found more = lanczos(pencil, wanted, found.vectors, kTolerance);
+    const Found more = lanczos(pencil, found.vectors, {.count = wanted, .run = run++});
     if (!more.converged) return more;
     found = merged(found, more);
   }
