@@ -124,8 +124,8 @@ TEST(Minimize, StopsOnRequestAfterTheIteration) {
   int last = 0;
   MinimizeOptions options = tight();
   options.stop = StopToken([&] { return last == 3; });
-  const MinimizeReport report = Minimizer().minimize(
-      f, *newton_with(), x, options, [&](const Iteration& iteration) { last = iteration.index; });
+  const MinimizeReport report =
+      Minimizer().minimize(f, *newton_with(), x, options, [&](const Iteration& iteration) { last = iteration.index; });
   EXPECT_EQ(report.status, Status::interrupted);
   EXPECT_EQ(report.iterations, 4);
 }
