@@ -23,7 +23,7 @@ struct Stopped {};
 
 // K + shift M with the rows of held vertices cleared.
 BlockSparse shifted_stiffness(IncrementalPotential& E, std::span<const double> x, double shift) {
-  E.tell_potential({.start = x});
+  E.set_potential_step({.start = x});
   E.begin_step(x, shift, 1);
   return E.evaluate_hessian(x, {Definiteness::exact});
 }

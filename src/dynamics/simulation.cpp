@@ -168,7 +168,7 @@ struct Simulation::Impl {
 
   // Tells the terms of V the time, as between steps.
   void stand_at(double time) const {
-    E->tell_potential({state.q, integrator->facts().is_static() ? 0 : options.h, time});
+    E->set_potential_step({state.q, integrator->facts().is_static() ? 0 : options.h, time});
   }
 
   // The body stays where the step began, though time and moving targets may go on to `time`; a scheme of several steps

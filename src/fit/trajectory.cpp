@@ -205,8 +205,8 @@ struct Trajectory::Impl {
   // As the integrator does.
   void tell_step() {
     const StepContext context{now.q, options.h, time_of(point + 1), now.q};
-    E.tell_potential(context);
-    E.tell_damping(context);
+    E.set_potential_step(context);
+    E.set_damping_step(context);
     for (size_t i = 0; i < moved.size(); ++i) moved[i] = now.q[i] + options.h * now.qdot[i];
     E.begin_step(moved, 1, options.h * options.h);
   }

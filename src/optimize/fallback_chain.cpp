@@ -42,8 +42,8 @@ bool FallbackChain::retreat() {
   return true;
 }
 
-bool FallbackChain::estimates_minimiser() const {
-  return std::all_of(methods_.begin(), methods_.end(), [](const auto& m) { return m->estimates_minimiser(); });
+bool FallbackChain::estimates_minimizer() const {
+  return std::all_of(methods_.begin(), methods_.end(), [](const auto& m) { return m->estimates_minimizer(); });
 }
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// Gradient descent: d = -B^-1 g, where B is the identity if not chosen otherwise.
+// Gradient descent: d = -B^-1 g with a preconditioner B, by default the identity.
 #pragma once
 #include "optimize/preconditioner.h"
 #include "optimize/search_direction.h"

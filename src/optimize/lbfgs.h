@@ -1,5 +1,5 @@
-// L-BFGS [Nocedal and Wright 2006, alg. 7.4]: the Hessian at the first iterate, or another B, corrected by the last few
-// changes of the gradient [Liu et al. 2017].
+// L-BFGS [Nocedal and Wright 2006, alg. 7.4] with the Hessian at the first iterate, or another preconditioner B, as its
+// initial matrix [Liu et al. 2017].
 #pragma once
 #include <vector>
 
@@ -16,7 +16,7 @@ class LBFGS : public SearchDirection {
   std::string description() const override;
   void begin() override;
   bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override;
-  bool retreat() override;  // forgets the changes: -B^-1 g
+  bool retreat() override;  // drops the pairs: d = -B^-1 g
 
  private:
   static constexpr int kPairs = 8;
@@ -34,7 +34,7 @@ class LBFGS : public SearchDirection {
   ModelStep length_;
   Pair pairs_[kPairs];
   int count_ = 0, next_ = 0;
-  bool has_last_ = false, corrected_ = false;  // there is an iterate before; the last direction was not -B^-1 g
+  bool has_last_ = false, corrected_ = false;  // a previous iterate is stored; the last direction used pairs
   std::vector<double> last_x_, last_g_, r_;
 };
 

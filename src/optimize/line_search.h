@@ -1,4 +1,4 @@
-// Backtracking line search: try alpha_max, then shrink by p until E has decreased enough.
+// Backtracking line search: starts with alpha_max and multiplies it by p until E has decreased sufficiently.
 #pragma once
 #include <span>
 #include <vector>
@@ -19,7 +19,7 @@ struct LineSearchOptions {
   double alpha_max = 1;
   double sufficient_decrease = 1e-4;  // c, in (0, 1)
   double shrink = 0.5;                // p, in (0, 1)
-  double tolerance = 1e-10;           // tol: the search is stuck at smaller steps
+  double tolerance = 1e-10;           // smallest alpha; the search then ends as stuck
   DecreaseTest test = DecreaseTest::textbook;
 };
 
@@ -27,7 +27,7 @@ struct Trial {
   double alpha = 0;
   double value = 0;       // E(x + alpha d)
   double bound = 0;       // the largest value that the test accepts
-  bool by_slope = false;  // the difference to E(x) is below round-off; judged by the slope at the trial
+  bool by_slope = false;  // tested by the slope, because the difference to E(x) is below round-off
   bool accepted = false;
 };
 

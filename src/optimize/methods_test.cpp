@@ -310,7 +310,7 @@ TEST(SolverOptions, CriteriaThatJudgeDirectionsNeedMethodsThatEstimateTheMinimis
     return find_conflict(options);
   };
   for (const std::string& method : minimizer_names())
-    EXPECT_EQ(with(method, {}).has_value(), !make_search_direction({.method = method})->estimates_minimiser())
+    EXPECT_EQ(with(method, {}).has_value(), !make_search_direction({.method = method})->estimates_minimizer())
         << method;
   EXPECT_FALSE(with("newton", {"newton_cg"}));
   EXPECT_EQ(with("newton", {"lbfgs"})->option, "criterion");

@@ -264,7 +264,7 @@ MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std
 MinimizeReport Minimizer::minimize(Objective& E, SearchDirection& direction, std::span<double> x,
                                    const Evaluation& value, const MinimizeOptions& options,
                                    const IterationObserver& observe) {
-  if (judges_direction(options.criterion) && !direction.estimates_minimiser())
+  if (judges_direction(options.criterion) && !direction.estimates_minimizer())
     throw InvalidInput("criterion = '" + std::string(to_string(options.criterion)) +
                        "' needs the method newton or newton_cg: directions of " + std::string(direction.name()) +
                        " do not tell how far the minimum is (try 'scale')");

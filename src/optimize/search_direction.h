@@ -1,4 +1,4 @@
-// Search directions: the open slot "d = ?" of the minimization loop.
+// Search directions of the minimization loop.
 #pragma once
 #include <optional>
 #include <span>
@@ -21,11 +21,10 @@ struct DirectionReport : Work {
   double hessian_seconds = 0, factorize_seconds = 0, solve_seconds = 0;  // wall time
 };
 
-// The accuracy of inner linear solves: the relative residual lies between `enough`, which suffices for the end of the
-// minimization, and `loosest` [Kelley 1995, eq. 6.20].
+// Bounds of the relative residual of inner linear solves [Kelley 1995, eq. 6.20].
 struct InnerAccuracy {
   double loosest = 0.1;
-  double enough = 0;
+  double enough = 0;                 // suffices for the last iteration
   std::optional<double> value = {};  // E(x), if known
 };
 
@@ -41,20 +40,19 @@ class SearchDirection {
  public:
   virtual ~SearchDirection() = default;
   virtual std::string_view name() const = 0;
-  virtual std::string description() const {
-    return std::string(name());
-  }  // with its choices and their reasons, for logs
+  // Returns the method and its choices with their reasons, for logs.
+  virtual std::string description() const { return std::string(name()); }
 
-  // Starts a minimization: drops everything kept from the last one.
+  // Starts a minimization. Drops everything kept from the last one.
   virtual void begin() {}
   // Writes the direction, 3 numbers per block row, to d. Returns false if no descent direction was found.
   virtual bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) = 0;
-  // Called if there was no direction, or no step along it decreases E. Returns true if a more cautious direction
-  // exists: compute() is then called again.
+  // Called if compute() failed or no step along d decreases E. Returns true if a more cautious direction exists;
+  // compute() is then called again.
   virtual bool retreat() { return false; }
 
   // Returns whether x + d estimates the minimizer, so that |d| estimates the distance to it.
-  virtual bool estimates_minimiser() const { return false; }
+  virtual bool estimates_minimizer() const { return false; }
 };
 
 }  // namespace aspic
