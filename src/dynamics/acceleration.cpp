@@ -22,8 +22,8 @@ bool Acceleration::solve(const StepTools& tools, double time, std::span<const do
   const size_t n = q.size();
   for (auto* w : {&gradient_, &damping_, &drift_, &force_, &scratch_}) w->assign(n, 0.0);
   const StepContext context{q, tools.h, time};
-  tools.E.tell_potential(context);
-  tools.E.tell_damping(context);
+  tools.E.set_potential_step(context);
+  tools.E.set_damping_step(context);
   for (const ActiveTerm& V : tools.E.potential()) V.add_gradient(q, 1, gradient_);
   ++work.gradients;
   if (difference == DampingDifference::forward) {

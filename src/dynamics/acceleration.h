@@ -1,4 +1,4 @@
-// acc(q, v) of M acc = -dV/dx - C v, by a solve with the mass matrix.
+// Computes acc(q, v) from M acc = -dV/dx - C v by a solve with the mass matrix.
 #pragma once
 #include <memory>
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace aspic {
 
-// How C v is taken from a damping potential D, whose force is that of a displacement h v over the time h.
+// The difference quotient that gives C v from a damping potential D, for a displacement h v in the time h.
 enum class DampingDifference {
   forward,  // dD/dx at q + h v: first order in h where C depends on x
   central,  // half the difference to q - h v: second order
@@ -17,12 +17,12 @@ enum class DampingDifference {
 
 class Acceleration {
  public:
-  // `acc` holds the accelerations of the pinned vertices before, all afterwards [m/s^2]. `time` is that of q and v.
-  // Adds what acted, times `weight`, to `forces`. False: the mass matrix could not be solved with.
+  // On entry `acc` holds the accelerations of pinned vertices, on return all of them [m/s^2]. `time` is that of q and
+  // v. Adds the forces times `weight` to `forces`. Returns false if the mass solve failed.
   bool solve(const StepTools& tools, double time, std::span<const double> q, std::span<const double> v,
              DampingDifference difference, double weight, std::span<double> acc, StepForces& forces, Work& work);
 
-  // What the solve with the mass matrix may have left of the force, which is all that it leaves of M acc + G + C. [N]
+  // Returns a bound of the residual M acc + G + C that the mass solve leaves [N].
   double noise() const { return noise_; }
 
  private:

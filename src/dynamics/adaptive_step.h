@@ -1,6 +1,7 @@
-// A step of length h in parts of h / 2^k, as long as an error estimate allows: a part is taken once whole and once in
-// halves, whose difference, divided by 2^order - 1, estimates the error of the halves, which are kept. Parts begin at
-// multiples of their length, so the grid does not depend on rounding and a restart meets the same one.
+// Adaptive time steps by step doubling: a step of length h consists of substeps of length h / 2^k. Each pair of
+// substeps is also computed as one substep of twice the length; the difference, divided by 2^order - 1, estimates the
+// error of the pair, which is kept. Substeps start at multiples of their length, so the grid does not depend on
+// rounding or restarts.
 #pragma once
 #include <vector>
 
@@ -11,21 +12,21 @@ namespace aspic {
 
 class AdaptiveStep {
  public:
-  // `tolerance`: the error that a step of length h may add, |dq| + (length of the part) |dv| of a vertex relative to
-  // the diagonal of its body at rest; a part may add its share.
-  AdaptiveStep(const Model& model, double tolerance, bool remembers /* where the part before started */);
+  // `tolerance`: largest error per step of length h, |dq| + (length of the substep) |dv| of a vertex relative to the
+  // diagonal of its body at rest. Substeps get their share. `remembers`: keep the start of the previous substep.
+  AdaptiveStep(const Model& model, double tolerance, bool remembers);
 
-  // Takes the step, adds it to the ledger and counts its parts in the report. A status that is no success says that
-  // the smallest part failed, or was inaccurate: there is nothing to go on from.
+  // Takes the step, adds it to the ledger and counts its substeps in the report. The status is not a success if the
+  // smallest substep failed or was inaccurate; `end` is then not valid.
   StepSolve advance(Integrator& integrator, const StepTools& whole, Ledger& ledger, State& end, StepReport& report);
 
-  // The length that the next part is tried with, h / 2^level: what a restart needs.
+  // The next substep has the length h / 2^level. A restart needs this number.
   int level() const { return level_; }
-  void set_level(double level);  // as a checkpoint holds it; throws InvalidInput for one that there is not
-  const State& previous() const { return previous_; }  // where the last part started
+  void set_level(double level);                        // throws InvalidInput for an invalid level
+  const State& previous() const { return previous_; }  // the start of the last substep
 
  private:
-  struct Part {  // a piece of the step that was taken
+  struct Part {  // a substep
     State end;
     StepForces forces;
     StepSolve solve;
@@ -35,7 +36,7 @@ class AdaptiveStep {
   Verdict attempt(Integrator& integrator, const StepTools& whole, int first, int size);
   bool take(Integrator& integrator, const StepTools& tools, Part& part);
   void keep(Integrator& integrator, const StepTools& whole, Ledger& ledger, int first, int size, StepReport& report);
-  double error(const Pins& pins, double h) const;  // of the halves, as a multiple of the tolerance
+  double error(const Pins& pins, double h) const;  // of the pair, as a multiple of the tolerance
 
   const Model& model_;
   double tolerance_;
@@ -46,7 +47,7 @@ class AdaptiveStep {
   State now_, previous_;
   bool has_previous_ = false;
   Part whole_, first_, second_;
-  bool knows_whole_ = false;  // the first half of a rejected part is the whole of the next
+  bool knows_whole_ = false;  // the first half of a rejected pair is the whole of the next
   double error_ = 0;
   Status failure_ = Status::converged;  // of the last attempt
   StepSolve total_;

@@ -1,4 +1,4 @@
-// Names and places in the words of an explanation.
+// Names and places in explanations.
 #pragma once
 #include <limits>
 #include <span>
@@ -14,12 +14,12 @@ struct WorstTet {
 };
 
 std::string text(double number);           // three digits
-double power_of_ten_above(double number);  // the least that is not below it
+double power_of_ten_above(double number);  // smallest power of ten >= number
 std::string point_text(std::span<const double> x, int vertex);
 // "vertex 12", "tet 12 of body 'arm'": by the numbers of the body's own mesh.
 std::string vertex_name(const Model& model, int vertex);
 std::string tet_name(const Model& model, int tet);
 WorstTet most_squashed(const TetMesh& mesh, std::span<const double> x);
-std::string squashed_place(const Model& model, std::span<const double> x);  // that tet, in words
+std::string squashed_place(const Model& model, std::span<const double> x);  // description of that tet
 
 }  // namespace aspic::places

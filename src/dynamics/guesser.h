@@ -10,7 +10,7 @@ namespace aspic {
 
 struct StepTools;
 
-// What is known when a minimization for a later time starts.
+// The data from which an initial guess is computed.
 struct GuessContext {
   std::span<const double> q, qdot;         // the latest positions and velocities
   double ahead = 0;                        // from them to the minimization's time [s]; 0 in statics
@@ -27,14 +27,14 @@ struct Guess {
 
 class Guesser {  // holds the scratch vectors
  public:
-  // Writes the start into `q` and says which it was. Pinned vertices stand where they are at the time. A guess of
-  // infinite energy gives way to the best; when all are infinite, the pins are led (see lead_pins). Adds what was spent
-  // to `work`.
+  // Writes the initial guess to `q` and returns its kind. Pinned vertices are at their positions at `known.time`. If
+  // the wanted guess has infinite energy, the best one is used; if all have, the pins move in substeps (see lead_pins).
+  // Adds the evaluations to `work`.
   Guess guess(const StepTools& tools, InitialGuess wanted, const GuessContext& known, std::span<double> q,
               MinimizeReport& work);
 
  private:
-  // Writes the candidate into trial_; false when there is none.
+  // Writes the candidate to trial_. Returns false if it does not exist.
   bool propose(const StepTools& tools, InitialGuess candidate, const GuessContext& known);
 
   std::vector<double> trial_;

@@ -82,8 +82,8 @@ class QuasiStatic : public Integrator {
     forces.reset(start.q.size());
     end = start;
     const StepContext context{start.q, 0, tools.end_time};
-    tools.E.tell_potential(context);
-    tools.E.tell_damping(context);
+    tools.E.set_potential_step(context);
+    tools.E.set_damping_step(context);
     tools.E.begin_step(start.q, 0, 1);
     MinimizeReport lead;
     const Guess guess = guesser_.guess(tools, tools.guess, {start.q, start.qdot, 0, tools.end_time}, end.q, lead);

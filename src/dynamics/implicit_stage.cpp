@@ -53,7 +53,7 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
   q_.assign(q.begin(), q.end());
   MinimizeOptions minimize = options.once ? one_iteration(tools.options) : tools.options;
   minimize.h = options.beta;
-  minimize.deadline = tools.options.deadline.at_part(options.part);
+  minimize.stop = tools.options.stop.at_fraction(options.part);
   if (options.once) {
     tools.pins.place(options.time, q_);
     solve.guess = InitialGuess::current;
@@ -84,8 +84,8 @@ bool ImplicitStage::solve(const StepTools& tools, const PinPath* path, const Sta
   const double beta = options.beta;
   predict(tools, path, options);
   const StepContext context{a, beta, options.time, tools.start.q};
-  tools.E.tell_potential(context);
-  tools.E.tell_damping(context);
+  tools.E.set_potential_step(context);
+  tools.E.set_damping_step(context);
   tools.E.begin_step(predicted_, 1, beta * beta);
   if (!solve.add(minimize(tools, options, q, v, solve))) return false;
 

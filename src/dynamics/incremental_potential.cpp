@@ -100,7 +100,7 @@ IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
   for (const auto& V : model.loads) add(*V, potential_);
   for (const auto& D : model.damping) add(*D, damping_);
   for (auto* v : {&predicted_, &offset_, &term_}) v->resize(3 * pattern_.rows());
-  for (Parts* parts : {&last_, &of_iterate_}) {
+  for (Terms* parts : {&last_, &of_iterate_}) {
     parts->values.resize(potential_.size());
     parts->gradient.resize(term_.size());
     if (!damping_.empty()) parts->damping.resize(term_.size());
@@ -110,11 +110,11 @@ IncrementalPotential::IncrementalPotential(const Model& model, const Pins& pins)
   measure(model.mesh);
 }
 
-void IncrementalPotential::tell_potential(const StepContext& step) {
+void IncrementalPotential::set_potential_step(const StepContext& step) {
   for (ActiveTerm& V : potential_) V.begin_step(step);
 }
 
-void IncrementalPotential::tell_damping(const StepContext& step) {
+void IncrementalPotential::set_damping_step(const StepContext& step) {
   for (ActiveTerm& D : damping_) D.begin_step(step);
 }
 

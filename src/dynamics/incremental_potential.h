@@ -1,6 +1,8 @@
-// E(q) = w/2 (q - q~)' M (q - q~) + f (V(q) + D(q)): its minimizer is the end of an implicit time step.
+// The incremental potential E(q) = w/2 (q - q~)' M (q - q~) + f (V(q) + D(q)). Its minimizer is the end of an implicit
+// time step.
 //   backward Euler: w = 1, f = h^2, q~ = q_t + h qdot_t          statics: w = 0, f = 1
-// What pins hold is no variable: the gradient is zero along it, and the Hessian that of the identity (see pins.h).
+// Pinned degrees of freedom are not variables: their gradient is zero, and their Hessian rows are those of the identity
+// (see pins.h).
 #pragma once
 #include <optional>
 #include <span>
@@ -16,19 +18,19 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
  public:
   IncrementalPotential(const Model& model, const Pins& pins);
 
-  // Before begin_step: the step in which the terms of V, and those of D, are evaluated from now on.
-  void tell_potential(const StepContext& step);
-  void tell_damping(const StepContext& step);
+  // Set the step for subsequent evaluations of the terms of V and of D. Called before begin_step().
+  void set_potential_step(const StepContext& step);
+  void set_damping_step(const StepContext& step);
   void begin_step(std::span<const double> predicted, double inertia /* w */, double factor /* f */);
 
   Evaluation evaluate(std::span<const double> q) override;
   void gradient(std::span<const double> q, std::span<double> g) override;
   const BlockSparse& evaluate_hessian(std::span<const double> q, const Projection& projection) override;
   void note_iterate(std::span<const double> q) override;
-  const BlockSparse& metric() override;  // M, with the rows of the identity for pinned vertices
+  const BlockSparse& metric() override;  // M, with rows of the identity for pinned vertices
   double max_step(std::span<const double> q, std::span<const double> d) override;
-  // x: the radius of the body. value: the energy of doubling the body in size, in the units of E: offsets of the
-  // potential do not count. gradient_unit: g is a force times f.
+  // x: the radius of the body [m]. value: the energy of doubling the size of the body, in units of E, without constant
+  // offsets of the potential. gradient_unit: f, because g is a force times f.
   ObjectiveScales scales() const override {
     return {.x = radius_,
             .value = inertia_ * growth_inertia_ + factor_ * growth_stiffness_,
@@ -46,15 +48,15 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   int part_of(int vertex) const { return part_of_.empty() ? 0 : part_of_[vertex]; }
   double growth_stiffness() const { return growth_stiffness_; }  // of V, see scales() [J]
 
-  // The part of |g| at q, where the gradient was evaluated last, that is noise: of positions, by the stiffness of the
-  // last Hessian or of the body at rest, and of the sum of forces.
+  // Returns the rounding error of |g| at q, where the gradient was evaluated last: of the positions, through the
+  // stiffness of the last Hessian or of the body at rest, and of the sum of forces.
   double gradient_noise(std::span<const double> q) const;
-  // noise[k] += weight * that of part k [N].
+  // noise[k] += weight * rounding error of part k [N].
   void add_part_noise(std::span<const double> q, double weight, std::span<double> noise) const;
 
-  // What is known of the iterate at which a minimization ended: nothing there need be evaluated again. Empty elsewhere.
-  std::span<const double> known_values(std::span<const double> q) const;  // of the terms of V [J]
-  // gradient += weight dV/dx, damping += weight dD/dx [N]; false where they are not known.
+  // The values of the terms of V [J] at q, if q is the iterate at which the last minimization ended; else empty.
+  std::span<const double> known_values(std::span<const double> q) const;
+  // gradient += weight dV/dx, damping += weight dD/dx [N]. Returns false if they are not known at q.
   bool add_known_forces(std::span<const double> q, double weight, std::span<double> gradient,
                         std::span<double> damping) const;
 
@@ -64,42 +66,41 @@ class IncrementalPotential : public Objective, public HasMetric, public HasParts
   const BlockPattern& pattern() const { return pattern_; }
 
  private:
-  struct Parts {                            // of E, by terms
+  struct Terms {                            // E by terms
     std::vector<double> values;             // of V [J]
     std::vector<double> gradient, damping;  // f dV/dx and f dD/dx
   };
-  // Sets the second derivative of V along a uniform growth of the body at rest, a modulus times the volume [J], its
-  // moment of inertia about the center [kg m^2] and the largest distance from there [m]: the sizes by which errors are
-  // judged.
+  // Computes the characteristic sizes: the second derivative of V for a uniform growth of the body at rest, which is a
+  // modulus times the volume [J], the moment of inertia about the center [kg m^2], and the radius [m].
   void measure(const TetMesh& mesh);
   // Divides the vertices into parts: bodies that no tet connects, and regions of a body whose moduli times edge
-  // lengths differ by more than kSoft. Each is judged by its own sizes. `growth` is scratch.
+  // lengths differ by more than kSoft. Each has its own sizes. `growth` is scratch.
   void measure_parts(const TetMesh& mesh, std::span<const double> modulus, std::span<double> growth);
   void add_part_norms(std::span<const double> v, bool is_exact);
   void add_term_gradient(const ActiveTerm& term, std::span<const double> q, std::span<double> g, std::span<double> sum);
   double free_norm(std::span<const double> v) const;
   double gradient_round_off_at(std::span<const double> q);
 
-  struct Part {  // see measure(), for this part alone
+  struct Part {  // the sizes of measure(), for this part
     double growth_stiffness = 0, growth_inertia = 0, radius = 0, rest_stiffness = 0, mass_norm = 0;
     double scale = 0, round_off = 0;  // of the last gradient and Hessian
-    double exact = 0;                 // the part of scale that is known to the last digit: inertia, weight, dead loads
+    double exact = 0;                 // share of `scale` without rounding error: inertia, weight, dead loads
     double sum = 0, largest = 0;      // scratch
   };
 
   const Model& model_;
-  WholePart whole_{*this};  // where there is one part
+  WholePart whole_{*this};  // used if there is one part
   const Pins& pins_;
   std::vector<ActiveTerm> potential_, damping_;
   BlockPattern pattern_;
   BlockSparse H_;
-  std::optional<BlockSparse> metric_;  // made when it is first asked for
+  std::optional<BlockSparse> metric_;  // computed on first use
 
   std::vector<Part> parts_;   // empty: there is one
   std::vector<int> part_of_;  // of each vertex, unless there is one
   std::vector<double> predicted_;
   std::vector<double> iterate_;  // empty: there is none yet
-  Parts last_, of_iterate_;      // of what was evaluated last, wherever that was
+  Terms last_, of_iterate_;      // at the last evaluation, and at the last iterate
   double inertia_ = 1, factor_ = 1;
   double growth_stiffness_ = 0, growth_inertia_ = 0, radius_ = 0;
   double rest_stiffness_ = 0, mass_norm_ = 0;  // of the diagonal blocks [N/m] and [kg]

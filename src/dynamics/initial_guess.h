@@ -8,11 +8,11 @@ namespace aspic {
 
 enum class InitialGuess {
   none,            // explicit schemes: nothing is minimized
-  best,            // that of lowest energy among those below except zero
+  best,            // the one with the lowest energy of those below, except zero
   zero,            // no displacement: the shape at rest
   current,         // q
-  extrapolated,    // q + h qdot, the flight without forces
-  last_increment,  // q + what the previous step added
+  extrapolated,    // q + h qdot, motion without forces
+  last_increment,  // q + increment of the previous step
   accelerated,     // q~ + beta^2 (mean acceleration in the previous step): the stage with its forces
 };
 std::string_view to_string(InitialGuess guess);

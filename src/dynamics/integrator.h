@@ -1,4 +1,4 @@
-// One step of an integrator. An implicit stage is a predicted position, a factor in front of V, and a state update.
+// Time integrators. An implicit stage consists of a predicted position, a factor of V, and a state update.
 #pragma once
 #include <memory>
 #include <string_view>
@@ -14,7 +14,7 @@
 
 namespace aspic {
 
-// What minimizations work with.
+// The arguments of a minimization.
 struct SolveTools {
   const Model& model;
   const Pins& pins;
@@ -23,46 +23,45 @@ struct SolveTools {
   SearchDirection& direction;
   const MinimizeOptions& options;
   const IterationObserver& observe;
-  const Consent& go_on;
   InitialGuess guess;
 };
 
-// What an integrator works with.
+// The arguments of a step.
 struct StepTools : SolveTools {
-  const State& start;     // of the step
-  const State* previous;  // where the step before started; null when none is known
-  double h, end_time;     // of the step [s]
+  const State& start;     // start of the step
+  const State* previous;  // start of the previous step; null if unknown
+  double h, end_time;     // length and end of the step [s]
 };
 
 enum class Asked { nothing, residual };  // of a solve
 
-// What acted in a step, weighted over its stages so that r = M a + G + C is what the solves left over, and on pinned
-// vertices the force of the pins.
+// The forces of a step, as weighted sums over its stages: r = M a + G + C is the residual of the solves on free
+// vertices and the reaction of the pins on pinned ones.
 struct StepForces {
   std::vector<double> gradient, damping;  // G = sum w dV/dx and C = sum w dD/dx [N]
   std::vector<double> acceleration;       // a = sum w acc [m/s^2]; zero in statics
-  // Of each part of the objective (Objective::part_count): the |r| that was asked for, 0 without a solve, and the part
-  // of |r| that is round-off [N].
+  // For each part of the objective (HasParts): the threshold of |r|, 0 without a solve, and the rounding error of |r|
+  // [N].
   std::vector<double> thresholds, round_offs;
 
   void reset(size_t size);
-  // Of the terms as they are told, at x.
+  // Adds the forces of the terms at x.
   void add(const IncrementalPotential& E, double weight, Positions x, std::span<const double> acc, Work& work);
-  // Of a solve that ended at x.
+  // Adds threshold and rounding error of a solve that ended at x.
   void add_bounds(const SolveTools& tools, Asked asked, double weight, Positions x);
-  void add_round_off(const IncrementalPotential& E, double round_off);  // to that of every part [N]
+  void add_round_off(const IncrementalPotential& E, double round_off);  // adds to every part [N]
 
  private:
   void resize_bounds(const IncrementalPotential& E);
 };
 
-// How a step went: counts are sums over its stages, the status is the worst of them.
+// The solves of a step: counts are sums over its stages, the status is the worst one.
 struct StepSolve {
   MinimizeReport work = {.status = Status::converged};
-  double decrement = 0;  // the largest of its stages [J]
+  double decrement = 0;  // maximum over the stages [J]
   InitialGuess guess = InitialGuess::none;
 
-  // False when there is nothing to go on from.
+  // Returns false if the step cannot continue from this stage.
   bool add(const MinimizeReport& stage);
 };
 
@@ -71,10 +70,10 @@ class Integrator {
   explicit Integrator(const IntegratorFacts& facts) : facts_(facts) {}
   virtual ~Integrator() = default;
   const IntegratorFacts& facts() const { return facts_; }
-  // Gives the pinned vertices of the first state the velocities of their pins, as the scheme sees them: here those with
-  // which they reach their places at the end of the first step.
+  // Sets the velocities of pinned vertices in the initial state. The default is the mean velocity of the pins in the
+  // first step.
   virtual void set_pin_velocity(const Pins& pins, double h, State& state) const;
-  // Writes the state at the end of the step, and what acted in it.
+  // Writes the state at the end of the step and its forces.
   virtual StepSolve advance(const StepTools& tools, State& end, StepForces& forces) = 0;
 
  private:

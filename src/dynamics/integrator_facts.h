@@ -8,14 +8,14 @@ enum class StabilityLimit { symplectic_euler, rk4 };
 
 struct IntegratorFacts {
   std::string_view name;
-  int order = 1;                     // in time, for smooth motions; 0: statics
-  bool is_implicit = true;           // minimizes
-  bool is_multistep = false;         // uses where the step before started, a step of the same length ago
-  bool takes_one_iteration = false;  // of Newton's method, in place of a minimization
-  bool is_backward_euler = false;    // however its E is minimized
-  bool ends_beyond_minimum = false;  // the end of a step is extrapolated from what was minimized
-  bool gains_energy = false;         // in steps of any length
-  StabilityLimit stability = StabilityLimit::symplectic_euler;  // of an explicit scheme
+  int order = 1;                     // order of accuracy in time; 0: statics
+  bool is_implicit = true;           // each step minimizes
+  bool is_multistep = false;         // uses the start of the previous step of the same length
+  bool takes_one_iteration = false;  // one iteration of Newton's method instead of a minimization
+  bool is_backward_euler = false;    // its E is that of backward Euler
+  bool ends_beyond_minimum = false;  // extrapolates the end of a step from the minimizer
+  bool gains_energy = false;         // adds energy in steps of any length
+  StabilityLimit stability = StabilityLimit::symplectic_euler;  // stability limit of an explicit scheme
 
   bool is_static() const { return order == 0; }
   bool chooses_guess() const { return is_implicit && !takes_one_iteration; }

@@ -5,10 +5,10 @@
 
 namespace aspic {
 
-// Moves the pinned vertices of q, which stand as in `from`, to where they are at the time, and keeps the
-// energy finite: where that would turn elements of a barrier material inside out, the pins go in parts, and after each
-// part the free vertices follow by a few iterations. The energy stays infinite when no part is small enough. Returns E
-// at q, and adds what was spent to `work`.
+// Boundary-condition continuation: moves the pinned vertices of q from their positions in `from` to those at `time` and
+// keeps the energy finite. If that would invert elements of a barrier material, the pins move in fractions, and a few
+// iterations move the free vertices after each. The energy stays infinite if no fraction is small enough. Returns E at
+// q and adds the counts to `work`.
 Evaluation lead_pins(const StepTools& tools, double time, std::span<const double> from, std::span<double> q,
                      MinimizeReport& work);
 

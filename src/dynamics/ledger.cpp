@@ -53,10 +53,10 @@ double Ledger::target_work(const StepTools& tools, int order, const State& end, 
   const StepContext before{start.q, tools.h, start.time}, after{start.q, tools.h, tools.end_time};
   const size_t loads = tools.E.loads().size();
   for (auto* v : {&early_, &late_}) v->assign(loads, 0.0);
-  tools.E.tell_potential(before);
+  tools.E.set_potential_step(before);
   loads_before = add_load_energies(tools.E.loads(), start.q, -1, early_);
   const double at_end = order > 1 ? add_load_energies(tools.E.loads(), end.q, -1, late_) : 0;
-  tools.E.tell_potential(after);
+  tools.E.set_potential_step(after);
   const double early = add_load_energies(tools.E.loads(), start.q, 1, early_) - loads_before;
   const double late = order > 1 ? add_load_energies(tools.E.loads(), end.q, 1, late_) - at_end : 0;
   report.target_work.resize(loads);
@@ -125,7 +125,7 @@ void Ledger::allow_moved_pins(const StepTools& tools, const State& end, BoundedE
     V += value, bounded.magnitude += std::abs(value);
   }
   ++work.values;
-  tools.E.tell_damping({start.q, tools.h, tools.end_time, start.q});
+  tools.E.set_damping_step({start.q, tools.h, tools.end_time, start.q});
   for (const ActiveTerm& term : tools.E.damping()) D += term.value(moved_);
   for (size_t i = 0; i < moved_.size(); ++i) moved_[i] = (moved_[i] - start.q[i]) / tools.h - start.qdot[i];
   T = kinetic_energy(*tools.model.mass, moved_, momentum_);

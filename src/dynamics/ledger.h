@@ -1,11 +1,11 @@
-// Where the energy of a step went. With dx = q_new - q_old, the effective forces G and C of the step and its effective
+// The energy balance of a step. With dx = q_new - q_old, the effective forces G and C of the step and its effective
 // acceleration a (see StepForces),
 //   r = M a + G + C,
-// r acts on pinned vertices as the reaction of the pins and on free ones as what the solves left over, and
+// r is the reaction of the pins on pinned vertices and the residual of the solves on free ones, and
 //   dT + dV = reaction . dx + (work of moving targets) - C . dx - numerical_loss + residual . dx
 // holds exactly, where the integrator itself loses
 //   numerical_loss = (a' M dx - dT) + G . dx - (dV - work of moving targets):
-// nothing for midpoint with linear forces, 1/2 dv' M dv + dV/dx . dx - dV for backward Euler.
+// zero for midpoint with linear forces, 1/2 dv' M dv + dV/dx . dx - dV for backward Euler.
 #pragma once
 #include <vector>
 
@@ -17,21 +17,20 @@ namespace aspic {
 
 class Ledger {
  public:
-  // Evaluates the elastic energies of the state from which the next step starts: afterwards each step ends where the
-  // next one starts, and evaluates only those of its end.
+  // Evaluates the elastic energies at the start of the first step. Later steps reuse those at the end of the previous
+  // step.
   void begin(const Model& model, std::span<const double> q);
-  // Adds the works of a step that started in tools.start, was acted on by `forces` and ended in `end` to the report,
-  // whose energies become those of `end`. Moving targets then stand where they are at the end of the step. What it
-  // returns is about a step of backward Euler.
+  // Adds the work terms of the step from tools.start to `end` to the report and writes the energies at `end`. Moving
+  // targets are then at the end of the step. The returned energies are meaningful for backward Euler.
   BoundedEnergies add(const StepTools& tools, const Integrator& integrator, const State& end, const StepForces& forces,
                       StepReport& report);
 
  private:
   double target_work(const StepTools& tools, int order, const State& end, double& loads_before, StepReport& report);
-  // `known`: those at q of all terms, the elastic ones first, or none.
+  // `known`: the energies of all terms at q, elastic ones first, or empty.
   std::span<const double> elastic_energies(const Model& model, std::span<const double> q, std::span<const double> known,
                                            Work& work);
-  // Puts what E was at its start, divided by h^2, in place of V_t + T_t + W.
+  // Replaces V_t + T_t + W by E at the start of the minimization divided by h^2.
   void allow_moved_pins(const StepTools& tools, const State& end, BoundedEnergies& bounded, Work& work);
   // The residual of the part of the model that is farthest from its threshold, and its worst vertex.
   void note_residual(const StepTools& tools, const StepForces& forces, StepReport& report);
@@ -39,11 +38,11 @@ class Ledger {
   void add_resultants(const StepTools& tools, const State& end, const StepForces& forces, Resultants& sums);
 
   std::vector<double> Ma_, momentum_, residual_;
-  std::vector<double> squares_;           // of the residual, by parts
-  std::vector<double> load_;              // the gradient of one load; zero between
-  std::vector<double> moved_;             // the positions with which E is compared where pins move, then u - v_t
-  std::vector<double> early_, late_;      // of each load: what its target's motion adds to its energy
-  std::vector<double> last_q_, elastic_;  // where the elastic energies were evaluated last, and one for each body
+  std::vector<double> squares_;           // squared residual of each part
+  std::vector<double> load_;              // gradient of one load; zero between uses
+  std::vector<double> moved_;             // q_s of energy_bound.h, then u - v_t
+  std::vector<double> early_, late_;      // energy that the motion of its target adds to each load
+  std::vector<double> last_q_, elastic_;  // positions and values of the last elastic energies, one per body
 };
 
 // 1/2 qdot' M qdot [J]; `momentum` receives M qdot.

@@ -1,5 +1,5 @@
-// The rigid motions of bodies that neither pins nor loads resist. Along them statics have no stiffness, or only that of
-// stresses and of loads that turn with the body.
+// Rigid motions that neither pins nor loads resist. Statics have no stiffness along them, except from stresses and
+// follower loads.
 #pragma once
 #include <optional>
 #include <span>
@@ -16,8 +16,8 @@ struct RigidMotion {
   Vec3d point{};  // on the axis of a rotation [m]
 };
 
-// Returns one of the first body that has any, a translation rather than a rotation; else none. `x`: positions, such as
-// those at the start: those of a solve that failed may be far from them.
+// Returns a free motion of the first body that has one, preferably a translation. `x`: positions, such as the initial
+// ones; those of a failed solve may be unusable.
 std::optional<RigidMotion> free_rigid_motion(const Model& model, std::span<const double> x);
 
 // "slide along (1, 0, 0)", "rotate about the axis through (0, 0.5, 0) m along (0, 0, 1)".

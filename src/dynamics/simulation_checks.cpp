@@ -94,9 +94,9 @@ std::optional<SolverConflict> find_conflict(const SimulationOptions& options) {
     return SolverConflict{option, std::string(option) + " = '" + method + "' does not do for " + name +
                                       ", which is one iteration of Newton's method: newton and newton_cg can"};
   };
-  if (!estimates_minimiser(options.solver.method)) return unfit("method", options.solver.method);
+  if (!estimates_minimizer(options.solver.method)) return unfit("method", options.solver.method);
   for (const std::string& method : options.solver.fallback)
-    if (!estimates_minimiser(method)) return unfit("fallback", method);
+    if (!estimates_minimizer(method)) return unfit("fallback", method);
   return std::nullopt;
 }
 

@@ -1,4 +1,4 @@
-// What is asked of a model and of options before a simulation begins. Each throws InvalidInput.
+// Checks of a model and its options before a simulation starts. Each throws InvalidInput.
 #pragma once
 #include <span>
 
@@ -8,7 +8,7 @@
 
 namespace aspic {
 
-// Tets are inverted at the start, where their material has no energy.
+// Thrown if tets are inverted in the initial state and their material does not allow it.
 class InvertedStart : public InvalidInput {
  public:
   explicit InvertedStart(const std::string& cause)
@@ -22,8 +22,8 @@ class InvertedStart : public InvalidInput {
   std::string cause_;
 };
 
-void require_mass(const Model& model, const Pins& pins);                    // in every free vertex
-void require_finite_energy(const Model& model, std::span<const double> x);  // nothing inside out at the start
+void require_mass(const Model& model, const Pins& pins);                    // requires mass at every free vertex
+void require_finite_energy(const Model& model, std::span<const double> x);  // requires a finite initial energy
 void require_possible(const SimulationOptions& options);
 
 }  // namespace aspic

@@ -21,10 +21,10 @@ struct StableStep {
   bool is_damping = false;  // damping, more than stiffness, limits the step
 };
 
-// Of rk4, or else of symplectic Euler, for small motions about the positions x, by power iteration. That of symplectic
-// Euler is the h at which 4 is the largest eigenvalue of M^-1 (h^2 K + 2 h C); a few per cent too long at most. That of
-// rk4 is the lower one of what the motion found so and the fastest vibration bear: with damping the scheme may bear
-// still less. Without damping, C = 0, they are 2 and sqrt(8) / (highest angular frequency).
+// Estimates the limit for small motions about the positions x by power iteration. For symplectic Euler it is the h at
+// which the largest eigenvalue of M^-1 (h^2 K + 2 h C) is 4; the estimate is at most a few percent too long. For rk4 it
+// is the smaller limit of that motion and of the fastest vibration; with damping the true limit may be lower. Without
+// damping the limits are 2 and sqrt(8) divided by the highest angular frequency.
 StableStep stable_step(const IncrementalPotential& E, const Model& model, const Pins& pins, std::span<const double> x,
                        StabilityLimit limit);
 

@@ -69,8 +69,8 @@ class StepCheck {
     const double h = simulation.options().h;
     const bool is_static = simulation.integrator().is_static();
     const StepContext context{state_.q, is_static ? 0 : h, state_.time + h};
-    E_.tell_potential(context);
-    E_.tell_damping(context);
+    E_.set_potential_step(context);
+    E_.set_damping_step(context);
     std::vector<double> predicted = state_.q;
     if (!is_static)
       for (size_t i = 0; i < predicted.size(); ++i) predicted[i] += h * state_.qdot[i];

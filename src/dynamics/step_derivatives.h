@@ -1,5 +1,5 @@
-// Whether everything that the next step minimizes has the derivatives it claims: each term of V and of the damping, the
-// inertia, and their sum E.
+// Checks the derivatives of everything that the next step minimizes: each term of V and of the damping, the inertia,
+// and their sum E.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace aspic {
 
-// Refers to both; V must have been bound to the pattern.
+// The result refers to V and pattern; V must be bound to the pattern.
 Differentiable differentiable(const ActiveTerm& V, const BlockPattern& pattern);
 
 struct TermDerivatives {
@@ -18,14 +18,14 @@ struct TermDerivatives {
   DerivativeReport report;
 };
 
-// At three states: the present one; near rest, every vertex moved by a hundredth of an edge; stretched, sheared and
-// crumpled as far as the materials allow, up to 15 %. The steps are relative to the mean length of an edge. E is that
-// of a step of backward Euler, or of statics, from the present state; its pinned vertices are no variables.
+// Checks at three states: the current one; near rest, with every vertex moved by a hundredth of an edge; and stretched,
+// sheared and perturbed by up to 15 % as far as the materials allow. Steps are relative to the mean edge length. E is
+// that of a step of backward Euler, or of statics, from the current state; pinned vertices are not variables.
 std::vector<TermDerivatives> check_step_derivatives(const Simulation& simulation, double tolerance = 1e-6);
 
-// An entry of q in words: "vertex 12, y".
+// Returns the name of an entry of q: "vertex 12, y".
 std::string entry_name(int entry);
-// A tet that holds both vertices, which an entry of a Hessian couples; -1 when there is none.
+// Returns a tet with both vertices, or -1.
 int tet_with(const TetMesh& mesh, int vertex, int other);
 
 }  // namespace aspic

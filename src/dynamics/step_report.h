@@ -12,9 +12,6 @@
 
 namespace aspic {
 
-using Consent = std::function<bool()>;  // called between substeps; empty: always true
-inline constexpr double kNoTimeLimit = std::numeric_limits<double>::infinity();
-
 struct Resultant {
   Vec3d force{};   // [N]
   Vec3d moment{};  // about the origin [N m]
@@ -28,7 +25,7 @@ struct Resultants {
   double time = 0;                // duration of the means so far [s]
 };
 
-// Whether a step of backward Euler kept the bound that the scheme guarantees.
+// Result of the check against the energy bound of backward Euler.
 enum class EnergyBound {
   none,            // another scheme, or a step that was dropped
   not_guaranteed,  // the minimizer ended above E at q_s, or q_s has no energy

@@ -1,6 +1,6 @@
-// The step's objective over velocities: E(v) = 1/2 (v - v~)' M (v - v~) + V(q_t + h v), v~ = (q~ - q_t) / h.
-// With q = q_t + h v it is E(q) / h^2, where E(q) is that of backward Euler (w = 1, f = h^2): the gradient is that of
-// E(q) over h, the Hessian the same, so Newton's iterates are the same points.
+// The objective of a step as a function of velocities: E(v) = 1/2 (v - v~)' M (v - v~) + V(q_t + h v), v~ = (q~ - q_t)
+// / h. With q = q_t + h v it is E(q) / h^2, where E(q) is that of backward Euler (w = 1, f = h^2): the gradient is that
+// of E(q) over h, the Hessian the same, so Newton's iterates are the same points.
 #pragma once
 #include <span>
 #include <vector>
@@ -11,7 +11,7 @@ namespace aspic {
 
 class VelocityForm : public Objective, public HasMetric {
  public:
-  // `E` has begun its step; q_t is where the step starts. Both stay while this is used.
+  // E.begin_step() has been called; q_t is the start of the step. Both must outlive this.
   VelocityForm(IncrementalPotential& E, std::span<const double> start /* q_t */, double h)
       : E_(E), start_(start), h_(h), q_(start.size()), dq_(start.size()) {}
 

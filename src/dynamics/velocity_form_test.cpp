@@ -19,7 +19,7 @@ class Velocities : public ::testing::Test {
     for (size_t i = 0; i < state.qdot.size(); ++i) state.qdot[i] = 0.3 * std::sin(static_cast<double>(i));
     pins.set_zero(state.qdot);
     for (size_t i = 0; i < state.q.size(); ++i) predicted.push_back(state.q[i] + kStep * state.qdot[i]);
-    E.tell_potential({state.q, kStep, kStep});
+    E.set_potential_step({state.q, kStep, kStep});
     E.begin_step(predicted, 1, kStep * kStep);
   }
 
@@ -66,7 +66,6 @@ TEST_F(Velocities, NewtonVisitsTheSamePointsAsInPositions) {
     std::vector<std::vector<double>> visited;
     const MinimizeReport report = Minimizer().minimize(objective, newton, x, {}, [&](const LiveIteration& iteration) {
       visited.emplace_back(iteration.x_next.begin(), iteration.x_next.end());
-      return true;
     });
     EXPECT_TRUE(is_success(report.status));
     return visited;

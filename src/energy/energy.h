@@ -1,4 +1,4 @@
-// One term V_k(x) of the potential energy. A call covers all the elements of the term.
+// One term V_k(x) of the potential energy, or one dissipation potential. Each call covers all elements of the term.
 #pragma once
 #include <limits>
 #include <memory>
@@ -13,21 +13,21 @@ namespace aspic {
 using Positions = std::span<const double>;  // x, 3 per vertex [m]
 inline Vec3d point(Positions x, int vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
 
-// A step, or a stage of one: what an integrator says is a step from `start` that takes h, so that (x - start) / h is
-// the velocity.
+// A time step or a stage of one, in which the velocity is (x - start) / h.
 struct StepContext {
-  Positions start;  // x at the start of the step
+  Positions start;  // x at the start of the step; integrators may extrapolate it
   double h = 0;     // length of the step [s]; 0 in statics
-  double time = 0;  // of the forces: the end of the step [s], the start in explicit schemes
-  // Where coefficients that depend on x are taken, when not at `start`, which may be extrapolated and inside out.
+  double time = 0;  // time at which forces act [s]: the end of the step, or its start in explicit schemes
+  // Positions at which coefficients that depend on x are evaluated. Empty: at `start`.
   Positions shape = {};
 };
 
-// Evaluations are functions of x and a context, and change nothing else: several threads may evaluate a term at once.
+// An energy is a function of the positions x and of a context. Evaluations change neither the energy nor the context,
+// so several threads may evaluate the same term. Positions, gradients and directions hold 3 numbers per vertex.
 class Energy {
  public:
-  // What an evaluation depends on besides x. A term that computes more for a step than its time and length derives its
-  // own context; a context serves only the term that made it.
+  // Everything besides x that an evaluation depends on. A term that needs more than the time and the length of the
+  // step derives its own context. A context may be used only with the term that made it.
   struct Context {
     double time = 0;  // [s]
     double h = 0;     // length of the step [s]; 0 in statics
@@ -36,32 +36,35 @@ class Energy {
 
   virtual ~Energy() = default;
   virtual std::string_view name() const = 0;
-  virtual bool has_constant_gradient() const { return false; }  // the same at all x, and so free of round-off
+  // Returns whether dV/dx is the same for all x. Such a gradient has no round-off.
+  virtual bool has_constant_gradient() const { return false; }
 
-  // Before a Hessian or a context is asked for: which vertices share a 3x3 block, and where those blocks are stored.
+  // Appends the pairs of vertices that share a 3x3 block of the Hessian.
   virtual void add_couplings(Couplings&) const {}
+  // Looks up the positions of these blocks in the pattern. Called before the first Hessian and the first context.
   virtual void bind(const BlockPattern&) {}
 
   virtual std::unique_ptr<Context> make_context() const { return std::make_unique<Context>(); }
-  // Moving targets follow the time, damping remembers the start.
+  // Prepares the context for a step. Overrides move targets to step.time or store step.start for damping.
   virtual void begin_step(const StepContext& step, Context& context) const {
     context.time = step.time;
     context.h = step.h;
   }
 
-  virtual double value(Positions x, const Context& context) const = 0;  // V(x) [J]; +inf where undefined
-  // g += scale dV/dx
+  virtual double value(Positions x, const Context& context) const = 0;  // V(x) [J]; +inf where V is not defined
+  // g += scale dV/dx  [N]
   virtual void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const = 0;
-  // H += scale d2V/dx2; returns how many elements were projected.
+  // H += scale d2V/dx2  [N/m], with the element Hessians modified as `projection` asks. Returns the number of modified
+  // elements.
   virtual int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
                           BlockSparse& H) const = 0;
-  // The largest alpha for which x + alpha d is safe.
+  // Returns an upper bound of the steps alpha for which the term allows x + alpha d.
   virtual double max_step(Positions /*x*/, std::span<const double> /*d*/) const {
     return std::numeric_limits<double>::infinity();
   }
 };
 
-// A term that depends on x alone.
+// A term that depends only on x.
 class SteadyEnergy : public Energy {
  public:
   using Energy::add_gradient, Energy::add_hessian, Energy::value;
@@ -72,7 +75,7 @@ class SteadyEnergy : public Energy {
   }
 };
 
-// A term and a context of it: V as a function of x alone, until the next step begins. The term must live as long.
+// A term with its context: between two calls of begin_step(), V is a function of x alone. The term must outlive this.
 class ActiveTerm {
  public:
   explicit ActiveTerm(const Energy& energy) : energy_(&energy), context_(energy.make_context()) {}

@@ -1,5 +1,6 @@
 #include "energy/rayleigh_damping.h"
 
+#include "base/check.h"
 #include "base/parallel.h"
 
 namespace aspic {
@@ -20,7 +21,10 @@ class RayleighDamping : public Damping {
     pattern_ = &pattern;
   }
 
-  std::unique_ptr<Context> make_context() const override { return std::make_unique<Start>(*pattern_); }
+  std::unique_ptr<Context> make_context() const override {
+    ASPIC_CHECK(pattern_);  // bound
+    return std::make_unique<Start>(*pattern_);
+  }
   void begin_step(const StepContext& step, Context& context) const override {
     Energy::begin_step(step, context);
     Start& start = static_cast<Start&>(context);

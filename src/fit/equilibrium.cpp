@@ -50,8 +50,8 @@ struct Equilibrium::Impl {
 
   void tell_terms(std::span<const double> at) {
     const StepContext context{at, 0, 0};
-    E.tell_potential(context);
-    E.tell_damping(context);
+    E.set_potential_step(context);
+    E.set_damping_step(context);
     E.begin_step(at, 0, 1);
   }
 

@@ -107,7 +107,7 @@ struct Trajectory::Impl {
   // From `now` to `end`, which may be the same.
   bool step(State& end) {
     Stopwatch stopwatch;
-    const SolveTools solve{model, pins, E, minimizer, newton, minimize, observe, go_on, InitialGuess::best};
+    const SolveTools solve{model, pins, E, minimizer, newton, minimize, observe, InitialGuess::best};
     before = now;
     const StepSolve solved = integrator->advance({solve, before, nullptr, options.h, time_of(point + 1)}, next, forces);
     ++report.steps;
@@ -205,8 +205,8 @@ struct Trajectory::Impl {
   // As the integrator does.
   void tell_step() {
     const StepContext context{now.q, options.h, time_of(point + 1), now.q};
-    E.tell_potential(context);
-    E.tell_damping(context);
+    E.set_potential_step(context);
+    E.set_damping_step(context);
     for (size_t i = 0; i < moved.size(); ++i) moved[i] = now.q[i] + options.h * now.qdot[i];
     E.begin_step(moved, 1, options.h * options.h);
   }
@@ -267,7 +267,6 @@ struct Trajectory::Impl {
   Minimizer minimizer;
   MinimizeOptions minimize;
   IterationObserver observe;
-  Consent go_on;
   std::optional<Vec3d> weight;  // acceleration of the load 'gravity'
   TrajectoryReport report;
   State now, after;  // where the walker stands; what follows it, backwards

@@ -100,7 +100,8 @@ ChildProcess::ChildProcess(const Launch& launch, const std::string& remedy)
   if (process_ < 0) error = errno;
   if (failure[1] >= 0) ::close(failure[1]);
   input_ = input[1];
-  if (process_ > 0 && lifetime_ == Lifetime::own_group) ::setpgid(process_, process_);  // whoever comes first
+  if (process_ > 0 && lifetime_ == Lifetime::own_group)
+    ::setpgid(process_, process_);  // in both processes: the order is unknown
   while (process_ > 0 && ::read(failure[0], &error, sizeof error) < 0 && errno == EINTR) {
   }
   if (!error) return;

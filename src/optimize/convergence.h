@@ -1,4 +1,4 @@
-// Whether the iterates of a minimization have converged: each part of the gradient by itself.
+// Convergence tests of a minimization. Each part of the gradient is tested separately.
 #pragma once
 #include <optional>
 #include <span>
@@ -10,23 +10,23 @@ namespace aspic {
 
 class Convergence {
  public:
-  // At the first iterate, where the gradient is g. Both stay while this is used.
+  // Starts at the first iterate with its gradient g. E and options must outlive this minimization.
   void begin(Objective& E, const MinimizeOptions& options, std::span<const double> g);
   void measure(std::span<const double> g);  // at the next iterate
-  void note_hessian();                      // of the last direction: the round-off of the gradient depends on it
+  void note_hessian();                      // updates the round-off of the gradient after a new Hessian
 
-  // Threshold and size of the part that is farthest from its threshold; the size only where the criterion judges the
-  // gradient.
+  // Writes `reached` and `threshold` of the part that is farthest from its threshold; `reached` only if the criterion
+  // tests the gradient.
   void describe(MinimizeReport& report);
-  // Of a direction d: what the criterion sees of it.
+  // Returns the norm of the direction d that the criterion tests.
   double size_of_direction(std::span<const double> g, std::span<const double> d);
-  // Whether the direction that was made so, of that size, says that the minimum is near.
+  // Returns whether a direction of this size, computed as reported, shows convergence.
   bool is_near_minimum(double size, const DirectionReport& made);
-  // How much of the known forces is hidden in the gradient at x.
+  // See HasParts::lost_accuracy().
   double lost_accuracy(std::span<const double> x) { return parts_of_E_->lost_accuracy(x, parts_); }
-  // Whether every part has converged or is within `margin` times its round-off.
+  // Returns whether every part has converged or is within `margin` times its round-off.
   bool is_at_round_off(double margin) const;
-  // Linear solves see the whole of g, of which a part that has not converged may be a small share.
+  // Accounts for the share of unconverged parts in g, because linear solves measure the residual of all parts.
   InnerAccuracy inner_accuracy(const MinimizeReport& report) const;
 
   bool judges_direction() const { return aspic::judges_direction(options_->criterion); }
@@ -41,7 +41,7 @@ class Convergence {
   const MinimizeOptions* options_ = nullptr;
   std::vector<GradientPart> parts_;                            // of the last gradient
   std::vector<double> first_norms_, thresholds_, round_offs_;  // of each part
-  bool is_modified_ = false;                                   // the Hessian behind the last direction
+  bool is_modified_ = false;                                   // whether the last direction used a modified Hessian
 };
 
 }  // namespace aspic

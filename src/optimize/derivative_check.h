@@ -1,5 +1,5 @@
-// "Gradient of what equals this?": central differences of a function against its own derivatives. Their error falls by
-// 100 when the step falls by 10, until round-off takes over; a wrong derivative leaves an error that does not fall.
+// Compares the derivatives of a function with central differences. The error falls by 100 when the step falls by 10,
+// until round-off dominates; the error of a wrong derivative does not fall.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -19,21 +19,21 @@ struct Differentiable {
 Differentiable differentiable(Objective& E);  // refers to E; with the exact Hessian
 
 struct DerivativeCheckOptions {
-  double length = 1;        // steps are multiples of it: a displacement that changes the function considerably
-  int directions = 3;       // random ones; the largest error of any of them counts
-  uint64_t seed = 7;        // of their entries, which are uniform in [-1, 1]
-  double tolerance = 1e-6;  // of the smallest error
-  std::vector<char> fixed;  // marks entries of x that are no variables; empty: none
+  double length = 1;        // unit of the steps: a displacement that changes the function considerably
+  int directions = 3;       // number of random directions; the largest error counts
+  uint64_t seed = 7;        // seed of their entries, uniform in [-1, 1]
+  double tolerance = 1e-6;  // bound of the smallest error
+  std::vector<char> fixed;  // marks entries of x that are not variables; empty: none
 };
 
-// How one derivative compares with the differences of what it is the derivative of.
+// One derivative compared with difference quotients.
 struct DerivativeCheck {
   std::vector<double> step, error;  // step relative to the length: 1e-1 ... 1e-9; error relative to the derivative
   double smallest_error = 0;
-  double order = 0;  // the fitted slope of log error over log step where the error falls; NaN: round-off alone
+  double order = 0;  // fitted slope of log error over log step where the error falls; NaN: only round-off
   bool passed = false;
 
-  // Where the derivative is worst, at the step of the smallest error: an entry of the gradient, or of the Hessian.
+  // The entry of the gradient or Hessian with the largest error, at the step of the smallest error.
   int row = -1, column = -1;       // column: -1 for a gradient, and for a Hessian that passed
   double found = 0, expected = 0;  // the derivative there, and the difference quotient
 };
@@ -44,7 +44,7 @@ struct DerivativeReport {
   bool passed() const { return gradient.passed && hessian.passed; }
 };
 
-// At the point x, where the function must be finite. Steps that leave the domain have the error NaN.
+// Checks at the point x, where f must be finite. Steps that leave the domain have the error NaN.
 DerivativeReport check_derivatives(const Differentiable& f, std::span<const double> x,
                                    const DerivativeCheckOptions& options = {});
 

@@ -1,4 +1,4 @@
-// Several methods, the next of which takes over where the one before finds no step.
+// A sequence of methods: if one of them finds no step, the next one is used.
 #pragma once
 #include <memory>
 #include <vector>
@@ -13,12 +13,11 @@ class FallbackChain : public SearchDirection {
   std::string_view name() const override { return methods_.front()->name(); }
   std::string description() const override;
   void begin() override;
-  // Each iteration begins with the first method.
-  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
-               std::span<double> d, DirectionReport& report) override;
-  // First by the method's own more cautious way, then by the next method.
+  // Every iteration starts with the first method.
+  bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override;
+  // Falls back within the current method, then to the next method.
   bool retreat() override;
-  bool estimates_minimiser() const override;  // if all of them do
+  bool estimates_minimizer() const override;  // if all of them do
 
  private:
   void start(size_t method);

@@ -1,4 +1,4 @@
-// Gradient descent: d = -B^-1 g, where B is the identity if not chosen otherwise.
+// Gradient descent: d = -B^-1 g with a preconditioner B, by default the identity.
 #pragma once
 #include "optimize/preconditioner.h"
 #include "optimize/search_direction.h"
@@ -11,8 +11,7 @@ class GradientDescent : public SearchDirection {
   std::string_view name() const override { return "gradient_descent"; }
   std::string description() const override;
   void begin() override { B_.begin(); }
-  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
-               std::span<double> d, DirectionReport& report) override;
+  bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override;
 
  private:
   Preconditioner B_;

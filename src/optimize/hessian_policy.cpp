@@ -126,8 +126,8 @@ class HessianOnDemand : public HessianPolicy {
 
   bool skip_exact_ = false;    // of the next direction, after a retreat
   bool is_modified_ = false;   // the Hessian of the last direction
-  int absolute_left_ = 0;      // the next so many modified Hessians are absolute
-  int absolute_span_ = 0;      // and how many will be when a direction overshoots again
+  int absolute_left_ = 0;      // number of upcoming modified Hessians that use absolute eigenvalues
+  int absolute_span_ = 0;      // its value after the next direction that overshoots
   int modified_in_a_row_ = 0;  // directions that are not of the exact Hessian
   double last_value_ = 0;      // E at the last iterate with such a direction
   std::vector<double> ahead_;

@@ -1,4 +1,4 @@
-// Which Hessian Newton's method takes where the exact one may be indefinite.
+// The Hessians that Newton's method uses where the exact one may be indefinite.
 #pragma once
 #include <memory>
 #include <string_view>
@@ -11,18 +11,18 @@ namespace aspic {
 class HessianPolicy {
  public:
   virtual ~HessianPolicy() = default;
-  virtual void begin() {}  // a minimization
-  // Writes task.d with one of the Hessians; false when none of them gives a direction.
+  virtual void begin() {}  // starts a minimization
+  // Writes task.d. Returns false if none of the Hessians gives a direction.
   virtual bool compute(NewtonSystem& system, NewtonTask& task) = 0;
-  // The last direction was of no use. True: compute again, there is a more cautious Hessian.
+  // Called if no step along the last direction decreases E. Returns true if there is a more cautious Hessian.
   virtual bool retreat() { return false; }
 };
 
-// exact, clamped, absolute: always this one.
-// on_demand: exact first; clamped only when the exact Hessian turns out indefinite or its direction of no use; absolute
-// where a full step along that overshoots, and for a while after that. Directions along which E curves downwards are
-// lengthened, and truncated ones of the exact Hessian take over where the iterates creep away from a saddle.
-// progressive: exact first; then clamped where the residual is largest, and further around, as far as it takes.
+// exact, clamped, absolute: always the same Hessian.
+// on_demand: the exact Hessian; if it is indefinite or its direction fails, the clamped one; if a full step overshoots,
+// absolute eigenvalues for some iterations. Directions of negative curvature are lengthened, and truncated directions
+// of the exact Hessian are used where the iterates leave a saddle slowly. progressive: the exact Hessian; then clamped
+// elements where the residual is largest, and more of them as needed.
 enum class NewtonDefiniteness { exact, clamped, absolute, on_demand, progressive };
 std::string_view to_string(NewtonDefiniteness definiteness);
 std::vector<NewtonDefiniteness> all_definiteness();

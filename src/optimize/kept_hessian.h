@@ -1,5 +1,5 @@
-// The Hessian of an iteration before, for the last digits, where its quadratic approximation is good enough that
-// another step with it ends the minimization: Shamanskii's method [Kelley 1995, section 5.4.3].
+// Reuses the Hessian of an earlier iteration if one more step with it is expected to converge: Shamanskii's method
+// [Kelley 1995, section 5.4.3].
 #pragma once
 #include <cstdint>
 #include <span>
@@ -12,21 +12,21 @@ namespace aspic {
 class KeptHessian {
  public:
   void drop() { H_ = nullptr; }
-  // Made by E at x. E holds it, and overwrites it whenever anyone asks for another one.
+  // Keeps the Hessian that E computed at x. E owns it and overwrites it with the next one.
   void keep(const Objective& E, const BlockSparse& H, std::span<const double> x);
-  // H d = -g has been solved with it, to this relative residual.
+  // Records a solve of H d = -g with this relative residual.
   void note_solve(double gradient_norm, double relative_residual);
 
-  // Whether it serves once more, where the gradient has become this large. Its approximation was wrong by
-  // | |g| - |g + H d| | / |g before| [Eisenstat and Walker 1996, choice 1]: about so much of g the next step leaves.
+  // Returns whether a step with the kept Hessian is expected to converge from this gradient norm. The step leaves about
+  // | |g| - |g + H d| | / |g_previous| of g [Eisenstat and Walker 1996, choice 1].
   bool serves(double gradient_norm, const InnerAccuracy& accuracy) const;
-  // Has E hold it again after an observer asked for others: looking changes no bit.
+  // Recomputes the Hessian if an observer has overwritten it.
   void restore(Objective& E);
 
  private:
   const BlockSparse* H_ = nullptr;
-  std::vector<double> x_;  // where it was made
-  uint64_t number_ = 0;    // of it among those of E
+  std::vector<double> x_;  // positions of the kept Hessian
+  uint64_t number_ = 0;    // its Objective::hessians_made()
   double norm_before_ = 0, predicted_norm_ = 0;
 };
 

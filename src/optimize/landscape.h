@@ -1,4 +1,4 @@
-// E around an iterate, to be looked at: along the direction of a step, and over a plane through it.
+// Samples E around an iterate, for plots: along the search direction, and on a plane through it.
 #pragma once
 #include <functional>
 #include <vector>
@@ -15,14 +15,14 @@ struct CurvePoint {
   double slide_bound = 0;     // E + c g.d
 };
 
-// E along d, from a little behind x to a little beyond the longest trial, closer around an accepted step that is much
-// shorter; alpha ascends. `c` is the sufficient decrease. At least two samples. Empty when `goes_on`, asked before
-// every sample, says no.
+// Samples E along d from slightly behind x to slightly beyond the longest trial, with more samples around an accepted
+// step that is much shorter. alpha ascends. `c` is the sufficient decrease; samples >= 2. Polls `stop` before every
+// sample and returns an empty vector if it stops.
 std::vector<CurvePoint> curve_along(const LiveIteration& iteration, double c, int samples = 101,
-                                    const std::function<bool()>& goes_on = {});
+                                    const StopToken& stop = {});
 
-// The plane x + s d + t v: v has the length of d and lies across it, in the direction of -g; where d is along g, in
-// that of H g.
+// A point x + s d + t v of the plane spanned by d and v. v is orthogonal to d and has its length; it is the component
+// of -g, or of H g if d is parallel to g.
 struct SlicePoint {
   double s = 0, t = 0;
   double value = 0;  // E; +inf where undefined
@@ -35,7 +35,7 @@ struct Slice {
   std::vector<double> across;     // v
 };
 
-// s in [-0.5, 1.5], t in [-1, 1]. Without points when `goes_on`, asked before every sample, says no.
-Slice slice_through(const LiveIteration& iteration, int samples = 41, const std::function<bool()>& goes_on = {});
+// Samples s in [-0.5, 1.5] and t in [-1, 1]. Polls `stop` before every sample and returns no points if it stops.
+Slice slice_through(const LiveIteration& iteration, int samples = 41, const StopToken& stop = {});
 
 }  // namespace aspic

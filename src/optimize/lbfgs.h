@@ -1,5 +1,5 @@
-// L-BFGS [Nocedal and Wright 2006, alg. 7.4]: the Hessian at the first iterate, or another B, corrected by the last few
-// changes of the gradient [Liu et al. 2017].
+// L-BFGS [Nocedal and Wright 2006, alg. 7.4] with the Hessian at the first iterate, or another preconditioner B, as its
+// initial matrix [Liu et al. 2017].
 #pragma once
 #include <vector>
 
@@ -15,9 +15,8 @@ class LBFGS : public SearchDirection {
   std::string_view name() const override { return "lbfgs"; }
   std::string description() const override;
   void begin() override;
-  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
-               std::span<double> d, DirectionReport& report) override;
-  bool retreat() override;  // forgets the changes: -B^-1 g
+  bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override;
+  bool retreat() override;  // drops the pairs: d = -B^-1 g
 
  private:
   static constexpr int kPairs = 8;
@@ -29,14 +28,13 @@ class LBFGS : public SearchDirection {
   Pair& recent(int age) { return pairs_[(next_ + kPairs - 1 - age) % kPairs]; }  // 0: the last one
   void resize(size_t n);
   void remember(Objective& E, std::span<const double> x, std::span<const double> g);
-  bool scale(Objective& E, std::span<const double> x, std::span<const double> g, std::span<double> d,
-             DirectionReport& report);
+  bool scale(const Iterate& at, std::span<double> d, DirectionReport& report);
 
   Preconditioner B_;
   ModelStep length_;
   Pair pairs_[kPairs];
   int count_ = 0, next_ = 0;
-  bool has_last_ = false, corrected_ = false;  // there is an iterate before; the last direction was not -B^-1 g
+  bool has_last_ = false, corrected_ = false;  // a previous iterate is stored; the last direction used pairs
   std::vector<double> last_x_, last_g_, r_;
 };
 

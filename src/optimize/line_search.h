@@ -1,9 +1,9 @@
-// Backtracking line search: try alpha_max, then shrink by p until E has decreased enough.
+// Backtracking line search: starts with alpha_max and multiplies it by p until E has decreased sufficiently.
 #pragma once
 #include <span>
 #include <vector>
 
-#include "base/deadline.h"
+#include "base/stop_token.h"
 #include "optimize/objective.h"
 #include "optimize/work.h"
 
@@ -19,31 +19,43 @@ struct LineSearchOptions {
   double alpha_max = 1;
   double sufficient_decrease = 1e-4;  // c, in (0, 1)
   double shrink = 0.5;                // p, in (0, 1)
-  double tolerance = 1e-10;           // tol: the search is stuck at smaller steps
+  double tolerance = 1e-10;           // smallest alpha; the search then ends as stuck
   DecreaseTest test = DecreaseTest::textbook;
-  Deadline deadline = {};  // no trials afterwards, except the first
 };
 
 struct Trial {
   double alpha = 0;
   double value = 0;       // E(x + alpha d)
   double bound = 0;       // the largest value that the test accepts
-  bool by_slope = false;  // the difference to E(x) is below round-off; judged by the slope at the trial
+  bool by_slope = false;  // tested by the slope, because the difference to E(x) is below round-off
   bool accepted = false;
+};
+
+// A line to search: x + alpha d, with E(x) and the slope g.d there.
+struct SearchLine {
+  Objective& E;
+  std::span<const double> x, d;
+  Evaluation value;
+  double slope;
+  StopToken stop = {};  // no trials afterwards, except the first
+};
+
+// The vectors that a search writes. The caller sizes `trial` and `gradient` like x.
+struct LineSearchScratch {
+  std::vector<double> trial;     // the last trial x + alpha d
+  std::vector<double> gradient;  // there, if computed
+  std::vector<Trial> trials;     // all of them
 };
 
 struct LineSearchResult {
   double alpha = 0;             // 0: stuck
   Evaluation value;             // at x + alpha d
   int gradients = 0;            // evaluated
-  bool gradient_known = false;  // `trial_gradient` holds the gradient at the accepted trial
+  bool gradient_known = false;  // LineSearchScratch::gradient is that of the accepted trial
 };
 
-// Searches along d from x. Near convergence differences of E are below round-off: if both the difference and the
-// required decrease are, the slope at the trial decides (approximate Wolfe condition, [Hager and Zhang 2005]). Writes x
-// + alpha d to `trial`, its gradient to `trial_gradient` if computed, and all trials to `trials`.
-LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<const double> d, const Evaluation& value,
-                           double slope /* g.d */, const LineSearchOptions& options, std::span<double> trial,
-                           std::span<double> trial_gradient, std::vector<Trial>& trials);
+// Searches along the line. Near convergence differences of E are below round-off: if both the difference and the
+// required decrease are, the slope at the trial decides (approximate Wolfe condition, [Hager and Zhang 2005]).
+LineSearchResult backtrack(const SearchLine& line, const LineSearchOptions& options, LineSearchScratch& scratch);
 
 }  // namespace aspic

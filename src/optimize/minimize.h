@@ -1,5 +1,5 @@
-// Gradient-based minimization: choose a direction, choose how far, repeat until converged. The lecture's loop, with
-// its two slots (direction and step length) left open.
+// Gradient-based minimization: compute a direction, search along it, repeat until converged. The search direction and
+// the line search are exchangeable.
 #pragma once
 #include <functional>
 #include <memory>
@@ -14,27 +14,27 @@
 namespace aspic {
 
 enum class Status {
-  converged,        // the criterion is within the tolerance
-  round_off,        // no more progress is possible in double precision: as good as converged
-  budget,           // the deadline came first: as far as time allowed
+  converged,        // the criterion is met
+  round_off,        // no further progress is possible in double precision; a success
+  budget,           // the deadline passed first; the result is the best iterate
   iteration_limit,  // max_iterations reached first
   stuck,            // the line search found no decrease
-  no_descent,       // no descent direction could be computed
-  interrupted,      // the observer asked to stop
-  undefined,        // value or gradient is not finite at the start
-  // Not of a minimization:
-  unstable,    // an explicit scheme made most of the energy that the body has
-  inaccurate,  // the smallest part of an adaptive time step misses its tolerance
+  no_descent,       // no descent direction was found
+  interrupted,      // the stop token was requested to stop
+  undefined,        // the value or the gradient is not finite at the initial guess
+  // Only of time steps:
+  unstable,    // an explicit scheme has produced most of the energy of the body
+  inaccurate,  // the smallest substep of an adaptive time step misses its tolerance
 };
 inline constexpr int kStatusCount = 10;
 std::string_view to_string(Status status);
 inline bool is_success(Status status) { return status == Status::converged || status == Status::round_off; }
 
-// What must be small. The last three look at the direction d, of a method for which x + d estimates the minimizer,
-// where the Hessian is positive definite; the step along it is still taken.
+// Convergence criteria. The first three test the gradient g of each part of the objective, such as each body. The last
+// three test the direction d; they need a method for which x + d estimates the minimizer and a positive definite
+// Hessian, and the step along d is still taken.
 enum class Criterion {
-  // Of the gradient of every part of the objective by itself, such as every body:
-  scale,           // |g| <= tolerance * GradientPart::scale: for a time step, the forces that balance
+  scale,           // |g| <= tolerance * GradientPart::scale: for a time step, the forces in balance
   first_gradient,  // |g| <= tolerance * |g at the first iterate|
   absolute,        // |g| <= tolerance * ObjectiveScales::gradient_unit: for a time step, newtons
   decrement,       // Newton decrement: sqrt(-g.d / 2) <= tolerance * sqrt(ObjectiveScales::value)
@@ -49,10 +49,10 @@ struct MinimizeOptions {
   int max_iterations = 200;
   double tolerance = 1e-6;
   Criterion criterion = Criterion::scale;
-  double h = 1;              // [s], what velocity and acceleration are measured by
-  double max_forcing = 0.1;  // the loosest inner linear solve, as a relative residual
+  double h = 1;              // time step of the criteria velocity and acceleration [s]
+  double max_forcing = 0.1;  // largest relative residual of inner linear solves
   LineSearchOptions line_search;
-  Deadline deadline = {};  // the best iterate by then is the result
+  StopToken stop = {};  // polled in every iteration
 };
 
 struct Iteration {
@@ -60,16 +60,16 @@ struct Iteration {
   double value = 0;          // E before the step
   double gradient_norm = 0;  // |g| before the step
   double decrement = 0;      // Newton decrement: -g.d / 2
-  double alpha = 0;          // accepted step length; 0 when there was none, which ends the minimization
-  int trials = 0;            // evaluations by the line search
-  int gradients = 0;         // evaluations in all
-  int retreats = 0;          // how often a direction was of no use and another way was taken
+  double alpha = 0;          // accepted step length; 0 if there was none, which ends the minimization
+  int trials = 0;            // evaluations of E by the line search
+  int gradients = 0;         // evaluations of the gradient
+  int retreats = 0;          // number of fallbacks to a more cautious direction
   DirectionReport direction;
   double line_search_seconds = 0, gradient_seconds = 0;  // wall time
 };
 
-// An iteration and what it was made of. The references are valid only while the observer is being called, which may
-// evaluate E wherever it likes: that changes no bit of the result.
+// An iteration with its vectors, as observers receive it. The references are valid only during the call. An observer
+// may evaluate E anywhere: this changes no bit of the result.
 struct LiveIteration : Iteration {
   Objective& E;
   std::span<const double> x, g, d;  // before the step
@@ -81,31 +81,33 @@ struct MinimizeReport : Work {
   Status status = Status::iteration_limit;
   int iterations = 0;
   double value = 0, gradient_norm = 0, first_gradient_norm = 0;
-  double reached = 0,
-         threshold = 0;           // what the criterion looks at (|g| of the worst part, or a size of d), and its bound
-  double gradient_round_off = 0;  // the part of |g| that is noise
-  double lost_accuracy = 0;       // see HasParts::lost_accuracy(); the status is then round_off
+  double reached = 0;             // the quantity that the criterion tests: |g| of the worst part, or a norm of d
+  double threshold = 0;           // its bound
+  double gradient_round_off = 0;  // rounding error of the gradient, as a norm
+  double lost_accuracy = 0;       // see HasParts::lost_accuracy(); if positive, the status is round_off
   double decrement = 0;           // -g.d / 2 of the last iteration; 0 without one
   int trials = 0, retreats = 0, projected_hessians = 0, projected_elements = 0;
 };
 
-using IterationObserver = std::function<bool(const LiveIteration&)>;  // false: stop here
+using IterationObserver = std::function<void(const LiveIteration&)>;
 
-class Minimizer {  // holds the scratch vectors, so that repeated calls allocate nothing
+// Keeps its scratch vectors, so that repeated calls allocate nothing.
+class Minimizer {
  public:
   Minimizer();
   ~Minimizer();
   Minimizer(Minimizer&&) noexcept;
   Minimizer& operator=(Minimizer&&) noexcept;
 
-  // Throws InvalidInput when the criterion judges directions and those of the method say nothing about the distance.
+  // Minimizes E from the initial guess x, 3 numbers per block row, and writes the best iterate to x. Throws
+  // InvalidInput if the criterion tests directions and those of the method do not estimate the minimizer.
   MinimizeReport minimize(Objective& E, SearchDirection& direction, std::span<double> x, const MinimizeOptions& options,
                           const IterationObserver& observe = {});
-  // The same where E(x) is known already.
+  // The same, with E(x) given.
   MinimizeReport minimize(Objective& E, SearchDirection& direction, std::span<double> x, const Evaluation& value,
                           const MinimizeOptions& options, const IterationObserver& observe = {});
 
-  // The bound of |g| for each part in the last minimization, where the criterion judges the gradient.
+  // Returns the bound of |g| of each part in the last minimization, if its criterion tests the gradient.
   std::span<const double> thresholds() const;
 
  private:

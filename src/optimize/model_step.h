@@ -1,4 +1,4 @@
-// How long a direction should be, for methods whose directions say only where to go.
+// The step length of the quadratic model, for methods whose directions have no natural length.
 #pragma once
 #include <span>
 #include <vector>
@@ -7,18 +7,17 @@
 
 namespace aspic {
 
-// The minimizer along p of the quadratic with the slope and the curvature of E at x: -g.p / p'Hp. The curvature is a
-// difference of gradients over a short way, which costs one gradient.
+// Minimizes the quadratic model of E along p: -g.p / p'Hp. The curvature p'Hp is a difference quotient, which costs one
+// gradient.
 class ModelStep {
  public:
   void begin() { last_ = 0; }
-  // Where there is no positive curvature: so long that the largest displacement is that of the last step, doubled (of
-  // the first step: E.scales().x).
-  double along(Objective& E, std::span<const double> x, std::span<const double> g, std::span<const double> p,
-               DirectionReport& report);
+  // Returns the length. Without positive curvature, the largest displacement is twice that of the last step, or
+  // E.scales().x in the first step.
+  double along(const Iterate& at, std::span<const double> p, DirectionReport& report);
 
  private:
-  double last_ = 0;  // the largest entry of the last step; 0: there is none
+  double last_ = 0;  // largest entry of the last step; 0: none
   std::vector<double> ahead_, gradient_;
 };
 

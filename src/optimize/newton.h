@@ -1,4 +1,4 @@
-// Newton's method: minimize the quadratic approximation, H d = -g.
+// Newton's method: d minimizes the quadratic approximation, H d = -g.
 #pragma once
 #include <memory>
 
@@ -14,10 +14,9 @@ class Newton : public SearchDirection {
   std::string_view name() const override { return system_.truncates() ? "newton_cg" : "newton"; }
   std::string description() const override;
   void begin() override;
-  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
-               std::span<double> d, DirectionReport& report) override;
+  bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override;
   bool retreat() override;
-  bool estimates_minimiser() const override { return true; }
+  bool estimates_minimizer() const override { return true; }
   const LinearSolver& solver() const { return system_.solver(); }
 
  private:
@@ -29,13 +28,13 @@ class Newton : public SearchDirection {
   NewtonDefiniteness definiteness_;
   std::unique_ptr<HessianPolicy> policy_;
   Forcing forcing_;
-  bool is_new_ = true;      // begun, and nothing computed yet
-  bool used_kept_ = false;  // a Hessian of an iteration before, for the last direction
+  bool is_new_ = true;      // no direction computed yet in this minimization
+  bool used_kept_ = false;  // the last direction used the Hessian of an earlier iteration
 };
 
-// Truncated Newton: conjugate gradients that stop where they meet negative curvature and keep what they have, so that
-// an indefinite Hessian needs no projection [Nocedal and Wright 2006, alg. 7.1]. The systems are solved as exactly as
-// Eisenstat and Walker ask. Where such a direction is of no use, the Hessian is clamped, if `definiteness` allows.
+// Truncated Newton method: conjugate gradients stop at negative curvature and return their iterate, so that an
+// indefinite Hessian needs no modification [Nocedal and Wright 2006, alg. 7.1]. The tolerance of the solves is that of
+// Eisenstat and Walker. If such a direction fails, the Hessian is modified as `definiteness` allows.
 std::unique_ptr<Newton> make_newton_cg(NewtonDefiniteness definiteness = NewtonDefiniteness::on_demand);
 
 }  // namespace aspic

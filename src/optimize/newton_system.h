@@ -9,11 +9,11 @@
 
 namespace aspic {
 
-// Where a direction is computed, and what becomes of it.
+// Input and output of one Newton direction.
 struct NewtonTask {
   Objective& E;
   std::span<const double> x, g;
-  std::optional<double> value;  // E(x), where steps are judged by E
+  std::optional<double> value;  // E(x), if the line search compares values of E
   double forcing;               // relative residual of the linear solve
   std::span<double> d;
   DirectionReport& report;
@@ -21,29 +21,29 @@ struct NewtonTask {
 
 class NewtonSystem {
  public:
-  // truncates: a solve that met negative curvature is used as far as it came.
+  // truncates: whether an iterate of a solve that met negative curvature is a direction.
   NewtonSystem(std::unique_ptr<LinearSolver> solver, bool truncates)
       : solver_(std::move(solver)), truncates_(truncates) {}
   const LinearSolver& solver() const { return *solver_; }
   bool truncates() const { return truncates_; }
 
-  void begin();  // a minimization
-  // A direction. The first one of a minimization is never late: without any, no force would act.
-  void begin_direction(const Deadline& deadline, bool is_first, double gradient_norm);
+  void begin();  // starts a minimization
+  // Starts a direction. The first one of a minimization ignores the deadline, because a step without any direction
+  // would ignore the forces.
+  void begin_direction(const StopToken& stop, bool is_first, double gradient_norm);
 
   bool solve(NewtonTask& task, const Projection& projection);
-  // With the exact Hessian that solve() made for this direction; where it has negative curvature, d is as far as the
-  // solve came. False: there is none, or the solve failed.
+  // Solves with the exact Hessian that solve() computed for this direction, and truncates at negative curvature.
+  // Returns false if there is no exact Hessian or the solve failed.
   bool solve_truncated(NewtonTask& task);
 
-  // With the Hessian of an iteration before, if that is good enough. The factorization, or the preconditioner, is kept
-  // as well.
+  // Solves with the Hessian and factorization or preconditioner of an earlier iteration, if it is accurate enough.
   bool solve_with_kept(NewtonTask& task, const InnerAccuracy& accuracy);
   void drop_kept() { kept_.drop(); }
 
-  // Whether to give up between the phases of a solve.
+  // Returns whether to end between the phases of a solve.
   bool is_late(DirectionReport& report) const {
-    return report.stopped = report.stopped || (!is_first_ && deadline_.has_passed());
+    return report.stopped = report.stopped || (is_first_ ? stop_.requested() : stop_.stopped());
   }
 
  private:
@@ -52,12 +52,12 @@ class NewtonSystem {
 
   std::unique_ptr<LinearSolver> solver_;
   bool truncates_;
-  // Bears singular and indefinite matrices, which the first one may not.
+  // Handles singular and indefinite matrices.
   ConjugateGradient semidefinite_solver_{std::make_unique<BlockJacobi>(BlockJacobi::Blocks::made_definite)};
   uint64_t analyzed_version_ = 0, semidefinite_version_ = 0;
   KeptHessian kept_;
-  const BlockSparse* exact_ = nullptr;  // the last Hessian that E made for this direction, if it is the exact one
-  Deadline deadline_;
+  const BlockSparse* exact_ = nullptr;  // the last Hessian of this direction, if it is exact
+  StopToken stop_;
   bool is_first_ = true;
   double gradient_norm_ = 0;
 };

@@ -1,4 +1,4 @@
-// Nonlinear conjugate gradients: p = -B^-1 g + beta p_before, and d = p at the length of the quadratic model along p.
+// Nonlinear conjugate gradients: p = -B^-1 g + beta p_previous; d is p scaled to the minimum of the quadratic model.
 #pragma once
 #include <vector>
 
@@ -14,16 +14,15 @@ class NonlinearCG : public SearchDirection {
   std::string_view name() const override { return "nonlinear_cg"; }
   std::string description() const override;
   void begin() override;
-  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
-               std::span<double> d, DirectionReport& report) override;
-  bool retreat() override;  // starts anew along -B^-1 g
+  bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override;
+  bool retreat() override;  // restarts with d = -B^-1 g
 
  private:
   double beta(Objective& E, std::span<const double> g);
 
   Preconditioner B_;
   ModelStep length_;
-  bool remembers_ = false, conjugate_ = false;  // there is a last direction; the last one was not -B^-1 g
+  bool remembers_ = false, conjugate_ = false;  // a previous direction is stored; the last direction used it
   std::vector<double> p_, z_;                   // direction, B^-1 g
   std::vector<double> last_g_, last_z_;
 };

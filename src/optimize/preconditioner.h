@@ -1,5 +1,5 @@
-// A symmetric positive definite matrix B that stands for the Hessian: first-order methods step along -B^-1 g instead of
-// -g. It is made at the first iterate of a minimization and kept to its end.
+// A symmetric positive definite approximation B of the Hessian: first-order methods use -B^-1 g instead of -g. It is
+// computed at the first iterate of a minimization and then constant.
 #pragma once
 #include <memory>
 #include <optional>
@@ -21,7 +21,7 @@ enum class PreconditionerKind {
   own,       // HasPreconditioner
 };
 std::string_view to_string(PreconditionerKind kind);
-std::vector<PreconditionerKind> all_preconditioners();  // that any objective can have: all but `own`
+std::vector<PreconditionerKind> all_preconditioners();  // those for any objective: all but `own`
 
 class Preconditioner {
  public:
@@ -32,11 +32,11 @@ class Preconditioner {
   std::string description() const;  // "hessian (cholesky: ...)"
 
   void begin() { is_made_ = false; }
-  void set_deadline(const Deadline& deadline) {
-    if (solver_) solver_->set_deadline(deadline);
+  void set_stop(const StopToken& stop) {
+    if (solver_) solver_->set_stop(stop);
   }
-  // z = B^-1 r, 3 numbers per vertex. The first call after begin() makes B at x. False: B is not positive definite, or
-  // the system could not be solved.
+  // z = B^-1 r, 3 numbers per block row. The first call after begin() computes B at x. Returns false if B is not
+  // positive definite or the solve failed.
   bool apply(Objective& E, std::span<const double> x, std::span<const double> r, std::span<double> z,
              DirectionReport& report);
 

@@ -1,6 +1,6 @@
-// Which elements are projected by progressively projected Newton [Fernandez-Fernandez et al. 2026]: those with a vertex
-// whose residual is above a threshold. The threshold falls when a direction is of no use and rises with success, so
-// that few elements lose their exact Hessians: those where most is left to be done.
+// Selects the elements with modified Hessians in progressively projected Newton [Fernandez-Fernandez et al. 2026]:
+// those with a vertex whose residual exceeds a threshold. The threshold falls after a failed direction and rises after
+// a successful one, so that few elements are modified.
 #pragma once
 #include <span>
 #include <vector>
@@ -13,14 +13,14 @@ class ProgressiveProjection {
  public:
   void begin() { threshold_ = kNone; }
 
-  // At this residual g, 3 numbers per vertex; valid until the next call.
+  // Returns the selection for the residual g, 3 numbers per vertex. Valid until the next call.
   Projection at(std::span<const double> g);
-  bool is_complete() const { return covers_all_; }  // whether the last one covered every element
-  void tighten(std::span<const double> g);          // cover more
-  void relax();                                     // cover less
+  bool is_complete() const { return covers_all_; }  // whether the last selection holds every element
+  void tighten(std::span<const double> g);          // select more elements
+  void relax();                                     // select fewer elements
 
  private:
-  static constexpr double kNone = -1;  // nothing is projected
+  static constexpr double kNone = -1;  // no element is modified
   double threshold_ = kNone;
   bool covers_all_ = false;
   std::vector<char> marked_;

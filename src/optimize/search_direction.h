@@ -1,11 +1,11 @@
-// Search directions: the open slot "d = ?" of the minimization loop.
+// Search directions of the minimization loop.
 #pragma once
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
-#include "base/deadline.h"
+#include "base/stop_token.h"
 #include "optimize/objective.h"
 #include "optimize/work.h"
 
@@ -16,40 +16,43 @@ struct DirectionReport : Work {
   bool projected = false;        // a modified Hessian replaced the exact one
   bool kept = false;             // the Hessian of an earlier iteration was reused
   bool truncated = false;        // the linear solve ended at a direction of negative curvature
-  bool stopped = false;          // the deadline passed
-  double stoppable_seconds = 0;  // time of the part that a deadline can stop, by its clock
+  bool stopped = false;          // the stop token ended it early
+  double stoppable_seconds = 0;  // time of the part that a stop token can end, by the clock of its deadline
   double hessian_seconds = 0, factorize_seconds = 0, solve_seconds = 0;  // wall time
 };
 
-// The accuracy of inner linear solves: the relative residual lies between `enough`, which suffices for the end of the
-// minimization, and `loosest` [Kelley 1995, eq. 6.20].
+// Bounds of the relative residual of inner linear solves [Kelley 1995, eq. 6.20].
 struct InnerAccuracy {
   double loosest = 0.1;
-  double enough = 0;
-  Deadline deadline = {};            // iterative solves stop there and return their iterate as d
+  double enough = 0;                 // suffices for the last iteration
   std::optional<double> value = {};  // E(x), if known
+};
+
+// Where a direction is computed. x and the gradient g hold 3 numbers per block row.
+struct Iterate {
+  Objective& E;
+  std::span<const double> x, g;
+  InnerAccuracy accuracy = {};
+  StopToken stop = {};  // iterative solves end there and return their iterate as d
 };
 
 class SearchDirection {
  public:
   virtual ~SearchDirection() = default;
   virtual std::string_view name() const = 0;
-  virtual std::string description() const {
-    return std::string(name());
-  }  // with its choices and their reasons, for logs
+  // Returns the method and its choices with their reasons, for logs.
+  virtual std::string description() const { return std::string(name()); }
 
-  // Starts a minimization: drops everything kept from the last one.
+  // Starts a minimization. Drops everything kept from the last one.
   virtual void begin() {}
-  // Computes the direction d at x from the gradient g, 3 numbers per block row each. Returns false if no descent
-  // direction was found.
-  virtual bool compute(Objective& E, std::span<const double> x, std::span<const double> g,
-                       const InnerAccuracy& accuracy, std::span<double> d, DirectionReport& report) = 0;
-  // Called if there was no direction, or no step along it decreases E. Returns true if a more cautious direction
-  // exists: compute() is then called again.
+  // Writes the direction, 3 numbers per block row, to d. Returns false if no descent direction was found.
+  virtual bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) = 0;
+  // Called if compute() failed or no step along d decreases E. Returns true if a more cautious direction exists;
+  // compute() is then called again.
   virtual bool retreat() { return false; }
 
   // Returns whether x + d estimates the minimizer, so that |d| estimates the distance to it.
-  virtual bool estimates_minimiser() const { return false; }
+  virtual bool estimates_minimizer() const { return false; }
 };
 
 }  // namespace aspic

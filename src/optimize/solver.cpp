@@ -25,7 +25,7 @@ NewtonDefiniteness definiteness(const SolverOptions& options) {
 struct Method {
   std::string name;
   Direction (*make)(const SolverOptions&);
-  bool estimates_minimiser = false, solves_systems = false, uses_definiteness = false;
+  bool estimates_minimizer = false, solves_systems = false, uses_definiteness = false;
   std::optional<PreconditionerKind> preconditioner = {};  // the one that suits it, if it uses any
 };
 const Method* method_named(const std::string& name);
@@ -55,10 +55,10 @@ const std::vector<Method>& methods() {
   static const std::vector<Method> table = {
       {.name = "newton",
        .make = make_newton,
-       .estimates_minimiser = true,
+       .estimates_minimizer = true,
        .solves_systems = true,
        .uses_definiteness = true},
-      {.name = "newton_cg", .make = make_truncated_newton, .estimates_minimiser = true, .uses_definiteness = true},
+      {.name = "newton_cg", .make = make_truncated_newton, .estimates_minimizer = true, .uses_definiteness = true},
       {.name = "lbfgs", .make = make_lbfgs, .preconditioner = hessian},
       {.name = "nonlinear_cg", .make = make_nonlinear_cg, .preconditioner = hessian},
       {.name = "gradient_descent", .make = make_gradient_descent, .preconditioner = none},
@@ -102,7 +102,7 @@ std::optional<SolverConflict> criterion_conflict(const SolverOptions& options,
                                                  const std::vector<const Method*>& chosen) {
   if (!judges_direction(options.minimize.criterion)) return std::nullopt;
   for (const Method* method : chosen)
-    if (!method->estimates_minimiser)
+    if (!method->estimates_minimizer)
       return SolverConflict{"criterion", quoted("criterion", std::string(to_string(options.minimize.criterion))) +
                                              " needs the method newton or newton_cg: directions of " + method->name +
                                              " do not tell how far the minimum is (try 'scale')"};
@@ -171,9 +171,9 @@ std::optional<SolverConflict> find_conflict(const SolverOptions& options) {
   return criterion_conflict(options, chosen);
 }
 
-bool estimates_minimiser(const std::string& method) {
+bool estimates_minimizer(const std::string& method) {
   const Method* known = method_named(method);
-  return known && known->estimates_minimiser;
+  return known && known->estimates_minimizer;
 }
 
 std::unique_ptr<SearchDirection> make_search_direction(const SolverOptions& options) {

@@ -1,4 +1,4 @@
-// How a function is minimized, by names: the methods and what each of them can be told.
+// Minimization methods and their options, by name.
 #pragma once
 #include <memory>
 #include <optional>
@@ -11,12 +11,12 @@ namespace aspic {
 
 struct SolverOptions {
   std::string method = "newton";        // see minimizer_names()
-  std::vector<std::string> fallback;    // methods that take over, in this order, where the one before finds no step
-  std::string preconditioner = "auto";  // see preconditioner_names(); "auto": what suits the method
+  std::vector<std::string> fallback;    // methods to use, in this order, if the one before finds no step
+  std::string preconditioner = "auto";  // see preconditioner_names(); "auto" depends on the method
   std::string linear = "auto";          // see linear_solver_names()
   std::string definiteness = "auto";    // see definiteness_names(); "auto": on_demand
   MinimizeOptions minimize;
-  double time_budget = 0;  // [s] of wall time for a time step; 0: none. Results then depend on the clock
+  double time_budget = 0;  // wall time per time step [s]; 0: unlimited. Results depend on the clock
 };
 
 std::vector<std::string> minimizer_names();
@@ -28,17 +28,17 @@ std::vector<std::string> decrease_test_names();
 Criterion criterion_named(const std::string& name);         // throws InvalidInput: an unknown name
 DecreaseTest decrease_test_named(const std::string& name);  // throws InvalidInput: an unknown name
 
-// A name that is unknown, or that none of the chosen methods has a use for.
+// An unknown name, or an option that none of the chosen methods uses.
 struct SolverConflict {
-  std::string option;  // the member of SolverOptions; "criterion" for that of `minimize`
-  std::string reason;  // the option, its value, why it does not do and what would
+  std::string option;  // the member of SolverOptions, or "criterion" for that of `minimize`
+  std::string reason;  // the option, its value, the conflict and a remedy
 };
 std::optional<SolverConflict> find_conflict(const SolverOptions& options);
 
-// Whether the directions of the method tell how far the minimum is; false for an unknown name.
-bool estimates_minimiser(const std::string& method);
+// Returns whether x + d estimates the minimizer; false for an unknown name.
+bool estimates_minimizer(const std::string& method);
 
-// Throws InvalidInput where there is a conflict.
+// Throws InvalidInput if the options conflict.
 std::unique_ptr<SearchDirection> make_search_direction(const SolverOptions& options);
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// Functions with known minima, on which methods are compared.
+// Functions with known minima, to compare methods.
 #pragma once
 #include <memory>
 #include <optional>
@@ -37,7 +37,7 @@ class Quadratic : public PlanarFunction {
   PlanarHessian H_;
 };
 
-// Facts about a test function.
+// Description of a test function.
 struct TestFunction {
   std::string name, formula, remarks;
   Planar minimizer{};

@@ -17,8 +17,8 @@ OpenStep::OpenStep(Scene opened)
       pins(model().pins, scene.simulation.snapshot().start.q),
       E(model(), pins) {
   const double end = scene.simulation.state().time + h;
-  E.tell_potential({q_t, h, end});
-  E.tell_damping({q_t, h, end});
+  E.set_potential_step({q_t, h, end});
+  E.set_damping_step({q_t, h, end});
   E.begin_step(predicted, 1, h * h);
   pins.place(end, start);
   pins.place(end, predicted);
