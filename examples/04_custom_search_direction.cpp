@@ -15,12 +15,11 @@ class HeavyBall : public SearchDirection {
 
   void begin() override { before_.clear(); }  // a new minimization remembers nothing
 
-  bool compute(Objective& E, std::span<const double>, std::span<const double> g, const InnerAccuracy&,
-               std::span<double> d, DirectionReport&) override {
-    before_.resize(g.size());
-    for (size_t i = 0; i < d.size(); ++i) d[i] = -g[i] + beta_ * before_[i];
-    if (!(E.dot(g, d) < 0))  // the ball rolls uphill: stop it
-      for (size_t i = 0; i < d.size(); ++i) d[i] = -g[i];
+  bool compute(const Iterate& at, std::span<double> d, DirectionReport&) override {
+    before_.resize(d.size());
+    for (size_t i = 0; i < d.size(); ++i) d[i] = -at.g[i] + beta_ * before_[i];
+    if (!(at.E.dot(at.g, d) < 0))  // the ball rolls uphill: stop it
+      for (size_t i = 0; i < d.size(); ++i) d[i] = -at.g[i];
     before_.assign(d.begin(), d.end());
     return true;
   }

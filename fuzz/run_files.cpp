@@ -50,7 +50,6 @@ Folder begun_run(int steps) {
     const StepReport report = scene.simulation.step([&](const LiveIteration& iteration) {
       directory.on_iteration(step, iteration);
       trace.on_iteration(step, iteration);
-      return true;
     });
     directory.on_step(report, scene.simulation);
   }

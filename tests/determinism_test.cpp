@@ -121,7 +121,7 @@ TEST(TimeLimit, DropsTheStepThatMissesItAndChangesNoBitOfTheOthers) {
       const StepReport expected = whole.step();
       for (double limit = 1;; limit += 3) {
         const State before = limited.state();
-        const StepReport report = limited.step({}, {}, limit);
+        const StepReport report = limited.step({}, StopToken(options.clock, limit));
         if (report.status == Status::interrupted) {
           EXPECT_EQ(limited.state().q, before.q);
           EXPECT_EQ(limited.state().time, before.time);

@@ -59,11 +59,12 @@ int compare(const CompareArguments& arguments) {
   std::fflush(stdout);
   const auto begun = [](const std::string& method) { fmt::print(stderr, "{} ...\n", method); };
   catch_interrupts();
-  const Comparison comparison = compare_methods(scene.simulation, {.methods = arguments.methods,
-                                                                   .step = arguments.step,
-                                                                   .max_seconds = arguments.max_seconds,
-                                                                   .begun = begun,
-                                                                   .go_on = [] { return !interrupt_signal(); }});
+  const Comparison comparison =
+      compare_methods(scene.simulation, {.methods = arguments.methods,
+                                         .step = arguments.step,
+                                         .max_seconds = arguments.max_seconds,
+                                         .begun = begun,
+                                         .stop = StopToken([] { return interrupt_signal() != 0; })});
   if (!comparison.has_reference) {
     fmt::print(stderr, "interrupted before there was anything to compare with: nothing was written\n");
     return exit_signal + interrupt_signal();

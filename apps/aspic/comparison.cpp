@@ -41,7 +41,7 @@ class Comparer {
     for (size_t i = 0; i < solvers_.size(); ++i) {
       if (options_.begun) options_.begun(options_.methods[i]);
       MethodResult result = run(options_.methods[i], solvers_[i], comparison.reference);
-      if (!may_go_on()) return comparison;
+      if (options_.stop.stopped()) return comparison;
       comparison.results.push_back(std::move(result));
     }
     comparison.interrupted = false;
@@ -69,14 +69,9 @@ class Comparer {
           "--set time.adaptive.tolerance=0");
   }
 
-  bool may_go_on() const { return !options_.go_on || options_.go_on(); }
-  IterationObserver stopper() const {
-    return [this](const LiveIteration&) { return may_go_on(); };
-  }
-
   bool take_steps_before() {
     while (simulation_.steps_taken() < options_.step - 1) {
-      const StepReport report = simulation_.step(stopper());
+      const StepReport report = simulation_.step({}, options_.stop);
       if (report.status == Status::interrupted) return false;
       if (!is_success(report.status))
         throw InvalidInput(
@@ -96,7 +91,7 @@ class Comparer {
     exact.minimize.max_iterations = 1000;
     exact.minimize.line_search = {};
     simulation_.set_solver(exact);
-    report = simulation_.step(stopper());
+    report = simulation_.step({}, options_.stop);
     if (report.status == Status::interrupted) return false;
     if (!is_success(report.status))
       throw InvalidInput(fmt::format("Newton's method found no minimiser of step {} to compare with ({})",
@@ -114,7 +109,7 @@ class Comparer {
       simulation_.set_solver(solver);
       MethodResult result = run_once();
       if (i == 0 || result.seconds < best.seconds) best = std::move(result);
-      if (best.seconds > kWorthRepeating || !may_go_on()) break;
+      if (best.seconds > kWorthRepeating || options_.stop.stopped()) break;
     }
     best.method = method;
     best.description = simulation_.solver_description();
@@ -127,21 +122,22 @@ class Comparer {
     Stopwatch stopwatch;
     double seconds = 0;
     int gradients = 1, hessians = 0;
-    result.report = simulation_.step([&](const LiveIteration& iteration) {
-      seconds += stopwatch.lap();
-      if (result.work.empty()) result.work.push_back({.gradients = 1});
-      // What an iteration begins with is what the one before ended with.
-      result.work.back().value = iteration.value;
-      result.work.back().gradient_norm = iteration.gradient_norm;
-      gradients += iteration.gradients;
-      hessians += iteration.direction.hessians;
-      result.work.push_back({.iteration = static_cast<int>(result.work.size()),
-                             .gradients = gradients,
-                             .hessians = hessians,
-                             .seconds = seconds});
-      stopwatch.lap();
-      return seconds < options_.max_seconds && may_go_on();
-    });
+    result.report = simulation_.step(
+        [&](const LiveIteration& iteration) {
+          seconds += stopwatch.lap();
+          if (result.work.empty()) result.work.push_back({.gradients = 1});
+          // What an iteration begins with is what the one before ended with.
+          result.work.back().value = iteration.value;
+          result.work.back().gradient_norm = iteration.gradient_norm;
+          gradients += iteration.gradients;
+          hessians += iteration.direction.hessians;
+          result.work.push_back({.iteration = static_cast<int>(result.work.size()),
+                                 .gradients = gradients,
+                                 .hessians = hessians,
+                                 .seconds = seconds});
+          stopwatch.lap();
+        },
+        StopToken([&] { return seconds >= options_.max_seconds || options_.stop.stopped(); }));
     result.seconds = seconds;
     if (!result.work.empty()) {
       result.work.back().value = result.report.objective;

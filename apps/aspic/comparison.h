@@ -38,7 +38,7 @@ struct ComparisonOptions {
   int step = 1;
   double max_seconds = 60;  // of one method; what takes longer is cut off, and says so
   std::function<void(const std::string& method)> begun = {};  // called before each method
-  Consent go_on = {};                                         // asked at every iteration; empty: always given
+  StopToken stop = {};                                        // polled in every iteration
 };
 
 // Brings the simulation to the start of the step by its own method and solves it by each of them. Throws InvalidInput

@@ -52,9 +52,10 @@ Minimization minimize(const Problem& problem, const SolverOptions& options, cons
                                planar(live.x_next),
                                {live.tried.begin(), live.tried.end()}});
     if (show) show(done.iterations.back(), live);
-    return !interrupt_signal();
   };
-  done.report = Minimizer().minimize(*problem.function, *direction, x, options.minimize, observe);
+  MinimizeOptions stoppable = options.minimize;
+  stoppable.stop = StopToken([] { return interrupt_signal() != 0; });
+  done.report = Minimizer().minimize(*problem.function, *direction, x, stoppable, observe);
   done.end = planar(x);
   return done;
 }

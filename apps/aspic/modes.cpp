@@ -11,10 +11,10 @@
 #include <numbers>
 
 #include "aspic/commands.h"
-#include "base/deadline.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/printable.h"
+#include "base/stop_token.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
 #include "scene/run_directory.h"
@@ -128,7 +128,7 @@ void print_table(const Modes& found, int wanted) {
 
 int compute(const ModesArguments& arguments) {
   const WallClock clock = steady_seconds;
-  const Deadline limit = arguments.time_limit > 0 ? Deadline(clock, arguments.time_limit) : Deadline();
+  const StopToken limit = arguments.time_limit > 0 ? StopToken(clock, arguments.time_limit) : StopToken();
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides, .mesher_seconds = arguments.time_limit});
   if (!arguments.json)

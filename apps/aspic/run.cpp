@@ -13,10 +13,10 @@
 #include "aspic/run_report.h"
 #include "aspic/step_json.h"
 #include "aspic/summary.h"
-#include "base/deadline.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/printable.h"
+#include "base/stop_token.h"
 #include "dynamics/state_hash.h"
 #include "io/input_file.h"
 #include "scene/explanation.h"
@@ -115,9 +115,9 @@ int unconverged_before(const fs::path& directory, int steps) {
 // Takes the steps of one run and tells everyone who listens.
 class Runner {
  public:
-  Runner(const RunArguments& arguments, Scene& scene, RunDirectory& directory, const Deadline& limit)
+  Runner(const RunArguments& arguments, Scene& scene, RunDirectory& directory, const StopToken& stop)
       : arguments_(arguments),
-        limit_(limit),
+        stop_(stop),
         scene_(scene),
         directory_(directory),
         human_(human_stream(arguments)),
@@ -127,22 +127,20 @@ class Runner {
     if (arguments.trace || !arguments.landscapes.empty()) start_trace();
   }
 
-  // Stops early when a signal or the time limit asks for it; a step cut short is dropped, so what is written ends with
-  // a whole one.
+  // Stops early after a signal or at the time limit. An unfinished step is dropped, so the output ends with a whole
+  // step.
   void run() {
     Simulation& simulation = scene_.simulation;
-    const Consent go_on = [] { return !interrupt_signal(); };
     while (simulation.steps_taken() < last_step_ && !interrupt_signal()) {
-      has_run_out_ = limit_.has_passed();
+      has_run_out_ = stop_.expired();
       if (has_run_out_) break;
       iterations_.clear();
       const auto observe = [&](const LiveIteration& iteration) {
         iterations_.push_back(iteration);
         if (trace_) trace_->on_iteration(simulation.steps_taken() + 1, iteration);
         if (progress_) progress_->show(simulation.steps_taken() + 1, iteration);
-        return !interrupt_signal();
       };
-      const StepReport report = simulation.step(observe, go_on, limit_.left());
+      const StepReport report = simulation.step(observe, stop_);
       if (report.status == Status::interrupted) {
         has_run_out_ = !interrupt_signal();
         break;
@@ -234,7 +232,7 @@ class Runner {
   }
 
   const RunArguments& arguments_;
-  const Deadline limit_;
+  const StopToken stop_;
   Scene& scene_;
   RunDirectory& directory_;
   std::FILE* human_;
@@ -272,7 +270,8 @@ int exit_code(const RunArguments& arguments, bool has_run_out, int unconverged) 
 
 int run(const RunArguments& arguments) {
   const WallClock clock = steady_seconds;
-  const Deadline limit = arguments.time_limit > 0 ? Deadline(clock, arguments.time_limit) : Deadline();
+  StopToken stop([] { return interrupt_signal() != 0; });
+  if (arguments.time_limit > 0) stop = stop.with_deadline(clock, arguments.time_limit);
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   landscapes(arguments);  // bad input is told before anything is written
   Scene scene = load(arguments);
@@ -281,7 +280,7 @@ int run(const RunArguments& arguments) {
 
   const int earlier = unconverged_before(directory.path(), scene.simulation.steps_taken());
 
-  Runner runner(arguments, scene, directory, limit);
+  Runner runner(arguments, scene, directory, stop);
   if (!arguments.quiet) print_start(runner.human(), arguments, scene, directory.path());
   runner.run();
   if (!arguments.quiet) {

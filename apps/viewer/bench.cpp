@@ -112,7 +112,7 @@ void Bench::set_options(const BenchOptions& options) {
 }
 
 // Markers below the tip are hidden from the cameras.
-void Bench::record(const Touch& touch, const TipPose& pose, int depths, const Consent& go_on) {
+void Bench::record(const Touch& touch, const TipPose& pose, int depths, const StopToken& stop) {
   LoadCase load;
   load.group = fmt::format("poke {}", groups_ + 1);
   load.tip = touch.tip;
@@ -127,7 +127,7 @@ void Bench::record(const Touch& touch, const TipPose& pose, int depths, const Co
   const double deepest = dot(pose.center - touch.begun.center, touch.begun.axis);
   std::vector<double> last;
   for (int d = 1; d <= depths; ++d) {
-    if (go_on && !go_on()) throw InvalidInput("interrupted; what was recorded is kept");
+    if (stop.stopped()) throw InvalidInput("interrupted; what was recorded is kept");
     load.name = fmt::format("{}, depth {}", load.group, d);
     load.pose = between(touch.begun, pose, static_cast<double>(d) / depths);
     LoadedBody body(body_, load, truth_.model, parameters_, {});

@@ -34,8 +34,8 @@ class Bench {
   void set_options(const BenchOptions& options);  // other markers: refused by InvalidInput once there are cases
 
   // Presses a tip in, in equal parts up to that pose, and reads each part. Throws InvalidInput, with what was read
-  // kept, when the body finds no rest or `go_on` wants no more.
-  void record(const Touch& touch, const TipPose& pose, int depths, const Consent& go_on);
+  // kept, when the body finds no rest or `stop` stops.
+  void record(const Touch& touch, const TipPose& pose, int depths, const StopToken& stop);
   void forget(int c);  // a case
   void forget_all();
 

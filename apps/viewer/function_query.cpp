@@ -145,7 +145,6 @@ Json function_reply(Arguments& question) {
       seen.curve = curve_along(live, options.minimize.line_search.sufficient_decrease);
       seen.tried.assign(live.tried.begin(), live.tried.end());
     }
-    return true;
   };
   std::vector<double> x = {start[0], start[1], 0};
   const auto direction = make_search_direction(options);

@@ -32,10 +32,10 @@ double scalar_product(std::span<const double> a, std::span<const double> b) {
 // stages is several minimizations: iterations are counted over all of them, and the path is that of the one meant.
 class Look {
  public:
-  Look(int iteration, double sufficient_decrease, int tets, const Consent& go_on)
-      : iteration_(iteration), sufficient_decrease_(sufficient_decrease), tets_(tets), go_on_(go_on) {}
+  Look(int iteration, double sufficient_decrease, int tets, const StopToken& stop)
+      : iteration_(iteration), sufficient_decrease_(sufficient_decrease), tets_(tets), stop_(stop) {}
 
-  bool follow(const LiveIteration& live);
+  void follow(const LiveIteration& live);
   bool is_met() const { return !x_.empty(); }
   int iterations() const { return count_; }  // so far
   Json reply() &&;
@@ -52,7 +52,7 @@ class Look {
   const int iteration_;
   const double sufficient_decrease_;
   const int tets_;
-  const Consent& go_on_;
+  const StopToken& stop_;
 
   int count_ = 0;
   std::vector<Iterate> before_;  // of this minimization, until the plane is known
@@ -65,7 +65,7 @@ class Look {
   Json path_ = Json::array(), end_;
 };
 
-bool Look::follow(const LiveIteration& live) {
+void Look::follow(const LiveIteration& live) {
   const bool is_looked_at = count_++ == iteration_;
   if (live.index == 0) {
     if (is_met()) is_of_path_ = false;
@@ -83,7 +83,6 @@ bool Look::follow(const LiveIteration& live) {
     path_.push_back(on_plane(live.x, live.value));
     end_ = on_plane(live.x_next, std::numeric_limits<double>::quiet_NaN());
   }
-  return go_on_();
 }
 
 void Look::take(const LiveIteration& live) {
@@ -92,8 +91,8 @@ void Look::take(const LiveIteration& live) {
   tried_.assign(live.tried.begin(), live.tried.end());
   x_.assign(live.x.begin(), live.x.end());
   d_.assign(live.d.begin(), live.d.end());
-  curve_ = curve_along(live, sufficient_decrease_, curve_samples(tets_), go_on_);
-  slice_ = slice_through(live, slice_samples(tets_), go_on_);
+  curve_ = curve_along(live, sufficient_decrease_, curve_samples(tets_), stop_);
+  slice_ = slice_through(live, slice_samples(tets_), stop_);
 }
 
 Json Look::on_plane(std::span<const double> x, double value) const {
@@ -149,12 +148,12 @@ Json to_json(const std::vector<CurvePoint>& curve) {
   return {{"alpha", alpha}, {"value", value}, {"model", model}, {"textbook", textbook}, {"slide", slide}};
 }
 
-Json iteration_reply(Side& side, int step, int iteration, const Consent& go_on) {
+Json iteration_reply(Side& side, int step, int iteration, const StopToken& stop) {
   const double c = side.simulation().options().solver.minimize.line_search.sufficient_decrease;
-  Look look(iteration, c, side.model().mesh.tet_count(), go_on);
+  Look look(iteration, c, side.model().mesh.tet_count(), stop);
   const StepReport report = side.repeat(
-      step, [&](const LiveIteration& live) { return look.follow(live); }, go_on);
-  if (!go_on()) throw InvalidInput("interrupted: the program was told to do something else; ask again");
+      step, [&](const LiveIteration& live) { look.follow(live); }, stop);
+  if (stop.stopped()) throw InvalidInput("interrupted: the program was told to do something else; ask again");
   if (!look.is_met())
     throw InvalidInput(look.iterations() == 0 ? fmt::format("step {} minimises nothing", step)
                                               : fmt::format("iteration {}: step {} has iterations 0 to {}", iteration,

@@ -6,8 +6,8 @@
 namespace aspic::viewer {
 
 // The reply of web/src/protocol.ts. Repeats the step. Throws InvalidInput: it cannot be repeated, has no such
-// iteration, or `go_on` says no.
-Json iteration_reply(Side& side, int step, int iteration, const Consent& go_on);
+// iteration, or `stop` stops.
+Json iteration_reply(Side& side, int step, int iteration, const StopToken& stop);
 
 Json to_json(const std::vector<CurvePoint>& curve);
 

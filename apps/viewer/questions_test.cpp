@@ -210,20 +210,20 @@ TEST(Questions, AboutTheStepUnderWay) {
 
 TEST(Questions, AboutAnIterationAreGivenUpWhenSomethingElseIsToBeDone) {
   Side side(load_steered(Page::scene_file(kBeam), {}, {}, 1e18), size_t{1} << 20);
-  side.step([] { return true; });
+  side.step(StopToken());
   const std::vector<double> q = side.simulation().state().q;
   for (const int patience : {0, 1, 50, 500}) {  // before, within the curve, and within the slice
     int asked = 0;
     try {
-      iteration_reply(side, 1, 1, [&] { return asked++ < patience; });
+      iteration_reply(side, 1, 1, StopToken([&] { return asked++ >= patience; }));
       FAIL() << "was answered";
     } catch (const InvalidInput& e) {
       EXPECT_EQ(std::string(e.what()).find("interrupted"), 0u) << e.what();
     }
-    EXPECT_LE(asked, patience + 5) << "went on after it was told to stop";
+    EXPECT_LE(asked, patience + 5) << "continued after the request to stop";
   }
   EXPECT_EQ(side.simulation().state().q, q);
-  EXPECT_EQ(iteration_reply(side, 1, 1, [] { return true; })["step"], 1);
+  EXPECT_EQ(iteration_reply(side, 1, 1, StopToken())["step"], 1);
 }
 
 TEST(Questions, AnExplicitStepHasNoIterations) {

@@ -130,7 +130,6 @@ class RunRecording : public FolderTest {
       const StepReport report = scene.simulation.step([&](const LiveIteration& iteration) {
         directory.on_iteration(step, iteration);
         if (trace) trace->on_iteration(step, iteration);
-        return true;
       });
       directory.on_step(report, scene.simulation);
     }

@@ -123,8 +123,8 @@ ShownSide& Session::Impl::next() {
 
 // ---------------------------------------------------------------- steps
 
-Consent Session::Impl::go_on() {
-  return [this] { return !stop.load(std::memory_order_relaxed); };
+StopToken Session::Impl::stop_token() {
+  return StopToken([this] { return stop.load(std::memory_order_relaxed); });
 }
 
 void Session::Impl::note_progress(Progress progress) {
@@ -138,7 +138,7 @@ void Session::Impl::take_turn() {
   ShownSide& shown = next();
   Progress progress = Progress::interrupted;
   try {
-    progress = shown.side.step(go_on());
+    progress = shown.side.step(stop_token());
   } catch (...) {
     shown.side.rewind(shown.side.steps_taken());
     throw;

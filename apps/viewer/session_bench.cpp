@@ -103,7 +103,7 @@ void Session::Impl::record(Arguments& arguments) {
   Busy busy(options);
   if (const Announce announce = busy.announce()) announce("waiting until the body is at rest under the tip");
   try {
-    bench().record(*touch, pose, depths, go_on());
+    bench().record(*touch, pose, depths, stop_token());
   } catch (...) {
     tell_capture();
     throw;
@@ -133,7 +133,7 @@ void Session::Impl::poke_all(Arguments& arguments) {
     const TipPose rest{center, inward, {}};
     const Touch touch{tip, rest, rest};
     try {
-      bench().record(touch, pressed(touch, depth), depths, go_on());
+      bench().record(touch, pressed(touch, depth), depths, stop_token());
     } catch (const InvalidInput& e) {
       ++failed, why = e.what();
     }

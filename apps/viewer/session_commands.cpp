@@ -103,7 +103,7 @@ void Session::Impl::iterate(Arguments& arguments) {
   ShownSide& shown = next();
   Progress progress = Progress::interrupted;
   try {
-    progress = shown.side.iterate(go_on());
+    progress = shown.side.iterate(stop_token());
   } catch (...) {
     shown.side.rewind(shown.side.steps_taken());
     throw;

@@ -93,7 +93,7 @@ Json Session::Impl::query(const Json& message) {
     const int step = arguments.integer("step", 1, std::numeric_limits<int>::max());
     const int iteration = arguments.integer("iteration", 0, std::numeric_limits<int>::max());
     arguments.finish();
-    return iteration_reply(shown.side, step, iteration, go_on());
+    return iteration_reply(shown.side, step, iteration, stop_token());
   }
   if (what == "worst") {
     const ShownSide& shown = side_of(arguments);

@@ -126,15 +126,11 @@ Progress Side::complete(const StepReport& report) {
   return is_blown_up_ ? Progress::blown_up : Progress::stepped;
 }
 
-Progress Side::step(const Consent& go_on) {
+Progress Side::step(const StopToken& stop) {
   iterations_.begin();
   steered_.mouse->set(acting());
   steered_.tip->set(acting_poke());
-  const auto observe = [&](const LiveIteration& live) {
-    iterations_.add(live);
-    return go_on();
-  };
-  const StepReport report = simulated().step(observe, go_on);
+  const StepReport report = simulated().step([&](const LiveIteration& live) { iterations_.add(live); }, stop);
   if (report.status != Status::interrupted) return complete(report);
   let_mouse_rest();
   let_tip_rest();
@@ -143,7 +139,7 @@ Progress Side::step(const Consent& go_on) {
 
 // The step is taken from its start as far as one iteration more, and given up when it would begin yet another one: what
 // is left of it later are the same iterations once more, so no bit depends on how often it was looked at.
-Progress Side::iterate(const Consent& go_on) {
+Progress Side::iterate(const StopToken& stop) {
   const int shown = iteration_ + 1;
   int count = 0;
   iterations_.begin();
@@ -152,11 +148,9 @@ Progress Side::iterate(const Consent& go_on) {
   steered_.tip->set(acting_poke());
   const auto observe = [&](const LiveIteration& live) {
     if (count == shown) iterate.assign(live.x_next.begin(), live.x_next.end());
-    if (count++ > shown) return false;
-    iterations_.add(live);
-    return go_on();
+    if (count++ <= shown) iterations_.add(live);
   };
-  const StepReport report = simulated().step(observe, go_on);
+  const StepReport report = simulated().step(observe, StopToken([&] { return count > shown + 1 || stop.stopped(); }));
   if (report.status != Status::interrupted) return complete(report);
   let_mouse_rest();
   let_tip_rest();
@@ -178,7 +172,7 @@ void Side::rewind(int step) {
   release();
 }
 
-StepReport Side::repeat(int step, const IterationObserver& observe, const Consent& go_on) {
+StepReport Side::repeat(int step, const IterationObserver& observe, const StopToken& stop) {
   const bool is_next = step == steps_taken() + 1;
   const Moment* before = is_next ? &timeline_.last() : timeline_.find(step - 1);
   const Moment* after = is_next ? nullptr : timeline_.find(step);
@@ -194,7 +188,7 @@ StepReport Side::repeat(int step, const IterationObserver& observe, const Consen
   simulated().restore(snapshot_of(*before));
   steered_.mouse->set(after ? after->acted : acting());
   steered_.tip->set(after ? after->poked : acting_poke());
-  const StepReport report = simulated().step(observe, go_on);
+  const StepReport report = simulated().step(observe, stop);
   simulated().restore(now);
   let_mouse_rest();
   let_tip_rest();

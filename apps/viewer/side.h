@@ -53,8 +53,8 @@ class Side {
   void show_further(std::vector<TetField> further) { further_ = std::move(further); }  // beside those of the model
 
   // ---- steps
-  Progress step(const Consent& go_on);     // the next one, or what is left of the one under way
-  Progress iterate(const Consent& go_on);  // one more iteration of the step under way, or the first of the next
+  Progress step(const StopToken& stop);     // the next one, or what is left of the one under way
+  Progress iterate(const StopToken& stop);  // one more iteration of the step under way, or the first of the next
   // To the end of that step, or of the nearest earlier one that is held; lets go of the body.
   void rewind(int step);
 
@@ -96,7 +96,7 @@ class Side {
 
   // ---- a step again, as it was taken
   // Repeats the step with an observer, and returns to now. Throws InvalidInput when that cannot be done any more.
-  StepReport repeat(int step, const IterationObserver& observe, const Consent& go_on);
+  StepReport repeat(int step, const IterationObserver& observe, const StopToken& stop);
 
  private:
   Simulation& simulated() { return steered_.scene.simulation; }

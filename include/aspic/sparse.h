@@ -1,7 +1,7 @@
 // Symmetric sparse matrices of 3x3 blocks, and solvers for them: analyze once per pattern, factorize once per matrix,
 // solve once per right-hand side.
 #pragma once
-#include "base/deadline.h"
+#include "base/stop_token.h"
 #include "linalg/block_sparse.h"
 #include "linalg/linear_solver.h"
 #include "linalg/projection.h"

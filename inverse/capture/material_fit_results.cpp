@@ -123,7 +123,7 @@ void MaterialFit::cross_validate_groups(FitModel& model) {
 CrossValidation MaterialFit::cross_validated(FitModel& model, const FitReport& report, FitOptions options) {
   // A fit stops at its deadline: that comes when the witness wants no more.
   const WallClock clock = [&] { return may_go_on() ? 0.0 : std::numeric_limits<double>::infinity(); };
-  options.deadline = Deadline(clock, 1);
+  options.stop = StopToken(clock, 1);
   const auto observe = [&](int group, int groups, const std::string& name) {
     begin(FitStage::cross_validation,
           "'" + name + "' is left out (" + std::to_string(group + 1) + " of " + std::to_string(groups) + ")");

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/deadline.h"
+#include "base/stop_token.h"
 #include "fit/least_squares.h"
 #include "fit/regularizer.h"
 #include "optimize/minimize.h"
@@ -23,7 +23,7 @@ struct FitOptions {
   double first_weight = 0;           // where a rule begins; 0: where the prior and the data are about as strong
   int starts = 1;                    // from how many guesses; the best is kept
   double scatter = 1.5;              // the largest change of p from the first guess to another
-  Deadline deadline = {};            // the best p by then is the result
+  StopToken stop = {};               // the best p by then is the result
 };
 std::vector<std::string> fit_method_names();
 std::vector<std::string> weight_rule_names();

@@ -46,7 +46,7 @@ class FitRun {
   // Into the history; false: the observer wants no more.
   bool note(FitIteration iteration, const FitPoint& at);
   int iterations_left() const { return options.max_iterations - static_cast<int>(report.history.size()); }
-  bool is_late() const { return options.deadline.has_passed(); }
+  bool is_late() const { return options.stop.stopped(); }
 
  private:
   LeastSquares& data_;

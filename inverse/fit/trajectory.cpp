@@ -107,7 +107,7 @@ struct Trajectory::Impl {
   // From `now` to `end`, which may be the same.
   bool step(State& end) {
     Stopwatch stopwatch;
-    const SolveTools solve{model, pins, E, minimizer, newton, minimize, observe, go_on, InitialGuess::best};
+    const SolveTools solve{model, pins, E, minimizer, newton, minimize, observe, InitialGuess::best};
     before = now;
     const StepSolve solved = integrator->advance({solve, before, nullptr, options.h, time_of(point + 1)}, next, forces);
     ++report.steps;
@@ -267,7 +267,6 @@ struct Trajectory::Impl {
   Minimizer minimizer;
   MinimizeOptions minimize;
   IterationObserver observe;
-  Consent go_on;
   std::optional<Vec3d> weight;  // acceleration of the load 'gravity'
   TrajectoryReport report;
   State now, after;  // where the walker stands; what follows it, backwards

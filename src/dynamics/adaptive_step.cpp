@@ -59,7 +59,7 @@ bool AdaptiveStep::take(Integrator& integrator, const StepTools& tools, Part& pa
 
 AdaptiveStep::Verdict AdaptiveStep::attempt(Integrator& integrator, const StepTools& whole, int first, int size) {
   // Explicit schemes, which no observer can stop, take many parts in silence.
-  if (whole.go_on && !whole.go_on()) return failure_ = Status::interrupted, Verdict::interrupted;
+  if (whole.options.stop.requested()) return failure_ = Status::interrupted, Verdict::interrupted;
   const int half = size / 2;
   const State *before = has_previous_ ? &previous_ : nullptr, *now = remembers_ ? &now_ : nullptr;
   const auto unsuccessful = [&] { return failure_ == Status::interrupted ? Verdict::interrupted : Verdict::rejected; };

@@ -125,11 +125,11 @@ TEST(AdaptiveStep, OfAnExplicitSchemeIsInterruptedBetweenItsParts) {
   const SimulationOptions options{.h = 0.1, .integrator = "rk4", .adaptive = {1e-9}, .solver = {}};
   Simulation disturbed = oscillator(options), undisturbed = oscillator(options);
   int asked = 0;
-  EXPECT_EQ(disturbed.step({}, [&] { return ++asked < 5; }).status, Status::interrupted);
+  EXPECT_EQ(disturbed.step({}, StopToken([&] { return ++asked >= 5; })).status, Status::interrupted);
   EXPECT_EQ(asked, 5);
   EXPECT_EQ(disturbed.steps_taken(), 0);
   EXPECT_EQ(disturbed.state().q, undisturbed.state().q);
-  disturbed.step({}, [] { return true; });
+  disturbed.step();
   EXPECT_GT(undisturbed.step().rejected, 0);
   EXPECT_EQ(disturbed.state().q, undisturbed.state().q) << "the step taken again is another";
 }
@@ -139,7 +139,8 @@ TEST(AdaptiveStep, InterruptedStartsOverFromTheSameState) {
   Simulation smooth = simulate(damped_beam_with_moving_pins_and_targets(), options);
   Simulation disturbed = simulate(damped_beam_with_moving_pins_and_targets(), options);
   int seen = 0;
-  EXPECT_EQ(disturbed.step([&](const Iteration&) { return ++seen < 16; }).status, Status::interrupted);
+  const auto count = [&](const Iteration&) { ++seen; };
+  EXPECT_EQ(disturbed.step(count, StopToken([&] { return seen == 16; })).status, Status::interrupted);
   EXPECT_EQ(disturbed.steps_taken(), 0);
   EXPECT_EQ(disturbed.state().time, 0);
   for (int i = 0; i < 2; ++i) {

@@ -53,7 +53,7 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
   q_.assign(q.begin(), q.end());
   MinimizeOptions minimize = options.once ? one_iteration(tools.options) : tools.options;
   minimize.h = options.beta;
-  minimize.deadline = tools.options.deadline.at_part(options.part);
+  minimize.stop = tools.options.stop.at_fraction(options.part);
   if (options.once) {
     tools.pins.place(options.time, q_);
     solve.guess = InitialGuess::current;

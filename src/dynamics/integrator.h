@@ -23,7 +23,6 @@ struct SolveTools {
   SearchDirection& direction;
   const MinimizeOptions& options;
   const IterationObserver& observe;
-  const Consent& go_on;
   InitialGuess guess;
 };
 

@@ -15,7 +15,7 @@ MinimizeOptions rough(const MinimizeOptions& options) {
   few.max_iterations = std::min(options.max_iterations, 8);
   few.criterion = Criterion::scale;
   few.tolerance = 1e-2;
-  few.deadline = {};  // without a start there is nothing to be had
+  few.stop = options.stop.without_deadline();  // a step needs a start
   return few;
 }
 

@@ -85,7 +85,6 @@ TEST(Methods, GiveTheSameBitsWhileTheyAreLookedAt) {
       watched.step([](const LiveIteration& iteration) {
         slice_through(iteration, 3);
         curve_along(iteration, 1e-4, 3);
-        return true;
       });
     }
     EXPECT_EQ(watched.state().q, plain.state().q) << name_of(solver);
@@ -114,7 +113,6 @@ TEST(Methods, GradientDescentFindsItsStepsOnAStiffBodyByBacktracking) {
   const StepReport report = simulation.step([&](const Iteration& iteration) {
     EXPECT_LT(iteration.value, last);
     last = iteration.value;
-    return true;
   });
   EXPECT_EQ(report.status, Status::iteration_limit);
   EXPECT_GT(report.trials, 5 * report.iterations);
@@ -138,10 +136,8 @@ Work work_of_compression(const std::string& method, const std::string& definiten
   Simulation simulation = simulate(std::move(model), options);
   Work work;
   for (int i = 0; i < 10; ++i) {
-    const StepReport report = simulation.step([&](const Iteration& iteration) {
-      work.projected_elements += iteration.direction.projected_elements;
-      return true;
-    });
+    const StepReport report = simulation.step(
+        [&](const Iteration& iteration) { work.projected_elements += iteration.direction.projected_elements; });
     EXPECT_TRUE(is_success(report.status)) << method << ", " << definiteness;
     work.iterations += report.iterations;
   }

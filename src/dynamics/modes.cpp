@@ -19,7 +19,7 @@ namespace {
 constexpr double kShift = 1e-4;
 constexpr double kRigid = 1e-10;  // the same fraction of squared rates that count as zero
 
-struct DeadlinePassed {};
+struct Stopped {};
 
 // K + shift M with the rows of held vertices cleared.
 BlockSparse shifted_stiffness(IncrementalPotential& E, std::span<const double> x, double shift) {
@@ -85,7 +85,7 @@ Modes to_modes(Eigenpairs pairs, double zero) {
 
 }  // namespace
 
-Modes vibration_modes(const Model& model, std::span<const double> x, int count, const Deadline& deadline) {
+Modes vibration_modes(const Model& model, std::span<const double> x, int count, const StopToken& stop) {
   const Pins pins(model.pins, x);
   IncrementalPotential E(model, pins);
   const double growth = growth_rate(model, E);
@@ -102,12 +102,12 @@ Modes vibration_modes(const Model& model, std::span<const double> x, int count, 
   pencil.project = [&](std::span<double> u) { pins.set_zero(u); };
   pencil.multiply_mass = [&](std::span<const double> u, std::span<double> Mu) { model.mass->multiply(u, Mu); };
   pencil.solve = [&](std::span<const double> b, std::span<double> u) {
-    if (deadline.has_passed()) throw DeadlinePassed();
+    if (stop.stopped()) throw Stopped();
     cholesky.solve(b, u, 1e-12);
   };
   try {
     return to_modes(smallest_eigenpairs(pencil, count), std::max(kRigid * growth, round_off(model, pins, K)));
-  } catch (const DeadlinePassed&) {
+  } catch (const Stopped&) {
     return {.status = ModesStatus::interrupted, .modes = {}};
   }
 }

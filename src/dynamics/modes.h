@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/deadline.h"
+#include "base/stop_token.h"
 #include "dynamics/model.h"
 
 namespace aspic {
@@ -20,7 +20,7 @@ enum class ModesStatus {
   indefinite,     // the positions are unstable, or a vertex has neither mass nor stiffness
   out_of_memory,  // the factorization needs more memory than is free
   unconverged,
-  interrupted,  // the deadline passed
+  interrupted,  // the stop token ended it
 };
 
 struct Modes {
@@ -32,7 +32,7 @@ struct Modes {
 // Computes the `count` >= 1 lowest modes of K u = (2 pi f)^2 M u, where K = d2V/dx2 at `x` (3 per vertex [m]), time 0.
 // Pins are held, damping is ignored, and stress at `x` contributes to K. Frequencies have about nine digits. The terms
 // of the model are bound to another matrix afterwards, so a simulation of the same model must not continue.
-Modes vibration_modes(const Model& model, std::span<const double> x, int count, const Deadline& deadline = {});
+Modes vibration_modes(const Model& model, std::span<const double> x, int count, const StopToken& stop = {});
 
 std::string message(ModesStatus status);  // what happened and what to do
 

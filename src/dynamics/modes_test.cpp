@@ -86,7 +86,7 @@ TEST(VibrationModes, StopAtTheDeadline) {
   const Model model = free_box();
   double now = 0;
   const WallClock clock = [&] { return now += 1; };
-  EXPECT_EQ(vibration_modes(model, at_rest(model.mesh).q, 5, Deadline(clock, 3)).status, ModesStatus::interrupted);
+  EXPECT_EQ(vibration_modes(model, at_rest(model.mesh).q, 5, StopToken(clock, 3)).status, ModesStatus::interrupted);
 }
 
 TEST(VibrationModes, DoNotDependOnThreads) {

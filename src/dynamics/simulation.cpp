@@ -58,45 +58,23 @@ struct Simulation::Impl {
   double end_of_next_step() const { return start.time + (steps_taken + 1) * options.h; }
 
   // Of a step from `before`.
-  StepTools tools(const IterationObserver& observe, const Consent& go_on, double end_time) {
-    const SolveTools solve{model, *pins, *E, minimizer, *direction, minimize, observe, go_on, guess};
+  StepTools tools(const IterationObserver& observe, double end_time) {
+    const SolveTools solve{model, *pins, *E, minimizer, *direction, minimize, observe, guess};
     return {solve, before, has_previous ? &previous : nullptr, options.h, end_time};
   }
 
-  // The deadline of the step under way; true: what misses it is dropped.
-  bool set_deadline(double time_limit) {
-    const double budget = options.solver.time_budget;
-    const bool is_limit = std::isfinite(time_limit) && !(budget > 0 && budget <= time_limit);
-    if (is_limit)
-      minimize.deadline = Deadline(options.clock, time_limit);
-    else if (budget > 0)
-      minimize.deadline = Deadline(options.clock, budget).earlier_by(report_seconds);
-    return is_limit;
-  }
-
-  StepReport limited_step(const IterationObserver& observe, const Consent& go_on, double time_limit) {
-    minimize = options.solver.minimize;
-    if (!set_deadline(time_limit)) return step(observe, go_on);
-    // A direction that the deadline cut short is another one than without it, and so is all that follows.
-    const auto whole = [&](const LiveIteration& iteration) {
-      return (!observe || observe(iteration)) && !iteration.direction.stopped;
-    };
-    const auto in_time = [&] { return (!go_on || go_on()) && !minimize.deadline.has_passed(); };
-    is_limited = true;
-    StepReport report = step(whole, in_time);
-    is_limited = false;
-    return report;
-  }
-
-  StepReport step(const IterationObserver& observe, const Consent& go_on) {
+  StepReport step(const IterationObserver& observe, const StopToken& stop) {
     Stopwatch stopwatch;
     before = state;
-    const StepTools with = tools(observe, go_on, end_of_next_step());
+    minimize = options.solver.minimize;
+    minimize.stop = stop.discarding();
+    if (const double budget = options.solver.time_budget; budget > 0)
+      minimize.stop = minimize.stop.with_deadline(options.clock, budget).earlier_by(report_seconds);
+    const StepTools with = tools(observe, end_of_next_step());
     StepReport report;
     StepSolve solved = adaptive ? adaptive->advance(*integrator, with, ledger, state, report)
                                 : integrator->advance(with, state, forces);
-    if (is_limited && solved.work.status == Status::budget) solved.work.status = Status::interrupted;
-    const double advanced = minimize.deadline.now();
+    const double advanced = minimize.stop.now();
     describe(solved, report);
     const bool is_interrupted = solved.work.status == Status::interrupted;
     if (!can_go_on(report.status)) {
@@ -120,7 +98,7 @@ struct Simulation::Impl {
     }
     if (!is_interrupted) report.step = ++steps_taken;
     describe_state(report);
-    report_seconds = minimize.deadline.now() - advanced;
+    report_seconds = minimize.stop.now() - advanced;
     report.seconds = stopwatch.lap();
     return report;
   }
@@ -206,7 +184,7 @@ struct Simulation::Impl {
     state = before;
     state.time = time;
     has_previous = has_previous && time == before.time;
-    const StepTools stand_still = tools(with.observe, with.go_on, time);
+    const StepTools stand_still = tools(with.observe, time);
     stand_at(time);
     forces.reset(state.q.size());
     for (const ActiveTerm& V : E->potential()) V.add_gradient(state.q, 1, forces.gradient);
@@ -256,7 +234,6 @@ struct Simulation::Impl {
   Ledger ledger;
   int steps_taken = 0;
   MinimizeOptions minimize;   // of the step under way
-  bool is_limited = false;    // its deadline is one that drops it
   double report_seconds = 0;  // what the report of the last step took, if it had a time budget
 };
 
@@ -275,8 +252,8 @@ Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
-StepReport Simulation::step(const IterationObserver& observe, const Consent& go_on, double time_limit) {
-  return impl_->limited_step(observe, go_on, time_limit);
+StepReport Simulation::step(const IterationObserver& observe, const StopToken& stop) {
+  return impl_->step(observe, stop);
 }
 const Model& Simulation::model() const { return impl_->model; }
 const State& Simulation::state() const { return impl_->state; }

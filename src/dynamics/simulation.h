@@ -45,10 +45,9 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  // A step that the observer stops, that may not go on, or that takes longer than `time_limit` [s] of the options'
-  // clock is dropped with the status `interrupted`. A limit that is not met changes no bit; within a factorization
-  // nothing is stopped.
-  StepReport step(const IterationObserver& observe = {}, const Consent& go_on = {}, double time_limit = kNoTimeLimit);
+  // Takes one time step. If `stop` stops it, by a request or its deadline, the step is dropped: the state stays and the
+  // status is `interrupted`. A token that does not stop the step changes no bit of it. Factorizations do not poll it.
+  StepReport step(const IterationObserver& observe = {}, const StopToken& stop = {});
   // Change the subsequent steps. Both throw InvalidInput as the constructor does, and then change nothing.
   void set_solver(const SolverOptions& solver);
   void set_pins(std::vector<Pin> pins);

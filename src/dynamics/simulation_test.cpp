@@ -99,7 +99,7 @@ TEST(Simulation, ACheckpointOfAnotherSizeIsRefused) {
 TEST(Simulation, AnInterruptedStepLeavesTheStateAlone) {
   Simulation simulation = simulate(beam(2));
   const State before = simulation.state();
-  const StepReport report = simulation.step([](const Iteration&) { return false; });
+  const StepReport report = simulation.step({}, StopToken([] { return true; }));
   EXPECT_EQ(report.status, Status::interrupted);
   EXPECT_EQ(simulation.state().q, before.q);
   EXPECT_EQ(simulation.state().time, before.time);
@@ -111,7 +111,7 @@ TEST(Simulation, AStepTakenAgainAfterAnInterruptionIsTheSameToTheBit) {
   Simulation disturbed = simulate(damped_beam_with_moving_pins_and_targets());
   for (int i = 0; i < 3; ++i) {
     const StepReport expected = smooth.step();
-    EXPECT_EQ(disturbed.step([](const Iteration&) { return false; }).status, Status::interrupted);
+    EXPECT_EQ(disturbed.step({}, StopToken([] { return true; })).status, Status::interrupted);
     const StepReport report = disturbed.step();
     EXPECT_EQ(report.pin_work, expected.pin_work);  // also of targets, which must not have stayed ahead
     EXPECT_EQ(report.ledger_error, expected.ledger_error);

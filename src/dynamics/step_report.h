@@ -12,9 +12,6 @@
 
 namespace aspic {
 
-using Consent = std::function<bool()>;  // called between substeps; empty: always true
-inline constexpr double kNoTimeLimit = std::numeric_limits<double>::infinity();
-
 struct Resultant {
   Vec3d force{};   // [N]
   Vec3d moment{};  // about the origin [N m]

@@ -38,7 +38,6 @@ BudgetedStep step_within(double budget, SimulationOptions options) {
     observed = true;
     if (iteration.index == 0) step.first_value = iteration.value;
     step.stopped_within_solve = step.stopped_within_solve || (iteration.direction.stopped && iteration.alpha > 0);
-    return true;
   });
   step.time = now - begin;
   if (!observed) step.first_value = step.report.objective;

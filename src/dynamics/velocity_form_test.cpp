@@ -66,7 +66,6 @@ TEST_F(Velocities, NewtonVisitsTheSamePointsAsInPositions) {
     std::vector<std::vector<double>> visited;
     const MinimizeReport report = Minimizer().minimize(objective, newton, x, {}, [&](const LiveIteration& iteration) {
       visited.emplace_back(iteration.x_next.begin(), iteration.x_next.end());
-      return true;
     });
     EXPECT_TRUE(is_success(report.status));
     return visited;

@@ -32,8 +32,8 @@ class AutoSolver : public LinearSolver {
 
   std::string_view name() const override { return "auto"; }
   std::string description() const override;  // the choice and its reason
-  void set_deadline(const Deadline& deadline) override {
-    for (LinearSolver* solver : solver_) solver->set_deadline(deadline);
+  void set_stop(const StopToken& stop) override {
+    for (LinearSolver* solver : solver_) solver->set_stop(stop);
   }
   void analyze(const BlockPattern& pattern) override;
   void begin() override;

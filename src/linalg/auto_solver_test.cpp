@@ -209,7 +209,7 @@ TEST(AutoSolver, AtADeadlineDoesNotTryAnotherChoiceAndDescends) {
     const std::vector<double> b = random_vector(3 * H->rows(), 7);
     std::vector<double> x(b.size());
     AutoSolver solver;
-    solver.set_deadline(Deadline(clock, 2.5));
+    solver.set_stop(StopToken(clock, 2.5));
     solver.analyze(*H->pattern);
     ASSERT_TRUE(solver.factorize(H->values));
     const SolveReport report = solver.solve(b, x, 1e-10);

@@ -65,7 +65,7 @@ SolveReport ConjugateGradient::solve(std::span<const double> b, std::span<double
   double rz = dot(r_, z_);
   bool is_measured = true;
   while (report.iterations < max_iterations_) {
-    report.stopped = report.iterations > 0 && deadline_.has_passed();
+    report.stopped = report.iterations > 0 && stop_.stopped();
     if (report.stopped) break;
     H_->multiply(p_, q_);
     ++report.products;

@@ -13,7 +13,7 @@ class ConjugateGradient : public LinearSolver {
 
   std::string_view name() const override { return preconditioner_->name(); }
   std::string description() const override { return preconditioner_->description(); }
-  void set_deadline(const Deadline& deadline) override { deadline_ = deadline; }
+  void set_stop(const StopToken& stop) override { stop_ = stop; }
   void analyze(const BlockPattern& pattern) override;
   void begin() override { is_made_ = false; }
   // False: the preconditioner finds that H is not positive definite. One that is costly to make is kept from one matrix
@@ -31,7 +31,7 @@ class ConjugateGradient : public LinearSolver {
 
   std::unique_ptr<ApproximateInverse> preconditioner_;
   int max_iterations_ = 10'000;
-  Deadline deadline_;
+  StopToken stop_;
   const BlockSparse* H_ = nullptr;
   bool is_made_ = false;              // the preconditioner, for this matrix or one before
   double first_rate_ = 0, rate_ = 0;  // iterations per digit, of the first solve with it and the last; 0: none

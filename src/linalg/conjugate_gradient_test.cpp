@@ -266,7 +266,7 @@ TEST(ConjugateGradient, AtItsDeadlineHasCountedItsWorkAndDescends) {
       if (with_multigrid) solver = ConjugateGradient(std::make_unique<Multigrid>());
       solver.analyze(*H.pattern);
       ASSERT_TRUE(solver.factorize(H.values));
-      solver.set_deadline(Deadline(clock, seconds));
+      solver.set_stop(StopToken(clock, seconds));
       std::vector<double> x(b.size(), 99.0);
       const SolveReport report = solver.solve(b, x, 1e-10);
       EXPECT_TRUE(report.stopped);
@@ -277,7 +277,7 @@ TEST(ConjugateGradient, AtItsDeadlineHasCountedItsWorkAndDescends) {
       EXPECT_NEAR(report.relative_residual, relative_residual(H.values, b, x), 1e-12);  // the recurrence drifts
       EXPECT_GT(dot(b, x), 0);
 
-      solver.set_deadline({});
+      solver.set_stop({});
       EXPECT_TRUE(solver.solve(b, x, 1e-10).ok);
     }
 }

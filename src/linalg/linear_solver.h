@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/deadline.h"
+#include "base/stop_token.h"
 #include "linalg/block_sparse.h"
 
 namespace aspic {
@@ -16,7 +16,7 @@ namespace aspic {
 struct SolveReport {
   bool ok = false;               // the residual is below the tolerance
   bool indefinite = false;       // negative curvature was found
-  bool stopped = false;          // the deadline passed first; x is the last iterate, a descent direction for -b
+  bool stopped = false;          // the stop token ended it; x is the last iterate, a descent direction for -b
   int iterations = 0;            // 0 for a direct solver
   int products = 0;              // with H
   int cycles = 0;                // of multigrid
@@ -35,8 +35,8 @@ class LinearSolver {
   virtual bool factorize(const BlockSparse& H) = 0;  // false: H is not positive definite. H must outlive the solves.
   // Solves H x = b up to |b - H x| <= tolerance |b|; direct solvers ignore the tolerance. b, x: 3 numbers per row.
   virtual SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance) = 0;
-  // Sets the deadline of subsequent solves. Direct solvers ignore it.
-  virtual void set_deadline(const Deadline&) {}
+  // Sets the token that subsequent solves poll. Direct solvers ignore it.
+  virtual void set_stop(const StopToken&) {}
 };
 
 // "auto", "cholesky", "multigrid" and "block_jacobi" (conjugate gradients). Throws InvalidInput for another name.

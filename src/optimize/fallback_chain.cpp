@@ -28,11 +28,10 @@ void FallbackChain::begin() {
   retreated_ = false;
 }
 
-bool FallbackChain::compute(Objective& E, std::span<const double> x, std::span<const double> g,
-                            const InnerAccuracy& accuracy, std::span<double> d, DirectionReport& report) {
+bool FallbackChain::compute(const Iterate& at, std::span<double> d, DirectionReport& report) {
   if (!retreated_ && current_ != 0) start(0);
   retreated_ = false;
-  return methods_[current_]->compute(E, x, g, accuracy, d, report);
+  return methods_[current_]->compute(at, d, report);
 }
 
 bool FallbackChain::retreat() {

@@ -14,8 +14,7 @@ class FallbackChain : public SearchDirection {
   std::string description() const override;
   void begin() override;
   // Each iteration begins with the first method.
-  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
-               std::span<double> d, DirectionReport& report) override;
+  bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override;
   // First by the method's own more cautious way, then by the next method.
   bool retreat() override;
   bool estimates_minimiser() const override;  // if all of them do

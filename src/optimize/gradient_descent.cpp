@@ -4,10 +4,9 @@ namespace aspic {
 
 std::string GradientDescent::description() const { return "gradient_descent, preconditioner " + B_.description(); }
 
-bool GradientDescent::compute(Objective& E, std::span<const double> x, std::span<const double> g,
-                              const InnerAccuracy& accuracy, std::span<double> d, DirectionReport& report) {
-  B_.set_deadline(accuracy.deadline);
-  if (!B_.apply(E, x, g, d, report)) return false;
+bool GradientDescent::compute(const Iterate& at, std::span<double> d, DirectionReport& report) {
+  B_.set_stop(at.stop);
+  if (!B_.apply(at.E, at.x, at.g, d, report)) return false;
   for (double& di : d) di = -di;
   return true;
 }

@@ -11,8 +11,7 @@ class GradientDescent : public SearchDirection {
   std::string_view name() const override { return "gradient_descent"; }
   std::string description() const override;
   void begin() override { B_.begin(); }
-  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
-               std::span<double> d, DirectionReport& report) override;
+  bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override;
 
  private:
   Preconditioner B_;

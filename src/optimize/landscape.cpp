@@ -54,15 +54,14 @@ Vector samples_along(const LiveIteration& at, int samples) {
 
 }  // namespace
 
-std::vector<CurvePoint> curve_along(const LiveIteration& at, double c, int samples,
-                                    const std::function<bool()>& goes_on) {
+std::vector<CurvePoint> curve_along(const LiveIteration& at, double c, int samples, const StopToken& stop) {
   ASPIC_CHECK(samples >= 2);
   const double slope = at.E.dot(at.g, at.d), curvature = at.E.dot(at.d, product(exact_hessian(at), at.d));
   const Vector alphas = samples_along(at, samples);
   std::vector<CurvePoint> curve(samples);
   Vector x(at.x.size());
   for (int i = 0; i < samples; ++i) {
-    if (goes_on && !goes_on()) return {};
+    if (stop.stopped()) return {};
     CurvePoint& point = curve[i];
     const double alpha = point.alpha = alphas[i];
     for (size_t k = 0; k < x.size(); ++k) x[k] = at.x[k] + alpha * at.d[k];
@@ -74,7 +73,7 @@ std::vector<CurvePoint> curve_along(const LiveIteration& at, double c, int sampl
   return curve;
 }
 
-Slice slice_through(const LiveIteration& at, int samples, const std::function<bool()>& goes_on) {
+Slice slice_through(const LiveIteration& at, int samples, const StopToken& stop) {
   ASPIC_CHECK(samples >= 2);
   Objective& E = at.E;
   const BlockSparse& H = exact_hessian(at);
@@ -86,7 +85,7 @@ Slice slice_through(const LiveIteration& at, int samples, const std::function<bo
   Vector x(at.x.size());
   for (int row = 0; row < samples; ++row)
     for (int column = 0; column < samples; ++column) {
-      if (goes_on && !goes_on()) return {};
+      if (stop.stopped()) return {};
       const double s = between(-0.5, 1.5, column, samples), t = between(-1, 1, row, samples);
       for (size_t k = 0; k < x.size(); ++k) x[k] = at.x[k] + s * at.d[k] + t * v[k];
       slice.point.push_back(

@@ -16,10 +16,10 @@ struct CurvePoint {
 };
 
 // E along d, from a little behind x to a little beyond the longest trial, closer around an accepted step that is much
-// shorter; alpha ascends. `c` is the sufficient decrease. At least two samples. Empty when `goes_on`, asked before
-// every sample, says no.
+// shorter; alpha ascends. `c` is the sufficient decrease. At least two samples. Empty when `stop`, polled before every
+// sample, stops.
 std::vector<CurvePoint> curve_along(const LiveIteration& iteration, double c, int samples = 101,
-                                    const std::function<bool()>& goes_on = {});
+                                    const StopToken& stop = {});
 
 // The plane x + s d + t v: v has the length of d and lies across it, in the direction of -g; where d is along g, in
 // that of H g.
@@ -35,7 +35,7 @@ struct Slice {
   std::vector<double> across;     // v
 };
 
-// s in [-0.5, 1.5], t in [-1, 1]. Without points when `goes_on`, asked before every sample, says no.
-Slice slice_through(const LiveIteration& iteration, int samples = 41, const std::function<bool()>& goes_on = {});
+// s in [-0.5, 1.5], t in [-1, 1]. Without points when `stop`, polled before every sample, stops.
+Slice slice_through(const LiveIteration& iteration, int samples = 41, const StopToken& stop = {});
 
 }  // namespace aspic

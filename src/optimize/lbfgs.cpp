@@ -51,19 +51,19 @@ void LBFGS::remember(Objective& E, std::span<const double> x, std::span<const do
   has_last_ = true;
 }
 
-bool LBFGS::compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
-                    std::span<double> d, DirectionReport& report) {
-  B_.set_deadline(accuracy.deadline);
-  resize(x.size());
-  remember(E, x, g);
+bool LBFGS::compute(const Iterate& at, std::span<double> d, DirectionReport& report) {
+  Objective& E = at.E;
+  B_.set_stop(at.stop);
+  resize(at.x.size());
+  remember(E, at.x, at.g);
   corrected_ = count_ > 0;
-  for (size_t i = 0; i < g.size(); ++i) r_[i] = -g[i];
+  for (size_t i = 0; i < at.g.size(); ++i) r_[i] = -at.g[i];
   for (int age = 0; age < count_; ++age) {
     Pair& pair = recent(age);
     pair.weight = pair.rho * E.dot(pair.s, r_);
     add_multiple(-pair.weight, pair.y, r_);
   }
-  if (!B_.apply(E, x, r_, d, report) || !scale(E, x, g, d, report)) return false;
+  if (!B_.apply(E, at.x, r_, d, report) || !scale(at, d, report)) return false;
   for (int age = count_ - 1; age >= 0; --age) {
     const Pair& pair = recent(age);
     add_multiple(pair.weight - pair.rho * E.dot(pair.y, d), pair.s, d);
@@ -73,17 +73,16 @@ bool LBFGS::compute(Objective& E, std::span<const double> x, std::span<const dou
 
 // A Hessian has the right size, and so has at first what the objective itself gives. What else B is, it is scaled by
 // the last change [Nocedal and Wright 2006, eq. 7.20], and the first direction by the quadratic model along it.
-bool LBFGS::scale(Objective& E, std::span<const double> x, std::span<const double> g, std::span<double> d,
-                  DirectionReport& report) {
+bool LBFGS::scale(const Iterate& at, std::span<double> d, DirectionReport& report) {
   if (B_.kind() == PreconditionerKind::hessian) return true;
   if (B_.kind() == PreconditionerKind::own && count_ == 0) return true;
   double factor = 0;
   if (count_ == 0) {
-    factor = length_.along(E, x, g, d, report);
+    factor = length_.along(at, d, report);
   } else {
     const Pair& last = recent(0);
-    if (!B_.apply(E, x, last.y, r_, report)) return false;
-    factor = 1 / (last.rho * E.dot(last.y, r_));
+    if (!B_.apply(at.E, at.x, last.y, r_, report)) return false;
+    factor = 1 / (last.rho * at.E.dot(last.y, r_));
   }
   for (double& di : d) di *= factor;
   return true;

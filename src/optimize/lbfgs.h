@@ -15,8 +15,7 @@ class LBFGS : public SearchDirection {
   std::string_view name() const override { return "lbfgs"; }
   std::string description() const override;
   void begin() override;
-  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
-               std::span<double> d, DirectionReport& report) override;
+  bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override;
   bool retreat() override;  // forgets the changes: -B^-1 g
 
  private:
@@ -29,8 +28,7 @@ class LBFGS : public SearchDirection {
   Pair& recent(int age) { return pairs_[(next_ + kPairs - 1 - age) % kPairs]; }  // 0: the last one
   void resize(size_t n);
   void remember(Objective& E, std::span<const double> x, std::span<const double> g);
-  bool scale(Objective& E, std::span<const double> x, std::span<const double> g, std::span<double> d,
-             DirectionReport& report);
+  bool scale(const Iterate& at, std::span<double> d, DirectionReport& report);
 
   Preconditioner B_;
   ModelStep length_;

@@ -14,9 +14,9 @@ double allowed_value(double value, double alpha, double slope, const LineSearchO
 
 }  // namespace
 
-LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<const double> d, const Evaluation& value,
-                           double slope, const LineSearchOptions& options, std::span<double> trial,
-                           std::span<double> trial_gradient, std::vector<Trial>& trials) {
+LineSearchResult backtrack(const SearchLine& line, const LineSearchOptions& options, LineSearchScratch& scratch) {
+  const auto& [E, x, d, value, slope, stop] = line;
+  auto& [trial, gradient, trials] = scratch;
   LineSearchResult result;
   trials.clear();
   double alpha = std::min(options.alpha_max, E.max_step(x, d));
@@ -27,10 +27,10 @@ LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<co
     if (options.test == DecreaseTest::none) {
       now.accepted = true;
     } else if (std::abs(now.value - value.value) <= value.round_off && value.value - now.bound <= value.round_off) {
-      E.gradient(trial, trial_gradient);
+      E.gradient(trial, gradient);
       ++result.gradients;
       now.by_slope = true;
-      now.accepted = E.dot(trial_gradient, d) <= (2 * options.sufficient_decrease - 1) * slope;
+      now.accepted = E.dot(gradient, d) <= (2 * options.sufficient_decrease - 1) * slope;
     } else {
       now.accepted = now.value <= now.bound;  // false for what is not a number
     }
@@ -40,7 +40,7 @@ LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<co
       result.gradient_known = now.by_slope;
       return result;
     }
-    if (options.deadline.has_passed()) return result;
+    if (stop.stopped()) return result;
     alpha *= options.shrink;
   }
   return result;

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "base/deadline.h"
+#include "base/stop_token.h"
 #include "optimize/objective.h"
 #include "optimize/work.h"
 
@@ -21,7 +21,6 @@ struct LineSearchOptions {
   double shrink = 0.5;                // p, in (0, 1)
   double tolerance = 1e-10;           // tol: the search is stuck at smaller steps
   DecreaseTest test = DecreaseTest::textbook;
-  Deadline deadline = {};  // no trials afterwards, except the first
 };
 
 struct Trial {
@@ -32,18 +31,31 @@ struct Trial {
   bool accepted = false;
 };
 
+// A line to search: x + alpha d, with E(x) and the slope g.d there.
+struct SearchLine {
+  Objective& E;
+  std::span<const double> x, d;
+  Evaluation value;
+  double slope;
+  StopToken stop = {};  // no trials afterwards, except the first
+};
+
+// The vectors that a search writes. The caller sizes `trial` and `gradient` like x.
+struct LineSearchScratch {
+  std::vector<double> trial;     // the last trial x + alpha d
+  std::vector<double> gradient;  // there, if computed
+  std::vector<Trial> trials;     // all of them
+};
+
 struct LineSearchResult {
   double alpha = 0;             // 0: stuck
   Evaluation value;             // at x + alpha d
   int gradients = 0;            // evaluated
-  bool gradient_known = false;  // `trial_gradient` holds the gradient at the accepted trial
+  bool gradient_known = false;  // LineSearchScratch::gradient is that of the accepted trial
 };
 
-// Searches along d from x. Near convergence differences of E are below round-off: if both the difference and the
-// required decrease are, the slope at the trial decides (approximate Wolfe condition, [Hager and Zhang 2005]). Writes x
-// + alpha d to `trial`, its gradient to `trial_gradient` if computed, and all trials to `trials`.
-LineSearchResult backtrack(Objective& E, std::span<const double> x, std::span<const double> d, const Evaluation& value,
-                           double slope /* g.d */, const LineSearchOptions& options, std::span<double> trial,
-                           std::span<double> trial_gradient, std::vector<Trial>& trials);
+// Searches along the line. Near convergence differences of E are below round-off: if both the difference and the
+// required decrease are, the slope at the trial decides (approximate Wolfe condition, [Hager and Zhang 2005]).
+LineSearchResult backtrack(const SearchLine& line, const LineSearchOptions& options, LineSearchScratch& scratch);
 
 }  // namespace aspic

@@ -61,7 +61,7 @@ TEST(Methods, GradientDescentIsThatOfTheLectureIfNotPreconditioned) {
   std::vector<double> g(3), d(3);
   f.gradient(x, g);
   DirectionReport report;
-  ASSERT_TRUE(make_search_direction({.method = "gradient_descent"})->compute(f, x, g, {}, d, report));
+  ASSERT_TRUE(make_search_direction({.method = "gradient_descent"})->compute({f, x, g}, d, report));
   for (int i = 0; i < 3; ++i) EXPECT_EQ(d[i], -g[i]);
 }
 
@@ -108,7 +108,7 @@ TEST(LBFGS, IsTheRecursionOfItsMatrices) {
     for (int k = 0; k <= steps; ++k) {
       x = {std::cos(k), std::sin(2.0 * k), std::cos(3.0 * k)};
       f.gradient(x, g);
-      ASSERT_TRUE(method->compute(f, x, g, {}, d, report));
+      ASSERT_TRUE(method->compute({f, x, g}, d, report));
       places.emplace_back(x.data()), gradients.emplace_back(g.data());
     }
     const auto change = [&](const auto& of, int k) { return Eigen::Vector3d(of[k] - of[k - 1]); };
@@ -169,13 +169,13 @@ TEST(ModelStep, LeadsToTheMinimumOfAParabolaAndGoesOnWhereThereIsNone) {
   const std::vector<double> x = {1, 1, 1}, p = {0, 0, -2};
   std::vector<double> g(3);
   f.gradient(x, g);
-  EXPECT_NEAR(step.along(f, x, g, p, report), 0.5, 1e-7);  // a length of 1 along z
+  EXPECT_NEAR(step.along({f, x, g}, p, report), 0.5, 1e-7);  // a length of 1 along z
   EXPECT_EQ(report.gradients, 1);
   Rosenbrock f2;
   const std::vector<double> saddle = {0, 1, 0};  // there the curvature along x is 2 - 400
   f2.gradient(saddle, g);
   const std::vector<double> along = {4, 0, 0};
-  EXPECT_NEAR(step.along(f2, saddle, g, along, report), 2.0 / 4, 1e-6);  // twice the length of the last step
+  EXPECT_NEAR(step.along({f2, saddle, g}, along, report), 2.0 / 4, 1e-6);  // twice the length of the last step
 }
 
 TEST(Forcing, TightensWithTheSquareOfTheProgressAndStopsAtWhatIsEnough) {
@@ -228,10 +228,9 @@ class Scripted : public SearchDirection {
       : name_(std::move(name)), works_(works), can_retreat_(can_retreat), log_(log) {}
   std::string_view name() const override { return name_; }
   void begin() override { retreats_left_ = can_retreat_; }
-  bool compute(Objective&, std::span<const double>, std::span<const double> g, const InnerAccuracy&,
-               std::span<double> d, DirectionReport&) override {
+  bool compute(const Iterate& at, std::span<double> d, DirectionReport&) override {
     log_ += name_;
-    for (size_t i = 0; i < d.size(); ++i) d[i] = -1e-3 * g[i];
+    for (size_t i = 0; i < d.size(); ++i) d[i] = -1e-3 * at.g[i];
     return works_;
   }
   bool retreat() override { return std::exchange(retreats_left_, false); }

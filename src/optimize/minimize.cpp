@@ -107,13 +107,13 @@ struct Minimizer::Impl {
   void begin(Progress& at);
   End judge(Progress& at);
   InnerAccuracy inner_accuracy(const Progress& at) const;
-  bool find_direction(Progress& at, const InnerAccuracy& accuracy, Iteration& iteration);
-  bool search_line(Progress& at, const LineSearchOptions& options, Iteration& iteration);
+  bool find_direction(Progress& at, const Iterate& iterate, Iteration& iteration);
+  bool search_line(Progress& at, const StopToken& stop, Iteration& iteration);
   End find_step(Progress& at, Iteration& iteration);
   void take_step(Progress& at, Iteration& iteration);
 
-  std::vector<double> g, d, trial, trial_gradient;
-  std::vector<Trial> trials;
+  std::vector<double> g, d;
+  LineSearchScratch line;
   Convergence convergence;
   Cost cost;  // from one minimization to the next
 };
@@ -130,20 +130,21 @@ MinimizeReport Minimizer::Impl::minimize(Progress& at, const IterationObserver& 
     if (!end) take_step(at, iteration);
     add(iteration, report);
     iteration.gradients += iteration.direction.gradients;
-    iteration.x = end ? at.x : trial;
-    iteration.g = end ? g : trial_gradient;
-    iteration.d = d, iteration.x_next = at.x, iteration.tried = trials;
-    const bool is_stopped = observe && !observe(iteration);
+    iteration.x = end ? at.x : line.trial;
+    iteration.g = end ? g : line.gradient;
+    iteration.d = d, iteration.x_next = at.x, iteration.tried = line.trials;
+    if (observe) observe(iteration);
+    if (at.options.stop.requested()) {
+      report.iterations = i + !end;
+      return ended(Status::interrupted);
+    }
     if (end) return ended(*end);
-    if (!is_stopped) continue;
-    report.iterations = i + 1;
-    return ended(Status::interrupted);
   }
 }
 
 void Minimizer::Impl::begin(Progress& at) {
-  for (auto* v : {&g, &d, &trial, &trial_gradient}) v->resize(at.x.size());
-  trials.reserve(64);
+  for (auto* v : {&g, &d, &line.trial, &line.gradient}) v->resize(at.x.size());
+  line.trials.reserve(64);
   at.direction.begin();
   at.E.gradient(at.x, g);
   convergence.begin(at.E, at.options, g);
@@ -166,51 +167,49 @@ Minimizer::Impl::End Minimizer::Impl::judge(Progress& at) {
   if (convergence.is_at_round_off(1)) return Status::round_off;
   if (report.iterations == at.options.max_iterations) return Status::iteration_limit;
   // The first iteration is tried even if it may not fit: without any, no force would act.
-  if (at.options.deadline.left() <= (report.iterations > 0 ? cost.at_least() : 0)) return Status::budget;
+  if (at.options.stop.seconds_left() <= (report.iterations > 0 ? cost.at_least() : 0)) return Status::budget;
   return std::nullopt;
 }
 
 InnerAccuracy Minimizer::Impl::inner_accuracy(const Progress& at) const {
   InnerAccuracy accuracy = convergence.inner_accuracy(at.report);
-  accuracy.deadline = at.options.deadline.earlier_by(cost.to_finish());
   if (at.options.line_search.test != DecreaseTest::none) accuracy.value = at.value.value;
   return accuracy;
 }
 
 // A direction and a step along it, by ever more cautious ways.
 Minimizer::Impl::End Minimizer::Impl::find_step(Progress& at, Iteration& iteration) {
-  const InnerAccuracy accuracy = inner_accuracy(at);
-  LineSearchOptions line_search = at.options.line_search;
-  line_search.deadline = at.options.deadline.earlier_by(cost.gradient);
-  const double begin = at.options.deadline.now();
+  const Iterate iterate{at.E, at.x, g, inner_accuracy(at), at.options.stop.earlier_by(cost.to_finish())};
+  const StopToken stop = at.options.stop.earlier_by(cost.gradient);
+  const double begin = at.options.stop.now();
   for (;; ++iteration.retreats) {
     Status failure = Status::no_descent;
-    const bool descends = find_direction(at, accuracy, iteration);
-    const double computed = at.options.deadline.now();
+    const bool descends = find_direction(at, iterate, iteration);
+    const double computed = at.options.stop.now();
     if (!iteration.direction.kept) {  // the next one may have to make its Hessian
       cost.direction = computed - begin;
       cost.stoppable = iteration.direction.stoppable_seconds;
     }
     if (descends) {
-      const bool found = search_line(at, line_search, iteration);
-      cost.line_search = at.options.deadline.now() - computed;
+      const bool found = search_line(at, stop, iteration);
+      cost.line_search = at.options.stop.now() - computed;
       if (found) return std::nullopt;
       if (at.last_direction) return Status::converged;
       convergence.note_hessian();
       if (convergence.is_at_round_off(kRoundOffMargin)) return Status::round_off;
       failure = Status::stuck;
     }
-    if (iteration.direction.stopped || line_search.deadline.has_passed()) return Status::budget;
+    if (iteration.direction.stopped || stop.stopped()) return Status::budget;
     if (!at.direction.retreat()) return failure;
   }
 }
 
 // Writes d; false when it does not descend.
-bool Minimizer::Impl::find_direction(Progress& at, const InnerAccuracy& accuracy, Iteration& iteration) {
-  const bool found = at.direction.compute(at.E, at.x, g, accuracy, d, iteration.direction);
+bool Minimizer::Impl::find_direction(Progress& at, const Iterate& iterate, Iteration& iteration) {
+  const bool found = at.direction.compute(iterate, d, iteration.direction);
   at.slope = found ? at.E.dot(g, d) : 0;
   iteration.decrement = -0.5 * at.slope;
-  trials.clear();
+  line.trials.clear();
   if (!(at.slope < 0)) return false;
   if (convergence.judges_direction()) {
     at.report.reached = convergence.size_of_direction(g, d);
@@ -219,33 +218,33 @@ bool Minimizer::Impl::find_direction(Progress& at, const InnerAccuracy& accuracy
   return true;
 }
 
-bool Minimizer::Impl::search_line(Progress& at, const LineSearchOptions& options, Iteration& iteration) {
+bool Minimizer::Impl::search_line(Progress& at, const StopToken& stop, Iteration& iteration) {
   Stopwatch stopwatch;
-  at.step = backtrack(at.E, at.x, d, at.value, at.slope, options, trial, trial_gradient, trials);
-  iteration.trials += static_cast<int>(trials.size());
+  at.step = backtrack({at.E, at.x, d, at.value, at.slope, stop}, at.options.line_search, line);
+  iteration.trials += static_cast<int>(line.trials.size());
   iteration.gradients += at.step.gradients;
   iteration.line_search_seconds += stopwatch.lap();
   return at.step.alpha > 0;
 }
 
-// Afterwards `trial` and `trial_gradient` hold where the step began.
+// Afterwards `line.trial` and `line.gradient` hold where the step began.
 void Minimizer::Impl::take_step(Progress& at, Iteration& iteration) {
   Stopwatch stopwatch;
-  const double begin = at.options.deadline.now();
+  const double begin = at.options.stop.now();
   at.report.gradient_round_off = at.E.scales().gradient_round_off;  // of the last Hessian
   convergence.note_hessian();
-  std::swap_ranges(trial.begin(), trial.end(), at.x.begin());
+  std::swap_ranges(line.trial.begin(), line.trial.end(), at.x.begin());
   at.value = at.step.value;
   if (!at.step.gradient_known) {
-    at.E.gradient(at.x, trial_gradient);
+    at.E.gradient(at.x, line.gradient);
     ++iteration.gradients;
   }
   at.E.note_iterate(at.x);
-  g.swap(trial_gradient);
+  g.swap(line.gradient);
   convergence.measure(g);
   iteration.alpha = at.step.alpha;
   iteration.gradient_seconds = stopwatch.lap();
-  if (!at.step.gradient_known) cost.gradient = at.options.deadline.now() - begin;
+  if (!at.step.gradient_known) cost.gradient = at.options.stop.now() - begin;
 }
 
 Minimizer::Minimizer() : impl_(std::make_unique<Impl>()) {}

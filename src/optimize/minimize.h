@@ -16,11 +16,11 @@ namespace aspic {
 enum class Status {
   converged,        // the criterion is within the tolerance
   round_off,        // no more progress is possible in double precision: as good as converged
-  budget,           // the deadline came first: as far as time allowed
+  budget,           // the deadline passed first; the result is the best iterate
   iteration_limit,  // max_iterations reached first
   stuck,            // the line search found no decrease
   no_descent,       // no descent direction could be computed
-  interrupted,      // the observer asked to stop
+  interrupted,      // the stop token was requested to stop
   undefined,        // value or gradient is not finite at the start
   // Not of a minimization:
   unstable,    // an explicit scheme made most of the energy that the body has
@@ -52,7 +52,7 @@ struct MinimizeOptions {
   double h = 1;              // [s], what velocity and acceleration are measured by
   double max_forcing = 0.1;  // the loosest inner linear solve, as a relative residual
   LineSearchOptions line_search;
-  Deadline deadline = {};  // the best iterate by then is the result
+  StopToken stop = {};  // polled in every iteration
 };
 
 struct Iteration {
@@ -89,7 +89,7 @@ struct MinimizeReport : Work {
   int trials = 0, retreats = 0, projected_hessians = 0, projected_elements = 0;
 };
 
-using IterationObserver = std::function<bool(const LiveIteration&)>;  // false: stop here
+using IterationObserver = std::function<void(const LiveIteration&)>;
 
 class Minimizer {  // holds the scratch vectors, so that repeated calls allocate nothing
  public:

@@ -47,7 +47,6 @@ TEST(Minimize, GradientDescentDescendsMonotonicallyAndNeedsManyMoreIterations) {
   const MinimizeReport report = Minimizer().minimize(f, direction, x, options, [&](const Iteration& iteration) {
     EXPECT_LT(iteration.value, last);
     last = iteration.value;
-    return true;
   });
   EXPECT_EQ(report.status, Status::converged);
   EXPECT_GT(report.iterations, 200);
@@ -63,7 +62,6 @@ TEST(Minimize, NewtonWithoutLineSearchOvershoots) {
   Minimizer().minimize(f, *newton_with(), x, options, [&](const Iteration& iteration) {
     rose = rose || iteration.value > last;
     last = iteration.value;
-    return true;
   });
   EXPECT_TRUE(rose);
 }
@@ -98,7 +96,6 @@ TEST(Minimize, TheLineSearchNeverAcceptsWhatIsNotANumber) {
   Minimizer().minimize(f, direction, x, options, [&](const LiveIteration& iteration) {
     for (const Trial& trial : iteration.tried) EXPECT_FALSE(trial.accepted && std::isnan(trial.value));
     EXPECT_TRUE(std::isfinite(iteration.value));
-    return true;
   });
   EXPECT_TRUE(f.met_nan);
   EXPECT_LT(x[0] * x[0] + x[1] * x[1], 4);
@@ -121,11 +118,14 @@ TEST(Minimize, AStartThatIsNotFiniteIsUndefined) {
   EXPECT_EQ(Minimizer().minimize(f, *newton_with(), x, tight()).status, Status::undefined);
 }
 
-TEST(Minimize, TheObserverCanStopIt) {
+TEST(Minimize, StopsOnRequestAfterTheIteration) {
   Rosenbrock f;
   std::vector<double> x = {-0.8, 0.6, 0};
-  const MinimizeReport report = Minimizer().minimize(f, *newton_with(), x, tight(),
-                                                     [](const Iteration& iteration) { return iteration.index < 3; });
+  int last = 0;
+  MinimizeOptions options = tight();
+  options.stop = StopToken([&] { return last == 3; });
+  const MinimizeReport report =
+      Minimizer().minimize(f, *newton_with(), x, options, [&](const Iteration& iteration) { last = iteration.index; });
   EXPECT_EQ(report.status, Status::interrupted);
   EXPECT_EQ(report.iterations, 4);
 }
@@ -193,15 +193,14 @@ TEST(LineSearch, TextbookAndSlideTestsDifferByAlpha) {
   // textbook test at small alpha, while the slide's test asks for the full decrease whatever alpha is.
   Rosenbrock f;
   const std::vector<double> x = {0, 0, 0}, d = {0.5, 0, 0};
-  std::vector<double> trial(3), g(3);
-  std::vector<Trial> trials;
+  LineSearchScratch scratch{std::vector<double>(3), std::vector<double>(3), {}};
   LineSearchOptions options;
   options.sufficient_decrease = 0.6;
-  const LineSearchResult textbook = backtrack(f, x, d, {f.value(x)}, -1, options, trial, g, trials);
+  const LineSearchResult textbook = backtrack({f, x, d, {f.value(x)}, -1}, options, scratch);
   EXPECT_GT(textbook.alpha, 0);
   EXPECT_LE(f.value(std::vector<double>{textbook.alpha * 0.5, 0, 0}), 1 - 0.6 * textbook.alpha);
   options.test = DecreaseTest::slide;
-  EXPECT_EQ(backtrack(f, x, d, {f.value(x)}, -1, options, trial, g, trials).alpha, 0);  // stuck
+  EXPECT_EQ(backtrack({f, x, d, {f.value(x)}, -1}, options, scratch).alpha, 0);  // stuck
 }
 
 // f(x) = 8 x^2 + 1e9, whose differences near the minimum are lost in the round-off of 1e9.
@@ -267,13 +266,12 @@ TEST(Minimize, ADeadlineEndsItWhereverItIs) {
     std::vector<double> x = {-1.5, 0.6, 0};
     const double start = f.at({x[0], x[1]});
     MinimizeOptions options = tight();
-    options.deadline = Deadline(clock, seconds);
+    options.stop = StopToken(clock, seconds);
     double last_alpha = 1;
     int last_trials = 0;
     const MinimizeReport report = Minimizer().minimize(f, *newton_with(), x, options, [&](const Iteration& iteration) {
       last_alpha = iteration.alpha;
       last_trials = iteration.trials;
-      return true;
     });
     EXPECT_LE(f.at({x[0], x[1]}), start);
     EXPECT_EQ(report.value, f.at({x[0], x[1]}));
@@ -293,9 +291,8 @@ TEST(Minimize, ADeadlineEndsItWhereverItIs) {
 TEST(LineSearch, AnAscentDirectionIsStuck) {
   Rosenbrock f;
   const std::vector<double> x = {0, 0, 0}, d = {-1, 0, 0};
-  std::vector<double> trial(3), g(3);
-  std::vector<Trial> trials;
-  EXPECT_EQ(backtrack(f, x, d, {f.value(x)}, -2, {}, trial, g, trials).alpha, 0);
+  LineSearchScratch scratch{std::vector<double>(3), std::vector<double>(3), {}};
+  EXPECT_EQ(backtrack({f, x, d, {f.value(x)}, -2}, {}, scratch).alpha, 0);
 }
 
 }  // namespace

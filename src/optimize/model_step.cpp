@@ -18,8 +18,8 @@ double largest_entry(std::span<const double> v) {
 
 }  // namespace
 
-double ModelStep::along(Objective& E, std::span<const double> x, std::span<const double> g, std::span<const double> p,
-                        DirectionReport& report) {
+double ModelStep::along(const Iterate& at, std::span<const double> p, DirectionReport& report) {
+  const auto& [E, x, g, accuracy, stop] = at;
   const double size = largest_entry(p);
   if (!(size > 0) || !std::isfinite(size)) return 0;
   for (auto* v : {&ahead_, &gradient_}) v->resize(x.size());

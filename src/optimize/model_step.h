@@ -14,8 +14,7 @@ class ModelStep {
   void begin() { last_ = 0; }
   // Where there is no positive curvature: so long that the largest displacement is that of the last step, doubled (of
   // the first step: E.scales().x).
-  double along(Objective& E, std::span<const double> x, std::span<const double> g, std::span<const double> p,
-               DirectionReport& report);
+  double along(const Iterate& at, std::span<const double> p, DirectionReport& report);
 
  private:
   double last_ = 0;  // the largest entry of the last step; 0: there is none

@@ -22,12 +22,11 @@ void Newton::begin() {
   policy_->begin();
 }
 
-bool Newton::compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
-                     std::span<double> d, DirectionReport& report) {
-  const double gradient_norm = std::sqrt(E.dot(g, g));
-  NewtonTask task{E, x, g, accuracy.value, forcing_.at(gradient_norm, accuracy), d, report};
-  system_.begin_direction(accuracy.deadline, std::exchange(is_new_, false), gradient_norm);
-  used_kept_ = system_.solve_with_kept(task, accuracy);
+bool Newton::compute(const Iterate& at, std::span<double> d, DirectionReport& report) {
+  const double gradient_norm = std::sqrt(at.E.dot(at.g, at.g));
+  NewtonTask task{at.E, at.x, at.g, at.accuracy.value, forcing_.at(gradient_norm, at.accuracy), d, report};
+  system_.begin_direction(at.stop, std::exchange(is_new_, false), gradient_norm);
+  used_kept_ = system_.solve_with_kept(task, at.accuracy);
   return used_kept_ || policy_->compute(system_, task);
 }
 

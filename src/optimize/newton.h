@@ -14,8 +14,7 @@ class Newton : public SearchDirection {
   std::string_view name() const override { return system_.truncates() ? "newton_cg" : "newton"; }
   std::string description() const override;
   void begin() override;
-  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
-               std::span<double> d, DirectionReport& report) override;
+  bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override;
   bool retreat() override;
   bool estimates_minimiser() const override { return true; }
   const LinearSolver& solver() const { return system_.solver(); }

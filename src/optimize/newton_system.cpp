@@ -9,13 +9,13 @@ void NewtonSystem::begin() {
   solver_->begin();
 }
 
-void NewtonSystem::begin_direction(const Deadline& deadline, bool is_first, double gradient_norm) {
-  deadline_ = deadline;
+void NewtonSystem::begin_direction(const StopToken& stop, bool is_first, double gradient_norm) {
+  stop_ = stop;
   is_first_ = is_first;
   gradient_norm_ = gradient_norm;
   exact_ = nullptr;
-  solver_->set_deadline(deadline);
-  semidefinite_solver_.set_deadline(deadline);
+  solver_->set_stop(stop);
+  semidefinite_solver_.set_stop(stop);
 }
 
 bool NewtonSystem::solve(NewtonTask& task, const Projection& projection) {
@@ -77,9 +77,9 @@ bool NewtonSystem::solve_with_kept(NewtonTask& task, const InnerAccuracy& accura
 bool NewtonSystem::solve_factorized(NewtonTask& task) {
   DirectionReport& report = task.report;
   Stopwatch stopwatch;
-  const double begin = deadline_.now();
+  const double begin = stop_.now();
   const SolveReport solved = solver_->solve(task.g, task.d, task.forcing);
-  if (solved.iterations > 0) report.stoppable_seconds += deadline_.now() - begin;
+  if (solved.iterations > 0) report.stoppable_seconds += stop_.now() - begin;
   report.stopped = report.stopped || solved.stopped;
   report.add(solved);
   report.solve_seconds += stopwatch.lap();

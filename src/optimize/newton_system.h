@@ -29,7 +29,7 @@ class NewtonSystem {
 
   void begin();  // a minimization
   // A direction. The first one of a minimization is never late: without any, no force would act.
-  void begin_direction(const Deadline& deadline, bool is_first, double gradient_norm);
+  void begin_direction(const StopToken& stop, bool is_first, double gradient_norm);
 
   bool solve(NewtonTask& task, const Projection& projection);
   // With the exact Hessian that solve() made for this direction; where it has negative curvature, d is as far as the
@@ -43,7 +43,7 @@ class NewtonSystem {
 
   // Whether to give up between the phases of a solve.
   bool is_late(DirectionReport& report) const {
-    return report.stopped = report.stopped || (!is_first_ && deadline_.has_passed());
+    return report.stopped = report.stopped || (is_first_ ? stop_.requested() : stop_.stopped());
   }
 
  private:
@@ -57,7 +57,7 @@ class NewtonSystem {
   uint64_t analyzed_version_ = 0, semidefinite_version_ = 0;
   KeptHessian kept_;
   const BlockSparse* exact_ = nullptr;  // the last Hessian that E made for this direction, if it is the exact one
-  Deadline deadline_;
+  StopToken stop_;
   bool is_first_ = true;
   double gradient_norm_ = 0;
 };

@@ -50,7 +50,6 @@ TEST(Newton, KeepsItsHessianWhileAnObserverAsksForOthers) {
       minimize_from_afar(*newton(), Criterion::absolute, watched, [](const LiveIteration& iteration) {
         const std::vector<double> elsewhere = {3, -2, 0};
         iteration.E.hessian(elsewhere, {Definiteness::clamped});
-        return true;
       });
   EXPECT_EQ(watched, plain);
   EXPECT_EQ(report.hessians, expected.hessians);
@@ -66,7 +65,7 @@ TEST(Newton, ForgetsItsHessianWhereItIsOfNoUseAndBetweenMinimisations) {
   const InnerAccuracy lavish = {.loosest = 0.1, .enough = 10};  // whatever its quadratic approximation was worth
   const auto hessians = [&] {
     DirectionReport report;
-    EXPECT_TRUE(direction->compute(f, x, g, lavish, d, report));
+    EXPECT_TRUE(direction->compute({f, x, g, lavish}, d, report));
     EXPECT_EQ(report.kept, report.hessians == 0);
     return report.hessians;
   };
@@ -135,7 +134,7 @@ TEST(Newton, CountsItsEvaluationsAhead) {
     InnerAccuracy accuracy;
     if (is_known) accuracy.value = f.TwoBump::evaluate(x).value;
     direction.begin();
-    EXPECT_TRUE(direction.compute(f, x, g, accuracy, d, report));
+    EXPECT_TRUE(direction.compute({f, x, g, accuracy}, d, report));
     EXPECT_TRUE(report.projected);
     EXPECT_EQ(report.values, f.values);
     return std::pair(f.values, d);
@@ -150,7 +149,6 @@ TEST(Newton, CountsItsEvaluationsAhead) {
   int trials = 0, ahead = 0;
   const auto count = [&](const Iteration& iteration) {
     trials += iteration.trials, ahead += iteration.direction.values;
-    return true;
   };
   const MinimizeReport report = Minimizer().minimize(f, direction, y, {.criterion = Criterion::absolute}, count);
   EXPECT_GT(ahead, 0);

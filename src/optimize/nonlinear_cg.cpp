@@ -17,17 +17,18 @@ bool NonlinearCG::retreat() {
   return conjugate_;
 }
 
-bool NonlinearCG::compute(Objective& E, std::span<const double> x, std::span<const double> g,
-                          const InnerAccuracy& accuracy, std::span<double> d, DirectionReport& report) {
-  B_.set_deadline(accuracy.deadline);
-  for (auto* v : {&p_, &z_, &last_g_, &last_z_}) v->resize(x.size());
-  if (!B_.apply(E, x, g, z_, report)) return false;
+bool NonlinearCG::compute(const Iterate& at, std::span<double> d, DirectionReport& report) {
+  Objective& E = at.E;
+  const std::span<const double> g = at.g;
+  B_.set_stop(at.stop);
+  for (auto* v : {&p_, &z_, &last_g_, &last_z_}) v->resize(at.x.size());
+  if (!B_.apply(E, at.x, g, z_, report)) return false;
   const double b = remembers_ ? beta(E, g) : 0;
   for (size_t i = 0; i < p_.size(); ++i) p_[i] = b * p_[i] - z_[i];
   conjugate_ = b != 0 && E.dot(g, p_) < 0;
   if (!conjugate_)
     for (size_t i = 0; i < p_.size(); ++i) p_[i] = -z_[i];
-  const double step = length_.along(E, x, g, p_, report);
+  const double step = length_.along(at, p_, report);
   for (size_t i = 0; i < p_.size(); ++i) d[i] = step * p_[i];
   std::copy(g.begin(), g.end(), last_g_.begin());
   last_z_.swap(z_);

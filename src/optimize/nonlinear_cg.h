@@ -14,8 +14,7 @@ class NonlinearCG : public SearchDirection {
   std::string_view name() const override { return "nonlinear_cg"; }
   std::string description() const override;
   void begin() override;
-  bool compute(Objective& E, std::span<const double> x, std::span<const double> g, const InnerAccuracy& accuracy,
-               std::span<double> d, DirectionReport& report) override;
+  bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) override;
   bool retreat() override;  // starts anew along -B^-1 g
 
  private:

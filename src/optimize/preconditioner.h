@@ -32,8 +32,8 @@ class Preconditioner {
   std::string description() const;  // "hessian (cholesky: ...)"
 
   void begin() { is_made_ = false; }
-  void set_deadline(const Deadline& deadline) {
-    if (solver_) solver_->set_deadline(deadline);
+  void set_stop(const StopToken& stop) {
+    if (solver_) solver_->set_stop(stop);
   }
   // z = B^-1 r, 3 numbers per vertex. The first call after begin() makes B at x. False: B is not positive definite, or
   // the system could not be solved.

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/deadline.h"
+#include "base/stop_token.h"
 #include "optimize/objective.h"
 #include "optimize/work.h"
 
@@ -16,8 +16,8 @@ struct DirectionReport : Work {
   bool projected = false;        // a modified Hessian replaced the exact one
   bool kept = false;             // the Hessian of an earlier iteration was reused
   bool truncated = false;        // the linear solve ended at a direction of negative curvature
-  bool stopped = false;          // the deadline passed
-  double stoppable_seconds = 0;  // time of the part that a deadline can stop, by its clock
+  bool stopped = false;          // the stop token ended it early
+  double stoppable_seconds = 0;  // time of the part that a stop token can end, by the clock of its deadline
   double hessian_seconds = 0, factorize_seconds = 0, solve_seconds = 0;  // wall time
 };
 
@@ -26,8 +26,15 @@ struct DirectionReport : Work {
 struct InnerAccuracy {
   double loosest = 0.1;
   double enough = 0;
-  Deadline deadline = {};            // iterative solves stop there and return their iterate as d
   std::optional<double> value = {};  // E(x), if known
+};
+
+// Where a direction is computed. x and the gradient g hold 3 numbers per block row.
+struct Iterate {
+  Objective& E;
+  std::span<const double> x, g;
+  InnerAccuracy accuracy = {};
+  StopToken stop = {};  // iterative solves end there and return their iterate as d
 };
 
 class SearchDirection {
@@ -40,10 +47,8 @@ class SearchDirection {
 
   // Starts a minimization: drops everything kept from the last one.
   virtual void begin() {}
-  // Computes the direction d at x from the gradient g, 3 numbers per block row each. Returns false if no descent
-  // direction was found.
-  virtual bool compute(Objective& E, std::span<const double> x, std::span<const double> g,
-                       const InnerAccuracy& accuracy, std::span<double> d, DirectionReport& report) = 0;
+  // Writes the direction, 3 numbers per block row, to d. Returns false if no descent direction was found.
+  virtual bool compute(const Iterate& at, std::span<double> d, DirectionReport& report) = 0;
   // Called if there was no direction, or no step along it decreases E. Returns true if a more cautious direction
   // exists: compute() is then called again.
   virtual bool retreat() { return false; }

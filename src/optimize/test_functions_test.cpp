@@ -81,7 +81,6 @@ TEST(TestFunctions, GradientDescentZigZagsOnAQuadratic) {
     Minimizer().minimize(f, descent, x, options, [&](const LiveIteration& iteration) {
       directions.push_back({iteration.d[0], iteration.d[1]});
       values.push_back(iteration.value);
-      return true;
     });
     p = {x[0], x[1]};
   }

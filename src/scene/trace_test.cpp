@@ -51,7 +51,6 @@ std::vector<Recorded> traced_minimisation(Trace& trace) {
   Minimizer().minimize(f, direction, x, {}, [&](const LiveIteration& iteration) {
     trace.on_iteration(3, iteration);
     recorded.push_back({iteration, {iteration.tried.begin(), iteration.tried.end()}});
-    return true;
   });
   trace.close();
   return recorded;
@@ -130,7 +129,7 @@ TEST_F(Traces, AFailedIterationIsTracedWithAllItsTrials) {
   MinimizeOptions options;
   options.line_search.test = DecreaseTest::slide;  // asks for the whole decrease however short the step
   options.line_search.sufficient_decrease = 0.99;
-  const auto observe = [&](const LiveIteration& iteration) { return trace.on_iteration(1, iteration), true; };
+  const auto observe = [&](const LiveIteration& iteration) { trace.on_iteration(1, iteration); };
   ASSERT_EQ(Minimizer().minimize(f, direction, x, options, observe).status, Status::stuck);
   trace.close();
   const Table iterations = read_table(path("trace") / "iterations.csv");

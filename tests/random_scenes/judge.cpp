@@ -18,7 +18,7 @@ constexpr double kLastDigits = 1e-11;  // of energies that cancel in a body at r
 // The residual of the report is made anew from differences of velocities: so many times the round-off of one
 // evaluation.
 constexpr double kNoise = 10;
-constexpr int kMostParts = 300;  // of all the adaptive steps of a scene
+constexpr int kMostPolls = 20'000;  // of the stop token, in all steps of a scene
 
 bool is_finite(std::span<const double> v) {
   return std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
@@ -52,11 +52,11 @@ class Judge {
 
   Judgement run() {
     judgement_.ending = "converged";
-    int parts = 0;
-    const Consent go_on = [&] { return ++parts <= kMostParts; };
+    int polls = 0;
+    const StopToken stop([&] { return ++polls > kMostPolls; });
     for (int i = 0; i < scene_.steps && judgement_.fault.empty(); ++i) {
       const State before = simulation_.state();
-      const StepReport report = simulation_.step({}, go_on);
+      const StepReport report = simulation_.step({}, stop);
       if (report.status == Status::interrupted) {
         judgement_.ending = "interrupted";
         break;

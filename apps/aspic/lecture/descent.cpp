@@ -91,7 +91,6 @@ Descent descend(OpenStep& step, SearchDirection& direction) {
                                        [&](const LiveIteration& iteration) {
                                          result.value.push_back(iteration.value);
                                          result.gradient.push_back(iteration.gradient_norm);
-                                         return true;
                                        });
   result.seconds = stopwatch.lap();
   return result;

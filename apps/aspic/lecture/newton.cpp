@@ -33,7 +33,6 @@ Attempt attempt(OpenStep& step, DecreaseTest test) {
     result.value.push_back(iteration.value);
     result.gradient.push_back(iteration.gradient_norm);
     result.alpha.push_back(iteration.alpha);
-    return true;
   });
   result.value.push_back(result.report.value);
   result.gradient.push_back(result.report.gradient_norm);
@@ -146,12 +145,14 @@ Curve curve_of(OpenStep& step, const LineSearchOptions& search) {
   Curve curve;
   Vector q = step.start;
   Newton newton(make_linear_solver("cholesky"));
-  Minimizer().minimize(step.E, newton, q, {.max_iterations = kMostIterations, .line_search = search},
+  bool is_found = false;
+  const StopToken stop([&] { return is_found; });
+  Minimizer().minimize(step.E, newton, q, {.max_iterations = kMostIterations, .line_search = search, .stop = stop},
                        [&](const LiveIteration& it) {
                          const bool is_clear = it.tried.size() == 2 || it.tried.size() == 3;
                          if (is_clear || (it.tried.size() > 3 && curve.iteration < 0))
                            curve = curve_through(it, search.sufficient_decrease);
-                         return !is_clear;
+                         is_found = is_found || is_clear;
                        });
   return curve;
 }

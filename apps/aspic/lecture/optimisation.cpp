@@ -106,10 +106,7 @@ void show_one_minimisation_per_step(const Stage& stage, Sheet& sheet) {
         table.append(CsvRow().add(r.step).add(begun[taken]).add(r.iterations).add(r.trials).add(to_string(r.status)));
         ++taken;
       },
-      [&](const LiveIteration& iteration) {
-        begun[taken] += iteration.index == 0;
-        return true;
-      });
+      [&](const LiveIteration& iteration) { begun[taken] += iteration.index == 0; });
   sheet.equals("time steps", taken, kSteps, "", "all were taken");
   sheet.equals("fewest minimisations in a step", *std::min_element(begun.begin(), begun.end()), 1, "", "for each one");
   sheet.equals("most minimisations in a step", *std::max_element(begun.begin(), begun.end()), 1, "", "and no more");

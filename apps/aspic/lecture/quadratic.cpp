@@ -39,7 +39,7 @@ double residual_of_direction(Objective& E, const Vector& x) {
   E.gradient(x, g);
   Newton newton(make_linear_solver("cholesky"));
   DirectionReport report;
-  if (!newton.compute(E, x, g, {.loosest = 1e-12}, d, report)) return INFINITY;
+  if (!newton.compute({E, x, g, {.loosest = 1e-12}}, d, report)) return INFINITY;
   E.hessian(x, {report.projected ? Definiteness::clamped : Definiteness::exact}).multiply(d, Hd);
   return norm(plus(Hd, 1, g)) / norm(g);
 }

@@ -44,7 +44,6 @@ std::vector<Vector> iterates(Objective& E, SearchDirection& direction, Vector x,
   std::vector<Vector> visited = {x};
   Minimizer().minimize(E, direction, x, {.max_iterations = most}, [&](const LiveIteration& iteration) {
     visited.emplace_back(iteration.x_next.begin(), iteration.x_next.end());
-    return true;
   });
   return visited;
 }
