@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "dynamics/models_test.h"
-#include "verify/oscillator.h"
+#include "verification/oscillator.h"
 
 namespace aspic {
 namespace {

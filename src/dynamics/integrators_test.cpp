@@ -7,8 +7,8 @@
 #include <map>
 
 #include "dynamics/models_test.h"
-#include "verify/integrators.h"
-#include "verify/oscillator.h"
+#include "verification/integrators.h"
+#include "verification/oscillator.h"
 
 namespace aspic {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "dynamics/models_test.h"
-#include "verify/oscillator.h"
+#include "verification/oscillator.h"
 
 namespace aspic {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "dynamics/models_test.h"
-#include "verify/integrators.h"
+#include "verification/integrators.h"
 
 namespace aspic {
 namespace {
