@@ -1,4 +1,4 @@
-// From a scene to its material again: the virtual bench, then a fit, judged against the truth. docs/capture_results.md
+// From a scene to its material again: the virtual bench, then a fit, judged against the truth. bench/results/capture.md
 // has more and harder cases.
 #include <gtest/gtest.h>
 

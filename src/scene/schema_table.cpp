@@ -12,190 +12,173 @@ namespace aspic {
 namespace {
 
 const char* const kIntegrators =
-    "the scheme that takes a step (formulas, orders, energies: [integrators](integrators.md)). Implicit, a "
-    "minimisation "
-    "per stage: `backward_euler` first order, damps; `linearly_implicit_euler` one Newton iteration of it; `bdf2` and "
-    "`tr_bdf2` second order, damp only what the step does not resolve; `midpoint` and `trapezoid` second order, damp "
-    "nothing and may gain energy in large deformations. Explicit, stable for short steps only: `symplectic_euler` "
-    "(what the lecture's slide prints as \"Forward "
-    "Euler\"), `forward_euler` (the classical one, gains energy), `rk4` fourth order. `quasi_static`: equilibrium, no "
-    "inertia";
+    "time integration scheme ([formulas](integrators.md)). Implicit, a minimization per stage: `backward_euler` first "
+    "order, damped; `linearly_implicit_euler` one Newton iteration of it; `bdf2`, `tr_bdf2` second order, damp "
+    "unresolved motion; `midpoint`, `trapezoid` second order, undamped, may gain energy in large deformations. "
+    "Explicit, for short steps: `symplectic_euler` (the lecture's \"Forward Euler\"), `forward_euler` (gains energy), "
+    "`rk4` fourth order. `quasi_static`: equilibrium without inertia";
 
 void add_scene(Schema& s) {
-  s.sections.push_back({"scene", "*.toml", "What is simulated: the top level of the file."});
+  s.sections.push_back({"scene", "*.toml", "The top level of the file."});
   add_keys(s, "scene",
-           {{.name = "version",
-             .accepts = kText,
-             .meaning = "version of Aspic that resolved the scene; written by it, noted when it differs"},
+           {{.name = "version", .accepts = kText, .meaning = "version of Aspic that resolved the scene"},
             {.name = "gravity",
              .accepts = kNumbers,
              .unit = "m/s^2",
              .fallback = "[0.0, -9.81, 0.0]",
-             .meaning = "acceleration of everything that has mass",
+             .meaning = "acceleration of gravity",
              .reason = "standard gravity along -y, the usual 'down'"},
-            {.name = "time",
-             .accepts = kTable,
-             .fallback = "{}",
-             .table = "time",
-             .meaning = "steps and how they are taken"},
+            {.name = "time", .accepts = kTable, .fallback = "{}", .table = "time", .meaning = "time steps"},
             {.name = "solver",
              .accepts = kTable,
              .fallback = "{}",
              .table = "solver",
-             .meaning = "how each step's minimisation is solved"},
-            {.name = "output", .accepts = kTable, .fallback = "{}", .table = "output", .meaning = "what is written"},
+             .meaning = "minimization of each step"},
+            {.name = "output", .accepts = kTable, .fallback = "{}", .table = "output", .meaning = "output files"},
             {.name = "body", .accepts = kTables, .required = true, .table = "body", .meaning = "the bodies"}});
 }
 
 void add_time(Schema& s) {
   const SimulationOptions usual;
-  s.sections.push_back({"time", "[time]", "The steps."});
-  add_keys(s, "time",
-           {{.name = "step",
-             .accepts = kNumber,
-             .unit = "s",
-             .fallback = number_text(usual.h),
-             .range = {.min = 0, .max = 1e100, .min_open = true},  // its square is finite
-             .meaning = "length h of a time step",
-             .reason = "resolves motions of a few hertz"},
-            {.name = "duration",
-             .accepts = kNumber,
-             .unit = "s",
-             .fallback = "2.0",
-             .range = {.min = 0},
-             .meaning = "simulated time; the last step is the first that reaches it",
-             .reason = "long enough to see a soft body swing"},
-            {.name = "integrator",
-             .accepts = kText,
-             .fallback = toml_string(usual.integrator),
-             .choices = integrator_names(),
-             .meaning = kIntegrators,
-             .reason = "stable for every step length"},
-            {.name = "adaptive",
-             .accepts = kTable,
-             .fallback = "{}",
-             .table = "adaptive",
-             .meaning = "steps in parts, as short as their error asks for: [integrators](integrators.md)"}});
-  s.sections.push_back(
-      {"adaptive", "adaptive = { ... } in [time]",
-       "Each step is taken in parts of `step` / 2^k. A part is taken once whole and once in halves, "
-       "whose difference estimates its error; parts too long are rejected and halved, and a step whose "
-       "smallest part (2^-20) is still inaccurate is reported as such. Frames and restarts stay at "
-       "multiples of `step`."});
+  s.sections.push_back({"time", "[time]", "Time steps."});
+  add_keys(
+      s, "time",
+      {{.name = "step",
+        .accepts = kNumber,
+        .unit = "s",
+        .fallback = number_text(usual.h),
+        .range = {.min = 0, .max = 1e100, .min_open = true},  // its square is finite
+        .meaning = "time step h",
+        .reason = "resolves motions of a few hertz"},
+       {.name = "duration",
+        .accepts = kNumber,
+        .unit = "s",
+        .fallback = "2.0",
+        .range = {.min = 0},
+        .meaning = "simulated time; the last step reaches it",
+        .reason = "long enough to see a soft body swing"},
+       {.name = "integrator",
+        .accepts = kText,
+        .fallback = toml_string(usual.integrator),
+        .choices = integrator_names(),
+        .meaning = kIntegrators,
+        .reason = "stable for every step length"},
+       {.name = "adaptive", .accepts = kTable, .fallback = "{}", .table = "adaptive", .meaning = "adaptive substeps"}});
+  s.sections.push_back({"adaptive", "adaptive = { ... } in [time]",
+                        "Each step is divided into substeps of `step` / 2^k. The difference between one substep and "
+                        "two halves estimates its error. Too long substeps are halved; if the shortest (2^-20) is "
+                        "still inaccurate, the step fails. Frames stay at multiples of `step`."});
   add_keys(s, "adaptive",
            {{.name = "tolerance",
              .accepts = kNumber,
              .fallback = number_text(usual.adaptive.tolerance),
              .range = {.min = 0, .max = 1},
-             .meaning = "error in position that a step may add, relative to the diagonal of the body at rest; 0: steps "
-                        "are taken whole. Not for bdf2 and quasi_static",
+             .meaning = "maximum position error per step, relative to the diagonal of the body at rest; 0: no "
+                        "substeps. Not for bdf2 and quasi_static",
              .reason = "a step costs what it did before"}});
 }
 
 void add_solver(Schema& s) {
   const SolverOptions usual;
   const std::string scale(to_string(usual.minimize.criterion));
-  s.sections.push_back({"solver", "[solver]", "The minimisation of each step."});
+  s.sections.push_back({"solver", "[solver]", "The minimization of each step ([methods](methods.md))."});
   add_keys(
       s, "solver",
       {{.name = "method",
         .accepts = kText,
         .fallback = toml_string(usual.method),
         .choices = minimizer_names(),
-        .meaning = "how the search direction is found",
+        .meaning = "search direction",
         .reason = "converges in a few iterations"},
        {.name = "fallback",
         .accepts = kNames,
         .fallback = "[]",
         .choices = minimizer_names(),
-        .meaning = "methods that take over, in this order, where the one before finds no step; the next iteration "
-                   "begins with `method` again",
+        .meaning = "methods that take over, in this order, if the previous one finds no step; the next iteration "
+                   "starts with `method` again",
         .reason = "Newton's method finds a step by itself"},
        {.name = "preconditioner",
         .accepts = kText,
         .fallback = "\"auto\"",
         .choices = preconditioner_names(),
-        .meaning = "the matrix that stands for the Hessian in `lbfgs`, `nonlinear_cg` and `gradient_descent`: made at "
-                   "the first iterate of each step and kept",
-        .reason = "`hessian`, for `gradient_descent` `none`, as in the lecture"},
+        .meaning = "approximation of the Hessian in `lbfgs`, `nonlinear_cg` and `gradient_descent`, made once per "
+                   "step; `auto`: `hessian`, or `none` for `gradient_descent`",
+        .reason = "fast, except for `gradient_descent`, which is that of the lecture"},
        {.name = "initial_guess",
         .accepts = kText,
         .fallback = toml_string(SimulationOptions().initial_guess),
         .choices = initial_guess_names(),
-        .meaning = "where a minimisation starts: `zero` the shape at rest, `current` where the body is, `extrapolated` "
-                   "its flight without forces q + h qdot, `last_increment` what the step before added, `accelerated` "
-                   "the flight with the accelerations of the step before, `best` the one of the last four with the "
-                   "lowest energy. A guess of infinite energy, or not known yet, gives way "
-                   "to the best",
+        .meaning =
+            "start of a minimization: `zero` the rest shape, `current` the current positions, `extrapolated` q + h "
+            "qdot, `last_increment` the previous increment again, `accelerated` with the previous accelerations, "
+            "`best` the one of the last four with the lowest energy, which also replaces a guess of infinite energy",
         .reason = "never worse than where the body is"},
        {.name = "max_iterations",
         .accepts = kInteger,
         .fallback = std::to_string(usual.minimize.max_iterations),
         .range = {.min = 1, .max = 1e9},
-        .meaning = "iterations per step; a step that needs more is reported as not converged",
+        .meaning = "maximum iterations per step; beyond, the step has not converged",
         .reason = "far more than Newton's method takes, but for the hardest steps"},
        {.name = "time_budget",
         .accepts = kNumber,
         .unit = "s",
         .fallback = number_text(usual.time_budget),
         .range = kNotNegative,
-        .meaning = "wall time per step; a step that needs more ends where it came, with an energy not above that of "
-                   "its start and the status `budget`; 0: no limit. At least one iteration is tried, however long it "
-                   "takes. What a step with a budget computes depends on the clock",
+        .meaning = "wall time per step; beyond, the step ends with its best iterate and the status `budget`; 0: no "
+                   "limit. At least one iteration completes. Results are then not reproducible",
         .reason = "results are reproducible to the bit"},
        {.name = "tolerance",
         .accepts = kNumber,
         .fallback = number_text(usual.minimize.tolerance),
         .range = kNotNegative,
-        .meaning = "how small `criterion` must be for a step to have converged",
+        .meaning = "threshold of `criterion`",
         .reason = "positions are then right to about six digits"},
        {.name = "criterion",
         .accepts = kText,
         .fallback = toml_string(scale),
         .choices = criterion_names(),
-        .meaning = "what must be small, and in which unit: the gradient's norm, relative to the forces that balance "
-                   "(`scale`), to the first gradient of the step, or in N (`absolute`); or Newton's direction, as the "
-                   "square root of its decrement relative to the energy of doubling the body in size (`decrement`), as "
-                   "a `velocity` in m/s or an `acceleration` in m/s^2",
+        .meaning =
+            "what must be small: the gradient's norm relative to the forces that balance (`scale`), to the first "
+            "gradient, or in N (`absolute`); or Newton's direction: square root of its decrement relative to the "
+            "energy of doubling the body's size (`decrement`), `velocity` in m/s, `acceleration` in m/s^2",
         .reason = "means the same in every unit and for every start"},
        {.name = "line_search",
         .accepts = kTable,
         .fallback = "{}",
         .table = "line_search",
-        .meaning = "how far to go along a direction"},
+        .meaning = "step length along a direction"},
        {.name = "linear",
         .accepts = kText,
         .fallback = toml_string(usual.linear),
         .choices = linear_solver_names(),
-        .meaning = "the solver of the linear systems of Newton's method and of the preconditioner `hessian`",
+        .meaning = "linear solver",
         .reason = "chosen by predicted cost"},
        {.name = "definiteness",
         .accepts = kText,
         .fallback = toml_string(usual.definiteness),
         .choices = definiteness_names(),
-        .meaning = "what is done to an indefinite Hessian: refuse it (`exact`), or raise the negative eigenvalues of "
-                   "elements always (`clamped`, or to their `absolute` values), where a direction is of no use "
-                   "(`on_demand`), and there only of elements with large residuals (`progressive`); for `newton` and "
-                   "`newton_cg`",
+        .meaning = "indefinite Hessians of `newton` and `newton_cg`: fail (`exact`); modify negative eigenvalues of "
+                   "all elements always (`clamped`, `absolute` values), only when needed (`on_demand`, the meaning of "
+                   "`auto`), or only at large residuals (`progressive`)",
         .reason = "projects only when it has to"},
        {.name = "mass",
         .accepts = kText,
         .fallback = "\"consistent\"",
         .choices = {"consistent", "lumped"},
-        .meaning = "the mass matrix",
+        .meaning = "mass matrix",
         .reason = "second-order accurate in space, and costs nothing extra in an implicit step"}});
 }
 
 void add_line_search(Schema& s) {
   const LineSearchOptions usual;
   s.sections.push_back({"line_search", "line_search = { ... } in [solver]",
-                        "Backtracking: try alpha_max, then shrink by p until E has decreased enough."});
+                        "Backtracking: try alpha_max, then multiply by p until E has decreased enough."});
   add_keys(s, "line_search",
            {{.name = "alpha_max",
              .accepts = kNumber,
              .fallback = number_text(usual.alpha_max),
              .range = {.min = 0, .max = 1e6, .min_open = true},
-             .meaning = "the first trial",
+             .meaning = "first trial",
              .reason = "the full Newton step"},
             {.name = "c",
              .accepts = kNumber,
@@ -213,14 +196,14 @@ void add_line_search(Schema& s) {
              .accepts = kNumber,
              .fallback = number_text(usual.tolerance),
              .range = {.min = 1e-16, .max = 1, .max_open = true},
-             .meaning = "steps shorter than this are given up as stuck",
+             .meaning = "smallest step; below, the status is `stuck`",
              .reason = "about 33 halvings"},
             {.name = "test",
              .accepts = kText,
              .fallback = "\"textbook\"",
              .choices = decrease_test_names(),
-             .meaning = "`textbook`: E + c alpha g.d (Armijo); `slide`: E + c g.d, as printed in the lecture; `none`: "
-                        "accept the first trial",
+             .meaning = "bound on E: `textbook` E + c alpha g.d (Armijo); `slide` E + c g.d, as printed in the "
+                        "lecture; `none` accepts the first trial",
              .reason = "converges from everywhere"}});
 }
 
@@ -231,28 +214,27 @@ void add_output(Schema& s) {
         s, "output",
         {.name = name, .accepts = kBoolean, .fallback = on ? "true" : "false", .meaning = meaning, .reason = reason});
   };
-  s.sections.push_back({"output", "[output]", "The files of a run."});
+  s.sections.push_back({"output", "[output]", "Files of a run."});
   add_key(s, "output",
           {.name = "every",
            .accepts = kNumber,
            .unit = "s",
            .fallback = number_text(usual.every),
            .range = kNotNegative,
-           .meaning = "simulated time between frames; 0: a frame per step",
+           .meaning = "simulated time between frames; 0: every step",
            .reason = "nothing is lost"});
-  format("vtu", usual.vtu, "VTU frames with a PVD index, for ParaView", "carries all fields");
-  format("obj", usual.obj, "an OBJ file per frame", "large; PC2 holds the same");
-  format("ply", usual.ply, "a PLY file per frame", "large; PC2 holds the same");
-  format("pc2", usual.pc2, "a PC2 cache with its OBJ, for Blender", "small");
-  format("usd", usual.usd, "one time-sampled USD text file", "opens in most 3-D programs");
-  format("report", usual.report, "report.html, one page with playback, plots and certificate, from `aspic run`",
-         "opens in any browser; takes less time than the VTU frames");
+  format("vtu", usual.vtu, "VTU frames for ParaView", "carries all fields");
+  format("obj", usual.obj, "OBJ skin per frame", "large; PC2 holds the same");
+  format("ply", usual.ply, "PLY skin per frame", "large; PC2 holds the same");
+  format("pc2", usual.pc2, "PC2 cache for Blender", "small");
+  format("usd", usual.usd, "USD text file", "opens in most 3-D programs");
+  format("report", usual.report, "report.html", "opens in any browser; takes less time than the VTU frames");
   add_key(s, "output",
           {.name = "precision",
            .accepts = kText,
            .fallback = "\"single\"",
            .choices = {"single", "double"},
-           .meaning = "of velocities, displacements and fields in VTU frames; positions are always double",
+           .meaning = "precision of fields in VTU frames; positions are always double",
            .reason = "half as large"});
   add_key(s, "output",
           {.name = "checkpoint_every",
@@ -281,48 +263,40 @@ void add_material(Schema& s) {
   };
   std::vector<std::string> models;
   for (const MaterialInfo& m : materials()) models.push_back(m.name);
-  s.sections.push_back({"material", "material = { ... } in a [[body]]",
-                        "Elastic constants at small strain, whatever the model does at large strain. Each value is a "
-                        "number, a formula of the centroid (X, Y, Z) of a tet at rest, or a `field` table. Or all "
-                        "of them come from a material that was fitted: `material = { file = \"material.vtu\" }`, see "
-                        "[fitting](fitting.md)."});
+  s.sections.push_back(
+      {"material", "material = { ... } in a [[body]]",
+       "Elastic constants at small strain. Values per tet are a number, a formula of the centroid (X, Y, Z) at rest, "
+       "or a [field](#field); or all come from a fitted material, `{ file = \"material.vtu\" }`."});
   add_key(s, "material",
           {.name = "model",
            .accepts = kText,
            .fallback = "\"neo_hookean\"",
            .choices = models,
-           .meaning = "the energy density; `aspic materials` prints each formula",
+           .meaning = "strain energy density; `aspic materials` prints the formulas",
            .reason = "stays finite when elements are turned inside out"});
-  field("density", "kg/m^3", "1000.0", kPositive, "mass per volume at rest", "water and soft tissue", false);
+  field("density", "kg/m^3", "1000.0", kPositive, "density at rest", "water and soft tissue", false);
   field("young", "Pa", "1e5", kPositive, "Young's modulus E", "soft silicone rubber", false);
   field("poisson", "", "0.3", {.min = -1, .max = 0.5, .min_open = true, .max_open = true}, "Poisson's ratio nu",
         "linear tets lock above 0.45", false);
-  field("lambda", "Pa", "", {}, "first Lame constant; above -2/3 mu", "", true);
-  field("mu", "Pa", "", kPositive, "second Lame constant, the shear modulus", "", true);
+  field("lambda", "Pa", "", {}, "first Lame constant, > -2/3 mu", "", true);
+  field("mu", "Pa", "", kPositive, "second Lame constant", "", true);
   field("shear", "Pa", "", kPositive, "shear modulus", "", true);
   field("bulk", "Pa", "", kPositive, "bulk modulus", "", true);
-  add_key(
-      s, "material",
-      {.name = "file",
-       .accepts = kText,
-       .required = true,
-       .meaning = "a material as `aspic fit` writes it: a VTU with tets, the field of the file `model NAME` and the "
-                  "cell fields `young`, `poisson`, the model's own and, where it is known, `density`. Each tet "
-                  "takes the values of the tet of the file in which its centroid lies, or of the nearest; the "
-                  "meshes need not be the same. A `density` given beside it replaces the file's"});
+  add_key(s, "material",
+          {.name = "file",
+           .accepts = kText,
+           .required = true,
+           .meaning = "material of `aspic fit` ([format](formats.md#materials)); each tet takes the values at its "
+                      "centroid. A `density` given here replaces the file's"});
   add_key(s, "material",
           {.name = "frame",
            .accepts = kText,
            .fallback = "\"mesh\"",
            .choices = {"mesh", "scaled", "placed"},
-           .meaning = "coordinates of the body in which the file's mesh lies: `mesh` those of its own mesh file, so "
-                      "that the material follows the body however it is placed; `scaled` after `scale`, for a mesh "
-                      "in millimetres and a material in metres; `placed` after rotate and translate, too",
+           .meaning = "coordinates of the file: `mesh` those of the body's mesh file; `scaled` after `scale`; `placed` "
+                      "after rotate and translate as well",
            .reason = "the material was fitted on the mesh of the body"});
-  add_key(s, "material",
-          {.name = "hash",
-           .accepts = kText,
-           .meaning = "of the material's file; written into resolved scenes and then checked"});
+  add_key(s, "material", {.name = "hash", .accepts = kText, .meaning = "hash of the file, in resolved scenes"});
   std::set<std::string> known;
   for (const MaterialInfo& m : materials())
     for (const ExtraParameter& e : m.extra)
@@ -337,21 +311,13 @@ void add_material(Schema& s) {
   s.alternatives.push_back(
       {"material", {{"young", "poisson"}, {"lambda", "mu"}, {"shear", "bulk"}, {"file", "frame", "hash"}}, false});
 
-  s.sections.push_back({"field", "in place of a number of a material", "A value per tet from a table or a file."});
+  s.sections.push_back({"field", "in place of a number of a material", "Values per tet from a table or a file."});
   add_key(s, "field",
-          {.name = "regions",
-           .accepts = kAnyTable,
-           .meaning = "a number for each region label of the mesh: { 1 = 1e5, 2 = 3e5 }"});
+          {.name = "regions", .accepts = kAnyTable, .meaning = "a number per region label: { 1 = 1e5, 2 = 3e5 }"});
   add_key(s, "field",
-          {.name = "file",
-           .accepts = kText,
-           .required = true,
-           .meaning = "a CSV file with one number per tet, or a VTU file"});
-  add_key(s, "field", {.name = "name", .accepts = kText, .meaning = "the cell field of a VTU file"});
-  add_key(s, "field",
-          {.name = "hash",
-           .accepts = kText,
-           .meaning = "of the file's contents; written into resolved scenes and then checked"});
+          {.name = "file", .accepts = kText, .required = true, .meaning = "CSV with one number per tet, or VTU"});
+  add_key(s, "field", {.name = "name", .accepts = kText, .meaning = "cell field of the VTU"});
+  add_key(s, "field", {.name = "hash", .accepts = kText, .meaning = "hash of the file, in resolved scenes"});
   s.alternatives.push_back({"field", {{"regions"}, {"file", "name", "hash"}}, true});
 }
 
