@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { AskedDepths } from "../inverse/capture/askedDepths";
+import { AskedDepths } from "../src/capture/askedDepths";
 
 test("notches go on from what was asked for, however late the program tells it", () => {
   const asked = new AskedDepths();

@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { ForceCurve, pushOf } from "../inverse/capture/curve";
-import { angleOf, fullScale } from "../inverse/capture/dial";
-import { errorText, fitText } from "../inverse/capture/fitForm";
+import { ForceCurve, pushOf } from "../src/capture/curve";
+import { angleOf, fullScale } from "../src/capture/dial";
+import { errorText, fitText } from "../src/capture/fitForm";
 import type { CaptureFit, ProbeState, Vec3 } from "../src/protocol";
 import type { Lens } from "../src/view/lens";
 import { markersOn, nearestOn } from "../src/view/markers";

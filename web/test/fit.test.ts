@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { gzipSync } from "node:zlib";
 import type { Vec3 } from "../src/protocol";
-import { bodyBelow, boundaryOf, section, type Soup, type TetMesh } from "../inverse/fit/cut";
+import { bodyBelow, boundaryOf, section, type Soup, type TetMesh } from "../src/fit/cut";
 import {
   closeness,
   depthOf,
@@ -19,7 +19,7 @@ import {
   type Case,
   type Fit,
   type FitHead,
-} from "../inverse/fit/data";
+} from "../src/fit/data";
 
 // A unit cube of n^3 cells, six tets each around the diagonal.
 function cube(n: number): TetMesh {
