@@ -18,7 +18,7 @@ for line in (ROOT / "docs" / "lecture_to_code.md").read_text().splitlines():
             errors.append(f"page {row[1]}: there is no file {file}")
         errors += [f"page {row[1]}: {file} has no {name}" for name in re.findall(r"`(\w+)`", names)
                    if text and not re.search(rf"\b{name}\b", text)]
-    for file in re.findall(r"(?:scenes|src|apps|docs)/[\w/.]+\w", row[3] + row[4]):
+    for file in re.findall(r"(?:scenes|src|inverse|verification|apps|docs)/[\w/.]+\w", row[3] + row[4]):
         if not (ROOT / file).exists():
             errors.append(f"page {row[1]}: there is no {file}")
     for page in re.findall(r"aspic lecture (\d+)", row[4]):

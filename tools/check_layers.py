@@ -14,10 +14,10 @@ MODULES = {  # module: the modules it may include
     "energy": "base math mesh linalg material",
     "optimize": "base math linalg",
     "dynamics": "base math mesh linalg material energy optimize",
-    "verify": "base math mesh linalg material energy optimize dynamics",
     "fit": "base math mesh linalg material energy optimize dynamics",
     "scene": "base math mesh io linalg material energy optimize dynamics",
     "capture": "base math mesh io linalg material energy optimize dynamics fit scene",
+    "verification": "base math mesh linalg material energy optimize dynamics",
 }
 LIBRARIES = {  # first part of a third-party header: the files that may include it
     "Eigen": r"src/linalg/.*\.cpp|bench/naive.*|.*_test\.(cpp|h)",
@@ -41,10 +41,11 @@ LIBRARIES = {  # first part of a third-party header: the files that may include 
 
 root = pathlib.Path(__file__).resolve().parent.parent
 violations = []
-folders = [root / name for name in ("src", "apps", "bench", "tests")]
+folders = [root / name for name in ("src", "inverse", "verification", "apps", "bench", "tests")]
 for path in sorted(p for folder in folders for p in folder.rglob("*") if p.suffix in (".h", ".cpp")):
     name = path.relative_to(root).as_posix()
-    module = name.split("/")[1] if name.startswith("src/") else None
+    module = name.removeprefix("src/").removeprefix("inverse/").split("/")[0]
+    module = module if module in MODULES else None
     is_test = name.endswith(("_test.cpp", "_test.h"))
     for number, line in enumerate(path.read_text().splitlines(), 1):
         ours = re.match(r'#include "(\w+)/', line)

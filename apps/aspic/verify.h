@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "verify/check.h"
+#include "verification/check.h"
 
 namespace aspic::cli {
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kDeepest = 20;           // the smallest part is h / 2^20
 constexpr int kTicks = 1 << kDeepest;  // per step
-constexpr double kGrowthSafety = 0.5;  // of the error that twice the length is predicted to have
+constexpr double kGrowthSafety = 0.5;  // largest predicted error, relative to the tolerance, of twice the length
 
 double diagonal(const TetMesh& mesh, const BodyRange& body) {
   double squared = 0;
@@ -58,7 +58,7 @@ bool AdaptiveStep::take(Integrator& integrator, const StepTools& tools, Part& pa
 }
 
 AdaptiveStep::Verdict AdaptiveStep::attempt(Integrator& integrator, const StepTools& whole, int first, int size) {
-  // Explicit schemes, which no observer can stop, take many parts in silence.
+  // Substeps of explicit schemes do not poll the token themselves.
   if (whole.options.stop.requested()) return failure_ = Status::interrupted, Verdict::interrupted;
   const int half = size / 2;
   const State *before = has_previous_ ? &previous_ : nullptr, *now = remembers_ ? &now_ : nullptr;
@@ -68,7 +68,7 @@ AdaptiveStep::Verdict AdaptiveStep::attempt(Integrator& integrator, const StepTo
   knows_whole_ = false;
   if (!take(integrator, tools_of_part(whole, now_, before, first, half), first_)) return unsuccessful();
   const bool taken = take(integrator, tools_of_part(whole, first_.end, now, first + half, half), second_);
-  knows_whole_ = true;  // should the attempt be rejected
+  knows_whole_ = true;  // if the attempt is rejected
   if (!taken) return std::swap(whole_, first_), unsuccessful();
 
   const double h = whole.h * size / kTicks;
@@ -133,11 +133,13 @@ StepSolve AdaptiveStep::advance(Integrator& integrator, const StepTools& whole, 
   for (int done = 0; done < kTicks;) {
     const int size = kTicks >> level_;
     const Verdict verdict = attempt(integrator, whole, done, size);
-    if (verdict == Verdict::interrupted) level_ = first_level;  // the step is going to be taken again, the same way
+    if (verdict == Verdict::interrupted) level_ = first_level;  // the step will be repeated in the same way
     if (verdict == Verdict::accepted) {
       keep(integrator, whole, ledger, done, size, report);
       done += size;
-      const double predicted = error_ * std::pow(2, integrator.facts().order);  // of twice the length, in its share
+      const double predicted =
+          error_ *
+          std::pow(2, integrator.facts().order);  // error of twice the length, relative to its share of the tolerance
       if (level_ > 0 && done % (2 * size) == 0 && predicted <= kGrowthSafety) --level_;
       continue;
     }

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "dynamics/models_test.h"
-#include "verify/oscillator.h"
+#include "verification/oscillator.h"
 
 namespace aspic {
 namespace {
@@ -49,7 +49,7 @@ TEST(AdaptiveStep, MeetsItsToleranceWithEveryScheme) {
   }
 }
 
-TEST(AdaptiveStep, TakesPartsInNumbersThatItsOrderPredicts) {
+TEST(AdaptiveStep, SubstepCountFollowsOrder) {
   // The error of a whole step goes with (length of its parts)^order.
   for (const auto& [integrator, order] : {std::pair{"forward_euler", 1}, {"midpoint", 2}, {"rk4", 4}}) {
     const double factor = order == 4 ? 1e-6 : 1e-2;
@@ -61,7 +61,7 @@ TEST(AdaptiveStep, TakesPartsInNumbersThatItsOrderPredicts) {
   }
 }
 
-TEST(AdaptiveStep, GrowsAgainWhereTheMotionIsCalm) {
+TEST(AdaptiveStep, SubstepsGrowInCalmMotion) {
   // The target jerks once, at t = 1 s, for about 0.05 s; the rest is a slow swing.
   const auto jerk = [](double t) { return 20 * std::exp(-std::pow((t - 1) / 0.03, 2)); };
   for (const auto& [integrator, tolerance] : {std::pair{"backward_euler", 1e-3}, {"tr_bdf2", 1e-4}, {"rk4", 1e-7}}) {
@@ -81,7 +81,7 @@ TEST(AdaptiveStep, GrowsAgainWhereTheMotionIsCalm) {
   }
 }
 
-TEST(AdaptiveStep, OfAnExplicitSchemeSurvivesStepsFarAboveTheStableOne) {
+TEST(AdaptiveStep, ExplicitSchemeSurvivesLongSteps) {
   for (const char* integrator : {"symplectic_euler", "rk4"}) {
     const SimulationOptions options{.h = 0.05, .integrator = integrator, .adaptive = {1e-3}, .solver = {}};
     Simulation simulation = simulate(beam(2, {.material = "neo_hookean_log"}), options);
@@ -99,7 +99,7 @@ TEST(AdaptiveStep, OfAnExplicitSchemeSurvivesStepsFarAboveTheStableOne) {
   }
 }
 
-TEST(AdaptiveStep, ThatCannotMeetItsToleranceSaysSoAndLeavesTheBodyAlone) {
+TEST(AdaptiveStep, UnreachableToleranceKeepsState) {
   Simulation simulation = oscillator({.h = 0.1, .integrator = "forward_euler", .adaptive = {1e-15}, .solver = {}});
   const State before = simulation.state();
   const StepReport report = simulation.step();
@@ -110,7 +110,7 @@ TEST(AdaptiveStep, ThatCannotMeetItsToleranceSaysSoAndLeavesTheBodyAlone) {
   EXPECT_EQ(simulation.state().time, 0.1);
 }
 
-TEST(AdaptiveStep, ReportsTheStatusOfItsSmallestPartWhenThatFails) {
+TEST(AdaptiveStep, ReportsStatusOfFailedSubstep) {
   for (const char* integrator : {"rk4", "tr_bdf2"}) {
     Simulation simulation = oscillator({.h = 0.1, .integrator = integrator, .adaptive = {1e-3}, .solver = {}},
                                        {.offset = [](double t) { return t > 0 ? NAN : 0.0; }});
@@ -121,7 +121,7 @@ TEST(AdaptiveStep, ReportsTheStatusOfItsSmallestPartWhenThatFails) {
   }
 }
 
-TEST(AdaptiveStep, OfAnExplicitSchemeIsInterruptedBetweenItsParts) {
+TEST(AdaptiveStep, InterruptsExplicitSchemeBetweenSubsteps) {
   const SimulationOptions options{.h = 0.1, .integrator = "rk4", .adaptive = {1e-9}, .solver = {}};
   Simulation disturbed = oscillator(options), undisturbed = oscillator(options);
   int asked = 0;
@@ -134,7 +134,7 @@ TEST(AdaptiveStep, OfAnExplicitSchemeIsInterruptedBetweenItsParts) {
   EXPECT_EQ(disturbed.state().q, undisturbed.state().q) << "the step taken again is another";
 }
 
-TEST(AdaptiveStep, InterruptedStartsOverFromTheSameState) {
+TEST(AdaptiveStep, RestartsInterruptedStepFromSameState) {
   const SimulationOptions options{.integrator = "tr_bdf2", .adaptive = {1e-5}, .solver = {}};
   Simulation smooth = simulate(damped_beam_with_moving_pins_and_targets(), options);
   Simulation disturbed = simulate(damped_beam_with_moving_pins_and_targets(), options);
@@ -151,7 +151,7 @@ TEST(AdaptiveStep, InterruptedStartsOverFromTheSameState) {
   }
 }
 
-TEST(AdaptiveStep, FollowsPinsThatMoveWithEveryScheme) {
+TEST(AdaptiveStep, FollowsMovingPinsWithEveryScheme) {
   for (const std::string& integrator : adaptive_integrator_names()) {
     Simulation simulation = simulate(
         damped_beam_with_moving_pins_and_targets(),

@@ -27,7 +27,7 @@ void expect_steady_steps_to_allocate_only_their_report(const SimulationOptions& 
   }
 }
 
-TEST(Allocations, ASteadyStepMakesNoneWithAnyLinearSolverAndNumberOfThreads) {
+TEST(Allocations, NoneInSteadyStepsOfLinearSolvers) {
   const int before = thread_count();
   for (const int threads : {1, 2, 8})
     for (const std::string& linear : linear_solver_names()) {
@@ -37,14 +37,14 @@ TEST(Allocations, ASteadyStepMakesNoneWithAnyLinearSolverAndNumberOfThreads) {
   set_thread_count(before);
 }
 
-TEST(Allocations, ASteadyStepMakesNoneWithAnyIntegrator) {
+TEST(Allocations, NoneInSteadyStepsOfIntegrators) {
   for (const std::string& integrator : integrator_names()) {
     expect_steady_steps_to_allocate_only_their_report(
         {.h = is_explicit(integrator) ? 5e-5 : 0.01, .integrator = integrator, .solver = {}});
   }
 }
 
-TEST(Allocations, PinsThatBeginToMoveMakeNone) {
+TEST(Allocations, NoneWhenPinsStartToMove) {
   Model model = damped_beam_with_moving_pins_and_targets(4);
   model.pins.back().motion = [](const Vec3d& X, double t) { return X + Vec3d{{0, std::max(0.0, t - 0.035), 0}}; };
   Simulation simulation = simulate(std::move(model), {.solver = {}});  // h = 0.01
@@ -55,7 +55,7 @@ TEST(Allocations, PinsThatBeginToMoveMakeNone) {
   }
 }
 
-TEST(Allocations, ASteadyStepMakesNoneByAnyMethod) {
+TEST(Allocations, NoneInSteadyStepsOfMethods) {
   for (const std::string& method : minimizer_names())
     for (const std::string& preconditioner : preconditioner_names())
       for (const std::string& definiteness : definiteness_names()) {
@@ -67,7 +67,7 @@ TEST(Allocations, ASteadyStepMakesNoneByAnyMethod) {
       }
 }
 
-TEST(Allocations, ASteadyStepMakesNoneWithFallbacks) {
+TEST(Allocations, NoneInSteadyStepsWithFallbacks) {
   SimulationOptions options{.solver = {.method = "newton", .fallback = {"lbfgs", "gradient_descent"}}};
   options.solver.minimize.max_iterations = 5;
   expect_steady_steps_to_allocate_only_their_report(options);

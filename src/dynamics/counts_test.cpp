@@ -8,7 +8,7 @@ namespace {
 
 using namespace testing_models;
 
-TEST(Counts, AStepOfNewtonsMethodEvaluatesNothingTwice) {
+TEST(Counts, NewtonEvaluatesNothingTwice) {
   Simulation simulation = simulate(beam(3, {.young = 1e5}));
   for (int i = 0; i < 5; ++i) {
     const StepReport report = simulation.step();
@@ -26,7 +26,7 @@ TEST(Counts, AStepOfNewtonsMethodEvaluatesNothingTwice) {
   }
 }
 
-TEST(Counts, OfAResumedRunAreThoseOfTheWholeOne) {
+TEST(Counts, ResumedRunEqualsWholeRun) {
   Simulation whole = simulate(beam(2));
   whole.step();
   const Simulation::Snapshot snapshot = whole.snapshot();
@@ -40,7 +40,7 @@ TEST(Counts, OfAResumedRunAreThoseOfTheWholeOne) {
   EXPECT_EQ(report.products, expected.products);
 }
 
-TEST(Counts, AnObserverThatEvaluatesIsNotCounted) {
+TEST(Counts, EvaluationsOfObserversDoNotCount) {
   Simulation alone = simulate(beam(2)), watched = simulate(beam(2));
   for (int i = 0; i < 3; ++i) {
     const StepReport expected = alone.step();
@@ -56,7 +56,7 @@ TEST(Counts, AnObserverThatEvaluatesIsNotCounted) {
   }
 }
 
-TEST(Counts, AnExplicitStepEvaluatesForcesOncePerStage) {
+TEST(Counts, ExplicitStepEvaluatesForcesOncePerStage) {
   for (const auto& [integrator, stages] : {std::pair{"symplectic_euler", 1}, std::pair{"rk4", 4}}) {
     Simulation simulation = simulate(beam(2), {.h = 1e-4, .integrator = integrator, .solver = {}});
     simulation.step();
@@ -67,7 +67,7 @@ TEST(Counts, AnExplicitStepEvaluatesForcesOncePerStage) {
   }
 }
 
-TEST(Counts, ProductsWithTheMatrixAreThoseOfTheLinearSolves) {
+TEST(Counts, MatrixProductsEqualThoseOfSolves) {
   const auto step = [](const std::string& linear) {
     return simulate(beam(3), {.solver = {.linear = linear, .minimize = {}}}).step();
   };

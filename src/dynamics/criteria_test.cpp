@@ -49,7 +49,7 @@ const std::vector<double>& minimiser() {
 }
 
 // The step along the last direction is taken, so what is left is smaller still.
-TEST(Criteria, AVelocityBoundsTheErrorOfTheVelocity) {
+TEST(Criteria, VelocityBoundsVelocityError) {
   const double h = 0.01;
   for (const double tolerance : {1e-2, 1e-4}) {  // [m/s]
     const Solved solved = third_step(Criterion::velocity, tolerance);
@@ -58,7 +58,7 @@ TEST(Criteria, AVelocityBoundsTheErrorOfTheVelocity) {
   }
 }
 
-TEST(Criteria, AnAccelerationBoundsTheErrorOfTheAcceleration) {
+TEST(Criteria, AccelerationBoundsAccelerationError) {
   const double h = 0.01;
   for (const double tolerance : {1.0, 1e-2}) {  // [m/s^2]
     const Solved solved = third_step(Criterion::acceleration, tolerance);
@@ -67,14 +67,14 @@ TEST(Criteria, AnAccelerationBoundsTheErrorOfTheAcceleration) {
   }
 }
 
-TEST(Criteria, ATighterOneTakesMoreIterations) {
+TEST(Criteria, TighterToleranceTakesMoreIterations) {
   for (const Criterion criterion : {Criterion::velocity, Criterion::acceleration, Criterion::decrement})
     EXPECT_LT(third_step(criterion, 1e3).report.iterations, third_step(criterion, 1e-9).report.iterations)
         << to_string(criterion);
 }
 
 // Lengths in another unit, with stresses and forces that fit: the same motion to scale.
-TEST(Criteria, ThoseWithoutAUnitTakeTheSameIterationsInEveryUnit) {
+TEST(Criteria, RelativeCriteriaAreIndependentOfUnits) {
   for (const Criterion criterion : {Criterion::scale, Criterion::first_gradient, Criterion::decrement}) {
     const int iterations = third_step(criterion, 1e-7).report.iterations;
     for (const double unit : {1e-3, 1e2}) {
@@ -83,7 +83,7 @@ TEST(Criteria, ThoseWithoutAUnitTakeTheSameIterationsInEveryUnit) {
   }
 }
 
-TEST(Criteria, AnAbsoluteOneIsInNewtons) {
+TEST(Criteria, AbsoluteCriterionIsInNewtons) {
   const Solved solved = third_step(Criterion::absolute, 1e-3);
   EXPECT_EQ(solved.report.status, Status::converged);
   EXPECT_DOUBLE_EQ(solved.report.residual_threshold, 1e-3);
@@ -91,7 +91,7 @@ TEST(Criteria, AnAbsoluteOneIsInNewtons) {
   EXPECT_GT(solved.report.residual, 1e-11);  // no more than was asked for
 }
 
-TEST(Criteria, ThoseThatJudgeDirectionsNeedDirectionsThatEstimateTheMinimiser) {
+TEST(Criteria, DirectionCriteriaNeedEstimatesOfTheMinimizer) {
   for (const Criterion criterion : {Criterion::velocity, Criterion::acceleration, Criterion::decrement}) {
     SimulationOptions options;
     options.solver.method = "gradient_descent";
@@ -135,7 +135,7 @@ std::vector<double> last_box(const std::vector<Box>& boxes, const SimulationOpti
   return {q.end() - static_cast<std::ptrdiff_t>(q.size() / boxes.size()), q.end()};
 }
 
-TEST(Criteria, ASmallBodyMovesAsItDoesAlone) {
+TEST(Criteria, SmallBodyMovesAsAlone) {
   std::mt19937 random(7);
   for (int scene = 0; scene < 12; ++scene) {
     const double size = std::pow(10, -1 - 3 * std::uniform_real_distribution(0.0, 1.0)(random));
@@ -153,7 +153,7 @@ TEST(Criteria, ASmallBodyMovesAsItDoesAlone) {
   }
 }
 
-TEST(Criteria, TheWorstVertexIsThatOfTheWorstBody) {
+TEST(Criteria, WorstVertexIsInWorstBody) {
   SimulationOptions options;
   options.solver.minimize.max_iterations = 1;
   Model model = hanging_boxes({{1, {}}, {1e-3, {{0.5, 1.5, 0.5}}}});
@@ -167,7 +167,7 @@ TEST(Criteria, TheWorstVertexIsThatOfTheWorstBody) {
   EXPECT_GE(simulation.step().worst_vertex, half);
 }
 
-TEST(Criteria, ASoftRegionOfAStiffBodyConverges) {
+TEST(Criteria, SoftRegionOfStiffBodyConverges) {
   const auto hung = [](double stiff) {  // the left half is stiff, the right half soft
     const TetMesh mesh = make_box({}, {{0.4, 0.1, 0.1}}, {8, 2, 2});
     std::vector<MaterialParameters> parameters;
@@ -207,7 +207,7 @@ TetMesh block_with_finger() {
   return mesh;
 }
 
-TEST(Criteria, AFingerOnALargeBlockMoves) {
+TEST(Criteria, FingerOnLargeBlockMoves) {
   const auto moved = [](double tolerance) {  // the finger's vertices, from the corner of the block
     Model model = make_model(block_with_finger(), {.material = "neo_hookean_log", .young = 1e4});
     const int count = model.mesh.vertex_count();
@@ -227,7 +227,7 @@ TEST(Criteria, AFingerOnALargeBlockMoves) {
 }
 
 // A body whose weight is less than the round-off of its elastic forces.
-TEST(Criteria, ForcesHiddenByRoundOffAreNamed) {
+TEST(Criteria, ReportsForcesHiddenByRoundOff) {
   const TetMesh mesh = make_box({}, {{0.1, 0.1, 0.1}}, {2, 2, 2});
   Model model = make_model(mesh, {.material = "neo_hookean", .young = 1e19, .poisson = 0.3});
   SimulationOptions options;
@@ -238,7 +238,7 @@ TEST(Criteria, ForcesHiddenByRoundOffAreNamed) {
   EXPECT_GT(report.lost_accuracy, 0);
 }
 
-TEST(Criteria, VelocitiesLostInTinyStepsAreNamed) {
+TEST(Criteria, ReportsVelocitiesLostInTinySteps) {
   const TetMesh mesh = make_box({}, {{1, 0.2, 0.2}}, {4, 1, 1});
   for (const double h : {1e-17, 1e-3}) {
     Model model = make_model(mesh, {});

@@ -8,7 +8,7 @@
 namespace aspic {
 namespace {
 
-// Sums of a million terms of one size, rounded at random, err by a thousand units in the last place.
+// A sum of a million terms of equal size with random rounding errors is off by a thousand units in the last place.
 constexpr double kSumRoundOff = 1e-12;
 
 }  // namespace

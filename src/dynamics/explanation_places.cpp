@@ -10,7 +10,7 @@
 namespace aspic::places {
 namespace {
 
-// "vertex 12", "vertex 12 of body 'arm'": by the numbers of the body's own mesh. `index` is the user's.
+// "vertex 12", "vertex 12 of body 'arm'": in the numbering of the body's mesh. `index` is the user's number.
 std::string named(const Model& model, const char* kind, int index, int BodyRange::*first, int BodyRange::*count) {
   for (const BodyRange& body : model.bodies) {
     const int own = index - body.*first;

@@ -39,8 +39,8 @@ class ExplicitEuler : public Integrator {
   virtual void update(double h, std::span<const double> acceleration, State& state) const = 0;
 
  private:
-  // The velocities with which pinned vertices arrive where they are prescribed: that of this step, or ahead of it that
-  // of the next, in a scheme that moves with the old one.
+  // Velocities with which pinned vertices reach their prescribed positions: those of this step, or those of the next
+  // step if the scheme moves with old velocities.
   void set_pin_acceleration(const StepTools& tools, State& state) {
     const double h = tools.h;
     const auto place_velocity = [&](double from, double to) {

@@ -23,7 +23,7 @@ class BackwardEuler : public Integrator {
     const StageOptions options{.beta = tools.h,
                                .time = tools.end_time,
                                .ahead = tools.h,
-                               .tries_last_increment = false,  // it is the extrapolated one
+                               .tries_last_increment = false,  // equal to the extrapolated guess
                                .once = facts().takes_one_iteration};
     stage_.solve(tools, nullptr, options, end.q, end.qdot, acceleration_, solve, forces);
     end.time = tools.end_time;
@@ -36,8 +36,8 @@ class BackwardEuler : public Integrator {
 };
 
 // q* = a + beta v*,  v* = b + beta acc(q*, v*) with a = (4 q_n - q_(n-1)) / 3, b = (4 v_n - v_(n-1)) / 3, beta = 2h/3
-// [Hairer 1996, section V.1]. The first step, which has no past, is one of TR-BDF2: of the same order, as
-// quick to damp what is stiff, and like BDF2 exact for a constant acceleration.
+// [Hairer 1996, section V.1]. The first step is one of TR-BDF2, which has the same order, is also L-stable and is exact
+// for constant acceleration, as BDF2 is.
 class Bdf2 : public Integrator {
  public:
   Bdf2() : Integrator({.name = "bdf2", .order = 2, .is_multistep = true, .ends_beyond_minimum = true}) {}

@@ -22,8 +22,8 @@ void note_end(const IncrementalPotential& E, const MinimizeReport& report, StepS
 
 }  // namespace
 
-// Pinned vertices: with x'' known, q~ = x(t*) - beta^2 x'' makes their inertia M_fp x'' on the free ones, and
-// a = x(t*) - beta x' their part in damping.
+// With x'' of the pinned vertices known, q~ = x(t*) - beta^2 x'' adds their inertia M_fp x'' to the free vertices, and
+// a = x(t*) - beta x' their contribution to damping.
 void ImplicitStage::predict(const StepTools& tools, const PinPath* path, const StageOptions& options) {
   const double beta = options.beta;
   predicted_.resize(a.size());
@@ -31,7 +31,7 @@ void ImplicitStage::predict(const StepTools& tools, const PinPath* path, const S
     for (size_t i = 0; i < a.size(); ++i) predicted_[i] = a[i] + beta * b[i];
     return;
   }
-  // For what is held of the vertices a, b and predicted_ receive x, x' and x'' first.
+  // In the pinned directions, a, b and predicted_ first receive x, x' and x''.
   tools.pins.place(options.time, a);
   path->place_velocity(options.time, b);
   std::fill(predicted_.begin(), predicted_.end(), 0.0);
@@ -58,7 +58,7 @@ MinimizeReport ImplicitStage::minimize(const StepTools& tools, const StageOption
     tools.pins.place(options.time, q_);
     solve.guess = InitialGuess::current;
     MinimizeReport report = tools.minimizer.minimize(tools.E, tools.direction, q_, minimize, tools.observe);
-    // The scheme asks for one iteration, not for a small gradient; what is left over stays in the report.
+    // The scheme takes one iteration, whatever the gradient is; the residual is in the report.
     if (report.status == Status::iteration_limit) report.status = Status::converged;
     note_end(tools.E, report, solve);
     return report;
@@ -92,7 +92,7 @@ bool ImplicitStage::solve(const StepTools& tools, const PinPath* path, const Sta
   std::copy(q_.begin(), q_.end(), q.begin());
   for (size_t i = 0; i < q.size(); ++i) v[i] = (q[i] - a[i]) / beta;
   for (size_t i = 0; i < q.size(); ++i) acc[i] = (v[i] - b[i]) / beta;
-  if (path) {  // free of the round-off of the two differences
+  if (path) {  // avoids the round-off of the two differences
     path->place_velocity(options.time, v);
     path->place_acceleration(options.time, acc);
   }

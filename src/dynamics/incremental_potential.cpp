@@ -14,11 +14,11 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// A body at rest has no forces to measure against; those of this strain then serve. Far above round-off, and far below
-// what the default tolerance can see.
+// Strain whose forces are the smallest characteristic force, for bodies at rest. Far above round-off and far below the
+// default tolerance.
 constexpr double kLeastStrain = 1e-9;
 
-// Regions of one body are judged apart where their moduli times the lengths of their edges differ by more than this
+// Regions of one body are tested separately if their moduli times the lengths of their edges differ by more than this
 // factor. At the default tolerance of 1e-6 a region that is softer by less is resolved to 1e-4 of its own forces, and
 // one whose tets are smaller by less to 1e-2, since forces grow with areas.
 constexpr double kSoft = 100;
@@ -50,7 +50,7 @@ std::vector<double> unit_stiffness(const TetMesh& mesh) {
   return stiffness;
 }
 
-// Per vertex: the longest edge of its tets [m]. Unlike volumes, it does not take slivers for small tets.
+// Per vertex: the longest edge of its tets [m]. Unlike the volume, it does not underestimate the size of slivers.
 std::vector<double> longest_edge(const TetMesh& mesh) {
   std::vector<double> longest(mesh.vertex_count(), 0.0);
   for (const Tet& tet : mesh.tets) {
@@ -194,7 +194,7 @@ const BlockSparse& IncrementalPotential::evaluate_hessian(std::span<const double
   return H_;
 }
 
-// Positions are known to eps |q|, so forces are to eps |q| times the stiffness that a vertex feels.
+// Positions have errors of eps |q|, so forces have errors of eps |q| times the stiffness at a vertex.
 double IncrementalPotential::gradient_round_off_at(std::span<const double> q) {
   const double stiffness = parallel_sum(pattern_.rows(), [&](int first, int last) {
     double sum = 0, size = 0;
@@ -237,7 +237,7 @@ void IncrementalPotential::add_part_noise(std::span<const double> q, double weig
   }
 }
 
-// In the order of the vertices, so that the number of threads changes no bit.
+// Sums in the order of the vertices, so that the result does not depend on the number of threads.
 void IncrementalPotential::add_part_norms(std::span<const double> v, bool is_exact) {
   if (parts_.empty()) return;
   for (Part& part : parts_) part.sum = 0;
@@ -256,7 +256,7 @@ void IncrementalPotential::measure_parts(std::span<const double> g, std::span<Gr
 }
 
 double IncrementalPotential::lost_accuracy(std::span<const double> q, std::span<const GradientPart> parts) {
-  constexpr double kNoise = 16 * kEpsilon;  // of inertia, by positions
+  constexpr double kNoise = 16 * kEpsilon;  // rounding error of inertia, from positions
   double size = 0, lost = 0;
   for (const double qi : q) size = std::max(size, std::abs(qi));
   for (size_t k = 0; k < parts.size(); ++k) {
@@ -272,7 +272,7 @@ double IncrementalPotential::relative_decrement(std::span<const double> g, std::
   if (parts_.empty()) return whole_.relative_decrement(g, d);
   for (Part& part : parts_) part.sum = 0;
   for (int i = 0; i < pattern_.rows(); ++i) parts_[part_of_[i]].sum += aspic::dot(point(g, i), point(d, i));
-  double largest = 0;  // coupled parts may gain from each other's decrease
+  double largest = 0;  // the decrease of coupled parts may be shared
   for (const Part& part : parts_) {
     const double scale = inertia_ * part.growth_inertia + factor_ * part.growth_stiffness;
     if (scale > 0) largest = std::max(largest, std::abs(part.sum) / 2 / scale);

@@ -35,7 +35,7 @@ namespace {
 constexpr InitialGuess kChoices[] = {InitialGuess::best,           InitialGuess::zero,
                                      InitialGuess::current,        InitialGuess::extrapolated,
                                      InitialGuess::last_increment, InitialGuess::accelerated};
-// In the order in which `best` tries them after `current`.
+// The candidates of `best` after `current`, in order.
 constexpr InitialGuess kAhead[] = {InitialGuess::extrapolated, InitialGuess::last_increment, InitialGuess::accelerated};
 
 }  // namespace
@@ -94,7 +94,7 @@ Guess Guesser::guess(const StepTools& tools, InitialGuess wanted, const GuessCon
     if (!propose(tools, candidate, known)) continue;
     const Evaluation value = tools.E.evaluate(trial_);
     ++work.values;
-    // A body at rest flies nowhere; the comparison fails for NaN.
+    // Skips a body at rest. The comparison is false for NaN.
     if (!(candidate == InitialGuess::extrapolated ? value.value <= best.value.value : value.value < best.value.value))
       continue;
     std::copy(trial_.begin(), trial_.end(), q.begin());

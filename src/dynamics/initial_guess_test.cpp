@@ -15,7 +15,7 @@ SimulationOptions with_guess(const std::string& guess, const std::string& integr
   return {.integrator = integrator, .initial_guess = guess, .solver = {}};
 }
 
-TEST(InitialGuess, EveryOneLeadsToTheSameMotion) {
+TEST(InitialGuess, AllLeadToSameMotion) {
   for (const char* integrator : {"backward_euler", "bdf2", "tr_bdf2", "midpoint"}) {
     std::vector<std::vector<double>> ends;
     for (const std::string& guess : initial_guess_names()) {
@@ -44,7 +44,7 @@ Simulation flying_box(const std::string& guess) {
   return Simulation(std::move(model), std::move(start), with_guess(guess));
 }
 
-TEST(InitialGuess, OfAFlightWithoutForcesIsItsEndWhenExtrapolated) {
+TEST(InitialGuess, ExtrapolatedIsExactWithoutForces) {
   for (const auto& [guess, iterations] : {std::pair{"extrapolated", 0}, {"best", 0}, {"current", 1}, {"zero", 1}}) {
     Simulation simulation = flying_box(guess);
     for (int i = 0; i < 3; ++i) EXPECT_EQ(simulation.step().iterations, iterations) << guess;
@@ -54,7 +54,7 @@ TEST(InitialGuess, OfAFlightWithoutForcesIsItsEndWhenExtrapolated) {
   EXPECT_EQ(simulation.step().iterations, 0);
 }
 
-TEST(InitialGuess, OfAFreeFallIsItsEndWhenAccelerated) {
+TEST(InitialGuess, AcceleratedIsExactInFreeFall) {
   for (const char* integrator : {"backward_euler", "midpoint"})
     for (const char* guess : {"accelerated", "best"}) {
       Simulation simulation =
@@ -68,7 +68,7 @@ TEST(InitialGuess, OfAFreeFallIsItsEndWhenAccelerated) {
     }
 }
 
-TEST(InitialGuess, OfABodyThatReturnsToRestIsItsShapeAtRest) {
+TEST(InitialGuess, BestIsRestShapeOfReturningBody) {
   Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}), {.gravity = {}});
   model.pins.push_back({"floor", vertices_where(model.mesh, [](const Vec3d& X) { return X[1] < 1e-9; }), {}});
   State start = at_rest(model.mesh);
@@ -80,7 +80,7 @@ TEST(InitialGuess, OfABodyThatReturnsToRestIsItsShapeAtRest) {
   EXPECT_EQ(simulation.state().q, at_rest(simulation.model().mesh).q);
 }
 
-TEST(InitialGuess, PinnedVerticesGoWhereTheyMustWhateverItIs) {
+TEST(InitialGuess, AllPlacePinnedVertices) {
   for (const std::string& guess : initial_guess_names()) {
     Simulation simulation = simulate(damped_beam_with_moving_pins_and_targets(), with_guess(guess));
     simulation.step();
@@ -90,7 +90,7 @@ TEST(InitialGuess, PinnedVerticesGoWhereTheyMustWhateverItIs) {
   }
 }
 
-TEST(InitialGuess, OfInfiniteEnergyGivesWayToAFiniteOne) {
+TEST(InitialGuess, ReplacesGuessOfInfiniteEnergy) {
   // Vertices fly apart so fast that the extrapolated shape is inside out, where the material has no energy.
   Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}), {.young = 1e6, .gravity = {}});
   State start = at_rest(model.mesh);
@@ -102,7 +102,7 @@ TEST(InitialGuess, OfInfiniteEnergyGivesWayToAFiniteOne) {
   EXPECT_GT(report.min_det_F, 0);
 }
 
-TEST(InitialGuess, TheLastIncrementSavesIterationsOfEvenLoading) {
+TEST(InitialGuess, LastIncrementSavesIterationsOfSteadyLoading) {
   const auto iterations = [](const std::string& guess) {
     Model model = beam(1, {.gravity = {}});
     model.pins.push_back({"hand", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 4 - 1e-9; }),
@@ -119,7 +119,7 @@ TEST(InitialGuess, TheLastIncrementSavesIterationsOfEvenLoading) {
   EXPECT_LE(iterations("best"), iterations("last_increment"));
 }
 
-TEST(InitialGuess, IsNoneWhereNothingIsMinimised) {
+TEST(InitialGuess, IsNoneForExplicitSchemes) {
   EXPECT_EQ(simulate(beam(1), {.h = 1e-4, .integrator = "rk4", .solver = {}}).step().initial_guess, InitialGuess::none);
 }
 

@@ -13,7 +13,7 @@ constexpr std::array kSchemes = {
     make_backward_euler, make_linearly_implicit_euler, make_bdf2,          make_tr_bdf2, make_midpoint,
     make_trapezoid,      make_symplectic_euler,        make_forward_euler, make_rk4,     make_quasi_static};
 
-// From the best to the worst.
+// Ordered from best to worst.
 int badness(Status status) {
   constexpr std::array kOrder = {Status::converged, Status::round_off,  Status::budget,    Status::iteration_limit,
                                  Status::stuck,     Status::no_descent, Status::undefined, Status::interrupted};

@@ -7,15 +7,15 @@
 #include <map>
 
 #include "dynamics/models_test.h"
-#include "verify/integrators.h"
-#include "verify/oscillator.h"
+#include "verification/integrators.h"
+#include "verification/oscillator.h"
 
 namespace aspic {
 namespace {
 
 using namespace testing_models;
 
-TEST(Integrators, DampAndDelayAnOscillatorAsTheirFormulasSay) {
+TEST(Integrators, MatchOscillatorFormulas) {
   EXPECT_EQ(expected_oscillations().size() + 1, integrator_names().size()) << "all but quasi_static";
   for (const auto& [integrator, expected] : expected_oscillations()) {
     const Oscillation measured = measured_oscillation(integrator);
@@ -24,7 +24,7 @@ TEST(Integrators, DampAndDelayAnOscillatorAsTheirFormulasSay) {
   }
 }
 
-TEST(Integrators, EulersMethodsGainLoseAndKeepEnergyOfAnOscillatorByFixedFactors) {
+TEST(Integrators, EulerMethodsChangeEnergyByFixedFactors) {
   for (const auto& [integrator, factor] : {std::pair{"forward_euler", 1.01}, {"backward_euler", 1 / 1.01}}) {
     Simulation simulation = oscillator({.h = 0.01, .integrator = integrator, .solver = {}});
     for (int i = 0; i < 100; ++i) {
@@ -48,7 +48,7 @@ TEST(Integrators, EulersMethodsGainLoseAndKeepEnergyOfAnOscillatorByFixedFactors
   }
 }
 
-TEST(Integrators, AreOfTheirOrderWithDampingAndAMovingTarget) {
+TEST(Integrators, HaveTheirOrderWithDampingAndMovingTarget) {
   for (const std::string& integrator : integrators_in_time()) {
     const double h = 0.004;
     EXPECT_NEAR(std::log2(driven_oscillator_error(integrator, h) / driven_oscillator_error(integrator, h / 2)),
@@ -57,7 +57,7 @@ TEST(Integrators, AreOfTheirOrderWithDampingAndAMovingTarget) {
   }
 }
 
-TEST(Integrators, FallFreelyAsTheirFormulasSay) {
+TEST(Integrators, MatchFreeFallFormulas) {
   for (const std::string& integrator : integrators_in_time())
     EXPECT_LT(free_fall_error(integrator, expected_fall(integrator, kFallSteps)), 1e-12) << integrator;
 }
@@ -104,7 +104,7 @@ TEST(Integrators, MidpointConservesLinearAndAngularMomentum) {
   }
 }
 
-TEST(Integrators, LoseTheEnergyOfAStiffBodyInTheOrderOfTheirDamping) {
+TEST(Integrators, OrderByNumericalDampingOfStiffBody) {
   std::map<std::string, double> left;  // kinetic + potential after 50 steps, relative to the start
   for (const char* integrator : {"backward_euler", "bdf2", "tr_bdf2", "midpoint"}) {
     State start;

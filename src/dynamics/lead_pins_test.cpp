@@ -21,7 +21,7 @@ Model carried(double distance) {
   return model;
 }
 
-TEST(LeadPins, AStepThatWouldInvertABarrierMaterialIsTakenInParts) {
+TEST(LeadPins, MovesPinsInFractionsWithBarrierMaterial) {
   for (const std::string integrator : {"backward_euler", "quasi_static"}) {
     Simulation simulation = simulate(carried(1.2), {.h = 1, .integrator = integrator, .solver = {}});
     const StepReport report = simulation.step();
@@ -32,7 +32,7 @@ TEST(LeadPins, AStepThatWouldInvertABarrierMaterialIsTakenInParts) {
   }
 }
 
-TEST(LeadPins, PinsThatTurnATetInsideOutEndUndefined) {
+TEST(LeadPins, InvertingPinsEndUndefined) {
   Model model = beam(2, {.gravity = {}});
   model.pins.push_back({"mirror", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 3 - 1e-9; }),
                         [](const Vec3d& X, double t) {

@@ -7,10 +7,10 @@
 namespace aspic {
 namespace {
 
-// A few units in the last place: of a position, and of a strain energy beside the modulus that it is a difference of.
+// A few units in the last place of a position, and of a strain energy relative to the modulus.
 constexpr double kLastDigits = 8 * std::numeric_limits<double>::epsilon();
 
-// A sum as if made in twice the digits [Neumaier 1974]: the works of single vertices of a body that moves far cancel.
+// Compensated summation [Neumaier 1974]: the work terms of single vertices of a body that moves far cancel.
 class LongSum {
  public:
   void add(double term) {
@@ -24,7 +24,7 @@ class LongSum {
   double high_ = 0, low_ = 0;
 };
 
-// V += sign * (energy of each load), and their sum.
+// V += sign * (energy of each load). Returns their sum.
 double add_load_energies(std::span<const ActiveTerm> loads, std::span<const double> x, double sign,
                          std::vector<double>& V) {
   double sum = 0;
@@ -45,8 +45,8 @@ double kinetic_energy(const MassMatrix& mass, std::span<const double> qdot, std:
   return T;
 }
 
-// What the loads gain because targets move from where they are at the start to where they are at the end: with the body
-// where it starts, and for schemes of higher order the mean of that and of the body where it ends.
+// The energy that the loads gain from the motion of their targets during the step: with the body at the start, and for
+// schemes of higher order the mean of the values with the body at the start and at the end.
 double Ledger::target_work(const StepTools& tools, int order, const State& end, double& loads_before,
                            StepReport& report) {
   const State& start = tools.start;
@@ -133,7 +133,7 @@ void Ledger::allow_moved_pins(const StepTools& tools, const State& end, BoundedE
   bounded.magnitude += D + T;
 }
 
-// residual_ is r of this step, and the loads are told of its end.
+// residual_ is r of this step, and the contexts of the loads are at its end.
 void Ledger::add_resultants(const StepTools& tools, const State& end, const StepForces& forces, Resultants& sums) {
   const Model& model = tools.model;
   sums.pins.resize(model.pins.size());
@@ -178,7 +178,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
   const State& start = tools.start;
   const size_t n = end.q.size();
   for (auto* v : {&Ma_, &momentum_, &residual_}) v->assign(n, 0.0);
-  moved_.resize(n);  // before any pin moves: a later step allocates nothing
+  moved_.resize(n);  // before any pin moves, so that later steps allocate nothing
   double potential_before = 0;
   const double target = target_work(tools, integrator.facts().order, end, potential_before, report);
   for (const double V : elastic_energies(tools.model, start.q, {}, report)) potential_before += V;
@@ -197,7 +197,7 @@ BoundedEnergies Ledger::add(const StepTools& tools, const Integrator& integrator
       jump += 0.5 * tools.h * tools.h * forces.acceleration[i] * Ma_[i];
       round_off += kLastDigits * std::abs(end.q[i] * Ma_[i]);
     }
-    // The same products on both sides of the balance, so that no rounding but that of the sums can open it.
+    // Uses the same products on both sides of the balance, so that only the sums have rounding errors.
     const Vec3d acting[] = {point(Ma_, v), point(forces.gradient, v), point(forces.damping, v)};
     Vec3d held[3];
     for (int k = 0; k < 3; ++k) held[k] = tools.pins.held_part(v, acting[k]);

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "dynamics/models_test.h"
-#include "verify/oscillator.h"
+#include "verification/oscillator.h"
 
 namespace aspic {
 namespace {
@@ -44,12 +44,12 @@ void expect_closed(const SimulationOptions& options) {
   }
 }
 
-TEST(Ledger, AddsUpForEveryIntegratorWithPinsTargetsAndDamping) {
+TEST(Ledger, ClosesForEveryIntegrator) {
   for (const std::string& integrator : integrator_names())
     expect_closed({.h = is_explicit(integrator) ? 1e-4 : 0.01, .integrator = integrator, .solver = {}});
 }
 
-TEST(Ledger, AddsUpOverThePartsOfAnAdaptiveStep) {
+TEST(Ledger, ClosesOverSubsteps) {
   for (const std::string& integrator : adaptive_integrator_names())
     expect_closed({.h = is_explicit(integrator) ? 4e-4 : 0.01,
                    .integrator = integrator,
@@ -57,7 +57,7 @@ TEST(Ledger, AddsUpOverThePartsOfAnAdaptiveStep) {
                    .solver = {}});
 }
 
-TEST(Ledger, TheResidualIsWithinWhatTheStagesWereAskedFor) {
+TEST(Ledger, ResidualIsBelowThreshold) {
   for (const std::string& integrator : integrator_names()) {
     if (is_explicit(integrator) || integrator == "linearly_implicit_euler") continue;
     Simulation simulation =
@@ -71,7 +71,7 @@ TEST(Ledger, TheResidualIsWithinWhatTheStagesWereAskedFor) {
   }
 }
 
-TEST(Ledger, TheResidualOfAnExplicitSchemeIsThatOfItsSolvesWithTheMassMatrix) {
+TEST(Ledger, ExplicitResidualIsThatOfMassSolves) {
   for (const std::string& integrator : integrator_names()) {
     if (!is_explicit(integrator)) continue;
     Simulation simulation =
@@ -81,7 +81,7 @@ TEST(Ledger, TheResidualOfAnExplicitSchemeIsThatOfItsSolvesWithTheMassMatrix) {
   }
 }
 
-TEST(Ledger, MidpointLosesNothingWhereForcesAreLinearAndTargetsMoveEvenly) {
+TEST(Ledger, MidpointConservesEnergyOfLinearForces) {
   Simulation simulation = oscillator({.h = 0.05, .integrator = "midpoint", .solver = {}},
                                      {.damping = 1, .offset = [](double t) { return 3 * t; }});
   double work = 0;
@@ -93,7 +93,7 @@ TEST(Ledger, MidpointLosesNothingWhereForcesAreLinearAndTargetsMoveEvenly) {
   EXPECT_GT(work, 1);
 }
 
-TEST(Ledger, TheNumericalLossOfBackwardEulerIsHalfTheVelocityJumpForConstantForces) {
+TEST(Ledger, BackwardEulerLosesHalfTheVelocityJump) {
   Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}), {});
   Simulation simulation = simulate(std::move(model));
   const double mass = simulation.model().mass->total(), jump = 9.81 * 0.01;
@@ -108,7 +108,7 @@ StepReport last_step_of_beam(const char* integrator, double h, int steps) {
   return report;
 }
 
-TEST(Ledger, AnExplicitRunThatBlowsUpIsNoSuccess) {
+TEST(Ledger, ExplicitBlowUpIsNotSuccess) {
   for (const char* integrator : {"rk4", "symplectic_euler", "forward_euler"}) {
     const double stable = simulate(beam(1, {.material = "arap"}), {.integrator = integrator}).stable_step().h;
     const StepReport blown_up = last_step_of_beam(integrator, 1.2 * stable, 60);
@@ -116,7 +116,7 @@ TEST(Ledger, AnExplicitRunThatBlowsUpIsNoSuccess) {
   }
 }
 
-TEST(Ledger, AStableExplicitRunIsASuccess) {
+TEST(Ledger, StableExplicitRunIsSuccess) {
   for (const char* integrator : {"rk4", "symplectic_euler"}) {
     const double stable = simulate(beam(1, {.material = "arap"}), {.integrator = integrator}).stable_step().h;
     for (const int steps : {1, 20, 200})
@@ -144,14 +144,14 @@ StepReport last_step_of_shaken_beam(bool by_pin, double part_of_stable_step) {
   return report;
 }
 
-TEST(Ledger, JudgesExplicitRunsWithMovingPinsAndTargets) {
+TEST(Ledger, ChecksExplicitRunsWithMovingPinsAndTargets) {
   for (const bool by_pin : {true, false}) {
     EXPECT_EQ(last_step_of_shaken_beam(by_pin, 0.9).status, Status::converged) << by_pin;
     EXPECT_EQ(last_step_of_shaken_beam(by_pin, 1.2).status, Status::unstable) << by_pin;
   }
 }
 
-TEST(Ledger, JudgesAnExplicitRunAlikeAfterARestart) {
+TEST(Ledger, ChecksExplicitRunEquallyAfterRestart) {
   const auto shaken = [] {
     return simulate(damped_beam_with_moving_pins_and_targets(), {.h = 1e-3, .integrator = "symplectic_euler"});
   };

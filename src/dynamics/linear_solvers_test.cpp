@@ -23,13 +23,13 @@ std::vector<double> positions_after(Simulation& simulation, int steps) {
 
 class EveryLinearSolver : public testing::TestWithParam<std::string> {};
 
-TEST_P(EveryLinearSolver, GivesTheSameMotion) {
+TEST_P(EveryLinearSolver, GivesSameMotion) {
   Simulation exact = stiff_beam("cholesky"), simulation = stiff_beam(GetParam());
   const std::vector<double> wanted = positions_after(exact, 3), q = positions_after(simulation, 3);
   for (size_t i = 0; i < q.size(); ++i) ASSERT_NEAR(q[i], wanted[i], 1e-8) << i;
 }
 
-TEST_P(EveryLinearSolver, GivesTheSameBitsForAnyNumberOfThreads) {
+TEST_P(EveryLinearSolver, IsBitReproducibleOverThreads) {
   const int before = thread_count();
   std::vector<double> first;
   for (const int threads : {1, 2, 3, 8}) {
@@ -42,7 +42,7 @@ TEST_P(EveryLinearSolver, GivesTheSameBitsForAnyNumberOfThreads) {
   set_thread_count(before);
 }
 
-TEST_P(EveryLinearSolver, GivesTheSameBitsAfterARestartAnywhere) {
+TEST_P(EveryLinearSolver, IsBitReproducibleAfterRestart) {
   Simulation whole = stiff_beam(GetParam());
   std::vector<Simulation::Snapshot> snapshots;
   for (int i = 0; i < 4; ++i) {

@@ -37,7 +37,7 @@ SimulationOptions tight(const SolverOptions& solver) {
   return options;
 }
 
-TEST(Methods, AllReachTheSameMinimumOfATimeStep) {
+TEST(Methods, ReachSameMinimumOfTimeStep) {
   // So near to rest the Hessian is at least the mass M. That of one tet has the eigenvalues m/20 and m/4, so that M is
   // at least a fifth of the lumped mass, and a gradient of norm e leaves an error of at most 5 e / (the least vertex
   // mass); twice that lies between two methods.
@@ -57,7 +57,7 @@ TEST(Methods, AllReachTheSameMinimumOfATimeStep) {
   }
 }
 
-TEST(Methods, GiveTheSameBitsForAnyNumberOfThreads) {
+TEST(Methods, AreBitReproducibleOverThreads) {
   const int before = thread_count();
   for (const SolverOptions& solver : all_methods()) {
     std::vector<double> expected;
@@ -74,7 +74,7 @@ TEST(Methods, GiveTheSameBitsForAnyNumberOfThreads) {
   set_thread_count(before);
 }
 
-TEST(Methods, GiveTheSameBitsWhileTheyAreLookedAt) {
+TEST(Methods, AreBitReproducibleWithObserver) {
   for (const SolverOptions& solver : all_methods()) {
     SimulationOptions options{.solver = solver};
     options.solver.minimize.max_iterations = 5;
@@ -91,7 +91,7 @@ TEST(Methods, GiveTheSameBitsWhileTheyAreLookedAt) {
   }
 }
 
-TEST(Methods, KnowingMoreOfTheCurvatureTakesFewerIterations) {
+TEST(Methods, MoreCurvatureTakesFewerIterations) {
   std::map<std::string, int> iterations;
   for (const std::string& method : minimizer_names()) {
     SimulationOptions options{.h = 0.03, .solver = {.method = method}};
@@ -105,7 +105,7 @@ TEST(Methods, KnowingMoreOfTheCurvatureTakesFewerIterations) {
     EXPECT_LT(5 * iterations[method], iterations["gradient_descent"]) << method;
 }
 
-TEST(Methods, GradientDescentFindsItsStepsOnAStiffBodyByBacktracking) {
+TEST(Methods, GradientDescentBacktracksOnStiffBody) {
   SimulationOptions options{.solver = {.method = "gradient_descent"}};
   options.solver.minimize.max_iterations = 20;
   Simulation simulation = simulate(beam(1, {.young = 1e9}), options);
@@ -144,7 +144,7 @@ Work work_of_compression(const std::string& method, const std::string& definiten
   return work;
 }
 
-TEST(Newton, ProgressiveProjectionTouchesFewElementsOfACompressedBeam) {
+TEST(Newton, ProgressiveProjectionModifiesFewElements) {
   const Work clamped = work_of_compression("newton", "clamped"), on_demand = work_of_compression("newton", "on_demand"),
              progressive = work_of_compression("newton", "progressive");
   EXPECT_GT(progressive.projected_elements, 0);
@@ -153,12 +153,12 @@ TEST(Newton, ProgressiveProjectionTouchesFewElementsOfACompressedBeam) {
   EXPECT_LT(2 * progressive.iterations, clamped.iterations);
 }
 
-TEST(Newton, TruncatedNewtonNeedsNoProjectionWhereTheHessianIsIndefinite) {
+TEST(Newton, TruncatedNewtonNeedsNoModifiedHessian) {
   EXPECT_EQ(work_of_compression("newton_cg", "auto").projected_elements, 0);
 }
 
 // A slender column under more than its critical load, which is pushed aside by a millionth of that.
-TEST(Newton, ABucklingColumnLeavesItsSaddleInFewIterations) {
+TEST(Newton, BucklingColumnLeavesSaddleInFewIterations) {
   Model model = make_model(make_box({{0, 0, 0}}, {{0.1, 1, 0.1}}, {2, 16, 2}),
                            {.young = 1e5, .poisson = 0.3, .gravity = {{1e-6, -1.5, 0}}});
   model.pins.push_back({"base", vertices_where(model.mesh, [](const Vec3d& X) { return X[1] < 1e-9; }), {}});
@@ -169,7 +169,7 @@ TEST(Newton, ABucklingColumnLeavesItsSaddleInFewIterations) {
 }
 
 // A bar in tension that is held at one vertex: it may turn about that, so that no Hessian is positive definite.
-TEST(Newton, OneHeldVertexHasAnEquilibriumByEverySolver) {
+TEST(Newton, SinglePinHasEquilibriumWithEverySolver) {
   for (const std::string& linear : linear_solver_names()) {
     Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}),
                              {.young = 1e4, .poisson = 0.3, .gravity = {{0, 0, 0}}});
@@ -188,7 +188,7 @@ TEST(Newton, OneHeldVertexHasAnEquilibriumByEverySolver) {
   }
 }
 
-TEST(IncrementalPotential, ItsMetricIsTheMassWithTheIdentityForPinnedVertices) {
+TEST(IncrementalPotential, MetricIsMassWithIdentityForPins) {
   const Model model = beam(1);
   const State start = at_rest(model.mesh);
   const Pins pins(model.pins, start.q);

@@ -90,7 +90,7 @@ ModelBuilder& ModelBuilder::material(const std::string& name, const ElasticConst
 }
 
 ModelBuilder& ModelBuilder::material(const std::string& name, std::span<const MaterialParameters> parameters) {
-  material_info(name);  // throws when there is none
+  material_info(name);  // throws for an unknown name
   require_one_per_tet(parameters.size(), tet_count(), "the parameters of " + name);
   parameters_.assign(parameters.begin(), parameters.end());
   make_elasticity_ = [name](const TetMesh& mesh, int first, std::span<const MaterialParameters> p) {

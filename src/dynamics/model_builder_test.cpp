@@ -53,7 +53,7 @@ TEST(ModelBuilder, KeepsTheOrderOfPinsAndLoads) {
   EXPECT_NEAR(model.mass->total(), 1000, 1e-9);
 }
 
-TEST(ModelBuilder, MakesABodyThatFalls) {
+TEST(ModelBuilder, BuildsFallingBody) {
   Simulation simulation(solid_cube().gravity({{0, -10, 0}}).build());
   EXPECT_TRUE(is_success(simulation.step().status));
   EXPECT_NEAR(simulation.state().qdot[1], -0.1, 1e-9);
@@ -69,7 +69,7 @@ TEST(ModelBuilder, SpringsFollowTheirMotion) {
   EXPECT_NEAR(simulation.state().q[1], 0.01, 1e-5);  // relative lag m / (h^2 k) = 4e-4
 }
 
-TEST(ModelBuilder, RefusesWhatNoBodyCanHave) {
+TEST(ModelBuilder, RejectsImpossibleValues) {
   EXPECT_THAT(refusal([] { cube().pin("top", [](const Vec3d& X) { return X[1] > 2; }); }),
               AllOf(HasSubstr("pin 'top' selects no vertex"), HasSubstr("from (0, 0, 0) to (1, 1, 1) m")));
   EXPECT_THAT(refusal([] {
@@ -90,12 +90,12 @@ TEST(ModelBuilder, RefusesWhatNoBodyCanHave) {
   EXPECT_THAT(refusal([] { cube().strain_rate_damping(-1); }), HasSubstr("viscosity"));
 }
 
-TEST(ModelBuilder, RefusesUnfinishedModels) {
+TEST(ModelBuilder, RejectsUnfinishedModels) {
   EXPECT_THAT(refusal([] { cube().density(1).build(); }), HasSubstr("no material"));
   EXPECT_THAT(refusal([] { cube().material("neo_hookean", {.young = 1}).build(); }), HasSubstr("no density"));
 }
 
-TEST(ModelBuilder, RefusesBrokenMeshes) {
+TEST(ModelBuilder, RejectsBrokenMeshes) {
   EXPECT_THAT(refusal([] { ModelBuilder builder(TetMesh{}); }), HasSubstr("has no tets"));
   TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1});
   std::swap(mesh.tets[2][0], mesh.tets[2][1]);

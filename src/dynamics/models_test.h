@@ -11,7 +11,7 @@
 #include "energy/springs.h"
 #include "material/lame.h"
 #include "mesh/generators.h"
-#include "verify/models.h"
+#include "verification/models.h"
 
 namespace aspic::testing_models {
 

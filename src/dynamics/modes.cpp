@@ -13,11 +13,11 @@
 namespace aspic {
 namespace {
 
-// Of the squared rate of uniform growth, which is E / (density size^2) within a small factor. The shift makes
-// K + shift M definite for free bodies, too; round-off in lambda is the machine precision times (shift + lambda)^2 /
+// Shift relative to the squared rate of uniform growth, which is about E / (density size^2). The shift makes K + shift
+// M definite for free bodies as well; the rounding error of lambda is the machine precision times (shift + lambda)^2 /
 // shift.
 constexpr double kShift = 1e-4;
-constexpr double kRigid = 1e-10;  // the same fraction of squared rates that count as zero
+constexpr double kRigid = 1e-10;  // squared rates below this fraction count as zero
 
 struct Stopped {};
 
@@ -28,8 +28,8 @@ BlockSparse shifted_stiffness(IncrementalPotential& E, std::span<const double> x
   return E.evaluate_hessian(x, {Definiteness::exact});
 }
 
-// The squared rate u' K u / u' M u [1/s^2] of uniform growth u of the rest shape. K is that of the elasticity alone:
-// stiff springs, such as those that stand for pins, say nothing of the lowest modes.
+// The squared rate u' K u / u' M u [1/s^2] of uniform growth u of the rest shape. K contains only elasticity: stiff
+// springs, such as those that replace pins, do not change the scale of the lowest modes.
 double growth_rate(const Model& model, const IncrementalPotential& E) {
   Vec3d center{};
   for (const Vec3d& X : model.mesh.rest) center = center + (1.0 / model.mesh.vertex_count()) * X;
@@ -60,8 +60,7 @@ int free_dimension(const Pins& pins) {
   return static_cast<int>(std::lround(trace));
 }
 
-// The squared rates that double precision cannot tell from zero: the machine precision times the largest one, for which
-// each vertex has a bound.
+// Rounding error of squared rates: the machine precision times a bound of the largest one.
 double round_off(const Model& model, const Pins& pins, const BlockSparse& K) {
   double largest = 0;
   for (int v = 0; v < pins.vertex_count(); ++v)

@@ -14,7 +14,7 @@ Model free_box() { return make_model(make_box({{0, 0, 0}}, {{3, 1, 1}}, {6, 2, 2
 
 Modes modes_at_rest(const Model& model, int count) { return vibration_modes(model, at_rest(model.mesh).q, count); }
 
-TEST(VibrationModes, FreeBodyHasSixRigidOnes) {
+TEST(VibrationModes, FreeBodyHasSixRigidModes) {
   const Modes found = modes_at_rest(free_box(), 10);
   ASSERT_EQ(found.status, ModesStatus::converged);
   EXPECT_EQ(found.rigid, 6);
@@ -22,7 +22,7 @@ TEST(VibrationModes, FreeBodyHasSixRigidOnes) {
   EXPECT_GT(found.modes[6].frequency, 1);
 }
 
-TEST(VibrationModes, SingleTetHasSixOthers) {
+TEST(VibrationModes, SingleTetHasSixElasticModes) {
   TetMesh mesh;
   mesh.rest = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}};
   mesh.tets = {{0, 1, 2, 3}};
@@ -69,13 +69,13 @@ TEST(VibrationModes, PinsAreHeld) {
     for (const int v : wall) EXPECT_EQ(mode.shape[3 * v], 0);
 }
 
-TEST(VibrationModes, RefuseModelWithoutFreeVertices) {
+TEST(VibrationModes, RejectModelWithoutFreeVertices) {
   Model model = free_box();
   model.pins.push_back({"all", vertices_where(model.mesh, [](const Vec3d&) { return true; }), {}});
   EXPECT_EQ(modes_at_rest(model, 5).status, ModesStatus::all_held);
 }
 
-TEST(VibrationModes, RefuseUnstablePositions) {
+TEST(VibrationModes, RejectUnstablePositions) {
   const Model model = free_box();
   std::vector<double> x = at_rest(model.mesh).q;
   for (size_t i = 0; i < x.size(); i += 3) x[i] *= 0.3;

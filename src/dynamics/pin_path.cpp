@@ -44,7 +44,7 @@ void PinPath::differentiate(double time, int derivative, std::span<double> out) 
     weight[j] = basis_derivative(j, points_, (time - time_) / h_, derivative) / (derivative == 1 ? h_ : h_ * h_);
   for (int v = 0; v < pins_->vertex_count(); ++v) {
     if (pins_->is_free(v)) continue;
-    Vec3d sum{};  // the weights add up to zero, so one that stands still has exactly no velocity
+    Vec3d sum{};  // the weights add up to zero, so the velocity of a resting pin is exactly zero
     Vec3d given;
     for (int r = 0; r < 3; ++r) {
       const size_t i = 3 * static_cast<size_t>(v) + r;

@@ -11,7 +11,7 @@ std::vector<Pin> pin_moving(std::function<double(double)> x) {
   return {{"pin", {1}, [x](const Vec3d& X, double t) { return X + Vec3d{{x(t), 0, 0}}; }}};
 }
 
-TEST(PinPath, DifferentiatesAPolynomialOfItsDegreeExactlyAndLeavesFreeVerticesAlone) {
+TEST(PinPath, DifferentiatesPolynomialsExactly) {
   const auto x = [](double t) { return t * t * t - 2 * t * t; };
   const std::vector<Pin> motion = pin_moving(x);
   const Pins pins(motion, std::vector<double>(6, 0.3));
@@ -45,7 +45,7 @@ TEST(PinPath, ConvergesByItsNumberOfPoints) {
   }
 }
 
-TEST(PinPath, OfPinsThatStandStillIsExactlyZero) {
+TEST(PinPath, IsExactlyZeroForRestingPins) {
   const std::vector<Pin> still = {{"pin", {1}, {}}};
   const Pins pins(still, std::vector<double>(6, 1e6));
   PinPath path;

@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kLeastSine = 1e-6;  // of a direction and the span of the others
+constexpr double kLeastSine = 1e-6;  // smallest sine of the angle between a direction and the span of the others
 
 Vec3d vec_at(std::span<const double> x, int vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
 
@@ -28,7 +28,7 @@ Mat3d projector(std::span<const Vec3d> directions) {  // for orthonormal ones
 
 // M^+ of the sum M over independent unit vectors: with a unit vector k of the kernel, (M + k k')^-1 - k k'.
 Mat3d pseudo_inverse(const Mat3d& M, std::span<const Vec3d> directions) {
-  if (squared_norm(M * M - M) < 1e-28) return M;  // orthonormal ones, exactly along axes
+  if (squared_norm(M * M - M) < 1e-28) return M;  // orthonormal directions; exact along axes
   if (directions.size() == 3) return inverse(M);
   Vec3d k = cross(directions[0], directions[1]);
   k = (1 / std::sqrt(dot(k, k))) * k;
@@ -99,7 +99,7 @@ Vec3d Pins::reaction_of(int pin, int index, const Vec3d& force) const {
 }
 
 void Pins::place(double time, std::span<double> x) const {
-  for (size_t p = 0; p < shares_.size(); ++p)  // to where they start
+  for (size_t p = 0; p < shares_.size(); ++p)  // to the initial positions
     for (const Share& share : shares_[p]) {
       const int v = share.vertex;
       set_vec(free_part(v, vec_at(x, v)) + held_part(v, vec_at(start_, v)), v, x);
@@ -130,7 +130,7 @@ void Pins::copy_held(std::span<const double> from, std::span<double> to) const {
   }
 }
 
-// Any s > 0 separates what is held; the size of Q H Q leaves the condition of the block as it is.
+// Any s > 0 decouples the pinned directions; the size of Q H Q keeps the condition of the block.
 Mat3d Pins::with_identity(int vertex, const Mat3d& H) const {
   if (kind_[vertex] == kFree) return H;
   if (kind_[vertex] == kHeld) return identity3<double>();

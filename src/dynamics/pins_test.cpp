@@ -59,7 +59,7 @@ Model rolling_bar(const Turned& turn, const ModelOptions& options) {
   return model;
 }
 
-TEST(PinsOfDirections, HoldThemAndLeaveTheRestAlone) {
+TEST(PinsOfDirections, HoldOnlyTheirDirections) {
   const Vec3d n = kTurn * kX;
   const std::vector<Pin> pins = {{"plane", {1}, [](const Vec3d& X, double t) { return X + Vec3d{{t, 0, 0}}; }, {n}}};
   const std::vector<double> start = {0, 0, 0, 1, 2, 3};
@@ -85,7 +85,7 @@ TEST(PinsOfDirections, AlongAxesAreExact) {
   EXPECT_TRUE(held.holds(0, 1) && !held.holds(0, 0));
 }
 
-TEST(PinsOfDirections, CombineWhereObliquePlanesMeet) {
+TEST(PinsOfDirections, CombineOnObliquePlanes) {
   const Vec3d m{{0.6, 0.8, 0}};
   const auto along = [](const Vec3d& n, double size) { return [=](const Vec3d& X, double) { return X + size * n; }; };
   const std::vector<Pin> pins = {{"a", {0}, along(kX, 0.5), {kX}}, {"b", {0}, along(m, -0.25), {m}}};
@@ -101,7 +101,7 @@ TEST(PinsOfDirections, CombineWhereObliquePlanesMeet) {
   EXPECT_LT(norm(a + b - held.held_part(0, f)), 1e-14) << "together they hold";
 }
 
-TEST(PinsOfDirections, IndependenceIsOfAnySet) {
+TEST(PinsOfDirections, RejectDependentDirections) {
   const Vec3d m{{0.6, 0.8, 0}};
   EXPECT_TRUE(are_independent(std::vector{kX, m}));
   EXPECT_FALSE(are_independent(std::vector{kX, kX}));
@@ -110,7 +110,7 @@ TEST(PinsOfDirections, IndependenceIsOfAnySet) {
 }
 
 // The answer of a body that is turned with its planes and its weight is the turned answer.
-TEST(PinsOfDirections, TurnWithTheBodyInEveryIntegrator) {
+TEST(PinsOfDirections, FollowMotionInEveryIntegrator) {
   for (const std::string& integrator : integrator_names()) {
     SimulationOptions options{.h = is_explicit(integrator) ? 2e-4 : 0.02, .integrator = integrator, .solver = {}};
     options.solver.minimize.tolerance = 1e-10;
@@ -138,7 +138,7 @@ TEST(PinsOfDirections, TurnWithTheBodyInEveryIntegrator) {
   }
 }
 
-TEST(PinsOfDirections, GiveTheSameEquilibriumWithEverySolver) {
+TEST(PinsOfDirections, GiveSameEquilibriumWithEverySolver) {
   const ModelOptions body{.young = 1e4, .poisson = 0.45, .gravity = {{0, -3, 1}}};
   SimulationOptions options{.h = 0.2, .integrator = "quasi_static", .solver = {}};
   options.solver.minimize.tolerance = 1e-11;
@@ -162,7 +162,7 @@ TEST(PinsOfDirections, ConvergeWithEveryMethod) {
   }
 }
 
-TEST(PinsOfDirections, GiveTheSameBitsAfterRestoringAndOnOneThread) {
+TEST(PinsOfDirections, AreBitReproducibleAfterRestore) {
   for (const char* integrator : {"backward_euler", "tr_bdf2", "bdf2", "rk4", "forward_euler"}) {
     const SimulationOptions options{.h = is_explicit(integrator) ? 2e-4 : 0.02, .integrator = integrator, .solver = {}};
     const auto make = [&] { return simulate(rolling_bar({true}, {.young = 1e4, .poisson = 0.3}), options); };
@@ -199,7 +199,7 @@ TetMesh mirrored(const TetMesh& eighth) {
   return whole;
 }
 
-TEST(PinsOfDirections, MakeOneEighthEqualToTheWhole) {
+TEST(PinsOfDirections, MakeOneEighthEqualWhole) {
   const TetMesh eighth = make_box({{0, 0, 0}}, {{2, 1, 1}}, {3, 2, 2});
   const ModelOptions body{.young = 1e4, .poisson = 0.4, .gravity = {}};
   const SimulationOptions options{.h = 1, .integrator = "quasi_static", .solver = {.minimize = {.tolerance = 1e-11}}};
@@ -229,7 +229,7 @@ TEST(PinsOfDirections, MakeOneEighthEqualToTheWhole) {
   EXPECT_EQ(compared, eighth.vertex_count());
 }
 
-TEST(PinsOfDirections, ThatLetTheBodySlideAreTheCauseInStatics) {
+TEST(PinsOfDirections, ExplainSlidingBodyInStatics) {
   Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}), {.gravity = {{1, -9.81, 0}}});
   model.pins.push_back({"floor", vertices_where(model.mesh, [](const Vec3d& X) { return X[1] == 0; }), {}, {kY}});
   SimulationOptions options{.integrator = "quasi_static", .solver = {}};
@@ -293,7 +293,7 @@ TEST(Resultants, GiveTheRateOfMomentum) {
   }
 }
 
-TEST(Resultants, AreMeansOverThePartsOfAnAdaptiveStep) {
+TEST(Resultants, AreMeansOverSubsteps) {
   const SimulationOptions options{.h = 0.04, .adaptive = {.tolerance = 1e-4}, .solver = {}};
   Simulation simulation = simulate(beam(2, {.young = 1e5, .poisson = 0.3}), options);
   const StepReport report = simulation.step();
@@ -302,7 +302,7 @@ TEST(Resultants, AreMeansOverThePartsOfAnAdaptiveStep) {
   EXPECT_LT(norm(rate - report.resultants.bodies.at(0).force), 1e-3 * norm(report.resultants.loads[0].force));
 }
 
-TEST(StartReport, HasTheEnergiesOfTheStartAsStepZero) {
+TEST(StartReport, HasInitialEnergies) {
   Simulation simulation = simulate(beam(2));
   const StepReport start = simulation.start_report();
   EXPECT_EQ(start.step, 0);
@@ -317,7 +317,7 @@ TEST(StartReport, HasTheEnergiesOfTheStartAsStepZero) {
               1e-10 * std::abs(start.potential_total));
 }
 
-TEST(VaryingLoad, RampsInStaticsAndItsWorkIsInTheLedger) {
+TEST(VaryingLoad, RampsInStaticsWithItsWork) {
   Model model = beam(2, {.young = 1e5, .poisson = 0.3, .gravity = {}});
   const size_t n = 3 * model.mesh.rest.size();
   model.loads.push_back(make_linear_load("ramp", std::vector<double>(n, 0.0), [](double t, std::span<double> force) {

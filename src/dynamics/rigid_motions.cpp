@@ -10,9 +10,9 @@
 namespace aspic {
 namespace {
 
-// Of the largest eigenvalue: a motion with less is not resisted by pins.
+// Fraction of the largest eigenvalue below which pins do not resist a motion.
 constexpr double kFree = 1e-10;
-// Of the largest load: forces that change by less resist no motion.
+// Fraction of the largest load: smaller changes of forces resist no motion.
 constexpr double kUnchanged = 1e-6;
 constexpr Vec3d kAxes[] = {{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}};
 
@@ -53,7 +53,7 @@ class Body {
   }
   Vec3d arm(int v) const { return (1 / size_) * (at(v) - center_); }
 
-  // Of length 1, its largest component positive.
+  // Normalizes to length 1 with the largest component positive.
   static Vec3d upright(Vec3d d) {
     double most = 0;
     for (int r = 0; r < 3; ++r)
@@ -61,14 +61,14 @@ class Body {
     return rounded(((most < 0 ? -1 : 1) / std::sqrt(dot(d, d))) * d, 1e-6);
   }
 
-  // Without the round-off, and the signs, of components that are zero.
+  // Replaces components within round-off of zero by +0.
   static Vec3d rounded(Vec3d v, double noise) {
     for (int r = 0; r < 3; ++r)
       if (std::abs(v[r]) <= noise) v[r] = 0;
     return v;
   }
 
-  // The motions that leave all pins where they are: of the first 3 parameters (translations), or of all 6.
+  // The motions that do not move the pins: of the first 3 parameters (translations), or of all 6.
   std::vector<Twist> free_of_pins(int count) const {
     std::vector<double> A(static_cast<size_t>(count) * count);
     double trace = 0;
@@ -95,7 +95,7 @@ class Body {
     return motions;
   }
 
-  // Loads such as springs to points differ where the body is moved by a small part of its size.
+  // Loads such as springs to points change when the body moves by a small fraction of its size.
   bool is_resisted_by_loads(const Twist& m) const {
     constexpr double kPart = 1e-2;
     std::vector<double> moved(x_.begin(), x_.end()), here(x_.size()), there(x_.size());

@@ -40,7 +40,7 @@ class RungeKutta : public Integrator {
   explicit RungeKutta(const Tableau& tableau) : Integrator(tableau.facts), t_(tableau) {
     for (int i = 0; i < t_.stages; ++i) {
       for (int j = 0; j <= i; ++j) c_[i] += t_.A[i][j];
-      if (std::abs(c_[i] - 1) < 1e-14) c_[i] = 1;  // the step's end exactly
+      if (std::abs(c_[i] - 1) < 1e-14) c_[i] = 1;  // exactly the end of the step
     }
     const double* last = t_.A[t_.stages - 1];
     ends_with_last_stage_ = std::equal(last, last + t_.stages, t_.b);
@@ -79,7 +79,7 @@ class RungeKutta : public Integrator {
     return c_[i] == 1 ? tools.end_time : tools.start.time + c_[i] * tools.h;
   }
 
-  // By when the i-th stage must be done: every implicit one has the same share.
+  // Fraction of the time budget at which stage i ends: implicit stages have equal shares.
   double part_of_budget(int i) const {
     int done = 0, all = 0;
     for (int j = 0; j < t_.stages; ++j)
@@ -87,7 +87,7 @@ class RungeKutta : public Integrator {
     return static_cast<double>(done) / all;
   }
 
-  // What the stages before give: all but A_ii.
+  // The contributions of the earlier stages.
   void combine(const StepTools& tools, int i, std::span<double> q, std::span<double> v) const {
     std::copy(tools.start.q.begin(), tools.start.q.end(), q.begin());
     std::copy(tools.start.qdot.begin(), tools.start.qdot.end(), v.begin());

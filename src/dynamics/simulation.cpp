@@ -16,7 +16,7 @@
 namespace aspic {
 namespace {
 
-// Squares overflow before positions do, so a state may be finite while its energies are not.
+// Energies are squares, which overflow before positions do.
 bool is_finite(const StepReport& report) {
   return std::isfinite(report.residual) && std::isfinite(report.kinetic) && std::isfinite(report.potential_total);
 }
@@ -47,17 +47,17 @@ struct Simulation::Impl {
     measure_start();
   }
 
-  // Whether the start of the step before is needed.
+  // Returns whether the start of the previous step is needed.
   bool remembers() const {
     const bool by_guess =
         guess == InitialGuess::best || guess == InitialGuess::last_increment || guess == InitialGuess::accelerated;
     return integrator->facts().is_multistep || (by_guess && integrator->facts().chooses_guess());
   }
 
-  // A product, not a sum of steps, so that the end of a run is met exactly.
+  // A product, not a sum of steps, so that the end of a run is exact.
   double end_of_next_step() const { return start.time + (steps_taken + 1) * options.h; }
 
-  // Of a step from `before`.
+  // The arguments of a step that starts at `before`.
   StepTools tools(const IterationObserver& observe, double end_time) {
     const SolveTools solve{model, *pins, *E, minimizer, *direction, minimize, observe, guess};
     return {solve, before, has_previous ? &previous : nullptr, options.h, end_time};
@@ -103,10 +103,10 @@ struct Simulation::Impl {
     return report;
   }
 
-  // The energies from which a run began, with which has_blown_up() compares.
+  // Computes the initial energies for has_blown_up().
   void measure_start() {
     if (integrator->facts().is_implicit) return;
-    constexpr double kRoundOff = 1e-12;  // of elastic energies, beside the stiffness of the body
+    constexpr double kRoundOff = 1e-12;  // of elastic energies, relative to the stiffness of the body
     stand_at(start.time);
     start_force.assign(start.q.size(), 0.0);
     start_energy = aspic::kinetic_energy(*model.mass, start.qdot, start_force) + kRoundOff * E->growth_stiffness();
@@ -116,7 +116,7 @@ struct Simulation::Impl {
       if (!V.energy().has_constant_gradient()) start_energy += std::abs(V.value(start.q));  // such as springs
     // A convex V falls by at most -dV/dx (x - x at the start).
     for (const ActiveTerm& V : E->loads()) V.add_gradient(start.q, 1, start_force);
-    // First-order schemes give a body at rest this much in the first step, in which some of them do not move it.
+    // First-order schemes give a body at rest this energy in the first step.
     const std::span<const double> mass = model.mass->vertex_mass();
     for (size_t i = 0; i < start_force.size(); ++i)
       if (mass[i / 3] > 0) start_energy += 0.5 * options.h * options.h * start_force[i] * start_force[i] / mass[i / 3];
@@ -128,10 +128,9 @@ struct Simulation::Impl {
     return size + std::abs(report.pin_work - targets);
   }
 
-  // An explicit scheme with too long a step makes energy, more in each step, until numbers overflow. Returns whether
-  // the body has ten times the energy that it had at the start of the run and can have got since from its loads, moving
-  // pins and moving targets. The work of those grows with the displacements of a body that blows up, its energy with
-  // their squares.
+  // An explicit scheme whose step is too long produces energy until numbers overflow. Returns whether the body has ten
+  // times the sum of its initial energy and a bound of the work of loads, moving pins and moving targets. During a
+  // blow-up this bound grows linearly with the displacements, and the energy quadratically.
   bool has_blown_up(const StepReport& report) {
     constexpr double kBlownUp = 10;
     if (integrator->facts().is_implicit) return false;
@@ -145,7 +144,7 @@ struct Simulation::Impl {
     return reached > kBlownUp * allowed;
   }
 
-  // Velocities are differences of positions, which are known to their last digit.
+  // Velocities are differences of rounded positions.
   void note_lost_velocity(const StepTools& with, StepReport& report) const {
     if (!integrator->facts().is_implicit || integrator->facts().is_static() || !is_success(report.status)) return;
     double position = 0, speed = 0, change = 0;
@@ -160,19 +159,19 @@ struct Simulation::Impl {
     report.status = Status::round_off;
   }
 
-  // A minimization that stopped early leaves a state to go on from; a step divided for its accuracy does not.
+  // A run may continue from an incomplete minimization, but not from an incomplete adaptive step.
   bool can_go_on(Status status) const {
     if (status == Status::interrupted || status == Status::undefined) return false;
     return !adaptive || is_success(status);
   }
 
-  // Tells the terms of V the time, as between steps.
+  // Sets the time of the terms of V, as between steps.
   void stand_at(double time) const {
     E->set_potential_step({state.q, integrator->facts().is_static() ? 0 : options.h, time});
   }
 
-  // The body stays where the step began, though time and moving targets may go on to `time`; a scheme of several steps
-  // begins anew.
+  // Restores the state at the start of the step, with the given time; moving targets are at that time. A multistep
+  // scheme restarts.
   void take_back(const StepTools& with, double time, StepReport& report) {
     report.residual = report.residual_threshold = report.residual_round_off = 0;
     report.worst_vertex = -1;
@@ -204,7 +203,7 @@ struct Simulation::Impl {
     report.iterations = solved.work.iterations;
     report.trials = solved.work.trials;
     report.projected_hessians = solved.work.projected_hessians;
-    report.add(solved.work);  // the parts of an adaptive step are in the ledger already
+    report.add(solved.work);  // substeps of an adaptive step are already in the ledger
     report.elements = model.mesh.tet_count();
     report.objective = solved.work.value;
     report.objective_gradient = solved.work.gradient_norm;
@@ -217,7 +216,7 @@ struct Simulation::Impl {
   SimulationOptions options;
   State state, start;
   State before;    // the state before the last step
-  State previous;  // and before the one before that, when the integrator or the guess needs it
+  State previous;  // the state before `before`, if the integrator or the guess needs it
   bool has_previous = false;
   std::unique_ptr<Integrator> integrator;
   InitialGuess guess;
@@ -228,13 +227,13 @@ struct Simulation::Impl {
   std::optional<AdaptiveStep> adaptive;
   StepForces forces;                // of the last step
   std::vector<double> start_force;  // dV/dx of the loads at the start of an explicit run [N]
-  std::vector<double> load_force;   // the same of those that do not depend on x, now [N]
+  std::vector<double> load_force;   // current dV/dx of the loads that do not depend on x [N]
   double start_energy = 0;          // kinetic and elastic, at the start of an explicit run [J]
   double outside_work = 0;          // see Snapshot
   Ledger ledger;
   int steps_taken = 0;
-  MinimizeOptions minimize;   // of the step under way
-  double report_seconds = 0;  // what the report of the last step took, if it had a time budget
+  MinimizeOptions minimize;   // of the current step
+  double report_seconds = 0;  // time that the last report took, with a time budget [s]
 };
 
 Simulation::Simulation(Model model, State initial, SimulationOptions options) {
@@ -324,7 +323,7 @@ void Simulation::set_pins(std::vector<Pin> pins) {
   impl_->model.pins = std::move(pins);
   *impl_->pins = Pins(impl_->model.pins, impl_->start.q);
   impl_->E = std::make_unique<IncrementalPotential>(impl_->model, *impl_->pins);
-  // What was factorized has other rows of the identity.
+  // Factorizations depend on the pinned rows.
   impl_->direction = make_search_direction(impl_->options.solver);
   impl_->integrator = make_integrator(impl_->options.integrator);
   impl_->stand_at(impl_->state.time);
@@ -367,7 +366,7 @@ void Simulation::restore(const Snapshot& snapshot) {
   if (impl_->has_previous) impl_->previous = *snapshot.previous;
   impl_->ledger.begin(impl_->model, impl_->state.q);
   impl_->measure_start();
-  impl_->stand_at(impl_->state.time);  // moving targets stand where they stood
+  impl_->stand_at(impl_->state.time);  // restores moving targets
 }
 
 }  // namespace aspic

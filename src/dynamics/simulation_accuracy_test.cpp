@@ -19,7 +19,7 @@ struct UniaxialRow {
 };
 
 // Prescribes an affine stretch on the boundary of an unstructured-looking box and lets the inside find it.
-TEST(Simulation, StatesOfUniaxialStretchPassThePatchTest) {
+TEST(Simulation, UniaxialStretchPassesPatchTest) {
   const std::vector<UniaxialRow> rows = {{"neo_hookean_log", .3, .5, 1.21076739, -0.93535206},
                                          {"neo_hookean_log", .3, 1.5, 0.88017459, 0.37828018},
                                          {"neo_hookean", .3, 2, 0.77459667, 0.65384615},

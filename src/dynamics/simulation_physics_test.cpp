@@ -14,7 +14,7 @@ namespace {
 
 using namespace testing_models;
 
-TEST(Simulation, TheBenchmarkBeamFallsToTheAgreedDisplacement) {
+TEST(Simulation, BenchmarkBeamReachesReferenceDisplacement) {
   SimulationOptions options;
   options.solver.minimize.criterion = Criterion::first_gradient;
   Simulation simulation = simulate(beam(7), options);
@@ -36,7 +36,7 @@ TEST(Simulation, BackwardEulerLosesEnergyAndForwardEulerGainsIt) {
 }
 
 // The same beam in units of length a, of modulus and density b: lengths scale with a, times with a.
-TEST(Simulation, AChangeOfUnitsChangesNeitherIterationsNorTheDimensionlessResult) {
+TEST(Simulation, IsIndependentOfUnits) {
   const auto run = [](double a, double b) {
     TetMesh mesh = make_box({{0, 0, 0}}, {{4 * a, a, a}}, {8, 2, 2});
     Model model = make_model(mesh, {.young = 1e5 * b, .density = 1000 * b, .gravity = {{0, -9.81 / a, 0}}});
@@ -54,7 +54,7 @@ TEST(Simulation, AChangeOfUnitsChangesNeitherIterationsNorTheDimensionlessResult
   }
 }
 
-TEST(Simulation, AStretchedBodyComesToRestUnderDamping) {
+TEST(Simulation, DampedBodyComesToRest) {
   Model model = beam(1, {.material = "neo_hookean", .young = 1e6});
   model.damping.push_back(make_rayleigh_damping(*model.mass, 4, nullptr, 0));  // about critical
   Simulation simulation = simulate(std::move(model), {.h = 0.02, .integrator = "backward_euler", .solver = {}});

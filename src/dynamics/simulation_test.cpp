@@ -45,7 +45,7 @@ std::string description(const SimulationOptions& way) {
   return way.integrator + ", " + way.initial_guess + (way.adaptive.tolerance > 0 ? ", adaptive" : "");
 }
 
-TEST(Simulation, TheBitsDoNotDependOnTheNumberOfThreads) {
+TEST(Simulation, IsBitReproducibleOverThreads) {
   const int before = thread_count();
   for (const SimulationOptions& way : all_ways()) {
     const std::vector<double> one = state_after(way, 1);
@@ -54,7 +54,7 @@ TEST(Simulation, TheBitsDoNotDependOnTheNumberOfThreads) {
   set_thread_count(before);
 }
 
-TEST(Simulation, RestoredAfterAnyStepItContinuesToTheSameBits) {
+TEST(Simulation, IsBitReproducibleAfterRestore) {
   constexpr int kSteps = 4;
   for (const SimulationOptions& way : all_ways()) {
     Simulation whole = simulate(damped_beam_with_moving_pins_and_targets(), way);
@@ -83,7 +83,7 @@ TEST(Simulation, RestoredAfterAnyStepItContinuesToTheSameBits) {
   }
 }
 
-TEST(Simulation, ACheckpointOfAnotherSizeIsRefused) {
+TEST(Simulation, RejectsCheckpointOfAnotherSize) {
   Simulation simulation = simulate(beam(1), {.integrator = "bdf2", .solver = {}});
   simulation.step();
   Simulation::Snapshot snapshot = simulation.snapshot();
@@ -96,7 +96,7 @@ TEST(Simulation, ACheckpointOfAnotherSizeIsRefused) {
   }
 }
 
-TEST(Simulation, AnInterruptedStepLeavesTheStateAlone) {
+TEST(Simulation, InterruptedStepKeepsState) {
   Simulation simulation = simulate(beam(2));
   const State before = simulation.state();
   const StepReport report = simulation.step({}, StopToken([] { return true; }));
@@ -106,7 +106,7 @@ TEST(Simulation, AnInterruptedStepLeavesTheStateAlone) {
   EXPECT_EQ(simulation.steps_taken(), 0);
 }
 
-TEST(Simulation, AStepTakenAgainAfterAnInterruptionIsTheSameToTheBit) {
+TEST(Simulation, RepeatedStepIsBitReproducible) {
   Simulation smooth = simulate(damped_beam_with_moving_pins_and_targets());
   Simulation disturbed = simulate(damped_beam_with_moving_pins_and_targets());
   for (int i = 0; i < 3; ++i) {
@@ -119,7 +119,7 @@ TEST(Simulation, AStepTakenAgainAfterAnInterruptionIsTheSameToTheBit) {
   }
 }
 
-TEST(Simulation, AStepThatDoesNotConvergeSaysSo) {
+TEST(Simulation, ReportsUnconvergedStep) {
   SimulationOptions options;
   options.solver.minimize.max_iterations = 1;
   options.solver.minimize.tolerance = 1e-12;
@@ -128,7 +128,7 @@ TEST(Simulation, AStepThatDoesNotConvergeSaysSo) {
   EXPECT_GT(report.residual, report.residual_threshold);
 }
 
-TEST(Simulation, AStepWhoseEnergiesOverflowIsNoSuccess) {
+TEST(Simulation, OverflowIsNotSuccess) {
   State start = at_rest(beam(1).mesh);
   for (size_t i = 0; i < start.qdot.size(); i += 3) start.qdot[i] = 1e200;  // its square is beyond double precision
   for (const std::string& integrator : integrator_names()) {
@@ -138,14 +138,14 @@ TEST(Simulation, AStepWhoseEnergiesOverflowIsNoSuccess) {
   }
 }
 
-TEST(Simulation, AStepTooShortForDoublePrecisionIsNoSuccess) {
+TEST(Simulation, TooShortStepIsNotSuccess) {
   Simulation simulation = simulate(beam(2), {.h = 1e-9, .integrator = "backward_euler", .solver = {}});
   bool success = true;
   for (int i = 0; i < 5 && success; ++i) success = is_success(simulation.step().status);
   EXPECT_FALSE(success);
 }
 
-TEST(Simulation, ABodyAtRestIsSuccessThoughItsForcesAreRoundOff) {
+TEST(Simulation, BodyAtRestIsSuccess) {
   Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}), {.gravity = {}});
   State start = at_rest(model.mesh);
   for (size_t i = 0; i < start.q.size(); i += 3) {  // turned and moved, so that no force is exactly zero
@@ -157,13 +157,13 @@ TEST(Simulation, ABodyAtRestIsSuccessThoughItsForcesAreRoundOff) {
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(is_success(simulation.step().status));
 }
 
-TEST(Simulation, TimeIsAMultipleOfTheStep) {
+TEST(Simulation, TimeIsMultipleOfStep) {
   Simulation simulation = simulate(beam(1));
   for (int i = 0; i < 100; ++i) simulation.step();
   EXPECT_EQ(simulation.state().time, 100 * 0.01);
 }
 
-TEST(Simulation, AnExplodingExplicitSchemeEndsUndefined) {
+TEST(Simulation, ExplodingExplicitSchemeEndsUndefined) {
   Simulation simulation = simulate(beam(2), {.h = 0.1, .integrator = "forward_euler", .solver = {}});
   Status last = Status::converged;
   bool was_unstable = false;
@@ -175,7 +175,7 @@ TEST(Simulation, AnExplodingExplicitSchemeEndsUndefined) {
   EXPECT_TRUE(was_unstable);
 }
 
-TEST(Simulation, AStepThatBlowsUpLeavesTheBodyWhereItWasWhileTimeGoesOn) {
+TEST(Simulation, BlowUpKeepsPositionsAndAdvancesTime) {
   Simulation simulation = simulate(beam(2), {.h = 0.1, .integrator = "rk4", .solver = {}});
   for (int i = 0; i < 400; ++i) {
     const State before = simulation.state();
@@ -190,7 +190,7 @@ TEST(Simulation, AStepThatBlowsUpLeavesTheBodyWhereItWasWhileTimeGoesOn) {
   ADD_FAILURE() << "steps far above the stable one did not blow up";
 }
 
-TEST(Simulation, OptionsThatAnIntegratorCannotHeedAreRefusedInWords) {
+TEST(Simulation, RejectsOptionsThatIntegratorIgnores) {
   const auto refusal = [](const SimulationOptions& options) -> std::string {
     try {
       simulate(beam(1), options);
@@ -212,7 +212,7 @@ TEST(Simulation, OptionsThatAnIntegratorCannotHeedAreRefusedInWords) {
               HasSubstr("last_increment"));
 }
 
-TEST(Simulation, OtherPinsHoldFromTheNextStepOnAsIfTheyHadAlwaysBeenThere) {
+TEST(Simulation, NewPinsHoldFromNextStep) {
   const auto with_pin = [](Model model, const std::string& name, std::vector<int> vertices) {
     model.pins.push_back({name, std::move(vertices), {}});
     return model;
@@ -230,7 +230,7 @@ TEST(Simulation, OtherPinsHoldFromTheNextStepOnAsIfTheyHadAlwaysBeenThere) {
   }
 }
 
-TEST(Simulation, BadModelsAreRefusedInWords) {
+TEST(Simulation, RejectsBadModels) {
   const auto message = [](auto&& make) -> std::string {
     try {
       make();

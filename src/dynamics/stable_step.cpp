@@ -34,7 +34,7 @@ int largest_vertex(std::span<const double> v) {
   return largest;
 }
 
-// M^-1 (h^2 K + weight h C), whose largest eigenvalue belongs to the motion that is sought.
+// M^-1 (h^2 K + weight h C). The critical motion has the largest eigenvalue.
 class PowerIteration {
  public:
   PowerIteration(const BlockSparse& M, const BlockSparse& C, const BlockSparse& K, const Pins& pins,
@@ -43,7 +43,7 @@ class PowerIteration {
 
   StableStep run(size_t size, double weight, bool is_rk4) {
     for (auto* v : {&u_, &Mu_, &Ku_, &Cu_}) v->resize(size);
-    // Neighbors move against each other in the fastest vibration.
+    // In the fastest vibration, neighbors move in opposite directions.
     for (size_t i = 0; i < size; ++i) u_[i] = std::cos(2.4 * static_cast<double>(i)) + 0.1;
     pins_.set_zero(u_);
     StableStep stable{.h = std::numeric_limits<double>::infinity()};
@@ -94,7 +94,7 @@ class PowerIteration {
 // h^2 k + 2 h c = 4.
 double symplectic_euler_limit(double c, double k) { return 4 / (c + std::sqrt(c * c + 4 * k)); }
 
-// The faster root decides: the slower one of two real ones lies nearer to zero.
+// The larger root limits the step.
 double rk4_limit(double c, double k) {
   const std::complex<double> root = -(c + std::sqrt(std::complex<double>(c * c - 4 * k))) / 2.0;
   const double rate = std::abs(root);

@@ -12,7 +12,7 @@ namespace {
 
 using namespace testing_models;
 
-TEST(StableStep, SeparatesStepsThatSurviveFromStepsThatBlowUp) {
+TEST(StableStep, SeparatesStableFromUnstableSteps) {
   for (const MassKind mass : {MassKind::consistent, MassKind::lumped}) {
     const double limit = simulate(beam(2, {.mass = mass})).stable_step().h;
     const auto survives = [&](double h) {
@@ -26,7 +26,7 @@ TEST(StableStep, SeparatesStepsThatSurviveFromStepsThatBlowUp) {
   }
 }
 
-TEST(StableStep, IsThatOfASpringInClosedForm) {
+TEST(StableStep, MatchesSpring) {
   Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}), {.young = 1e-6, .mass = MassKind::lumped});
   double lightest = INFINITY;
   int vertex = -1;
@@ -51,7 +51,7 @@ Model damped_springs(double c, double k) {
 }
 
 // x'' + c x' + k x = 0: symplectic Euler is stable up to h^2 k + 2 h c = 4.
-TEST(StableStep, IsThatOfADampedSpringInClosedForm) {
+TEST(StableStep, MatchesDampedSpring) {
   for (const double c : {0.0, 20.0, 1e4}) {
     const double k = 1e4;
     const StableStep stable = simulate(damped_springs(c, k)).stable_step();
@@ -60,7 +60,7 @@ TEST(StableStep, IsThatOfADampedSpringInClosedForm) {
   }
 }
 
-TEST(StableStep, OfADampedBodySeparatesStepsThatSurviveFromStepsThatBlowUp) {
+TEST(StableStep, SeparatesStepsOfDampedBody) {
   const auto damped = [](double h) {
     Model model = beam(2, {.young = 1e5});
     model.damping.push_back(make_rayleigh_damping(*model.mass, 0, model.elasticity[0].get(), 0.02));
@@ -88,7 +88,7 @@ double rk4_growth(double c, double k, double h) {  // of x'' + c x' + k x = 0 in
   return most;
 }
 
-TEST(StableStep, OfRk4IsWhereItsOwnGrowthBegins) {
+TEST(StableStep, Rk4LimitIsWhereGrowthStarts) {
   const double k = 1e4;
   EXPECT_NEAR(rk4_limit(0, k), std::sqrt(8 / k), 1e-12);
   EXPECT_NEAR(rk4_limit(100, 0), 2.785293563405282 / 100, 1e-12);
@@ -101,7 +101,7 @@ TEST(StableStep, OfRk4IsWhereItsOwnGrowthBegins) {
 }
 
 // Near critical damping rk4 bears steps more than twice as long as sqrt(2) times those of symplectic Euler.
-TEST(StableStep, OfRk4SeparatesStepsOfDampedSpringsThatSurviveFromStepsThatBlowUp) {
+TEST(StableStep, Rk4LimitSeparatesStepsOfDampedSprings) {
   for (const double c : {0.0, 20.0, 200.0, 1000.0}) {
     const auto simulation = [&](double h) {
       return simulate(damped_springs(c, 1e4), {.h = h, .integrator = "rk4", .solver = {}});
@@ -156,7 +156,7 @@ class Dashpots : public Energy {
 };
 
 // One vertex vibrates undamped, the others are damped critically: what limits symplectic Euler does not limit rk4.
-TEST(StableStep, OfRk4HeedsTheFastestVibrationBesideTheMostDampedMotion) {
+TEST(StableStep, Rk4LimitIncludesFastestVibration) {
   Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}), {.young = 1e-6, .mass = MassKind::lumped});
   const double k = 1e4, damped_k = 0.25 * k;
   for (int v = 0; v < model.mesh.vertex_count(); ++v)
@@ -170,7 +170,7 @@ TEST(StableStep, OfRk4HeedsTheFastestVibrationBesideTheMostDampedMotion) {
   EXPECT_NEAR(limit, std::sqrt(8 / k), 1e-3 * limit);
 }
 
-TEST(StableStep, StaysAsItIsAndKnowsTheScheme) {
+TEST(StableStep, DependsOnSchemeAndStaysConstant) {
   const auto damped = [](const char* integrator) {
     return simulate(damped_beam_with_moving_pins_and_targets(), {.h = 1e-6, .integrator = integrator});
   };

@@ -25,7 +25,7 @@ double mean_edge(const TetMesh& mesh) {
   return mesh.tets.empty() ? 1 : sum / (6 * static_cast<double>(mesh.tets.size()));
 }
 
-// Uniform in [-1, 1] and the same on every system.
+// Uniform in [-1, 1], equal on all systems.
 class Noise {
  public:
   double operator()() { return 2 * (static_cast<double>(random_() >> 11) * 0x1p-53) - 1; }
@@ -42,7 +42,8 @@ std::vector<double> near_rest(const TetMesh& mesh, double edge) {
   return q;
 }
 
-// About the origin: a stretch of `amount` along x, half of it back along y, a shear, and vertices out of line.
+// About the origin: a stretch by `amount` along x, a contraction by half of it along y, a shear, and random
+// displacements.
 std::vector<double> deformed(const std::vector<double>& q, double amount, double edge) {
   Noise noise;
   std::vector<double> x(q.size());

@@ -19,7 +19,7 @@ Simulation simulation_of(Model model) {
   return Simulation(std::move(model), std::move(state), {});
 }
 
-TEST(StepDerivatives, EveryTermOfADampedDrivenBeamIsRight) {
+TEST(StepDerivatives, EveryTermOfDampedDrivenBeamPasses) {
   const Simulation simulation = simulation_of(damped_beam_with_moving_pins_and_targets());
   std::set<std::string> terms, states;
   for (const TermDerivatives& t : check_step_derivatives(simulation)) {
@@ -59,7 +59,7 @@ class Wrong : public Energy {
   int64_t slot_ = 0;
 };
 
-TEST(StepDerivatives, AWrongTermIsNamedWithItsVertex) {
+TEST(StepDerivatives, NamesVertexOfWrongTerm) {
   constexpr int kEntry = 3 * 17 + 1;
   for (const bool in_gradient : {true, false}) {
     Model model = beam(1);
@@ -78,7 +78,7 @@ TEST(StepDerivatives, AWrongTermIsNamedWithItsVertex) {
   }
 }
 
-TEST(StepDerivatives, EntriesAreNamedInWords) {
+TEST(StepDerivatives, NamesEntries) {
   EXPECT_EQ(entry_name(37), "vertex 12, y");
   const TetMesh mesh = make_box({}, {{1, 1, 1}}, {1, 1, 1});
   const int tet = tet_with(mesh, 0, 7);

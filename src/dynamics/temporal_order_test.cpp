@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "dynamics/models_test.h"
-#include "verify/integrators.h"
+#include "verification/integrators.h"
 
 namespace aspic {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 using verify::affine_motion_error;
 using verify::Held;
 
-TEST(TemporalOrder, IsThatOfTheSchemeWhereverPinsCarryTheBodyAlong) {
+TEST(TemporalOrder, HoldsWithMovingPins) {
   for (const std::string& integrator : verify::integrators_in_time()) {
     const auto scheme = make_integrator(integrator);
     for (const Held held : {Held::nowhere, Held::on_one_face, Held::on_the_boundary}) {
@@ -26,7 +26,7 @@ TEST(TemporalOrder, IsThatOfTheSchemeWhereverPinsCarryTheBodyAlong) {
   }
 }
 
-TEST(TemporalOrder, HoldsDownToAFloorOf1em10) {
+TEST(TemporalOrder, HoldsDownTo1em10) {
   EXPECT_LT(affine_motion_error("rk4", 0.0025, Held::on_one_face), 1e-10);
   const double error = affine_motion_error("tr_bdf2", 0.0005, Held::on_one_face);
   EXPECT_NEAR(error * 400, affine_motion_error("tr_bdf2", 0.01, Held::on_one_face), 0.1 * error * 400);
@@ -42,7 +42,7 @@ std::vector<double> thrown_beam(const std::string& integrator, double h) {
   return simulation.state().q;
 }
 
-TEST(TemporalOrder, AllSchemesConvergeWherePinnedVerticesStartWithVelocities) {
+TEST(TemporalOrder, HoldsWithMovingPinsAtStart) {
   const std::vector<double> exact = thrown_beam("rk4", 0.0025);
   for (const std::string& integrator : verify::integrators_in_time()) {
     const double coarse = verify::largest_difference(thrown_beam(integrator, 0.005), exact);

@@ -65,7 +65,7 @@ void expect_sound(const BudgetedStep& step, const std::string& what) {
   EXPECT_LT(std::abs(report.ledger_error), 1e-10 * largest) << what;
 }
 
-TEST(TimeBudget, IsKeptWhereverItEndsByEveryIntegrator) {
+TEST(TimeBudget, IsKeptByEveryIntegrator) {
   for (const std::string& integrator : budgeted_integrators()) {
     std::set<Status> ends;
     bool within_solve = false;
@@ -91,7 +91,7 @@ TEST(TimeBudget, IsKeptByEveryMethod) {
                    method + ", " + std::to_string(budget) + ": ");
 }
 
-TEST(TimeBudget, ThatIsAmpleChangesNoBit) {
+TEST(TimeBudget, AmpleBudgetChangesNoBit) {
   const auto state = [](double budget) {
     Simulation simulation = simulate(beam(2), {.solver = {.minimize = {}, .time_budget = budget}});
     for (int i = 0; i < 3; ++i) EXPECT_EQ(simulation.step().status, Status::converged);
@@ -100,7 +100,7 @@ TEST(TimeBudget, ThatIsAmpleChangesNoBit) {
   EXPECT_EQ(state(1e9), state(0));
 }
 
-TEST(TimeBudget, MoreOfItNeverEndsFurtherAwayInTheEnd) {
+TEST(TimeBudget, LargerBudgetEndsCloserToMinimum) {
   const SimulationOptions options{.solver = {.linear = "block_jacobi", .minimize = {}}};
   const double least = step_within(1e9, options).report.objective;
   const double little = step_within(20, options).report.objective;
@@ -108,7 +108,7 @@ TEST(TimeBudget, MoreOfItNeverEndsFurtherAwayInTheEnd) {
   EXPECT_GE(step_within(60, options).report.objective, least);
 }
 
-TEST(TimeBudget, IsRefusedInWordsWhereItMeansNothing) {
+TEST(TimeBudget, IsRejectedByExplicitSchemes) {
   const auto refusal = [](SimulationOptions options) -> std::string {
     if (options.solver.time_budget == 0) options.solver.time_budget = 0.01;
     try {

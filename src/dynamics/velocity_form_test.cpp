@@ -31,7 +31,7 @@ class Velocities : public ::testing::Test {
   VelocityForm form{E, state.q, kStep};
 };
 
-TEST_F(Velocities, ValueIsKineticEnergyOfTheChangePlusPotential) {
+TEST_F(Velocities, ValueIsKineticPlusPotentialEnergy) {
   std::vector<double> v(state.q.size()), dv(v.size()), Mdv(v.size());
   for (size_t i = 0; i < v.size(); ++i) v[i] = 0.5 * std::cos(3.0 * static_cast<double>(i));
   for (size_t i = 0; i < v.size(); ++i) dv[i] = v[i] - state.qdot[i];
@@ -60,7 +60,7 @@ TEST_F(Velocities, GradientAndHessianAreDerivatives) {
   for (size_t i = 0; i < n; ++i) EXPECT_NEAR((g_ahead[i] - g_behind[i]) / (2 * s), Hd[i], 1e-6 * size);
 }
 
-TEST_F(Velocities, NewtonVisitsTheSamePointsAsInPositions) {
+TEST_F(Velocities, NewtonVisitsSamePointsAsInPositions) {
   const auto iterates = [&](Objective& objective, std::vector<double> x) {
     Newton newton(make_linear_solver("cholesky"));
     std::vector<std::vector<double>> visited;

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "material/states.h"
-#include "verify/uniaxial.h"
+#include "verification/uniaxial.h"
 
 namespace aspic {
 namespace {

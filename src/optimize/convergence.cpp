@@ -76,8 +76,8 @@ double Convergence::size_of_direction(std::span<const double> g, std::span<const
   }
 }
 
-// Near a saddle a short direction does not mean that a minimum is near. Nor does one of a modified Hessian, which
-// shortens it: the gradient must then be small beside what it is made of.
+// A short direction near a saddle or from a modified Hessian does not imply convergence: the gradient must then be
+// small relative to the forces it is the sum of.
 bool Convergence::is_near_minimum(double size, const DirectionReport& made) {
   constexpr double kBalanced = 1e-6;
   if (!made.kept) is_modified_ = made.projected_elements > 0;
@@ -96,7 +96,7 @@ bool Convergence::is_at_round_off(double margin) const {
 }
 
 InnerAccuracy Convergence::inner_accuracy(const MinimizeReport& report) const {
-  constexpr double kFinestSolve = 1e-12;  // the most accurate one that is worth its iterations
+  constexpr double kFinestSolve = 1e-12;  // smallest relative residual that is worth its iterations
   const double norm = report.gradient_norm;
   InnerAccuracy accuracy = {.loosest = options_->max_forcing,
                             .enough = judges_direction() ? 0 : 0.5 * report.threshold / norm};

@@ -9,10 +9,10 @@ namespace aspic {
 namespace {
 
 constexpr int kDecades = 9;
-// A part of the variation over one length counts as the size of a gradient that vanishes, as that of a body at rest.
+// Fraction of the variation over one length that is the characteristic size of a zero gradient.
 constexpr double kRestShare = 0.01;
 
-// Errors below are round-off, whatever the steps are.
+// Errors below are round-off.
 constexpr double kNoise = 1e-12;
 
 using Vector = std::vector<double>;
@@ -48,7 +48,7 @@ class Checker {
   Vector direction(std::mt19937_64& random) const {
     Vector d(x_.size());
     for (size_t i = 0; i < d.size(); ++i) {
-      const double u = 2 * (static_cast<double>(random() >> 11) * 0x1p-53) - 1;  // the same on every system
+      const double u = 2 * (static_cast<double>(random() >> 11) * 0x1p-53) - 1;  // equal on all systems
       d[i] = is_fixed(i) ? 0 : u;
     }
     return d;
@@ -149,8 +149,7 @@ class Checker {
     return top / bottom;
   }
 
-  // Halves the range of entries that move, and goes on with the half of the larger error: the entry that stays is
-  // wrong if any is.
+  // Bisects the range of entries and keeps the half with the larger error. The last entry is wrong if any entry is.
   template <class Error>
   size_t worst_entry(Error error) const {
     Range range = all();

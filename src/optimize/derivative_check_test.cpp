@@ -81,12 +81,12 @@ std::vector<double> quartic_point() {
   return x;
 }
 
-TEST(DerivativeCheck, AcceptsARightGradientAndHessian) {
+TEST(DerivativeCheck, AcceptsCorrectGradientAndHessian) {
   Quartic f;
   EXPECT_TRUE(check_derivatives(differentiable(f), quartic_point()).passed());
 }
 
-TEST(DerivativeCheck, NamesTheWrongEntryOfAGradient) {
+TEST(DerivativeCheck, NamesWrongGradientEntry) {
   for (const int wrong : {0, 17, 41}) {
     Quartic f;
     f.wrong_gradient = wrong;
@@ -98,7 +98,7 @@ TEST(DerivativeCheck, NamesTheWrongEntryOfAGradient) {
   }
 }
 
-TEST(DerivativeCheck, NamesTheWrongEntryOfAHessian) {
+TEST(DerivativeCheck, NamesWrongHessianEntry) {
   for (const auto& [row, column] : {std::pair{8, 8}, std::pair{30, 29}}) {
     Quartic f;
     f.wrong_row = row, f.wrong_column = column;
@@ -112,7 +112,7 @@ TEST(DerivativeCheck, NamesTheWrongEntryOfAHessian) {
   }
 }
 
-TEST(DerivativeCheck, EntriesThatAreNoVariablesDoNotCount) {
+TEST(DerivativeCheck, IgnoresFixedEntries) {
   Quartic f;
   f.wrong_gradient = 17;
   DerivativeCheckOptions options;
@@ -121,7 +121,7 @@ TEST(DerivativeCheck, EntriesThatAreNoVariablesDoNotCount) {
   EXPECT_TRUE(check_derivatives(differentiable(f), quartic_point(), options).gradient.passed);
 }
 
-TEST(DerivativeCheck, StepsOutOfTheDomainAreGaps) {
+TEST(DerivativeCheck, SkipsStepsOutsideDomain) {
   Differentiable f;  // -log x - log y - log z
   f.value = [](std::span<const double> x) {
     double sum = 0;

@@ -17,7 +17,7 @@ std::string FallbackChain::description() const {
   return text;
 }
 
-// What a method remembers is of a path that another one has left since.
+// Drops the history of the method, because another method has moved the iterate since.
 void FallbackChain::start(size_t method) {
   current_ = method;
   methods_[method]->begin();

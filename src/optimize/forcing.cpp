@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kSmallest = 1e-8;
 constexpr double kGamma = 0.9;
-constexpr double kMatters = 0.1;  // below it the eta before does not hold the next one up
+constexpr double kMatters = 0.1;  // safeguard: ignores the previous eta below this value
 
 }  // namespace
 

@@ -26,7 +26,7 @@ class ProgressiveHessian : public HessianPolicy {
   }
 
   bool compute(NewtonSystem& system, NewtonTask& task) override {
-    // Relaxed only once a direction was of use: else a retreat would take back what it gains, and never end.
+    // Relaxes only after a successful direction; otherwise fallbacks would never end.
     std::exchange(tighten_next_, false) ? projection_.tighten(task.g) : projection_.relax();
     for (;; projection_.tighten(task.g)) {
       const Projection projection = projection_.at(task.g);
@@ -72,19 +72,19 @@ class HessianOnDemand : public HessianPolicy {
   bool retreat() override { return skip_exact_ = !is_modified_; }
 
  private:
-  static constexpr int kAbsoluteSpan = 8;  // directions; twice as many after each further one that overshoots
-  static constexpr int kPatience = 2;      // directions of modified Hessians in a row before truncated ones are tried
+  static constexpr int kAbsoluteSpan = 8;  // number of directions; doubles after each overshoot
+  static constexpr int kPatience = 2;      // successive directions of modified Hessians before truncated ones
 
-  // Modified Hessians are too stiff near a saddle: the iterates leave it at a creep. A truncated direction of the exact
-  // Hessian is used where it gains as much as the last step did.
+  // Modified Hessians are too stiff near a saddle, so iterates leave it slowly. Uses a truncated direction of the exact
+  // Hessian if it decreases E as much as the last step did.
   bool leaves_saddle(NewtonSystem& system, NewtonTask& task, double gained) {
     if (!system.solve_truncated(task)) return false;
     return task.report.truncated = *task.value - lengthen(task) >= gained;
   }
 
-  // Where elements are inverted or far from their volume, negative eigenvalues are as large as positive ones. Clamped,
-  // they leave a direction that reaches too far; their absolute values hold it back [Chen2024Filtering]. Elsewhere
-  // those are too stiff.
+  // In inverted or strongly compressed elements, negative eigenvalues are as large as positive ones. Clamping them
+  // gives directions that are too long, absolute values shorten them [Chen2024Filtering]. Elsewhere these are too
+  // stiff.
   bool solve_modified(NewtonSystem& system, NewtonTask& task) {
     const auto is_unjudged = [&] { return !task.value || system.is_late(task.report); };
     if (absolute_left_ == 0) {
@@ -99,8 +99,8 @@ class HessianOnDemand : public HessianPolicy {
     return true;
   }
 
-  // Doubles d for as long as the parabola through E at its start and its end has its minimum beyond twice d, and E
-  // falls. Returns E at its end, or where terms of E forbid that, at the end of the part they allow.
+  // Doubles d while E decreases and the parabola through E at both ends of d has its minimum beyond 2 d. Returns E at
+  // x + d, or at the largest feasible step along d.
   double lengthen(NewtonTask& task) {
     const double reach = task.E.max_step(task.x, task.d);
     double end = value_ahead(task, std::min(1.0, reach));
@@ -124,11 +124,11 @@ class HessianOnDemand : public HessianPolicy {
     return task.E.value(ahead_);
   }
 
-  bool skip_exact_ = false;    // of the next direction, after a retreat
+  bool skip_exact_ = false;    // for the next direction, after a fallback
   bool is_modified_ = false;   // the Hessian of the last direction
   int absolute_left_ = 0;      // number of upcoming modified Hessians that use absolute eigenvalues
   int absolute_span_ = 0;      // its value after the next direction that overshoots
-  int modified_in_a_row_ = 0;  // directions that are not of the exact Hessian
+  int modified_in_a_row_ = 0;  // successive directions of modified Hessians
   double last_value_ = 0;      // E at the last iterate with such a direction
   std::vector<double> ahead_;
 };

@@ -20,7 +20,7 @@ Vector product(const BlockSparse& H, std::span<const double> u) {
   return Hu;
 }
 
-// What is left of u across d, with the length of d; empty when u is along d.
+// The component of u orthogonal to d, scaled to the length of d; empty if u is parallel to d.
 Vector across(Objective& E, std::span<const double> u, std::span<const double> d) {
   const double dd = E.dot(d, d), along = E.dot(u, d) / dd;
   Vector v(u.size());
@@ -36,11 +36,11 @@ Vector across_direction(const LiveIteration& at, const BlockSparse& H) {
   for (double& gi : downhill) gi = -gi;
   Vector v = across(at.E, downhill, at.d);
   if (v.empty()) v = across(at.E, product(H, at.g), at.d);
-  if (v.empty()) v.assign(at.d.size(), 0.0);  // E is isotropic here: every plane through d is alike
+  if (v.empty()) v.assign(at.d.size(), 0.0);  // E is isotropic here: all planes through d are equal
   return v;
 }
 
-// Half of them around the accepted step where the longest trial is so much longer that others would miss it.
+// Half of the samples are around the accepted step if the longest trial is much longer.
 Vector samples_along(const LiveIteration& at, int samples) {
   double last = at.tried.empty() ? 1 : 1.25 * at.alpha;
   for (const Trial& trial : at.tried) last = std::max(last, 1.25 * trial.alpha);

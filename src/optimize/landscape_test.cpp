@@ -22,7 +22,7 @@ void look_at_first_iteration(Direction&& direction, const Look& look) {
 
 Newton direct_newton() { return Newton(make_linear_solver("cholesky")); }
 
-TEST(Landscape, TheCurveTouchesItsQuadraticModelToThirdOrder) {
+TEST(Landscape, CurveMatchesModelToThirdOrder) {
   look_at_first_iteration(direct_newton(), [](const LiveIteration& iteration) {
     for (const CurvePoint& point : curve_along(iteration, 1e-4, 201))
       EXPECT_LE(std::abs(point.value - point.model),
@@ -31,7 +31,7 @@ TEST(Landscape, TheCurveTouchesItsQuadraticModelToThirdOrder) {
   });
 }
 
-TEST(Landscape, TheCurvePassesThroughTheTrialsOfTheLineSearch) {
+TEST(Landscape, CurvePassesThroughTrials) {
   look_at_first_iteration(GradientDescent(), [](const LiveIteration& iteration) {
     ASSERT_GT(iteration.tried.size(), 1u);
     const double last = 1.25 * iteration.tried[0].alpha;
@@ -48,7 +48,7 @@ TEST(Landscape, TheCurvePassesThroughTheTrialsOfTheLineSearch) {
 }
 
 // Gradient descent accepts an eighth of its first trial.
-TEST(Landscape, AnAcceptedStepMuchShorterThanTheFirstTrialHasSamplesAroundIt) {
+TEST(Landscape, ShortAcceptedStepHasSamplesAround) {
   look_at_first_iteration(GradientDescent(), [](const LiveIteration& iteration) {
     ASSERT_EQ(iteration.alpha, 0.125);
     const auto curve = curve_along(iteration, 1e-4, 101);
@@ -59,7 +59,7 @@ TEST(Landscape, AnAcceptedStepMuchShorterThanTheFirstTrialHasSamplesAroundIt) {
 }
 
 // At (s, t) = (1, 0) stands the end of the full step, where the model of Newton's method has its minimum.
-TEST(Landscape, TheSliceHoldsTheIterateAndTheMinimumOfTheModel) {
+TEST(Landscape, SliceContainsIterateAndModelMinimum) {
   look_at_first_iteration(direct_newton(), [](const LiveIteration& iteration) {
     const Slice slice = slice_through(iteration, 41);
     const SlicePoint* lowest = &slice.point[0];
@@ -76,7 +76,7 @@ TEST(Landscape, TheSliceHoldsTheIterateAndTheMinimumOfTheModel) {
 }
 
 // The plane of gradient descent is spanned by g and H g, so it is not a line.
-TEST(Landscape, TheSliceOfGradientDescentIsAPlane) {
+TEST(Landscape, SliceOfGradientDescentIsPlane) {
   look_at_first_iteration(GradientDescent(), [](const LiveIteration& iteration) {
     const Slice slice = slice_through(iteration, 5);
     EXPECT_GT(std::abs(slice.point[0].value - slice.point[4 * 5].value), 1e-3);
@@ -94,7 +94,7 @@ TEST(Landscape, StopsOnRequest) {
   });
 }
 
-TEST(Landscape, LookingChangesNoBitOfTheMinimisation) {
+TEST(Landscape, SamplingChangesNoBit) {
   const auto minimum = [](bool look) {
     Rosenbrock f;
     std::vector<double> x = {-0.8, 0.6, 0};

@@ -6,7 +6,7 @@
 namespace aspic {
 namespace {
 
-// A pair with a smaller cosine between s and y says nothing certain of the curvature.
+// Pairs with a smaller cosine between s and y carry no reliable curvature.
 constexpr double kLeastCosine = 1e-8;
 
 void add_multiple(double factor, std::span<const double> v, std::span<double> to) {
@@ -34,7 +34,7 @@ void LBFGS::resize(size_t n) {
   for (Pair& pair : pairs_) pair.s.resize(n), pair.y.resize(n);
 }
 
-// The last step as a pair, if E curves upwards along it. A second call at the same x adds none.
+// Stores the last step as a pair if E has positive curvature along it. A second call at the same x adds none.
 void LBFGS::remember(Objective& E, std::span<const double> x, std::span<const double> g) {
   if (has_last_) {
     Pair& pair = pairs_[next_];
@@ -71,8 +71,8 @@ bool LBFGS::compute(const Iterate& at, std::span<double> d, DirectionReport& rep
   return true;
 }
 
-// A Hessian has the right size, and so has at first what the objective itself gives. What else B is, it is scaled by
-// the last change [Nocedal and Wright 2006, eq. 7.20], and the first direction by the quadratic model along it.
+// Scales directions unless B is the Hessian or, in the first iteration, the preconditioner of the objective: the first
+// one by the quadratic model along it, later ones by the last pair [Nocedal and Wright 2006, eq. 7.20].
 bool LBFGS::scale(const Iterate& at, std::span<double> d, DirectionReport& report) {
   if (B_.kind() == PreconditionerKind::hessian) return true;
   if (B_.kind() == PreconditionerKind::own && count_ == 0) return true;

@@ -32,7 +32,7 @@ LineSearchResult backtrack(const SearchLine& line, const LineSearchOptions& opti
       now.by_slope = true;
       now.accepted = E.dot(gradient, d) <= (2 * options.sufficient_decrease - 1) * slope;
     } else {
-      now.accepted = now.value <= now.bound;  // false for what is not a number
+      now.accepted = now.value <= now.bound;  // false for NaN
     }
     if (now.accepted) {
       result.alpha = alpha;

@@ -28,7 +28,7 @@ MinimizeReport minimize_rosenbrock(const SolverOptions& options, std::vector<dou
 }
 
 // The smallest eigenvalue of the Hessian at (1, 1) is 0.399, so that |g| <= 1e-6 leaves an error of 2.5e-6.
-TEST(Methods, AllFindTheMinimumOfRosenbrockWithEveryPreconditioner) {
+TEST(Methods, MinimizeRosenbrockWithEveryPreconditioner) {
   for (const std::string& method : minimizer_names())
     for (const std::string& preconditioner : preconditioner_names()) {
       const SolverOptions options{.method = method, .preconditioner = preconditioner};
@@ -43,7 +43,7 @@ TEST(Methods, AllFindTheMinimumOfRosenbrockWithEveryPreconditioner) {
     }
 }
 
-TEST(Methods, TheMoreAMethodKnowsOfTheCurvatureTheFewerIterationsItNeeds) {
+TEST(Methods, MoreCurvatureTakesFewerIterations) {
   std::map<std::string, int> iterations;
   for (const std::string method : {"newton", "lbfgs", "nonlinear_cg", "gradient_descent"}) {
     std::vector<double> x = {-0.8, 0.6, 0};
@@ -55,7 +55,7 @@ TEST(Methods, TheMoreAMethodKnowsOfTheCurvatureTheFewerIterationsItNeeds) {
   EXPECT_LT(5 * iterations["nonlinear_cg"], iterations["gradient_descent"]);
 }
 
-TEST(Methods, GradientDescentIsThatOfTheLectureIfNotPreconditioned) {
+TEST(Methods, GradientDescentWithoutPreconditionerIsMinusGradient) {
   Rosenbrock f;
   const std::vector<double> x = {-0.8, 0.6, 0.3};
   std::vector<double> g(3), d(3);
@@ -86,7 +86,7 @@ class Parabola : public Objective {
   BlockSparse H_;
 };
 
-TEST(NonlinearCG, EndsAfterAsManyIterationsAsAQuadraticHasEigenvalues) {
+TEST(NonlinearCG, TakesOneIterationPerEigenvalue) {
   Parabola f;
   std::vector<double> x = {1, 1, 1};
   MinimizeOptions options;
@@ -98,7 +98,7 @@ TEST(NonlinearCG, EndsAfterAsManyIterationsAsAQuadraticHasEigenvalues) {
 
 // H <- (I - rho s y') H (I - rho y s') + rho s s' for each of the last eight steps, from H = (s.y / y.y) I of the last
 // [Nocedal and Wright 2006, eq. 7.16 and 7.20].
-TEST(LBFGS, IsTheRecursionOfItsMatrices) {
+TEST(LBFGS, MatchesMatrixRecursion) {
   for (int steps = 1; steps <= 10; ++steps) {
     Parabola f;
     const auto method = make_search_direction({.method = "lbfgs", .preconditioner = "none"});
@@ -125,7 +125,7 @@ TEST(LBFGS, IsTheRecursionOfItsMatrices) {
   }
 }
 
-TEST(Preconditioner, OfTheHessianMakesAQuadraticRoundInOneStepAndIsMadeOncePerMinimisation) {
+TEST(Preconditioner, HessianSolvesQuadraticInOneStep) {
   for (const std::string method : {"gradient_descent", "nonlinear_cg", "lbfgs"}) {
     Parabola f;
     std::vector<double> x = {1, 1, 1};
@@ -137,7 +137,7 @@ TEST(Preconditioner, OfTheHessianMakesAQuadraticRoundInOneStepAndIsMadeOncePerMi
   }
 }
 
-TEST(Preconditioner, OfTheMassIsTheIdentityForAFunctionWithoutAMetric) {
+TEST(Preconditioner, MassIsIdentityWithoutMetric) {
   Rosenbrock f;
   DirectionReport report;
   const std::vector<double> x = {0, 0, 0}, r = {1, -2, 3};
@@ -147,7 +147,7 @@ TEST(Preconditioner, OfTheMassIsTheIdentityForAFunctionWithoutAMetric) {
   EXPECT_EQ(report.hessians, 0);
 }
 
-TEST(Preconditioner, IsKeptUntilTheNextMinimisationBegins) {
+TEST(Preconditioner, IsKeptDuringMinimization) {
   Rosenbrock f;
   Preconditioner B(PreconditionerKind::hessian, "cholesky");
   DirectionReport report;
@@ -162,7 +162,7 @@ TEST(Preconditioner, IsKeptUntilTheNextMinimisationBegins) {
   EXPECT_EQ(report.factorizations, 2);
 }
 
-TEST(ModelStep, LeadsToTheMinimumOfAParabolaAndGoesOnWhereThereIsNone) {
+TEST(ModelStep, ReachesMinimumOfParabola) {
   Parabola f;
   ModelStep step;
   DirectionReport report;
@@ -178,7 +178,7 @@ TEST(ModelStep, LeadsToTheMinimumOfAParabolaAndGoesOnWhereThereIsNone) {
   EXPECT_NEAR(step.along({f2, saddle, g}, along, report), 2.0 / 4, 1e-6);  // twice the length of the last step
 }
 
-TEST(Forcing, TightensWithTheSquareOfTheProgressAndStopsAtWhatIsEnough) {
+TEST(Forcing, TightensQuadraticallyDownToBound) {
   Forcing forcing;
   forcing.begin();
   const InnerAccuracy accuracy{.loosest = 0.1, .enough = 0};
@@ -191,7 +191,7 @@ TEST(Forcing, TightensWithTheSquareOfTheProgressAndStopsAtWhatIsEnough) {
   EXPECT_DOUBLE_EQ(forcing.at(1e-13, {.loosest = 1e-10, .enough = 0.05}), 1e-10);
 }
 
-TEST(Forcing, DoesNotTightenSuddenlyWhereItWasVeryLoose) {
+TEST(Forcing, DoesNotTightenSuddenly) {
   Forcing forcing;
   forcing.begin();
   const InnerAccuracy loose{.loosest = 0.9, .enough = 0};
@@ -199,7 +199,7 @@ TEST(Forcing, DoesNotTightenSuddenlyWhereItWasVeryLoose) {
   EXPECT_DOUBLE_EQ(forcing.at(0.1, loose), 0.9 * 0.81);  // and not 0.9 * 0.01
 }
 
-TEST(ProgressiveProjection, GrowsFromTheLargestResidualsUntilItCoversAll) {
+TEST(ProgressiveProjection, GrowsFromLargestResiduals) {
   const std::vector<double> g = {1, 0, 0, 0, -0.6, 0, 0.3, 0, 0, 0, 0, 1e-3};
   ProgressiveProjection projection;
   projection.begin();
@@ -241,7 +241,7 @@ class Scripted : public SearchDirection {
   std::string& log_;
 };
 
-TEST(FallbackChain, TriesEachMethodsOwnWaysFirstAndBeginsEachIterationWithTheFirst) {
+TEST(FallbackChain, UsesFallbacksOfEachMethodFirst) {
   std::string log;
   std::vector<std::unique_ptr<SearchDirection>> methods;
   methods.push_back(std::make_unique<Scripted>("a", false, true, log));
@@ -258,7 +258,7 @@ TEST(FallbackChain, TriesEachMethodsOwnWaysFirstAndBeginsEachIterationWithTheFir
   EXPECT_EQ(report.iterations, 2);
 }
 
-TEST(FallbackChain, EndsWithoutADescentDirectionWhenAllMethodsFail) {
+TEST(FallbackChain, FailsIfAllMethodsFail) {
   std::string log;
   std::vector<std::unique_ptr<SearchDirection>> methods;
   methods.push_back(std::make_unique<Scripted>("a", false, false, log));
@@ -270,7 +270,7 @@ TEST(FallbackChain, EndsWithoutADescentDirectionWhenAllMethodsFail) {
   EXPECT_EQ(log, "abb");
 }
 
-TEST(FallbackChain, RescuesAnExactNewtonMethodAtANegativeEigenvalue) {
+TEST(FallbackChain, RescuesExactNewtonAtNegativeEigenvalue) {
   const std::vector<double> start = {0, 1, 0};
   std::vector<double> x = start;
   EXPECT_EQ(minimize_rosenbrock({.definiteness = "exact"}, x).status, Status::no_descent);
@@ -288,7 +288,7 @@ std::string conflict(const SolverOptions& options) {
   return found ? found->option + ": " + found->reason : "";
 }
 
-TEST(SolverOptions, ThatAMethodHasNoUseForAreErrorsWhichNameThoseThatHave) {
+TEST(SolverOptions, UnusedOptionsNameMethodsThatUseThem) {
   EXPECT_EQ(conflict({.method = "lbfgs", .definiteness = "clamped"}),
             "definiteness: definiteness = 'clamped' is of no use to lbfgs; these have a use for it: newton, newton_cg "
             "(or leave it at 'auto')");
@@ -303,7 +303,7 @@ TEST(SolverOptions, ThatAMethodHasNoUseForAreErrorsWhichNameThoseThatHave) {
   EXPECT_THROW(make_search_direction({.method = "newton", .preconditioner = "mass"}), InvalidInput);
 }
 
-TEST(SolverOptions, CriteriaThatJudgeDirectionsNeedMethodsThatEstimateTheMinimiser) {
+TEST(SolverOptions, DirectionCriteriaNeedEstimatesOfTheMinimizer) {
   const auto with = [](const std::string& method, const std::vector<std::string>& fallback) {
     SolverOptions options{.method = method, .fallback = fallback};
     options.minimize.criterion = Criterion::velocity;
@@ -316,7 +316,7 @@ TEST(SolverOptions, CriteriaThatJudgeDirectionsNeedMethodsThatEstimateTheMinimis
   EXPECT_EQ(with("newton", {"lbfgs"})->option, "criterion");
 }
 
-TEST(SolverOptions, EveryMethodSaysItsName) {
+TEST(SolverOptions, EveryMethodHasItsName) {
   for (const std::string& method : minimizer_names()) {
     const auto direction = make_search_direction({.method = method});
     EXPECT_EQ(direction->name(), method);

@@ -60,7 +60,7 @@ std::vector<Criterion> all_criteria() {
 
 namespace {
 
-// A line search that fails this close to the round-off of the gradient has nothing left to find.
+// A failed line search counts as round-off if the gradient is below this multiple of its rounding error.
 constexpr double kRoundOffMargin = 100;
 
 void add(const Iteration& iteration, MinimizeReport& report) {
@@ -75,8 +75,7 @@ void add(const Iteration& iteration, MinimizeReport& report) {
   report.decrement = iteration.decrement;
 }
 
-// Where a minimization is. Sizes by which it is judged are read when they are fresh, because an observer may evaluate E
-// elsewhere.
+// The state of a minimization.
 struct Progress {
   Objective& E;
   SearchDirection& direction;
@@ -89,12 +88,12 @@ struct Progress {
   bool last_direction = false;  // the criterion holds for it
 };
 
-// What the last iteration took, by the clock of the deadline: is there time for another one? [s]
+// Durations of the parts of the last iteration, by the clock of the deadline [s].
 struct Cost {
   double direction = 0, line_search = 0, gradient = 0;
-  double stoppable = 0;  // of the direction
+  double stoppable = 0;  // the part of `direction` that polls the stop token
 
-  double to_finish() const { return line_search + gradient; }  // once there is a direction
+  double to_finish() const { return line_search + gradient; }  // time after the direction is known
   double at_least() const { return direction - stoppable + to_finish(); }
 };
 
@@ -115,7 +114,7 @@ struct Minimizer::Impl {
   std::vector<double> g, d;
   LineSearchScratch line;
   Convergence convergence;
-  Cost cost;  // from one minimization to the next
+  Cost cost;  // kept from one minimization to the next
 };
 
 MinimizeReport Minimizer::Impl::minimize(Progress& at, const IterationObserver& observe) {
@@ -151,7 +150,7 @@ void Minimizer::Impl::begin(Progress& at) {
   at.report.gradients = 1;
 }
 
-// Whether the minimization ends at this iterate.
+// Returns the final status if the minimization ends at this iterate.
 Minimizer::Impl::End Minimizer::Impl::judge(Progress& at) {
   MinimizeReport& report = at.report;
   report.value = at.value.value;
@@ -166,7 +165,7 @@ Minimizer::Impl::End Minimizer::Impl::judge(Progress& at) {
   }
   if (convergence.is_at_round_off(1)) return Status::round_off;
   if (report.iterations == at.options.max_iterations) return Status::iteration_limit;
-  // The first iteration is tried even if it may not fit: without any, no force would act.
+  // The first iteration ignores the estimate, because a step without any would ignore the forces.
   if (at.options.stop.seconds_left() <= (report.iterations > 0 ? cost.at_least() : 0)) return Status::budget;
   return std::nullopt;
 }
@@ -177,7 +176,7 @@ InnerAccuracy Minimizer::Impl::inner_accuracy(const Progress& at) const {
   return accuracy;
 }
 
-// A direction and a step along it, by ever more cautious ways.
+// Computes a direction and a step along it, with fallbacks to more cautious directions.
 Minimizer::Impl::End Minimizer::Impl::find_step(Progress& at, Iteration& iteration) {
   const Iterate iterate{at.E, at.x, g, inner_accuracy(at), at.options.stop.earlier_by(cost.to_finish())};
   const StopToken stop = at.options.stop.earlier_by(cost.gradient);
@@ -186,7 +185,7 @@ Minimizer::Impl::End Minimizer::Impl::find_step(Progress& at, Iteration& iterati
     Status failure = Status::no_descent;
     const bool descends = find_direction(at, iterate, iteration);
     const double computed = at.options.stop.now();
-    if (!iteration.direction.kept) {  // the next one may have to make its Hessian
+    if (!iteration.direction.kept) {  // the next direction may need a new Hessian
       cost.direction = computed - begin;
       cost.stoppable = iteration.direction.stoppable_seconds;
     }
@@ -204,7 +203,7 @@ Minimizer::Impl::End Minimizer::Impl::find_step(Progress& at, Iteration& iterati
   }
 }
 
-// Writes d; false when it does not descend.
+// Writes d. Returns false if it is not a descent direction.
 bool Minimizer::Impl::find_direction(Progress& at, const Iterate& iterate, Iteration& iteration) {
   const bool found = at.direction.compute(iterate, d, iteration.direction);
   at.slope = found ? at.E.dot(g, d) : 0;

@@ -24,7 +24,7 @@ std::unique_ptr<Newton> newton_with(NewtonDefiniteness definiteness = NewtonDefi
   return std::make_unique<Newton>(make_linear_solver("block_jacobi"), definiteness);
 }
 
-TEST(Minimize, NewtonFindsTheMinimumOfRosenbrockFromBothSides) {
+TEST(Minimize, NewtonMinimizesRosenbrock) {
   for (const double x0 : {-0.8, 0.9, -1.5}) {
     Rosenbrock f;
     std::vector<double> x = {x0, 0.6, 0};
@@ -36,7 +36,7 @@ TEST(Minimize, NewtonFindsTheMinimumOfRosenbrockFromBothSides) {
   }
 }
 
-TEST(Minimize, GradientDescentDescendsMonotonicallyAndNeedsManyMoreIterations) {
+TEST(Minimize, GradientDescentDecreasesMonotonically) {
   Rosenbrock f;
   GradientDescent direction;
   std::vector<double> x = {-0.8, 0.6, 0};
@@ -66,7 +66,7 @@ TEST(Minimize, NewtonWithoutLineSearchOvershoots) {
   EXPECT_TRUE(rose);
 }
 
-TEST(Minimize, AnIndefiniteHessianIsProjectedOnDemandAndRefusedWhenExact) {
+TEST(Minimize, IndefiniteHessianIsModifiedOnDemand) {
   Rosenbrock f;
   std::vector<double> x = {0, 1, 0};  // the Hessian there has one negative eigenvalue
   EXPECT_EQ(Minimizer().minimize(f, *newton_with(NewtonDefiniteness::exact), x, tight()).status, Status::no_descent);
@@ -86,7 +86,7 @@ class Island : public Rosenbrock {
   bool met_nan = false;
 };
 
-TEST(Minimize, TheLineSearchNeverAcceptsWhatIsNotANumber) {
+TEST(Minimize, LineSearchRejectsNaN) {
   Island f;
   GradientDescent direction;
   std::vector<double> x = {-0.8, 0.6, 0};
@@ -101,7 +101,7 @@ TEST(Minimize, TheLineSearchNeverAcceptsWhatIsNotANumber) {
   EXPECT_LT(x[0] * x[0] + x[1] * x[1], 4);
 }
 
-TEST(Minimize, TheIterationLimitIsNotSuccess) {
+TEST(Minimize, IterationLimitIsNotSuccess) {
   Rosenbrock f;
   std::vector<double> x = {-0.8, 0.6, 0};
   MinimizeOptions options = tight();
@@ -112,7 +112,7 @@ TEST(Minimize, TheIterationLimitIsNotSuccess) {
   EXPECT_EQ(report.iterations, 2);
 }
 
-TEST(Minimize, AStartThatIsNotFiniteIsUndefined) {
+TEST(Minimize, NonFiniteInitialGuessIsUndefined) {
   Rosenbrock f;
   std::vector<double> x = {NAN, 0, 0};
   EXPECT_EQ(Minimizer().minimize(f, *newton_with(), x, tight()).status, Status::undefined);
@@ -147,7 +147,7 @@ class Deceptive : public Rosenbrock {
   double gradient_round_off_, gradient_scale_;
 };
 
-TEST(Minimize, AFailedLineSearchIsSuccessOnlyNearTheRoundOffOfTheGradient) {
+TEST(Minimize, FailedLineSearchIsSuccessOnlyNearRoundOff) {
   const std::vector<double> start = {0, 0, 0};  // |g| = 2
   const auto status = [&](double gradient_round_off, double gradient_scale = 1e4) {
     Deceptive f(gradient_round_off, gradient_scale);
@@ -163,7 +163,7 @@ TEST(Minimize, AFailedLineSearchIsSuccessOnlyNearTheRoundOffOfTheGradient) {
   EXPECT_FALSE(is_success(Status::stuck));
 }
 
-TEST(Minimize, TheToleranceIsRelativeToWhatTheCriterionNames) {
+TEST(Minimize, ToleranceIsRelativeToCriterionScale) {
   const auto threshold = [](Criterion criterion) {
     Rosenbrock f;
     std::vector<double> x = {0, 0.5, 0};  // g = (-2, 100, 0)
@@ -177,7 +177,7 @@ TEST(Minimize, TheToleranceIsRelativeToWhatTheCriterionNames) {
   EXPECT_NEAR(threshold(Criterion::first_gradient), 0.5 * std::hypot(2, 100), 1e-12);
 }
 
-TEST(Minimize, EveryStatusAndCriterionHasItsOwnName) {
+TEST(Minimize, StatusAndCriterionNamesAreUnique) {
   std::set<std::string_view> names;
   for (const Status status : {Status::converged, Status::round_off, Status::budget, Status::iteration_limit,
                               Status::stuck, Status::no_descent, Status::interrupted, Status::undefined})
@@ -213,7 +213,7 @@ class DrownedParabola : public Objective {
   }
 };
 
-TEST(LineSearch, DescendsWhereDifferencesOfTheValueAreLostInRoundOff) {
+TEST(LineSearch, DescendsBelowRoundOffOfValues) {
   DrownedParabola f;
   GradientDescent direction;
   std::vector<double> x = {1.3};
@@ -232,7 +232,7 @@ class TwoWells : public PlanarFunction {
   PlanarHessian hessian_at(const Planar& p) const override { return {3 * p[0] * p[0] - 1, 0, 1}; }
 };
 
-TEST(Minimize, AShortDirectionNearASaddleIsNoConvergence) {
+TEST(Minimize, ShortDirectionNearSaddleIsNotConvergence) {
   for (const bool truncated : {false, true}) {
     TwoWells f;
     const auto direction = truncated ? make_newton_cg() : newton_with(NewtonDefiniteness::on_demand);
@@ -258,7 +258,7 @@ class Timed : public Rosenbrock {
   double time = 0;
 };
 
-TEST(Minimize, ADeadlineEndsItWhereverItIs) {
+TEST(Minimize, StopsAtDeadline) {
   bool ended_in_line_search = false;
   for (double seconds = 1; seconds < 100; ++seconds) {
     Timed f;
@@ -288,7 +288,7 @@ TEST(Minimize, ADeadlineEndsItWhereverItIs) {
   ADD_FAILURE() << "never converged";
 }
 
-TEST(LineSearch, AnAscentDirectionIsStuck) {
+TEST(LineSearch, AscentDirectionIsStuck) {
   Rosenbrock f;
   const std::vector<double> x = {0, 0, 0}, d = {-1, 0, 0};
   LineSearchScratch scratch{std::vector<double>(3), std::vector<double>(3), {}};

@@ -6,8 +6,8 @@
 namespace aspic {
 namespace {
 
-// The width of the difference, relative to the size of x: about the square root of the machine epsilon, where its
-// errors by truncation and by round-off balance.
+// Width of the difference quotient relative to the size of x: about the square root of the machine epsilon, where
+// truncation and round-off errors balance.
 constexpr double kWidth = 1.5e-8;
 
 double largest_entry(std::span<const double> v) {

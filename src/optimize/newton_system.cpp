@@ -46,7 +46,7 @@ bool NewtonSystem::solve(NewtonTask& task, const Projection& projection) {
 
 bool NewtonSystem::solve_truncated(NewtonTask& task) { return exact_ && solve_semidefinite(*exact_, task); }
 
-// By conjugate gradients, which bear directions that H does not resist, such as rotations about a single pinned vertex.
+// Solves with conjugate gradients, which handle singular H, such as rotations about a single pinned vertex.
 bool NewtonSystem::solve_semidefinite(const BlockSparse& H, NewtonTask& task) {
   DirectionReport& report = task.report;
   Stopwatch stopwatch;

@@ -23,7 +23,7 @@ MinimizeReport minimize_from_afar(SearchDirection& direction, Criterion criterio
   return Minimizer().minimize(f, direction, x, options, observe);
 }
 
-TEST(Newton, KeepsAHessianThatSufficesForTheLastDigits) {
+TEST(Newton, KeepsHessianForLastIterations) {
   for (const std::string linear : {"cholesky", "block_jacobi", "multigrid", "auto"}) {
     std::vector<double> x;
     Newton direction(make_linear_solver(linear));
@@ -35,7 +35,7 @@ TEST(Newton, KeepsAHessianThatSufficesForTheLastDigits) {
   }
 }
 
-TEST(Newton, MakesAHessianForEachDirectionThatIsJudged) {
+TEST(Newton, ComputesHessianForDirectionCriteria) {
   std::vector<double> x;
   for (const Criterion criterion : {Criterion::decrement, Criterion::velocity, Criterion::acceleration}) {
     const MinimizeReport report = minimize_from_afar(*newton(), criterion, x);
@@ -43,7 +43,7 @@ TEST(Newton, MakesAHessianForEachDirectionThatIsJudged) {
   }
 }
 
-TEST(Newton, KeepsItsHessianWhileAnObserverAsksForOthers) {
+TEST(Newton, KeepsHessianDespiteObserver) {
   std::vector<double> plain, watched;
   const MinimizeReport expected = minimize_from_afar(*newton(), Criterion::absolute, plain);
   const MinimizeReport report =
@@ -56,7 +56,7 @@ TEST(Newton, KeepsItsHessianWhileAnObserverAsksForOthers) {
   EXPECT_EQ(report.gradient_round_off, expected.gradient_round_off);
 }
 
-TEST(Newton, ForgetsItsHessianWhereItIsOfNoUseAndBetweenMinimisations) {
+TEST(Newton, DropsHessianBetweenMinimizations) {
   Rosenbrock f;
   const auto direction = newton();
   const std::vector<double> x = {1.01, 1.02, 0};
@@ -80,7 +80,7 @@ TEST(Newton, ForgetsItsHessianWhereItIsOfNoUseAndBetweenMinimisations) {
 }
 
 // Clamped, the negative eigenvalue is almost zero and the step along it endless; its absolute value is a scale.
-TEST(Newton, OnDemandTakesAbsoluteEigenvaluesWhereClampedOnesOvershoot) {
+TEST(Newton, OnDemandUsesAbsoluteEigenvaluesAfterOvershoot) {
   std::vector<int> trials;
   const auto count = [&](const Iteration& iteration) { return trials.push_back(iteration.trials), true; };
   for (const auto definiteness : {NewtonDefiniteness::clamped, NewtonDefiniteness::on_demand}) {
@@ -105,7 +105,7 @@ class DoubleWell : public PlanarFunction {
 };
 
 // Steps of absolute eigenvalues double the distance from the saddle, which would take 20 of them.
-TEST(Newton, OnDemandLeavesASaddleInFewIterations) {
+TEST(Newton, OnDemandLeavesSaddleInFewIterations) {
   DoubleWell f;
   Newton direction(make_linear_solver("cholesky"));
   std::vector<double> x = {1e-6, 0.1, 0};

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// Raises the negative eigenvalues, or takes their absolute values. False when there is none, and nothing to do.
+// Clamps negative eigenvalues or takes their absolute values. Returns false if there are none.
 bool make_definite(PlanarHessian& H, Definiteness kind) {
   const double mean = (H.xx + H.yy) / 2, radius = std::hypot((H.xx - H.yy) / 2, H.xy);
   double high = mean + radius, low = mean - radius;

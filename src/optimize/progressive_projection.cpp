@@ -7,7 +7,7 @@ namespace aspic {
 namespace {
 
 constexpr double kTighten = 0.5, kRelax = 2;  // as in [Fernandez-Fernandez et al. 2026]
-constexpr double kAll = 1e-6;                 // below this part of the largest residual every element is covered
+constexpr double kAll = 1e-6;                 // fraction of the largest residual below which all elements are selected
 
 double residual(std::span<const double> g, size_t vertex) {
   return std::max({std::abs(g[3 * vertex]), std::abs(g[3 * vertex + 1]), std::abs(g[3 * vertex + 2])});
@@ -33,7 +33,7 @@ Projection ProgressiveProjection::at(std::span<const double> g) {
   return {Definiteness::clamped, marked_};
 }
 
-// The first half of the range, or what is left of it, and always below the largest residual, so that something changes.
+// The threshold is always below the largest residual, so that the selection grows.
 void ProgressiveProjection::tighten(std::span<const double> g) {
   const double largest = largest_residual(g);
   threshold_ = kTighten * (threshold_ == kNone ? largest : std::min(threshold_, largest));

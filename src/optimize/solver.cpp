@@ -26,11 +26,11 @@ struct Method {
   std::string name;
   Direction (*make)(const SolverOptions&);
   bool estimates_minimizer = false, solves_systems = false, uses_definiteness = false;
-  std::optional<PreconditionerKind> preconditioner = {};  // the one that suits it, if it uses any
+  std::optional<PreconditionerKind> preconditioner = {};  // the default, if the method uses one
 };
 const Method* method_named(const std::string& name);
 
-// The one that was asked for, or the one that suits the method.
+// The given preconditioner, or the default of the method.
 Preconditioner preconditioner(const SolverOptions& options, const std::string& method) {
   PreconditionerKind chosen = *method_named(method)->preconditioner;
   for (const PreconditionerKind kind : all_preconditioners())
@@ -86,7 +86,7 @@ bool factorizes(const Method& method, const SolverOptions& options) {
   return method.preconditioner == PreconditionerKind::hessian;
 }
 
-// That `value` of an option is used by one of the chosen methods.
+// Requires that one of the chosen methods uses this value of the option.
 template <class Uses>
 std::optional<SolverConflict> unused(const std::string& option, const std::string& value,
                                      const std::vector<const Method*>& chosen, const Uses& uses) {

@@ -20,7 +20,7 @@ MinimizeOptions long_and_tight() {
   return options;
 }
 
-TEST(TestFunctions, MinimaAreWhereTheyAreSaidToBe) {
+TEST(TestFunctions, MinimaAreCorrect) {
   for (const TestFunction& info : test_functions()) {
     const auto f = make_test_function(info.name);
     EXPECT_NEAR(f->at(info.minimizer), info.minimum, 1e-15) << info.name;
@@ -32,7 +32,7 @@ TEST(TestFunctions, MinimaAreWhereTheyAreSaidToBe) {
   }
 }
 
-TEST(TestFunctions, NewtonFindsEachMinimumFromItsUsualStart) {
+TEST(TestFunctions, NewtonFindsEachMinimum) {
   for (const TestFunction& info : test_functions()) {
     const auto f = make_test_function(info.name);
     Newton newton(make_linear_solver("cholesky"));
@@ -44,14 +44,14 @@ TEST(TestFunctions, NewtonFindsEachMinimumFromItsUsualStart) {
   }
 }
 
-TEST(TestFunctions, NewtonNeedsOneIterationOnAQuadratic) {
+TEST(TestFunctions, NewtonNeedsOneIterationOnQuadratic) {
   Quadratic f(1e4, 1.1);
   Newton newton(make_linear_solver("cholesky"));
   std::vector<double> x = {1.2, 0.9, 0};
   EXPECT_EQ(Minimizer().minimize(f, newton, x, long_and_tight()).iterations, 1);
 }
 
-TEST(TestFunctions, TheQuadraticHasItsConditionAndItsAxes) {
+TEST(TestFunctions, QuadraticHasConditionAndAxes) {
   const double angle = 0.4;
   const Quadratic f(50, angle);
   EXPECT_NEAR(f.at({std::cos(angle), std::sin(angle)}), 0.5, 1e-14);
@@ -61,7 +61,7 @@ TEST(TestFunctions, TheQuadraticHasItsConditionAndItsAxes) {
 // With steps to the minimum along the line, each direction is at right angles to the one before, and every second one
 // is the same: the zig-zag. From the worst start on a quadratic, f falls by ((k - 1) / (k + 1))^2 per iteration
 // [Nocedal and Wright 2006, theorem 3.3].
-TEST(TestFunctions, GradientDescentZigZagsOnAQuadratic) {
+TEST(TestFunctions, GradientDescentZigZagsOnQuadratic) {
   constexpr double kCondition = 20;
   Quadratic f(kCondition, 0.3);
   // The start whose gradient has equal parts in both axes.
@@ -96,7 +96,7 @@ TEST(TestFunctions, GradientDescentZigZagsOnAQuadratic) {
   }
 }
 
-TEST(TestFunctions, TheHessianIsFilteredAsAsked) {
+TEST(TestFunctions, ModifiesHessian) {
   TwoBump f;
   const std::vector<double> x = {0.9, 0.4, 0};  // near the bump: negative definite
   const Mat3d exact = f.hessian(x, {}).block[0];
@@ -109,7 +109,7 @@ TEST(TestFunctions, TheHessianIsFilteredAsAsked) {
   EXPECT_LT(clamped(0, 0), 1e-7);
 }
 
-TEST(TestFunctions, AMisspeltNameIsCorrected) {
+TEST(TestFunctions, SuggestsNearestName) {
   try {
     make_test_function("rosenbrok");
     FAIL();

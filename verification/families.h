@@ -1,0 +1,24 @@
+// The families of checks; each function adds its own.
+#pragma once
+#include <vector>
+
+#include "verification/check.h"
+
+namespace aspic::verify {
+
+void add_material_checks(std::vector<Check>& checks);
+void add_derivative_checks(std::vector<Check>& checks);
+void add_point_checks(std::vector<Check>& checks);
+void add_invariant_checks(std::vector<Check>& checks);
+void add_patch_checks(std::vector<Check>& checks);
+void add_integrator_checks(std::vector<Check>& checks);
+void add_momentum_checks(std::vector<Check>& checks);
+void add_order_checks(std::vector<Check>& checks);
+void add_cylinder_checks(std::vector<Check>& checks);
+void add_vibration_checks(std::vector<Check>& checks);
+void add_bending_checks(std::vector<Check>& checks);
+void add_column_checks(std::vector<Check>& checks);
+void add_cook_checks(std::vector<Check>& checks);
+void add_solid_checks(std::vector<Check>& checks);
+
+}  // namespace aspic::verify

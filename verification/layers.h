@@ -1,0 +1,24 @@
+// Bodies of one layer of cells: problems in the plane.
+#pragma once
+#include <functional>
+
+#include "verification/models.h"
+
+namespace aspic::verify {
+
+// V = k/2 sum (z - Z)^2 over all vertices, or those named: keeps them in their planes z = const, or those of another
+// axis. With k far above the stiffness of the cells, plane strain.
+std::unique_ptr<Energy> make_plane_hold(const TetMesh& mesh, double stiffness, int axis = 2,
+                                        std::vector<int> vertices = {});
+
+// length x height cells of equal size, one across, mapped from [0, 1]^2 by `place`; the layer is `thickness` thick.
+TetMesh make_layer(int length, int height, double thickness,
+                   const std::function<std::array<double, 2>(double, double)>& place);
+
+// Plane stress with E and nu is plane strain with these.
+struct PlaneModuli {
+  double young, poisson;
+};
+PlaneModuli plane_stress(double young, double poisson);
+
+}  // namespace aspic::verify
