@@ -271,7 +271,7 @@ class Minimize(CommandLine):
                                    ([], "--list")):
             self.assertIn(message, self.aspic("minimize", *arguments, code=2).stderr)
 
-    def test_every_listed_function_can_be_minimised(self):
+    def test_every_listed_function_can_be_minimized(self):
         text = self.aspic("minimize", "--list").stdout
         names = re.findall(r"(?m)^(\w+)\n  f = ", text)
         self.assertEqual(len(names), 3)
@@ -354,7 +354,7 @@ class Check(CommandLine):
 
     def test_a_scene_is_judged_by_the_numbers_of_its_file(self):
         flat = box_mesh().split("\n")
-        flat[4 + 13] = "0.5 0.5 0.9999 0"  # the centre: the tets above it become slivers
+        flat[4 + 13] = "0.5 0.5 0.9999 0"  # the center: the tets above it become slivers
         self.write("flat.mesh", "\n".join(flat))
         self.write("flat.toml", '[[body]]\nmesh = "flat.mesh"\n')
         of_mesh, of_scene = (self.aspic("check", name).stdout for name in ("flat.mesh", "flat.toml"))
@@ -1090,7 +1090,7 @@ class BadData(Captured):
         self.change_cells("positions", ["x"], lambda x: "nan")
         self.refused("positions.csv:2: x = 'nan'", "leave the cell blank")
 
-    def test_lengths_in_millimetres(self):
+    def test_lengths_in_millimeters(self):
         self.change_cells("positions", ["x", "y", "z"], lambda x: str(1e3 * float(x)))
         self.refused("positions.csv: markers move", 'units = { length = "mm" }')
 

@@ -114,7 +114,7 @@ class Explain(Explanations):
         self.scene()
         self.run_scene()
 
-    def test_lengths_in_millimetres(self):
+    def test_lengths_in_millimeters(self):
         scene = BODY.format(**USUAL).replace("[0.4, 0.1, 0.1]", "[400, 100, 100]")
         self.write("scene.toml", scene)
         self.assertNotIn("crushes", self.assert_cured(self.run_scene(), "400 m were meant in mm", change="body.beam.scale="))

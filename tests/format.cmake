@@ -1,7 +1,12 @@
-# Every source is formatted as .clang-format says, and the shell scripts parse.
+# Every source is formatted as .clang-format requires, the language is checked, and the shell scripts parse.
 find_program(CLANG_FORMAT clang-format)
 if(CLANG_FORMAT)
   add_test(NAME format COMMAND ${CMAKE_SOURCE_DIR}/tools/lint)
+endif()
+find_program(CODESPELL codespell)
+if(CODESPELL)
+  add_test(NAME language COMMAND ${CMAKE_SOURCE_DIR}/tools/lint language)
+  set_tests_properties(language PROPERTIES DISABLED TRUE)
 endif()
 foreach(script run test tools/setup.sh tools/lint .ci/run)
   add_test(NAME shell.${script} COMMAND sh -n ${CMAKE_SOURCE_DIR}/${script})

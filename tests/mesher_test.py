@@ -47,7 +47,7 @@ def euler_characteristic(faces):
     return len({v for f in faces for v in f}) - len(edges) + len(faces)
 
 
-def write_ball(path, centre=(0, 0, 0), rings=12, sectors=24, append_to=None, skip=0):
+def write_ball(path, center=(0, 0, 0), rings=12, sectors=24, append_to=None, skip=0):
     """A unit ball of latitude rings; returns its lines so that two can share a file."""
     first = 1 if append_to is None else sum(line.startswith("v ") for line in append_to) + 1
     points = [(0, 0, 1)] + [(math.sin(t) * math.cos(p), math.sin(t) * math.sin(p), math.cos(t))
@@ -60,7 +60,7 @@ def write_ball(path, centre=(0, 0, 0), rings=12, sectors=24, append_to=None, ski
         for r in range(1, rings - 1):
             faces += [(at(r, s), at(r + 1, s), at(r + 1, s + 1)), (at(r, s), at(r + 1, s + 1), at(r, s + 1))]
     lines = list(append_to or [])
-    lines += ["v " + " ".join(repr(x + c) for x, c in zip(p, centre)) for p in points]
+    lines += ["v " + " ".join(repr(x + c) for x, c in zip(p, center)) for p in points]
     lines += ["f " + " ".join(str(first + v) for v in face) for face in faces[skip:]]
     path.write_text("\n".join(lines) + "\n")
     return lines
@@ -134,7 +134,7 @@ class Mesher(unittest.TestCase):
 
     def test_two_balls_are_both_filled(self):
         lines = write_ball(self.folder / "balls.obj")
-        write_ball(self.folder / "balls.obj", centre=(3, 0, 0), append_to=lines)
+        write_ball(self.folder / "balls.obj", center=(3, 0, 0), append_to=lines)
         self.assertEqual(run(self.folder / "balls.obj", "-o", self.out, "--size", 0.4).returncode, 0)
         self.expect_sound(2 * 4 * math.pi / 3, 0.1, 4)
 
@@ -176,7 +176,7 @@ class Mesher(unittest.TestCase):
 
     def test_bad_input_is_refused_with_its_remedy(self):
         lines = write_ball(self.folder / "meeting.obj")
-        write_ball(self.folder / "meeting.obj", centre=(1.5, 0, 0), append_to=lines)
+        write_ball(self.folder / "meeting.obj", center=(1.5, 0, 0), append_to=lines)
         self.expect_error(2, ["runs into itself", "triangles", "unite"], self.folder / "meeting.obj")
         self.expect_error(2, ["missing.obj"], self.folder / "missing.obj")
         self.expect_error(2, ["missing.inr"], self.folder / "missing.inr")
@@ -285,7 +285,7 @@ class Mesher(unittest.TestCase):
 
     def test_a_defective_surface_is_rebuilt(self):
         lines = write_ball(self.folder / "meeting.obj", skip=3)
-        write_ball(self.folder / "meeting.obj", centre=(1.5, 0, 0), append_to=lines)
+        write_ball(self.folder / "meeting.obj", center=(1.5, 0, 0), append_to=lines)
         self.expect_error(2, ["--rebuild"], self.folder / "meeting.obj")
         lens = math.pi * (2 - 1.5)**2 * (1.5**2 + 4 * 1.5) / (12 * 1.5)
         self.assertIn("rebuilt", self.expect_filled(self.folder / "meeting.obj", 2 * 4 * math.pi / 3 - lens, 0.08, 2,

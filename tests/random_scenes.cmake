@@ -9,7 +9,7 @@ add_test(NAME random_scenes COMMAND random_scenes --seed 1 --count 1000)
 # A body that nothing holds flies 5e14 times its size away, where all sums are round-off: its ledger still closes.
 add_test(NAME random_scenes.far_away
          COMMAND random_scenes --file ${CMAKE_CURRENT_LIST_DIR}/random_scenes/far_away.toml)
-# Minimised without a Hessian to a tolerance near round-off: what is left over is judged by the round-off that is reported.
+# Minimized without a Hessian to a tolerance near round-off: what is left over is judged by the round-off that is reported.
 add_test(NAME random_scenes.round_off COMMAND random_scenes --run 2657)
 # The first stage of the scheme is solved with the mass matrix alone, and forces of 1e8 N leave more than is asked for.
 add_test(NAME random_scenes.stiff_start

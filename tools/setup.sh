@@ -13,7 +13,7 @@ mesher_packages="libcgal-dev"
 viewer_programs="nodejs:node npm"
 viewer_packages="libboost-dev"
 case "${ASPIC_VIEWER-}" in 0 | OFF) viewer_programs= viewer_packages= ;; esac
-test_programs="python3 chromium ffmpeg $plot_programs"
+test_programs="python3 chromium ffmpeg codespell $plot_programs"
 test_packages="libgtest-dev libgmock-dev libbenchmark-dev libsuitesparse-dev python3-meshio python3-jsonschema"
 bench_packages="libbenchmark-dev"
 fuzz_programs="clang:clang++" # with libFuzzer and its sanitizers, which clang recommends and we name

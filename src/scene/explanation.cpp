@@ -186,7 +186,7 @@ class Explainer {
       return {"one Newton iteration without a line search went to where the material has no energy",
               "time.integrator = \"" + name + "\"", remedy};
     if (simulation_.integrator().ends_beyond_minimum)
-      return {"the step of " + name + " goes on beyond what it minimised, to where the material has no energy",
+      return {"the step of " + name + " goes on beyond what it minimized, to where the material has no energy",
               "time.integrator = \"" + name + "\"", remedy};
     if (solver_.minimize.line_search.test == DecreaseTest::none)
       return {"without a line search the iterations left the range of numbers", "solver.line_search.test = \"none\"",

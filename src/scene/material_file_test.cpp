@@ -118,14 +118,14 @@ TEST_F(MaterialFile, TheMaterialFollowsTheBodyWhereverItIsPlaced) {
 }
 
 TEST_F(MaterialFile, AFrameSaysInWhichCoordinatesTheMaterialIs) {
-  const std::string millimetres = "shape = { box = { upper = [1000, 1000, 1000], cells = [4, 4, 4] } }\n";
+  const std::string millimeters = "shape = { box = { upper = [1000, 1000, 1000], cells = [4, 4, 4] } }\n";
   const std::string turned = "scale = 0.001\nrotate = { axis = [0, 0, 1], angle_deg = 90 }\n";
   const auto with_frame = [](const std::string& frame) {
     return "material = { file = \"material.vtu\", frame = \"" + frame + "\" }\n";
   };
   const Values expected = *graded(4).find("young");
-  EXPECT_THAT(young(load_with(millimetres + turned + with_frame("scaled"))), EachIsNear(expected));
-  EXPECT_THAT(refusal_with(millimetres + turned + with_frame("mesh")),
+  EXPECT_THAT(young(load_with(millimeters + turned + with_frame("scaled"))), EachIsNear(expected));
+  EXPECT_THAT(refusal_with(millimeters + turned + with_frame("mesh")),
               AllOf(HasSubstr("(62.5, 62.5, 62.5) to (937.5"), HasSubstr("try another `frame`")));
   const std::string back = "shape = { box = { lower = [-1, 0, 0], upper = [0, 1, 1], cells = [4, 4, 4] } }\n";
   const Scene placed = load_with(back + "translate = [1, 0, 0]\n" + with_frame("placed"));

@@ -108,12 +108,12 @@ Defaults defaults_for(const std::filesystem::path& path, TetMesh mesh, double sc
   const std::string size = number_text(extent);
   if (scale == 1) {
     d.choices.push_back(
-        {"scale", "scale = 1: a mesh has no unit; its largest extent, " + size + ", is taken as metres"});
+        {"scale", "scale = 1: a mesh has no unit; its largest extent, " + size + ", is taken as meters"});
   } else {
     d.choices.push_back({"scale", "scale = " + number_text(scale) + ": a mesh has no unit; its largest extent, " +
                                       size +
-                                      ", becomes 1 m, at which the motion can be followed (scale=1 keeps metres, "
-                                      "scale=0.001 is for millimetres)"});
+                                      ", becomes 1 m, at which the motion can be followed (scale=1 keeps meters, "
+                                      "scale=0.001 is for millimeters)"});
   }
   d.choices.push_back({"gravity", "gravity = 9.81 m/s^2 along -y: up is taken as y (gravity=[0,0,-9.81] for z)"});
   d.choices.push_back(

@@ -30,7 +30,7 @@ TEST(MeshAlone, GetsDefaultsThatAreStated) {
   for (int step = 0; step < 3; ++step) EXPECT_TRUE(is_success(scene.simulation.step().status));
   for (size_t i = 0; i < scene.simulation.state().q.size(); i += 3)
     reach = std::max(reach, scene.simulation.state().qdot[i] * -1);
-  EXPECT_GT(reach, 0.1);  // the top swings back, metres per second
+  EXPECT_GT(reach, 0.1);  // the top swings back, meters per second
 }
 
 // Held at its narrow end, a body that widens upwards needs a stiffer material than a column of its height.

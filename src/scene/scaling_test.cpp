@@ -35,39 +35,39 @@ std::vector<Scales> corners(const Case& scene, const Scales& small, const Scales
 
 // Nothing is rounded differently where all scales are powers of two.
 TEST_P(InOtherUnits, PowersOfTwoChangeNoBit) {
-  const Outcome metres = run(GetParam(), {});
+  const Outcome meters = run(GetParam(), {});
   for (const Scales& scales : corners(GetParam(), {0x1p-10, 0x1p-10, 0x1p-10}, {0x1p10, 0x1p20, 0x1p20})) {
     SCOPED_TRACE(testing::Message() << scales);
     const Outcome scaled = run(GetParam(), scales);
-    ASSERT_EQ(scaled.status, metres.status);
-    ASSERT_EQ(scaled.counts, metres.counts);
-    ASSERT_EQ(scaled.numbers, metres.numbers);
+    ASSERT_EQ(scaled.status, meters.status);
+    ASSERT_EQ(scaled.counts, meters.counts);
+    ASSERT_EQ(scaled.numbers, meters.numbers);
   }
 }
 
 TEST_P(InOtherUnits, TheIterationsAndTheDimensionlessResultAreTheSame) {
-  const Outcome metres = run(GetParam(), {});
-  ASSERT_FALSE(metres.status.empty());
+  const Outcome meters = run(GetParam(), {});
+  ASSERT_FALSE(meters.status.empty());
   for (const Scales& scales : corners(GetParam(), {1e-3, 1e-3, 1e-3}, {1e3, 1e6, 1e6})) {
     SCOPED_TRACE(testing::Message() << scales);
     const Outcome scaled = run(GetParam(), scales);
-    ASSERT_EQ(scaled.status, metres.status);
-    ASSERT_EQ(scaled.counts, metres.counts);
-    EXPECT_LT(difference(scaled, metres), GetParam().is_sensitive ? 1e-5 : 1e-9);
+    ASSERT_EQ(scaled.status, meters.status);
+    ASSERT_EQ(scaled.counts, meters.counts);
+    EXPECT_LT(difference(scaled, meters), GetParam().is_sensitive ? 1e-5 : 1e-9);
   }
 }
 
 // Where decimal scales change more than 1e-9, units that are longer by the last bit do so as well: no other arithmetic
 // of ours could help, as the numbers of the scene already differ by that.
 TEST_P(SensitiveInOtherUnits, DecimalScalesAreNoWorseThanTheLastBitOfTheUnits) {
-  const Outcome metres = run(GetParam(), {});
+  const Outcome meters = run(GetParam(), {});
   double by_bits = 0, by_scales = 0;
   for (const int bits : {-3, -1, 1, 2, 5}) {
     const double longer = 1 + bits * 0x1p-52;
-    by_bits = std::max(by_bits, difference(run(GetParam(), {longer, 1, 1}), metres));
+    by_bits = std::max(by_bits, difference(run(GetParam(), {longer, 1, 1}), meters));
   }
   for (const double scale : {1e-3, 1e3})
-    by_scales = std::max(by_scales, difference(run(GetParam(), {scale, scale, 1e3}), metres));
+    by_scales = std::max(by_scales, difference(run(GetParam(), {scale, scale, 1e3}), meters));
   EXPECT_LT(by_scales, 1e-9 + 100 * by_bits);
   RecordProperty("by_bits", digits(by_bits));
   RecordProperty("by_scales", digits(by_scales));

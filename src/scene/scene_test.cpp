@@ -111,7 +111,7 @@ TEST(Scene, DeformsRelativeToRestAboutTheCentre) {
 
 TEST(Scene, InitialVelocityFollowsFormulasAndSpin) {
   const Scene scene = load(kCube + "velocity = [\"Y\", 2, 0]\nangular_velocity = [0, 0, 3]\n");
-  // At (1, 1, 1), half a metre from the center of mass along x and y.
+  // At (1, 1, 1), half a meter from the center of mass along x and y.
   EXPECT_LT(distance(vertex(velocities(scene), 26), {{1 - 1.5, 2 + 1.5, 0}}), 1e-12);
 }
 

@@ -50,26 +50,26 @@ class Judge {
     for (const double V : simulation_.potential_energies()) total_ += V;
   }
 
-  Judgement run() {
-    judgement_.ending = "converged";
+  Judgment run() {
+    judgment_.ending = "converged";
     int polls = 0;
     const StopToken stop([&] { return ++polls > kMostPolls; });
-    for (int i = 0; i < scene_.steps && judgement_.fault.empty(); ++i) {
+    for (int i = 0; i < scene_.steps && judgment_.fault.empty(); ++i) {
       const State before = simulation_.state();
       const StepReport report = simulation_.step({}, stop);
       if (report.status == Status::interrupted) {
-        judgement_.ending = "interrupted";
+        judgment_.ending = "interrupted";
         break;
       }
       judge(before, report);
     }
-    return judgement_;
+    return judgment_;
   }
 
  private:
   void fault(const std::string& text, const StepReport& report) {
-    if (judgement_.fault.empty())
-      judgement_.fault =
+    if (judgment_.fault.empty())
+      judgment_.fault =
           "step " + std::to_string(report.step) + ", status " + std::string(to_string(report.status)) + ": " + text;
   }
 
@@ -119,9 +119,9 @@ class Judge {
   void judge_failure(const StepReport& report) {
     const Explanation why = explain(simulation_, report);
     if (why.cause.empty() || why.remedy.empty()) fault("no explanation", report);
-    if (judgement_.ending != "converged") return;
-    judgement_.ending = to_string(report.status);
-    judgement_.detail = why.cause + " | " + why.place + " | " + why.remedy;
+    if (judgment_.ending != "converged") return;
+    judgment_.ending = to_string(report.status);
+    judgment_.detail = why.cause + " | " + why.place + " | " + why.remedy;
   }
 
   // The energies of the report are those of the state, and their changes add up.
@@ -180,11 +180,11 @@ class Judge {
   bool moves_;                  // pins or targets
   double size_ = 0;             // the energies of the report, each without its sign
   double total_;                // energy before the step
-  Judgement judgement_;
+  Judgment judgment_;
 };
 
 }  // namespace
 
-Judgement judge(Scene& scene, const std::string& text) { return Judge(scene, text).run(); }
+Judgment judge(Scene& scene, const std::string& text) { return Judge(scene, text).run(); }
 
 }  // namespace aspic

@@ -7,13 +7,13 @@
 
 namespace aspic {
 
-struct Judgement {
+struct Judgment {
   std::string ending;  // "converged", "refused", or the status of the first step that failed
   std::string detail;  // the words of the refusal or the explanation
   std::string fault;   // what the run owes and does not give; empty: nothing
 };
 
 // Runs the scene of that text to its end, whatever its steps end with.
-Judgement judge(Scene& scene, const std::string& text);
+Judgment judge(Scene& scene, const std::string& text);
 
 }  // namespace aspic

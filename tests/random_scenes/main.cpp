@@ -31,7 +31,7 @@ struct Arguments {
   std::filesystem::path file;  // instead of a seed
 };
 
-Judgement run_file(const std::filesystem::path& file, const std::string& text) {
+Judgment run_file(const std::filesystem::path& file, const std::string& text) {
   try {
     Scene scene = load_scene(file);
     return judge(scene, text);
@@ -42,21 +42,21 @@ Judgement run_file(const std::filesystem::path& file, const std::string& text) {
   }
 }
 
-Judgement run_scene(uint64_t seed, const std::filesystem::path& folder) {
+Judgment run_scene(uint64_t seed, const std::filesystem::path& folder) {
   const std::string text = random_scene(seed);
   const std::filesystem::path file = folder / "scene.toml";
   std::ofstream(file, std::ios::binary) << text;
   return run_file(file, text);
 }
 
-Judgement run_file(const std::filesystem::path& file) {
+Judgment run_file(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw InvalidInput(file.string() + ": cannot be read");
   return run_file(file, {std::istreambuf_iterator<char>(in), {}});
 }
 
 // "ending\ndetail\nfault" through a pipe; how the process ended where nothing comes.
-Judgement run_apart(uint64_t seed, const std::filesystem::path& folder) {
+Judgment run_apart(uint64_t seed, const std::filesystem::path& folder) {
   int ends[2];
   if (pipe(ends) != 0) throw InvalidInput("no pipe");
   std::fflush(stdout);
@@ -68,9 +68,9 @@ Judgement run_apart(uint64_t seed, const std::filesystem::path& folder) {
     const rlimit no_core{0, 0};
     setrlimit(RLIMIT_CORE, &no_core);
     set_thread_count(1);
-    const Judgement judgement = run_scene(seed, folder);
+    const Judgment judgment = run_scene(seed, folder);
     std::string text;
-    for (const std::string* part : {&judgement.ending, &judgement.detail, &judgement.fault}) {
+    for (const std::string* part : {&judgment.ending, &judgment.detail, &judgment.fault}) {
       for (const char c : *part) text += c == '\n' ? ' ' : c;
       text += '\n';
     }
@@ -98,14 +98,14 @@ int hunt(const Arguments& arguments, const std::filesystem::path& folder) {
   std::map<std::string, int> endings;
   int faults = 0;
   for (uint64_t seed = arguments.seed; seed < arguments.seed + arguments.count; ++seed) {
-    const Judgement judgement = run_apart(seed, folder);
-    ++endings[judgement.ending];
+    const Judgment judgment = run_apart(seed, folder);
+    ++endings[judgment.ending];
     if (arguments.verbose)
-      std::printf("%llu %s: %s\n", static_cast<unsigned long long>(seed), judgement.ending.c_str(),
-                  judgement.detail.c_str());
-    if (judgement.fault.empty()) continue;
+      std::printf("%llu %s: %s\n", static_cast<unsigned long long>(seed), judgment.ending.c_str(),
+                  judgment.detail.c_str());
+    if (judgment.fault.empty()) continue;
     ++faults;
-    std::printf("---- seed %llu: %s\n%s", static_cast<unsigned long long>(seed), judgement.fault.c_str(),
+    std::printf("---- seed %llu: %s\n%s", static_cast<unsigned long long>(seed), judgment.fault.c_str(),
                 random_scene(seed).c_str());
     std::fflush(stdout);
   }
@@ -149,9 +149,9 @@ int run(const Arguments& arguments) {
   std::filesystem::create_directories(folder);
   int code = 0;
   if (arguments.runs || !arguments.file.empty()) {
-    const Judgement judgement = arguments.file.empty() ? run_scene(arguments.seed, folder) : run_file(arguments.file);
-    std::printf("%s\n%s\n%s\n", judgement.ending.c_str(), judgement.detail.c_str(), judgement.fault.c_str());
-    code = judgement.fault.empty() ? 0 : 1;
+    const Judgment judgment = arguments.file.empty() ? run_scene(arguments.seed, folder) : run_file(arguments.file);
+    std::printf("%s\n%s\n%s\n", judgment.ending.c_str(), judgment.detail.c_str(), judgment.fault.c_str());
+    code = judgment.fault.empty() ? 0 : 1;
   } else {
     code = hunt(arguments, folder);
   }

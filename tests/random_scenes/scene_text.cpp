@@ -38,9 +38,9 @@ class SceneText {
     const std::string chosen = draw_.one_of(names);
     if (draw_.chance(probability)) line(key, in_quotes(chosen));
   }
-  std::string metres(double low, double high) { return shortest(length_ * std::stod(draw_.number(low, high))); }
+  std::string meters(double low, double high) { return shortest(length_ * std::stod(draw_.number(low, high))); }
   std::string metres3(double size) {
-    return "[" + metres(-size, size) + ", " + metres(-size, size) + ", " + metres(-size, size) + "]";
+    return "[" + meters(-size, size) + ", " + meters(-size, size) + ", " + meters(-size, size) + "]";
   }
 
   void time() {
@@ -124,16 +124,16 @@ class SceneText {
     if (kind <= 2) {
       const std::string cells = "[" + std::to_string(draw_.integer(1, 4)) + ", " + std::to_string(draw_.integer(1, 2)) +
                                 ", " + std::to_string(draw_.integer(1, 3)) + "]";
-      line("shape", "{ box = { upper = [" + metres(0.5, 2) + ", " + metres(0.2, 1) + ", " + metres(0.2, 1) +
+      line("shape", "{ box = { upper = [" + meters(0.5, 2) + ", " + meters(0.2, 1) + ", " + meters(0.2, 1) +
                         "], cells = " + cells + (draw_.chance(0.3) ? ", cut = \"five\"" : "") + " } }");
     } else if (kind == 3) {
-      line("shape", "{ cylinder = { radius = " + metres(0.2, 0.5) + ", height = " + metres(0.5, 2) +
-                        ", size = " + metres(0.4, 0.6) + " } }");
+      line("shape", "{ cylinder = { radius = " + meters(0.2, 0.5) + ", height = " + meters(0.5, 2) +
+                        ", size = " + meters(0.4, 0.6) + " } }");
     } else if (kind == 4) {
-      line("shape", "{ sphere = { radius = " + metres(0.3, 0.6) + ", size = " + metres(0.4, 0.6) + " } }");
+      line("shape", "{ sphere = { radius = " + meters(0.3, 0.6) + ", size = " + meters(0.4, 0.6) + " } }");
     } else {
-      line("shape", "{ torus = { major_radius = " + metres(0.5, 0.7) + ", minor_radius = " + metres(0.2, 0.3) +
-                        ", size = " + metres(0.4, 0.5) + " } }");
+      line("shape", "{ torus = { major_radius = " + meters(0.5, 0.7) + ", minor_radius = " + meters(0.2, 0.3) +
+                        ", size = " + meters(0.4, 0.5) + " } }");
     }
   }
 
@@ -144,7 +144,7 @@ class SceneText {
     const std::vector<MaterialInfo>& all = materials();
     const std::string& model = all[draw_.integer(0, static_cast<int>(all.size()) - 1)].name;
     std::string young = shortest(std::round(young_));
-    if (draw_.chance(0.1)) young = in_quotes("X > " + metres(0, 1) + " ? " + young + " : " + draw_.size(1, 1e12));
+    if (draw_.chance(0.1)) young = in_quotes("X > " + meters(0, 1) + " ? " + young + " : " + draw_.size(1, 1e12));
     const std::string poisson = draw_.chance(0.1)
                                     ? draw_.one_of<std::string>({"0.4999", "0.499", "0.0", "-0.9", "-0.3"})
                                 : draw_.chance(0.5) ? "0.3"
@@ -175,9 +175,9 @@ class SceneText {
       case 3:
         return line("deform", "{ twist = { axis = [1, 0, 0], angle_deg = " + draw_.number(-720, 720) + " } }");
       case 4:
-        return line("deform", "{ displacement = " + random(metres(0.3, 2)) + " }");
+        return line("deform", "{ displacement = " + random(meters(0.3, 2)) + " }");
       default:
-        return line("deform", "{ displacement = " + random(metres(0.001, 0.2)) + " }");
+        return line("deform", "{ displacement = " + random(meters(0.001, 0.2)) + " }");
     }
   }
 
