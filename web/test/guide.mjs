@@ -34,8 +34,8 @@ async function listedShortcuts() {
 }
 
 function markdown(groups) {
-  const rows = groups.flatMap(({ group, rows }) => rows.map(([key, does], i) => `| ${i === 0 ? group : ""} | \`${key}\` | ${does} |`));
-  return ["| | key | does |", "|---|---|---|", ...rows].join("\n");
+  const item = ({ group, rows }) => `* ${group}: ${rows.map(([key, does]) => `\`${key}\` ${does}`).join("; ")}`;
+  return groups.map(item).join("\n");
 }
 
 const guide = readFileSync(guidePath, "utf8");
