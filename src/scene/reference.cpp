@@ -23,7 +23,7 @@ std::string kinds(const Key& key) {
   add(kNumber, "number");
   add(kInteger, "integer");
   add(kBoolean, "true or false");
-  add(kText, key.choices.empty() ? "string" : "one of " + list_of(key.choices));
+  add(kText, key.choices.empty() ? "string" : list_of(key.choices));
   add(kExpression, "formula");
   add(kMovingExpression, "formula with `t`");
   add(kNumbers, "3 numbers");

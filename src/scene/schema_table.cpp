@@ -12,11 +12,10 @@ namespace aspic {
 namespace {
 
 const char* const kIntegrators =
-    "time integration scheme ([formulas](integrators.md)). Implicit, a minimization per stage: `backward_euler` first "
-    "order, damped; `linearly_implicit_euler` one Newton iteration of it; `bdf2`, `tr_bdf2` second order, damp "
-    "unresolved motion; `midpoint`, `trapezoid` second order, undamped, may gain energy in large deformations. "
-    "Explicit, for short steps: `symplectic_euler` (the lecture's \"Forward Euler\"), `forward_euler` (gains energy), "
-    "`rk4` fourth order. `quasi_static`: equilibrium without inertia";
+    "time integration scheme ([formulas](integrators.md)). Implicit: `backward_euler` first order, damped; "
+    "`linearly_implicit_euler` one Newton iteration of it; `bdf2`, `tr_bdf2` second order, damp unresolved motion; "
+    "`midpoint`, `trapezoid` second order, undamped. Explicit, for short steps: `symplectic_euler` (the lecture's "
+    "\"Forward Euler\"), `forward_euler` (gains energy), `rk4` fourth order. `quasi_static`: equilibrium";
 
 void add_scene(Schema& s) {
   s.sections.push_back({"scene", "*.toml", "The top level of the file."});
