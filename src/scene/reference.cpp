@@ -1,4 +1,6 @@
 // docs/scene.md, from the schema.
+#include <algorithm>
+
 #include "scene/expression.h"
 #include "scene/scene.h"
 #include "scene/schema.h"
@@ -6,16 +8,17 @@
 namespace aspic {
 namespace {
 
-std::string list_of(const std::vector<std::string>& words) {
+std::string list_of(const std::vector<std::string>& names) {
   std::string out;
-  for (const std::string& w : words) out += (out.empty() ? "`" : ", `") + w + "`";
+  for (const std::string& name : names) out += (out.empty() ? "`" : ", `") + name + "`";
   return out;
 }
 
 std::string kinds(const Key& key) {
+  if (key.table == "field") return "[value per tet](#field)";
   std::string out;
-  const auto add = [&](unsigned kind, const std::string& words) {
-    if (key.accepts & kind) out += (out.empty() ? "" : " or ") + words;
+  const auto add = [&](unsigned kind, const std::string& text) {
+    if (key.accepts & kind) out += (out.empty() ? "" : " or ") + text;
   };
   add(kNumber, "number");
   add(kInteger, "integer");
@@ -24,8 +27,8 @@ std::string kinds(const Key& key) {
   add(kExpression, "formula");
   add(kMovingExpression, "formula with `t`");
   add(kNumbers, "3 numbers");
-  add(kExpressions, "3 numbers or formulas");
-  add(kMovingExpressions, "3 numbers or formulas with `t`");
+  add(kExpressions, "3 formulas");
+  add(kMovingExpressions, "3 formulas with `t`");
   add(kIntegers, "list of integers");
   add(kMatrix, "3 rows of 3 numbers");
   add(kPairs, "list of pairs of integers");
@@ -36,21 +39,45 @@ std::string kinds(const Key& key) {
   return out;
 }
 
-// Cells of a Markdown table end at a bar.
-std::string cell(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '|' ? std::string("\\|") : std::string(1, c);
-  return out;
+std::string facts(const Key& key) {
+  std::string out = kinds(key);
+  if (!key.unit.empty()) out += " [" + key.unit + "]";
+  if (!key.range.text().empty()) out += ", " + key.range.text();
+  if (!key.fallback.empty() && key.fallback != "{}") out += ", default `" + key.fallback + "`";
+  return out + (key.required ? ", required" : "");
 }
 
-std::string row(const Key& key) {
-  std::string kind = kinds(key);
-  if (!key.range.text().empty()) kind += ", " + key.range.text();
-  if (!key.unit.empty()) kind += " [" + key.unit + "]";
-  std::string fallback = key.required ? "required" : "";
-  if (!key.fallback.empty()) fallback = "`" + key.fallback + "`";
-  if (!key.reason.empty()) fallback += ": " + key.reason;
-  return "| `" + key.name + "` | " + cell(kind) + " | " + cell(fallback) + " | " + cell(key.meaning) + " |\n";
+// Two meanings that differ in the middle: "about 1 (only spline)", "about 10 (only spline)" -> "about 1 to 10 (only
+// spline)".
+std::string range_of_meanings(const std::string& a, const std::string& b) {
+  const auto word = [](const std::string& text) { return text.substr(0, text.find(' ')); };
+  const auto place = std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first - a.begin();
+  const size_t start = place == 0 ? 0 : a.rfind(' ', place - 1) + 1;
+  return a.substr(0, start) + word(a.substr(start)) + " to " + b.substr(start);
+}
+
+// Position after the keys name_1, name_2, ... that begin at `i`; i + 1 for any other key.
+size_t end_of_series(const std::vector<Key>& keys, size_t i) {
+  const std::string& first = keys[i].name;
+  if (!first.ends_with("_1")) return i + 1;
+  const std::string stem = first.substr(0, first.size() - 1);
+  size_t end = i + 1;
+  while (end < keys.size() && keys[end].name == stem + std::to_string(end - i + 1)) ++end;
+  return end;
+}
+
+// Items of the keys of a section; a numbered series is one item.
+std::string items(const std::vector<Key>& keys, const std::string& section) {
+  std::string out;
+  for (size_t i = 0, end = 0; i < keys.size(); i = end) {
+    end = end_of_series(keys, i);
+    if (keys[i].section != section) continue;
+    const Key &first = keys[i], &last = keys[end - 1];
+    const bool series = end > i + 1;
+    out += "* `" + first.name + (series ? "` ... `" + last.name : "") + "` (" + facts(first) +
+           "): " + (series ? range_of_meanings(first.meaning, last.meaning) : first.meaning) + "\n";
+  }
+  return out;
 }
 
 std::string alternatives_text(const Alternatives& rule) {
@@ -61,21 +88,22 @@ std::string alternatives_text(const Alternatives& rule) {
 
 std::string formulas() {
   std::string out =
-      "## Formulas\n\nA formula is a string such as `\"1e5 * (1 + 3 * exp(-Y^2 / 0.02))\"`: at most " +
+      "## Formulas\n\nA formula is a number or a string such as `\"1e5 * (1 + 3 * exp(-Y^2 / 0.02))\"`: at most " +
       std::to_string(kMaxExpressionLength) + " characters and " + std::to_string(kMaxExpressionDepth) +
       " open parentheses, with `+ - * / ^`, comparisons, `&& || !` and `condition ? a : b`. `X`, `Y`, `Z` (or `x`, "
-      "`y`, `z`) is a point of the placed rest shape [m]; in a motion it is where the point was at time 0. In "
-      "motions and loads `t` is "
-      "the time [s]. A value that is not finite is an error. Functions:\n\n| name | meaning |\n|---|---|\n";
-  for (const NamedMeaning& f : expression_functions()) out += "| `" + f.name + "` | " + cell(f.meaning) + " |\n";
-  for (const NamedMeaning& c : expression_constants()) out += "| `" + c.name + "` | " + cell(c.meaning) + " |\n";
-  return out;
+      "`y`, `z`) is a point of the placed rest shape [m]; in a motion, of the shape at time 0. In motions and loads "
+      "`t` is the time [s]. A value that is not finite is an error. Functions and constants: ";
+  std::vector<NamedMeaning> names = expression_functions();
+  for (const NamedMeaning& constant : expression_constants()) names.push_back(constant);
+  for (size_t i = 0; i < names.size(); ++i) out += (i ? ", `" : "`") + names[i].name + "` " + names[i].meaning;
+  return out + ".\n";
 }
 
 const char* const kIntroduction =
     "# Scenes\n\n"
-    "A scene is a TOML file in SI units: metres, kilograms, seconds, newtons, pascals; angles are in degrees where "
-    "the key says so. This page is generated from the schema that checks scenes; a test keeps the two equal.\n\n"
+    "For everyone who writes scenes. Afterwards you know every key with its unit, range and default. A test keeps this "
+    "page equal to the schema that checks scenes.\n\n"
+    "A scene is a TOML file in SI units:\n\n"
     "```toml\n"
     "[[body]]\n"
     "shape = { box = { upper = [1, 0.2, 0.2], cells = [20, 4, 4] } }\n"
@@ -83,25 +111,15 @@ const char* const kIntroduction =
     "[[body.pin]]\n"
     "where = \"x < 0.001\"\n"
     "```\n\n"
-    "* Unknown keys, wrong types, missing files and values out of range are errors with file, line, column, value and "
-    "remedy.\n"
-    "* File names are relative to the scene's folder. A scene reads its own folder and the folder above with what is "
-    "in it, such as `../assets/bunny.mesh`; absolute paths and `../..` are refused unless they come from the command "
-    "line (`--set mesh=...`, relative to the working directory), so that a scene from elsewhere cannot open files all "
-    "over the disk.\n"
-    "* `--set PATH=VALUE` replaces a value: `time.step=0.005`; several may follow one `--set`; `material.young=2e5` "
-    "for every body; "
-    "`body.bunny.pin.0.where=\"y < 0.1\"` for one, lists by name or index from 0.\n"
-    "* A run stores the resolved scene: every default filled in, with the meshes it used beside it and their hashes. "
-    "Running that file again gives the same bits.\n"
-    "* Dead loads (gravity, `traction`, `force`) have the energy -f . x, with x measured from the origin of "
-    "coordinates. "
-    "It is not zero at rest and changes when a body is moved; only its differences have a meaning, and forces do not "
-    "depend on it.\n"
-    "* A pinned vertex moves as its pin says and has the velocity of the pin: initial velocities of a body are those "
-    "of "
-    "its free vertices.\n"
-    "* A mesh without a scene runs too, with defaults that are stated with their reasons.\n\n";
+    "* Mistakes are errors with file, line, column, value and remedy.\n"
+    "* File names are relative to the scene's folder. A scene can read that folder and the one above; other paths only "
+    "on the command line (`--set mesh=...`, relative to the working directory).\n"
+    "* `--set PATH=VALUE ...` replaces values: `time.step=0.005`, `material.young=2e5` of every body, "
+    "`body.bunny.pin.0.where=\"y < 0.1\"` of one; lists by name, or index from 0.\n"
+    "* A run stores the resolved scene with all defaults, meshes and hashes. It is bit-reproducible.\n"
+    "* Dead loads (gravity, `traction`, `force`) have the energy -f . x about the origin, so only differences have a "
+    "meaning.\n"
+    "* A mesh runs without a scene, with defaults that are printed with their reasons.\n\n";
 
 }  // namespace
 
@@ -111,9 +129,7 @@ std::string scene_reference() {
   for (const Section& section : schema.sections) {
     out += "## " + section.name + "\n\n`" + section.where + "`. " + section.about + "\n\n";
     if (const Alternatives* rule = schema.alternatives_of(section.name)) out += alternatives_text(*rule);
-    out += "| key | value | default | meaning |\n|---|---|---|---|\n";
-    for (const Key& key : schema.keys)
-      if (key.section == section.name) out += row(key);
+    out += items(schema.keys, section.name);
     out += "\n";
   }
   return out + formulas();

@@ -263,10 +263,8 @@ void add_material(Schema& s) {
   };
   std::vector<std::string> models;
   for (const MaterialInfo& m : materials()) models.push_back(m.name);
-  s.sections.push_back(
-      {"material", "material = { ... } in a [[body]]",
-       "Elastic constants at small strain. Values per tet are a number, a formula of the centroid (X, Y, Z) at rest, "
-       "or a [field](#field); or all come from a fitted material, `{ file = \"material.vtu\" }`."});
+  s.sections.push_back({"material", "material = { ... } in a [[body]]",
+                        "Elastic constants at small strain, or a fitted material, `{ file = \"material.vtu\" }`."});
   add_key(s, "material",
           {.name = "model",
            .accepts = kText,
@@ -311,7 +309,8 @@ void add_material(Schema& s) {
   s.alternatives.push_back(
       {"material", {{"young", "poisson"}, {"lambda", "mu"}, {"shear", "bulk"}, {"file", "frame", "hash"}}, false});
 
-  s.sections.push_back({"field", "in place of a number of a material", "Values per tet from a table or a file."});
+  s.sections.push_back(
+      {"field", "a value per tet", "A number, a formula of the centroid (X, Y, Z) at rest, or a table:"});
   add_key(s, "field",
           {.name = "regions", .accepts = kAnyTable, .meaning = "a number per region label: { 1 = 1e5, 2 = 3e5 }"});
   add_key(s, "field",
