@@ -79,7 +79,7 @@ TEST(Session, AnExplicitSchemeThatBlowsUpStopsPlaying) {
   page.send({{"do", "reset"}});
   page.send({{"do", "set"}, {"key", "time.step"}, {"value", 1e-4}});
   page.steps(3);
-  EXPECT_TRUE(page.rows().back()["success"].get<bool>());
+  EXPECT_TRUE(page.rows().back()["converged"].get<bool>());
 }
 
 TEST(Session, AnInterruptionBetweenStepsIsForgotten) {

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "dynamics/step_fields.h"
 #include "io/csv_reader.h"
 
 namespace aspic::viewer {
@@ -15,20 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kPotential = "potential_", kTotal = "potential_total";
-
-template <class Word>
-Word named(const std::string& name, Word last, const char* column, const fs::path& file, int step) {
-  for (int i = 0; i <= static_cast<int>(last); ++i)
-    if (to_string(static_cast<Word>(i)) == name) return static_cast<Word>(i);
-  throw InvalidInput(file.string() + ": step " + std::to_string(step) + " has the unknown " + column + " '" + name +
-                     "'; was the run made by another version?");
-}
-
-std::uint64_t from_hex(const std::string& digits) {
-  std::uint64_t number = 0;
-  std::from_chars(digits.data(), digits.data() + digits.size(), number, 16);
-  return number;
-}
 
 [[noreturn]] void fail_order(const fs::path& file, int step) {
   throw InvalidInput(file.string() + ": the row of step " + std::to_string(step) + " is not where it belongs");
@@ -56,6 +43,35 @@ Vec3d vector_of(CsvReader& table, const std::string& name) {
            table.number(table.column(name + "_z"))}};
 }
 
+StepValue value_of(const CsvReader& table, size_t column, StepFieldType type) {
+  if (type == StepFieldType::count) return table.integer(column);
+  if (type == StepFieldType::real) return table.number(column);
+  return table.text(column);
+}
+
+// Reads the fields of a StepReport from their columns.
+class StepReader {
+ public:
+  explicit StepReader(const CsvReader& table) : table_(table) {
+    for (const StepField& field : step_fields()) {
+      if (!field.is_in(StepOutput::table) || !field.set) continue;
+      if (field.is_optional && !table.has(field.name)) continue;
+      columns_.emplace_back(&field, table.column(field.name));
+    }
+  }
+
+  void read(StepReport& report) const {
+    for (const auto& [field, column] : columns_)
+      if (!field->set(report, value_of(table_, column, field->type)))
+        throw InvalidInput(table_.where() + ": unknown " + std::string(field->name) + " '" + table_.text(column) +
+                           "'; was the run written by another version?");
+  }
+
+ private:
+  const CsvReader& table_;
+  std::vector<std::pair<const StepField*, size_t>> columns_;
+};
+
 std::vector<StepRow> read_steps(const fs::path& file, int last_step, std::vector<std::string>& potentials) {
   CsvReader table(file);
   std::vector<size_t> potential_columns;
@@ -66,47 +82,21 @@ std::vector<StepRow> read_steps(const fs::path& file, int last_step, std::vector
     potential_columns.push_back(i);
   }
   const std::vector<std::string> pins = pins_of(table);
-  const auto number = [&](const char* name) { return [&table, i = table.column(name)] { return table.number(i); }; };
-  const auto time = number("time"), residual = number("residual"), threshold = number("residual_threshold"),
-             min_det_F = number("min_det_F"), kinetic = number("kinetic"), total = number("potential_total"),
-             pin_work = number("pin_work"), damping_loss = number("damping_loss"),
-             numerical_loss = number("numerical_loss"), residual_work = number("residual_work"),
-             ledger_error = number("ledger_error");
-  const size_t step = table.column("step"), status = table.column("status"), iterations = table.column("iterations");
-  // Runs of earlier versions have none of these.
-  const bool is_certified = table.has("energy_bound") && table.has("energy_slack") && table.has("decrement");
-  const bool is_hashed = table.has("state_hash");
+  const StepReader reader(table);
+  const size_t step = table.column("step");
   std::vector<StepRow> steps;
   while (static_cast<int>(steps.size()) < last_step && table.next()) {
     if (table.integer(step) == 0) continue;  // the start; runs of earlier versions have no row of it
-    StepReport& report = steps.emplace_back().report;
-    report.step = table.integer(step);
+    StepRow& row = steps.emplace_back();
+    StepReport& report = row.report;
+    reader.read(report);
     if (report.step != static_cast<int>(steps.size())) fail_order(file, report.step);
-    report.time = time();
-    report.status = named(table.text(status), Status::inaccurate, "status", file, report.step);
-    report.iterations = table.integer(iterations);
-    report.residual = residual();
-    report.residual_threshold = threshold();
-    report.min_det_F = min_det_F();
-    report.kinetic = kinetic();
+    row.pin_work = report.pin_work;
     for (const size_t column : potential_columns) report.potential.push_back(table.number(column));
-    report.potential_total = total();
-    steps.back().pin_work = pin_work();
-    report.damping_loss = damping_loss();
-    report.numerical_loss = numerical_loss();
-    report.residual_work = residual_work();
-    report.ledger_error = ledger_error();
-    steps.back().pins = pins;
+    row.pins = pins;
     for (const std::string& pin : pins)
       report.resultants.pins.push_back(
           {vector_of(table, "reaction_" + pin), vector_of(table, "reaction_moment_" + pin)});
-    if (is_certified) {
-      report.decrement = table.number(table.column("decrement"));
-      report.energy_bound =
-          named(table.text(table.column("energy_bound")), EnergyBound::broken, "energy_bound", file, report.step);
-      report.energy_slack = table.number(table.column("energy_slack"));
-    }
-    if (is_hashed) report.state_hash = from_hex(table.text(table.column("state_hash")));
   }
   if (static_cast<int>(steps.size()) < last_step)
     throw InvalidInput(file.string() + ": ends at step " + std::to_string(steps.size()) +

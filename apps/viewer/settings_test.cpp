@@ -57,7 +57,7 @@ TEST(Settings, TakeEffectAndKeepTheState) {
   EXPECT_EQ(page.scene()["overrides"].size(), 1u);
   const double bent = page.picture().positions[1];
   page.steps(1);
-  EXPECT_TRUE(page.rows()[5]["success"].get<bool>());
+  EXPECT_TRUE(page.rows()[5]["converged"].get<bool>());
   EXPECT_TRUE(std::isfinite(bent));
 }
 
@@ -128,7 +128,7 @@ TEST(Settings, OfTheSolverNeedNoOtherScene) {
   EXPECT_EQ(setting(page, "solver.method")["value"], "lbfgs");
   EXPECT_NE(page.scene()["solver"].get<std::string>().find("bfgs"), std::string::npos) << page.scene()["solver"];
   page.steps(1);
-  EXPECT_TRUE(page.rows()[2]["success"].get<bool>());
+  EXPECT_TRUE(page.rows()[2]["converged"].get<bool>());
   const Json scene = page.send({{"ask", "scene"}, {"side", "a"}});
   EXPECT_NE(scene["text"].get<std::string>().find("lbfgs"), std::string::npos);
 }

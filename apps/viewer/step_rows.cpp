@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/hash.h"
+#include "dynamics/step_fields.h"
 
 namespace aspic::viewer {
 namespace {
@@ -12,8 +12,6 @@ size_t details_of(const StepRow& row) {
   for (const IterationRow& iteration : row.iterations) count += iteration.tried.size();
   return count;
 }
-
-bool has_slack(const StepReport& report) { return report.energy_bound != EnergyBound::none; }
 
 }  // namespace
 
@@ -70,32 +68,25 @@ Json reactions(const StepRow& row) {
 
 Json to_json(const StepRow& row) {
   const StepReport& report = row.report;
-  Json iterations = Json::array();
-  for (const IterationRow& iteration : row.iterations) iterations.push_back(to_json(iteration));
-  return {{"step", report.step},
-          {"time", report.time},
-          {"status", to_string(report.status)},
-          {"success", is_success(report.status)},
-          {"iterations", std::move(iterations)},
-          {"residual", report.residual},
-          {"threshold", report.residual_threshold},
-          {"decrement", report.decrement},
-          {"min_det_F", report.min_det_F},
-          {"kinetic", report.kinetic},
-          {"potential", report.potential},
-          {"mouse_work", row.mouse_work},
-          {"probe_work", row.probe_work},
-          {"pin_work", row.pin_work},
-          {"reactions", reactions(row)},
-          {"damping_loss", report.damping_loss},
-          {"numerical_loss", report.numerical_loss},
-          {"residual_work", report.residual_work},
-          {"ledger_error", report.ledger_error},
-          {"energy_bound", to_string(report.energy_bound)},
-          {"energy_slack", has_slack(report) ? Json(report.energy_slack) : Json()},
-          {"state_hash", report.state_hash ? Json(hex_digits(report.state_hash)) : Json()},
-          {"seconds", report.seconds},
-          {"words", to_json(row.why)}};
+  Json message;
+  for (const StepField& field : step_fields()) {
+    if (!field.is_in(StepOutput::viewer)) continue;
+    Json& entry = message[std::string(field.name)];
+    if (field.type == StepFieldType::potentials)
+      entry = report.potential;
+    else
+      std::visit([&](const auto& value) { entry = value; }, field.get(report));
+  }
+  if (report.energy_bound == EnergyBound::none) message["energy_slack"] = nullptr;
+  if (report.state_hash == 0) message["state_hash"] = nullptr;
+  message["iterations"] = Json::array();
+  for (const IterationRow& iteration : row.iterations) message["iterations"].push_back(to_json(iteration));
+  message["mouse_work"] = row.mouse_work;
+  message["probe_work"] = row.probe_work;
+  message["pin_work"] = row.pin_work;  // without the work of mouse and probe
+  message["reactions"] = reactions(row);
+  message["explanation"] = to_json(row.why);
+  return message;
 }
 
 void IterationRows::add(const LiveIteration& live) {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "dynamics/step_fields.h"
 #include "io/vtu.h"
 
 namespace aspic {
@@ -45,36 +46,17 @@ std::vector<Field> cell_fields(const Simulation& simulation, FieldType real) {
   return fields;
 }
 
-// The certificate of the step, by the names of steps.csv; words by their place in the tables of docs/formats.md.
+// The time, and the fields of the report for frames. Names are stored as indices, see docs/formats.md.
 std::vector<Field> file_fields(double time, const StepReport* report) {
-  std::vector<Field> fields;
-  const auto add = [&](const char* name, FieldType type, std::vector<double> values) {
-    const int components = static_cast<int>(values.size());
-    fields.push_back({name, components, std::move(values), type});
-  };
-  const auto count = [&](const char* name, int value) { add(name, FieldType::int32, {static_cast<double>(value)}); };
-  const auto real = [&](const char* name, double value) { add(name, FieldType::float64, {value}); };
-  real("TimeValue", time);  // ParaView's name
+  std::vector<Field> fields = {{"TimeValue", 1, {time}, FieldType::float64}};  // ParaView's name
   if (!report) return fields;
-  count("step", report->step);
-  count("status", static_cast<int>(report->status));
-  count("criterion", static_cast<int>(report->criterion));
-  count("iterations", report->iterations);
-  real("residual", report->residual);
-  real("residual_threshold", report->residual_threshold);
-  real("decrement", report->decrement);
-  real("min_det_F", report->min_det_F);
-  real("kinetic", report->kinetic);
-  real("potential_total", report->potential_total);
-  real("pin_work", report->pin_work);
-  real("damping_loss", report->damping_loss);
-  real("numerical_loss", report->numerical_loss);
-  real("residual_work", report->residual_work);
-  real("ledger_error", report->ledger_error);
-  count("energy_bound", static_cast<int>(report->energy_bound));
-  real("energy_slack", report->energy_slack);
-  const auto half = [&](int shift) { return static_cast<double>(static_cast<int32_t>(report->state_hash >> shift)); };
-  add("state_hash", FieldType::int32, {half(32), half(0)});
+  for (const StepField& field : step_fields()) {
+    if (!field.is_in(StepOutput::frame)) continue;
+    std::vector<double> values = field.numbers(*report);
+    const int components = static_cast<int>(values.size());
+    const FieldType type = field.type == StepFieldType::real ? FieldType::float64 : FieldType::int32;
+    fields.push_back({std::string(field.name), components, std::move(values), type});
+  }
   return fields;
 }
 

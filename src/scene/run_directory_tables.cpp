@@ -1,7 +1,7 @@
 #include "scene/run_directory_tables.h"
 
 #include "base/error.h"
-#include "base/hash.h"
+#include "dynamics/step_fields.h"
 #include "scene/run_directory_layout.h"
 
 namespace aspic {
@@ -22,8 +22,6 @@ void add_resultant_columns(const Model& model, std::vector<std::string>& columns
   for (const BodyRange& body : model.bodies) add("body", body.name);
 }
 
-constexpr std::string_view kStart = "start";  // the status of step 0, which nothing was solved for
-
 void add(const Resultants& resultants, CsvRow& row) {
   for (const auto* all : {&resultants.pins, &resultants.loads, &resultants.bodies})
     for (const Resultant& sum : *all)
@@ -32,56 +30,32 @@ void add(const Resultants& resultants, CsvRow& row) {
 }
 
 std::vector<std::string> step_columns(const Simulation& simulation) {
-  std::vector<std::string> columns = {"step",
-                                      "time",
-                                      "status",
-                                      "criterion",
-                                      "iterations",
-                                      "trials",
-                                      "values",
-                                      "gradients",
-                                      "hessians",
-                                      "projected_hessians",
-                                      "element_values",
-                                      "element_gradients",
-                                      "element_hessians",
-                                      "factorizations",
-                                      "linear_iterations",
-                                      "products",
-                                      "cycles",
-                                      "initial_guess",
-                                      "substeps",
-                                      "rejected",
-                                      "residual",
-                                      "residual_threshold",
-                                      "min_det_F",
-                                      "kinetic"};
-  for (const std::string& name : simulation.potential_names()) columns.push_back("potential_" + name);
-  for (const char* name :
-       {"potential_total", "pin_work", "damping_loss", "numerical_loss", "residual_work", "ledger_error"})
-    columns.push_back(name);
-  add_resultant_columns(simulation.model(), columns);
-  columns.insert(columns.end(), {"decrement", "energy_bound", "energy_slack", "state_hash"});
+  std::vector<std::string> columns;
+  for (const StepField& field : step_fields()) {
+    if (!field.is_in(StepOutput::table)) continue;
+    if (field.type == StepFieldType::potentials) {
+      for (const std::string& name : simulation.potential_names()) columns.push_back("potential_" + name);
+    } else if (field.type == StepFieldType::resultants) {
+      add_resultant_columns(simulation.model(), columns);
+    } else {
+      columns.emplace_back(field.name);
+    }
+  }
   return columns;
 }
 
 CsvRow step_row(const StepReport& report) {
   CsvRow row;
-  row.add(report.step).add(report.time);
-  row.add(report.step == 0 ? kStart : to_string(report.status)).add(to_string(report.criterion));
-  row.add(report.iterations).add(report.trials);
-  row.add(report.values).add(report.gradients).add(report.hessians).add(report.projected_hessians);
-  for (const int evaluations : {report.values, report.gradients, report.hessians})
-    row.add(static_cast<double>(evaluations) * report.elements);
-  row.add(report.factorizations).add(report.linear_iterations).add(report.products).add(report.cycles);
-  row.add(to_string(report.initial_guess)).add(report.substeps).add(report.rejected);
-  row.add(report.residual).add(report.residual_threshold).add(report.min_det_F).add(report.kinetic);
-  for (const double energy : report.potential) row.add(energy);
-  row.add(report.potential_total).add(report.pin_work).add(report.damping_loss).add(report.numerical_loss);
-  row.add(report.residual_work).add(report.ledger_error);
-  add(report.resultants, row);
-  row.add(report.decrement).add(to_string(report.energy_bound)).add(report.energy_slack);
-  row.add(hex_digits(report.state_hash));
+  for (const StepField& field : step_fields()) {
+    if (!field.is_in(StepOutput::table)) continue;
+    if (field.type == StepFieldType::potentials) {
+      for (const double energy : report.potential) row.add(energy);
+    } else if (field.type == StepFieldType::resultants) {
+      add(report.resultants, row);
+    } else {
+      std::visit([&](const auto& value) { row.add(value); }, field.get(report));
+    }
+  }
   return row;
 }
 

@@ -2,6 +2,8 @@
 // program `ServerMessage`s. Binary frames, from the program only, are geometry and pictures; all numbers little-endian.
 // docs/viewer_protocol.md tells the same in prose. A number that is not finite travels as null.
 
+import type { StepFields } from "./stepFields";
+
 export type SideName = "a" | "b";
 export type Vec3 = [number, number, number];
 export type MaybeNumber = number | null;
@@ -168,31 +170,12 @@ export interface Setting {
   choices: string[];
 }
 
-export interface StepRow {
-  step: number;
-  time: number; // [s]
-  status: string;
-  success: boolean;
+export interface StepRow extends StepFields {
   iterations: IterationRow[];
-  residual: MaybeNumber; // [N]
-  threshold: MaybeNumber;
-  decrement: MaybeNumber; // [J]
-  min_det_F: MaybeNumber;
-  kinetic: MaybeNumber; // [J], also below
-  potential: MaybeNumber[];
-  mouse_work: MaybeNumber; // in this step, also below
+  mouse_work: MaybeNumber; // in this step [J]; pin_work is without it and without probe_work
   probe_work: MaybeNumber;
-  pin_work: MaybeNumber;
-  damping_loss: MaybeNumber;
-  numerical_loss: MaybeNumber;
-  residual_work: MaybeNumber;
-  ledger_error: MaybeNumber;
   reactions?: Record<string, MaybeNumber[]>; // of each pin: its force [N] and moment about the origin [N m], x y z
-  energy_bound: "none" | "not_guaranteed" | "holds" | "broken"; // what backward Euler guarantees
-  energy_slack: MaybeNumber; // by how much it holds; null without one [J]
-  state_hash: string | null; // of positions and velocities at its end
-  seconds: number; // wall time
-  words: { cause: string; place: string; remedy: string } | null; // why it did not converge
+  explanation: { cause: string; place: string; remedy: string } | null; // why it did not converge
 }
 
 export interface IterationRow {

@@ -255,7 +255,7 @@ export class RecordedSource implements Source {
         iteration: -1,
         timeline: { first: frames.step[0], last: frames.step[frames.step.length - 1] },
         status: row?.status ?? "",
-        words: row?.words ?? null,
+        words: row?.explanation ?? null,
         grab: null,
         probe: null,
       },

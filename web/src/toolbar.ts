@@ -122,7 +122,7 @@ function makeChip(): HTMLButtonElement {
 function failed(store: Store, name: SideName): boolean {
   const rows = store.side(name)?.steps ?? [];
   const row = rows[(store.state?.[name]?.step ?? 0) - (rows[0]?.step ?? 1)];
-  return row?.success === false;
+  return row?.converged === false;
 }
 
 function showChip(chip: HTMLButtonElement, side: SideState | null, bad: boolean, before: string): void {

@@ -6,13 +6,13 @@ import type { StepRow } from "../src/protocol";
 import { stepRow } from "./rowsOfSteps";
 
 function row(step: number, values: Partial<StepRow>): StepRow {
-  return stepRow({ step, residual: 0.1, threshold: 1, min_det_F: 0.9, ...values });
+  return stepRow({ step, residual: 0.1, residual_threshold: 1, min_det_F: 0.9, ...values });
 }
 
 const kSteps = [
   row(1, { residual: 0.5, min_det_F: 0.2, energy_slack: 2, decrement: 3, state_hash: "1111111111111111" }),
-  row(2, { residual: 3, status: "iteration_limit", success: false, ledger_error: -7, energy_bound: "broken", energy_slack: -1 }),
-  row(3, { residual: null, threshold: 0, min_det_F: null, energy_bound: "none", energy_slack: null, state_hash: null }),
+  row(2, { residual: 3, status: "iteration_limit", converged: false, ledger_error: -7, energy_bound: "broken", energy_slack: -1 }),
+  row(3, { residual: null, residual_threshold: 0, min_det_F: null, energy_bound: "none", energy_slack: null, state_hash: null }),
 ];
 const column = (title: string): (typeof kColumns)[number] => kColumns.find((c) => c.title === title)!;
 

@@ -1,15 +1,17 @@
 // Rows for tests, of steps that did nothing but what is said.
 import type { IterationRow, StepRow } from "../src/protocol";
+import { kUnknownStep } from "../src/stepFields";
 
 export function stepRow(change: Partial<StepRow> = {}): StepRow {
   return {
+    ...kUnknownStep,
     step: 1,
     time: 0.01,
     status: "converged",
-    success: true,
+    converged: true,
     iterations: [],
     residual: 1e-4,
-    threshold: 1e-3,
+    residual_threshold: 1e-3,
     decrement: 1e-9,
     min_det_F: 1,
     kinetic: 0,
@@ -25,7 +27,7 @@ export function stepRow(change: Partial<StepRow> = {}): StepRow {
     energy_slack: 1,
     state_hash: "0123456789abcdef",
     seconds: 0.01,
-    words: null,
+    explanation: null,
     ...change,
   };
 }

@@ -28,14 +28,14 @@ test("a converged step tells its residual and its pace", () => {
 });
 
 test("a failure never reads like success", () => {
-  const failed = stepRow({ success: false, status: "iteration_limit", residual: 1, iterations: [iterationRow()] });
+  const failed = stepRow({ converged: false, status: "iteration_limit", residual: 1, iterations: [iterationRow()] });
   assert.equal(
     stepText(failed, true),
     "Not converged (iteration limit) after 1 iteration: the residual, 1 N, is above the threshold of 1 mN.",
   );
-  const explained = { ...failed, words: { cause: "no trial was accepted", place: "", remedy: "lower c." } };
+  const explained = { ...failed, explanation: { cause: "no trial was accepted", place: "", remedy: "lower c." } };
   assert.equal(stepText(explained, true), "No trial was accepted. Lower c.");
-  const byKey = { ...failed, words: { cause: "slow", place: "", remedy: 'solver.method = "newton"' } };
+  const byKey = { ...failed, explanation: { cause: "slow", place: "", remedy: 'solver.method = "newton"' } };
   assert.equal(stepText(byKey, true), `Slow. solver.method = "newton".`);
 });
 

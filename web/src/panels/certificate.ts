@@ -5,7 +5,7 @@ import type { MaybeNumber, StepRow } from "../protocol";
 
 // Above 1 the step missed what was asked for; null: nothing was asked for.
 export function excess(row: StepRow): MaybeNumber {
-  return row.residual === null || !row.threshold ? null : row.residual / row.threshold;
+  return row.residual === null || !row.residual_threshold ? null : row.residual / row.residual_threshold;
 }
 
 export interface Column {
@@ -50,8 +50,8 @@ export const kColumns: Column[] = [
     title: "status",
     meaning: "how its minimization ended",
     value: (row) => statusName(row.status),
-    worse: (row) => (row.success ? 0 : 1),
-    isBad: (row) => !row.success,
+    worse: (row) => (row.converged ? 0 : 1),
+    isBad: (row) => !row.converged,
   },
   {
     title: "residual [N]",
@@ -59,7 +59,7 @@ export const kColumns: Column[] = [
     value: (row) => row.residual,
     worse: (row) => row.residual ?? kUnknown,
   },
-  { title: "wanted [N]", meaning: "the largest residual that counts as converged", value: (row) => row.threshold || null },
+  { title: "wanted [N]", meaning: "the largest residual that counts as converged", value: (row) => row.residual_threshold || null },
   {
     title: "residual / wanted",
     meaning: "above 1: more is left than was asked for",
@@ -121,7 +121,7 @@ export const kColumns: Column[] = [
 
 // The rows to be listed, the worst by a column first, or in the order of time.
 export function listed(steps: readonly StepRow[], column: Column, onlyFailed: boolean): StepRow[] {
-  const rows = onlyFailed ? steps.filter((row) => !row.success) : [...steps];
+  const rows = onlyFailed ? steps.filter((row) => !row.converged) : [...steps];
   const worse = column.worse;
   return worse ? rows.sort((a, b) => compare(worse(b), worse(a)) || a.step - b.step) : rows;
 }
@@ -153,7 +153,7 @@ export function totals(steps: readonly StepRow[]): Totals {
     }, null);
   return {
     steps: steps.length,
-    failed: steps.filter((row) => !row.success).length,
+    failed: steps.filter((row) => !row.converged).length,
     iterations: steps.reduce((sum, row) => sum + row.iterations.length, 0),
     worstExcess: worst(excess),
     smallestVolume: worst((row) => (row.min_det_F === null ? null : -row.min_det_F)),

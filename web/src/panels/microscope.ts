@@ -91,7 +91,7 @@ class MicroscopePanel implements Panel {
 
   private stepClass(row: number): string {
     const step = this.stepAt(row);
-    return !step || step.status === "under way" ? "" : step.success ? "success" : "failed";
+    return !step || step.status === "under way" ? "" : step.converged ? "success" : "failed";
   }
 
   private stepColumns(): ConstructorParameters<typeof Rows>[0]["columns"] {
@@ -209,7 +209,7 @@ class MicroscopePanel implements Panel {
     else if (underWay)
       this.words.textContent = `Step ${row.step} is under way; known so far: ${plural(row.iterations.length, "iteration")}.`;
     else this.words.textContent = `Step ${row.step}. ${stepText(row, implicit)}`;
-    this.words.dataset.kind = row && !row.success ? "bad" : "";
+    this.words.dataset.kind = row && !row.converged ? "bad" : "";
   }
 
   // E along d at the chosen iteration, asked for when a chart shows it; or why it is not there.
@@ -302,11 +302,11 @@ function sideTitle(side: SideName, label: string): string {
 }
 
 function residualText(step: StepRow): string {
-  if (step.residual === null || step.threshold === null || step.threshold <= 0) return withUnit(step.residual, "N", 3);
-  return `${short(step.residual / step.threshold, 2)} ×`;
+  if (step.residual === null || step.residual_threshold === null || step.residual_threshold <= 0) return withUnit(step.residual, "N", 3);
+  return `${short(step.residual / step.residual_threshold, 2)} ×`;
 }
 
 function statusText(step: StepRow): string {
   if (step.status === "under way") return "… under way";
-  return `${step.success ? "✓" : "✗"} ${statusName(step.status)}`;
+  return `${step.converged ? "✓" : "✗"} ${statusName(step.status)}`;
 }

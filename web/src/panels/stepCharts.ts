@@ -122,7 +122,7 @@ function stages(rows: readonly IterationRow[]): Plan {
 function overSteps(steps: readonly StepRow[], width: number): Plan {
   const whole = {
     x: steps.map((s) => s.step),
-    columns: [steps.map((s) => s.iterations.length), steps.map((s) => (s.success ? null : s.iterations.length))],
+    columns: [steps.map((s) => s.iterations.length), steps.map((s) => (s.converged ? null : s.iterations.length))],
   };
   const table = thinned(whole, 0, steps.length, Math.max(100, width));
   return {

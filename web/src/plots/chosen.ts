@@ -3,6 +3,7 @@ import { Newest } from "../newest";
 import type { ChosenIteration, Page } from "../page";
 import type { IterationReply, IterationRow, SideName, StepRow } from "../protocol";
 import type { Store } from "../store";
+import { kUnknownStep } from "../stepFields";
 import { messageOf } from "../dom";
 import { Emitter } from "../emitter";
 
@@ -229,10 +230,8 @@ export class Chosen extends Emitter<Events> {
 
 // What a step has while it is under way.
 function unfinished(step: number, time: number, iterations: IterationRow[]): StepRow {
-  const unknown = { residual: null, threshold: null, min_det_F: null, kinetic: null, mouse_work: null, probe_work: null, pin_work: null };
-  const more = { damping_loss: null, numerical_loss: null, residual_work: null, ledger_error: null, potential: [] };
-  const certificate = { decrement: null, energy_bound: "none" as const, energy_slack: null, state_hash: null };
-  return { step, time, status: "under way", success: true, iterations, ...unknown, ...more, ...certificate, seconds: 0, words: null };
+  const work = { mouse_work: null, probe_work: null, explanation: null };
+  return { ...kUnknownStep, step, time, status: "under way", converged: true, iterations, ...work };
 }
 
 const known = new WeakMap<Page, Chosen>();

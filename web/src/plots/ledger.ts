@@ -156,7 +156,7 @@ export class Ledger {
     this.highest.push(Math.max(this.highest[last] ?? -Infinity, balance ?? -Infinity));
     this.largest.push(Math.max(this.largest[last] ?? 0, ...values.map((v) => Math.abs(v ?? 0))));
     this.step.push(row.step);
-    this.time.push(row.time);
+    this.time.push(row.time ?? NaN);
     this.residualWork.push(row.residual_work);
     this.ledgerError.push(row.ledger_error);
   }

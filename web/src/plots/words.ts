@@ -37,8 +37,8 @@ function paceText(rows: readonly IterationRow[]): string {
 }
 
 function residualText(row: StepRow): string {
-  if (row.residual === null || row.threshold === null) return "";
-  return `the residual, ${withUnit(row.residual, "N", 3)}, is ${row.residual <= row.threshold ? "below" : "above"} the threshold of ${withUnit(row.threshold, "N", 3)}`;
+  if (row.residual === null || row.residual_threshold === null) return "";
+  return `the residual, ${withUnit(row.residual, "N", 3)}, is ${row.residual <= row.residual_threshold ? "below" : "above"} the threshold of ${withUnit(row.residual_threshold, "N", 3)}`;
 }
 
 function shortened(rows: readonly IterationRow[]): string {
@@ -47,11 +47,11 @@ function shortened(rows: readonly IterationRow[]): string {
 }
 
 export function stepText(row: StepRow, implicit: boolean): string {
-  if (row.words)
-    return `${sentence(row.words.cause)}${row.words.place ? ` ${sentence(row.words.place)}` : ""}${row.words.remedy ? ` ${sentence(row.words.remedy)}` : ""}`;
+  if (row.explanation)
+    return `${sentence(row.explanation.cause)}${row.explanation.place ? ` ${sentence(row.explanation.place)}` : ""}${row.explanation.remedy ? ` ${sentence(row.explanation.remedy)}` : ""}`;
   if (!implicit) return "Nothing is minimized: this scheme computes the next positions from the forces at hand.";
   const count = plural(row.iterations.length, "iteration");
-  if (!row.success)
+  if (!row.converged)
     return `Not converged (${statusName(row.status)}) after ${count}${residualText(row) ? `: ${residualText(row)}` : ""}.`;
   if (row.iterations.length === 0)
     return `Converged: ${residualText(row) || "the criterion is met"}. It needed no iteration, or they are no longer kept.`;

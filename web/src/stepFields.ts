@@ -1,0 +1,47 @@
+// Generated from the description of step reports (src/dynamics/step_fields.cpp). Do not edit.
+import type { MaybeNumber } from "./protocol";
+
+export interface StepFields {
+  step: number; // 0 is the start
+  time: MaybeNumber; // time at the end of the step [s]
+  status: string; // start in row 0; success: converged, round_off; otherwise budget, iteration_limit, stuck, no_descent, undefined, inaccurate, unstable
+  converged: boolean; // whether the status is a success
+  residual: MaybeNumber; // norm of M a + dV/dx + dD/dx over free vertices [N]
+  residual_threshold: MaybeNumber; // its threshold [N]
+  min_det_F: MaybeNumber; // smallest volume ratio of any tet; negative: inverted [1]
+  kinetic: MaybeNumber; // kinetic energy [J]
+  potential: MaybeNumber[]; // energy of each term of V; a dead load has -f . x, not zero at rest [J]
+  pin_work: MaybeNumber; // work of moving pins, moving spring targets and time-dependent loads in this step [J]
+  damping_loss: MaybeNumber; // energy dissipated by damping [J]
+  numerical_loss: MaybeNumber; // energy dissipated by the integrator [J]
+  residual_work: MaybeNumber; // work of the residual [J]
+  ledger_error: MaybeNumber; // remaining imbalance [J]
+  decrement: MaybeNumber; // Newton decrement -g.d / 2 of the last iteration [J]
+  energy_bound: string; // holds, broken, not_guaranteed, none: the bound of backward Euler
+  energy_slack: MaybeNumber; // bound minus energy [J]
+  state_hash: string | null; // hash of positions and velocities
+  seconds: MaybeNumber; // wall time [s]
+}
+
+// Of a step that has not ended.
+export const kUnknownStep: StepFields = {
+  step: 0,
+  time: null,
+  status: "",
+  converged: false,
+  residual: null,
+  residual_threshold: null,
+  min_det_F: null,
+  kinetic: null,
+  potential: [],
+  pin_work: null,
+  damping_loss: null,
+  numerical_loss: null,
+  residual_work: null,
+  ledger_error: null,
+  decrement: null,
+  energy_bound: "",
+  energy_slack: null,
+  state_hash: null,
+  seconds: null,
+};
