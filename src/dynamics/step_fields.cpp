@@ -92,7 +92,7 @@ StepField converged() {
 StepField state_hash() {
   return {"state_hash",
           "",
-          "[hash](determinism.md#the-hash-of-a-step) of positions and velocities",
+          "[hash](determinism.md#compare-two-runs) of positions and velocities",
           StepFieldType::hash,
           kMeasured,
           [](const StepReport& r) { return StepValue(hex_digits(r.state_hash)); },

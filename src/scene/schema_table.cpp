@@ -65,8 +65,8 @@ void add_time(Schema& s) {
        {.name = "adaptive", .accepts = kTable, .fallback = "{}", .table = "adaptive", .meaning = "adaptive substeps"}});
   s.sections.push_back({"adaptive", "adaptive = { ... } in [time]",
                         "Each step is divided into substeps of `step` / 2^k. The difference between one substep and "
-                        "two halves estimates its error. Too long substeps are halved; if the shortest (2^-20) is "
-                        "still inaccurate, the step fails. Frames stay at multiples of `step`."});
+                        "two halves estimates its error. If the shortest substep (2^-20) is still inaccurate, the step "
+                        "fails."});
   add_keys(s, "adaptive",
            {{.name = "tolerance",
              .accepts = kNumber,
@@ -108,9 +108,9 @@ void add_solver(Schema& s) {
         .fallback = toml_string(SimulationOptions().initial_guess),
         .choices = initial_guess_names(),
         .meaning =
-            "start of a minimization: `zero` the rest shape, `current` the current positions, `extrapolated` q + h "
-            "qdot, `last_increment` the previous increment again, `accelerated` with the previous accelerations, "
-            "`best` the one of the last four with the lowest energy, which also replaces a guess of infinite energy",
+            "initial guess of a minimization: `zero` rest shape, `current` positions, `extrapolated` q + h qdot, "
+            "`last_increment` previous increment, `accelerated` previous accelerations, `best` the one of the last "
+            "four with the lowest energy; it also replaces a guess of infinite energy",
         .reason = "never worse than where the body is"},
        {.name = "max_iterations",
         .accepts = kInteger,
@@ -124,7 +124,7 @@ void add_solver(Schema& s) {
         .fallback = number_text(usual.time_budget),
         .range = kNotNegative,
         .meaning = "wall time per step; beyond, the step ends with its best iterate and the status `budget`; 0: no "
-                   "limit. At least one iteration completes. Results are then not reproducible",
+                   "limit. Results are then not reproducible",
         .reason = "results are reproducible to the bit"},
        {.name = "tolerance",
         .accepts = kNumber,
