@@ -61,7 +61,7 @@ std::vector<Vec3d> directions_of(const Value& pin) {  // empty: all
   return axes.size() == 3 ? std::vector<Vec3d>{} : axes;
 }
 
-// A motion that does not begin where the vertices are would throw them in the first step.
+// A motion that does not start at the vertices moves them abruptly in the first step.
 void note_jump(const Pin& pin, const std::vector<Vec3d>& starts, std::vector<std::string>& notes) {
   if (!pin.motion) return;
   double jump = 0;
@@ -76,7 +76,7 @@ void note_jump(const Pin& pin, const std::vector<Vec3d>& starts, std::vector<std
                     " m at time 0: its motion does not start at 0");
 }
 
-// What the second of two pins could select, so that none of the first's vertices is in it.
+// Suggests a selection of the second pin without the vertices of the first.
 std::string leave_out(const Value& first, const Value& second, bool leaves_any) {
   const Value &a = first["where"], &b = second["where"];
   if (!leaves_any) return "remove pin '" + second["name"].text() + "': all of its vertices are in other pins";
@@ -84,17 +84,17 @@ std::string leave_out(const Value& first, const Value& second, bool leaves_any) 
   return "try where = \"(" + b.text() + ") && !(" + a.text() + ")\" in pin '" + second["name"].text() + "'";
 }
 
-// What holds a vertex so far.
+// The pins of a vertex so far.
 struct Holder {
   const Value* pin = nullptr;  // the last one
   std::vector<Vec3d> directions;
 
-  // False where it is held along one of them, or along a combination of them, already.
+  // Returns false if the vertex is already held along a combination of the directions.
   bool add(const Value& scene, const std::vector<Vec3d>& more) {
     const bool is_first = !pin;
     directions.insert(directions.end(), more.begin(), more.end());
     if (!is_first && (more.empty() || !are_independent(directions))) return false;
-    if (more.empty()) directions.resize(3);  // no further one is independent
+    if (more.empty()) directions.resize(3);  // no other direction is independent
     pin = &scene;
     return true;
   }
@@ -129,7 +129,7 @@ void add_point_springs(Builder& builder, const PlacedBody& body, const Value& sc
   const Motion motion = make_motion(scene["motion"], targets);
   for (size_t i = 0; i < vertices.size(); ++i) {
     const Vec3d start = targets[i];
-    if (motion) motion(start, 0);  // a formula that fails, fails here
+    if (motion) motion(start, 0);  // evaluates the formula early
     builder.point_springs.push_back({body.model_vertex(vertices[i]), scene["stiffness"].number(),
                                      [start, motion](double time) { return motion ? motion(start, time) : start; }});
   }
@@ -173,7 +173,7 @@ void add_springs(Builder& builder, const PlacedBody& body) {
   }
 }
 
-// The density of a load at a point with the outward normal n, of any length: a vector, or a pressure.
+// Density of a load at a point with the outward normal n of any length: a vector, or a pressure.
 class LoadDensity {
  public:
   explicit LoadDensity(const Value& scene) {
@@ -190,7 +190,7 @@ class LoadDensity {
   Vec3d at(const Vec3d& X, const Vec3d& n, double time) const {
     try {
       return vector_ ? vector_->at(X, time) : (-pressure_->at(X, time) / std::sqrt(dot(n, n))) * n;
-    } catch (const InvalidInput& e) {  // maybe long after the scene was read
+    } catch (const InvalidInput& e) {  // possibly long after the scene was read
       throw error_at(place_, e.what());
     }
   }
@@ -201,7 +201,7 @@ class LoadDensity {
   Place place_;
 };
 
-// What acts on one triangle or tet, in equal parts on its corners.
+// The load on one triangle or tet, in equal parts on its corners.
 struct LoadPatch {
   Vec3d center, normal;
   std::vector<int> corners;  // in the model
@@ -244,7 +244,7 @@ void add_tractions(const Builder& builder, const PlacedBody& body, std::vector<L
   }
 }
 
-// Each is a term of its own: pressure, pressure_2, ...
+// Each is a separate term: pressure, pressure_2, ...
 void add_pressures(Builder& builder, const PlacedBody& body) {
   const Array& pressures = list_of(body, "pressure");
   if (pressures.empty()) return;
@@ -265,7 +265,7 @@ void add_pressures(Builder& builder, const PlacedBody& body) {
     const auto of_time = [p, place = value.place](double t) {
       try {
         return p.at({}, t);
-      } catch (const InvalidInput& e) {  // maybe long after the scene was read
+      } catch (const InvalidInput& e) {  // possibly long after the scene was read
         throw error_at(place, e.what());
       }
     };
@@ -303,7 +303,7 @@ void add_linear_load(Model& model, const char* name, std::vector<LoadGroup> grou
   const auto add = [varying = std::move(varying)](double time, std::span<double> force) {
     for (const LoadGroup& group : varying) group.add_to(force, time);
   };
-  model.loads.push_back(make_linear_load(name, std::move(constant), add));  // a formula that fails at 0 fails here
+  model.loads.push_back(make_linear_load(name, std::move(constant), add));  // evaluates the formulas at time 0
 }
 
 void add_loads(Builder& builder, const Vec3d& gravity) {

@@ -1,4 +1,4 @@
-// What holds, moves, loads and slows the bodies: pins, springs, tractions, forces and damping of a scene.
+// Pins, springs, loads and damping of a scene.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace aspic {
 
-// A body of the scene: by the user's numbers, and where it is inside the model.
+// A body in the user's numbering, and its place in the model.
 struct PlacedBody {
   Value& scene;  // its table
   TetMesh mesh;  // the placed rest shape with its own indices

@@ -8,7 +8,7 @@
 namespace aspic {
 namespace {
 
-// The four vertices by their numbers in the mesh of the body. Throws InvalidInput unless they belong to one tet.
+// Returns the four vertices in the numbering of the body. Throws InvalidInput unless they belong to one tet.
 Tet corners_of(const Value& point, const PlacedBody& body) {
   Tet corners{};
   for (int i = 0; i < 4; ++i) {

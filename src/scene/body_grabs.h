@@ -1,4 +1,4 @@
-// Hands of a scene: springs between points of tets and ends that move along paths.
+// Grabs of a scene: springs from points of tets to ends that move along paths.
 #pragma once
 #include <vector>
 

@@ -17,10 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kLockingPoisson = 0.45;  // linear tets are too stiff above
-constexpr double kElsewhere = 0.5;  // diagonals of the material's mesh: what is farther away is no misfit of meshes
+constexpr double kLockingPoisson = 0.45;  // above it linear tets are too stiff
+constexpr double kElsewhere = 0.5;        // maximum distance in diagonals of the material's mesh
 
-// Without elasticity a body still has its term, of zero stiffness, so that det F is watched.
+// A body without elasticity has a term of zero stiffness, so that det F is reported.
 const char* const kModelOfNothing = "neo_hookean";
 
 std::string four_digits(double length) {
@@ -83,7 +83,7 @@ class FromScene {
   Table& material_;
 };
 
-// The file's quantities at the centroids of the body, in the coordinates that they have in common.
+// The parameters of the file at the centroids of the body, in the coordinates of the file.
 class FromFile {
  public:
   FromFile(PlacedBody& body, SceneFiles& files, std::vector<std::string>& notes)
@@ -110,7 +110,7 @@ class FromFile {
   std::vector<double> density() {
     const std::vector<double>* density = fitted_.find("density");
     if (is_given(table_, "density") || !density) return FromScene(body_, files_).density();
-    erase(table_, "density");  // the default, which would take the file's place when the scene is run again
+    erase(table_, "density");  // the default would replace the file's density in the resolved scene
     return sampled(*density);
   }
 

@@ -1,4 +1,5 @@
-// What the tets of a body are made of: by numbers, formulas and fields of the scene, or by a fitted material's file.
+// The material of each tet of a body: from numbers, formulas and fields of the scene, or from the file of a fitted
+// material.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,11 +12,11 @@ namespace aspic {
 
 struct BodyMaterial {
   std::string model;
-  std::vector<MaterialParameters> parameters;  // one per tet, in the user's order
-  std::vector<double> density;                 // likewise [kg/m^3]
+  std::vector<MaterialParameters> parameters;  // one per tet, in the order of the mesh file
+  std::vector<double> density;                 // one per tet [kg/m^3]
 };
 
-// Leaves in the body's table what gives the same material again. Throws InvalidInput.
+// Rewrites the material in the body's table so that the resolved scene gives the same one. Throws InvalidInput.
 BodyMaterial body_material(PlacedBody& body, SceneFiles& files, std::vector<std::string>& notes);
 
 }  // namespace aspic

@@ -24,10 +24,10 @@ namespace fs = std::filesystem;
 
 constexpr int kManyTets = 300'000;                 // about a second of work
 constexpr std::uintmax_t kManyBytes = 30'000'000;  // of a file
-constexpr double kBytesPerTet = 1000;              // more than any file takes for one
-constexpr double kBytesInModel = 500;              // the least that a simulated tet takes, with its share of vertices
+constexpr double kBytesPerTet = 1000;              // upper bound of the size in a file
+constexpr double kBytesInModel = 500;              // lower bound of the memory of a simulated tet
 
-// The remedy names an option of another command than the one that fails here.
+// Replaces the option in the remedy by a whole command.
 std::string sentence(const Finding& finding) {
   std::string remedy = finding.remedy;
   if (const size_t option = remedy.find("--repair"); option != std::string::npos)
@@ -98,7 +98,7 @@ TetMesh shape_mesh(const Value& shape, const MeshLoader& loader) {
 
 bool is_tetgen(const fs::path& path) { return path.extension() == ".node" || path.extension() == ".ele"; }
 
-// The name under which the results keep a mesh file; a TetGen mesh is two files.
+// Returns the name of a mesh file in the results. A TetGen mesh has two files.
 std::string keep_mesh_file(const fs::path& path, const std::string& stem, SceneFiles& files) {
   if (!is_tetgen(path)) return files.keep(path, stem);
   files.keep(fs::path(path).replace_extension(".ele"), stem);
@@ -110,7 +110,7 @@ double mesh_size_of(const Value& body) {
   return size ? size->number() : 0;
 }
 
-// Reads or generates the tets and leaves in `body` what gives the same tets again.
+// Reads or generates the tets, and rewrites `body` so that the resolved scene gives the same ones.
 LoadedMesh resolve_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMesh> loaded) {
   const std::string name = body["name"].text();
   if (const Value* shape = body.find("shape")) return {shape_mesh(*shape, loader), {}};
@@ -154,7 +154,7 @@ BodyMesh with_skin(TetMesh tets, TriMesh skin) {
   return body;
 }
 
-// About a skin that the scene chose: one that was filled always pokes out a little.
+// For skins chosen by the scene. The surface of a filled mesh is always slightly outside.
 void note_outside(const BodyMesh& body, const std::string& name, std::vector<std::string>& notes) {
   if (const int outside = body.embedding.outside; outside > 0)
     notes.push_back("body '" + name + "': " + std::to_string(outside) + " of " +
@@ -162,7 +162,7 @@ void note_outside(const BodyMesh& body, const std::string& name, std::vector<std
                     " skin vertices lie outside the tets and follow the nearest one");
 }
 
-// One that cannot be within the limit is not read; of one that takes a while this is told.
+// Refuses files that must exceed the limit, and announces large ones.
 void check_size(const fs::path& path, const MeshLoader& loader) {
   std::error_code error;
   const std::uintmax_t bytes = fs::file_size(path, error);
@@ -171,17 +171,17 @@ void check_size(const fs::path& path, const MeshLoader& loader) {
   if (loader.limit.counts_files && static_cast<double>(bytes) > kBytesPerTet * loader.limit.tets)
     throw InvalidInput(path.string() + ": " + size + "; at most " + number_text(loader.limit.tets) + " tets " +
                        loader.limit.why + " (choose a coarser mesh)");
-  loader.tell("reading " + path.filename().string() + " (" + size + ")");
+  loader.report("reading " + path.filename().string() + " (" + size + ")");
 }
 
 }  // namespace
 
-void MeshLoader::tell(const std::string& what) const {
+void MeshLoader::report(const std::string& what) const {
   if (announce) announce(printable(what));
 }
 
-void MeshLoader::tell_if_many(int tet_count, const std::string& what) const {
-  if (tet_count >= kManyTets) tell(what);
+void MeshLoader::report_if_many(int tet_count, const std::string& what) const {
+  if (tet_count >= kManyTets) report(what);
 }
 
 std::string MeshLoader::why_not(double more_tets) const {
@@ -213,7 +213,7 @@ LoadedMesh load_mesh(const fs::path& path, double size, MeshLoader& loader) {
     if (const std::string why = loader.why_not(tets_in(std::abs(enclosed_volume(surface)), size)); !why.empty())
       throw InvalidInput(path.string() + ", filled with edges of length " + number_text(size) + ": " + why +
                          " (choose a larger mesh_size)");
-  loader.tell("filling " + path.filename().string() + " with tets");
+  loader.report("filling " + path.filename().string() + " with tets");
   Tetrahedralization filled =
       tetrahedralise(path, {.size = size, .seconds = loader.mesher_seconds, .program = loader.mesher});
   const std::string length = size > 0 ? number_text(size) : "the diagonal of the bounding box / 25";
@@ -231,8 +231,8 @@ BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMes
   check_fingerprint(body.table(), "mesh_hash", fingerprint_of(mesh.tets), "the mesh of body '" + name + "'");
   const AffineMap place = placement_of(body);
   for (Vec3d& X : mesh.tets.rest) X = place(X);
-  loader.tell_if_many(mesh.tets.tet_count(),
-                      "checking " + std::to_string(mesh.tets.tet_count()) + " tets of body '" + name + "'");
+  loader.report_if_many(mesh.tets.tet_count(),
+                        "checking " + std::to_string(mesh.tets.tet_count()) + " tets of body '" + name + "'");
   heed(diagnose(mesh.tets), "body '" + name + "'", loader.notes);
 
   const Value* skin = body.find("skin");

@@ -1,4 +1,4 @@
-// The mesh of a body: read, generated, or made by filling a surface; judged by the doctor and placed.
+// The mesh of a body: read, generated, or made by filling a surface; checked and placed.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace aspic {
 
-// A mesh as a file has it, before it is placed.
+// A mesh in the coordinates of its file.
 struct LoadedMesh {
   TetMesh tets;
   std::filesystem::path surface;  // the file that was filled, if any
@@ -28,14 +28,14 @@ struct MeshLoader {
   double tets = 0;            // so far
   double mesher_seconds = 0;  // as in SceneOptions
 
-  void tell(const std::string& what) const;
-  void tell_if_many(int tets, const std::string& what) const;  // so many that it takes more than a moment
-  std::string why_not(double more_tets) const;                 // empty: they are within the limit and fit into memory
-  std::string why_not_in_memory(double more_tets) const;       // empty: what they take at least is free
+  void report(const std::string& what) const;
+  void report_if_many(int tets, const std::string& what) const;  // if the work takes about a second or more
+  std::string why_not(double more_tets) const;  // reason to refuse them; empty: within the limit and the memory
+  std::string why_not_in_memory(double more_tets) const;  // reason to refuse them; empty: fit into the memory
 };
 
-// Reads a mesh; fills a surface with tets of edge length `size` (0: the mesher's choice). Errors that the doctor finds
-// throw InvalidInput; its warnings become notes.
+// Reads a mesh; fills a surface with tets of edge length `size` (0: default of the mesher). Defects throw InvalidInput;
+// warnings become notes.
 LoadedMesh load_mesh(const std::filesystem::path& path, double size, MeshLoader& loader);
 
 struct BodyMesh {
@@ -44,8 +44,8 @@ struct BodyMesh {
   Embedding embedding;  // of the skin into the tets
 };
 
-// Resolves mesh, shape and skin of a body, whose table then names what the results keep. `loaded`: the mesh, when it
-// was read before.
+// Resolves mesh, shape and skin of a body, and names the files of the results in its table. `loaded`: the mesh, if
+// already read.
 BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMesh> loaded);
 
 }  // namespace aspic

@@ -12,7 +12,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kFarFromOrigin = 1e8;  // in sizes of the body; half of the 16 digits of a position are lost there
+constexpr double kFarFromOrigin = 1e8;  // in sizes of the body; half of the 16 digits of a position are then lost
 constexpr double kCrushed = 3;          // rho g H / E: strain at the bottom of a column under its own weight
 constexpr double kDiamond = 1.2e12;     // [Pa]
 constexpr double kSoft = 1e7;           // [Pa] above it few bodies are soft
@@ -29,7 +29,7 @@ void note_inverted(const PlacedBody& body, std::vector<std::string>& notes) {
                     "so (disturb it with a small deform.displacement)");
 }
 
-// Strains are differences of positions, whose last digits are lost far from the origin.
+// Far from the origin, differences of positions lose their last digits.
 void note_lost_digits(const PlacedBody& body, std::vector<std::string>& notes) {
   const Box box = bounding_box(body.start);
   double far = 0, extent = 0;
@@ -58,7 +58,7 @@ Means means(const TetMesh& mesh, const BodyMaterial& material) {
   return {sum.young / whole, sum.density / whole};
 }
 
-// Along `direction`, which need not be a unit vector, times its length.
+// Returns the extent along `direction`, times the length of `direction`.
 double extent(const std::vector<Vec3d>& X, const Vec3d& direction) {
   double low = INFINITY, high = -INFINITY;
   for (const Vec3d& x : X) low = std::min(low, dot(x, direction)), high = std::max(high, dot(x, direction));
@@ -71,7 +71,7 @@ std::string three_digits(double x) {
   return text;
 }
 
-// The change that multiplies the stiffness, by the keys with which the material was given.
+// Suggests a change that multiplies the stiffness, by the keys of the material.
 std::string stiffness_remedy(const PlacedBody& body, const Means& mean, double factor) {
   const Value& material = body.scene["material"];
   if (material.find("file"))
@@ -89,7 +89,7 @@ std::string stiffness_remedy(const PlacedBody& body, const Means& mean, double f
   return text;
 }
 
-// The change that makes Poisson's ratio 0 or more, likewise.
+// Suggests a change that makes Poisson's ratio nonnegative.
 std::string poisson_remedy(const Value& material) {
   if (material.find("poisson")) return "poisson = 0 or more";
   if (material.find("lambda")) return "lambda = 0 or more";
@@ -132,7 +132,7 @@ void note_diamond(const PlacedBody& body, const Means& mean, std::vector<std::st
                   stiffness_remedy(body, mean, 1 / factor));
 }
 
-// At a thousandth and at a thousand times its size, a body should have more energy than at rest.
+// Checks the sign of the energy at a thousandth and at a thousand times the size.
 void note_unbounded(const PlacedBody& body, const BodyMaterial& material, std::vector<std::string>& notes) {
   const auto least = std::min_element(material.parameters.begin(), material.parameters.end(),
                                       [](auto& a, auto& b) { return poisson_ratio(a.lame) < poisson_ratio(b.lame); });

@@ -13,7 +13,7 @@ namespace aspic {
 namespace {
 
 constexpr size_t kMostBodies = 10000;
-constexpr double kWeightRoundOff = 1e-9;  // of weights that sum to 1
+constexpr double kWeightRoundOff = 1e-9;  // tolerance of weights that sum to 1
 
 void put_first(Table& table, const std::string& key, Value value) {
   table.members.insert(table.members.begin(), Member{key, value.place, std::move(value)});
@@ -29,7 +29,7 @@ void check_name(const std::string& name, const Place& place) {
                               "; a name is made of at most 64 letters, digits, _ and - (try \"body1\")");
 }
 
-// Gives each table a name, its own or the one made by `name_of`, and refuses two of the same.
+// Names each table that has no name by `name_of`, and refuses duplicates.
 template <class NameOf>
 void name_tables(Array& tables, const NameOf& name_of) {
   std::map<std::string, Place> taken;
@@ -45,7 +45,7 @@ void name_tables(Array& tables, const NameOf& name_of) {
   }
 }
 
-// A fitted material is whole: of its quantities only the density may be chosen anew.
+// Of the parameters of a fitted material only the density may be replaced.
 void check_beside_file(const Value& material) {
   const std::string file = toml_string(material["file"].text());
   for (const Member& m : material.table().members) {

@@ -1,11 +1,11 @@
-// What the schema cannot say key by key: names, and parameters that depend on the material.
+// Checks and defaults that involve several keys: names, parameters that depend on the material.
 #pragma once
 #include "scene/value.h"
 
 namespace aspic {
 
-// Names bodies and pins, fills in the extra parameters of materials, and checks what relates several keys. The
-// document has passed check_and_complete(). Throws InvalidInput.
+// Names bodies and pins, fills in the extra parameters of materials, and checks conditions between keys.
+// Requires a document that has passed check_and_complete(). Throws InvalidInput.
 void complete_scene(Table& document);
 
 }  // namespace aspic

@@ -21,16 +21,16 @@ std::string residual_place(const Model& model, const StepReport& report, std::sp
          "balance: " + text(report.worst_residual) + " N are left over";
 }
 
-// Of its volume: a tet is crushed to nothing below it.
+// Relative volume below which a tet counts as crushed.
 constexpr double kPressedFlat = 1e-9;
 
-// Forces that are left over are round-off up to so many times what that is estimated to be.
+// A residual up to this multiple of the estimated round-off counts as round-off.
 constexpr double kNearRoundOff = 1000;
 
-// An adaptive tolerance below this asks for parts in which too few digits of the positions change.
+// Adaptive tolerances below this require substeps in which too few digits of the positions change.
 constexpr double kFinest = 1e-9;
 
-// A relative tolerance above this accepts what is no solution.
+// Relative tolerances above this are useless.
 constexpr double kLoosest = 1e-2;
 
 class Explainer {
@@ -91,7 +91,7 @@ class Explainer {
   std::string step_text() const { return "time.step = " + text(simulation_.options().h); }
   std::string smaller_steps() const {
     const double tolerance = simulation_.options().adaptive.tolerance;
-    if (tolerance > 0)  // the smallest part, time.step / 2^20, failed as well
+    if (tolerance > 0)  // the shortest substep, time.step / 2^20, failed as well
       return "raise time.adaptive.tolerance (" + text(tolerance) + " now): shorter parts of the step failed as well";
     return is_static() ? "load the body in smaller steps (" + step_text() + " now)"
                        : "shorten the step (" + step_text() + " now)";
@@ -135,14 +135,14 @@ class Explainer {
                 (gains_energy ? ", as " + name + " adds energy in shorter steps, too" : "")};
   }
 
-  // The positions at the start of the step, with the pins where they are at its end.
+  // Positions at the start of the step, with the pins at their positions at its end.
   std::vector<double> placed() const {
     std::vector<double> placed = x_;
     Pins(model_.pins, simulation_.snapshot().start.q).place(report_.time, placed);
     return placed;
   }
 
-  // Empty unless a tet whose corners are all pinned has no volume left, and its material no energy then.
+  // Empty unless a tet with four pinned corners has lost its volume and its energy is infinite.
   Explanation pressed_by_pins() const {
     const std::vector<double> x = placed();
     const WorstTet worst = most_squashed(model_.mesh, x);
@@ -178,7 +178,7 @@ class Explainer {
             smaller_steps() + ", and look for forces, pins or velocities that are too large"};
   }
 
-  // Iterations were taken, but what came of them has no energy.
+  // The iterations led to a state of infinite energy.
   Explanation undefined_end() const {
     const std::string& name = simulation_.options().integrator;
     const std::string remedy = "time.integrator = \"backward_euler\", whose line search stays where there is energy";
@@ -186,7 +186,7 @@ class Explainer {
       return {"one Newton iteration without a line search went to where the material has no energy",
               "time.integrator = \"" + name + "\"", remedy};
     if (simulation_.integrator().ends_beyond_minimum)
-      return {"the step of " + name + " goes on beyond what it minimized, to where the material has no energy",
+      return {"the step of " + name + " extrapolates beyond the minimum, to where the material has no energy",
               "time.integrator = \"" + name + "\"", remedy};
     if (solver_.minimize.line_search.test == DecreaseTest::none)
       return {"without a line search the iterations left the range of numbers", "solver.line_search.test = \"none\"",

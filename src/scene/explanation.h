@@ -1,4 +1,4 @@
-// Why a step did not converge, in words: what happened, where, and the one change that is most likely to help.
+// Explains why a step did not converge: cause, place, and the most promising remedy.
 #pragma once
 #include <string>
 
@@ -8,11 +8,11 @@ namespace aspic {
 
 struct Explanation {
   std::string cause;   // "the line search found no step along Newton's direction that lowers the energy"
-  std::string place;   // the vertex, tet or parameter at fault; empty when the whole body is
+  std::string place;   // the vertex, tet or parameter at fault; empty: the whole body
   std::string remedy;  // one suggestion
 };
 
-// Of the step that the simulation took last. A step that converged has an empty explanation.
+// Explains the last step of the simulation. The explanation of a converged step is empty.
 Explanation explain(const Simulation& simulation, const StepReport& report);
 
 }  // namespace aspic

@@ -74,7 +74,7 @@ std::string in_column(const std::string& text, size_t column, const std::string&
   return "column " + std::to_string(column) + " of \"" + shortened(text) + "\": " + reason;
 }
 
-// What the parser would understand but a formula has no use for: assignments, strings, lists.
+// Refuses what the parser accepts but formulas must not contain: assignments, strings, lists.
 void check_text(const std::string& text) {
   if (text.find_first_not_of(" \t") == std::string::npos) throw InvalidInput("the expression is empty");
   if (text.size() > kMaxExpressionLength)
@@ -113,7 +113,7 @@ std::string reason_of(const mu::ParserError& e, ExpressionVariables variables) {
     case mu::ecUNASSIGNABLE_TOKEN:
       if (e.GetToken() == "t" && variables == ExpressionVariables::position)
         return "'t' has no meaning here: this is evaluated once, at the start";
-      if (e.GetToken().size() == 1)  // near to every other letter
+      if (e.GetToken().size() == 1)  // every other letter is near
         return "unknown name '" + e.GetToken() + "' (a point is " +
                (variables == ExpressionVariables::plane_position ? "x, y or X, Y)" : "x, y, z or X, Y, Z)");
       return "unknown name '" + e.GetToken() + "'" + suggestion(e.GetToken(), known_names(variables));

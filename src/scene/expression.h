@@ -9,7 +9,7 @@
 
 namespace aspic {
 
-inline constexpr size_t kMaxExpressionLength = 1000;  // characters: a formula from a file cannot take for ever
+inline constexpr size_t kMaxExpressionLength = 1000;  // characters; bounds the evaluation time
 inline constexpr int kMaxExpressionDepth = 50;        // open parentheses
 
 enum class ExpressionVariables {
@@ -23,9 +23,9 @@ class Expression {
   // Throws InvalidInput with the column, the reason and the nearest known name.
   explicit Expression(const std::string& text, ExpressionVariables variables = ExpressionVariables::position);
 
-  // The value is finite, or InvalidInput names the formula and the point. Safe to call from several threads.
+  // Returns a finite value, or throws InvalidInput with formula and point. Thread-safe.
   double at(const Vec3d& X, double t = 0) const;
-  double evaluate(const Vec3d& X, double t = 0) const;  // the same, but infinite or NaN where it is not defined
+  double evaluate(const Vec3d& X, double t = 0) const;  // infinite or NaN where it is not defined
   bool holds_at(const Vec3d& X) const { return at(X) != 0; }
   bool depends_on_time() const;
   bool depends_on_position() const;
@@ -39,7 +39,7 @@ class Expression {
 struct NamedMeaning {
   std::string name, meaning;
 };
-std::vector<NamedMeaning> expression_functions();  // what a formula may call, for the reference
+std::vector<NamedMeaning> expression_functions();  // for the reference
 std::vector<NamedMeaning> expression_constants();
 
 }  // namespace aspic

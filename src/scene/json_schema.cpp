@@ -1,5 +1,5 @@
-// The scene schema as JSON Schema. What it cannot express is left to the program: the grammar of formulas, which keys
-// belong to which material, files, and conditions between keys other than alternatives.
+// The scene schema as JSON Schema. It cannot express the grammar of formulas, the parameters of each material, files,
+// and conditions between keys other than alternatives.
 #include "scene/json_schema.h"
 
 #include <algorithm>
@@ -43,8 +43,7 @@ Json list_of(const Json& items, int count = 0) {  // 0: any length
   return schema;
 }
 
-// A value that fits one of the schemas. Most keywords apply to values of one type alone, so schemas of different types
-// become one: a validator can then name the key at fault.
+// Accepts a value of any of the schemas. Schemas of different types are merged, so that a validator can name the key.
 Json any_of(const Json& schemas) {
   if (schemas.size() == 1) return schemas[0];
   Json merged, types = Json::array();

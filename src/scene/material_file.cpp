@@ -18,7 +18,7 @@
 namespace aspic {
 namespace {
 
-// The name of a field of the whole file is where ParaView shows it and where every reader of VTU lets it pass.
+// The model is the name of a field of the whole file: ParaView shows it, and every VTU reader accepts it.
 const std::string kModelField = "model ";
 
 bool is_quantity(const std::string& name) {
@@ -28,7 +28,7 @@ bool is_quantity(const std::string& name) {
   });
 }
 
-// What a scene accepts under the same name.
+// The range of the scene's key of the same name.
 Range range_of(const std::string& quantity, const std::string& model) {
   for (const ExtraParameter& e : material_info(model).extra)
     if (e.name == quantity) return {.min = e.min, .max = e.max};

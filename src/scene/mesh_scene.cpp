@@ -13,16 +13,16 @@
 namespace aspic {
 namespace {
 
-constexpr double kSmallest = 0.3, kLargest = 3;  // [m] extents that are taken as they are
+constexpr double kSmallest = 0.3, kLargest = 3;  // [m] extents that are not scaled
 constexpr double kStrain = 0.05;                 // rho g H / E: strain of the base of a column under its weight
 constexpr double kSag = 0.05;                    // displacement under the body's weight / largest extent
-constexpr double kStiffest = 10;   // largest E by the sag / E by the strain: stiffer, few bodies still swing
-constexpr double kDensity = 1000;  // [kg/m^3]
+constexpr double kStiffest = 10;                 // upper limit of E by the sag / E by the strain
+constexpr double kDensity = 1000;                // [kg/m^3]
 constexpr double kPoisson = 0.4;
 constexpr double kGravity = 9.81;  // [m/s^2]
 constexpr double kPull = 0.25;     // sideways displacement of the top / height
 
-// The number with one significant digit: a default that can be read and said.
+// Rounds to one significant digit.
 double one_digit(double x) {
   const double unit = std::pow(10.0, std::floor(std::log10(x)));
   return std::round(x / unit) * unit;
@@ -33,7 +33,7 @@ double largest_extent(const Box& box) {
   return std::max({size[0], size[1], size[2]});
 }
 
-// A smallest share of the height that holds the body at more than a point.
+// Returns a fraction of the height that holds more than a point of the body.
 double base_fraction(const std::vector<Vec3d>& X, const Box& box) {
   const double height = box.upper[1] - box.lower[1];
   for (const double fraction : {0.02, 0.05, 0.1, 0.2}) {
@@ -49,7 +49,7 @@ struct Stiffness {
   std::string reason;
 };
 
-// Carries the weight of the body, whose mesh is scaled.
+// Young's modulus that carries the weight of the scaled body.
 Stiffness stiffness_for(const TetMesh& mesh, double base) {
   const Box box = bounding_box(mesh.rest);
   const double height = std::max(box.upper[1] - box.lower[1], 1e-9);
@@ -93,7 +93,7 @@ Defaults defaults_for(const std::filesystem::path& path, TetMesh mesh, double sc
   const Box box = bounding_box(X);
   const double height = box.upper[1] - box.lower[1], extent = largest_extent(file_box);
   const double base = base_fraction(X, box);
-  const bool has_file = is_overridden("material.file", overrides);  // which names its model and its numbers
+  const bool has_file = is_overridden("material.file", overrides);  // which defines model and parameters
   const bool needs_young = !has_file && !is_overridden("material.young", overrides);
   const auto [young, reason] = needs_young ? stiffness_for(mesh, base) : Stiffness{};
   const std::string pull =
@@ -143,7 +143,7 @@ double guessed_scale(const std::vector<Vec3d>& X) {
 SceneSource scene_of_mesh(const std::filesystem::path& path, const std::vector<std::string>& overrides,
                           MeshLoader& loader) {
   const std::string file = path.string();
-  // Overrides may set the size of tets and the scale, on which the other defaults depend.
+  // Other defaults depend on overrides of the size of tets and the scale.
   const auto read = [&](const std::string& toml) {
     return read_scene_document(toml, "defaults for " + file, overrides);
   };

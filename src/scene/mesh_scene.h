@@ -1,4 +1,4 @@
-// A scene for a mesh that comes alone.
+// Makes a scene for a mesh without a scene.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace aspic {
 
-// Pinned at its base, pulled sideways and let go. Every choice that the overrides leave is a note with its reason.
+// The body is pinned at its base, pulled sideways and released. Every default is a note with its reason.
 SceneSource scene_of_mesh(const std::filesystem::path& path, const std::vector<std::string>& overrides,
                           MeshLoader& loader);
 

@@ -61,7 +61,7 @@ Motion displaced(const Value& displacement) {
   return [u, place = displacement.place](const Vec3d& start, double time) {
     try {
       return start + Vec3d{{u[0].at(start, time), u[1].at(start, time), u[2].at(start, time)}};
-    } catch (const InvalidInput& e) {  // maybe long after the scene was read
+    } catch (const InvalidInput& e) {  // possibly long after the scene was read
       throw error_at(place, e.what());
     }
   };

@@ -7,7 +7,7 @@
 
 namespace aspic {
 
-// Empty for "fixed". `starts` are the positions at time 0, whose mean is the default center of a rotation.
+// Returns the motion, empty for "fixed". `starts`: positions at time 0, whose mean is the default center of a rotation.
 Motion make_motion(const Value& motion, const std::vector<Vec3d>& starts);
 
 }  // namespace aspic

@@ -35,8 +35,8 @@ Value value_of(const std::string& text, const std::string& source) {
   }
 }
 
-// Where one of several keys is given, the one from the command line takes the place of the document's: a mesh that of a
-// generated shape, a sphere that of a box, a material's file that of its numbers.
+// A key of the command line replaces its alternatives in the document: a mesh replaces a shape, a sphere a box, a
+// material's file its numbers.
 void drop_alternatives(Table& table, const std::string& section, const std::string& chosen) {
   const Alternatives* alternatives = scene_schema().alternatives_of(section);
   if (!alternatives) return;
@@ -110,7 +110,7 @@ struct Assignment {
   }
 };
 
-// "step" alone is not a path, but time.step may be what was meant.
+// Suggests time.step for "step".
 std::string unknown_first_word(const std::string& word) {
   const Schema& schema = scene_schema();
   for (const char* section : {"time", "solver", "output", "material", "damping"})

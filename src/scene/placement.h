@@ -1,4 +1,4 @@
-// Where a body is: its rest shape, its shape at time 0 and its velocity.
+// Placement of a body: rest shape, shape at time 0, velocity.
 #pragma once
 #include <span>
 #include <vector>
@@ -21,14 +21,14 @@ Mat3d rotation(const Vec3d& axis, double angle /* [rad] */);  // the axis has an
 
 AffineMap placement_of(const Value& body);  // scale, then rotate, then translate
 
-// Which coordinates of a body are meant: those of its mesh file, after `scale`, or after all of its placement.
+// Coordinates of a body: those of its mesh file, after `scale`, or after the whole placement.
 enum class Frame { mesh, scaled, placed };
-AffineMap from_placed(const Value& body, Frame frame);  // placed points to that frame
+AffineMap from_placed(const Value& body, Frame frame);  // maps placed points to that frame
 
-// The shape at time 0 of the placed rest shape X. Files are remembered under `stem`.
+// Returns the shape at time 0 of the placed rest shape X. Files are added to the results as `stem`.
 std::vector<Vec3d> deformed(Value& body, const std::vector<Vec3d>& X, SceneFiles& files, const std::string& stem);
 
-// velocity(X) + omega x (x - center of mass)
+// Returns velocity(X) + omega x (x - center of mass).
 std::vector<Vec3d> velocities(const Value& body, const std::vector<Vec3d>& X, const std::vector<Vec3d>& x,
                               std::span<const double> vertex_mass);
 
@@ -40,7 +40,7 @@ class VectorField {
   bool depends_on_time() const;
 
  private:
-  std::vector<double> number_;  // NaN where the formula is meant
+  std::vector<double> number_;  // NaN: the formula applies
   std::vector<Expression> formula_;
 };
 

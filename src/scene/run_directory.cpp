@@ -34,7 +34,7 @@ void create_folder(const fs::path& folder) {
                        "; choose a writable place with --out");
 }
 
-// Leaves an empty directory or one with files that no run writes, or throws.
+// Removes an earlier run, or throws.
 void make_room(const RunLayout& layout, const Scene& scene, ExistingRun existing) {
   const std::string name = layout.root().string();
   std::error_code error;
@@ -47,7 +47,7 @@ void make_room(const RunLayout& layout, const Scene& scene, ExistingRun existing
     throw InvalidInput(name + ": holds a run already; --force replaces it, --resume continues it");
   }
   layout.refuse_links();
-  std::vector<fs::path> needed;  // a run may be repeated from the inputs that lie in it
+  std::vector<fs::path> needed;  // inputs of the new run may lie in the old one
   for (const auto& [_, source] : scene.input_files) needed.push_back(source);
   layout.remove_run(needed);
 }
@@ -60,7 +60,7 @@ State from_user(const Renumbering& vertex, const State& user) {
   return {vertex.from_user(user.q, 3), vertex.from_user(user.qdot, 3), user.time};
 }
 
-// Nothing, or the level of an adaptive step and then, when it is remembered, where the last step or part began.
+// Empty, or the level of an adaptive step, then the start of the last step or substep if it is stored.
 std::vector<double> to_history(const Simulation::Snapshot& snapshot, const Renumbering& vertex) {
   if (snapshot.level == 0 && !snapshot.previous) return {};
   std::vector<double> history = {snapshot.level};
@@ -83,7 +83,7 @@ void read_history(const std::vector<double>& history, const Renumbering& vertex,
   snapshot.previous = from_user(vertex, {{q, qdot}, {qdot, history.end()}, history[1]});
 }
 
-// By the user's numbers, so that it does not depend on the order in which the model is stored.
+// In the user's numbering, independent of the storage order of the model.
 Checkpoint to_checkpoint(const Simulation& simulation, const std::string& scene,
                          const std::vector<double>& frame_times) {
   const Simulation::Snapshot snapshot = simulation.snapshot();
@@ -178,7 +178,7 @@ struct RunDirectory::Impl {
     if (output.vtu) write_pvd(layout.index(), frames);
   }
 
-  // Frames that the checkpoint counts are kept, not computed again.
+  // Frames that the checkpoint counts are not computed again.
   void require_frames(int count) const {
     for (int frame = 0; frame < count && output.vtu; ++frame) {
       const fs::path file = layout.root() / RunLayout::frame_file(frame);
@@ -198,8 +198,8 @@ struct RunDirectory::Impl {
     skins->write_usd_when_doubled(frame_times);
   }
 
-  // Whatever a checkpoint counts is on the disk before it. The index comes with it: rewriting that for every frame
-  // would take time that grows with the square of their number.
+  // Everything that a checkpoint counts is on the disk before it. The index is written with it: rewriting it for every
+  // frame would take quadratic time.
   void save_checkpoint(const Simulation& simulation) {
     write_index();
     tables.sync();
@@ -264,7 +264,7 @@ RunDirectory RunDirectory::resume(const fs::path& path, Scene& scene) {
   scene.simulation.restore(to_snapshot(newest.checkpoint, scene.simulation.model()));
   if (!newest.note.empty()) {
     scene.notes.push_back(newest.note);
-    std::error_code ignored;  // so that the damaged one never takes the place of the good one
+    std::error_code ignored;  // the damaged one must not replace the good one
     fs::remove(layout.checkpoint(), ignored);
   }
   impl->frame_times = newest.checkpoint.array("frame_times");
@@ -291,7 +291,7 @@ void RunDirectory::on_step(const StepReport& report, const Simulation& simulatio
 void RunDirectory::finish(const Simulation& simulation) {
   impl_->save_checkpoint(simulation);
   impl_->skins->write_usd(impl_->frame_times);
-  std::error_code ignored;  // which checkpoint came before the last depends on interruptions; results must not
+  std::error_code ignored;  // the previous checkpoint depends on interruptions; results must not
   fs::remove(previous_checkpoint(impl_->layout.checkpoint()), ignored);
   impl_->skins->close();
   impl_->tables.close();

@@ -1,4 +1,4 @@
-// The results of a run in one directory, which ParaView, Blender and spreadsheets can open. It is valid at all times.
+// The results of a run in one directory, readable by ParaView, Blender and spreadsheets at any time.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -11,8 +11,8 @@ enum class ExistingRun { refuse, overwrite };
 
 class RunDirectory {
  public:
-  // Creates the directory with scene.toml, frame 0 and the indices. Throws InvalidInput when it exists (unless
-  // overwrite, which only ever removes files that a run writes) or cannot be written.
+  // Creates the directory with scene.toml, frame 0 and the indices. Throws InvalidInput if it exists (`overwrite`
+  // removes the files of a run first) or cannot be written.
   static RunDirectory create(const std::filesystem::path& path, const Scene& scene, ExistingRun existing);
   // Continues an earlier run: restores the simulation from the newest readable checkpoint and removes later frames.
   // Throws InvalidInput if there is no run to continue.

@@ -29,7 +29,7 @@ std::vector<double> region_of_tets(const TetMesh& mesh) {
   return {mesh.region.begin(), mesh.region.end()};
 }
 
-// In the order of the model.
+// In the storage order of the model.
 std::vector<Field> cell_fields(const Simulation& simulation, FieldType real) {
   const Model& model = simulation.model();
   TetFields tet = simulation.tet_fields();

@@ -1,4 +1,4 @@
-// One frame of a run as an unstructured grid: all bodies, with the fields that a viewer colors by.
+// Writes one frame of a run as a VTU file: all bodies with their fields.
 #pragma once
 #include <filesystem>
 
@@ -7,7 +7,7 @@
 
 namespace aspic {
 
-// `report` of the step that ended there becomes numbers of the whole file; null for the start.
+// `report`: the step that ends at the frame, written as field data; null for the start.
 void write_frame(const std::filesystem::path& path, const Simulation& simulation, const StepReport* report,
                  bool double_precision = false);
 

@@ -23,7 +23,7 @@ std::string six_digits(int frame) {
   return std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') + digits;
 }
 
-// The number of a file that frame_file or skin_frame names.
+// Returns the number in a file name of frame_file or skin_frame.
 std::optional<int> frame_number(const fs::path& file) {
   const std::string stem = file.stem().string(), extension = file.extension().string();
   const bool is_body = extension == ".vtu" && stem.starts_with("body_");
@@ -124,7 +124,7 @@ bool RunLayout::holds_run() const {
 }
 
 void RunLayout::refuse_links() const {
-  // What lies in inputs is replaced before a run begins, and not written to afterwards.
+  // Inputs are replaced before a run begins and not written afterwards.
   aspic::refuse_links(root_,
                       [&](const fs::path& file) { return is_name_of_run(*file.lexically_relative(root_).begin()); });
 }
@@ -139,7 +139,7 @@ bool RunLayout::is_barely_begun() const {
 
 void RunLayout::remove_run(const std::vector<fs::path>& needed) const {
   remove_unfinished();
-  // First what would let it be continued, or names files that are about to go.
+  // First files that allow resuming, and indices.
   std::vector<fs::path> files = {checkpoint(), previous_checkpoint(checkpoint()), index(), usd(), report()};
   for (const fs::path& file : named_inputs(root_, scene())) files.push_back(file);
   for (const fs::path& file : files_in(frames(), [](const fs::path& f) { return frame_number(f).has_value(); })) {
@@ -150,7 +150,7 @@ void RunLayout::remove_run(const std::vector<fs::path>& needed) const {
   for (const fs::path& folder : folders) {
     for (const fs::path& file : files_in(folder, is_trace_file)) files.push_back(file);
   }
-  // The table of steps last: without it the directory is no run any more.
+  // The table of steps last: without it the directory is no run.
   files.insert(files.end(), {scene(), iterations(), timings(), steps()});
   for (const fs::path& file : files) {
     const auto is_same = [&](const fs::path& other) {
@@ -181,7 +181,7 @@ void RunLayout::remove_unfinished() const {
 }
 
 std::vector<std::string> file_names(const std::vector<std::string>& names) {
-  std::set<std::string> taken;  // in lower case, for file systems that do not tell them apart
+  std::set<std::string> taken;  // in lower case, for case-insensitive file systems
   std::vector<std::string> files;
   for (const std::string& name : names) {
     std::string word;

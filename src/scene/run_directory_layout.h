@@ -1,4 +1,4 @@
-// Which files a run writes, and nothing else: where they are, which may be removed.
+// Paths of the files that a run writes, and their removal.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -28,20 +28,20 @@ class RunLayout {
   std::filesystem::path skin_rest(const std::string& skin) const { return skins() / ("skin_" + skin + ".obj"); }
   std::filesystem::path skin_cache(const std::string& skin) const { return skins() / ("skin_" + skin + ".pc2"); }
 
-  bool holds_run() const;        // a steps.csv with the head that runs write
-  bool is_barely_begun() const;  // nothing but what a run that was killed at once had begun to write
-  // Throws InvalidInput where a file or folder that a run writes is a link: its target is none of the run's.
+  bool holds_run() const;        // has a steps.csv with the header of runs
+  bool is_barely_begun() const;  // holds only unfinished files of a run that was killed
+  // Throws InvalidInput if a file or folder that a run writes is a link, whose target does not belong to the run.
   void refuse_links() const;
-  // Every file of the run, its inputs included, except those in `needed`.
+  // Removes every file of the run, also inputs, except those in `needed`.
   void remove_run(const std::vector<std::filesystem::path>& needed) const;
   void remove_frames_from(int first) const;  // of bodies and skins
-  void remove_unfinished() const;            // what a killed run was about to write
+  void remove_unfinished() const;            // unfinished files of a killed run
 
  private:
   std::filesystem::path root_;
 };
 
-// Names of bodies as parts of file names: letters, digits, - and _; no two alike, whatever their case.
+// Returns the names of bodies as parts of file names: letters, digits, - and _, unique regardless of case.
 std::vector<std::string> file_names(const std::vector<std::string>& names);
 
 }  // namespace aspic

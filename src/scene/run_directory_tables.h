@@ -1,4 +1,4 @@
-// The tables of a run. steps.csv and iterations.csv hold what is reproducible to the bit; timings.csv what is not.
+// The tables of a run. steps.csv and iterations.csv are bit-reproducible, timings.csv is not.
 #pragma once
 #include <string>
 #include <vector>
@@ -18,11 +18,11 @@ class RunTables {
   static RunTables create(const RunLayout& layout, const Simulation& simulation);
   static RunTables resume(const RunLayout& layout, const Simulation& simulation);  // after the steps it has taken
 
-  void add_start(const StepReport& report);  // the row of step 0, which has no time of computation
+  void add_start(const StepReport& report);  // row of step 0, without wall time
   void add(const StepReport& report);
   void add(int step, const Iteration& iteration);
-  void add_size(Checkpoint& checkpoint) const;  // of iterations.csv, whose steps have any number of rows
-  void require_iterations(const Checkpoint& checkpoint) const;  // throws InvalidInput when rows are missing
+  void add_size(Checkpoint& checkpoint) const;                  // the size of iterations.csv
+  void require_iterations(const Checkpoint& checkpoint) const;  // throws InvalidInput if rows are missing
   void sync();
   void close();
 

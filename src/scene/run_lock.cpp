@@ -15,7 +15,7 @@
 namespace aspic {
 namespace {
 
-// The process that holds the lock, by a line of the system's list of locks:
+// Returns the process that holds the lock, from a line of /proc/locks:
 //   1: FLOCK  ADVISORY  WRITE 4711 08:01:131 0 EOF
 std::string holder_of(int descriptor) {
   struct stat info {};

@@ -1,4 +1,4 @@
-// One process at a time writes into a folder of results.
+// Lets one process at a time write into a folder of results.
 #pragma once
 #include <filesystem>
 
@@ -7,8 +7,8 @@ namespace aspic {
 class RunLock {
  public:
   // Locks the folder until the end of the process or of this object, without a file of its own. Throws InvalidInput
-  // when another run or fit holds the lock, with its process where the system knows it. A file system that cannot lock
-  // folders leaves it unprotected.
+  // if another run or fit holds the lock, with its process if known. Does nothing on file systems that cannot lock
+  // folders.
   explicit RunLock(const std::filesystem::path& folder);
   ~RunLock();
   RunLock(const RunLock&) = delete;

@@ -11,9 +11,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kLongStep = 1;  // [s]; what swings at more than a hertz comes to rest in it
+constexpr double kLongStep = 1;  // [s]; motions above one hertz come to rest in it
 
-// The vertices of `held`, and of every part that holds none of them.
+// Returns `held` and the vertices of every part without one of them.
 std::vector<int> with_loose_parts(const TetMesh& mesh, std::vector<int> held) {
   std::vector<char> is_fixed(mesh.vertex_count(), 1);  // vertices of no tet stay fixed
   for (const Tet& tet : mesh.tets)
@@ -40,7 +40,7 @@ double sag(TetMesh mesh, std::vector<int> held, const SagOptions& options) {
     if (!(volume(mesh, t) > 0)) return std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> X = at_rest(mesh).q;
   std::vector<int> fixed = with_loose_parts(mesh, std::move(held));
-  // The end of a long step, so that what hangs by a hinge has an answer, too.
+  // A long step instead of statics, so that bodies on hinges have a solution.
   SimulationOptions statics{.h = kLongStep, .integrator = "backward_euler"};
   statics.solver.minimize.tolerance = 1e-3;
   Simulation simulation(ModelBuilder(std::move(mesh))

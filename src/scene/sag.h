@@ -1,4 +1,4 @@
-// How far a body sinks under its own weight.
+// Sag of a body under its own weight.
 #pragma once
 #include <vector>
 
@@ -11,9 +11,9 @@ struct SagOptions {
   Vec3d gravity{{0, -9.81, 0}};                     // [m/s^2]
 };
 
-// The largest displacement of the mesh, fixed at the vertices `held`, in linear elasticity, where it is inversely
-// proportional to Young's modulus [m]. Parts that hold none of these vertices do not count. NaN where there is
-// none, and for a mesh with inverted tets.
+// Returns the largest displacement [m] of the mesh in linear elasticity, inversely proportional to Young's modulus,
+// with the vertices `held` fixed. Parts without such a vertex are ignored. NaN for a mesh with inverted tets or if the
+// solve fails.
 double sag(TetMesh mesh, std::vector<int> held, const SagOptions& options);
 
 }  // namespace aspic

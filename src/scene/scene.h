@@ -61,7 +61,7 @@ struct SceneOptions {
   bool allow_outside = false;               // read files from outside the scene's folder and the folder above it
   Announce announce = {};                   // empty: not called
   TetLimit limit = {};
-  double mesher_seconds = 0;               // wall time after which filling a surface fails; 0: the mesher's default
+  double mesher_seconds = 0;               // wall time after which filling a surface fails; 0: default of the mesher
   std::function<void(Model&)> amend = {};  // changes the model before it is simulated
 };
 

@@ -66,7 +66,7 @@ OutputOptions output_of(const Value& table) {
 }
 
 int steps_of(const Value& time) {
-  // The quotient of two rounded numbers: 2 / 0.01 must not become 201 steps.
+  // Rounded quotient: 2 / 0.01 must not become 201 steps.
   const double steps = std::ceil(time["duration"].number() / time["step"].number() - 1e-6);
   if (steps > 1e9)
     throw error_at(time["duration"].place, "duration = " + number_text(time["duration"].number()) + " needs " +
@@ -82,8 +82,9 @@ class SceneBuilder {
   Scene build() {
     note_version();
     add_bodies();
-    mesh_loader().tell_if_many(model_.mesh.tet_count(), "setting up " + std::to_string(model_.mesh.vertex_count()) +
-                                                            " vertices: materials, mass and the pattern of the matrix");
+    mesh_loader().report_if_many(model_.mesh.tet_count(),
+                                 "setting up " + std::to_string(model_.mesh.vertex_count()) +
+                                     " vertices: materials, mass and the pattern of the matrix");
     add_model();
     if (options_.amend) options_.amend(model_);
     State state = start();
@@ -150,7 +151,7 @@ class SceneBuilder {
     }
   }
 
-  // From here on its vertices and tets have two numbers.
+  // Afterwards its vertices and tets have numbers of the user and of the model.
   void add_to_model(PlacedBody& body) {
     const int vertices = body.mesh.vertex_count(), tets = body.mesh.tet_count();
     body.numbering = locality_numbering(body.mesh);

@@ -1,4 +1,4 @@
-// A complete document to a scene that is ready to run.
+// Builds a scene from a complete document.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -15,7 +15,7 @@ struct SceneSource {
   Table document;                            // has passed read_scene_document()
   std::string name;                          // of the scene
   std::string file;                          // for messages
-  std::map<std::string, LoadedMesh> meshes;  // of bodies, when read before
+  std::map<std::string, LoadedMesh> meshes;  // of bodies, if already read
   std::vector<std::string> notes;
 };
 

@@ -1,4 +1,4 @@
-// The text of a scene, checked and complete.
+// Reads and completes the text of a scene.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace aspic {
 
-// Reads TOML, applies the overrides, checks against the schema and fills in the defaults. `source` is the file name of
-// the messages. Throws InvalidInput.
+// Reads TOML, applies the overrides, checks against the schema and fills in the defaults. `source`: file name for
+// messages. Throws InvalidInput.
 Table read_scene_document(const std::string& text, const std::string& source,
                           const std::vector<std::string>& overrides = {});
 

@@ -1,4 +1,4 @@
-// The files that a scene names: found and confined, and remembered for the results.
+// Finds the files that a scene names, restricts them to its folders, and lists them for the results.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -20,13 +20,13 @@ std::string fingerprint_of_file(const std::filesystem::path& path);
 
 class SceneFiles {
  public:
-  // Names are relative to `folder`. Outside of it and of the folder above nothing is read, unless `allow_outside`.
+  // Names are relative to `folder`. Files outside of it and of the folder above are refused unless `allow_outside`.
   SceneFiles(std::filesystem::path folder, bool allow_outside);
 
-  // The file that a value names. Throws InvalidInput when it is refused or missing, with the nearest name there.
+  // Returns the file that a value names. Throws InvalidInput with the nearest name if it is refused or missing.
   std::filesystem::path find(const Value& name) const;
 
-  // Remembers a file for the results; returns its name there: "inputs/" + stem + the source's extension.
+  // Adds a file to the results; returns its name there: "inputs/" + stem + the extension of the source.
   std::string keep(const std::filesystem::path& source, const std::string& stem);
   std::string keep(const TetMesh& mesh, const std::string& stem);
 
@@ -38,7 +38,7 @@ class SceneFiles {
   bool allow_outside_;
 };
 
-// Compares with the hash of a resolved scene, when `table` has one under `key`; otherwise puts it there.
+// Compares with the hash that `table` has under `key`; without one, stores it there.
 void check_fingerprint(Table& table, const std::string& key, const std::string& hash, const std::string& what);
 
 }  // namespace aspic

@@ -1,5 +1,4 @@
-// Every key that a scene may contain: one table from which the validation, the defaults of the resolved scene and the
-// page docs/scene.md all come.
+// All keys of scenes in one table: the source of validation, defaults and docs/scene.md.
 #pragma once
 #include <limits>
 #include <string>
@@ -14,7 +13,7 @@ enum Accepts : unsigned {
   kNumber = 1,
   kInteger = 2,
   kBoolean = 4,
-  kText = 8,          // a string: one of `choices` when there are any
+  kText = 8,          // a string; one of `choices` if there are any
   kExpression = 16,   // a string: a formula of X, Y, Z
   kNumbers = 32,      // three numbers
   kExpressions = 64,  // three numbers or formulas
@@ -35,7 +34,7 @@ struct Range {
 
   bool contains(double value) const;
   std::string text() const;  // "> 0 and < 0.5"; empty for all numbers
-  // A value that would do instead of `value`: "try 0.49". Below the range it is the usual one, where there is one.
+  // Suggests a value: "try 0.49". Below the range it is `usual`, unless that is empty.
   std::string remedy(double value, const std::string& usual) const;
 };
 
@@ -44,7 +43,7 @@ struct Key {
   unsigned accepts = 0;
   std::string unit = {};      // "" for a pure number or no number
   std::string fallback = {};  // the default as TOML; empty: none
-  bool required = false;      // in a group of alternatives: once that group is chosen
+  bool required = false;      // in a group of alternatives: if that group is chosen
   Range range = {};
   std::vector<std::string> choices = {};
   std::string table = {};  // the section of the keys of a table or of a list of tables
@@ -57,8 +56,8 @@ struct Section {
   std::string about;
 };
 
-// At most one of the groups may be given. A group's defaults apply when it is chosen; those of the first group also
-// when none is.
+// At most one of the groups may be given. The defaults of a group apply if it is chosen; those of the first group also
+// if none is.
 struct Alternatives {
   std::string section;
   std::vector<std::vector<std::string>> groups;
@@ -71,20 +70,20 @@ struct Schema {
   std::vector<Alternatives> alternatives;
 
   const Key* find(std::string_view section, std::string_view name) const;
-  const Key& key(std::string_view section, std::string_view name) const;  // which exists
+  const Key& key(std::string_view section, std::string_view name) const;  // requires that the key exists
   std::vector<std::string> names(std::string_view section) const;
   const Alternatives* alternatives_of(std::string_view section) const;
 };
 
 const Schema& scene_schema();
 
-// Checks a document against the schema and fills in the defaults, in the order of the schema; whole numbers become
-// floats where a float is expected. Throws InvalidInput with the first few errors, one per line.
+// Checks a document against the schema and fills in the defaults, in the order of the schema. Integers become floats
+// where a float is expected. Throws InvalidInput with the first few errors, one per line.
 void check_and_complete(Table& document, const std::string& source);
-// The same for a document of another kind, whose keys are those of `section`.
+// Does so for another kind of document, whose keys are those of `section`.
 void check_and_complete(Table& document, const std::string& source, const Schema& schema, const std::string& section);
 
-// Sorts the members of a checked document, at every level, as the schema has them.
+// Sorts the members of a checked document at every level into the order of the schema.
 void put_in_order(Table& table, std::string_view section = "scene");
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// The part of the schema that says what holds, moves, loads and slows a body.
+// Schema of pins, motions, loads and damping.
 #include "scene/schema_table.h"
 
 namespace aspic {

@@ -1,4 +1,4 @@
-// The table itself. A new key is one entry here; the order is the order of docs/scene.md and of resolved scenes.
+// The table of keys. A new key is one entry; the order is that of docs/scene.md and of resolved scenes.
 #include <set>
 
 #include "dynamics/initial_guess.h"

@@ -17,7 +17,7 @@ inline void add_keys(Schema& schema, const char* section, std::vector<Key> keys)
   for (Key& key : keys) add_key(schema, section, std::move(key));
 }
 
-void add_body_sections(Schema& schema);    // what a body is and where it starts
-void add_action_sections(Schema& schema);  // what holds, moves, loads and slows it
+void add_body_sections(Schema& schema);    // mesh, material and initial state of a body
+void add_action_sections(Schema& schema);  // pins, motions, loads and damping
 
 }  // namespace aspic

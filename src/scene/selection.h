@@ -1,4 +1,4 @@
-// Which vertices, boundary triangles or tets of a body are meant by `where`.
+// Selects vertices, boundary triangles or tets of a body by `where`.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,7 +14,7 @@ struct SelectionScope {
   std::string body;     // for messages
 };
 
-// Never empty: a selection of nothing throws InvalidInput with the extent of the body.
+// An empty selection throws InvalidInput with the extent of the body.
 std::vector<int> select_vertices(const Value& where, const SelectionScope& scope);
 std::vector<int> select_tets(const Value& where, const SelectionScope& scope);
 std::vector<Triangle> select_triangles(const Value& where, const SelectionScope& scope,

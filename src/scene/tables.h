@@ -1,4 +1,4 @@
-// Numbers from files and values per tet.
+// Reads tables of numbers and values per tet.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -11,13 +11,13 @@
 
 namespace aspic {
 
-// `rows` lines of `columns` numbers apart by commas, semicolons or blanks; one header line, empty lines and lines that
-// begin with # are skipped. `row` says what a line stands for ("a tet"). Throws InvalidInput with file and line.
+// Reads `rows` lines of `columns` numbers, separated by commas, semicolons or blanks. A header line, empty lines and
+// lines that begin with # are skipped. `row`: what a line represents ("a tet"). Throws InvalidInput with file and line.
 std::vector<double> read_number_table(const std::filesystem::path& path, size_t columns, size_t rows,
                                       const std::string& row, const Place& place);
 
-// The value of `table[key.name]` in each tet of a placed body: a number, a formula of the centroid, a number per
-// region, or a file. Each is checked against the key's range. Files are remembered under `stem`.
+// Returns `table[key.name]` for each tet of a placed body: a number, a formula of the centroid, a number per region, or
+// a file, checked against the range of the key. Files are added to the results as `stem`.
 std::vector<double> tet_values(Table& table, const Key& key, const TetMesh& mesh, SceneFiles& files,
                                const std::string& stem);
 

@@ -1,4 +1,4 @@
-// TOML text to a tree of values with places; the only file that knows the TOML library.
+// Reads TOML as a tree of values with places. Only this file uses the TOML library.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace aspic {
 
-// Of a file of at most 16 MiB: lists of vertices make scenes long, but not that long. Throws InvalidInput.
+// Returns the text of a file of at most 16 MiB. Throws InvalidInput.
 std::string read_toml_text(const std::filesystem::path& path);
 
-// Throws InvalidInput "source:line:column: reason". Dates and times have no use in a scene and are refused.
+// Throws InvalidInput "source:line:column: reason". Dates and times are refused.
 Table read_toml(const std::string& text, const std::string& source);
 
-// One value, as on the right of "key = ". Every place in it is `source` without a line.
+// Reads one value, as on the right of "key = ". Its places are `source` without a line.
 Value read_toml_value(const std::string& text, const std::string& source);
 
 }  // namespace aspic

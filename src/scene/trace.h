@@ -1,5 +1,5 @@
-// What every minimization of a run did, trial by trial: tables, JSON lines, and landscapes of E where they are asked
-// for. The files are described in docs/formats.md.
+// Trace of the minimizations of a run: tables and JSON lines of all trials, and landscapes of E on request. The files
+// are described in docs/formats.md.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace aspic {
 
-// An iteration whose surroundings are to be sampled. Steps count from 1, iterations from 0.
+// An iteration around which E is sampled. Steps count from 1, iterations from 0.
 struct LandscapeAt {
   int step = 1, iteration = 0;
 };
@@ -33,16 +33,16 @@ struct TraceOptions {
 
 class Trace {
  public:
-  // Writes into `folder`, which is created. Throws InvalidInput when that cannot be done.
+  // Creates `folder` and writes into it. Throws InvalidInput if that fails.
   explicit Trace(std::filesystem::path folder, TraceOptions options = {});
 
-  // To be called by the observer of the minimization.
+  // Called by the observer of the minimization.
   void on_iteration(int step, const LiveIteration& iteration);
   void close();  // everything is on the disk afterwards
 
   const std::filesystem::path& folder() const { return folder_; }
-  const std::vector<Landscape>& landscapes() const { return landscapes_; }  // met so far
-  // The landscapes that were asked for and not met, such as iterations that a step did not need.
+  const std::vector<Landscape>& landscapes() const { return landscapes_; }  // made so far
+  // Returns the requested landscapes whose iterations did not occur.
   std::vector<LandscapeAt> missed() const;
 
  private:

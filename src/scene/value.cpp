@@ -23,7 +23,7 @@ bool is_array_of_tables(const Value& value) {
   return value.is_array() && !value.array().empty() && value.array().front().is_table();
 }
 
-// Tables inside these levels get their own header; deeper ones are written inline.
+// Tables of these levels have a header; deeper ones are inline.
 void append_tables(const Table& table, const std::string& prefix, std::string& out) {
   for (const Member& m : table.members) {
     const std::string path = prefix + key_text(m.key);

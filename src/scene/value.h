@@ -1,4 +1,4 @@
-// What a TOML document says, as a tree in which each value remembers where it was written.
+// A TOML document as a tree of values with their places in the source.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -43,7 +43,7 @@ struct Value {
   bool is_text() const { return std::holds_alternative<std::string>(data); }
   bool is_number() const { return std::holds_alternative<double>(data) || std::holds_alternative<std::int64_t>(data); }
 
-  // For checked values: the type is known.
+  // Require a checked value of this type.
   bool boolean() const { return std::get<bool>(data); }
   double number() const;
   int integer() const { return static_cast<int>(std::get<std::int64_t>(data)); }
@@ -55,7 +55,7 @@ struct Value {
   Vec3d vector() const;  // of an array of three numbers
 
   const Value* find(std::string_view key) const { return table().find(key); }
-  const Value& operator[](std::string_view key) const;  // of a checked table: the key is there
+  const Value& operator[](std::string_view key) const;  // requires a checked table with this key
 };
 
 struct Member {
@@ -64,14 +64,14 @@ struct Member {
   Value value;
 };
 
-// Numbers are written with as many digits as it takes to read back the same bits, whatever the locale.
+// Returns the shortest text that reads back to the same bits, in any locale.
 std::string number_text(double value);
 std::string point_text(const Vec3d& X);          // "(0.5, 1, 0)"
 std::string toml_string(std::string_view text);  // a TOML string
 std::string inline_toml(const Value& value);
 std::string type_name(const Value& value);  // "a number"
 
-// A document with [tables] for the tables of the top level and [[tables]] for arrays of tables of the first levels.
+// Returns the document as TOML, with [tables] at the top level and [[tables]] for arrays of tables.
 std::string to_toml(const Table& document);
 
 }  // namespace aspic
