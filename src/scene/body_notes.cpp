@@ -16,7 +16,7 @@ constexpr double kFarFromOrigin = 1e8;  // in sizes of the body; half of the 16 
 constexpr double kCrushed = 3;          // rho g H / E: strain at the bottom of a column under its own weight
 constexpr double kDiamond = 1.2e12;     // [Pa]
 constexpr double kSoft = 1e7;           // [Pa] above it few bodies are soft
-constexpr double kLarge = 20;           // [m] above it, lengths may have been meant in millimeters
+constexpr double kLarge = 20;           // [m] above it, lengths were possibly meant in millimeters
 
 void note_inverted(const PlacedBody& body, std::vector<std::string>& notes) {
   const TetMesh start{body.start, body.mesh.tets, {}};

@@ -10,7 +10,7 @@ namespace {
 using namespace testing_models;
 using testing::HasSubstr;
 
-// Of the first step that fails within ten.
+// Explains the first failed step within ten.
 Explanation first_failure(Simulation& simulation, Status wanted) {
   for (int i = 0; i < 10; ++i) {
     const StepReport report = simulation.step();
@@ -37,14 +37,14 @@ Explanation blow_up(Model model, const char* integrator, double h) {
   return explain(simulation, report);
 }
 
-TEST(Explanation, OfAnExplicitBlowUpNamesTheStableStep) {
+TEST(Explanation, ExplicitInstabilityNamesStableStep) {
   const Explanation why = blow_up(beam(2), "symplectic_euler", 0.05);
   EXPECT_THAT(why.cause, HasSubstr("blew up"));
   EXPECT_THAT(why.place, testing::AllOf(HasSubstr("vertex"), HasSubstr("vibrates fastest")));
   EXPECT_THAT(why.remedy, HasSubstr("time.step"));
 }
 
-TEST(Explanation, OfAnExplicitBlowUpTellsTheSameFrequencyWithEveryScheme) {
+TEST(Explanation, ExplicitInstabilityNamesSameFrequencyForEveryScheme) {
   const auto frequency = [](const char* integrator) {
     const std::string place = blow_up(beam(2), integrator, 0.05).place;
     return place.substr(place.find("at "));
@@ -52,14 +52,14 @@ TEST(Explanation, OfAnExplicitBlowUpTellsTheSameFrequencyWithEveryScheme) {
   EXPECT_EQ(frequency("rk4"), frequency("symplectic_euler"));
 }
 
-// No step is short enough for it.
-TEST(Explanation, OfABlowUpOfForwardEulerAsksForAnotherScheme) {
+// Forward Euler gains energy for every time step.
+TEST(Explanation, ForwardEulerInstabilitySuggestsAnotherScheme) {
   const Explanation why = blow_up(beam(2), "forward_euler", 0.05);
   EXPECT_THAT(why.cause, HasSubstr("blew up"));
   EXPECT_THAT(why.remedy, testing::StartsWith("time.integrator"));
 }
 
-TEST(Explanation, OfAnExplicitBlowUpNamesTheDampingAtFault) {
+TEST(Explanation, ExplicitInstabilityNamesDamping) {
   Model model = beam(2, {.young = 1e5});
   const double undamped = simulate(beam(2, {.young = 1e5})).stable_step().h;
   model.damping.push_back(make_rayleigh_damping(*model.mass, 0, model.elasticity[0].get(), 0.5));
@@ -68,7 +68,7 @@ TEST(Explanation, OfAnExplicitBlowUpNamesTheDampingAtFault) {
   EXPECT_THAT(why.place, HasSubstr("damping"));
 }
 
-TEST(Explanation, OfAnExplicitBlowUpKnowsPinsThatCrush) {
+TEST(Explanation, ExplicitInstabilityNamesCrushingPins) {
   Model model = make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}), {.material = "neo_hookean_log"});
   Pin all{.name = "press", .motion = [](const Vec3d& X, double t) { return Vec3d{{X[0] * (1 - 10 * t), X[1], X[2]}}; }};
   for (int v = 0; v < model.mesh.vertex_count(); ++v) all.vertices.push_back(v);
@@ -76,7 +76,7 @@ TEST(Explanation, OfAnExplicitBlowUpKnowsPinsThatCrush) {
   EXPECT_THAT(blow_up(std::move(model), "symplectic_euler", 0.01).cause, HasSubstr("pins themselves"));
 }
 
-TEST(Explanation, OfATightToleranceTellsRoundOffFromSlowness) {
+TEST(Explanation, TightToleranceSeparatesRoundOffFromSlowness) {
   SimulationOptions tight{.solver = {.method = "lbfgs", .preconditioner = "mass"}};
   tight.solver.minimize.tolerance = 1e-18;
   const Explanation why = first_failure(tight, Status::iteration_limit);
@@ -87,7 +87,7 @@ TEST(Explanation, OfATightToleranceTellsRoundOffFromSlowness) {
   EXPECT_THAT(first_failure(slow, Status::iteration_limit).cause, HasSubstr("without the Hessian"));
 }
 
-TEST(Explanation, OfAnIterationLimitNamesTheParameterAtFault) {
+TEST(Explanation, IterationLimitNamesParameter) {
   SimulationOptions few;
   few.solver.minimize.max_iterations = 1;
   EXPECT_THAT(first_failure(few, Status::iteration_limit).place, HasSubstr("max_iterations = 1"));
@@ -97,7 +97,7 @@ TEST(Explanation, OfAnIterationLimitNamesTheParameterAtFault) {
   EXPECT_THAT(first_failure(first_order, Status::iteration_limit).remedy, HasSubstr("newton"));
 }
 
-TEST(Explanation, OfAnIterationLimitOtherwiseNamesTheVertexFurthestFromBalance) {
+TEST(Explanation, IterationLimitNamesVertexWithLargestResidual) {
   Simulation simulation = simulate(beam(2, {.young = 1e4, .gravity = {{0, -1e3, 0}}}), {.h = 10});
   simulation.step();
   StepReport report = simulation.step();
@@ -108,14 +108,14 @@ TEST(Explanation, OfAnIterationLimitOtherwiseNamesTheVertexFurthestFromBalance) 
   EXPECT_LE(report.worst_residual, report.residual);
 }
 
-TEST(Explanation, OfAStepTooShortForRoundOffAsksForALongerOneAndNotForAnyTolerance) {
+TEST(Explanation, TooShortStepSuggestsLongerStep) {
   const Explanation why = first_failure({.h = 1e-9, .solver = {}}, Status::iteration_limit);
   EXPECT_THAT(why.cause, HasSubstr("round-off"));
   EXPECT_THAT(why.place, HasSubstr("time.step = 1e-09"));
   EXPECT_THAT(why.remedy, HasSubstr("lengthen time.step"));
 }
 
-TEST(Explanation, OfStaticsNamesWhatIsMissingWhenNothingHoldsTheBodyWhateverTheMethod) {
+TEST(Explanation, FreeBodyInStaticsNamesMissingPins) {
   for (const char* method : {"newton", "newton_cg", "gradient_descent"}) {
     const auto explained = [&](bool is_held) {
       Model model = beam(2);
@@ -134,7 +134,7 @@ TEST(Explanation, OfStaticsNamesWhatIsMissingWhenNothingHoldsTheBodyWhateverTheM
 }
 
 // A beam on rollers along one edge, which leave it free to turn about that edge.
-TEST(Explanation, OfHingedStaticsNamesTheFreeRotation) {
+TEST(Explanation, HingedStaticsNamesFreeRotation) {
   for (const bool is_fixed : {true, false}) {
     Model model = beam(2, {.gravity = {{0, 0, -9.81}}});
     const std::vector<int> edge = vertices_where(model.mesh, [](const Vec3d& X) { return X[0] < 1e-9 && X[1] < 1e-9; });
@@ -154,7 +154,7 @@ TEST(Explanation, OfHingedStaticsNamesTheFreeRotation) {
   }
 }
 
-TEST(Explanation, OfStaticsOnRollersNamesTheFreeSlide) {
+TEST(Explanation, StaticsOnRollersNamesFreeTranslation) {
   Model model = beam(2);
   model.pins[0].directions = {{{1, 0, 0}}, {{0, 1, 0}}};
   SimulationOptions options{.integrator = "quasi_static"};
@@ -165,7 +165,7 @@ TEST(Explanation, OfStaticsOnRollersNamesTheFreeSlide) {
   EXPECT_THAT(explain(simulation, report).place, HasSubstr("slide along (0, 0, 1)"));
 }
 
-TEST(Explanation, OfIteratesOutOfRangeNamesTheMissingLineSearch) {
+TEST(Explanation, IteratesOutOfRangeNameMissingLineSearch) {
   SimulationOptions options{.h = 1, .solver = {}};
   options.solver.minimize.line_search.test = DecreaseTest::none;
   Simulation simulation = simulate(beam(1), options);
@@ -178,8 +178,8 @@ TEST(Explanation, OfIteratesOutOfRangeNamesTheMissingLineSearch) {
   EXPECT_THAT(why.remedy, HasSubstr("textbook"));
 }
 
-// Every retreat covers more elements, though each of their systems can be solved.
-TEST(Explanation, OfStaticsThatNothingHoldsIsReachedThroughEveryRetreat) {
+// Every fallback modifies more elements, though each of their systems can be solved.
+TEST(Explanation, FreeBodyIsExplainedAfterEveryFallback) {
   for (const char* method : {"newton", "newton_cg"}) {
     Model model = make_model(make_sphere(0.5, 0.6), {.young = 3e7, .poisson = 0.4, .gravity = {{-14, 26, 5}}});
     SimulationOptions options{.integrator = "quasi_static",
@@ -192,7 +192,7 @@ TEST(Explanation, OfStaticsThatNothingHoldsIsReachedThroughEveryRetreat) {
   }
 }
 
-TEST(Explanation, OfALineSearchThatAsksForTooMuchNamesItsParameter) {
+TEST(Explanation, StrictLineSearchNamesItsParameter) {
   SimulationOptions slide;
   slide.solver.minimize.line_search.test = DecreaseTest::slide;
   slide.solver.minimize.line_search.sufficient_decrease = 0.9;
@@ -204,14 +204,14 @@ TEST(Explanation, OfALineSearchThatAsksForTooMuchNamesItsParameter) {
   EXPECT_THAT(first_failure(greedy, Status::iteration_limit).place, HasSubstr("c = 0.9"));
 }
 
-TEST(Explanation, OfAnIndefiniteExactHessianNamesTheDefiniteness) {
+TEST(Explanation, IndefiniteExactHessianNamesDefiniteness) {
   SimulationOptions options{.integrator = "quasi_static"};
   options.solver.definiteness = "exact";
   Simulation simulation = simulate(beam(2, {.young = 1e5, .gravity = {{0, -2e3, 0}}}), options);
   EXPECT_THAT(first_failure(simulation, Status::no_descent).remedy, HasSubstr("on_demand"));
 }
 
-TEST(Explanation, OfAnAdaptiveStepThatStaysInaccurateNamesTheTolerance) {
+TEST(Explanation, InaccurateAdaptiveStepNamesTolerance) {
   Simulation simulation =
       simulate(beam(1), {.h = 0.01, .integrator = "forward_euler", .adaptive = {.tolerance = 1e-16}, .solver = {}});
   const StepReport report = simulation.step();
@@ -219,12 +219,12 @@ TEST(Explanation, OfAnAdaptiveStepThatStaysInaccurateNamesTheTolerance) {
   EXPECT_THAT(explain(simulation, report).place, HasSubstr("time.adaptive.tolerance = 1e-16"));
 }
 
-TEST(Explanation, OfAnAdaptiveStepDoesNotAskForShorterOnes) {
+TEST(Explanation, AdaptiveStepDoesNotSuggestShorterSteps) {
   const Explanation why = first_failure({.adaptive = {1e-14}, .solver = {}}, Status::iteration_limit);
   EXPECT_THAT(why.remedy, testing::AllOf(HasSubstr("time.adaptive.tolerance"), testing::Not(HasSubstr("shorten"))));
 }
 
-TEST(Explanation, OfPinsThatInvertATetNamesIt) {
+TEST(Explanation, InvertingPinsNameTet) {
   Model model = beam(2);
   model.pins.push_back({"press", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 4 - 1e-9; }),
                         [](const Vec3d& X, double t) {

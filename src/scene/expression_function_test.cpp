@@ -13,8 +13,8 @@
 namespace aspic {
 namespace {
 
-// The accuracy that the header promises, on functions whose derivatives are known.
-TEST(ExpressionFunction, DerivativesAreThoseOfTheFormula) {
+// Asserts the accuracy stated in the header on functions with known derivatives.
+TEST(ExpressionFunction, DerivativesMatchFormula) {
   const Rosenbrock rosenbrock;
   const TwoBump two_bump;
   const std::pair<ExpressionFunction, const PlanarFunction*> pairs[] = {
@@ -48,7 +48,7 @@ TEST(ExpressionFunction, IsNotFiniteOutsideItsDomain) {
   EXPECT_TRUE(std::isfinite(f.at({1, 0})));
 }
 
-TEST(ExpressionFunction, KnowsOnlyThePlane) {
+TEST(ExpressionFunction, RejectsThirdCoordinate) {
   for (const char* formula : {"x + z", "Z * x", "x + t"}) EXPECT_THROW(ExpressionFunction{formula}, InvalidInput);
   EXPECT_EQ(ExpressionFunction("X * 10 + Y").at({1, 2}), 12);
 }

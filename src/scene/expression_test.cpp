@@ -34,12 +34,12 @@ TEST(Expression, FollowsArithmeticPrecedence) {
   EXPECT_EQ(value("1e3 + 2.5e-1"), 1000.25);
 }
 
-TEST(Expression, KnowsThePositionInEitherCase) {
+TEST(Expression, AcceptsPositionInEitherCase) {
   EXPECT_EQ(value("X + 10 * Y + 100 * Z"), 205.25);
   EXPECT_EQ(value("x + 10 * y + 100 * z"), 205.25);
 }
 
-TEST(Expression, KnowsTheTimeOnlyWhereThereIsOne) {
+TEST(Expression, AcceptsTimeOnlyIfThereIsOne) {
   const Expression moving("X + t", ExpressionVariables::position_and_time);
   EXPECT_EQ(moving.at({{1, 0, 0}}, 0.5), 1.5);
   EXPECT_THAT(formula_refusal("X + t"), HasSubstr("'t' has no meaning here"));
@@ -69,7 +69,7 @@ TEST(Expression, CallsItsFunctions) {
   EXPECT_EQ(value("2 * pi"), 2 * std::numbers::pi);
 }
 
-TEST(Expression, RefusesWhatIsNotFinite) {
+TEST(Expression, RejectsNonFiniteValues) {
   EXPECT_THAT(formula_refusal("1 / X"), ::testing::AllOf(HasSubstr("1 / X"), HasSubstr("inf"), HasSubstr("(0, 0, 0)")));
   EXPECT_THAT(formula_refusal("sqrt(X - 1)"), HasSubstr("nan"));
   EXPECT_THAT(formula_refusal("max()"), ::testing::Not(""));

@@ -1,4 +1,4 @@
-// Runs that others made: what a continued or replaced run must not touch, and what scenes must not say.
+// Runs and scenes from untrusted sources: files that must not be touched, texts that are rejected.
 #include <gmock/gmock.h>
 
 #include "base/printable.h"
@@ -21,7 +21,7 @@ class HostileRun : public FolderTest {
     RunDirectory directory = RunDirectory::create(run_, scene, ExistingRun::refuse);
     directory.finish(scene.simulation);
   }
-  // The file or folder of the run lies elsewhere, and a link to it is left in its place.
+  // Moves a file or folder of the run and leaves a link to it.
   fs::path moved_out(const std::string& name) {
     fs::path elsewhere = path("elsewhere");
     fs::rename(run_ / name, elsewhere);
@@ -59,7 +59,7 @@ TEST_F(HostileRun, IsNotReplacedThroughLinks) {
   EXPECT_TRUE(fs::exists(elsewhere / "body_000000.vtu"));
 }
 
-TEST_F(HostileRun, IsKnownByItsOwnNamesWhateverItsFolderIsCalled) {
+TEST_F(HostileRun, IsRecognizedInAnyFolderName) {
   fs::rename(run_, path("inputs"));
   run_ = path("inputs") / "";
   fs::create_directory(run_ / "mine");
@@ -69,13 +69,13 @@ TEST_F(HostileRun, IsKnownByItsOwnNamesWhateverItsFolderIsCalled) {
   EXPECT_THAT(resumed(), HasSubstr("steps.csv: is a link"));
 }
 
-TEST_F(HostileRun, HasItsTableWithinOneReadOfTheHead) {
+TEST_F(HostileRun, TableIsRecognizedByBoundedRead) {
   fs::resize_file(run_ / "steps.csv", 0);
   fs::resize_file(run_ / "steps.csv", std::uintmax_t{1} << 40);  // nothing but zeros, and no line break
   EXPECT_THAT(resumed(), HasSubstr("holds no run"));
 }
 
-TEST(HostileScene, HasNoTextThatATerminalWouldObey) {
+TEST(HostileScene, RejectsControlCharacters) {
   const std::string shape = "shape = { box = { upper = [1, 1, 1], cells = [1, 1, 1] } }\n";
   for (const char* name : {R"(a\u001b[31m)", R"(a\nb)", R"(a\u202eb)", R"(a\u009b)"})
     EXPECT_THAT(refusal("[[body]]\nname = \"" + std::string(name) + "\"\n" + shape),

@@ -38,11 +38,11 @@ struct MaterialSampling {
   std::vector<int> tet;      // tet that contains each point, or the nearest one
   int outside = 0;           // points that no tet contains
   double farthest = 0;       // largest distance of such a point from its tet [m]
-  bool is_same_mesh = true;  // the points are the centroids of all tets, in order
+  bool is_same_mesh = true;  // the points are the centroids of all tets, each once
 };
 MaterialSampling sampling(const FittedMaterial& material, std::span<const Vec3d> centroids);
 
-// Returns the values at the points: those of the tets that contain them, or of the nearest.
+// Returns a value per tet of `mesh`: that of the tet of the material that contains its centroid, or of the nearest.
 std::vector<double> sample(const FittedMaterial& material, std::span<const double> values, const TetMesh& mesh);
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// Materials that were fitted: their files, and scenes that are made of them.
+// Files of fitted materials, and scenes that read them.
 #include "scene/material_file.h"
 #include "mesh/tet_shape.h"
 
@@ -78,7 +78,7 @@ MATCHER_P(EachIsNear, expected, "") {
   return true;
 }
 
-TEST_F(MaterialFile, WhatIsWrittenReadsBack) {
+TEST_F(MaterialFile, ReadsBackWhatIsWritten) {
   FittedMaterial material = graded(2, "fung");
   material.values.emplace_back("b", Values(48, 2.5));
   material.mesh.region.assign(48, 3);
@@ -93,7 +93,7 @@ TEST_F(MaterialFile, WhatIsWrittenReadsBack) {
   EXPECT_EQ(read.find("lambda"), nullptr);
 }
 
-TEST_F(MaterialFile, OnItsOwnMeshEveryTetKeepsItsValues) {
+TEST_F(MaterialFile, TetsKeepValuesOnSameMesh) {
   const Scene scene = load_with(box + file);
   const FittedMaterial material = graded(4);
   EXPECT_THAT(young(scene), EachIsNear(*material.find("young")));
@@ -101,23 +101,23 @@ TEST_F(MaterialFile, OnItsOwnMeshEveryTetKeepsItsValues) {
   for (const std::string& note : scene.notes) EXPECT_EQ(note.find("material.vtu"), std::string::npos) << note;
 }
 
-TEST_F(MaterialFile, OnAnotherMeshEachTetTakesTheValueAtItsCentroid) {
+TEST_F(MaterialFile, TetsTakeCentroidValuesOnOtherMesh) {
   const Scene scene = load_with("shape = { box = { upper = [1, 1, 1.125], cells = [8, 8, 9] } }\n" + file);
   const Values E = young(scene);
   const TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1.125}}, {8, 8, 9});
   for (int t = 0; t < mesh.tet_count(); ++t) EXPECT_NEAR(E[t], young_at(centroid(mesh, t)), 0.25e4);
   const std::string note = scene.notes.back();
   EXPECT_THAT(note, AllOf(HasSubstr("3456 tets"), HasSubstr("384 of material.vtu"), HasSubstr("384 of the nearest")));
-  EXPECT_THAT(note, HasSubstr("up to 0.09375 m away"));  // the centroid of the outermost: three quarters of a cell
+  EXPECT_THAT(note, HasSubstr("up to 0.09375 m away"));  // centroid of the outermost tet: three quarters of a cell
 }
 
-TEST_F(MaterialFile, TheMaterialFollowsTheBodyWhereverItIsPlaced) {
+TEST_F(MaterialFile, MaterialMovesWithBody) {
   const Scene scene =
       load_with(box + file + "scale = 3\nrotate = { axis = [1, 2, 3], angle_deg = 77 }\ntranslate = [5, -2, 9]\n");
   EXPECT_THAT(young(scene), EachIsNear(*graded(4).find("young")));
 }
 
-TEST_F(MaterialFile, AFrameSaysInWhichCoordinatesTheMaterialIs) {
+TEST_F(MaterialFile, FrameSelectsCoordinates) {
   const std::string millimeters = "shape = { box = { upper = [1000, 1000, 1000], cells = [4, 4, 4] } }\n";
   const std::string turned = "scale = 0.001\nrotate = { axis = [0, 0, 1], angle_deg = 90 }\n";
   const auto with_frame = [](const std::string& frame) {
@@ -132,7 +132,7 @@ TEST_F(MaterialFile, AFrameSaysInWhichCoordinatesTheMaterialIs) {
   EXPECT_THAT(young(placed), EachIsNear(expected));
 }
 
-TEST_F(MaterialFile, OnlyTheDensityMayBeChosenAnew) {
+TEST_F(MaterialFile, OnlyDensityMayBeReplaced) {
   const auto beside = [&](const std::string& more) {
     return box + "material = { file = \"material.vtu\", " + more + " }\n";
   };
@@ -144,7 +144,7 @@ TEST_F(MaterialFile, OnlyTheDensityMayBeChosenAnew) {
   EXPECT_THAT(refusal_with(beside("b = 2")), AllOf(HasSubstr("b = 2"), HasSubstr("remove b")));
 }
 
-TEST_F(MaterialFile, FromTheCommandLineAFileTakesThePlaceOfNumbers) {
+TEST_F(MaterialFile, FileOfCommandLineReplacesNumbers) {
   const std::string absolute = path("material.vtu").string();
   const Scene scene = load_scene(this->scene(box + "material = { young = 7, poisson = 0.1 }\n"),
                                  {.overrides = {"material.file=" + absolute}});
@@ -154,7 +154,7 @@ TEST_F(MaterialFile, FromTheCommandLineAFileTakesThePlaceOfNumbers) {
   EXPECT_THAT(young(alone), EachIsNear(*graded(4).find("young")));
 }
 
-TEST_F(MaterialFile, AResolvedSceneHasTheFileBesideItAndGivesTheSameMaterial) {
+TEST_F(MaterialFile, ResolvedSceneGivesSameMaterial) {
   for (const char* density_key : {"", ", density = 1100"}) {
     const Scene scene = load_with(box + std::string("material = { file = \"material.vtu\"") + density_key + " }\n");
     EXPECT_THAT(scene.resolved, AllOf(HasSubstr("inputs/cube.material.vtu"), HasSubstr("fnv1a:")));
@@ -171,7 +171,7 @@ TEST_F(MaterialFile, AResolvedSceneHasTheFileBesideItAndGivesTheSameMaterial) {
   EXPECT_THAT(refusal_of(path("run/scene.toml")), AllOf(HasSubstr("hash"), HasSubstr("has changed since")));
 }
 
-TEST_F(MaterialFile, WithoutAModelTheSceneNamesIt) {
+TEST_F(MaterialFile, SceneNamesMissingModel) {
   FittedMaterial material = graded(4, "");
   write_material(path("material.vtu"), material);
   EXPECT_THAT(refusal_with(box + file), AllOf(HasSubstr("names no model"), HasSubstr("try model =")));
@@ -185,7 +185,7 @@ TEST_F(MaterialFile, WithoutAModelTheSceneNamesIt) {
   EXPECT_THAT(refusal_with(with("corotated")), HasSubstr("young = -1 in tet 3"));
 }
 
-TEST_F(MaterialFile, BadFilesAreNamedWithValueAndRemedy) {
+TEST_F(MaterialFile, BadFilesNameValueAndRemedy) {
   FittedMaterial material = graded(2);
   set(material, "young", 5, std::numeric_limits<double>::quiet_NaN());
   EXPECT_THAT(reading(material), AllOf(HasSubstr("bad.vtu: young = nan in tet 5 at ("), HasSubstr("must be > 0")));
@@ -214,12 +214,12 @@ TEST_F(MaterialFile, BadFilesAreNamedWithValueAndRemedy) {
   EXPECT_THAT(refusal_with(box + "material = { file = \"materal.vtu\" }\n"), HasSubstr("did you mean 'material.vtu'?"));
 }
 
-TEST_F(MaterialFile, ABodyElsewhereIsRefused) {
+TEST_F(MaterialFile, DistantBodyIsRejected) {
   const std::string elsewhere = "shape = { box = { lower = [10, 0, 0], upper = [11, 1, 1], cells = [1, 1, 1] } }\n";
   EXPECT_THAT(refusal_with(elsewhere + file), AllOf(HasSubstr("(0, 0, 0) to (1, 1, 1)"), HasSubstr("away from it")));
 }
 
-TEST_F(MaterialFile, SamplingGivesTheValueOfTheTetAround) {
+TEST_F(MaterialFile, SamplingReturnsValueOfContainingTet) {
   const FittedMaterial material = graded(4);
   const TetMesh fine = make_box({{0, 0, 0}}, {{1, 1, 1}}, {8, 8, 8});
   const Values E = sample(material, *material.find("young"), fine);

@@ -1,4 +1,4 @@
-// A mesh that comes alone.
+// Meshes without a scene.
 #include "scene/scene.h"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-TEST(MeshAlone, GetsDefaultsThatAreStated) {
+TEST(MeshAlone, NotesItsDefaults) {
   const TestFolder folder;
   write_mesh(folder / "tower.msh", make_box({{0, 0, 0}}, {{40, 100, 40}}, {3, 8, 3}));
   Scene scene = load_scene(folder / "tower.msh");
@@ -33,7 +33,7 @@ TEST(MeshAlone, GetsDefaultsThatAreStated) {
   EXPECT_GT(reach, 0.1);  // the top swings back, meters per second
 }
 
-// Held at its narrow end, a body that widens upwards needs a stiffer material than a column of its height.
+// A body that widens upwards from its pins needs a stiffer material than a column of its height.
 TEST(MeshAlone, StiffnessCarriesItsWeight) {
   const TestFolder folder;
   TetMesh funnel = make_box({{-0.5, 0, -0.5}}, {{0.5, 1, 0.5}}, {4, 8, 4});
@@ -50,7 +50,7 @@ TEST(MeshAlone, StiffnessCarriesItsWeight) {
   EXPECT_LT(deepest, 0.1);
 }
 
-TEST(MeshAlone, NamesPartsAndLooseOnes) {
+TEST(MeshAlone, NamesFreeParts) {
   const TestFolder folder;
   TetMesh two = make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2});
   const TetMesh above = make_box({{0, 1.5, 0}}, {{1, 2, 1}}, {2, 1, 2});
@@ -84,7 +84,7 @@ TEST(MeshAlone, ResolvedSceneGivesTheSameBits) {
   EXPECT_EQ(scene.simulation.state().q, again.simulation.state().q);
 }
 
-// A mesher that copies a prepared mesh to where it is told, with "-o".
+// A mesher that copies a prepared mesh to the path after "-o".
 fs::path fake_mesher(const TestFolder& folder, const fs::path& prepared) {
   const fs::path script =
       folder.write("mesher", "#!/bin/sh\necho \"$1: it is thin\"\nwhile [ \"$1\" != -o ]; do shift; done\ncp '" +
@@ -93,7 +93,7 @@ fs::path fake_mesher(const TestFolder& folder, const fs::path& prepared) {
   return script;
 }
 
-TEST(MeshAlone, ASurfaceIsFilledOnceAndItsTetsAreKept) {
+TEST(MeshAlone, SurfaceIsFilledOnce) {
   const TestFolder folder;
   write_mesh(folder / "tets.mesh", make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}));
   write_mesh(folder / "cube.obj", read_tri_mesh(folder / "tets.mesh"));
@@ -112,7 +112,7 @@ TEST(MeshAlone, ASurfaceIsFilledOnceAndItsTetsAreKept) {
   EXPECT_EQ(scene.simulation.state().q, again.simulation.state().q);
 }
 
-TEST(MeshAlone, AnOpenSurfaceIsRefused) {
+TEST(MeshAlone, OpenSurfaceIsRejected) {
   const TestFolder folder;
   folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");
   EXPECT_THAT(refusal_of(folder / "open.obj"), AllOf(HasSubstr("open.obj"), HasSubstr("open")));

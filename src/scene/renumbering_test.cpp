@@ -1,4 +1,4 @@
-// The order in which a model is stored must not show: the same scene from files whose vertices and tets are shuffled.
+// Results do not depend on the storage order of a model: the same scene from files with shuffled vertices and tets.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,9 +26,9 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 constexpr int kRenumberedSteps = 3;
-constexpr double kTolerance = 1e-10;  // [m], [m/s]: what solves to round-off leave of a difference in the order of sums
+constexpr double kTolerance = 1e-10;  // [m], [m/s]: effect of the order of sums on solves to round-off
 
-// No two places of it are alike.
+// A shape without symmetries.
 TetMesh bar() {
   TetMesh mesh = make_box({{0, 0, 0}}, {{3, 1, 1.2}}, {5, 2, 2});
   for (Vec3d& X : mesh.rest)
@@ -60,7 +60,7 @@ std::vector<double> per_tet(const TetMesh& mesh, double base) {
   return values;
 }
 
-// Every way in which a scene can speak of vertices and tets by number. What it means is the same for any `numbering`.
+// A scene with every kind of vertex and tet numbers, translated by `numbering`.
 class Files {
  public:
   Files(fs::path where, const Numbering& numbering) : folder(std::move(where)), numbering_(numbering) {
@@ -119,7 +119,7 @@ class Files {
   Numbering numbering_;
 };
 
-// The numbering of both bodies together: the second one comes from no file.
+// The numbering of both bodies; the second is generated.
 Numbering of_scene(const Numbering& bar_numbering) {
   const TetMesh mesh = bar();
   Numbering all = bar_numbering;
@@ -164,13 +164,13 @@ class Renumbered : public FolderTest {
   const Files plain{path("plain"), as_it_is()}, other{path("shuffled"), shuffled(bar())};
 };
 
-TEST_F(Renumbered, TheModelIsStoredInAnotherOrderThanTheFile) {
+TEST_F(Renumbered, ModelOrderDiffersFromFile) {
   const Scene scene = load_scene(plain.scene());
   EXPECT_FALSE(scene.simulation.model().numbering.vertex.is_identity());
   EXPECT_NE(positions(scene), scene.simulation.state().q);
 }
 
-TEST_F(Renumbered, AFrameIsTheMeshOfTheFile) {
+TEST_F(Renumbered, FrameHasMeshOfFile) {
   for (const Files* files : {&plain, &other}) {
     const Vtu frame = read_vtu(run(*files, "run") / "frames" / "body_000000.vtu");
     const TetMesh mesh = read_tet_mesh(files->folder / "bar.msh");
@@ -199,7 +199,7 @@ TEST_F(Renumbered, FramesAgreeFieldByField) {
   }
 }
 
-TEST_F(Renumbered, VerticesPinnedByNumberStayWhereTheyWere) {
+TEST_F(Renumbered, VerticesPinnedByNumberStay) {
   const fs::path a = run(plain, "run");
   const Vtu first = read_vtu(a / "frames/body_000000.vtu"), last = read_vtu(a / "frames/body_000003.vtu");
   std::vector<int> still;
@@ -208,7 +208,7 @@ TEST_F(Renumbered, VerticesPinnedByNumberStayWhereTheyWere) {
   EXPECT_EQ(still, (std::vector<int>{0, 3, 7, 12}));
 }
 
-TEST_F(Renumbered, ParametersComeOutAsTheyWentIn) {
+TEST_F(Renumbered, ParametersKeepUsersOrder) {
   const Vtu frame = read_vtu(run(plain, "run") / "frames/body_000000.vtu");
   std::map<std::string, std::vector<double>> fields;
   for (const Field& field : frame.cell_fields) fields[field.name] = field.values;
@@ -231,7 +231,7 @@ TEST_F(Renumbered, SkinsMoveAlike) {
   }
 }
 
-TEST_F(Renumbered, ABoundaryGoesWithItsBody) {
+TEST_F(Renumbered, BoundaryBelongsToBody) {
   const BoundarySurface boundary = boundary_surface(bar());
   const fs::path results = run(plain, "run");
   EXPECT_EQ(read_tri_mesh(results / "skins/skin_bar.obj").triangles, boundary.surface.triangles);
@@ -256,7 +256,7 @@ TEST_F(Renumbered, TablesAgree) {
 }
 
 TEST_F(Renumbered, CheckpointsHoldTheUsersNumbers) {
-  const std::string multistep = "[time]\nintegrator = \"bdf2\"\n";  // remembers the step before
+  const std::string multistep = "[time]\nintegrator = \"bdf2\"\n";  // stores the previous step
   const fs::path a = run(plain, "run", multistep), b = run(other, "run", multistep);
   const Checkpoint one = read_checkpoint(a / "checkpoint.bin"), two = read_checkpoint(b / "checkpoint.bin");
   for (const char* name : {"q", "qdot", "start_q", "start_qdot"})
@@ -270,7 +270,7 @@ TEST_F(Renumbered, CheckpointsHoldTheUsersNumbers) {
                 {x.begin() + first, x.begin() + first + n}, 1e-8, "history");
 }
 
-TEST_F(Renumbered, AResumedRunHasTheBitsOfAnUninterruptedOne) {
+TEST_F(Renumbered, ResumedRunIsBitReproducible) {
   const fs::path whole = run(plain, "whole"), part = plain.folder / "part";
   {
     Scene scene = load_scene(plain.scene("output = { checkpoint_every = 0.0 }\n"));

@@ -147,8 +147,8 @@ TEST_F(RunResults, FramesHaveDoublePrecisionOnRequest) {
     }
 }
 
-// The run is dropped without finish(), as a killed process drops it, after any number of steps.
-TEST_F(RunResults, AnInterruptedRunContinuesToTheSameBytes) {
+// Drops the run without finish(), like a killed process, after any number of steps.
+TEST_F(RunResults, InterruptedRunResumesToSameBytes) {
   for (const double every : {0.0, 0.02}) {
     const OutputOptions output{.every = every, .obj = true, .checkpoint_every = 0};
     const std::string whole = "whole" + std::to_string(every > 0);
@@ -172,8 +172,8 @@ TEST_F(RunResults, AnInterruptedRunContinuesToTheSameBytes) {
   }
 }
 
-// What an integrator remembers goes through the checkpoint's file: the step before, the length of parts.
-TEST_F(RunResults, EveryIntegratorContinuesFromItsCheckpointToTheSameBits) {
+// The state of integrators is in the checkpoint: previous step, length of substeps.
+TEST_F(RunResults, EveryIntegratorResumesToSameBits) {
   const OutputOptions output{.vtu = false, .pc2 = false, .usd = false, .checkpoint_every = 1e9};
   std::vector<SimulationOptions> ways = {{.initial_guess = "last_increment"}};
   for (const std::string& integrator : integrator_names()) ways.push_back({.h = 1e-3, .integrator = integrator});
@@ -197,7 +197,7 @@ TEST_F(RunResults, EveryIntegratorContinuesFromItsCheckpointToTheSameBits) {
   }
 }
 
-TEST_F(RunResults, FramesAfterTheLastCheckpointAreComputedAgain) {
+TEST_F(RunResults, FramesAfterLastCheckpointAreRecomputed) {
   const OutputOptions output{.checkpoint_every = 1e9};  // [s]: only at the start and the end
   run_whole(path("whole"), output);
   {
@@ -215,7 +215,7 @@ TEST_F(RunResults, FramesAfterTheLastCheckpointAreComputedAgain) {
   EXPECT_EQ(contents(path("run")), contents(path("whole")));
 }
 
-TEST_F(RunResults, AFinishedRunResumesWithoutChange) {
+TEST_F(RunResults, FinishedRunResumesWithoutChange) {
   run_whole(path("run"), {});
   const auto before = contents(path("run"));
   Scene scene = sagging_scene();
@@ -225,7 +225,7 @@ TEST_F(RunResults, AFinishedRunResumesWithoutChange) {
   EXPECT_EQ(contents(path("run")), before);
 }
 
-TEST_F(RunResults, ACheckpointWithAnImpossibleNumberOfStepsIsRefused) {
+TEST_F(RunResults, CheckpointWithImpossibleStepCountIsRejected) {
   run_whole(path("run"), {});
   for (const int64_t steps : {int64_t{-1}, int64_t{1} << 32}) {
     Checkpoint checkpoint = read_checkpoint(path("run/checkpoint.bin"));
@@ -237,7 +237,7 @@ TEST_F(RunResults, ACheckpointWithAnImpossibleNumberOfStepsIsRefused) {
   }
 }
 
-TEST_F(RunResults, ADamagedCheckpointFallsBackToTheOneBefore) {
+TEST_F(RunResults, DamagedCheckpointFallsBackToPrevious) {
   run_whole(path("whole"), {});
   {
     Scene scene = sagging_scene();
@@ -256,7 +256,7 @@ TEST_F(RunResults, ADamagedCheckpointFallsBackToTheOneBefore) {
   EXPECT_EQ(contents(path("run")), contents(path("whole")));
 }
 
-TEST_F(RunResults, AnotherSceneIsRefusedWithTheLineThatDiffers) {
+TEST_F(RunResults, OtherSceneIsRejectedWithDifferingLine) {
   run_whole(path("run"), {});
   Scene scene = sagging_scene();
   scene.resolved = "name = \"bar\"\nyoung = 2e5\n";
@@ -265,7 +265,7 @@ TEST_F(RunResults, AnotherSceneIsRefusedWithTheLineThatDiffers) {
   EXPECT_THAT(message, HasSubstr(":2: 'young = 2e5' now, 'young = 1e5' in the run"));
 }
 
-TEST_F(RunResults, WhatARunKilledAtOnceHadBegunToWriteIsGone) {
+TEST_F(RunResults, UnfinishedFilesOfKilledRunAreRemoved) {
   run_whole(path("whole"), {});
   fs::create_directories(path("run/frames"));
   std::ofstream(path("run/.aspic-1-0")) << "unfinished";
@@ -273,7 +273,7 @@ TEST_F(RunResults, WhatARunKilledAtOnceHadBegunToWriteIsGone) {
   EXPECT_EQ(contents(path("run")), contents(path("whole")));
 }
 
-TEST_F(RunResults, AnExistingRunIsOnlyReplacedWhenAsked) {
+TEST_F(RunResults, ExistingRunIsReplacedOnRequestOnly) {
   run_whole(path("run"), {});
   const auto before = contents(path("run"));
   const Scene scene = sagging_scene();
@@ -314,8 +314,8 @@ TEST_F(RunResults, InputsAreKeptBesideTheSceneAndReplacedWithTheRun) {
   EXPECT_EQ(read_file(path("run/inputs/mine.msh")), "mine");
 }
 
-// The scene of a run that somebody else made may name anything.
-TEST_F(RunResults, OverwritingRemovesNothingThatInputsLeadsTo) {
+// The scene of an untrusted run may name any file.
+TEST_F(RunResults, OverwritingSparesTargetsOfInputLinks) {
   Scene scene = sagging_scene();
   scene.resolved += "mesh = \"inputs/mine.msh\"\nskin = \"inputs/deep/mine.msh\"\n";
   RunDirectory::create(path("run"), scene, ExistingRun::refuse);
@@ -332,7 +332,7 @@ TEST_F(RunResults, OverwritingRemovesNothingThatInputsLeadsTo) {
   EXPECT_TRUE(fs::exists(path("elsewhere/mine.msh")));
 }
 
-TEST_F(RunResults, ADirectoryThatHoldsNoRunIsNeverTouched) {
+TEST_F(RunResults, ForeignDirectoryIsNeverTouched) {
   fs::create_directories(path("mine"));
   put(path("mine/scene.toml"), "my scene");
   const Scene scene = sagging_scene();
@@ -385,7 +385,7 @@ TEST_F(RunResults, RefusesToResumeWithoutAFrame) {
   RunDirectory::resume(path("run"), scene);
 }
 
-TEST_F(RunResults, NothingToContinueIsSaidSo) {
+TEST_F(RunResults, MissingRunIsReported) {
   Scene scene = sagging_scene();
   EXPECT_THAT(message_of<InvalidInput>([&] { RunDirectory::resume(path("no"), scene); }),
               HasSubstr("holds no run to continue"));

@@ -1,4 +1,4 @@
-// A scene in units to be chosen, and its dimensionless results.
+// A scene in chosen units, and its dimensionless results.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -49,7 +49,7 @@ inline const std::string kRubber = "material = { young = <1e5 Pa>, poisson = 0.4
 inline const std::string kWall = "[[body.pin]]\nwhere = \"X < <1e-9 m>\"\n";
 inline const std::string kSagging = kBeam + kRubber + kWall;
 
-// What happens to the body, for the solvers and schemes that are given.
+// A case: body, loads, solver and scheme.
 struct Case {
   std::string name;
   std::string options;  // after kTime
@@ -57,7 +57,7 @@ struct Case {
   std::function<void(Model&, const Scales&)> amend = {};
   bool is_sensitive = false;  // the path amplifies round-off
   std::string mesh = {};      // a file that the scene needs
-  int steps = 100;            // at most
+  int steps = 100;            // maximum number
 };
 inline void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
@@ -69,7 +69,7 @@ struct Outcome {
 
 Outcome run(const Case& c, const Scales& scales);
 
-// By how much a dimensionless number differs at most.
+// Returns the largest difference of the dimensionless numbers.
 inline double difference(const Outcome& a, const Outcome& b) {
   double worst = 0;
   for (size_t i = 0; i < a.numbers.size(); ++i) worst = std::max(worst, std::abs(a.numbers[i] - b.numbers[i]));

@@ -23,7 +23,7 @@ class InOtherUnits : public testing::TestWithParam<Case> {
 };
 class SensitiveInOtherUnits : public InOtherUnits {};
 
-// Every small and large scale with every other; of a large mesh half of these, in which still every two meet.
+// All combinations of small and large scales; for a large mesh half of them, with every pair.
 std::vector<Scales> corners(const Case& scene, const Scales& small, const Scales& large) {
   std::vector<Scales> all;
   for (const int corner : {0b001, 0b010, 0b100, 0b111, 0b000, 0b011, 0b101, 0b110})
@@ -33,7 +33,7 @@ std::vector<Scales> corners(const Case& scene, const Scales& small, const Scales
   return all;
 }
 
-// Nothing is rounded differently where all scales are powers of two.
+// Scales by powers of two change no rounding.
 TEST_P(InOtherUnits, PowersOfTwoChangeNoBit) {
   const Outcome meters = run(GetParam(), {});
   for (const Scales& scales : corners(GetParam(), {0x1p-10, 0x1p-10, 0x1p-10}, {0x1p10, 0x1p20, 0x1p20})) {
@@ -45,7 +45,7 @@ TEST_P(InOtherUnits, PowersOfTwoChangeNoBit) {
   }
 }
 
-TEST_P(InOtherUnits, TheIterationsAndTheDimensionlessResultAreTheSame) {
+TEST_P(InOtherUnits, IterationsAndDimensionlessResultsAgree) {
   const Outcome meters = run(GetParam(), {});
   ASSERT_FALSE(meters.status.empty());
   for (const Scales& scales : corners(GetParam(), {1e-3, 1e-3, 1e-3}, {1e3, 1e6, 1e6})) {
@@ -57,9 +57,9 @@ TEST_P(InOtherUnits, TheIterationsAndTheDimensionlessResultAreTheSame) {
   }
 }
 
-// Where decimal scales change more than 1e-9, units that are longer by the last bit do so as well: no other arithmetic
-// of ours could help, as the numbers of the scene already differ by that.
-TEST_P(SensitiveInOtherUnits, DecimalScalesAreNoWorseThanTheLastBitOfTheUnits) {
+// If decimal scales change results by more than 1e-9, so does a change of the units by one bit, which is the error of
+// the scaled input.
+TEST_P(SensitiveInOtherUnits, DecimalScalesDifferLikeLastBitOfUnits) {
   const Outcome meters = run(GetParam(), {});
   double by_bits = 0, by_scales = 0;
   for (const int bits : {-3, -1, 1, 2, 5}) {
@@ -199,7 +199,7 @@ std::vector<Case> hands() {
   return {{"mouse", "", kSagging, grab}, {"probe", "", kSagging, poke}};
 }
 
-// Tets of a real shape, of many sizes, in the program's own order.
+// Tets of a real shape, of many sizes, in the storage order of the program.
 std::vector<Case> real_meshes() {
   const std::filesystem::path file = std::filesystem::path(ASPIC_SOURCE_DIR) / "assets" / "bunny.mesh";
   const std::string bunny =

@@ -1,4 +1,4 @@
-// Pins along some directions, loads that follow the time, and remedies in the keys of the scene.
+// Pins along directions, time-dependent loads, and remedies in keys of the scene.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,7 +47,7 @@ TEST(ScenePins, RollersLetTheBodySlide) {
   EXPECT_NEAR(center, 0.5 + slid, 1e-4 * slid);
 }
 
-TEST(ScenePins, HoldingADirectionTwiceIsRefused) {
+TEST(ScenePins, HoldingDirectionTwiceIsRejected) {
   const std::string roller = pin("name = \"roller\"\nwhere = \"y < 0.1\"\naxes = \"xy\"");
   for (const char* other : {"axes = \"x\"", "direction = [1, 1, 0]", "axes = \"xyz\"", "axes = \"xz\""})
     EXPECT_THAT(
@@ -60,9 +60,9 @@ TEST(ScenePins, HoldingADirectionTwiceIsRefused) {
   EXPECT_THAT(refusal(kCube + pin("where = \"all\"\naxes = \"y\"\ndirection = [0, 0, 1]")), HasSubstr("direction"));
 }
 
-// Under pressure on all sides the Cauchy stress is -p I, on the areas as they are then: those of a dead load are
-// larger.
-TEST(SceneLoads, APressureFollowsTheSurfaceADeadOneDoesNot) {
+// Under pressure on all sides the Cauchy stress is -p I on the deformed areas, which are smaller than those of a dead
+// load.
+TEST(SceneLoads, PressureFollowsSurfaceDeadPressureDoesNot) {
   const auto stress_under = [](const std::string& load_text) {
     Scene scene =
         load("gravity = [0, 0, 0]\n[time]\nstep = 1\nintegrator = \"quasi_static\"\n[solver]\ntolerance = 1e-10\n" +
@@ -78,7 +78,7 @@ TEST(SceneLoads, APressureFollowsTheSurfaceADeadOneDoesNot) {
               AllOf(HasSubstr("beam.toml:6:"), HasSubstr("dead_pressure")));
 }
 
-TEST(SceneLoads, FollowTheTimeAndWorkInTheLedger) {
+TEST(SceneLoads, FollowTimeAndBalanceEnergy) {
   const std::string text =
       "gravity = [0, 0, 0]\n[time]\nstep = 0.5\nintegrator = \"quasi_static\"\n" + kCube + pin("where = \"x < 0.1\"");
   const auto pulled = [&](const std::string& load_text, int steps) {
@@ -104,7 +104,7 @@ TEST(SceneLoads, OfSeveralKindsAddUp) {
   EXPECT_NEAR(report.resultants.loads.at(0).force[0], 1 + std::sin(0.01), 1e-12);
 }
 
-TEST(SceneLoads, ThatFailDuringTheRunNameTheirPlace) {
+TEST(SceneLoads, FailingDuringRunNameTheirPlace) {
   Scene scene = load(kCube + "[[body.force]]\nvalue = [\"t < 0.015 ? 0 : 1/0\", 0, 0]\n");
   scene.simulation.step();
   EXPECT_THAT(message_of<InvalidInput>([&] { scene.simulation.step(); }),
@@ -127,7 +127,7 @@ std::string note_with(const Scene& scene, const std::string& part) {
   return "";
 }
 
-TEST(SceneRemedies, NameTheKeysThatGaveTheMaterial) {
+TEST(SceneRemedies, NameKeysOfMaterial) {
   const auto body = [](const std::string& moduli) {
     return kCube + "material = { " + moduli + " }\n" + pin("where = \"x < 0.1\"");
   };
@@ -143,7 +143,7 @@ TEST(SceneRemedies, NameTheKeysThatGaveTheMaterial) {
   }
 }
 
-TEST(SceneRemedies, OfNegativePoissonRatiosAreAccepted) {
+TEST(SceneRemedies, ForNegativePoissonRatiosAreAccepted) {
   const auto notes_of = [](const std::string& moduli) {
     return note_with(load(kCube + "material = { model = \"neo_hookean\", " + moduli + " }\n"), "no least value");
   };

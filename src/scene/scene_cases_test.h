@@ -1,4 +1,4 @@
-// What the tests of scenes share: a cube, and ways to load a scene or to see why it is refused.
+// Shared by tests of scenes: a cube, and functions that load a scene or return the message of its rejection.
 #pragma once
 #include <cmath>
 #include <string>
@@ -36,7 +36,7 @@ inline Vec3d vertex(const std::vector<double>& values, int i) {
   return {{values[3 * i], values[3 * i + 1], values[3 * i + 2]}};
 }
 
-// Positions and velocities, 3 per vertex, by the numbers of the scene's meshes.
+// Positions and velocities, 3 per vertex, in the numbering of the scene's meshes.
 inline std::vector<double> positions(const Scene& scene) {
   return scene.simulation.model().numbering.vertex.to_user(scene.simulation.state().q, 3);
 }

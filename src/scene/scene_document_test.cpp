@@ -1,4 +1,4 @@
-// The schema's rules and the words of the refusals.
+// Rules of the schema and messages of errors.
 #include "scene/scene_document.h"
 
 #include <gmock/gmock.h>
@@ -60,14 +60,14 @@ TEST(SceneDocument, CompletedTextReadsBackToItself) {
   EXPECT_THAT(once, Not(HasSubstr("young")));
 }
 
-TEST(SceneDocument, MisspeltKeyIsNamedWithPlaceValueAndNearestName) {
+TEST(SceneDocument, MisspelledKeyNamesPlaceValueAndNearestName) {
   EXPECT_EQ(document_refusal(kBox + "material = { yuong = 2e5 }\n"),
             "beam.toml:3:14: unknown key yuong = 2e+05 in material (did you mean 'young'?)");
   EXPECT_THAT(document_refusal("[tim]\nstep = 1\n" + kBox), AllOf(StartsWith("beam.toml:1:"), HasSubstr("'time'")));
   EXPECT_THAT(document_refusal(kBox + "duration = 3\n"), HasSubstr("belongs to time"));
 }
 
-TEST(SceneDocument, WrongTypeIsNamedWithWhatIsExpected) {
+TEST(SceneDocument, WrongTypeNamesExpectedType) {
   EXPECT_EQ(document_refusal("[time]\nstep = \"fast\"\n" + kBox),
             "beam.toml:2:8: step = \"fast\"; this is a string; expected is a number [s]");
   EXPECT_THAT(document_refusal("gravity = [0, -9.81]\n" + kBox),
@@ -77,7 +77,7 @@ TEST(SceneDocument, WrongTypeIsNamedWithWhatIsExpected) {
   EXPECT_THAT(document_refusal("time = 1979-05-27\n" + kBox), HasSubstr("date"));
 }
 
-TEST(SceneDocument, ValueOutOfRangeIsNamedWithTheRemedy) {
+TEST(SceneDocument, ValueOutOfRangeNamesRemedy) {
   EXPECT_EQ(document_refusal(kBox + "material = { poisson = 0.5 }\n"),
             "beam.toml:3:24: poisson = 0.5; must be > -1 and < 0.5 (try 0.485)");
   EXPECT_THAT(document_refusal(kBox + "material = { density = 0 }\n"), HasSubstr("must be > 0"));
@@ -91,7 +91,7 @@ TEST(SceneDocument, ValueOutOfRangeIsNamedWithTheRemedy) {
   EXPECT_THAT(document_refusal(kBox + "scale = -1\n"), HasSubstr("scale = -1"));
 }
 
-TEST(SceneDocument, UnknownChoiceNamesTheNearest) {
+TEST(SceneDocument, UnknownChoiceNamesNearest) {
   EXPECT_THAT(document_refusal(kBox + "material = { model = \"neo_hokean\" }\n"),
               HasSubstr("did you mean 'neo_hookean'?"));
   EXPECT_THAT(document_refusal("[time]\nintegrator = \"backward_eular\"\n" + kBox), HasSubstr("'backward_euler'"));
@@ -125,15 +125,15 @@ TEST(SceneDocument, SyntaxErrorsHaveAPlace) {
   EXPECT_THAT(document_refusal("gravity = \n"), StartsWith("beam.toml:1:"));
 }
 
-// toml++ tells the compiler that these letters cannot stand there.
-TEST(SceneDocument, LettersBeyondAsciiOutsideOfStringsAreNamed) {
+// toml++ lets the compiler assume that these letters cannot occur there.
+TEST(SceneDocument, NonAsciiLettersOutsideStringsAreNamed) {
   for (const std::string letter : {"\u00e4", "\u048f", "\u1680", "\u2028", "\U0001f41f"}) {
     EXPECT_THAT(document_refusal(letter + " = 1\n" + kBox), StartsWith("beam.toml:1:")) << letter;
     EXPECT_THAT(document_refusal("[[body" + letter + "]]\n"), StartsWith("beam.toml:1:")) << letter;
   }
 }
 
-TEST(SceneDocument, FormulasAreCheckedWhereTheyStand) {
+TEST(SceneDocument, FormulaErrorsHavePlaces) {
   EXPECT_THAT(document_refusal(kBox + "material = { young = \"1e5 * foo\" }\n"),
               AllOf(StartsWith("beam.toml:3:22"), HasSubstr("'foo'")));
   EXPECT_THAT(document_refusal(kBox + "[[body.pin]]\nwhere = \"y >\"\n"), StartsWith("beam.toml:4:9"));
@@ -150,7 +150,7 @@ TEST(SceneDocument, NamesAreUniqueAndPlain) {
   EXPECT_EQ(body(scene, 1)["name"].text(), "body2");
 }
 
-TEST(SceneDocument, DegenerateGeometryIsRefused) {
+TEST(SceneDocument, DegenerateGeometryIsRejected) {
   EXPECT_THAT(document_refusal("[[body]]\nshape = { box = { upper = [1, 0, 1], cells = [1, 1, 1] } }\n"),
               HasSubstr("upper"));
   EXPECT_THAT(document_refusal("[[body]]\nshape = { box = { upper = [1, 1, 1], cells = [1, 1] } }\n"),
@@ -178,7 +178,7 @@ TEST(Override, ReplacesValuesAnywhere) {
   EXPECT_EQ(body(scene, 0)["pin"].array()[0]["where"].text(), "y < 0.5");
 }
 
-TEST(Override, AMeshTakesThePlaceOfAShapeAndASphereThatOfABox) {
+TEST(Override, ReplacesAlternatives) {
   const std::string box = "[[body]]\nshape = { box = { upper = [1, 1, 1], cells = [1, 1, 1] } }\n";
   Table document = read_toml(box, "box.toml");
   apply_override(document, "body.0.shape.sphere={radius=1, size=0.5}");
@@ -189,7 +189,7 @@ TEST(Override, AMeshTakesThePlaceOfAShapeAndASphereThatOfABox) {
   const Table& body = document.find("body")->array()[0].table();
   EXPECT_FALSE(body.find("shape"));
   EXPECT_EQ(body.find("mesh")->text(), "bunny.mesh");
-  // Two overrides that exclude each other are for the user to settle.
+  // Two overrides that exclude each other are an error.
   apply_override(document, "shape={sphere={radius=1, size=0.5}}");
   EXPECT_TRUE(document.find("body")->array()[0].table().find("mesh"));
 }
@@ -212,7 +212,7 @@ TEST(Override, ErrorsNameTheOverride) {
   EXPECT_THAT(document_refusal(kBox, {"gravity=[0, 0, 0]\ntime=3"}), StartsWith("--set gravity"));
 }
 
-TEST(SceneDocument, MutatedScenesAreReadOrRefused) {
+TEST(SceneDocument, MutatedScenesAreReadOrRejected) {
   const std::string scene =
       "gravity = [0, -9.81, 0]\n[time]\nstep = 0.01\n[solver]\nline_search = { p = 0.5 }\n" + kBox +
       "material = { young = \"1e5 * (1 + X)\", poisson = 0.3 }\ndeform = { twist = { axis = [0, 1, 0], angle_deg = 9 } "
@@ -234,13 +234,13 @@ TEST(SceneDocument, MutatedScenesAreReadOrRefused) {
         text[at] = c;
       }
     }
-    refused += !document_refusal(text).empty();  // anything but InvalidInput ends the test
+    refused += !document_refusal(text).empty();  // any other exception ends the test
   }
   EXPECT_GT(refused, 1000);
   EXPECT_LT(refused, 3000);
 }
 
-TEST(Schema, EveryKeyIsExplained) {
+TEST(Schema, EveryKeyHasMeaning) {
   for (const Key& key : scene_schema().keys) {
     EXPECT_FALSE(key.meaning.empty()) << key.section << "." << key.name;
     EXPECT_TRUE(key.fallback.empty() || key.fallback == "{}" || !key.reason.empty()) << key.section << "." << key.name;
@@ -265,7 +265,7 @@ TEST(Schema, AlternativesNameExistingKeys) {
       for (const std::string& name : group) EXPECT_TRUE(scene_schema().find(rule.section, name)) << name;
 }
 
-TEST(SceneDocument, KeysThatAreNestedWithoutEndAreRefused) {
+TEST(SceneDocument, DeeplyNestedKeysAreRejected) {
   std::string key = "a";
   for (int i = 0; i < 100'000; ++i) key += ".a";
   EXPECT_THAT(document_refusal("[" + key + "]\n"), HasSubstr(":1:1: a key of more than 32 parts"));

@@ -1,4 +1,4 @@
-// Meshes, skins and numbers that a scene takes from files.
+// Meshes, skins and numbers from files.
 #include "scene/scene.h"
 
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-TEST(Scene, DisplacementFileGivesEachVertexItsOwn) {
+TEST(Scene, DisplacementFileMovesEachVertex) {
   const TestFolder folder;
   std::string csv = "x,y,z\n";
   for (int i = 0; i < 27; ++i) csv += std::to_string(i) + ",0,0.5\n";
@@ -31,7 +31,7 @@ TEST(Scene, DisplacementFileGivesEachVertexItsOwn) {
   EXPECT_THAT(refusal_of(folder / "beam.toml"), AllOf(HasSubstr("u.csv:2:"), HasSubstr("nan")));
 }
 
-TEST(Scene, ParametersVaryFromTetToTet) {
+TEST(Scene, ParametersVaryByTet) {
   const TestFolder folder;
   std::string csv;
   for (int t = 0; t < 48; ++t) csv += std::to_string(1000 + t) + "\n";
@@ -70,7 +70,7 @@ TEST(Scene, ExtraParametersBelongToTheirMaterial) {
   EXPECT_THAT(refusal(kCube + "material = { model = \"neo_hookean\", ratio = 1 }\n"), HasSubstr("ratio"));
 }
 
-TEST(Scene, FilesAreConfinedToTheFolderAndTheOneAbove) {
+TEST(Scene, FilesAreConfinedToFolderAndParent) {
   const TestFolder folder;
   const TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1});
   fs::create_directories(folder / "a/b/scenes");
@@ -91,7 +91,7 @@ TEST(Scene, FilesAreConfinedToTheFolderAndTheOneAbove) {
   EXPECT_THAT(refusal_of(with("../assets")), HasSubstr("is a folder"));
 }
 
-TEST(Scene, AChangedMeshIsNoticedByItsHash) {
+TEST(Scene, ChangedMeshIsDetectedByHash) {
   const TestFolder folder;
   const TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1});
   write_mesh(folder / "cube.msh", mesh);
@@ -103,7 +103,7 @@ TEST(Scene, AChangedMeshIsNoticedByItsHash) {
   EXPECT_THAT(refusal_of(resolved), AllOf(HasSubstr("mesh_hash"), HasSubstr("changed")));
 }
 
-TEST(Scene, ABrokenMeshStopsWithTheDoctorsWords) {
+TEST(Scene, BrokenMeshIsRejectedWithDiagnosis) {
   const TestFolder folder;
   TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1});
   std::swap(mesh.tets[2][0], mesh.tets[2][1]);
@@ -112,21 +112,21 @@ TEST(Scene, ABrokenMeshStopsWithTheDoctorsWords) {
   EXPECT_THAT(refusal_of(path), AllOf(HasSubstr("cube"), HasSubstr("inverted")));
 }
 
-TEST(Scene, WhatTakesLongIsAnnounced) {
+TEST(Scene, LongWorkIsAnnounced) {
   const auto announced = [](const std::string& cells) {
     const TestFolder folder;
-    std::vector<std::string> told;
+    std::vector<std::string> announced;
     const std::string text =
         "[[body]]\nname = \"box\"\nshape = { box = { upper = [1, 1, 1], cells = " + cells + " } }\n";
-    load_scene(folder.write("s.toml", text), {.announce = [&](const std::string& what) { told.push_back(what); }});
-    return told;
+    load_scene(folder.write("s.toml", text), {.announce = [&](const std::string& what) { announced.push_back(what); }});
+    return announced;
   };
   EXPECT_THAT(announced("[2, 2, 2]"), testing::IsEmpty());
   EXPECT_THAT(announced("[50, 50, 20]"),
               testing::ElementsAre("checking 300000 tets of body 'box'", HasSubstr("setting up")));
 }
 
-TEST(Scene, MoreTetsThanTheLimitAreRefusedBeforeTheyAreMade) {
+TEST(Scene, TetsBeyondLimitAreRejectedBeforeGeneration) {
   const TestFolder folder;
   const auto refused = [&](const std::string& text, bool counts_files) -> std::string {
     const TetLimit limit{.tets = 1000, .why = "fit here", .counts_files = counts_files};
@@ -149,7 +149,7 @@ TEST(Scene, MoreTetsThanTheLimitAreRefusedBeforeTheyAreMade) {
   EXPECT_THAT(refused(body("a", "mesh = \"box.msh\""), true), AllOf(HasSubstr("box.msh"), HasSubstr("coarser")));
 }
 
-TEST(Scene, WhatNoMemoryHoldsIsRefusedBeforeItIsMade) {
+TEST(Scene, TetsBeyondMemoryAreRejectedBeforeGeneration) {
   const TestFolder folder;
   const auto refused = [&](const std::string& shape, const TetLimit& limit = {}) {
     return refusal_of(folder.write("s.toml", "[[body]]\n" + shape + "\n"), {.limit = limit});
@@ -169,7 +169,7 @@ TEST(Scene, WhatNoMemoryHoldsIsRefusedBeforeItIsMade) {
   EXPECT_THAT(refused("mesh = \"box.msh\"", {.memory = 300'000}), AllOf(HasSubstr("box.msh"), HasSubstr("coarser")));
 }
 
-TEST(Scene, MoreStepsThanCanBeCountedAreRefused) {
+TEST(Scene, TooManyStepsAreRejected) {
   const TestFolder folder;
   const auto refused = [&](const std::string& time) {
     return refusal_of(folder.write("s.toml", "[time]\n" + time + "\n" + kCube));
@@ -180,7 +180,7 @@ TEST(Scene, MoreStepsThanCanBeCountedAreRefused) {
   EXPECT_THAT(refused("duration = inf"), HasSubstr("s.toml:2:"));
 }
 
-TEST(Scene, LinksThatLeadOutsideAreRefused) {
+TEST(Scene, LinksToOutsideAreRejected) {
   const TestFolder folder;
   fs::create_directories(folder / "a/b/scenes");
   write_mesh(folder / "cube.msh", make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}));
@@ -204,7 +204,7 @@ TEST(Scene, MissingOrUnreadableFilesAreNamed) {
   EXPECT_THAT(refusal_of(folder / "none.msh"), HasSubstr("none.msh"));
 }
 
-TEST(Scene, ASkinIsPlacedAndCarriedWithItsBody) {
+TEST(Scene, SkinIsPlacedAndCarriedWithBody) {
   const TestFolder folder;
   const TetMesh fine = make_box({{0.25, 0.25, 0.25}}, {{0.75, 0.75, 0.75}}, {3, 3, 3});
   write_mesh(folder / "skin.obj", boundary_surface(fine).surface);

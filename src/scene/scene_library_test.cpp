@@ -1,4 +1,4 @@
-// The scenes of this project, and the page about them.
+// The scenes in scenes/, and the page docs/scene.md.
 #include "scene/scene.h"
 
 #include <gmock/gmock.h>
@@ -53,7 +53,7 @@ TEST_P(SceneFile, ResolvedSceneGivesTheSameBits) {
   EXPECT_EQ(scene.simulation.state().qdot, again.simulation.state().qdot);
 }
 
-TEST_P(SceneFile, EveryTermHasTheDerivativesThatItClaims) {
+TEST_P(SceneFile, DerivativesOfEveryTermAreRight) {
   Scene scene = load_scene(GetParam());
   scene.simulation.step();
   for (const TermDerivatives& of : check_step_derivatives(scene.simulation))
@@ -67,7 +67,7 @@ TEST_P(SceneFile, IsShort) {
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 35);
 }
 
-TEST(SceneLibrary, TheModuliOfEachTetAreKeptForTheResults) {
+TEST(SceneLibrary, ModuliOfEachTetAreExported) {
   const Scene scene = load_scene(fs::path(ASPIC_SOURCE_DIR) / "scenes" / "heterogeneous.toml");
   const Model& model = scene.simulation.model();
   ASSERT_EQ(model.tet_fields.size(), 2u);
@@ -89,7 +89,7 @@ TEST(SceneLibrary, TheModuliOfEachTetAreKeptForTheResults) {
 INSTANTIATE_TEST_SUITE_P(Scenes, SceneFile, ::testing::ValuesIn(scene_files()),
                          [](const auto& file) { return file.param.stem().string(); });
 
-TEST(SceneReference, IsTheCommittedPage) {
+TEST(SceneReference, MatchesCommittedPage) {
   const fs::path page = fs::path(ASPIC_SOURCE_DIR) / "docs" / "scene.md";
   if (std::getenv("ASPIC_UPDATE_DOCS")) write_file(page, scene_reference());
   EXPECT_EQ(read_file(page), scene_reference()) << "ASPIC_UPDATE_DOCS=1 test_scene writes docs/scene.md anew";

@@ -43,7 +43,7 @@ TEST(Scene, StepsCoverTheDuration) {
   EXPECT_EQ(load("[time]\nduration = 0\n" + kCube).steps, 0);
 }
 
-TEST(Scene, IntegratorPartsAndGuessReachTheSimulation) {
+TEST(Scene, OptionsReachSimulation) {
   const Scene scene = load(
       "[time]\nintegrator = \"midpoint\"\nadaptive = { tolerance = 1e-4 }\n"
       "[solver]\ninitial_guess = \"last_increment\"\n" +
@@ -54,12 +54,12 @@ TEST(Scene, IntegratorPartsAndGuessReachTheSimulation) {
   EXPECT_EQ(options.initial_guess, "last_increment");
 }
 
-TEST(Scene, AnIntegratorThatCannotDivideItsStepsIsRefusedWithThoseThatCan) {
+TEST(Scene, AdaptiveStepsOfOtherIntegratorsAreRejected) {
   EXPECT_THAT([] { load("[time]\nintegrator = \"bdf2\"\nadaptive = { tolerance = 1e-4 }\n" + kCube); },
               testing::ThrowsMessage<InvalidInput>(AllOf(HasSubstr("'bdf2'"), HasSubstr("tr_bdf2"))));
 }
 
-TEST(Scene, WhatTheIntegratorCannotDoIsAnErrorWithItsPlace) {
+TEST(Scene, UnsupportedIntegratorOptionsAreErrorsWithPlace) {
   const auto refused = [](const std::string& integrator, const std::string& time, const std::string& solver) {
     return refusal("[time]\nintegrator = \"" + integrator + "\"\n" + time + "[solver]\n" + solver + kCube);
   };
@@ -68,8 +68,8 @@ TEST(Scene, WhatTheIntegratorCannotDoIsAnErrorWithItsPlace) {
   EXPECT_THAT(refused("quasi_static", "", "initial_guess = \"extrapolated\"\n"), HasSubstr("beam.toml:4:"));
 }
 
-// One iteration of gradient descent would end anywhere, and the scheme asks for no small gradient.
-TEST(Scene, TheLinearisedIntegratorTakesOneIterationOfNewtonsMethodAndOfNoOther) {
+// The scheme has no convergence test, so its one iteration must be that of Newton's method.
+TEST(Scene, LinearlyImplicitEulerRequiresNewton) {
   const auto refused = [](const std::string& solver) {
     return refusal("[time]\nintegrator = \"linearly_implicit_euler\"\n[solver]\n" + solver + kCube);
   };
@@ -82,7 +82,7 @@ TEST(Scene, TheLinearisedIntegratorTakesOneIterationOfNewtonsMethodAndOfNoOther)
   load("[time]\nintegrator = \"linearly_implicit_euler\"\n[solver]\nmethod = \"newton_cg\"\n" + kCube);
 }
 
-TEST(Scene, PlacesTheRestShapeByScaleThenRotationThenTranslation) {
+TEST(Scene, ScalesThenRotatesThenTranslatesRestShape) {
   const Scene scene = load(kCube +
                            "scale = [1, 2, 3]\nrotate = { axis = [0, 0, 5], angle_deg = 90 }\n"
                            "translate = [10, 0, 0]\n");
@@ -91,13 +91,13 @@ TEST(Scene, PlacesTheRestShapeByScaleThenRotationThenTranslation) {
   EXPECT_LT(distance(corner, {{8, 1, 3}}), 1e-14);
 }
 
-TEST(Scene, EulerAnglesTurnAboutXThenYThenZ) {
+TEST(Scene, EulerAnglesRotateAboutXThenYThenZ) {
   const Scene scene = load(kCube + "rotate = { euler_deg = [90, 0, 90] }\n");
   // (0, 1, 0) -> (0, 0, 1) about x -> (0, 0, 1) about z.
   EXPECT_LT(distance(rest(scene, 6), {{0, 0, 1}}), 1e-15);
 }
 
-TEST(Scene, DeformsRelativeToRestAboutTheCentre) {
+TEST(Scene, DeformsAboutCenterOfRestShape) {
   const auto corner = [](const std::string& deform) {
     return vertex(positions(load(kCube + "deform = { " + deform + " }\n")), 26);
   };
@@ -115,13 +115,13 @@ TEST(Scene, InitialVelocityFollowsFormulasAndSpin) {
   EXPECT_LT(distance(vertex(velocities(scene), 26), {{1 - 1.5, 2 + 1.5, 0}}), 1e-12);
 }
 
-TEST(Scene, GravityActsOnTheMassOfEachVertex) {
+TEST(Scene, GravityActsOnMassOfEachVertex) {
   Scene scene = load("gravity = [0, 0, -2]\n[time]\nstep = 0.1\n" + kCube);
   scene.simulation.step();
   for (int v = 0; v < 27; ++v) EXPECT_NEAR(scene.simulation.state().qdot[3 * v + 2], -0.2, 1e-9);
 }
 
-TEST(Scene, TractionAndPressureAddUpToForceTimesArea) {
+TEST(Scene, TractionAndPressureSumToForceTimesArea) {
   // A free cube of mass 1000 kg: total force 50 N/m^2 * 1 m^2 along x gives v = F h / m.
   const auto velocity = [](const std::string& load_text) {
     Scene scene = load("gravity = [0, 0, 0]\n[time]\nstep = 0.1\n" + kCube + load_text);
@@ -139,7 +139,7 @@ TEST(Scene, TractionAndPressureAddUpToForceTimesArea) {
   EXPECT_LT(distance(velocity("[[body.traction]]\nwhere = \"all\"\ndead_pressure = 50\n"), {{0, 0, 0}}), 1e-12);
 }
 
-TEST(Scene, PinsMoveAsTold) {
+TEST(Scene, PinsFollowTheirMotion) {
   const auto end = [](const std::string& motion, int steps) {
     Scene scene = load("gravity = [0, 0, 0]\n[time]\nstep = 0.1\n" + kCube +
                        "[[body.pin]]\nwhere = \"all\"\nmotion = " + motion + "\n");
@@ -161,12 +161,12 @@ TEST(Scene, PinsMoveAsTold) {
       1e-12);
 }
 
-TEST(Scene, AMotionThatDoesNotStartAtZeroIsNoted) {
+TEST(Scene, MotionWithInitialJumpIsNoted) {
   const Scene scene = load(kCube + "[[body.pin]]\nwhere = \"y < 0.1\"\nmotion = { displacement = [0.5, 0, 0] }\n");
   EXPECT_THAT(scene.notes, Contains(HasSubstr("jumps by 0.5 m")));
 }
 
-TEST(Scene, AMotionThatFailsDuringTheRunNamesItsPlace) {
+TEST(Scene, MotionFailingDuringRunNamesPlace) {
   Scene scene =
       load(kCube + "[[body.pin]]\nwhere = \"y < 0.1\"\nmotion = { displacement = [\"t < 0.015 ? 0 : 1/0\", 0, 0] }\n");
   scene.simulation.step();
@@ -174,7 +174,7 @@ TEST(Scene, AMotionThatFailsDuringTheRunNamesItsPlace) {
   EXPECT_THAT(message, AllOf(HasSubstr("beam.toml:6:27: "), HasSubstr("is inf at"), HasSubstr("t = 0.02")));
 }
 
-TEST(Scene, SelectionsMeanWhatTheySay) {
+TEST(Scene, SelectionsContainExpectedVertices) {
   const auto pinned = [](const std::string& where) {
     return load(kCube + "[[body.pin]]\nwhere = " + where + "\n").simulation.model().pins[0].vertices.size();
   };
@@ -191,7 +191,7 @@ TEST(Scene, LowestFollowsGravity) {
   for (const int v : scene.simulation.model().pins[0].vertices) EXPECT_EQ(scene.simulation.model().mesh.rest[v][0], 1);
 }
 
-TEST(Scene, ASelectionOfNothingIsRefusedWithTheExtent) {
+TEST(Scene, EmptySelectionIsRejectedWithExtent) {
   EXPECT_THAT(refusal(kCube + "[[body.pin]]\nwhere = \"y > 9\"\n"),
               AllOf(HasSubstr("beam.toml:5:9"), HasSubstr("\"y > 9\""), HasSubstr("no vertex of body 'cube'"),
                     HasSubstr("from (0, 0, 0) to (1, 1, 1)")));
@@ -203,7 +203,7 @@ TEST(Scene, ASelectionOfNothingIsRefusedWithTheExtent) {
   EXPECT_THAT(refusal(kCube + "[[body.pin]]\nwhere = \"1 / x\"\n"), AllOf(HasSubstr(":5:"), HasSubstr("inf")));
 }
 
-TEST(Scene, AVertexInTwoPinsIsRefusedWithBothNames) {
+TEST(Scene, VertexInTwoPinsIsRejectedWithBothNames) {
   EXPECT_THAT(
       refusal(kCube + "[[body.pin]]\nname = \"left\"\nwhere = \"x < 0.1\"\n[[body.pin]]\nname = \"low\"\nwhere = "
                       "\"y < 0.1\"\n"),
@@ -215,7 +215,7 @@ TEST(Scene, LockingIsNoted) {
   EXPECT_THAT(load(kCube + "material = { poisson = 0.45 }\n").notes, Not(Contains(HasSubstr("lock"))));
 }
 
-TEST(Scene, AnInvertedOrFlatStartIsNoted) {
+TEST(Scene, InvertedOrFlatStartIsNoted) {
   EXPECT_THAT(load(kCube + "deform = { scale = 0 }\n").notes, Contains(HasSubstr("48 tets start inverted or flat")));
   EXPECT_THAT(load(kCube + "deform = { scale = 0.5 }\n").notes, Not(Contains(HasSubstr("inverted"))));
 }
@@ -244,7 +244,7 @@ const std::string kGrabbed =
     "[[body.grab]]\nstiffness = 10\npoint = [{ vertex = 13, weight = 0.0 }, { vertex = 14, "
     "weight = 0.0 }, { vertex = 17, weight = 0.25 }, { vertex = 26, weight = 0.75 }]\n";
 
-TEST(Scene, AGrabPullsBetweenItsFirstTimeAndItsLast) {
+TEST(Scene, GrabPullsDuringItsPath) {
   Scene scene = load("gravity = [0, 0, 0]\n" + kCube + kGrabbed +
                      "path = [{ time = 0.02, position = [1, 1, 1] }, { time = 0.04, position = [3, 1, 1] }]\n" +
                      "[[body.pin]]\nwhere = \"x < 0.1\"\n");
@@ -261,7 +261,7 @@ TEST(Scene, AGrabPullsBetweenItsFirstTimeAndItsLast) {
   EXPECT_LT(std::abs(report.ledger_error), 1e-9) << "letting go is work of the hand";
 }
 
-TEST(Scene, AGrabNeedsATetWeightsAndAPath) {
+TEST(Scene, GrabRequiresTetWeightsAndPath) {
   const std::string path = "path = [{ time = 0, position = [1, 1, 1] }, { time = 1, position = [3, 1, 1] }]\n";
   EXPECT_THAT(refusal(kCube + kGrabbed + "path = [{ time = 0, position = [1, 1, 1] }]\n"), HasSubstr("at least two"));
   EXPECT_THAT(
@@ -285,7 +285,7 @@ TEST(Scene, SpringsToPointsPullTowardsTheirTarget) {
   EXPECT_GT(velocities(scene)[3 * 26], 0);
 }
 
-TEST(Scene, ABodyWithoutElasticityFallsApart) {
+TEST(Scene, BodyWithoutElasticityFallsApart) {
   Scene scene = load("gravity = [0, 0, 0]\n" + kCube + "elastic = false\nvelocity = [\"X\", 0, 0]\n");
   scene.simulation.step();
   EXPECT_NEAR(velocities(scene)[3 * 26], 1, 1e-12);
@@ -298,7 +298,7 @@ TEST(Scene, GeneratedShapesAreBounded) {
   EXPECT_THAT(refusal("[[body]]\nshape = { box = { upper = [1, 1, 1], size = 1e-300 } }\n"), HasSubstr("larger size"));
 }
 
-TEST(Scene, SolverChoicesThatTheMethodHasNoUseForAreErrorsWithTheirPlace) {
+TEST(Scene, UnusedSolverOptionsAreErrorsWithPlace) {
   const auto refused = [](const std::string& lines) { return refusal("[solver]\n" + lines + kCube); };
   EXPECT_THAT(refused("method = \"lbfgs\"\ndefiniteness = \"clamped\"\n"),
               AllOf(HasSubstr("beam.toml:3:"), HasSubstr("definiteness = 'clamped'"), HasSubstr("newton, newton_cg")));
@@ -311,7 +311,7 @@ TEST(Scene, SolverChoicesThatTheMethodHasNoUseForAreErrorsWithTheirPlace) {
   EXPECT_THAT(refused("fallback = \"lbfgs\"\n"), HasSubstr("a list of names"));
 }
 
-TEST(Scene, SolverChoicesReachTheSimulationAndAResolvedSceneRunsToTheSameBits) {
+TEST(Scene, ResolvedSolverOptionsGiveSameBits) {
   const std::string text =
       "[time]\nstep = 0.02\n[solver]\nmethod = \"lbfgs\"\npreconditioner = \"diagonal\"\n"
       "fallback = [\"newton\"]\ndefiniteness = \"progressive\"\n" +
@@ -327,7 +327,7 @@ TEST(Scene, SolverChoicesReachTheSimulationAndAResolvedSceneRunsToTheSameBits) {
   EXPECT_EQ(scene.simulation.state().q, again.simulation.state().q);
 }
 
-TEST(Scene, AMethodWithoutEffectIsNoted) {
+TEST(Scene, UnusedMethodIsNoted) {
   const std::string text = "[time]\nstep = 1e-5\nintegrator = \"symplectic_euler\"\n" + kCube;
   EXPECT_THAT(load(text, {"solver.method=lbfgs"}).notes, Contains(HasSubstr("method = 'lbfgs' has no effect")));
   EXPECT_THAT(load(text).notes, Not(Contains(HasSubstr("no effect"))));

@@ -1,9 +1,8 @@
 #include "scene/toml_reader.h"
 
-// toml++ 3.3 asserts that "[1, }" cannot be (in a release build it lets the compiler assume so) and then reports it as
-// the error that it is; and it tells the compiler that a letter such as U+00E4 outside of a string cannot be when it
-// asks whether that is a blank. Input must not end the program, so its assertions are off in every build, and such a
-// letter is no blank.
+// toml++ 3.3 asserts conditions that bad input violates: for "[1, }", which it then reports as an error, and for
+// letters such as U+00E4 outside of strings. In release builds the compiler assumes these conditions. Input must not
+// end the program, so the assertions are off in every build, and such a letter is no blank.
 #undef NDEBUG
 #define TOML_ASSERT(condition) static_cast<void>(0)
 #if __has_include(<toml++/impl/preprocessor.hpp>)  // since 3.4

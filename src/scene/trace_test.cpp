@@ -56,7 +56,7 @@ std::vector<Recorded> traced_minimisation(Trace& trace) {
   return recorded;
 }
 
-TEST_F(Traces, TheTablesReadBackToTheBitsOfTheIterations) {
+TEST_F(Traces, TablesReadBackToSameBits) {
   Trace trace(path("trace"));
   const std::vector<Recorded> recorded = traced_minimisation(trace);
   const Table iterations = read_table(path("trace") / "iterations.csv");
@@ -82,7 +82,7 @@ TEST_F(Traces, TheTablesReadBackToTheBitsOfTheIterations) {
   EXPECT_EQ(read_table(path("trace") / "timings.csv").size(), recorded.size());
 }
 
-TEST_F(Traces, TheJsonLinesSayTheSame) {
+TEST_F(Traces, JsonLinesMatchIterations) {
   Trace trace(path("trace"));
   const std::vector<Recorded> recorded = traced_minimisation(trace);
   std::ifstream file(path("trace") / "trace.jsonl");
@@ -105,7 +105,7 @@ TEST_F(Traces, TheJsonLinesSayTheSame) {
   EXPECT_EQ(i, recorded.size());
 }
 
-TEST_F(Traces, ALandscapeIsWrittenWhereItIsAskedFor) {
+TEST_F(Traces, LandscapeIsWrittenOnRequest) {
   Trace trace(path("trace"), {.landscapes = {{3, 1}, {3, 999}}});
   const std::vector<Recorded> recorded = traced_minimisation(trace);
   const Table curve = read_table(path("trace") / "curve_3_1.csv");
@@ -121,13 +121,13 @@ TEST_F(Traces, ALandscapeIsWrittenWhereItIsAskedFor) {
   EXPECT_EQ(trace.missed()[0].iteration, 999);
 }
 
-TEST_F(Traces, AFailedIterationIsTracedWithAllItsTrials) {
+TEST_F(Traces, FailedIterationIsTracedWithAllTrials) {
   Rosenbrock f;
   Newton direction(make_linear_solver("cholesky"));
   std::vector<double> x = {-0.8, 0.6, 0};
   Trace trace(path("trace"), {.landscapes = {{1, 0}}});
   MinimizeOptions options;
-  options.line_search.test = DecreaseTest::slide;  // asks for the whole decrease however short the step
+  options.line_search.test = DecreaseTest::slide;  // requires the decrease of a full step
   options.line_search.sufficient_decrease = 0.99;
   const auto observe = [&](const LiveIteration& iteration) { trace.on_iteration(1, iteration); };
   ASSERT_EQ(Minimizer().minimize(f, direction, x, options, observe).status, Status::stuck);
@@ -137,7 +137,7 @@ TEST_F(Traces, AFailedIterationIsTracedWithAllItsTrials) {
   EXPECT_GT(std::stoi(iterations.back().at("trials")), 30);
 }
 
-TEST(ParseLandscape, ReadsAStepWithOrWithoutItsIteration) {
+TEST(ParseLandscape, ReadsStepWithOptionalIteration) {
   EXPECT_EQ(parse_landscape("12").step, 12);
   EXPECT_EQ(parse_landscape("12").iteration, 0);
   EXPECT_EQ(parse_landscape("12:3").iteration, 3);
