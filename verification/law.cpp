@@ -3,6 +3,7 @@
 #include <map>
 
 #include "material/list.h"
+#include "verification/uniaxial.h"
 
 namespace aspic::verify {
 namespace {
@@ -15,6 +16,7 @@ Law make_law() {
       [](const Mat3d& F) { return M::pk1(F, ordinary_params<M>()); },
       [](const Mat3d& F) { return M::hessian(F, ordinary_params<M>()); },
       [](const Mat3d& F) { return M::psi(jet_variables(F), broadcast_params<M, Jet<double>>(ordinary_params<M>())); },
+      M::reference_energy,
       smooth_states<M>()};
 }
 
@@ -27,6 +29,11 @@ const Law& law(const std::string& material) {
     return all;
   }();
   return laws.at(material_info(material).name);
+}
+
+long double principal_energy(const std::string& material, const std::array<long double, 3>& stretch, double young,
+                             double poisson) {
+  return law(material).reference(PrincipalStretches(stretch), {young, poisson});
 }
 
 }  // namespace aspic::verify

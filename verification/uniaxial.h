@@ -28,8 +28,7 @@ struct StretchedBox : Uniaxial {
 };
 StretchedBox stretched_box(const std::string& material, const MaterialParameters& parameters, double l, double guess);
 
-// psi of principal stretches, written down anew from the material's formula; for its default extra parameters. Throws
-// std::runtime_error for a material it does not know.
+// Returns reference_energy() of the material at principal stretches, for its default extra parameters [J/m^3].
 long double principal_energy(const std::string& material, const std::array<long double, 3>& stretch, double young,
                              double poisson);
 // The uniaxial state by differences of principal_energy, to about 1e-14.

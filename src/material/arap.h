@@ -1,6 +1,7 @@
 // As rigid as possible: psi = mu |F - R|^2, R the rotation closest to F. Nothing resists a change of volume as such.
 #pragma once
 #include "material/material.h"
+#include "material/reference.h"
 #include "material/registry.h"
 #include "material/rotation_distance.h"
 
@@ -32,6 +33,10 @@ struct Arap {
   template <class T>
   static Params<T> params(const MaterialParametersOver<T>& m) {
     return {m.lame.mu};
+  }
+
+  static long double reference_energy(const PrincipalStretches& s, const ReferenceModuli& m) {
+    return m.mu * s.strain2;
   }
 
   static MaterialInfo info() {

@@ -3,6 +3,7 @@
 #pragma once
 #include "material/from_invariants.h"
 #include "material/material.h"
+#include "material/reference.h"
 #include "material/registry.h"
 #include "material/rotation_distance.h"
 
@@ -35,6 +36,10 @@ struct Corotated {
   template <class T>
   static Params<T> params(const MaterialParametersOver<T>& m) {
     return {m.lame.mu, m.lame.lambda};
+  }
+
+  static long double reference_energy(const PrincipalStretches& s, const ReferenceModuli& m) {
+    return m.mu * s.strain2 + m.la / 2 * (s.J - 1) * (s.J - 1);
   }
 
   static MaterialInfo info() {

@@ -3,6 +3,7 @@
 #pragma once
 #include "material/isochoric.h"
 #include "material/material.h"
+#include "material/reference.h"
 #include "material/registry.h"
 
 namespace aspic {
@@ -27,6 +28,10 @@ struct FungLaw {
   template <class T>
   static Params<T> params(const MaterialParametersOver<T>& m) {
     return {m.lame.mu, bulk_modulus(m.lame), m.extra[0]};
+  }
+
+  static long double reference_energy(const PrincipalStretches& s, const ReferenceModuli& m) {
+    return m.mu / 2 * (std::exp(s.I1bar - 3) - 1) + m.K / 2 * (s.J - 1) * (s.J - 1);  // b = 1
   }
 
   static MaterialInfo info() {

@@ -1,6 +1,7 @@
 // Linear elasticity: psi = mu |e|^2 + lambda/2 (tr e)^2, e = (F + F')/2 - I.
 #pragma once
 #include "material/material.h"
+#include "material/reference.h"
 #include "material/registry.h"
 
 namespace aspic {
@@ -40,6 +41,10 @@ struct Linear {
   template <class T>
   static Params<T> params(const MaterialParametersOver<T>& m) {
     return {m.lame.mu, m.lame.lambda};
+  }
+
+  static long double reference_energy(const PrincipalStretches& s, const ReferenceModuli& m) {
+    return m.mu * s.strain2 + m.la / 2 * s.strain * s.strain;
   }
 
   static MaterialInfo info() {

@@ -1,49 +1,23 @@
-// The compile-time list of all materials. A new material is one header and one line here.
+// Visits all materials at compile time. The list is src/material/materials.cmake.
 #pragma once
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
 #include "base/error.h"
-#include "material/arap.h"
-#include "material/corotated.h"
-#include "material/fung.h"
-#include "material/linear.h"
-#include "material/mooney_rivlin.h"
-#include "material/neo_hookean.h"
-#include "material/neo_hookean_2020.h"
-#include "material/neo_hookean_isochoric.h"
-#include "material/neo_hookean_log.h"
-#include "material/neo_hookean_log_j2.h"
-#include "material/registry.h"
-#include "material/spline.h"
-#include "material/stable_neo_hookean.h"
-#include "material/stvk.h"
+#include "material/all_materials.h"  // generated from materials.cmake: MaterialList
 
 namespace aspic {
 
-using MaterialList = std::tuple<  //
-    NeoHookean,                   //
-    StableNeoHookean,             //
-    NeoHookeanLog,                //
-    NeoHookeanLogJ2,              //
-    NeoHookeanIsochoric,          //
-    NeoHookean2020,               //
-    Stvk,                         //
-    Corotated,                    //
-    Arap,                         //
-    Linear,                       //
-    MooneyRivlin,                 //
-    Fung,                         //
-    Spline>;
-
-// A material that scenes can name: params() turns small-strain constants into its own, info() describes it.
+// A material that scenes can name: params() converts small-strain constants to its own, info() describes it, and
+// reference_energy() is its formula in principal stretches, for the default extra parameters.
 template <class M>
 concept RegisteredMaterial = Material<M> && requires(const MaterialParameters m, const MaterialParametersOver<Pack> p) {
   { M::params(m) } -> std::same_as<typename M::template Params<double>>;
   { M::params(p) } -> std::same_as<typename M::template Params<Pack>>;
   { M::info() } -> std::same_as<MaterialInfo>;
+} && requires(const PrincipalStretches s, const ReferenceModuli r) {
+  { M::reference_energy(s, r) } -> std::same_as<long double>;
 };
 
 // Calls fn.template operator()<M>() for every material, in the order of the list.
@@ -56,7 +30,7 @@ void for_each_material(Fn&& fn) {
 // Calls fn.template operator()<M>() for the material of that name; throws InvalidInput with the nearest known name.
 template <class Fn>
 void with_material(std::string_view name, Fn&& fn) {
-  material_info(name);  // throws when there is none
+  material_info(name);  // throws for an unknown name
   for_each_material([&]<class M>() {
     if (M::info().name == name) fn.template operator()<M>();
   });

@@ -3,6 +3,7 @@
 #pragma once
 #include "material/isochoric.h"
 #include "material/material.h"
+#include "material/reference.h"
 #include "material/registry.h"
 #include "material/second_piola.h"
 
@@ -43,6 +44,10 @@ struct MooneyRivlin {
   static Params<T> params(const MaterialParametersOver<T>& m) {
     const T& share = m.extra[0];
     return {T(0.5) * m.lame.mu * (T(1.0) - share), T(0.5) * m.lame.mu * share, bulk_modulus(m.lame)};
+  }
+
+  static long double reference_energy(const PrincipalStretches& s, const ReferenceModuli& m) {
+    return m.mu / 4 * (s.I1bar - 3 + s.I2bar - 3) + m.K / 2 * (s.J - 1) * (s.J - 1);  // share = 1/2
   }
 
   static MaterialInfo info() {

@@ -3,6 +3,7 @@
 #pragma once
 #include "material/from_invariants.h"
 #include "material/material.h"
+#include "material/reference.h"
 #include "material/registry.h"
 
 namespace aspic {
@@ -26,6 +27,10 @@ struct NeoHookeanLaw {
   template <class T>
   static Params<T> params(const MaterialParametersOver<T>& m) {
     return {m.lame.mu, m.lame.lambda + m.lame.mu};
+  }
+
+  static long double reference_energy(const PrincipalStretches& s, const ReferenceModuli& m) {
+    return m.mu / 2 * (s.I1 - 3) - m.mu * (s.J - 1) + (m.la + m.mu) / 2 * (s.J - 1) * (s.J - 1);
   }
 
   static MaterialInfo info() {

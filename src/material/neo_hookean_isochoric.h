@@ -2,6 +2,7 @@
 #pragma once
 #include "material/isochoric.h"
 #include "material/material.h"
+#include "material/reference.h"
 #include "material/registry.h"
 
 namespace aspic {
@@ -24,6 +25,10 @@ struct NeoHookeanIsochoricLaw {
   template <class T>
   static Params<T> params(const MaterialParametersOver<T>& m) {
     return {m.lame.mu, bulk_modulus(m.lame)};
+  }
+
+  static long double reference_energy(const PrincipalStretches& s, const ReferenceModuli& m) {
+    return m.mu / 2 * (s.I1bar - 3) + m.K / 2 * (s.J - 1) * (s.J - 1);
   }
 
   static MaterialInfo info() {

@@ -3,6 +3,7 @@
 #include "material/barrier.h"
 #include "material/from_invariants.h"
 #include "material/material.h"
+#include "material/reference.h"
 #include "material/registry.h"
 
 namespace aspic {
@@ -28,6 +29,10 @@ struct NeoHookeanLogLaw {
   template <class T>
   static Params<T> params(const MaterialParametersOver<T>& m) {
     return {m.lame.mu, m.lame.lambda};
+  }
+
+  static long double reference_energy(const PrincipalStretches& s, const ReferenceModuli& m) {
+    return m.mu / 2 * (s.I1 - 3) - m.mu * std::log(s.J) + m.la / 2 * std::log(s.J) * std::log(s.J);
   }
 
   static MaterialInfo info() {

@@ -18,6 +18,7 @@
 
 #include "material/from_two_invariants.h"
 #include "material/material.h"
+#include "material/reference.h"
 #include "material/registry.h"
 
 namespace aspic {
@@ -75,6 +76,10 @@ struct SplineLaw {
     for (int i = 0; i < kAreaGrowths; ++i)
       p.area_growth[i] = T(1 / (3 * std::numbers::sqrt3)) * mu * m.extra[2 + kGrowths + i];
     return p;
+  }
+
+  static long double reference_energy(const PrincipalStretches& s, const ReferenceModuli& m) {
+    return m.mu / 2 * (s.I1bar - 3) + m.K / 2 * (s.J - 1) * (s.J - 1);  // no growths
   }
 
   static MaterialInfo info() {

@@ -4,6 +4,7 @@
 #pragma once
 #include "material/from_invariants.h"
 #include "material/material.h"
+#include "material/reference.h"
 #include "material/registry.h"
 
 namespace aspic {
@@ -34,6 +35,11 @@ struct StableNeoHookeanLaw {
   template <class T>
   static Params<T> params(const MaterialParametersOver<T>& m) {
     return {T(4.0 / 3.0) * m.lame.mu, m.lame.lambda + T(5.0 / 6.0) * m.lame.mu};
+  }
+
+  static long double reference_energy(const PrincipalStretches& s, const ReferenceModuli& m) {
+    const long double mu = 4 * m.mu / 3, a = m.la + 5 * m.mu / 6, alpha = 1 + 3 * mu / (4 * a);
+    return mu / 2 * (s.I1 - 3) + a / 2 * (s.J - alpha) * (s.J - alpha) - mu / 2 * std::log(s.I1 + 1);
   }
 
   static MaterialInfo info() {

@@ -3,6 +3,7 @@
 #pragma once
 #include "material/from_invariants.h"
 #include "material/material.h"
+#include "material/reference.h"
 #include "material/registry.h"
 #include "material/second_piola.h"
 
@@ -34,6 +35,10 @@ struct Stvk {
   template <class T>
   static Params<T> params(const MaterialParametersOver<T>& m) {
     return {m.lame.mu, m.lame.lambda};
+  }
+
+  static long double reference_energy(const PrincipalStretches& s, const ReferenceModuli& m) {
+    return m.mu * s.green2 + m.la / 2 * s.green * s.green;
   }
 
   static MaterialInfo info() {
