@@ -4,6 +4,7 @@
 #include "dynamics/implicit_stage.h"
 #include "dynamics/lead_pins.h"
 #include "dynamics/runge_kutta.h"
+#include "dynamics/runge_kutta_tables.h"
 
 namespace aspic {
 namespace {
@@ -65,7 +66,7 @@ class Bdf2 : public Integrator {
   }
 
  private:
-  std::unique_ptr<Integrator> start_ = make_tr_bdf2();
+  std::unique_ptr<Integrator> start_ = make_runge_kutta(kTrBdf2);
   ImplicitStage stage_;
   PinPath path_;
   std::vector<double> acceleration_;

@@ -4,14 +4,32 @@
 
 #include "base/error.h"
 #include "dynamics/lead_pins.h"
+#include "dynamics/runge_kutta_tables.h"
 #include "dynamics/simulation.h"
 
 namespace aspic {
 namespace {
 
+template <const Tableau& scheme>
+std::unique_ptr<Integrator> runge_kutta() {
+  return make_runge_kutta(scheme);
+}
+
+// All integrators, in the order of help texts.
+// clang-format off
 constexpr std::array kSchemes = {
-    make_backward_euler, make_linearly_implicit_euler, make_bdf2,          make_tr_bdf2, make_midpoint,
-    make_trapezoid,      make_symplectic_euler,        make_forward_euler, make_rk4,     make_quasi_static};
+    make_backward_euler,
+    make_linearly_implicit_euler,
+    make_bdf2,
+    runge_kutta<kTrBdf2>,
+    runge_kutta<kMidpoint>,
+    runge_kutta<kTrapezoid>,
+    make_symplectic_euler,
+    make_forward_euler,
+    runge_kutta<kRk4>,
+    make_quasi_static,
+};
+// clang-format on
 
 // Ordered from best to worst.
 int badness(Status status) {

@@ -87,10 +87,6 @@ std::unique_ptr<Integrator> make_linearly_implicit_euler();
 std::unique_ptr<Integrator> make_quasi_static();
 std::unique_ptr<Integrator> make_symplectic_euler();  // printed as "Forward Euler" on the lecture's slide
 std::unique_ptr<Integrator> make_forward_euler();
-std::unique_ptr<Integrator> make_midpoint();
-std::unique_ptr<Integrator> make_trapezoid();
-std::unique_ptr<Integrator> make_tr_bdf2();
 std::unique_ptr<Integrator> make_bdf2();
-std::unique_ptr<Integrator> make_rk4();
 
 }  // namespace aspic

@@ -3,37 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "dynamics/acceleration.h"
 #include "dynamics/implicit_stage.h"
 
 namespace aspic {
 namespace {
-
-// Implicit midpoint: conserves momenta and, where forces are linear, energy.
-constexpr Tableau kMidpoint = {
-    .facts = {.name = "midpoint", .order = 2, .ends_beyond_minimum = true}, .stages = 1, .A = {{0.5}}, .b = {1}};
-
-// Trapezoidal rule, Newmark's method with beta = 1/4 and gamma = 1/2 [Newmark 1959].
-constexpr Tableau kTrapezoid = {.facts = {.name = "trapezoid", .order = 2, .ends_beyond_minimum = true},
-                                .stages = 2,
-                                .A = {{0}, {0.5, 0.5}},
-                                .b = {0.5, 0.5}};
-
-// The trapezoidal rule to t + gamma h, then BDF2 to t + h, with gamma such that both stages have one beta
-// [Bank 1985; Hosea 1996].
-constexpr double kGamma = 2 - std::numbers::sqrt2, kD = kGamma / 2, kW = std::numbers::sqrt2 / 4;
-constexpr Tableau kTrBdf2 = {.facts = {.name = "tr_bdf2", .order = 2, .ends_beyond_minimum = true},
-                             .stages = 3,
-                             .A = {{0}, {kD, kD}, {kW, kW, kD}},
-                             .b = {kW, kW, kD}};
-
-// The classical method.
-constexpr Tableau kRk4 = {.facts = {.name = "rk4", .order = 4, .is_implicit = false, .stability = StabilityLimit::rk4},
-                          .stages = 4,
-                          .A = {{0}, {0.5}, {0, 0.5}, {0, 0, 1}},
-                          .b = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}};
 
 class RungeKutta : public Integrator {
  public:
@@ -162,9 +137,5 @@ class RungeKutta : public Integrator {
 }  // namespace
 
 std::unique_ptr<Integrator> make_runge_kutta(const Tableau& tableau) { return std::make_unique<RungeKutta>(tableau); }
-std::unique_ptr<Integrator> make_midpoint() { return make_runge_kutta(kMidpoint); }
-std::unique_ptr<Integrator> make_trapezoid() { return make_runge_kutta(kTrapezoid); }
-std::unique_ptr<Integrator> make_tr_bdf2() { return make_runge_kutta(kTrBdf2); }
-std::unique_ptr<Integrator> make_rk4() { return make_runge_kutta(kRk4); }
 
 }  // namespace aspic
