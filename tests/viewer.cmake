@@ -13,12 +13,10 @@ if(TARGET aspic_viewer)
   target_link_libraries(test_lessons PRIVATE aspic_commands)
   target_compile_definitions(test_lessons PRIVATE ASPIC_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 
-  # The page: types, unit tests, and the shortcuts in its guide.
+  # The page: types and unit tests.
   set(web ${CMAKE_SOURCE_DIR}/web)
   add_test(NAME page_types COMMAND ${NODE} ${web}/node_modules/typescript/bin/tsc --noEmit --project ${web})
   add_test(NAME page_units COMMAND ${NODE} ${web}/test/run.mjs)
-  add_test(NAME page_guide COMMAND ${NODE} ${web}/test/guide.mjs ${CMAKE_BINARY_DIR}/web/page.html)
-  set_tests_properties(page_guide PROPERTIES SKIP_RETURN_CODE 77 PROCESSORS 2)
   find_package(ZLIB REQUIRED)
   add_aspic_tests(test_mesh_pictures ${CMAKE_SOURCE_DIR}/apps/aspic/mesh_picture_test.cpp)
   target_link_libraries(test_mesh_pictures PRIVATE aspic_commands ZLIB::ZLIB)

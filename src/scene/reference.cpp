@@ -39,12 +39,20 @@ std::string kinds(const Key& key) {
   return out;
 }
 
+bool is_alternative(const Key& key) {
+  const Alternatives* rule = scene_schema().alternatives_of(key.section);
+  return rule && std::any_of(rule->groups.begin(), rule->groups.end(), [&](const std::vector<std::string>& group) {
+           return std::find(group.begin(), group.end(), key.name) != group.end();
+         });
+}
+
+// Type, unit, range and default. The rule above the list of a section says which alternatives are required.
 std::string facts(const Key& key) {
   std::string out = kinds(key);
   if (!key.unit.empty()) out += " [" + key.unit + "]";
   if (!key.range.text().empty()) out += ", " + key.range.text();
   if (!key.fallback.empty() && key.fallback != "{}") out += ", default `" + key.fallback + "`";
-  return out + (key.required ? ", required" : "");
+  return out + (key.required && !is_alternative(key) ? ", required" : "");
 }
 
 // Two meanings that differ in the middle: "about 1 (only spline)", "about 10 (only spline)" -> "about 1 to 10 (only
