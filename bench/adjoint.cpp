@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
   app.add_option("--tolerance", arguments.tolerance, "of the forward solves")->capture_default_str();
   app.add_option("--stiffness-damping", arguments.stiffness_damping, "[s]")->capture_default_str();
   app.add_option("--threads", arguments.threads)->capture_default_str();
-  app.add_option("--runs", arguments.runs, "the least of so many")->check(CLI::PositiveNumber);
+  app.add_option("--runs", arguments.runs, "Number of runs; the fastest is reported")->check(CLI::PositiveNumber);
   return run_program(app, argc, argv, [&] {
     aspic::set_thread_count(arguments.threads);
     print_facts(machine_facts());

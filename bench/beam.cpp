@@ -1,5 +1,5 @@
 // bench_beam: the beam by Aspic and, where it is small, by the obvious program; one line per run, from nothing to the
-// last step, and whether the displacement of the tip is the known one. bench_beam --help tells the options.
+// last step, and whether the displacement of the tip is the known one. bench_beam --help lists the options.
 
 #include <array>
 #include <cmath>
@@ -44,7 +44,7 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_option("--linear", arguments.linear, "one or several linear solvers")->delimiter(',')->capture_default_str();
   app.add_option("--tolerance", arguments.tolerance, "of the first gradient of each step")->check(CLI::PositiveNumber);
-  app.add_option("--runs", arguments.runs, "the fastest of so many is reported")->check(CLI::PositiveNumber);
+  app.add_option("--runs", arguments.runs, "Number of runs; the fastest is reported")->check(CLI::PositiveNumber);
   app.add_option("--naive", arguments.largest_naive, "the largest n for the obvious program; 0: without it");
   app.add_option("--csv", arguments.csv, "a file for the results");
   app.add_flag("--quiet", arguments.quiet, "without the facts about the machine");

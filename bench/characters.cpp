@@ -35,7 +35,7 @@ struct Arguments {
 
 void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("shape", arguments.shapes, "names of --list; none: all that there are");
-  app.add_option("--detail", arguments.details, "3k, 10k, 30k, 100k: about so many vertices")
+  app.add_option("--detail", arguments.details, "Approximate number of vertices: 3k, 10k, 30k, 100k")
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--young", arguments.young, "[Pa]")->delimiter(',')->check(CLI::PositiveNumber)->capture_default_str();

@@ -11,12 +11,12 @@
 
 namespace aspic::bench {
 
-// What a benchmark tells the report about itself, through its counters.
+// Facts that a benchmark reports through its counters.
 struct KernelFacts {
-  int n = 0;           // of the beam
+  int n = 0;           // cells of the beam
   int threads = 1;     //
-  KernelWork work;     // no flops: bounds are not told
-  double items = 1;    // tets, blocks, ...: the time of one is told, too
+  KernelWork work;     // without flops no bounds are reported
+  double items = 1;    // tets, blocks, ...; the report has the time of one
   double repeats = 1;  // how often one run of the benchmark does this work
 };
 void tell(benchmark::State& state, const KernelFacts& facts);

@@ -45,7 +45,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--seconds", arguments.seconds, "of each of the repetitions, at least")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--repetitions", arguments.repetitions, "the median of so many is reported")
+  app.add_option("--repetitions", arguments.repetitions, "Number of repetitions; the median is reported")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--csv", arguments.csv, "a file for the results");

@@ -54,12 +54,12 @@ std::vector<int> shuffled_order(size_t count) {
 // Breadth first from a vertex far out, neighbors of low degree first, all reversed [CuthillMcKee1969].
 std::vector<int> reverse_cuthill_mckee(const TetMesh& mesh) {
   const int n = mesh.vertex_count();
-  std::vector<std::vector<int>> neighbours(n);
+  std::vector<std::vector<int>> neighbors(n);
   for (const Tet& tet : mesh.tets)
     for (const int u : tet)
       for (const int v : tet)
-        if (u != v) neighbours[u].push_back(v);
-  for (auto& list : neighbours) {
+        if (u != v) neighbors[u].push_back(v);
+  for (auto& list : neighbors) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
@@ -68,9 +68,9 @@ std::vector<int> reverse_cuthill_mckee(const TetMesh& mesh) {
     met[start] = 1;
     for (size_t i = 0; i < order.size(); ++i) {
       std::vector<int> fresh;
-      for (const int v : neighbours[order[i]])
+      for (const int v : neighbors[order[i]])
         if (!met[v]) met[v] = 1, fresh.push_back(v);
-      std::sort(fresh.begin(), fresh.end(), [&](int a, int b) { return neighbours[a].size() < neighbours[b].size(); });
+      std::sort(fresh.begin(), fresh.end(), [&](int a, int b) { return neighbors[a].size() < neighbors[b].size(); });
       order.insert(order.end(), fresh.begin(), fresh.end());
     }
     return order;
@@ -154,15 +154,15 @@ int main(int argc, char** argv) {
   const TetMesh mesh = read_tet_mesh(argv[1]);
   const std::vector<int> morton = morton_order(mesh.rest), hilbert = hilbert_order(mesh.rest),
                          cuthill_mckee = reverse_cuthill_mckee(mesh), shuffled = shuffled_order(mesh.rest.size());
-  const std::vector<Vec3d> centres = centroids(mesh);
+  const std::vector<Vec3d> centers = centroids(mesh);
   std::vector<std::unique_ptr<Case>> cases;
   const auto add = [&](const char* name, const std::vector<int>& vertices, const std::vector<int>& tets) {
     cases.push_back(std::make_unique<Case>(name, reordered(mesh, vertices, tets)));
   };
   add("as in the file", natural_order(mesh.rest.size()), natural_order(mesh.tets.size()));
   add("shuffled", shuffled, shuffled_order(mesh.tets.size()));
-  add("Morton", morton, morton_order(centres));
-  add("Hilbert", hilbert, hilbert_order(centres));
+  add("Morton", morton, morton_order(centers));
+  add("Hilbert", hilbert, hilbert_order(centers));
   add("Hilbert, tets by vertices", hilbert, tets_along(mesh, hilbert));
   add("reverse Cuthill-McKee", cuthill_mckee, tets_along(mesh, cuthill_mckee));
   for (int round = 0; round < rounds; ++round)

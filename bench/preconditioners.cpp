@@ -206,7 +206,7 @@ int main(int argc, char** argv) {
   app.add_option("--shapes", folder, "where surfaces are and meshes are kept")->capture_default_str();
   app.add_flag("--quiet", quiet, "without the facts about the machine");
   return run_program(app, argc, argv, [&] {
-    for (const std::string& solver : linear) make_linear_solver(solver);  // a misspelt name is told at once
+    for (const std::string& solver : linear) make_linear_solver(solver);  // reports misspelled names early
     if (!quiet) print_facts(machine_facts());
     set_thread_count(1);
     std::printf(

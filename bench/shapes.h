@@ -9,7 +9,7 @@
 namespace aspic::bench {
 
 struct Detail {
-  std::string name;  // "3k": about so many vertices
+  std::string name;  // "3k": approximate number of vertices
   double edge;       // [units of the file] that gives them
 };
 

@@ -20,8 +20,8 @@ inline constexpr std::array<NamedCount, 9> kCounts = {{
     {"iterations", &StepCounts::iterations},                // of the minimizer
     {"trials", &StepCounts::trials},                        // of the line search
     {"values", &StepCounts::values},                        // evaluations of E, each over all elements
-    {"gradients", &StepCounts::gradients},                  // likewise
-    {"hessians", &StepCounts::hessians},                    // likewise
+    {"gradients", &StepCounts::gradients},                  // evaluations of the gradient
+    {"hessians", &StepCounts::hessians},                    // evaluations of the Hessian
     {"factorizations", &StepCounts::factorizations},        //
     {"linear_iterations", &StepCounts::linear_iterations},  //
     {"products", &StepCounts::products},                    // with the matrix

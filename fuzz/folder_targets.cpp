@@ -130,7 +130,7 @@ void run_folder(std::string_view bytes) {
   Scene again = load_scene(scene_of_run(run), small_scenes());
   make_checkpoint_right(run / "checkpoint.bin", fingerprint(again.resolved));
   RunDirectory resumed = RunDirectory::resume(run, again);
-  require(again.simulation.steps_taken() >= 0, "a run that goes on has taken no negative number of steps");
+  require(again.simulation.steps_taken() >= 0, "the number of steps of a resumed run is not negative");
 }
 
 void values(std::string_view bytes) {

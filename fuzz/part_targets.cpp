@@ -32,7 +32,7 @@ void base64(std::string_view bytes) {
     const size_t before = left.size();
     std::string decoded;
     if (!decode_base64(left, 1 + bytes.size() / 3, decoded)) break;
-    require(left.size() < before || decoded.empty(), "decoding goes on");
+    require(left.size() < before || decoded.empty(), "decoding consumes its input");
     if (left.size() == before) break;
   }
 }

@@ -1,5 +1,5 @@
-// Feeds files to a target without a fuzzer, in any build: "replay gmsh FILE|FOLDER ...". "replay --list" tells the
-// targets.
+// Feeds files to a target without a fuzzer, in any build: "replay gmsh FILE|FOLDER ...". "replay --list" prints
+// the targets.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -38,7 +38,7 @@ int main(int count, char** arguments) {
   }
   const Target* target = target_named(name);
   if (count < 3 || !target) {
-    std::fprintf(stderr, "usage: replay TARGET FILE|FOLDER ...; replay --list tells the targets\n");
+    std::fprintf(stderr, "usage: replay TARGET FILE|FOLDER ...; replay --list prints the targets\n");
     return 2;
   }
   const std::vector<fs::path> files = files_of(count - 2, arguments + 2);

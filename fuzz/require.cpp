@@ -34,7 +34,7 @@ void require_message(std::string_view message) {
 
 void require_printable(const std::vector<std::string>& texts) {
   for (const std::string& text : texts)
-    require(is_printable(text), "what is told of a file holds nothing that a terminal would obey");
+    require(is_printable(text), "messages about a file contain no control characters");
 }
 
 std::string attempt(Feed feed, std::string_view bytes) {

@@ -1,6 +1,6 @@
 // What the fuzzers feed: one function per reader of files that others wrote. Each takes any bytes, and either reads
 // them or throws InvalidInput; anything else that happens is a fault. What was read is checked for what the rest of the
-// library relies on, and whatever is said of it for what a terminal can be shown.
+// library relies on, and messages for control characters.
 #pragma once
 #include <span>
 #include <string>
@@ -60,7 +60,7 @@ std::string attempt(Feed feed, std::string_view bytes);
 
 // Ends the program when a target's promise does not hold, in every build.
 void require(bool holds, const char* what);
-void require_message(std::string_view message);                 // of a refusal: a few lines that can be shown
-void require_printable(const std::vector<std::string>& texts);  // what is told beside: notes, names
+void require_message(std::string_view message);                 // of an error: a few printable lines
+void require_printable(const std::vector<std::string>& texts);  // notes, names
 
 }  // namespace aspic::fuzz

@@ -24,7 +24,7 @@ using viewer::Json;
 constexpr size_t kMostMessages = 8;
 constexpr double kFewTets = 100;
 
-// Whatever a page is told can be read by it, and what is refused can be shown.
+// Checks that messages to a page are valid and refusals are printable.
 void require_messages(const viewer::Messages& messages) {
   for (const viewer::Message& message : messages) {
     if (message.is_binary) continue;

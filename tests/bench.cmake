@@ -10,7 +10,7 @@ if(TARGET bench_common)
   endif()
   add_test(NAME bench.bent_beam COMMAND bench_beam 2 --bent --naive 0 --quiet)
   add_test(NAME bench.characters COMMAND bench_characters torus --detail tiny --steps 2 --csv characters.csv)
-  # Not there: what is missing is told, and is no failure.
+  # Missing shapes are reported and are no failure.
   add_test(NAME bench.missing_shapes COMMAND bench_characters bunny --shapes none --quiet)
   set_tests_properties(bench.missing_shapes PROPERTIES PASS_REGULAR_EXPRESSION "bunny +left out")
   add_test(NAME bench.kernels COMMAND bench_kernels 2 --all-materials --threads 1,2 --seconds 1e-4 --repetitions 1

@@ -166,7 +166,7 @@ class Terrace : public Energy {
 };
 
 // The bound is no bound of kinetic + potential energy where E is not convex: what jumps over an edge within a step
-// keeps its velocity and gains the height. The ledger tells, as a negative loss.
+// keeps its velocity and gains the height. The ledger reports a negative loss.
 TEST(EnergyBound, HoldsWhereABodyJumpsOntoATerraceThoughItsEnergyGrows) {
   Model model = make_model(make_box({{-2, 0, 0}}, {{-1, 1, 1}}, {1, 1, 1}), {.gravity = {}});
   const double height = 1;

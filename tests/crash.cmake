@@ -1,4 +1,4 @@
-# Killed, interrupted, out of time, out of disk: what is on the disk can be opened and goes on to the same bits.
+# Killed, interrupted, out of time, out of disk: what is on the disk can be opened and resumed to the same bits.
 find_package(Python3 COMPONENTS Interpreter)
 if(TARGET aspic_cli AND Python3_FOUND)
   set(cases Killed KilledFit NoRoom ReadOnly TimeLimit Signals Certificate SameBits)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs that are killed, interrupted, out of time, out of disk: what is on the disk can be opened, and goes on to the
+"""Runs that are killed, interrupted, out of time, out of disk: what is on the disk can be opened, and resumed to the
 same bits.
 
 usage: ASPIC=path/to/aspic crash_test.py [TestCase...]

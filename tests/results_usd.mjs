@@ -3,13 +3,13 @@ import fs from 'node:fs';
 import path from 'node:path';
 
 const [folder, file] = process.argv.slice(2).map((name) => path.resolve(name));
-// The package is built for browsers and their workers and refuses Node; it runs there once told that it is a worker.
+// The package is built for browsers and their workers and refuses Node; the next lines make Node look like a worker.
 Object.defineProperty(process, 'type', { value: 'renderer' });
 globalThis.WorkerGlobalScope = class {};
 globalThis.self = globalThis;
 globalThis.location = { href: 'http://localhost/' };
 
-// The package does not say that it is a module, which older Node versions want to be told.
+// The package does not declare that it is a module, which older Node versions require.
 const source = fs.readFileSync(path.join(folder, 'tinyusdz.js'), 'utf8');
 const { default: start } = await import('data:text/javascript,' + encodeURIComponent(source));
 const wasm = fs.readFileSync(path.join(folder, 'tinyusdz.wasm'));

@@ -34,7 +34,7 @@ std::string body(const std::string& shape, const std::string& material, const st
 }
 const std::string kBox = "shape = { box = { upper = [1, 0.5, 0.5], cells = [4, 2, 2] } }";
 
-// Steps until next to nothing is left of some 1e4 J of elastic energy; a body that nothing holds may go on turning.
+// Steps until next to nothing is left of some 1e4 J of elastic energy; a free body may keep rotating.
 struct Ending {
   bool is_relaxed = false, fails = false;
   double min_det_F = 0;

@@ -194,7 +194,7 @@ fetch_shapes() {
     [ ! -s "$root/assets/bunny.obj" ] || cp "$root/assets/bunny.obj" "$shapes_dir/"
   fi
   [ -s "$shapes_dir/liver.inr.gz" ] || fetch_cgal_shapes ||
-    say "warning: the package libcgal-demo could not be fetched; the benchmark goes on without its shapes"
+    say "warning: the package libcgal-demo could not be fetched; the benchmark runs without its shapes"
 }
 
 fetch_cgal_shapes() {

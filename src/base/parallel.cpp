@@ -16,7 +16,7 @@ namespace aspic {
 namespace {
 
 // Threads without work look for it this long before they sleep: being woken takes as long as a short loop, and a solver
-// begins its next loop within microseconds. After the first moment they offer the processor to whoever wants it.
+// begins its next loop within microseconds. After the first moment they yield the processor.
 constexpr std::chrono::microseconds kSpin{20}, kSpinAlone{2};
 
 void relax_processor() {
@@ -45,9 +45,9 @@ bool spin_until(Done done, bool may_spin) {
   }
 }
 
-// Runs one loop at a time; the calling thread works too. Whoever lowers remaining_ owns an index of the current loop,
-// which cannot end before that index is reported in pending_; so a thread that comes late does no harm, and nobody
-// waits for it.
+// Runs one loop at a time; the calling thread works too. A thread that lowers remaining_ owns an index of the current
+// loop, which cannot end before that index is reported in pending_; so a thread that comes late does no harm, and
+// nobody waits for it.
 class Pool {
  public:
   ~Pool() { resize(0); }

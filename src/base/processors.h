@@ -3,6 +3,6 @@
 
 namespace aspic {
 
-int processor_count();  // at least 1; honours the affinity mask (taskset) where the system has one
+int processor_count();  // at least 1; honors the affinity mask (taskset) where the system has one
 
 }  // namespace aspic

@@ -84,7 +84,7 @@ std::optional<SolverConflict> find_conflict(const SimulationOptions& options) {
   if (guess != InitialGuess::best && !integrator->facts().chooses_guess())
     return SolverConflict{"initial_guess", chosen_guess + " says nothing to " + name + ": " +
                                                (integrator->facts().is_implicit ? "it starts from the current positions"
-                                                                                : "it minimises nothing")};
+                                                                                : "it minimizes nothing")};
   if ((guess == InitialGuess::extrapolated || guess == InitialGuess::accelerated) && integrator->facts().is_static())
     return SolverConflict{"initial_guess",
                           chosen_guess + " needs velocities, of which " + name + " knows none; try 'last_increment'"};

@@ -47,10 +47,10 @@ TEST(Simulation, IsIndependentOfUnits) {
     for (const double q : simulation.state().q) result.push_back(q / a);
     return result;
   };
-  const std::vector<double> metres = run(1, 1);
+  const std::vector<double> meters = run(1, 1);
   for (const auto& [a, b] : {std::pair{1e-3, 1.0}, {1e3, 1.0}, {1.0, 1e-3}, {1.0, 1e6}}) {
     const std::vector<double> scaled = run(a, b);
-    for (size_t i = 0; i < metres.size(); ++i) EXPECT_NEAR(scaled[i], metres[i], 1e-9) << a << " " << b;
+    for (size_t i = 0; i < meters.size(); ++i) EXPECT_NEAR(scaled[i], meters[i], 1e-9) << a << " " << b;
   }
 }
 

@@ -128,7 +128,7 @@ TEST(Spline, IsEllipticWhereMooneyRivlinIsNot) {
 TEST(Spline, IsConvexInTheMinors) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> exponent(-1, 1), size(0, 3);
-  // Along lines through states whose bar invariants may also be below 3, where W goes on as a function of them.
+  // Along lines through states whose bar invariants may also be below 3, where W is extended as a function of them.
   for (int i = 0; i < 20000; ++i) {
     const auto p = Spline::params(random_spline(random));
     const Mat3d F0 = size(random) * random_matrix(random), F1 = size(random) * random_matrix(random);

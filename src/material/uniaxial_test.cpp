@@ -63,7 +63,7 @@ TEST(Materials, MatchTheUniaxialReferenceTable) {
   }
 }
 
-// Uniform scaling by s: the sign of dpsi/ds tells where a shrunk body goes.
+// Uniform scaling by s: the sign of dpsi/ds shows whether a shrunk body expands.
 template <class M>
 double pressure(double s, double poisson) {
   return trace(M::pk1(diagonal(s, s, s), ordinary_params<M>(1, poisson)));

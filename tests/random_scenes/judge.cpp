@@ -15,8 +15,7 @@ namespace {
 
 constexpr double kRoundOff = 1e-9;     // of the energies that are added, and of the forces that balance
 constexpr double kLastDigits = 1e-11;  // of energies that cancel in a body at rest
-// The residual of the report is made anew from differences of velocities: so many times the round-off of one
-// evaluation.
+// The residual of the report is recomputed from differences of velocities. Multiple of the round-off of one evaluation.
 constexpr double kNoise = 10;
 constexpr int kMostPolls = 20'000;  // of the stop token, in all steps of a scene
 
@@ -139,7 +138,7 @@ class Judge {
     for (const double V : report.potential) size_ += std::abs(V);
   }
 
-  // How far the body is from the origin, in sizes of its rest shape: so many times coarser are its strains.
+  // Distance of the body from the origin in sizes of its rest shape, by which the round-off of strains grows.
   double distance() const {
     double far = 0, low = INFINITY, high = -INFINITY;
     for (const double q : simulation_.state().q) far = std::max(far, std::abs(q));

@@ -1,4 +1,4 @@
-// random_scenes [--seed FIRST] [--count N]: runs so many random scenes, each in a process of its own, so that one that
+// random_scenes [--seed FIRST] [--count N]: runs N random scenes, each in a process of its own, so that one that
 // crashes or never ends does not end the others. What a scene owes is in judge.h. Prints the scenes at fault.
 //   --print SEED    the text of that scene; --run SEED: in this process, for a debugger; --file FILE: the same with a
 //                   scene that was printed, because a new material changes what a seed draws
