@@ -221,11 +221,11 @@ std::string_view typescript_unknown(StepFieldType type) {
 }
 
 // The resultants of pins, loads and bodies are six columns for each name.
-constexpr std::string_view kResultantRows =
-    R"(| `reaction_PIN_x`, `_y`, `_z` | N | mean force of the pin `BODY.PIN` on its vertices |
-| `reaction_moment_PIN_x`, ... | N m | its moment about the origin at the end of the step |
-| `load_NAME_x`, ..., `load_moment_NAME_x`, ... | N, N m | the same of each load at the end of the step |
-| `body_NAME_x`, ..., `body_moment_NAME_x`, ... | N, N m | mean of all pins and loads on the body |
+constexpr std::string_view kResultantItems =
+    R"(* `reaction_PIN_x`, `_y`, `_z` [N]: mean force of the pin `BODY.PIN` on its vertices
+* `reaction_moment_PIN_x`, ... [N m]: its moment about the origin at the end of the step
+* `load_NAME_x`, ..., `load_moment_NAME_x`, ... [N, N m]: the same of each load at the end of the step
+* `body_NAME_x`, ..., `body_moment_NAME_x`, ... [N, N m]: mean of all pins and loads on the body
 )";
 
 }  // namespace
@@ -254,15 +254,16 @@ std::string step_fields_typescript() {
 }
 
 std::string step_fields_markdown() {
-  std::string text = "| column | unit | meaning |\n|---|---|---|\n";
+  std::string text;
   for (const StepField& field : step_fields()) {
     if (!field.is_in(StepOutput::table)) continue;
     if (field.type == StepFieldType::resultants) {
-      text += kResultantRows;
+      text += kResultantItems;
       continue;
     }
     const std::string column = std::string(field.name) + (field.type == StepFieldType::potentials ? "_NAME" : "");
-    text += "| `" + column + "` | " + std::string(field.unit) + " | " + std::string(field.help) + " |\n";
+    const std::string unit = field.unit.empty() ? "" : " [" + std::string(field.unit) + "]";
+    text += "* `" + column + "`" + unit + ": " + std::string(field.help) + "\n";
   }
   return text;
 }

@@ -53,7 +53,7 @@ class AdditionalStepField {
 // Returns the generated TypeScript interface of the viewer's fields, web/src/stepFields.ts.
 std::string step_fields_typescript();
 
-// Returns the generated table of columns in docs/formats.md.
+// Returns the generated list of columns in docs/formats.md.
 std::string step_fields_markdown();
 
 }  // namespace aspic
