@@ -77,7 +77,7 @@ TEST_F(StepFields, NewFieldAppearsInEveryOutput) {
   EXPECT_EQ(last_read, 20.0);
   EXPECT_EQ(viewer::to_json(read.steps.back())["new_number"], 20.0);
   EXPECT_THAT(step_fields_typescript(), HasSubstr("  new_number: MaybeNumber; // a new number [N]\n"));
-  EXPECT_THAT(step_fields_markdown(), HasSubstr("| `new_number` | N | a new number |\n"));
+  EXPECT_THAT(step_fields_markdown(), HasSubstr("* `new_number` [N]: a new number\n"));
 }
 
 TEST_F(StepFields, ReadBackEqualsWritten) {
