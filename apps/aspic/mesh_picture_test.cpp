@@ -127,7 +127,7 @@ TEST_F(MeshPictures, WhatHasNoValueIsGreyAndWhatIsNotFiniteIsLeftOut) {
 }
 
 TEST_F(MeshPictures, DrawingStopsWhenAsked) {
-  EXPECT_FALSE(draw({{folder / "none.png", from_the_front({{"", beam()}})}}, [] { return false; }));
+  EXPECT_FALSE(draw({{folder / "none.png", from_the_front({{"", beam()}})}}, StopToken([] { return true; })));
   EXPECT_FALSE(std::filesystem::exists(folder / "none.png"));
 }
 
