@@ -84,13 +84,13 @@ void show(const SynthesisStep& step) {
 
 int capture(const CaptureArguments& arguments) {
   if (arguments.threads > 0) set_thread_count(arguments.threads);
-  const SynthesisOptions bench = bench_options(arguments);
+  SynthesisOptions bench = bench_options(arguments);
   const Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides});
   const fs::path folder = folder_of(arguments, scene.name);
   catch_interrupts();  // not before there is something to keep
+  bench.stop = StopToken([] { return interrupt_signal() != 0; });
   const Synthesis made = synthesize(scene, bench, [&](const SynthesisStep& step) {
     if (!arguments.quiet) show(step);
-    return !interrupt_signal();
   });
   for (const std::string& note : made.notes) fmt::print("note: {}\n", note);
   if (made.interrupted && made.data.experiment.cases.empty()) {

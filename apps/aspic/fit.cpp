@@ -114,11 +114,11 @@ class Fitter {
   }
 
   FitOutcome run() {
-    const FitWitness witness{.begin = [this](FitStage stage, const std::string& what) { begin(stage, what); },
-                             .iterate = [this](FitStage stage, const FitIteration& iteration,
-                                               std::span<const double>) { return iterate(stage, iteration); },
-                             .go_on = [this] { return go_on(); }};
-    FitOutcome outcome = fit_material(data_, plan_, folder_.memory(), witness);
+    const FitCallbacks callbacks{.begin = [this](FitStage stage, const std::string& what) { begin(stage, what); },
+                                 .iterate = [this](FitStage stage, const FitIteration& iteration,
+                                                   std::span<const double>) { iterate(stage, iteration); },
+                                 .stop = StopToken([this] { return is_interrupted(); })};
+    FitOutcome outcome = fit_material(data_, plan_, folder_.memory(), callbacks);
     if (progress_) progress_->finish();
     return outcome;
   }
@@ -137,18 +137,16 @@ class Fitter {
     if (progress_) progress_->begin(stage, what);
   }
 
-  bool iterate(FitStage stage, const FitIteration& iteration) {
+  void iterate(FitStage stage, const FitIteration& iteration) {
     folder_.add(stage, iteration);
     if (stage == FitStage::field) history_.push_back(iteration);
     if (progress_) progress_->show(stage, iteration, residuals_);
-    return go_on();
   }
 
-  bool go_on() {
-    if (!interrupt_signal()) return true;
-    if (progress_ && !told_) progress_->message("stopping; ctrl-C again ends at once");
-    told_ = true;
-    return false;
+  bool is_interrupted() {
+    if (!interrupt_signal()) return false;
+    if (progress_ && !announced_) progress_->message("stopping; ctrl-C again ends at once");
+    return announced_ = true;
   }
 
   const FitArguments& arguments_;
@@ -156,7 +154,7 @@ class Fitter {
   const FitPlan& plan_;
   FitFolder& folder_;
   int residuals_;
-  bool told_ = false;
+  bool announced_ = false;
   std::optional<FitProgress> progress_;
   std::vector<FitIteration> history_;
 };

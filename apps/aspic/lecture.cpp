@@ -49,7 +49,7 @@ std::optional<int> draw_meshes(std::vector<Result>& results) {
   std::vector<Sheet*> sheets;
   for (Result& result : results) sheets.push_back(&result.sheet);
   catch_interrupts();
-  if (Sheet::draw_meshes(sheets, [] { return interrupt_signal() == 0; })) return std::nullopt;
+  if (Sheet::draw_meshes(sheets, StopToken([] { return interrupt_signal() != 0; }))) return std::nullopt;
   return exit_signal + interrupt_signal();
 }
 

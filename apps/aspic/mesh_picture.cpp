@@ -105,7 +105,7 @@ std::string packed(const MeshPicture& picture) {
 
 }  // namespace
 
-bool draw(const std::vector<MeshDrawing>& drawings, const std::function<bool()>& go_on) {
+bool draw(const std::vector<MeshDrawing>& drawings, const StopToken& stop) {
   for (const MeshDrawing& drawing : drawings) check(drawing);
   const auto drawing = [&](int index) -> const MeshDrawing& {
     if (index < 0 || index >= static_cast<int>(drawings.size())) throw InvalidInput("there is no such picture");
@@ -115,7 +115,7 @@ bool draw(const std::vector<MeshDrawing>& drawings, const std::function<bool()>&
       {.page = viewer::page(),
        .query = fmt::format("&meshes={}", drawings.size()),
        .part = [&](int index) { return packed(drawing(index).picture); }},
-      [&](int index, int, std::string_view png) { write_file(drawing(index).path, png); }, go_on);
+      [&](int index, int, std::string_view png) { write_file(drawing(index).path, png); }, stop);
   return end == viewer::RenderEnd::done;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "aspic/plot.h"
+#include "base/stop_token.h"
 #include "mesh/tet_mesh.h"
 
 namespace aspic::cli {
@@ -36,8 +37,8 @@ struct MeshDrawing {
   MeshPicture picture;
 };
 
-// One start of the browser draws them all; each file appears whole or not at all. False: stopped because `go_on` said
-// so. Throws InvalidInput: there is nothing to draw, no browser (naming its package), a file cannot be written.
-bool draw(const std::vector<MeshDrawing>& drawings, const std::function<bool()>& go_on);
+// Draws all pictures with one start of the browser. Each file appears whole or not at all. Returns false if `stop`
+// stopped it. Throws InvalidInput if a mesh has nothing to draw, there is no browser, or a file cannot be written.
+bool draw(const std::vector<MeshDrawing>& drawings, const StopToken& stop = {});
 
 }  // namespace aspic::cli

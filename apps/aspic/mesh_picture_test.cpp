@@ -37,8 +37,6 @@ class MeshPictures : public FolderTest {
   }
 };
 
-bool go_on() { return true; }
-
 TriMesh beam() { return boundary_surface(make_box({}, {{2, 0.5, 0.5}}, {16, 4, 4})).surface; }
 
 // Seen from the front: x goes to the right, z upward.
@@ -66,7 +64,7 @@ TEST_F(MeshPictures, PanelsStandSideBySideWithTitleAndCaptions) {
   for (Vec3d& x : picture.panels[1].surface.vertices) x[2] -= 0.15 * x[0] * x[0];
   MeshPicture bare = picture;
   bare.title = bare.panels[0].caption = bare.panels[1].caption = "";
-  ASSERT_TRUE(draw({{folder / "beams.png", picture}, {folder / "bare.png", bare}}, go_on));
+  ASSERT_TRUE(draw({{folder / "beams.png", picture}, {folder / "bare.png", bare}}));
   const Image image = read_png(folder / "beams.png"), without = read_png(folder / "bare.png");
   EXPECT_EQ(image.width, 1600u);
   EXPECT_LE(image.height, 960u);
@@ -81,7 +79,7 @@ TEST_F(MeshPictures, PanelsStandSideBySideWithTitleAndCaptions) {
 TEST_F(MeshPictures, PanelsHaveOneScale) {
   TriMesh small = beam();
   for (Vec3d& x : small.vertices) x = 0.5 * x;
-  ASSERT_TRUE(draw({{folder / "sizes.png", from_the_front({{"", beam()}, {"", small}})}}, go_on));
+  ASSERT_TRUE(draw({{folder / "sizes.png", from_the_front({{"", beam()}, {"", small}})}}));
   const Image image = read_png(folder / "sizes.png");
   EXPECT_NEAR(covered(image, 0, 0.5, 0, 1) / covered(image, 0.5, 1, 0, 1), 4, 0.1);
 }
@@ -93,7 +91,7 @@ TEST_F(MeshPictures, ColoursRunFromTheSmallestToTheLargestValue) {
     per_triangle.values.push_back(per_triangle.surface.vertices[t[0]][0] < 1 ? 0 : 2);
   MeshPicture picture = from_the_front({per_vertex, per_triangle});
   picture.value_label = "x [m]";
-  ASSERT_TRUE(draw({{folder / "values.png", picture}}, go_on));
+  ASSERT_TRUE(draw({{folder / "values.png", picture}}));
   const Image image = read_png(folder / "values.png");
   std::vector<Pixel> row;  // through the middle of the beams
   for (unsigned x = 0; x < image.width; ++x) row.push_back(image.at(x, image.height / 2));
@@ -116,7 +114,7 @@ TEST_F(MeshPictures, WhatHasNoValueIsGreyAndWhatIsNotFiniteIsLeftOut) {
   MeshPicture picture = from_the_front({panel, panel});
   for (Vec3d& x : picture.panels[1].surface.vertices)
     if (x[0] > 1.2) x[2] = x[0] > 1.6 ? INFINITY : 1e300;
-  ASSERT_TRUE(draw({{folder / "gaps.png", picture}}, go_on));
+  ASSERT_TRUE(draw({{folder / "gaps.png", picture}}));
   const Image image = read_png(folder / "gaps.png");
   const auto is_grey_ink = [](const Pixel& p) { return is_grey(p) && p[0] < 230; };
   size_t grey = 0, coloured = 0;
@@ -129,7 +127,7 @@ TEST_F(MeshPictures, WhatHasNoValueIsGreyAndWhatIsNotFiniteIsLeftOut) {
 }
 
 TEST_F(MeshPictures, DrawingStopsWhenAsked) {
-  EXPECT_FALSE(draw({{folder / "none.png", from_the_front({{"", beam()}})}}, [] { return false; }));
+  EXPECT_FALSE(draw({{folder / "none.png", from_the_front({{"", beam()}})}}, StopToken([] { return true; })));
   EXPECT_FALSE(std::filesystem::exists(folder / "none.png"));
 }
 
@@ -137,7 +135,7 @@ TEST_F(MeshPictures, SurfacesWithoutSizeAreRefusedAndNothingIsLeft) {
   const TemporaryFolder temporary;  // of a short name: the browser puts a socket there
   ::setenv("TMPDIR", temporary.path().c_str(), 1);
   const TriMesh point{{{}, {}, {}}, {{0, 1, 2}}};
-  const std::string message = message_of([&] { draw({{folder / "none.png", from_the_front({{"", point}})}}, go_on); });
+  const std::string message = message_of([&] { draw({{folder / "none.png", from_the_front({{"", point}})}}); });
   ::unsetenv("TMPDIR");
   EXPECT_THAT(message, HasSubstr("no size"));
   EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
@@ -145,7 +143,7 @@ TEST_F(MeshPictures, SurfacesWithoutSizeAreRefusedAndNothingIsLeft) {
 
 TEST_F(Refusals, OfMeshesWithoutAnythingToDraw) {
   const auto refused = [&](const MeshPicture& picture, const char* name = "none.png") {
-    return message_of([&] { draw({{folder / name, picture}}, go_on); });
+    return message_of([&] { draw({{folder / name, picture}}); });
   };
   EXPECT_THAT(refused({}), HasSubstr("there is no surface"));
   EXPECT_THAT(refused(from_the_front({{"empty", {}}})), HasSubstr("'empty' has no triangle"));
@@ -159,7 +157,7 @@ TEST_F(Refusals, NameThePackageOfTheMissingBrowser) {
   const char* const path = ::getenv("PATH");
   const std::string before = path ? path : "";
   ::setenv("PATH", folder.path().c_str(), 1);
-  const std::string message = message_of([&] { draw({{folder / "none.png", from_the_front({{"", beam()}})}}, go_on); });
+  const std::string message = message_of([&] { draw({{folder / "none.png", from_the_front({{"", beam()}})}}); });
   ::setenv("PATH", before.c_str(), 1);
   EXPECT_THAT(message, HasSubstr("apt-get install chromium"));
 }

@@ -137,7 +137,8 @@ int render(const RenderArguments& arguments) {
     if (is_terminal) fmt::print("\r{} of {} pictures", drawn, count);
     std::fflush(stdout);
   };
-  const viewer::RenderEnd end = viewer::render(report.html, options, take, [] { return interrupt_signal() == 0; });
+  const viewer::RenderEnd end =
+      viewer::render(report.html, options, take, StopToken([] { return interrupt_signal() != 0; }));
   if (is_terminal && drawn > 0) fmt::print("\n");
   if (end == viewer::RenderEnd::interrupted) return exit_signal + interrupt_signal();
   output->finish(drawn);

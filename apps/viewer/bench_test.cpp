@@ -57,7 +57,6 @@ FitNews finished(const FitTask& task, Page& page) {
     news.task = task.number;
     page.note_fit(news);
     if (news.has_ended) last = std::move(news);
-    return page.session().wants_fit();
   });
   return last;
 }
@@ -188,7 +187,6 @@ TEST(Bench, WhatACoarserMeshGetsWrongIsTakenOff) {
     std::vector<std::string> stages;
     run_fit(*task, [&](const FitNews& news) {
       if (!news.stage.empty()) stages.push_back(news.stage);
-      return true;
     });
     EXPECT_EQ(std::ranges::count(stages, "what the mesh gets wrong, by a finer one") > 0, !same_mesh);
     EXPECT_GT(std::ranges::count(stages, "a value for every tet"), 0);
@@ -208,12 +206,12 @@ TEST(Bench, AStoppedFitKeepsWhatItReached) {
   page.send({{"do", "fit"}});
   const std::optional<FitTask> task = page.session().take_fit();
   int told = 0;
-  run_fit(*task, [&](FitNews news) {
+  const auto tell = [&](FitNews news) {
     news.task = task->number;
     page.note_fit(news);
     if (++told == 3) page.send({{"do", "stop_fit"}});
-    return page.session().wants_fit();
-  });
+  };
+  run_fit(*task, tell, StopToken([&] { return !page.session().wants_fit(); }));
   EXPECT_FALSE(page.capture()["fit"]["running"]);
   EXPECT_LE(told, 5);
   page.send({{"do", "fit"}});  // may be begun again

@@ -131,7 +131,7 @@ class Arrivals {
 
 }  // namespace
 
-RenderEnd draw_in_browser(const PageOfPictures& page, const Pictures& pictures, const std::function<bool()>& go_on) {
+RenderEnd draw_in_browser(const PageOfPictures& page, const Pictures& pictures, const StopToken& stop) {
   Arrivals arrivals(page, pictures);
   const TemporaryFolder folder;
   Server server({.page = page.page,
@@ -140,7 +140,7 @@ RenderEnd draw_in_browser(const PageOfPictures& page, const Pictures& pictures, 
                         .messages = folder.path() / "messages",
                         .lifetime = Lifetime::own_group});
   while (!arrivals.wait(kPeriod)) {
-    if (!go_on()) return RenderEnd::interrupted;
+    if (stop.stopped()) return RenderEnd::interrupted;
     if (!browser.is_running())
       throw InvalidInput("the browser ended before the pictures were drawn: " + browser.message());
     if (arrivals.is_silent())

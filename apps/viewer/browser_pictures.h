@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "base/stop_token.h"
+
 namespace aspic::viewer {
 
 struct PageOfPictures {
@@ -18,9 +20,9 @@ using Pictures = std::function<void(int index, int count, std::string_view png)>
 
 enum class RenderEnd { done, interrupted };
 
-// Calls `pictures` with every picture, from another thread, while this waits; what it throws ends the drawing and is
-// thrown here. Stops when `go_on` says false. The browser is always ended. Throws InvalidInput: there is no browser, it
-// ends or says nothing for a minute, or the page cannot do what is asked.
-RenderEnd draw_in_browser(const PageOfPictures& page, const Pictures& pictures, const std::function<bool()>& go_on);
+// Calls `pictures` for every picture from another thread. An exception of `pictures` ends the drawing and is rethrown
+// here. Always ends the browser. Throws InvalidInput if there is no browser, it exits or is silent for a minute, or the
+// page fails.
+RenderEnd draw_in_browser(const PageOfPictures& page, const Pictures& pictures, const StopToken& stop);
 
 }  // namespace aspic::viewer

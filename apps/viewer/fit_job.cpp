@@ -35,20 +35,18 @@ std::vector<Unknown> unknowns_of(const FitPlan& plan, FitStage stage) {
 
 class Listener {
  public:
-  Listener(const FitTask& task, const std::function<bool(FitNews)>& tell)
-      : task_(task), tell_(tell), plan_(completed(task.plan, task.data.experiment)) {}
+  Listener(const FitTask& task, const std::function<void(FitNews)>& tell, const StopToken& stop)
+      : task_(task), tell_(tell), stop_(stop), plan_(completed(task.plan, task.data.experiment)) {}
 
   FitOutcome run() {
-    const FitWitness witness{.begin = [this](FitStage stage, const std::string&) { begin(stage); },
-                             .iterate = [this](FitStage stage, const FitIteration& i,
-                                               std::span<const double> p) { return hear(stage, i, p); },
-                             .go_on = [this] { return goes_on_ = goes_on_ && tell_({}); }};
-    return fit_material(task_.data, task_.plan, {}, witness);
+    const FitCallbacks callbacks{
+        .begin = [this](FitStage stage, const std::string&) { tell_(beginning(stage)); },
+        .iterate = [this](FitStage stage, const FitIteration& i, std::span<const double> p) { hear(stage, i, p); },
+        .stop = stop_};
+    return fit_material(task_.data, task_.plan, {}, callbacks);
   }
 
  private:
-  void begin(FitStage stage) { goes_on_ = goes_on_ && tell_(beginning(stage)); }
-
   FitNews beginning(FitStage stage) {
     stage_ = stage;
     FitNews news{.stage = words_of(stage)};
@@ -61,22 +59,22 @@ class Listener {
   }
 
   // Stages alternate: what the mesh gets wrong is computed anew for what was fitted.
-  bool hear(FitStage stage, const FitIteration& iteration, std::span<const double> p) {
+  void hear(FitStage stage, const FitIteration& iteration, std::span<const double> p) {
     FitNews news = stage == stage_ ? FitNews{} : beginning(stage);
     if (stage == FitStage::uniform || stage == FitStage::field) {
       news.iterations.push_back(iteration);
       for (size_t u = 0; u < plan_.unknowns.size(); ++u)
         if (plan_.unknowns[u].quantity == "young") news.young = map_->values(static_cast<int>(u), p);
     }
-    return goes_on_ = goes_on_ && tell_(std::move(news));
+    tell_(std::move(news));
   }
 
   const FitTask& task_;
-  const std::function<bool(FitNews)>& tell_;
+  const std::function<void(FitNews)>& tell_;
+  const StopToken& stop_;
   FitPlan plan_;
   FitStage stage_ = FitStage::uniform;
   std::optional<ParameterMap> map_;  // of the stage under way
-  bool goes_on_ = true;
 };
 
 void append(FitNews& to, FitNews more) {
@@ -91,10 +89,10 @@ void append(FitNews& to, FitNews more) {
 
 }  // namespace
 
-void run_fit(const FitTask& task, const std::function<bool(FitNews)>& tell) {
+void run_fit(const FitTask& task, const std::function<void(FitNews)>& tell, const StopToken& stop) {
   FitNews last{.has_ended = true};
   try {
-    last.outcome = Listener(task, tell).run();
+    last.outcome = Listener(task, tell, stop).run();
     for (const FittedQuantity& quantity : last.outcome->quantities)
       if (quantity.name == "young") last.young = quantity.values;
   } catch (const std::exception& e) {
@@ -105,10 +103,11 @@ void run_fit(const FitTask& task, const std::function<bool(FitNews)>& tell) {
 
 FitJob::FitJob(FitTask task, std::function<void()> wake) : wake_(std::move(wake)) {
   thread_ = std::thread([this, task = std::move(task)] {
-    run_fit(task, [&](FitNews news) {
+    const auto tell = [&](FitNews news) {
       news.task = task.number;
-      return add(std::move(news));
-    });
+      add(std::move(news));
+    };
+    run_fit(task, tell, StopToken([this] { return stopping_.load(); }));
   });
 }
 
@@ -117,22 +116,19 @@ FitJob::~FitJob() {
   thread_.join();
 }
 
-bool FitJob::add(FitNews news) {
-  const bool is_new = !news.stage.empty() || !news.iterations.empty() || news.has_ended;
-  if (is_new) {
-    const bool ends = news.has_ended;
-    {
-      const std::lock_guard lock(mutex_);
-      if (pending_) {
-        append(*pending_, std::move(news));
-      } else {
-        pending_ = std::move(news);
-      }
+void FitJob::add(FitNews news) {
+  if (news.stage.empty() && news.iterations.empty() && !news.has_ended) return;
+  const bool ends = news.has_ended;
+  {
+    const std::lock_guard lock(mutex_);
+    if (pending_) {
+      append(*pending_, std::move(news));
+    } else {
+      pending_ = std::move(news);
     }
-    if (ends) has_ended_ = true;
-    if (wake_) wake_();
   }
-  return !stopping_;
+  if (ends) has_ended_ = true;
+  if (wake_) wake_();
 }
 
 std::optional<FitNews> FitJob::news() {

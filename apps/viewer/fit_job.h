@@ -30,8 +30,8 @@ struct FitNews {
   bool has_ended = false;
 };
 
-// Carries the task out here and now; `tell` hears of it on this thread, and ends it by false.
-void run_fit(const FitTask& task, const std::function<bool(FitNews)>& tell);
+// Runs the task on this thread and reports its progress.
+void run_fit(const FitTask& task, const std::function<void(FitNews)>& tell, const StopToken& stop = {});
 
 class FitJob {
  public:
@@ -43,7 +43,7 @@ class FitJob {
   bool has_ended() const { return has_ended_; }
 
  private:
-  bool add(FitNews news);
+  void add(FitNews news);
 
   std::function<void()> wake_;
   std::atomic<bool> stopping_ = false, has_ended_ = false;

@@ -45,8 +45,8 @@ std::vector<std::string> coder_of(const std::string& extension) {
 }  // namespace
 
 RenderEnd render(const std::string& page, const RenderOptions& options, const Pictures& pictures,
-                 const std::function<bool()>& go_on) {
-  return draw_in_browser({.page = page, .query = query(options)}, pictures, go_on);
+                 const StopToken& stop) {
+  return draw_in_browser({.page = page, .query = query(options)}, pictures, stop);
 }
 
 struct VideoFile::Impl {

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/stop_token.h"
 #include "viewer/browser_pictures.h"
 
 namespace aspic::viewer {
@@ -21,7 +22,7 @@ struct RenderOptions {
 
 // `page` is the viewer's page with the recording. Does and throws what draw_in_browser() does.
 RenderEnd render(const std::string& page, const RenderOptions& options, const Pictures& pictures,
-                 const std::function<bool()>& go_on);
+                 const StopToken& stop);
 
 // Makes a video of PNG pictures of the same even size; the file appears as a whole at the end.
 class VideoFile {

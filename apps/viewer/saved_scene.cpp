@@ -52,7 +52,7 @@ void append(Table& body, const char* key, Table entry) {
 
 // ---------------------------------------------------------------- the mouse
 
-bool goes_on(const Grab& before, const Grab& next) {
+bool continues(const Grab& before, const Grab& next) {
   const double h = next.to_time - next.from_time;
   return before.vertices == next.vertices && before.weights == next.weights && before.stiffness == next.stiffness &&
          std::equal(before.to.a, before.to.a + 3, next.from.a) &&
@@ -88,7 +88,7 @@ void add_drags(const Side& side, Table& document) {
     do {
       path.push_back(place(pulls[k].grab.to_time, pulls[k].grab.to));
       ++k;
-    } while (k < pulls.size() && goes_on(pulls[k - 1].grab, pulls[k].grab));
+    } while (k < pulls.size() && continues(pulls[k - 1].grab, pulls[k].grab));
     Table table = grab_table(side.model(), first);
     table.set("path", {std::move(path), {}});
     const size_t body = in_body(side.model(), first.vertices[0]).body;

@@ -15,9 +15,9 @@ constexpr Seconds kRateWindow(0.5);
 
 Pacing::Clock::time_point Pacing::due(double time, double speed, Clock::time_point now) {
   const auto since_start = [&] { return Seconds(std::min((time - start_time_) / speed, kLongestWait.count())); };
-  const bool goes_on = speed == speed_ && time >= last_time_;
+  const bool continues = speed == speed_ && time >= last_time_;
   last_time_ = time;
-  if (!goes_on || now - (start_ + since_start()) > kForgotten) {
+  if (!continues || now - (start_ + since_start()) > kForgotten) {
     start_ = now;
     start_time_ = time;
     speed_ = speed;

@@ -172,11 +172,11 @@ void SimulationThread::play() {
   next_step_ = pacing_.due(session_.time(), session_.speed(), now);
   if (next_step_ > now) return;
   // Short steps are told together.
-  const auto goes_on = [&, together = now + kBetweenPictures] {
+  const auto is_next_due = [&, together = now + kBetweenPictures] {
     const Clock::time_point then = Clock::now();
     return then < together && !is_woken() && pacing_.due(session_.time(), session_.speed(), then) <= then;
   };
-  audience_.tell_all(interruptibly(Urgency::before_steps, [&] { return session_.advance(goes_on); }));
+  audience_.tell_all(interruptibly(Urgency::before_steps, [&] { return session_.advance(is_next_due); }));
   if (rate_.update(session_.time(), Clock::now())) session_.note_rate(rate_.value());
   next_step_ = pacing_.due(session_.time(), session_.speed(), Clock::now());
 }

@@ -146,7 +146,7 @@ void Session::Impl::take_turn() {
   note_progress(progress);
 }
 
-void Session::Impl::advance(const std::function<bool()>& goes_on) {
+void Session::Impl::advance(const std::function<bool()>& is_next_due) {
   news.clear();
   stop = false;
   if (!playing) return;
@@ -157,7 +157,7 @@ void Session::Impl::advance(const std::function<bool()>& goes_on) {
         replaying.reset();
         playing = false;
       }
-    } while (playing && goes_on && goes_on());
+    } while (playing && is_next_due && is_next_due());
   } catch (const std::exception& e) {
     playing = false;
     replaying.reset();
@@ -204,8 +204,8 @@ double Session::speed() const { return impl_->speed; }
 double Session::time() const { return impl_->next().side.time(); }
 void Session::note_rate(double rate) { impl_->rate = rate; }
 
-Messages Session::advance(const std::function<bool()>& goes_on) {
-  impl_->advance(goes_on);
+Messages Session::advance(const std::function<bool()>& is_next_due) {
+  impl_->advance(is_next_due);
   return std::move(impl_->news);
 }
 

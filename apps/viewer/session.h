@@ -77,8 +77,8 @@ class Session {
   double speed() const;         // simulated seconds per second that play aims at
   double time() const;          // simulated so far, of the side that is behind [s]
   void note_rate(double rate);  // measured by who knows the time, for the pages
-  // The next step of the side that is behind, and further ones as long as `goes_on`; what is new, for all pages.
-  Messages advance(const std::function<bool()>& goes_on = {});
+  // The next step of the side that is behind, and further ones as long as `is_next_due`; what is new, for all pages.
+  Messages advance(const std::function<bool()>& is_next_due = {});
 
   // A fit that was asked for: to be run by who has threads, and told by note_fit(), until wants_fit() is false or it
   // has ended; what is new for all pages.

@@ -63,8 +63,8 @@ struct Session::Impl {
 
   // ---- session.cpp
   Answer handle(std::string_view text, Role role);
-  void advance(const std::function<bool()>& goes_on);  // as play does
-  StopToken stop_token();                              // requested by interrupt()
+  void advance(const std::function<bool()>& is_next_due);  // as play does
+  StopToken stop_token();                                  // requested by interrupt()
   void tell(Message message) { news.push_back(std::move(message)); }
   void tell_state();                       // and the steps taken since
   void tell_side(const ShownSide& shown);  // everything but the state and the picture

@@ -89,10 +89,10 @@ struct FitOutcome {
 
 enum class FitStage { uniform, mesh_errors, field, uncertainty, parts, cross_validation, next_poke };
 
-struct FitWitness {
-  std::function<void(FitStage, const std::string& what)> begin;                           // a stage, or a part of it
-  std::function<bool(FitStage, const FitIteration&, std::span<const double> p)> iterate;  // false: stop
-  std::function<bool()> go_on;                                                            // between the parts
+struct FitCallbacks {
+  std::function<void(FitStage, const std::string& what)> begin = {};  // called at the start of a stage or a part of it
+  std::function<void(FitStage, const FitIteration&, std::span<const double> p)> iterate = {};
+  StopToken stop = {};  // the outcome is then what was reached, and is marked as interrupted
 };
 
 // Where the fit is remembered; without a folder it is not.
@@ -102,6 +102,7 @@ struct FitMemory {
 };
 
 // Throws InvalidInput for data and plans that do not fit together; a fit that fails is an outcome.
-FitOutcome fit_material(const DataSet& data, const FitPlan& plan, const FitMemory& memory, const FitWitness& witness);
+FitOutcome fit_material(const DataSet& data, const FitPlan& plan, const FitMemory& memory,
+                        const FitCallbacks& callbacks);
 
 }  // namespace aspic

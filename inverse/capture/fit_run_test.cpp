@@ -308,13 +308,12 @@ class FitMemoryTest : public FolderTest {
   FitOutcome fitted(const fs::path& memory, JournalStart start, int limit) {
     iterations = 0;
     fs::create_directories(memory);
-    const FitWitness witness{
-        .begin = {},
-        .iterate = [&](FitStage, const FitIteration&, std::span<const double>) { return ++iterations < limit; },
-        .go_on = {}};
+    const FitCallbacks callbacks{
+        .iterate = [&](FitStage, const FitIteration&, std::span<const double>) { ++iterations; },
+        .stop = StopToken([&, limit] { return iterations >= limit; })};
     FitPlan plan = quick_plan({"young=handles:6"});
     plan.mesh_errors = mesh_errors;
-    return fit_material(block(), plan, {memory, start}, witness);
+    return fit_material(block(), plan, {memory, start}, callbacks);
   }
   int iterations = 0;
   bool mesh_errors = false;

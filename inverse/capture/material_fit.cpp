@@ -44,11 +44,12 @@ bool is_over(const FitReport& report) { return is_success(report.status) || repo
 
 }  // namespace
 
-MaterialFit::MaterialFit(const DataSet& data, const FitPlan& plan, const FitMemory& memory, const FitWitness& witness)
+MaterialFit::MaterialFit(const DataSet& data, const FitPlan& plan, const FitMemory& memory,
+                         const FitCallbacks& callbacks)
     : data_(data),
       plan_(completed(plan, data.experiment)),
       memory_(memory),
-      witness_(witness),
+      callbacks_(callbacks),
       simulated_(data.experiment, plan_) {
   if (!memory.folder.empty()) fingerprint_ = fingerprint_of(data.experiment) + "\n" + text_of(plan_);
   outcome_.plan = plan_;
@@ -105,7 +106,7 @@ bool MaterialFit::has_single_values(FitModel& model, const FitReport& report) {
 }
 
 bool MaterialFit::take_off_mesh_errors() {
-  if (!may_go_on()) return false;
+  if (is_stopped()) return false;
   if (simulated_.is_too_large_for_mesh_errors()) {
     add_warnings({"what the mesh gets wrong was NOT computed: the mesh that is simulated has " +
                   std::to_string(simulated_.mesh().tet_count()) + " tets, and " +
@@ -204,23 +205,23 @@ FitReport MaterialFit::fit_stage(FitStage which, FitModel& model, const FitOptio
   outcome_.unknowns = model.map.size();
   outcome_.residuals = model.misfit.residual_count();
   const auto observe = [&](const FitIteration& iteration, std::span<const double> p) {
-    if (!witness_.iterate || witness_.iterate(which, iteration, p)) return true;
-    outcome_.interrupted = true;
-    if (model.journal) model.journal->stop_writing();
-    return false;
+    if (callbacks_.iterate) callbacks_.iterate(which, iteration, p);
+    if (is_stopped() && model.journal) model.journal->stop_writing();
   };
-  FitReport report = fit(model.data(), *model.prior, start.empty() ? model.map.guess() : start, options, observe);
+  FitOptions stoppable = options;
+  stoppable.stop = callbacks_.stop;
+  FitReport report = fit(model.data(), *model.prior, start.empty() ? model.map.guess() : start, stoppable, observe);
   outcome_.counts = model.misfit.counts();
   return report;
 }
 
 void MaterialFit::begin(FitStage stage, const std::string& what) {
-  if (witness_.begin) witness_.begin(stage, what);
+  if (callbacks_.begin) callbacks_.begin(stage, what);
 }
 
-bool MaterialFit::may_go_on() {
-  if (witness_.go_on && !witness_.go_on()) outcome_.interrupted = true;
-  return !outcome_.interrupted;
+bool MaterialFit::is_stopped() {
+  if (callbacks_.stop.stopped()) outcome_.interrupted = true;
+  return outcome_.interrupted;
 }
 
 void MaterialFit::add_warnings(const std::vector<std::string>& more) {

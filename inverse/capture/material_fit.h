@@ -15,7 +15,7 @@ namespace aspic {
 class MaterialFit {
  public:
   // Refers to all but the plan.
-  MaterialFit(const DataSet& data, const FitPlan& plan, const FitMemory& memory, const FitWitness& witness);
+  MaterialFit(const DataSet& data, const FitPlan& plan, const FitMemory& memory, const FitCallbacks& callbacks);
   FitOutcome run();
 
  private:
@@ -49,7 +49,7 @@ class MaterialFit {
   std::vector<double> keep(const Parts& parts, const ParameterMap& map, int unknown, FoundParts& found);
 
   void begin(FitStage stage, const std::string& what);
-  bool may_go_on();
+  bool is_stopped();
   void add_warnings(const std::vector<std::string>& more);
   bool is_field() const;
   bool has_many_values() const;                                  // a value per tet or handle
@@ -58,7 +58,7 @@ class MaterialFit {
   const DataSet& data_;
   FitPlan plan_;
   const FitMemory& memory_;
-  const FitWitness& witness_;
+  const FitCallbacks& callbacks_;
   SimulatedData simulated_;
   std::vector<MaterialParameters> material_;  // the last that was fitted
   std::string fingerprint_;

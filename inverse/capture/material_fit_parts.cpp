@@ -32,11 +32,11 @@ std::vector<double> MaterialFit::divided(FitModel& model) {
   const FitReport& report = outcome_.report;
   const auto young = std::find_if(plan_.unknowns.begin(), plan_.unknowns.end(),
                                   [](const Unknown& u) { return u.quantity == "young" && u.spread == Spread::tets; });
-  if (plan_.parts == 0 || young == plan_.unknowns.end() || !may_go_on()) return report.p;
+  if (plan_.parts == 0 || young == plan_.unknowns.end() || is_stopped()) return report.p;
   const int unknown = static_cast<int>(young - plan_.unknowns.begin());
   FoundParts& found = outcome_.parts.emplace();
   const int fewest = plan_.parts > 0 ? plan_.parts : 2, most = plan_.parts > 0 ? plan_.parts : kMostParts;
-  for (int count = fewest; count <= most && !found.are_kept && may_go_on(); ++count, ++found.tried) {
+  for (int count = fewest; count <= most && !found.are_kept && !is_stopped(); ++count, ++found.tried) {
     begin(FitStage::parts, std::to_string(count) + " parts");
     const Parts parts = find_parts(model.data(), model.map, mesh(), report.p, unknown, count);
     found.squares = parts.squares;

@@ -26,7 +26,7 @@ void put_layers_in(std::span<const double> r, const LoadCase& fitted, CasePredic
 }  // namespace
 
 void MaterialFit::learn_uncertainty(FitModel& model) {
-  if (!plan_.uncertainty || !may_go_on()) return;
+  if (!plan_.uncertainty || is_stopped()) return;
   begin(FitStage::uncertainty, "what the data do not say");
   const FitReport& report = outcome_.report;
   WithUncertainLayers about_fit(model.recorded());
@@ -105,7 +105,7 @@ void MaterialFit::predict_left_out(const ParameterMap& map, std::span<const doub
 }
 
 void MaterialFit::cross_validate_groups(FitModel& model) {
-  if (!plan_.cross_validation || !may_go_on()) return;
+  if (!plan_.cross_validation || is_stopped()) return;
   CrossValidation held_out = cross_validated(model, outcome_.report, plan_.fit);
   if (outcome_.interrupted) return;  // the last group is not to be trusted
   add_warnings(held_out.warnings);
@@ -121,13 +121,10 @@ void MaterialFit::cross_validate_groups(FitModel& model) {
 }
 
 CrossValidation MaterialFit::cross_validated(FitModel& model, const FitReport& report, FitOptions options) {
-  // A fit stops at its deadline: that comes when the witness wants no more.
-  const WallClock clock = [&] { return may_go_on() ? 0.0 : std::numeric_limits<double>::infinity(); };
-  options.stop = StopToken(clock, 1);
+  options.stop = StopToken([this] { return is_stopped(); });
   const auto observe = [&](int group, int groups, const std::string& name) {
     begin(FitStage::cross_validation,
           "'" + name + "' is left out (" + std::to_string(group + 1) + " of " + std::to_string(groups) + ")");
-    return may_go_on();
   };
   return cross_validate(simulated_.fitted(), model.map, *model.prior, report, options, plan_.equilibrium, observe);
 }
@@ -147,7 +144,7 @@ void MaterialFit::cross_validate_one_value() {
 void MaterialFit::find_next_poke(FitModel& model) {
   const std::vector<LoadCase>& cases = simulated_.fitted().cases;
   const bool has_tip = std::any_of(cases.begin(), cases.end(), [](const LoadCase& c) { return c.tip.has_value(); });
-  if (!outcome_.posterior || !outcome_.posterior->ok || !has_tip || !may_go_on()) return;
+  if (!outcome_.posterior || !outcome_.posterior->ok || !has_tip || is_stopped()) return;
   begin(FitStage::next_poke, "where a poke would tell most");
   NextPoke next =
       next_poke(simulated_.fitted(), mesh(), model.map, *outcome_.posterior, outcome_.report.p, {}, plan_.equilibrium);

@@ -49,8 +49,8 @@ class Bench {
     if (truth_.cases.empty()) throw InvalidInput(scene.name + ": nothing is measured; ask for pokes or gravity");
   }
 
-  Synthesis run(const SynthesisWitness& witness) {
-    measure(witness);
+  Synthesis run(const SynthesisObserver& observe) {
+    measure(observe);
     if (!data().cases.empty()) add_noise();
     return std::move(result_);
   }
@@ -188,7 +188,7 @@ class Bench {
   }
 
   // Each poke from the last depth; what has no equilibrium ends its poke.
-  void measure(const SynthesisWitness& witness) {
+  void measure(const SynthesisObserver& observe) {
     const std::vector<MaterialParameters> parameters(model_.elasticity.front()->parameters().begin(),
                                                      model_.elasticity.front()->parameters().end());
     const int count = static_cast<int>(truth_.cases.size());
@@ -216,7 +216,8 @@ class Bench {
         ++result_.failed;
         result_.notes.push_back(load.name + " is left out: " + step.failure);
       }
-      if (witness && !witness(step)) {
+      if (observe) observe(step);
+      if (options_.stop.stopped()) {
         result_.interrupted = true;
         return;
       }
@@ -291,9 +292,9 @@ void require_full(const Pin& pin) {
                        "all (remove its axes or direction)");
 }
 
-Synthesis synthesize(const Scene& scene, const SynthesisOptions& options, const SynthesisWitness& witness) {
+Synthesis synthesize(const Scene& scene, const SynthesisOptions& options, const SynthesisObserver& observe) {
   check(options);
-  return Bench(scene, options).run(witness);
+  return Bench(scene, options).run(observe);
 }
 
 }  // namespace aspic

@@ -32,6 +32,7 @@ struct SynthesisOptions {
   std::optional<TetMesh> mesh;   // of the data set, at rest, in the place of the body; none: a coarser one is made
   std::filesystem::path mesher;  // aspic-mesh; empty: found by itself
   uint64_t seed = 1;
+  StopToken stop = {};  // polled after every case; the cases so far are kept
 };
 
 struct SynthesisStep {
@@ -41,7 +42,7 @@ struct SynthesisStep {
   int iterations = 0;
   std::string failure;  // empty: an equilibrium was found
 };
-using SynthesisWitness = std::function<bool(const SynthesisStep&)>;  // false: stop
+using SynthesisObserver = std::function<void(const SynthesisStep&)>;
 
 struct Synthesis {
   DataSet data;
@@ -52,7 +53,7 @@ struct Synthesis {
 };
 
 // Of the one body of a scene, held where its pins hold it. Throws InvalidInput when there is nothing to measure.
-Synthesis synthesize(const Scene& scene, const SynthesisOptions& options, const SynthesisWitness& witness = {});
+Synthesis synthesize(const Scene& scene, const SynthesisOptions& options, const SynthesisObserver& observe = {});
 
 // Of the one body of a scene, by the user's numbers. Throws InvalidInput.
 FittedMaterial true_material(const Scene& scene);

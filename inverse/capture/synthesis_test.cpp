@@ -119,10 +119,8 @@ TEST_F(VirtualBench, WithoutForcesThereAreNoneAndItCanBeStopped) {
   SynthesisOptions options = exact();
   options.forces = false;
   int seen = 0;
-  const Synthesis made = synthesize(scene(), options, [&](const SynthesisStep& step) {
-    EXPECT_EQ(step.done, ++seen);
-    return seen < 2;
-  });
+  options.stop = StopToken([&] { return seen == 2; });
+  const Synthesis made = synthesize(scene(), options, [&](const SynthesisStep& step) { EXPECT_EQ(step.done, ++seen); });
   EXPECT_TRUE(made.interrupted);
   EXPECT_EQ(seen, 2);
   for (const LoadCase& load : made.data.experiment.cases) EXPECT_FALSE(load.force.has_value());

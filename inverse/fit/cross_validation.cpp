@@ -91,7 +91,8 @@ CrossValidation cross_validate(const Experiment& experiment, const ParameterMap&
   options.weight = fitted.weight;
   options.starts = 1;
   for (size_t g = 0; g < groups.size(); ++g) {
-    if (observe && !observe(static_cast<int>(g), static_cast<int>(groups.size()), groups[g])) break;
+    if (observe) observe(static_cast<int>(g), static_cast<int>(groups.size()), groups[g]);
+    if (options.stop.stopped()) break;
     HeldOut& h = result.groups.emplace_back();
     h.group = groups[g];
     const Experiment seen = subset(experiment, [&](const LoadCase& c) { return c.group != h.group; });

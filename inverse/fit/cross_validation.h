@@ -42,8 +42,8 @@ Experiment subset(const Experiment& experiment, const std::function<bool(const L
 // What was predicted for the cases of `left_out`, one after another, against what was measured.
 HeldOut compare(const Experiment& left_out, std::span<const CasePrediction> predicted);
 
-// Called before each group is left out; false: stop here.
-using CrossValidationObserver = std::function<bool(int group, int groups, const std::string& name)>;
+// Called before each group is left out.
+using CrossValidationObserver = std::function<void(int group, int groups, const std::string& name)>;
 
 // `fitted`: of all cases; its p is the start and its weight is kept.
 CrossValidation cross_validate(const Experiment& experiment, const ParameterMap& map, Regularizer& regularizer,

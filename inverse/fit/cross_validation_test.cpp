@@ -77,13 +77,15 @@ TEST(CrossValidation, ReportsAGroupThatCannotBePredicted) {
     if (load.group == "left") load.pose.center[2] = -5;
   const ParameterMap map = study.block.map({{.spread = Spread::uniform, .guess = 2e4}});
   const auto prior = make_regularizer(study.block.experiment.mesh, map, {});
+  bool is_done = false;
+  const auto observe = [&](int group, int groups, const std::string& name) {
+    EXPECT_EQ(groups, 4);
+    EXPECT_EQ(name == "left", group == 0);
+    is_done = group == 1;
+  };
   const CrossValidation result =
       cross_validate(study.block.experiment, map, *prior, {.p = {map.guess().begin(), map.guess().end()}, .weight = 1},
-                     {}, {.max_iterations = 20}, [](int group, int groups, const std::string& name) {
-                       EXPECT_EQ(groups, 4);
-                       EXPECT_EQ(name == "left", group == 0);
-                       return group == 0;
-                     });
+                     {.stop = StopToken([&] { return is_done; })}, {.max_iterations = 20}, observe);
   ASSERT_EQ(result.groups.size(), 1u);
   EXPECT_FALSE(result.groups[0].ok);
   EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("left could not be predicted")));

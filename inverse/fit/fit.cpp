@@ -146,7 +146,7 @@ FitReport fit(LeastSquares& misfit, Regularizer& regularizer, std::span<const do
     now.weight = run.weight;
     run.report.starts.push_back(now.objective);
     if (start == 0 || is_better(now, best)) best = std::move(now);
-    if (best.status == Status::interrupted || run.is_late()) break;
+    if (best.status == Status::interrupted || run.is_stopped()) break;
   }
 
   FitReport report = std::move(run.report);

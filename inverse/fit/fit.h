@@ -23,7 +23,7 @@ struct FitOptions {
   double first_weight = 0;           // where a rule begins; 0: where the prior and the data are about as strong
   int starts = 1;                    // from how many guesses; the best is kept
   double scatter = 1.5;              // the largest change of p from the first guess to another
-  StopToken stop = {};               // the best p by then is the result
+  StopToken stop = {};               // polled in every iteration and trial; the result is the best p
 };
 std::vector<std::string> fit_method_names();
 std::vector<std::string> weight_rule_names();
@@ -37,7 +37,7 @@ struct FitIteration {
   int inner = 0;    // of the linear solve
   int trials = 0;   // evaluations
 };
-using FitObserver = std::function<bool(const FitIteration&, std::span<const double> p)>;  // false: stop here
+using FitObserver = std::function<void(const FitIteration&, std::span<const double> p)>;
 
 struct WeightTrial {  // a point of the L-curve
   double weight = 0, misfit = 0, roughness = 0;

@@ -80,14 +80,14 @@ Status fit_by_lbfgs(FitRun& run, FitPoint& at, FitGoal& goal) {
   bool is_done = false;
   const auto observe = [&](const LiveIteration& i) {
     const double decrement = std::sqrt(std::max(0.0, 2 * i.decrement));
-    is_done = !run.note(
-        {.decrement = decrement, .step = i.alpha * largest_entry(i.d), .trials = static_cast<int>(i.tried.size())}, at);
+    run.note({.decrement = decrement, .step = i.alpha * largest_entry(i.d), .trials = static_cast<int>(i.tried.size())},
+             at);
     small = goal.is_reached(decrement) ? small + 1 : 0;
     if (small == kSuccessive)
       ended = Status::converged;
     else if (is_lost_in_noise(decrement, at.objective(run.weight)))
       ended = Status::round_off;
-    is_done = is_done || ended != Status::interrupted;
+    is_done = ended != Status::interrupted;
   };
   Minimizer minimizer;
   std::vector<double> p = at.p;
@@ -95,7 +95,7 @@ Status fit_by_lbfgs(FitRun& run, FitPoint& at, FitGoal& goal) {
                                 .tolerance = 0,
                                 .criterion = Criterion::first_gradient,
                                 .line_search = {.tolerance = 1e-6},
-                                .stop = StopToken([&] { return is_done || run.is_late(); })};
+                                .stop = StopToken([&] { return is_done || run.is_stopped(); })};
   const MinimizeReport report = minimizer.minimize(f, direction, p, f.at_iterate(), options, observe);
   return report.status == Status::interrupted ? ended : report.status;
 }

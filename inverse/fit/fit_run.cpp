@@ -81,7 +81,7 @@ void FitRun::solve_prior(std::span<const double> p, std::span<const double> v, s
   regularizer_.solve(p, v, 0, z);
 }
 
-bool FitRun::note(FitIteration iteration, const FitPoint& at) {
+void FitRun::note(FitIteration iteration, const FitPoint& at) {
   iteration.index = static_cast<int>(report.history.size());
   iteration.start = start;
   iteration.weight = weight;
@@ -89,7 +89,7 @@ bool FitRun::note(FitIteration iteration, const FitPoint& at) {
   iteration.roughness = at.roughness;
   iteration.objective = at.objective(weight);
   report.history.push_back(iteration);
-  return !observe_ || observe_(iteration, at.p);
+  if (observe_) observe_(iteration, at.p);
 }
 
 bool is_lost_in_noise(double decrement, double objective) {
@@ -101,7 +101,7 @@ bool search_along(FitRun& run, FitPoint& at, std::span<const double> d, double s
   step.length = std::min(1.0, run.options.max_step / largest_entry(d));
   FitPoint trial;
   std::vector<double> p(at.p.size());
-  for (; step.length > kShortest && !run.is_late(); step.length *= 0.5) {
+  for (; step.length > kShortest && !run.is_stopped(); step.length *= 0.5) {
     for (size_t i = 0; i < p.size(); ++i) p[i] = at.p[i] + step.length * d[i];
     ++step.trials;
     if (!run.evaluate(p, trial)) {

@@ -43,10 +43,11 @@ class FitRun {
   void multiply_curvature(const FitPoint& at, std::span<const double> v, std::span<double> y);  // (J'J + weight R'') v
   void solve_prior(std::span<const double> p, std::span<const double> v, std::span<double> z);  // R''^-1 v
 
-  // Into the history; false: the observer wants no more.
-  bool note(FitIteration iteration, const FitPoint& at);
+  // Appends the iteration to the history and calls the observer.
+  void note(FitIteration iteration, const FitPoint& at);
   int iterations_left() const { return options.max_iterations - static_cast<int>(report.history.size()); }
-  bool is_late() const { return options.stop.stopped(); }
+  bool is_stopped() const { return options.stop.stopped(); }
+  Status stop_status() const { return options.stop.requested() ? Status::interrupted : Status::budget; }
 
  private:
   LeastSquares& data_;

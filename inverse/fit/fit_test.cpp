@@ -201,11 +201,13 @@ TEST_P(Methods, ShowEveryIterateAndStopOnDemand) {
   CurvedModel model(3, 8, 0.5, 1e-3);
   model.observe(std::vector{1.0, -0.5, 0.3}, 0);
   std::vector<double> seen;
-  const FitReport report = fit(model, *few.prior, few.map.guess(), {.method = GetParam()},
-                               [&](const FitIteration& i, std::span<const double> p) {
-                                 seen.assign(p.begin(), p.end());
-                                 return i.index < 1;
-                               });
+  bool is_done = false;
+  const auto observe = [&](const FitIteration& i, std::span<const double> p) {
+    seen.assign(p.begin(), p.end());
+    is_done = i.index == 1;
+  };
+  const FitOptions options{.method = GetParam(), .stop = StopToken([&] { return is_done; })};
+  const FitReport report = fit(model, *few.prior, few.map.guess(), options, observe);
   EXPECT_EQ(report.status, Status::interrupted);
   EXPECT_EQ(report.history.size(), 2u);
   EXPECT_EQ(report.p, seen);

@@ -33,7 +33,7 @@ class InnerSolver {
     q = z;
     double rz = inner_product(r, z);
     double decrease = 0;  // -g.d
-    while (rz > 0 && s.iterations < run_.options.max_inner && !run_.is_late()) {
+    while (rz > 0 && s.iterations < run_.options.max_inner && !run_.is_stopped()) {
       run_.multiply_curvature(at_, q, Hq);
       const double curvature = inner_product(q, Hq);
       if (!(curvature > 0) || !std::isfinite(curvature)) {
@@ -70,12 +70,13 @@ class InnerSolver {
 Status gauss_newton_cg(FitRun& run, FitPoint& at, FitGoal& goal) {
   std::vector<double> g(at.p.size());
   for (;;) {
-    if (run.is_late()) return Status::budget;
+    if (run.is_stopped()) return run.stop_status();
     if (!run.linearize(at)) return Status::undefined;
     run.gradient(at, g);
     if (largest_entry(g) == 0) return Status::converged;
     const Solution newton = InnerSolver(run, at).solve(g);
-    if (!newton.ok || !(newton.decrement > 0)) return run.is_late() ? Status::budget : Status::no_descent;
+    if (run.is_stopped()) return run.stop_status();  // the direction may be truncated
+    if (!newton.ok || !(newton.decrement > 0)) return Status::no_descent;
     if (goal.is_reached(newton.decrement)) return Status::converged;
     if (is_lost_in_noise(newton.decrement, at.objective(run.weight))) return Status::round_off;
     if (run.iterations_left() <= 0) return Status::iteration_limit;
@@ -85,9 +86,9 @@ Status gauss_newton_cg(FitRun& run, FitPoint& at, FitGoal& goal) {
                             .step = step.length * largest_entry(newton.d),
                             .inner = newton.iterations,
                             .trials = step.trials};
-    const bool go_on = run.note(done, at);
-    if (!found) return run.is_late() ? Status::budget : Status::stuck;
-    if (!go_on) return Status::interrupted;
+    run.note(done, at);
+    if (!found) return run.is_stopped() ? run.stop_status() : Status::stuck;
+    if (run.options.stop.requested()) return Status::interrupted;
   }
 }
 

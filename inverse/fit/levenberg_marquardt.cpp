@@ -106,7 +106,7 @@ Status levenberg_marquardt(FitRun& run, FitPoint& at, FitGoal& goal) {
   std::vector<double> g(n), d(n), p(n);
   MarquardtDamping damping;
   for (;;) {
-    if (run.is_late()) return Status::budget;
+    if (run.is_stopped()) return run.stop_status();
     if (!run.linearize(at)) return Status::undefined;
     run.gradient(at, g);
     make_curvature(run, at, A);
@@ -121,7 +121,7 @@ Status levenberg_marquardt(FitRun& run, FitPoint& at, FitGoal& goal) {
     const double before = at.objective(run.weight);
     FitPoint trial;
     bool found = false;
-    for (; !found && damping.value < kLargestDamping && !run.is_late(); ++done.trials) {
+    for (; !found && damping.value < kLargestDamping && !run.is_stopped(); ++done.trials) {
       if (!A.step(g, damping.value, d) || largest_entry(d) > run.options.max_step) {
         damping.punish();
         continue;
@@ -137,9 +137,9 @@ Status levenberg_marquardt(FitRun& run, FitPoint& at, FitGoal& goal) {
       done.step = largest_entry(d);
       std::swap(at, trial);
     }
-    const bool go_on = run.note(done, at);
-    if (!found) return run.is_late() ? Status::budget : Status::stuck;
-    if (!go_on) return Status::interrupted;
+    run.note(done, at);
+    if (!found) return run.is_stopped() ? run.stop_status() : Status::stuck;
+    if (run.options.stop.requested()) return Status::interrupted;
   }
 }
 

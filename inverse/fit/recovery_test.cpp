@@ -5,7 +5,6 @@
 #include <random>
 
 #include "fit/fit.h"
-#include "fit/load_continuation.h"
 #include "fit/misfit.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
@@ -124,30 +123,6 @@ TEST(Recovery, OfAFieldLeavesTheNoiseAndTellsTheStiffLayer) {
   for (size_t t = 0; t < truth.size(); ++t) mean[e.mesh.region[t]] += report.p[t], ++count[e.mesh.region[t]];
   EXPECT_NEAR(mean[0] / count[0], std::log(0.7 * kCubeYoung), 0.3);
   EXPECT_NEAR(mean[1] / count[1], std::log(4 * kCubeYoung), 0.4);
-}
-
-TEST(LoadContinuation, KeepsTheSmallestLoadsOfEachGroup) {
-  const Experiment e = poked_cube();
-  const Experiment first = smallest_loads(e, 1);
-  ASSERT_EQ(first.cases.size(), 2u);
-  EXPECT_EQ(first.cases[0].pose.center[2], e.cases[0].pose.center[2]);
-  EXPECT_EQ(first.cases[1].group, e.cases[2].group);
-  EXPECT_EQ(smallest_loads(e, 2).cases.size(), 4u);
-}
-
-TEST(LoadContinuation, EndsWhereAFitToAllLoadsDoes) {
-  Experiment e = poked_cube();
-  const ParameterMap map =
-      map_of(e, {{"young", Spread::uniform, 0, 0.2 * kCubeYoung}, {"b", Spread::uniform, 0, 1}}, "fung");
-  measure(e, map, {std::log(kCubeYoung), std::log(5)}, 1);
-  const auto prior = make_regularizer(e.mesh, map, {});
-  std::vector<size_t> cases;
-  const FitReport by_loads = fit_by_loads(e, map, *prior, map.guess(), {.tolerance = 1e-8}, kSynthetic, {},
-                                          [&](const Experiment& part) { cases.push_back(part.cases.size()); });
-  EXPECT_EQ(cases, (std::vector<size_t>{2, 4}));
-  ASSERT_TRUE(is_success(by_loads.status)) << by_loads.words;
-  const FitReport at_once = fitted(e, map, {.tolerance = 1e-8});
-  for (int i = 0; i < 2; ++i) EXPECT_NEAR(by_loads.p[i], at_once.p[i], 1e-5);
 }
 
 }  // namespace

@@ -43,14 +43,14 @@ class Search {
     const BoxTree tree(boxes);
     std::vector<std::array<int, 2>> found;
     long compared = 0;
-    const auto goes_on = [&] { return static_cast<int>(found.size()) < most && compared < kMostCompared; };
-    for (int i = 0; i < static_cast<int>(usable_.size()) && goes_on(); ++i)
+    const auto within_limits = [&] { return static_cast<int>(found.size()) < most && compared < kMostCompared; };
+    for (int i = 0; i < static_cast<int>(usable_.size()) && within_limits(); ++i)
       tree.for_each_overlap(boxes[i], [&](int j) {
         ++compared;
         if (j < i && intersect(usable_[j], usable_[i])) found.push_back({usable_[j], usable_[i]});
-        return goes_on();
+        return within_limits();
       });
-    const bool is_complete = goes_on();
+    const bool is_complete = within_limits();
     std::sort(found.begin(), found.end());
     return {std::move(found), is_complete};
   }

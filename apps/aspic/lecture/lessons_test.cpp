@@ -59,7 +59,7 @@ class Opened {
   const std::vector<json>& rows(const std::string& side) { return rows_[side]; }
   bool converged(const std::string& side) const {
     const auto& rows = rows_.at(side);
-    return std::all_of(rows.begin(), rows.end(), [](const json& row) { return row.at("success") == true; });
+    return std::all_of(rows.begin(), rows.end(), [](const json& row) { return row.at("converged") == true; });
   }
   // Kinetic + potential [J]; what is not finite is infinite.
   double largest_energy(const std::string& side) const {

@@ -92,13 +92,13 @@ void Sheet::draw(const std::string& name, const std::string& caption, MeshPictur
   meshes_.push_back({{folder_ / name, caption}, std::move(picture)});
 }
 
-bool Sheet::draw_meshes(const std::vector<Sheet*>& sheets, const std::function<bool()>& go_on) {
+bool Sheet::draw_meshes(const std::vector<Sheet*>& sheets, const StopToken& stop) {
   std::vector<MeshDrawing> drawings;
   for (const Sheet* sheet : sheets)
     for (const MeshFigure& mesh : sheet->meshes_) drawings.push_back({mesh.figure.picture, mesh.picture});
   std::string missing;
   try {
-    if (!drawings.empty() && !cli::draw(drawings, go_on)) return false;
+    if (!drawings.empty() && !cli::draw(drawings, stop)) return false;
   } catch (const InvalidInput& error) {
     missing = error.what();
   }

@@ -8,6 +8,7 @@
 #include "aspic/mesh_picture.h"
 #include "aspic/plot.h"
 #include "aspic/report_page.h"
+#include "base/stop_token.h"
 #include "io/csv.h"
 #include "scene/scene.h"
 
@@ -54,8 +55,8 @@ class Sheet {
   const std::vector<Figure>& figures() const { return figures_; }
   bool passes() const;  // something was judged, and all of it holds
 
-  // Draws the meshes of all sheets at once; what cannot be drawn becomes a remark. False: `go_on` said so.
-  static bool draw_meshes(const std::vector<Sheet*>& sheets, const std::function<bool()>& go_on);
+  // Draws the meshes of all sheets at once; what cannot be drawn becomes a remark. Returns false if stopped.
+  static bool draw_meshes(const std::vector<Sheet*>& sheets, const StopToken& stop);
 
  private:
   struct MeshFigure {
