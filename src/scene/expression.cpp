@@ -15,7 +15,7 @@ namespace {
 
 struct Function {
   const char* name;
-  const char* meaning;
+  const char* meaning;  // empty: the usual one
   double (*call)(double);
 };
 struct Function2 {
@@ -39,23 +39,23 @@ double largest(const double* a, int n) { return n > 0 ? *std::max_element(a, a +
 double negation(double a) { return a == 0; }
 
 const Function kFunctions[] = {
-    {"sin", "sine of radians", [](double a) { return std::sin(a); }},
-    {"cos", "cosine of radians", [](double a) { return std::cos(a); }},
-    {"tan", "tangent of radians", [](double a) { return std::tan(a); }},
-    {"asin", "arc sine", [](double a) { return std::asin(a); }},
-    {"acos", "arc cosine", [](double a) { return std::acos(a); }},
-    {"atan", "arc tangent", [](double a) { return std::atan(a); }},
-    {"sinh", "hyperbolic sine", [](double a) { return std::sinh(a); }},
-    {"cosh", "hyperbolic cosine", [](double a) { return std::cosh(a); }},
-    {"tanh", "hyperbolic tangent", [](double a) { return std::tanh(a); }},
-    {"exp", "exponential", [](double a) { return std::exp(a); }},
+    {"sin", "", [](double a) { return std::sin(a); }},
+    {"cos", "", [](double a) { return std::cos(a); }},
+    {"tan", "", [](double a) { return std::tan(a); }},
+    {"asin", "", [](double a) { return std::asin(a); }},
+    {"acos", "", [](double a) { return std::acos(a); }},
+    {"atan", "", [](double a) { return std::atan(a); }},
+    {"sinh", "", [](double a) { return std::sinh(a); }},
+    {"cosh", "", [](double a) { return std::cosh(a); }},
+    {"tanh", "", [](double a) { return std::tanh(a); }},
+    {"exp", "", [](double a) { return std::exp(a); }},
     {"log", "natural logarithm", [](double a) { return std::log(a); }},
-    {"sqrt", "square root", [](double a) { return std::sqrt(a); }},
-    {"abs", "absolute value", [](double a) { return std::abs(a); }},
+    {"sqrt", "", [](double a) { return std::sqrt(a); }},
+    {"abs", "", [](double a) { return std::abs(a); }},
     {"sign", "-1, 0 or 1", [](double a) { return double((a > 0) - (a < 0)); }},
-    {"floor", "largest integer not above", [](double a) { return std::floor(a); }},
-    {"ceil", "smallest integer not below", [](double a) { return std::ceil(a); }},
-    {"round", "nearest integer", [](double a) { return std::round(a); }},
+    {"floor", "", [](double a) { return std::floor(a); }},
+    {"ceil", "", [](double a) { return std::ceil(a); }},
+    {"round", "", [](double a) { return std::round(a); }},
 };
 const Function2 kFunctions2[] = {
     {"atan2", "angle of the point (b, a): atan2(a, b)", [](double a, double b) { return std::atan2(a, b); }},

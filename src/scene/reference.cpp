@@ -103,7 +103,8 @@ std::string formulas() {
       "`t` is the time [s]. A value that is not finite is an error. Functions and constants: ";
   std::vector<NamedMeaning> names = expression_functions();
   for (const NamedMeaning& constant : expression_constants()) names.push_back(constant);
-  for (size_t i = 0; i < names.size(); ++i) out += (i ? ", `" : "`") + names[i].name + "` " + names[i].meaning;
+  for (size_t i = 0; i < names.size(); ++i)
+    out += (i ? ", `" : "`") + names[i].name + "`" + (names[i].meaning.empty() ? "" : " " + names[i].meaning);
   return out + ".\n";
 }
 

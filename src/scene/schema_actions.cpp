@@ -32,10 +32,10 @@ void add_damping(Schema& s) {
 }
 
 void add_where(Schema& s) {
-  s.sections.push_back({"where", "where = ... of a pin, spring, traction, pressure or force",
-                        "A selection by rest position: vertices, boundary triangles (by centroid) for tractions and "
-                        "pressures, tets (by centroid) for forces. An empty selection is an error. A string is a "
-                        "formula of X, Y, Z (or x, y, z) that is nonzero where selected: \"y > 0.9 && x < 0\"."});
+  s.sections.push_back(
+      {"where", "where = ... of a pin, spring, traction, pressure or force",
+       "A selection by rest position: vertices, boundary triangles or tets (by centroid). A string is a formula of "
+       "X, Y, Z (or x, y, z) that is nonzero where selected: \"y > 0.9 && x < 0\"."});
   add_keys(s, "where",
            {{.name = "box", .accepts = kTable, .table = "region_box", .meaning = "inside a box"},
             {.name = "sphere", .accepts = kTable, .table = "region_sphere", .meaning = "inside a sphere"},

@@ -93,8 +93,7 @@ void add_solver(Schema& s) {
         .accepts = kNames,
         .fallback = "[]",
         .choices = minimizer_names(),
-        .meaning = "methods that take over, in this order, if the previous one finds no step; the next iteration "
-                   "starts with `method` again",
+        .meaning = "methods that take over in this order if the previous one finds no step",
         .reason = "Newton's method finds a step by itself"},
        {.name = "preconditioner",
         .accepts = kText,
@@ -137,9 +136,9 @@ void add_solver(Schema& s) {
         .fallback = toml_string(scale),
         .choices = criterion_names(),
         .meaning =
-            "what must be small: the gradient's norm relative to the forces that balance (`scale`), to the first "
-            "gradient, or in N (`absolute`); or Newton's direction: square root of its decrement relative to the "
-            "energy of doubling the body's size (`decrement`), `velocity` in m/s, `acceleration` in m/s^2",
+            "measure of convergence: norm of the gradient relative to the balancing forces (`scale`), to the first "
+            "gradient, or in N (`absolute`); or Newton's direction: square root of the relative decrement "
+            "(`decrement`), `velocity` in m/s, `acceleration` in m/s^2",
         .reason = "means the same in every unit and for every start"},
        {.name = "line_search",
         .accepts = kTable,
