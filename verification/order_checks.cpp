@@ -68,7 +68,7 @@ double without_terms(std::vector<double> errors, int order) {
 
 void check_time_floor(const Subject& subject, Findings& found) {
   found.expect_small("rk4, h = 2.5 ms: error", affine_motion_error(subject.taken_for("rk4"), 0.0025, Held::on_one_face),
-                     1e-10, "the fourth order goes on down to the accuracy of the solves", "m");
+                     1e-10, "the fourth order holds down to the accuracy of the solves", "m");
   const std::string taken = subject.taken_for("tr_bdf2");
   const double fine = affine_motion_error(taken, 0.0005, Held::on_one_face);
   const double coarse = affine_motion_error(taken, 0.01, Held::on_one_face);

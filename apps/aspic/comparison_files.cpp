@@ -105,7 +105,7 @@ std::vector<Cell> row_of(const MethodResult& result) {
   const Verdict verdict = result.same_minimiser ? Verdict::pass : Verdict::fail;
   const StepReport& report = result.report;
   return {{result.method},
-          {std::string(is_success(report.status) ? "same minimiser" : to_string(report.status)), verdict},
+          {std::string(is_success(report.status) ? "same minimizer" : to_string(report.status)), verdict},
           {std::to_string(report.iterations)},
           {std::to_string(report.gradients)},
           {std::to_string(report.hessians)},

@@ -230,7 +230,7 @@ TEST(Questions, AnExplicitStepHasNoIterations) {
   Page page(kBeam, {"time.integrator=symplectic_euler", "time.step=1e-4"});
   page.steps(2);
   EXPECT_NE(
-      page.refused({{"ask", "iteration"}, {"side", "a"}, {"step", 1}, {"iteration", 0}}).find("minimises nothing"),
+      page.refused({{"ask", "iteration"}, {"side", "a"}, {"step", 1}, {"iteration", 0}}).find("minimizes nothing"),
       std::string::npos);
 }
 

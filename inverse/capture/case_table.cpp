@@ -105,7 +105,7 @@ class CaseReader {
     if (!touch && center && depth) touch = *center - *depth * unit(*axis);
     if (!touch || (!center && !depth))
       return table_.error(
-          "the pose of the tip is incomplete; give touch_x, touch_y, touch_z, where its centre was when "
+          "the pose of the tip is incomplete; give touch_x, touch_y, touch_z, where its center was when "
           "it touched the body at rest, and center_x, center_y, center_z or depth");
     load.touch = {*touch, *axis, {}};
     load.pose = {center ? *center : *touch + *depth * unit(*axis), turned_axis(load.touch, rotation), rotation};
@@ -117,16 +117,16 @@ class CaseReader {
 
   void read_wrench(LoadCase& load) {
     const double sign = settings_["force_of"].text() == "tip" ? 1 : -1;
-    const double newton = settings_.unit("force"), newton_metre = settings_.unit("torque");
+    const double newton = settings_.unit("force"), newton_meter = settings_.unit("torque");
     load.force = table_.vector("force_", newton * sign);
     const std::optional<double> along = table_.number("force", newton * sign);
     const std::optional<Vec3d> force_sd = table_.deviation("force_sd", newton);
     if (load.force && along) table_.error("force and force_x, force_y, force_z are given; keep one of them");
     load.force_deviation = force_sd ? *force_sd : default_deviation("force", newton);
     if (along && !load.force) take_force_along_axis(load, *along);
-    load.torque = table_.vector("torque_", newton_metre * sign);
-    const std::optional<Vec3d> torque_sd = table_.deviation("torque_sd", newton_metre);
-    load.torque_deviation = torque_sd ? *torque_sd : default_deviation("torque", newton_metre);
+    load.torque = table_.vector("torque_", newton_meter * sign);
+    const std::optional<Vec3d> torque_sd = table_.deviation("torque_sd", newton_meter);
+    load.torque_deviation = torque_sd ? *torque_sd : default_deviation("torque", newton_meter);
     if ((load.force || load.torque) && !load.tip)
       table_.error(
           "has a force or torque but no tip, whose force it would be; give its pose, or leave the force blank");

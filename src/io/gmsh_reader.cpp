@@ -131,7 +131,7 @@ class GmshReader {
     text_.seek(in.position());
   }
 
-  // $Entities tells the physical groups of each entity; those of volumes are wanted.
+  // $Entities lists the physical groups of each entity; those of volumes are read.
   void read_entities() {
     GmshSource in = source();
     int64_t counts[4];

@@ -15,7 +15,7 @@ namespace {
 // Flops of a factorization that take as long as one iteration with block-Jacobi per row: 25 ns at 60 Gflop/s, both
 // measured on one AVX-512 core; their ratio differs little between machines.
 constexpr double kFlopsPerIteration = 1500;
-// Two digits with multigrid cost as much as so many iterations with block-Jacobi: about eight cycles of three, and a
+// Cost of two digits with multigrid, in iterations with block-Jacobi: about eight cycles of three, and a
 // share of the set-up, which serves all matrices of a sequence. bench_preconditioners measures both.
 constexpr double kMultigridCost = 30;
 constexpr double kLoose = 1.5;        // loose solves are followed by more Newton iterations than exact ones
@@ -26,7 +26,7 @@ constexpr int kMultigridCap = 500;
 constexpr int kPatience = 10'000;  // iterations where there is nothing to fall back to
 
 template <class Visit>
-void for_each_neighbour(const BlockPattern& p, int row, Visit visit) {
+void for_each_neighbor(const BlockPattern& p, int row, Visit visit) {
   for (int64_t s = p.row_start[row]; s < p.diagonal(row); ++s) visit(p.column[s]);
   for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u) visit(p.upper_row[u]);
 }
@@ -37,7 +37,7 @@ int search(const BlockPattern& p, std::vector<int>& queue, size_t begin, std::ve
   int levels = 0;
   for (size_t head = begin, level_end = queue.size(); head < queue.size(); level_end = queue.size(), ++levels)
     for (; head < level_end; ++head)
-      for_each_neighbour(p, queue[head], [&](int row) {
+      for_each_neighbor(p, queue[head], [&](int row) {
         if (mark[row] != colour) mark[row] = colour, queue.push_back(row);
       });
   return levels;
@@ -106,9 +106,9 @@ double predict_iterations(const BlockSparse& H, std::vector<char>& held) {
   for (int row = 0; row < p.rows(); ++row) {
     double sum = 0;
     bool beside_pin = held[row];
-    const auto add = [&](int64_t slot, int neighbour) {
+    const auto add = [&](int64_t slot, int neighbor) {
       sum += trace(H.block[slot]);
-      beside_pin = beside_pin || held[neighbour] || squared_norm(H.block[slot]) == 0;
+      beside_pin = beside_pin || held[neighbor] || squared_norm(H.block[slot]) == 0;
     };
     for (int64_t s = p.row_start[row]; s < p.diagonal(row); ++s) add(s, p.column[s]);
     for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u) add(p.upper_slot[u], p.upper_row[u]);
@@ -209,7 +209,7 @@ Cholesky* as_cholesky(LinearSolver& solver) {
 
 std::string AutoSolver::description() const {
   if (!has_chosen_) return "auto";
-  const std::string flops = "a factorisation takes about " + approximate(prediction_.flops) + " flops";
+  const std::string flops = "a factorization takes about " + approximate(prediction_.flops) + " flops";
   std::string text = "auto: " + chosen().description() + ", since ";
   text += fits_ ? flops : "a factor needs about " + approximate(prediction_.bytes / 1e6) + " MB, more than is free";
   if (expected_ > 0)

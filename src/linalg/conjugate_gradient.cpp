@@ -81,7 +81,7 @@ SolveReport ConjugateGradient::solve(std::span<const double> b, std::span<double
     is_measured = false;
     if (residual <= tolerance * b_norm) {
       if (tolerance >= kTrusted) break;
-      // The recurrence drifts from the true residual by round-off: measure, and go on from there if need be.
+      // The recurrence drifts from the true residual by round-off: measure it, and continue if necessary.
       residual = measure(b, x, report);
       is_measured = true;
       const bool stagnates = !(residual < 0.5 * last_measured);

@@ -35,7 +35,7 @@ void swap_columns(const T& condition, Mat3<T>& A, int i, int j) {
 
 // Turns B and V by the same rotations until the columns of B are orthogonal to working precision.
 template <class T>
-void orthogonalise_columns(Mat3<T>& B, Mat3<T>& V) {
+void orthogonalize_columns(Mat3<T>& B, Mat3<T>& V) {
   constexpr int kMaxSweeps = 20;
   constexpr double kOrthogonal = std::numeric_limits<double>::epsilon();
   bool rotated = true;
@@ -80,7 +80,7 @@ Svd3<T> decomposition(const Mat3<T>& F) {
   scale = where_positive(scale, scale, T(1.0));
   Mat3<T> B, V = identity3<T>();
   for (int i = 0; i < 9; ++i) B.a[i] = F.a[i] / scale;
-  orthogonalise_columns(B, V);
+  orthogonalize_columns(B, V);
 
   const auto squared_length = [&B](int c) { return dot(column(B, c), column(B, c)); };
   for (const int i : {0, 1, 0}) {

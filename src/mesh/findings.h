@@ -9,7 +9,7 @@ namespace aspic {
 
 std::string number(double value);  // three significant digits
 
-// "3 of 600 tets are inverted": the list's size, the total and what is said of them.
+// "3 of 600 tets are inverted": the size of the list, the total, and a predicate.
 std::string count_of(size_t count, size_t total, const std::string& noun, const std::string& what);
 
 class Findings {

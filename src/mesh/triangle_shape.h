@@ -9,7 +9,7 @@ using TriangleCorners = std::array<Vec3d, 3>;
 // The point of triangle abc nearest to p. [Ericson 2005, section 5.1.5]
 Vec3d nearest_point(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
-// Thinner than the round-off of its coordinates: no normal can be told.
+// Thinner than the round-off of its coordinates: it has no normal.
 bool is_degenerate(const TriangleCorners& triangle);
 
 // Whether the triangles have a point in common. Touching counts. Exact, for triangles not degenerate.

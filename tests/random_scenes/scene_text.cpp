@@ -39,7 +39,7 @@ class SceneText {
     if (draw_.chance(probability)) line(key, in_quotes(chosen));
   }
   std::string meters(double low, double high) { return shortest(length_ * std::stod(draw_.number(low, high))); }
-  std::string metres3(double size) {
+  std::string meters3(double size) {
     return "[" + meters(-size, size) + ", " + meters(-size, size) + ", " + meters(-size, size) + "]";
   }
 
@@ -104,7 +104,7 @@ class SceneText {
       line("scale", "[1, " + draw_.size(1e-6, 1) + ", " + draw_.size(1e-3, 1e3) + "]");
     }
     if (draw_.chance(0.2)) line("rotate", "{ axis = [1, 2, 3], angle_deg = " + draw_.number(-180, 180) + " }");
-    if (draw_.chance(0.2)) line("translate", draw_.chance(0.3) ? "[1e6, -1e6, 1e6]" : metres3(3));
+    if (draw_.chance(0.2)) line("translate", draw_.chance(0.3) ? "[1e6, -1e6, 1e6]" : meters3(3));
     const bool is_elastic = !draw_.chance(0.05);
     if (!is_elastic) line("elastic", "false");
     material(is_elastic);
@@ -197,7 +197,7 @@ class SceneText {
       case 1:
         return "{ rotate = { axis = [1, 0, 0], rate_deg = " + draw_.number(-1000, 1000) + " } }";
       case 2:
-        return "{ keyframes = [{ time = " + until + ", displacement = " + metres3(1) + " }] }";
+        return "{ keyframes = [{ time = " + until + ", displacement = " + meters3(1) + " }] }";
       case 3:
         return "{ displacement = [\"" + shortest(speed) + "*t\", 0, \"0.1*sin(t*X/" + shortest(length_) + ")\"] }";
       default:
@@ -226,7 +226,7 @@ class SceneText {
                "\n";
     if (draw_.chance(0.05))
       text_ +=
-          "[[body.spring]]\nwhere = { vertices = [2] }\ntarget = " + metres3(2) + "\nstiffness = " + stiffness() + "\n";
+          "[[body.spring]]\nwhere = { vertices = [2] }\ntarget = " + meters3(2) + "\nstiffness = " + stiffness() + "\n";
     if (index == 0 && count == 2 && draw_.chance(0.7))
       text_ += "[[body.spring]]\nbetween = [[0, 1], [3, 2]]\nto_body = \"body1\"\nstiffness = " + stiffness() + "\n";
   }

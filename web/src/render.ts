@@ -67,7 +67,7 @@ function aim(rig: CameraRig, request: RenderRequest, source: RecordedSource, up:
     const axes = sceneAxes(up);
     rig.orientation.copy(lookingFrom(new Vector3(...request.view).normalize(), axes.up, axes.right));
   }
-  rig.centre(source.box.lower, source.box.upper);
+  rig.center(source.box.lower, source.box.upper);
 }
 
 // Until the store has what the source sends in answer to a request, which it does at once.

@@ -63,7 +63,7 @@ test("what is not finite leaves a running range as it is", () => {
   assert.deepEqual(range.get(), { low: 1, high: 2 });
 });
 
-test("a diverging range is centred", () => {
+test("a diverging range is centered", () => {
   assert.deepEqual(about(1, 0.9, 1.5), { low: 0.5, high: 1.5 });
 });
 

@@ -247,7 +247,7 @@ export class BodyView {
       else this.rig.turn(kTurn * event.movementX, kTurn * event.movementY);
     });
     host.addEventListener("contextmenu", (event) => event.preventDefault());
-    host.addEventListener("dblclick", () => this.rig.centre(this.fitted.lower, this.fitted.upper));
+    host.addEventListener("dblclick", () => this.rig.center(this.fitted.lower, this.fitted.upper));
     // Only with ctrl: the page scrolls with the wheel alone.
     host.addEventListener(
       "wheel",

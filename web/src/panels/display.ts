@@ -162,7 +162,7 @@ function addCamera(folder: Folder, display: Display, views: () => View[]): void 
   const kinds = { perspective: "no", orthographic: "yes" };
   const kind = (): string => (display.cameras.a.orthographic ? "yes" : "no");
   folder.choice("Projection", () => kinds, kind, (value) => each((rig) => rig.setOrthographic(value === "yes")));
-  folder.button("Centre the body", () => views().forEach((view) => view.centre()));
+  folder.button("Center the body", () => views().forEach((view) => view.center()));
   const look = folder.within("Look from");
   for (const name of kViewNames) look.button(name, () => each((rig) => rig.look(name)));
   folder.add("linked", "One for both sides");
@@ -192,9 +192,9 @@ function addCameraShortcuts(page: Page, display: Display, views: () => View[]): 
   const add = (key: string, does: string, run: () => void): void => page.shortcut({ key, does, group: "Camera", run });
   const look = (name: ViewName): void => display.eachCamera((rig) => rig.look(name));
   kViewNames.forEach((name, i) => add(String(i + 1), `Look from: ${name}`, () => look(name)));
-  const centre = (): void => views().forEach((view) => view.centre());
-  add("0", "Centre the body", centre);
-  add(".", "Centre the body", centre);
+  const center = (): void => views().forEach((view) => view.center());
+  add("0", "Center the body", center);
+  add(".", "Center the body", center);
   add("o", "Orthographic or perspective", () => display.eachCamera((rig) => rig.setOrthographic(!rig.orthographic)));
   add("v", "Camera: two axes, orbit, 2-D", () => {
     const next = kCameraModes[(kCameraModes.indexOf(display.cameras.a.mode) + 1) % kCameraModes.length];

@@ -43,7 +43,7 @@ function meanEdge(geometry: Geometry): number {
 }
 
 export class Body {
-  readonly root = new THREE.Group(); // metres inside, unit lengths outside
+  readonly root = new THREE.Group(); // meters inside, unit lengths outside
   readonly edge: number; // mean length at rest [m]
   readonly numbered: boolean; // some vertex has a number of the user's
   box: Box | null;

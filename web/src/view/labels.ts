@@ -1,6 +1,6 @@
 // Which vertices and tets get their numbers written beside them: visible ones, spread so that no two texts overlap.
 import type { Geometry } from "../protocol";
-import { pixelsPerMetre, type Lens } from "./lens";
+import { pixelsPerMeter, type Lens } from "./lens";
 import { DepthGrid, kSteepest, screenPositions, type Surface } from "./picking";
 
 export interface Label {
@@ -105,7 +105,7 @@ class Spread {
     const cell = this.cell(x, y);
     const held = this.cells.get(cell);
     if (held && held.depth <= depth) return;
-    const slack = (kSteepest * kCell) / pixelsPerMetre(this.lens, depth);
+    const slack = (kSteepest * kCell) / pixelsPerMeter(this.lens, depth);
     if (this.grid.sees(x, y, depth, slack)) this.cells.set(cell, { x, y, depth, text });
   }
 

@@ -1,4 +1,4 @@
-// Where a camera puts a point on the screen, and the ray behind a pixel. In metres and CSS pixels, in double precision,
+// Where a camera puts a point on the screen, and the ray behind a pixel. In meters and CSS pixels, in double precision,
 // apart from what draws.
 import type { Vec3 } from "../protocol";
 
@@ -34,8 +34,8 @@ export function unit(a: Vec3): Vec3 {
   return size > 0 ? [a[0] / size, a[1] / size, a[2] / size] : [0, 0, 0];
 }
 
-// Pixels per metre at a depth.
-export function pixelsPerMetre(lens: Lens, depth: number): number {
+// Pixels per meter at a depth.
+export function pixelsPerMeter(lens: Lens, depth: number): number {
   const half = lens.extent > 0 ? lens.extent : lens.slope * depth;
   return lens.height / 2 / half;
 }
@@ -44,7 +44,7 @@ export function pixelsPerMetre(lens: Lens, depth: number): number {
 export function project(lens: Lens, p: Vec3): Vec3 {
   const d = minus(p, lens.eye);
   const depth = dot(d, lens.forward);
-  const scale = pixelsPerMetre(lens, depth);
+  const scale = pixelsPerMeter(lens, depth);
   return [lens.width / 2 + scale * dot(d, lens.right), lens.height / 2 - scale * dot(d, lens.up), depth];
 }
 

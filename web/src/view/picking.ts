@@ -1,6 +1,6 @@
 // What is under a pixel, computed on demand from the positions shown; no tree is kept, as positions change all the time.
 import type { Vec3 } from "../protocol";
-import { isBehind, pixelsPerMetre, type Lens, type Ray } from "./lens";
+import { isBehind, pixelsPerMeter, type Lens, type Ray } from "./lens";
 
 // Half space that is shown: normal . x >= offset.
 export interface Clip {
@@ -128,7 +128,7 @@ export function screenPositions(lens: Lens, positions: Float32Array, clip: Clip 
     const dx = x - eye[0], dy = y - eye[1], dz = z - eye[2];
     const depth = dx * forward[0] + dy * forward[1] + dz * forward[2];
     const hidden = isBehind(lens, depth) || isClipped(clip, x, y, z);
-    const scale = hidden ? NaN : pixelsPerMetre(lens, depth);
+    const scale = hidden ? NaN : pixelsPerMeter(lens, depth);
     screen[i] = lens.width / 2 + scale * (dx * right[0] + dy * right[1] + dz * right[2]);
     screen[i + 1] = lens.height / 2 - scale * (dx * up[0] + dy * up[1] + dz * up[2]);
     screen[i + 2] = depth;
@@ -170,7 +170,7 @@ export function verticesInStroke(lens: Lens, surface: Surface, way: readonly [nu
   const found: number[] = [];
   for (let i = 0; i < screen.length; i += 3) {
     if (!(distanceToWay(way, screen[i], screen[i + 1]) <= radius)) continue;
-    const slack = (kSteepest * cell) / pixelsPerMetre(lens, screen[i + 2]);
+    const slack = (kSteepest * cell) / pixelsPerMeter(lens, screen[i + 2]);
     if (grid.sees(screen[i], screen[i + 1], screen[i + 2], slack)) found.push(i / 3);
   }
   return found;

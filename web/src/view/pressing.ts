@@ -1,10 +1,10 @@
 // How the mouse presses a tip in: which way on the screen leads into the body, and how far a pixel is.
 import type { Vec3 } from "../protocol";
-import { along, cross, minus, pixelsPerMetre, project, unit, type Lens } from "./lens";
+import { along, cross, minus, pixelsPerMeter, project, unit, type Lens } from "./lens";
 
 export interface Way {
   direction: [number, number]; // on the screen
-  metres: number; // per pixel
+  meters: number; // per pixel
 }
 
 const kSlant = 0.3; // sine of the angle between the way in and the line of sight, below which down on the screen is in
@@ -20,14 +20,14 @@ export function inwardNormal(positions: ArrayLike<number>, triangles: ArrayLike<
 
 export function wayIn(lens: Lens, point: Vec3, axis: Vec3): Way {
   const [x, y, depth] = project(lens, point);
-  const pixels = pixelsPerMetre(lens, depth);
+  const pixels = pixelsPerMeter(lens, depth);
   const step = 1 / pixels; // one pixel, where nothing is foreshortened
   const [u, v] = project(lens, along(point, step, axis));
   const seen = Math.hypot(u - x, v - y);
-  if (!(seen > kSlant)) return { direction: [0, 1], metres: step };
-  return { direction: [(u - x) / seen, (v - y) / seen], metres: step / seen };
+  if (!(seen > kSlant)) return { direction: [0, 1], meters: step };
+  return { direction: [(u - x) / seen, (v - y) / seen], meters: step / seen };
 }
 
 export function depthOf(way: Way, [dx, dy]: [number, number]): number {
-  return way.metres * (dx * way.direction[0] + dy * way.direction[1]);
+  return way.meters * (dx * way.direction[0] + dy * way.direction[1]);
 }

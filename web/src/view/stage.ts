@@ -1,5 +1,5 @@
 // The three.js scene around a body: lights, ground, camera and renderer. Lengths are in radii of the scene's box, so
-// that bodies of micrometres and of kilometres are the same to the GPU's single precision.
+// that bodies of micrometers and of kilometers are the same to the GPU's single precision.
 import * as THREE from "three";
 import type { ProbeState, Scene, Vec3 } from "../protocol";
 import type { Body, Box } from "./body";
@@ -22,7 +22,7 @@ export class Stage {
   hasLeft = false; // the middle of a body that is not larger than the view
   radius = 1; // of the scene's box [m]
   readonly extras = new THREE.Group(); // what stands beside the body [m]
-  private centre: Vec3 = [0, 0, 0];
+  private center: Vec3 = [0, 0, 0];
   private up: Vec3 = [0, 0, 1];
   private body: Body | null = null;
   private floor = 0; // height of the ground along `up` [m]
@@ -59,7 +59,7 @@ export class Stage {
 
   // Places ground and lights around the box of a scene.
   place(scene: Pick<Scene, "lower" | "upper" | "up">): void {
-    this.centre = [0, 1, 2].map((c) => (scene.lower[c] + scene.upper[c]) / 2) as Vec3;
+    this.center = [0, 1, 2].map((c) => (scene.lower[c] + scene.upper[c]) / 2) as Vec3;
     this.radius = Math.max(length(minus(scene.upper, scene.lower)) / 2, 1e-12);
     const { right, front, up } = sceneAxes(scene.up);
     this.up = up.toArray();
@@ -67,7 +67,7 @@ export class Stage {
     this.gridStep = roundStep(this.radius / 4);
     this.grid.gridStep.value = this.gridStep / this.radius;
     // Lines pass through the origin of the scene.
-    const away = (axis: THREE.Vector3): number => -dot(axis.toArray(), this.centre) / this.radius;
+    const away = (axis: THREE.Vector3): number => -dot(axis.toArray(), this.center) / this.radius;
     this.grid.gridOrigin.value.set(away(right), away(front.clone().negate()));
     this.ground.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(right, front.clone().negate(), up));
     this.sky.position.copy(up);
@@ -79,7 +79,7 @@ export class Stage {
     this.remove();
     this.body = body;
     const scale = 1 / this.radius;
-    const [x, y, z] = this.centre;
+    const [x, y, z] = this.center;
     body.root.matrix.makeScale(scale, scale, scale).multiply(new THREE.Matrix4().makeTranslation(-x, -y, -z));
     this.extras.matrix.copy(body.root.matrix);
     this.scene.add(body.root);
@@ -117,7 +117,7 @@ export class Stage {
   clip(clip: Clip | null): void {
     const planes: THREE.Plane[] = [];
     if (clip) {
-      const inside = (dot(clip.normal, this.centre) - clip.offset) / this.radius; // of the middle of the scene
+      const inside = (dot(clip.normal, this.center) - clip.offset) / this.radius; // of the middle of the scene
       planes.push(new THREE.Plane(new THREE.Vector3(...clip.normal), inside));
     }
     this.body?.clip(planes);
@@ -130,7 +130,7 @@ export class Stage {
     camera.quaternion.copy(orientation);
     this.lamp.position.copy(camera.position);
     this.lamp.target.position.copy(camera.position).add(new THREE.Vector3(...lens.forward));
-    const drop = (this.floor - dot(this.up, this.centre)) / this.radius;
+    const drop = (this.floor - dot(this.up, this.center)) / this.radius;
     this.ground.position.set(...this.up).multiplyScalar(drop);
     if (this.body) this.adapt(this.body, lens, pinColour);
     this.renderer.render(this.scene, camera);
@@ -147,7 +147,7 @@ export class Stage {
   }
 
   private toUnits(point: Vec3): THREE.Vector3 {
-    return new THREE.Vector3(...minus(point, this.centre)).divideScalar(this.radius);
+    return new THREE.Vector3(...minus(point, this.center)).divideScalar(this.radius);
   }
 
   private camera(lens: Lens): THREE.PerspectiveCamera | THREE.OrthographicCamera {
@@ -177,13 +177,13 @@ export class Stage {
   }
 
   private adapt(body: Body, lens: Lens, pinColour: string): void {
-    const middle = body.box ? ([0, 1, 2].map((c) => (body.box!.lower[c] + body.box!.upper[c]) / 2) as Vec3) : this.centre;
+    const middle = body.box ? ([0, 1, 2].map((c) => (body.box!.lower[c] + body.box!.upper[c]) / 2) as Vec3) : this.center;
     const depth = Math.max(dot(minus(middle, lens.eye), lens.forward), 1e-3 * this.radius);
     const half = lens.extent > 0 ? lens.extent : lens.slope * depth;
-    const pixels = lens.height / 2 / half; // per metre
+    const pixels = lens.height / 2 / half; // per meter
     const lift = (lens.extent > 0 ? lens.extent / this.radius : lens.slope) / (lens.height / 2);
     // Each triangle would fill the view: nothing to be seen in it, and minutes for a renderer without a GPU.
-    const height = lens.extent > 0 ? lens.extent : lens.slope * length(minus(this.centre, lens.eye));
+    const height = lens.extent > 0 ? lens.extent : lens.slope * length(minus(this.center, lens.eye));
     this.isFar = this.reach() > kFar && this.reach() * this.radius > kFar * height;
     body.root.visible = !this.isFar;
     this.hasLeft = body.box !== null && this.reach() * this.radius < 2 * half && !isInside(lens, middle);

@@ -4,7 +4,7 @@ import type { SideName, Vec3 } from "../protocol";
 import type { Store } from "../store";
 import type { CameraRig } from "./cameras";
 import type { Display } from "./display";
-import { isBehind, isFinite3, onFacingPlane, pixelsPerMetre, project, rayThrough, type Lens } from "./lens";
+import { isBehind, isFinite3, onFacingPlane, pixelsPerMeter, project, rayThrough, type Lens } from "./lens";
 import { pick, verticesInStroke, type Hit, type Surface } from "./picking";
 import { depthOf, inwardNormal, wayIn, type Way } from "./pressing";
 
@@ -126,7 +126,7 @@ export class Touch {
     if (!tip || display.settings.tool !== "probe" || !this.mayTouch()) return null;
     const lens = this.view.lens();
     const [x, y, depth] = project(lens, tip.center);
-    const reach = Math.max(kClick, tip.radius * pixelsPerMetre(lens, depth));
+    const reach = Math.max(kClick, tip.radius * pixelsPerMeter(lens, depth));
     if (isBehind(lens, depth) || Math.hypot(at[0] - x, at[1] - y) > reach) return null;
     return { kind: "press", way: wayIn(lens, tip.center, tip.axis), from: tip.wanted, moved: [0, 0], depth: tip.wanted };
   }

@@ -94,8 +94,8 @@ export class View implements Touched {
   }
 
   // The body as it is now fills the view.
-  centre(): void {
-    if (this.figure.body?.box) this.rig.centre(this.figure.body.box.lower, this.figure.body.box.upper);
+  center(): void {
+    if (this.figure.body?.box) this.rig.center(this.figure.body.box.lower, this.figure.body.box.upper);
   }
 
   read(hit: Hit | null): void {
