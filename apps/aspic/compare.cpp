@@ -92,7 +92,7 @@ void add_compare(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("compare", "Solves one step of a scene by several methods");
   command->footer(R"(
 A method is NAME[:OPTION...], where an option is a definiteness, a preconditioner or a linear solver:
-newton, newton:clamped, newton:clamped:cholesky, gradient_descent, ... (docs/methods.md tells what they are).
+newton, newton:clamped, newton:clamped:cholesky, gradient_descent, ... (docs/methods.md describes them).
 
 Examples:
   aspic compare scenes/bunny.toml --methods newton,gradient_descent

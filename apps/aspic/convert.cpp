@@ -79,7 +79,7 @@ std::string format_table() {
 
 void add_convert(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<ConvertArguments>();
-  CLI::App* command = app.add_subcommand("convert", "Writes a mesh in another format, told by the file name");
+  CLI::App* command = app.add_subcommand("convert", "Writes a mesh in another format, chosen by the file name");
   command->footer([] {
     return "\nExamples:\n  aspic convert bunny.msh bunny.vtu\n  aspic convert bunny.mesh bunny.obj    the boundary\n" +
            format_table();

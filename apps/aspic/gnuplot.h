@@ -33,7 +33,7 @@ std::string number(double value);  // "NaN" where not finite, which gnuplot take
 std::string range(const std::optional<double>& min, const std::optional<double>& max);  // "[0:*]"
 void append_row(std::string& text, std::initializer_list<double> values);
 
-std::string color(int index);  // '#rrggbb': colors that are told apart by all eyes [Okabe and Ito 2008]
+std::string color(int index);  // '#rrggbb': colors for all kinds of color vision [Okabe and Ito 2008]
 inline constexpr const char* kInk = "#3a3a3a";
 inline constexpr const char* kGrid = "#e2e2e2";
 

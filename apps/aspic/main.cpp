@@ -31,7 +31,7 @@ Examples:
   aspic view scenes/bunny.toml              the same in the browser, to be touched
   aspic check bunny.mesh                    what is wrong with a mesh
   aspic materials                           the materials and their formulas
-'aspic COMMAND --help' tells more about a command.
+'aspic COMMAND --help' describes a command.
 
 Exit codes: 0 done, 1 internal error, 2 bad input, 3 not converged, a wrong derivative, a failed check,
 4 time limit, 130 interrupted by ctrl-C, 143 by kill, 141 when the reader of a pipe has gone. Standard output that
@@ -92,7 +92,7 @@ int report_parse_error(const CLI::App& app, const CLI::ParseError& error, const 
   const std::string meant = arguments.empty() ? "" : hint(app, arguments);
   fmt::print(stderr, "error: {}\n", printable(meant.empty() ? error.what() : meant));
   const auto chosen = app.get_subcommands();
-  fmt::print(stderr, "'aspic {}--help' tells what is possible.\n", chosen.empty() ? "" : chosen[0]->get_name() + " ");
+  fmt::print(stderr, "'aspic {}--help' lists the options.\n", chosen.empty() ? "" : chosen[0]->get_name() + " ");
   return exit_bad_input;
 }
 

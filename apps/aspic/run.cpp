@@ -60,7 +60,7 @@ fs::path directory_to_resume(const RunArguments& arguments) {
 
 std::FILE* human_stream(const RunArguments& arguments) { return arguments.json ? stderr : stdout; }
 
-// Long preparations are seen: what is said comes before what it is about.
+// Announces long preparations before they begin.
 void announce(const RunArguments& arguments, const std::string& what) {
   if (arguments.quiet) return;
   fmt::print(human_stream(arguments), "{} ...\n", what);
@@ -112,7 +112,7 @@ int unconverged_before(const fs::path& directory, int steps) {
   return count;
 }
 
-// Takes the steps of one run and tells everyone who listens.
+// Takes the steps of one run and notifies the observers.
 class Runner {
  public:
   Runner(const RunArguments& arguments, Scene& scene, RunDirectory& directory, const StopToken& stop)
@@ -155,7 +155,7 @@ class Runner {
     if (trace_) finish_trace();
     if (has_blown_up_)
       fmt::print(stderr,
-                 "stopped after step {} of {}: the explicit scheme blew up, and there is no state to go on from\n",
+                 "stopped after step {} of {}: the explicit scheme blew up, and there is no state to continue from\n",
                  simulation.steps_taken(), last_step_);
   }
 
@@ -273,7 +273,7 @@ int run(const RunArguments& arguments) {
   StopToken stop([] { return interrupt_signal() != 0; });
   if (arguments.time_limit > 0) stop = stop.with_deadline(clock, arguments.time_limit);
   if (arguments.threads > 0) set_thread_count(arguments.threads);
-  landscapes(arguments);  // bad input is told before anything is written
+  landscapes(arguments);  // bad input is reported before anything is written
   Scene scene = load(arguments);
   RunDirectory directory = open_directory(arguments, scene);
   catch_interrupts();  // not before there is something to keep
@@ -329,7 +329,7 @@ solver.time_budget was spent) or an explicit scheme blew up, which ends the run;
       ->check(CLI::Range(1, 1000000000));
   command
       ->add_option("--time-limit", arguments->time_limit,
-                   "Stop after so many seconds of wall time, dropping the step under way; --resume continues")
+                   "Stop after this wall time [s], dropping the step in progress; --resume continues")
       ->check(CLI::Range(1e-3, 1e9));
   command->add_option("--out", arguments->out, "Directory of the results; out/NAME by default");
   command->add_flag("--force", arguments->force, "Replace the results of an earlier run");

@@ -7,8 +7,8 @@
 
 namespace aspic::cli {
 
-// Writes report.html into the directory of the run when the scene asks for it, and tells so on `stream` (null: does
-// not). Why it could not be written is told on stderr: whatever goes wrong here, the run is what it was.
+// Writes report.html into the directory of the run if the scene asks for it, and prints its path to `stream` (null:
+// nothing). Failures are reported on stderr and do not affect the run.
 void write_run_report(const std::filesystem::path& run, const Scene& scene, std::FILE* stream);
 
 }  // namespace aspic::cli

@@ -1,4 +1,4 @@
-// What the user is told about a mesh.
+// Messages about a mesh.
 #pragma once
 #include <string>
 

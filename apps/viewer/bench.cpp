@@ -139,7 +139,7 @@ void Bench::record(const Touch& touch, const TipPose& pose, int depths, const St
   }
 }
 
-// Touch and pose are told relative to the surface, which in the mesh of the data may lie a little elsewhere.
+// Touch and pose are relative to the surface, which in the mesh of the data may lie a little elsewhere.
 LoadCase Bench::as_data(const LoadCase& load) const {
   LoadCase data = load;
   const Vec3d site = load.touch.center + (load.tip->shape == TipShape::sphere ? load.tip->radius : 0) * load.touch.axis;

@@ -205,15 +205,15 @@ TEST(Bench, AStoppedFitKeepsWhatItReached) {
   page.send(poke(2, 1));
   page.send({{"do", "fit"}});
   const std::optional<FitTask> task = page.session().take_fit();
-  int told = 0;
+  int iterations = 0;
   const auto tell = [&](FitNews news) {
     news.task = task->number;
     page.note_fit(news);
-    if (++told == 3) page.send({{"do", "stop_fit"}});
+    if (++iterations == 3) page.send({{"do", "stop_fit"}});
   };
   run_fit(*task, tell, StopToken([&] { return !page.session().wants_fit(); }));
   EXPECT_FALSE(page.capture()["fit"]["running"]);
-  EXPECT_LE(told, 5);
+  EXPECT_LE(iterations, 5);
   page.send({{"do", "fit"}});  // may be begun again
 }
 
@@ -261,9 +261,9 @@ TEST(FitJob, RunsInAThreadOfItsOwnAndStops) {
     ASSERT_TRUE(changed.wait_for(lock, std::chrono::seconds(120), [&] { return woken; }));
     woken = false;
     lock.unlock();
-    if (const std::optional<FitNews> told = job.news()) {
-      page.note_fit(*told);
-      has_ended = told->has_ended;
+    if (const std::optional<FitNews> news = job.news()) {
+      page.note_fit(*news);
+      has_ended = news->has_ended;
     }
     if (news == 1) job.stop();
   }

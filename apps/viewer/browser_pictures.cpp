@@ -66,7 +66,7 @@ std::vector<std::string> browser_command(const fs::path& folder, const std::stri
   return command;
 }
 
-// What the page has sent so far, told from the server's thread to the one that waits.
+// What the page has sent so far, passed from the server's thread to the waiting one.
 class Arrivals {
  public:
   Arrivals(const PageOfPictures& page, const Pictures& pictures) : page_(page), pictures_(pictures) {}

@@ -10,7 +10,7 @@ namespace aspic::viewer {
 
 struct PageOfPictures {
   std::string page;   // HTML
-  std::string query;  // of its address, after the token: "&render=1"; web/src/main.ts tells what there is
+  std::string query;  // of its address, after the token: "&render=1"; see web/src/main.ts
 
   // What the page asks for, by number. Called from another thread. Empty: it has all it needs.
   std::function<std::string(int index)> part = {};

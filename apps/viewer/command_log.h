@@ -11,7 +11,7 @@ namespace aspic::viewer {
 
 struct Event {   // NOLINT(bugprone-exception-escape): to move JSON throws nothing
   int step = 1;  // carried out before this step of side a
-  int b = -1;    // and when side b had taken so many steps; -1: there was none
+  int b = -1;    // and when side b had taken this number of steps; -1: no side b
   Json command;
 };
 

@@ -1,4 +1,4 @@
-// A fit in a thread of its own: begun, listened to, stopped. Whoever listens asks for the news when it is woken.
+// A fit in a thread of its own: start, news, stop. The listener requests the news when it is woken.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -13,7 +13,7 @@
 namespace aspic::viewer {
 
 struct FitTask {
-  long number = 0;  // tells tasks apart
+  long number = 0;  // identifies the task
   DataSet data;
   FitPlan plan;
 };
@@ -22,7 +22,7 @@ struct FitTask {
 struct FitNews {
   long task = 0;                         // which
   std::string stage;                     // in words; empty: as before
-  std::vector<FitIteration> iterations;  // of this stage, after those told before; `is_new_stage`: others are void
+  std::vector<FitIteration> iterations;  // new ones of this stage; `is_new_stage`: earlier ones are void
   bool is_new_stage = false;
   std::vector<double> young;  // of each tet of the data [Pa]; empty: as before
   std::optional<FitOutcome> outcome;

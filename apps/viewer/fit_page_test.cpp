@@ -114,7 +114,7 @@ TEST(FitPage, KeepsTheScriptsOfThePage) {
   outcome.warnings = {"</script><b>"};
   const std::string html = fit_page(data, outcome, {});
   EXPECT_THAT(html, HasSubstr("<script>"));
-  EXPECT_EQ(html.find("<b>"), std::string::npos) << "what is told lies packed in the page";
+  EXPECT_EQ(html.find("<b>"), std::string::npos) << "messages are packed in the page";
 }
 
 }  // namespace

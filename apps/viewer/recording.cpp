@@ -82,7 +82,7 @@ std::vector<int> evenly(int count, int wanted) {
 struct Frame {
   int index = 0;
   std::vector<float> x;                    // 3 per point
-  std::vector<std::vector<float>> values;  // of the fields that move and cannot be told from x
+  std::vector<std::vector<float>> values;  // of the fields that change and do not follow from x
 };
 
 const std::string kDisplacement = "displacement";  // follows from the positions

@@ -16,7 +16,7 @@ std::string name_of(const Scene& scene) {
   return shortened(name);
 }
 
-// What the scene asks for; which of the solvers `auto` became is told in the summary of the run.
+// What the scene asks for; the summary of the run names the solver that `auto` chose.
 std::string solver_words(const Table& document) {
   const Value& solver = *document.find("solver");
   return solver["method"].text() + ", " + solver["linear"].text() + " for the linear systems";

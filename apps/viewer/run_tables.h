@@ -13,7 +13,7 @@ struct RunTables {
   std::vector<StepRow> steps;           // 1, 2, ...; no wall times, no explanations, no trials without a trace
 };
 
-// Steps 1 to `last_step`; of the traces of a run that was resumed each tells of the steps it was the last to take.
+// Steps 1 to `last_step`; of the traces of a resumed run, the last one counts for each step.
 // Throws InvalidInput with file and line.
 RunTables read_run_tables(const RunLayout& layout, int last_step);
 

@@ -156,7 +156,7 @@ TEST(Upload, RefusesWhatIsNotPacked) {
   Page page;
   EXPECT_THAT(page.refused(upload("a.toml", "!")), HasSubstr("base64"));
   EXPECT_THAT(page.refused(upload("a.toml", "aGVsbG8=")), HasSubstr("a.toml"));
-  EXPECT_EQ(page.scene()["bodies"][0], "beam") << "the scene before it goes on";
+  EXPECT_EQ(page.scene()["bodies"][0], "beam") << "the old scene stays";
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ struct Server::Impl {
     (stranger == all.end() ? all.front() : *stranger)->cut_off();
   }
 
-  // The pages are told, but not waited for long.
+  // The pages are notified, but not waited for long.
   void close_network() {
     if (!thread.joinable()) return;
     asio::post(network, [this] {

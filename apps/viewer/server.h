@@ -32,7 +32,7 @@ class Server {
   std::string address() const;  // "http://127.0.0.1:PORT/?token=..."
   int port() const;
 
-  void announce(const std::string& what);  // tells the pages that something takes a while; "": it is done
+  void announce(const std::string& what);  // notifies the pages of a long operation; "": it is done
 
   void check() const;  // throws what has ended the simulation, if anything has
 

@@ -1,5 +1,5 @@
-// Who may talk to the server: whoever knows the token, from a page of this server. The name under which it was reached
-// is checked, too, as a hostile site may let its own name point to 127.0.0.1 (DNS rebinding).
+// Access to the server requires the token and a page of this server. The host name of the request is checked, too, as a
+// hostile site may let its own name point to 127.0.0.1 (DNS rebinding).
 #pragma once
 #include <string>
 #include <string_view>

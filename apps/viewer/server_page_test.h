@@ -137,7 +137,7 @@ class TestPage {
  private:
   void write(const std::string& bytes, bool binary) {
     stream_.binary(binary);
-    error_code ignored;  // the program may have closed the connection; reading tells
+    error_code ignored;  // the program may have closed the connection; reading will fail then
     stream_.write(asio::buffer(bytes), ignored);
   }
 

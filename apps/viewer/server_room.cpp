@@ -19,7 +19,7 @@ constexpr size_t kLongestCommand = size_t{1} << 20;  // except a recorded sessio
 constexpr int kComplaints = 5;                       // in one second
 
 // Commands that do not wait for the end of a slow step.
-// Whoever steers does not wait for the answer to a question.
+// The steering page does not wait for the answer to a question.
 Urgency urgency_of(std::string_view command) {
   constexpr std::array<std::string_view, 9> kUrgent = {"pause",  "reset",  "load",    "set",        "rewind",
                                                        "lesson", "replay", "compare", "end_compare"};

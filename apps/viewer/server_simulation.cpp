@@ -145,7 +145,7 @@ void SimulationThread::carry_out(const Request& request) {
   if (!answer.to_sender.empty() && request.page != kNoPage) audience_.tell(request.page, std::move(answer.to_sender));
 }
 
-// The fit runs beside the simulation; what it tells is noted between two steps.
+// The fit runs beside the simulation; its news is handled between two steps.
 void SimulationThread::serve_fit() {
   if (std::optional<FitTask> task = session_.take_fit())
     fit_ = std::make_unique<FitJob>(*std::move(task), [this] {
@@ -171,7 +171,7 @@ void SimulationThread::play() {
   }
   next_step_ = pacing_.due(session_.time(), session_.speed(), now);
   if (next_step_ > now) return;
-  // Short steps are told together.
+  // Short steps are reported together.
   const auto is_next_due = [&, together = now + kBetweenPictures] {
     const Clock::time_point then = Clock::now();
     return then < together && !is_woken() && pacing_.due(session_.time(), session_.speed(), then) <= then;

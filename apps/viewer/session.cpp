@@ -112,7 +112,7 @@ void Session::Impl::install(std::unique_ptr<ShownSide> first, std::unique_ptr<Sh
 }
 
 ShownSide& Session::Impl::next() {
-  // One that blew up stays where it is, and the other goes on.
+  // An unstable side stays where it is, and the other continues.
   if (!b || b->side.is_blown_up()) return *a;
   if (a->side.is_blown_up()) return *b;
   if (a->side.iteration() >= 0) return *a;

@@ -80,8 +80,8 @@ class Session {
   // The next step of the side that is behind, and further ones as long as `is_next_due`; what is new, for all pages.
   Messages advance(const std::function<bool()>& is_next_due = {});
 
-  // A fit that was asked for: to be run by who has threads, and told by note_fit(), until wants_fit() is false or it
-  // has ended; what is new for all pages.
+  // A requested fit: run by the owner of threads and reported by note_fit(), until wants_fit() is false or it has
+  // ended. Returns the news for all pages.
   std::optional<FitTask> take_fit();
   bool wants_fit() const;
   Messages note_fit(const FitNews& news);

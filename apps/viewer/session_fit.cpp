@@ -105,22 +105,22 @@ void Session::Impl::forget_fit() {
   show_fit();
 }
 
-void Session::Impl::note_fit(const FitNews& told) {
-  if (told.task != capture.task || !capture.bench) return;
-  if (!told.stage.empty()) capture.stage = told.stage;
-  if (told.is_new_stage) capture.history.clear();
-  capture.history.insert(capture.history.end(), told.iterations.begin(), told.iterations.end());
-  if (!told.young.empty()) capture.young = told.young;
-  if (!told.failure.empty()) capture.failure = told.failure;
-  if (told.outcome) {
-    capture.outcome = told.outcome;
+void Session::Impl::note_fit(const FitNews& news) {
+  if (news.task != capture.task || !capture.bench) return;
+  if (!news.stage.empty()) capture.stage = news.stage;
+  if (news.is_new_stage) capture.history.clear();
+  capture.history.insert(capture.history.end(), news.iterations.begin(), news.iterations.end());
+  if (!news.young.empty()) capture.young = news.young;
+  if (!news.failure.empty()) capture.failure = news.failure;
+  if (news.outcome) {
+    capture.outcome = news.outcome;
     capture.saved.clear();
-    capture.failure = told.outcome->failure;
-    capture.words = told.outcome->report.words;
-    for (const FittedQuantity& quantity : told.outcome->quantities)
+    capture.failure = news.outcome->failure;
+    capture.words = news.outcome->report.words;
+    for (const FittedQuantity& quantity : news.outcome->quantities)
       if (quantity.name == "young") capture.deviation = quantity.deviation;
   }
-  if (told.has_ended) capture.is_fitting = false, capture.stage.clear();
+  if (news.has_ended) capture.is_fitting = false, capture.stage.clear();
   show_fit();
   tell_capture();
 }

@@ -108,7 +108,7 @@ inline Geometry decoded_geometry(const std::string& bytes) {
   return geometry;
 }
 
-// A page that steers, and remembers what it was told.
+// A steering page that stores its messages.
 class Page {
  public:
   explicit Page(const std::string& toml = kBeam, const std::vector<std::string>& overrides = {},

@@ -52,8 +52,8 @@ Moment Side::moment() const {
           .settings = settings_};
 }
 
-// A simulation counts steps from its start: one that changed the length of its steps goes on from where it is when the
-// start is put to where as many steps of the new length would have begun.
+// A simulation counts steps from its start: one that changed the length of its steps continues from its state when the
+// start is moved to where as many steps of the new length would have begun.
 Simulation::Snapshot Side::snapshot_of(const Moment& moment) const {
   const SimulationOptions& options = simulation().options();
   const bool is_same_step = options.h == moment.h;

@@ -18,7 +18,7 @@ enum class Progress {
   interrupted,  // nothing changed
   iterated,     // the step under way shows one iterate more
   stepped,      // a step is complete
-  blown_up      // likewise, but there is no state to go on from
+  blown_up      // a step is complete, but there is no state to continue from
 };
 
 class Side {

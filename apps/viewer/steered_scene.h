@@ -15,7 +15,7 @@ struct SteeredScene {
   Scene scene;
   GrabSpring* mouse = nullptr;  // one of the model's loads
   size_t mouse_load = 0;        // which
-  HeldTip* tip = nullptr;       // likewise
+  HeldTip* tip = nullptr;       // one of the model's loads
   size_t tip_load = 0;
   Table document;  // complete
   std::filesystem::path path;

@@ -38,7 +38,7 @@ struct StepRow {
   StepReport report;
   std::vector<IterationRow> iterations;
   double mouse_work = 0;               // within the step, and by what was done with the mouse before it [J]
-  double probe_work = 0;               // likewise, by the probe
+  double probe_work = 0;               // of the probe [J]
   double pin_work = 0;                 // by pins and by the other targets [J]
   std::vector<std::string> pins = {};  // the names of report.resultants.pins
   Explanation why;

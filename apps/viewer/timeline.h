@@ -21,10 +21,10 @@ struct Moment {
   double start_time = 0, h = 0;   // [s] see Side::snapshot_of
   std::string integrator;
   Grab grab;                                     // resting, after what was done at this moment
-  Poke poke;                                     // likewise
-  std::shared_ptr<const std::vector<Pin>> pins;  // likewise
+  Poke poke;                                     // resting
+  std::shared_ptr<const std::vector<Pin>> pins;  // after what was done at this moment
   Grab acted;                                    // in the step that led here
-  Poke poked;                                    // likewise
+  Poke poked;                                    // in that step
   long settings = 0;                             // with which that step was taken
 
   size_t bytes() const;

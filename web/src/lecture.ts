@@ -132,7 +132,7 @@ export class Lecture {
       ? "The recorded mouse has ended: the body is yours."
       : playing
         ? "A recorded mouse plays. Drag the body to take over."
-        : "The recorded mouse is paused: press Space to go on, or drag the body to take over.";
+        : "The recorded mouse is paused: press Space to continue, or drag the body to take over.";
     if (replaying === this.replaying && (!replaying || text === this.replay.textContent)) return;
     this.replaying = replaying;
     this.replay.hidden = false;

@@ -3,8 +3,8 @@
 const kNarrow = "(max-width: 48rem)";
 
 // Now, and whenever it changes.
-export function whenNarrow(told: (narrow: boolean) => void): void {
+export function whenNarrow(reported: (narrow: boolean) => void): void {
   const query = matchMedia(kNarrow);
-  query.addEventListener("change", () => told(query.matches));
-  if (query.matches) told(true);
+  query.addEventListener("change", () => reported(query.matches));
+  if (query.matches) reported(true);
 }

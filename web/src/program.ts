@@ -9,7 +9,7 @@ async function send(path: string, token: string, body: Blob | string): Promise<R
   return answer;
 }
 
-// Draws, and tells the program how that ended.
+// Draws, and reports the result to the program.
 export async function drawForProgram(draw: (query: URLSearchParams, tell: Tell) => Promise<void>): Promise<void> {
   const query = new URL(location.href).searchParams;
   const token = query.get("token") ?? "";

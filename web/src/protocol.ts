@@ -1,6 +1,6 @@
 // What the page and the program say to each other. Text frames are JSON: the page sends `Command`s and `Query`s, the
 // program `ServerMessage`s. Binary frames, from the program only, are geometry and pictures; all numbers little-endian.
-// docs/viewer_protocol.md tells the same in prose. A number that is not finite travels as null.
+// docs/viewer_protocol.md describes their meaning. A number that is not finite travels as null.
 
 import type { StepFields } from "./stepFields";
 

@@ -3,7 +3,7 @@ import type { Command, Picture, Query, State, TextReply, Vec3, VertexReply } fro
 import { carried, normalsOf, type RecordedSurface, type Recording, unpack } from "./recording";
 import type { Incoming, Source } from "./source";
 
-// Who tells the time and calls back once per picture of the screen; tests have their own.
+// The clock, which calls back once per picture of the screen; tests have their own.
 export interface Pulse {
   now(): number; // [ms]
   next(callback: () => void): void;

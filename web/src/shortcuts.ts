@@ -44,7 +44,7 @@ export function listenToKeys(page: Page): void {
   addEventListener("keydown", (event) => press(page, event), { capture: true });
 }
 
-// A shortcut with its button, whose tooltip tells the key.
+// A shortcut with its button, whose tooltip shows the key.
 export function shortcutButton(page: Page, shortcut: Shortcut, look: ButtonOptions): HTMLButtonElement {
   page.shortcut(shortcut);
   const title = `${shortcut.does} (${keyName(shortcut.key)})`;

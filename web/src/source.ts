@@ -8,7 +8,7 @@ export interface Source {
   readonly live: boolean;
   start(receive: (incoming: Incoming) => void): void;
   send(command: Command): void; // what the source cannot do is answered by a `refused`
-  request(command: Command): Promise<unknown>; // the same, and tells when it is done; rejects with the reason
+  request(command: Command): Promise<unknown>; // the same; resolves when it is done, rejects with the reason
   ask<Reply>(query: Query): Promise<Reply>; // rejects with the reason
   ready(): void; // the last picture is drawn; the next may come
 }

@@ -70,7 +70,7 @@ export function parseWorkspace(text: string): Workspace {
   };
 }
 
-// Of a session, to be repeated. The program judges the events; the page only tells a recording from other files.
+// Of a session, to be repeated. The program judges the events; the page only recognizes recordings.
 export function parseRecording(text: string): Recording {
   const read = parseJson(text, "recording");
   if (typeof read.scene !== "string" || !Array.isArray(read.events) || typeof read.steps !== "number") {

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { AskedDepths } from "../src/capture/askedDepths";
 
-test("notches go on from what was asked for, however late the program tells it", () => {
+test("notches continue from what was asked for, however late the program answers", () => {
   const asked = new AskedDepths();
   asked.ask(1, 0);
   asked.ask(2, 0);
@@ -17,7 +17,7 @@ test("notches go on from what was asked for, however late the program tells it",
   assert.equal(asked.last(3), 3);
 });
 
-test("what is told differs from what was asked for in the last digits", () => {
+test("what is reported differs from what was asked for in the last digits", () => {
   const asked = new AskedDepths();
   asked.ask(0.005007513224813856, 0);
   asked.ask(0.005462741699796928, 0);

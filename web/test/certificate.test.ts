@@ -47,13 +47,13 @@ test("totals name the worst steps; what nobody asked for does not count", () => 
   assert.equal(all.state?.state_hash, "0123456789abcdef");
 });
 
-test("the energy bound is told with its slack", () => {
-  const told = (row: StepRow): unknown => column("energy bound [J]").value(row);
-  assert.deepEqual(kSteps.map(told), ["holds by 2", "broken by 1", "–"]);
-  assert.equal(told(row(4, { energy_bound: "not_guaranteed", energy_slack: -3 })), "not guaranteed");
+test("the energy bound is reported with its slack", () => {
+  const reported = (row: StepRow): unknown => column("energy bound [J]").value(row);
+  assert.deepEqual(kSteps.map(reported), ["holds by 2", "broken by 1", "–"]);
+  assert.equal(reported(row(4, { energy_bound: "not_guaranteed", energy_slack: -3 })), "not guaranteed");
 });
 
-test("a state is told by its first digits, and whole by its tooltip", () => {
+test("a state is reported by its first digits, and whole by its tooltip", () => {
   const state = column("state");
   assert.equal(state.value(row(1, {})), "01234567");
   assert.equal(state.whole?.(row(1, {})), "0123456789abcdef");

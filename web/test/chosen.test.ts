@@ -64,7 +64,7 @@ test("the newest step is chosen until the reader chooses another", () => {
   assert.equal(chosen.step, 8);
 });
 
-test("walking goes on into the neighboring steps, and ends at the ends", () => {
+test("walking continues into the neighboring steps, and ends at the ends", () => {
   const { chosen } = opened();
   chosen.choose("a", 2, 2);
   chosen.walk(1);
@@ -128,7 +128,7 @@ test("what was interrupted is asked again", async () => {
   assert.equal(source.asked.length, 2);
 });
 
-test("an answer is remembered, but not after a rewind; a refusal is told", async () => {
+test("an answer is remembered, but not after a rewind; a refusal is reported", async () => {
   const { source, chosen } = opened();
   const look = async (step: number, why?: string): Promise<void> => {
     chosen.choose("a", step, 0);

@@ -65,7 +65,7 @@ test("what is not known stays unknown, also in sums", () => {
   );
 });
 
-test("a ledger goes on when the first rows are forgotten", () => {
+test("a ledger continues when the first rows are forgotten", () => {
   const rows = steps(40);
   const [whole, late] = [new Ledger(potentials), new Ledger(potentials)];
   whole.update(rows, 0);

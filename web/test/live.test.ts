@@ -92,7 +92,7 @@ test("a lost connection rejects what is open and is made anew", async (context) 
   assert.deepEqual(received.at(-1), { connected: true });
 });
 
-test("why the program closed the connection is told", (context) => {
+test("why the program closed the connection is reported", (context) => {
   mockTimeouts(context);
   const { sockets, received } = connect();
   sockets[0].closed("too slow");

@@ -28,7 +28,7 @@ test("while one value is under way, only the newest of the others is sent", asyn
   assert.equal(rests, 1);
 });
 
-test("a refused value is told, and the next one is sent", async () => {
+test("a refused value is reported, and the next one is sent", async () => {
   const failures: unknown[] = [];
   const newest = new Newest<number>(
     (value) => (value < 0 ? Promise.reject(new Error("negative")) : Promise.resolve()),

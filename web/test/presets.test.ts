@@ -35,7 +35,7 @@ test("values are written as TOML", () => {
   assert.equal(toml(true), "true");
 });
 
-test("free overrides are one per line, and a line that is none is told", () => {
+test("free overrides are one per line, and a line that is none is reported", () => {
   assert.deepEqual(parseOverrides("a.b=1\n\n  c = 2 \n"), ["a.b=1", "c = 2"]);
   assert.equal(faultOfOverrides(["a.b=1", 'body.bunny.pin.0.where="y < 0.1"']), "");
   assert.match(faultOfOverrides(["a.b"]), /'a.b' is not KEY=VALUE/);

@@ -223,7 +223,7 @@ test("it answers what it knows and refuses the rest in words", async () => {
   await assert.rejects(reader.source.request({ do: "surface", which: "skin" }), /no skin/);
 });
 
-test("a damaged recording is told in words", async () => {
+test("a damaged recording is reported in words", async () => {
   for (const text of [recordingText().slice(0, 400), "", "no base64 at all!"]) {
     const reader = new Reader(text);
     await reader.start();

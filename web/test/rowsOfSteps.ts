@@ -1,4 +1,4 @@
-// Rows for tests, of steps that did nothing but what is said.
+// Rows for tests, of steps that did only what the test sets.
 import type { IterationRow, StepRow } from "../src/protocol";
 import { kUnknownStep } from "../src/stepFields";
 

@@ -12,7 +12,7 @@ test("units that take a prefix get one, others none", () => {
   assert.equal(unitText("m/s^2"), "m/s²");
 });
 
-test("what is not finite is told in words", () => {
+test("what is not finite is reported in words", () => {
   assert.equal(valueText(null, "Pa"), "not finite");
   assert.equal(valueText(Infinity, ""), "not finite");
 });

@@ -6,21 +6,21 @@ import { iterationRow, stepRow } from "./rowsOfSteps";
 const withNorms = (norms: number[]): ReturnType<typeof stepRow> =>
   stepRow({ iterations: norms.map((gradient_norm) => iterationRow({ gradient_norm })) });
 
-test("squaring is told from a steady pace", () => {
+test("squaring is reported from a steady pace", () => {
   assert.equal(pace([1, 1e-1, 1e-2, 1e-4, 1e-8]).pace, "squaring");
   assert.equal(pace([1, 0.5, 0.25, 0.125, 0.0625]).pace, "steady");
   assert.ok(Math.abs(pace([1, 0.5, 0.25, 0.125]).factor - 2) < 1e-12);
   assert.equal(pace([1, 0.3, 0.05, 0.003]).pace, "faster");
 });
 
-test("nothing is said where the numbers say nothing", () => {
+test("numbers without a meaning have no text", () => {
   assert.equal(pace([1, 0.1]).pace, "none");
   assert.equal(pace([1, 2, 3]).pace, "none");
   assert.equal(pace([null, 0, 1]).pace, "none");
   assert.equal(pace([]).pace, "none");
 });
 
-test("a converged step tells its residual and its pace", () => {
+test("a converged step shows its residual and its pace", () => {
   assert.equal(
     stepText(withNorms([1, 1e-1, 1e-2, 1e-4]), true),
     "Converged in 4 iterations: the residual, 100 µN, is below the threshold of 1 mN. The gradient fell ever faster, the last time by a factor of 100: close to the minimum each iteration about squares the error.",

@@ -80,15 +80,15 @@ class Opened {
   void hear(const viewer::Messages& messages) {
     for (const Message& message : messages) {
       if (message.is_binary) continue;
-      const json told = json::parse(message.bytes);
-      if (told["kind"] == "scene") {
-        scenes_.insert(told["side"].get<std::string>());
-        field_ = told["field"].get<std::string>();
+      const json sent = json::parse(message.bytes);
+      if (sent["kind"] == "scene") {
+        scenes_.insert(sent["side"].get<std::string>());
+        field_ = sent["field"].get<std::string>();
       }
-      if (told["kind"] != "steps") continue;
-      auto& rows = rows_[told["side"].get<std::string>()];
-      rows.resize(std::min(rows.size(), told["from"].get<size_t>()));
-      for (const json& row : told["steps"]) rows.push_back(row);
+      if (sent["kind"] != "steps") continue;
+      auto& rows = rows_[sent["side"].get<std::string>()];
+      rows.resize(std::min(rows.size(), sent["from"].get<size_t>()));
+      for (const json& row : sent["steps"]) rows.push_back(row);
     }
   }
 
@@ -236,7 +236,7 @@ TEST_P(Explosion, IsThatOfTheOtherSchemeUnderTheSameMouse) {
   opened.play(18);
   EXPECT_TRUE(opened.converged("a"));
   if (GetParam() == "explicit") {
-    EXPECT_GT(opened.rows("a").size(), 2 * opened.rows("b").size());  // it goes on where the other one has ended
+    EXPECT_GT(opened.rows("a").size(), 2 * opened.rows("b").size());  // it continues where the other one has ended
   }
   EXPECT_GT(opened.largest_energy("b"), 1e3 * opened.largest_energy("a"));
 }

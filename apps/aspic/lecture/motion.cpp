@@ -66,7 +66,7 @@ void show_equation_of_motion(const Stage& stage, Sheet& sheet) {
   sheet.at_most("dV/dq against differences of V, relative", *std::min_element(check.error.begin(), check.error.end()),
                 1e-8, "", "the best width loses a third of the 16 digits, the sum over the tets some more");
 
-  // One explicit step tells the acceleration that the program uses.
+  // One explicit step yields the acceleration that the program uses.
   Scene moving = stage.on_real_mesh("05_swing", {"time.integrator=symplectic_euler", "time.step=1e-5"});
   const State before = moving.simulation.state();
   moving.simulation.step();

@@ -183,7 +183,7 @@ MinimizeReport overshoot_with(double tol) {
 void check_settings(OpenStep& step, Sheet& sheet) {
   const LineSearchOptions other{.alpha_max = 2, .sufficient_decrease = 0.3, .shrink = 0.7};
   const Curve curve = curve_of(step, other);
-  draw_curve(curve, "other_settings.svg", "alpha_max = 2, p = 0.7, c = 0.3: the two lines can be told apart", sheet);
+  draw_curve(curve, "other_settings.svg", "alpha_max = 2, p = 0.7, c = 0.3: the two lines are distinct", sheet);
   double worst = 0, alpha = other.alpha_max;
   for (const Trial& t : curve.tried) {
     worst = std::max(worst, std::abs(t.alpha / alpha - 1));

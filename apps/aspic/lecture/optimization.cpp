@@ -75,7 +75,7 @@ void show_optimization(const Stage& stage, Sheet& sheet) {
   sheet.at_most("|root of the equation - minimizer of E|", largest(plus(root.q, -1, argmin)), bound, "m",
                 "what is left of both gradients over the least eigenvalue of M");
   sheet.at_most("the bound itself", bound, 1e-3 * largest(plus(argmin, -1, step.q_t)), "m",
-                "so that it tells the solution from a thousandth of the step's motion");
+                "so that it is below a thousandth of the motion of the step");
   sheet.show("iterations of root finding", static_cast<double>(root.residuals.size()) - 1, "");
   sheet.show("iterations of minimizing", report.iterations, "");
   sheet.at_most("E at the minimizer - E at the start", step.E.value(argmin) - step.E.value(step.start), 0, "kg m^2",

@@ -43,7 +43,7 @@ double extent_of(const fs::path& path) {
 
 bool holds_tets(const fs::path& path) { return std::holds_alternative<TetMesh>(read_mesh(path)); }
 
-// Tets that fill the surface, made once and kept under a name that tells surface and size.
+// Tets that fill the surface, made once and stored under a name with surface and size.
 fs::path filled(const fs::path& surface, double size, const fs::path& cache) {
   const std::string hash = fingerprint_of_file(surface);
   const fs::path kept =

@@ -26,7 +26,7 @@ export class CaseList {
   private readonly count = element("span", { class: "faint", role: "status" });
   private readonly clear = this.make("Forget all", "Forget all recorded cases", () => ({ do: "forget" }));
   private readonly save = button({ text: "Save data set…", title: "As a folder that aspic fit reads, on the program's machine", steers: true }, () => this.saveAs());
-  private told = "";
+  private reported = "";
 
   constructor(
     private readonly store: Store,
@@ -60,9 +60,9 @@ export class CaseList {
       if (document.activeElement !== this.noise.input) this.noise.input.value = String(Number((100 * capture.noise).toPrecision(3)));
       if (document.activeElement !== this.seed.input) this.seed.input.value = String(capture.seed);
     }
-    const told = JSON.stringify(cases);
-    if (told === this.told) return;
-    this.told = told;
+    const reported = JSON.stringify(cases);
+    if (reported === this.reported) return;
+    this.reported = reported;
     this.list.replaceChildren(
       ...cases.map((recorded, i) =>
         element(

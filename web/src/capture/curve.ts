@@ -1,7 +1,7 @@
 // The force over the depth at which it was felt, of one touch: the latest force of every depth, the shallowest first.
 import type { ProbeState } from "../protocol";
 
-const kMost = 400; // depths that are told apart, over the radius of the tip
+const kMost = 400; // depths that are distinguished, over the radius of the tip
 
 export class ForceCurve {
   private touch = "";

@@ -1,4 +1,4 @@
-// A dial with a needle, as on a spring balance. Its scale grows with what it has to show.
+// A dial with a needle, as on a spring balance. Its scale grows with the value.
 import { element } from "../dom";
 import { prefixOf, short } from "../plots/numbers";
 import { roundStep } from "../view/ranges";

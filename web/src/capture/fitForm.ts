@@ -31,7 +31,7 @@ export function errorText(log: number): string {
 export class FitForm {
   readonly element = element("section", { class: "capture-fit", "aria-label": "Fit" });
   private readonly begin = button({ text: "Fit the stiffness", title: "Finds Young's modulus of every tet from the recorded cases, in the background", steers: true }, () => this.send({ do: "fit" }));
-  private readonly end = button({ text: "Stop", title: "Stop the fit and keep what it has reached", steers: true }, () => this.send({ do: "stop_fit" }));
+  private readonly end = button({ text: "Stop", title: "Stop the fit and keep its result", steers: true }, () => this.send({ do: "stop_fit" }));
   private readonly simulate = button({ text: "Simulate it", title: "Beside the true body, under the same probe and mouse", steers: true }, () => this.send({ do: "simulate_fit" }));
   private readonly status = element("p", { class: "capture-status", role: "status" });
   private readonly result = element("p", { class: "capture-result" });

@@ -73,7 +73,7 @@ class SoupMaker {
   private readonly corner: number[] = [];
   private readonly edges: number[] = [];
 
-  // A polygon of one tet as a fan; `isEdge` tells which of its sides are lines to be seen.
+  // A polygon of one tet as a fan; `isEdge` marks its visible sides.
   add(polygon: Corner[], tet: number): void {
     if (polygon.length < 3) return;
     const first = this.corner.length;

@@ -170,7 +170,7 @@ class FitReport {
     const names = this.fit.head.cases.map((c) => c.name);
     return section(
       "What is not explained",
-      "Residuals by standard deviations: fitted minus measured. A histogram wider than the normal curve, or a case that stands out, tells of a model too simple or of a bad reading.",
+      "Residuals by standard deviations: fitted minus measured. A histogram wider than the normal curve, or a case that stands out, indicates a model too simple or a bad reading.",
       element("div", { class: "charts" }, figure("All readings", this.keep(histogramChart(found.all))), figure("By case", this.keep(caseChart(names, found.ofCase)))),
       misfits.element,
     );

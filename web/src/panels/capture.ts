@@ -66,7 +66,7 @@ class CapturePanel implements Panel {
   private setUp(): void {
     if (this.isSetUp || !this.gauge.visible || !this.store.steers || !this.store.capture) return;
     this.isSetUp = true;
-    if (this.store.capture.tets === 0) this.store.source.request({ do: "bench" }).catch(() => {}); // a body that cannot be measured is told when it is tried
+    if (this.store.capture.tets === 0) this.store.source.request({ do: "bench" }).catch(() => {}); // a body that cannot be measured is reported later
   }
 
   private follow(): void {

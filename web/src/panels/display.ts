@@ -54,7 +54,7 @@ class Folder {
     this.gui.add({ press }, "press").name(label);
   }
 
-  // The value lives elsewhere: `read` tells it after each change.
+  // The value lives elsewhere: `read` returns it after each change.
   choice(label: string, choices: () => Choices, read: () => string, write: (value: string) => void): void {
     const held = { value: read() };
     let listed = JSON.stringify(choices());

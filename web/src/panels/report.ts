@@ -136,10 +136,10 @@ export function makeReportPanel(store: Store, page: Page): Panel {
     drawn = performance.now();
     const side = store.side("a");
     drawTotals(list, side?.steps ?? []);
-    const told = side?.scene.notes ?? [];
-    aboutScene.hidden = told.length === 0;
-    notesTitle.textContent = `What was chosen for this scene: ${plural(told.length, "note")}`;
-    notes.replaceChildren(...told.map((note) => element("li", {}, note)));
+    const reported = side?.scene.notes ?? [];
+    aboutScene.hidden = reported.length === 0;
+    notesTitle.textContent = `What was chosen for this scene: ${plural(reported.length, "note")}`;
+    notes.replaceChildren(...reported.map((note) => element("li", {}, note)));
     table.draw();
   };
   const drawSoon = (): void => {

@@ -8,7 +8,7 @@ import { messageOf } from "../dom";
 import { Emitter } from "../emitter";
 
 const kFollowEvery = 500; // [ms]
-const kRest = 4; // times as long as an answer took, the program goes on undisturbed before it is asked about the next
+const kRest = 4; // times as long as an answer took, the program continues undisturbed before it is asked about the next
 const kRemembered = 12;
 
 interface Events {
@@ -35,7 +35,7 @@ export class Chosen extends Emitter<Events> {
   private timer: ReturnType<typeof setTimeout> | null = null;
   seen: Seen | null = null; // the newest answer
   private asked = "";
-  private restsUntil = 0; // as performance.now() tells [ms]
+  private restsUntil = 0; // by performance.now() [ms]
   private underWay: StepRow | null = null;
   private withUnderWay: StepRow[] = [];
   private readonly replies = new Map<string, IterationReply>();
@@ -126,7 +126,7 @@ export class Chosen extends Emitter<Events> {
     this.emit("changed", undefined);
   }
 
-  // Asks the program about the chosen iteration, once; `looked` tells when an answer is there. While steps fly by, the
+  // Asks the program about the chosen iteration, once; `looked` is called with the answer. While steps fly by, the
   // answer may be about one that was chosen before: for each question the program leaves its steps.
   look(): void {
     const at = { side: this.side, step: this.step, iteration: this.iteration };
@@ -166,7 +166,7 @@ export class Chosen extends Emitter<Events> {
     }
   }
 
-  // What was interrupted is asked again when the program has told what it did instead.
+  // What was interrupted is asked again when the program has reported what it did instead.
   private failed(at: ChosenIteration, why: string): void {
     if (!why.startsWith("interrupted")) this.take({ at, reply: null, why });
     else if (this.asked === keyOf(at)) this.asked = "";

@@ -162,7 +162,7 @@ export class Ledger {
   }
 }
 
-const kDwarfs = 1e3; // times as much: the other could not be told from zero
+const kDwarfs = 1e3; // times as much: the other cannot be distinguished from zero
 
 // The energies to be shown of two sides of which one has blown up: about those of the calmer one. Null: both can be shown.
 export function calmRange(one: Ledger, other: Ledger): [number, number] | null {

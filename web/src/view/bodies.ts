@@ -1,7 +1,7 @@
 // Which body each vertex of a surface belongs to, and the colors of bodies.
 import type { Geometry } from "../protocol";
 
-// After the reader's own color for the first one; told apart with any kind of color vision, and not that of the inside.
+// After the reader's own color for the first one; distinguished with any kind of color vision, and not that of the inside.
 const kFurther = ["#56a35a", "#c9699f", "#d8c23f", "#7a68c4", "#3fb0b5", "#b5543f", "#8a929e"];
 
 export function bodyOfTet(tet: number, bodyTets: readonly number[]): number {

@@ -15,7 +15,7 @@ export interface Box {
 
 const kBoxSamples = 2000;
 
-// Of every so many vertices, those that are not finite left out; null when none is left.
+// A subset of the vertices at regular intervals, without those that are not finite; null if none is left.
 export function coarseBox(positions: Float32Array): Box | null {
   const count = positions.length / 3;
   const stride = 3 * Math.max(1, Math.floor(count / kBoxSamples));

@@ -85,14 +85,14 @@ export class Card {
       this.fields.show("Fields there", fieldRows(value, scene));
       this.mark([value.position]);
     } else {
-      this.vertex.show("Vertex", [["not told", messageOf(vertex.reason)]]);
+      this.vertex.show("Vertex", [["no answer", messageOf(vertex.reason)]]);
       this.fields.show("Fields there", []);
     }
     if (tet.status === "fulfilled") {
       const body = scene.bodies.length > 1 ? ` of ${scene.bodies[bodyOfTet(tet.value.tet, scene.body_tets)]}` : "";
       this.tet.show(`Tet ${tet.value.tet}${body}`, tetRows(tet.value));
       this.mark(tet.value.positions);
-    } else this.tet.show("Tet", [["not told", messageOf(tet.reason)]]);
+    } else this.tet.show("Tet", [["no answer", messageOf(tet.reason)]]);
     this.element.hidden = false;
     this.changed();
   }

@@ -11,7 +11,7 @@ export interface Label {
 
 const kMost = 300;
 export const kSkinPoint = 0xffffffff; // has no number
-const kCell = 6; // of the grid that tells what is hidden [px]
+const kCell = 6; // of the grid for hidden vertices [px]
 
 export interface LabelKinds {
   vertices: boolean;

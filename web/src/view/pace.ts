@@ -1,4 +1,4 @@
-// Tells the source that its pictures are drawn, once for each; a page that nobody sees draws nothing and takes its time.
+// Notifies the source that its pictures are drawn, once for each; a page that nobody sees draws nothing and takes its time.
 import type { Source } from "../source";
 
 const kHiddenPause = 500; // [ms]

@@ -58,7 +58,7 @@ export function interpolated(hit: Hit, triangles: Uint32Array, values: Float32Ar
   return hit.weights.reduce((sum, weight, k) => sum + weight * values[triangles[3 * hit.triangle + k]], 0);
 }
 
-// The depth of what is seen in a rectangle of the screen, coarsely: tells which vertices are hidden behind others.
+// The depth of what is seen in a rectangle of the screen, coarsely, to find hidden vertices.
 export class DepthGrid {
   private readonly depth: Float32Array;
 

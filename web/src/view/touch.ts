@@ -107,7 +107,7 @@ export class Touch {
     return { kind: "grab", anchor: hit.point, target: hit.point };
   }
 
-  // A new tip at that place; it is pressed in as the mouse goes on.
+  // A new tip at that place; it is pressed in as the mouse continues.
   private touchWithTip(hit: Hit): Gesture {
     const { store, side, display } = this.view;
     const surface = this.view.surface()!;
@@ -202,7 +202,7 @@ export class Touch {
     this.schedule();
   }
 
-  // At most once per frame: tells the program, and looks what is under the cursor.
+  // At most once per frame: notifies the program, and looks up what is under the cursor.
   private schedule(): void {
     if (this.waiting || this.listeners.signal.aborted) return;
     this.waiting = true;
@@ -230,7 +230,7 @@ export class Touch {
     if (vertices.length === 0) return;
     for (const vertex of vertices) pinned ? known.add(vertex) : known.delete(vertex);
     store.source.send({ do: "pin", side, vertices, pinned });
-    this.view.showPins([...known]); // until the program tells
+    this.view.showPins([...known]); // until the program answers
   }
 
   private look(): void {

@@ -202,7 +202,7 @@ export class View implements Touched {
   private takeScene(): void {
     if (this.figure.takeScene()) this.card.close();
     const scene = this.figure.side?.scene;
-    // Side a tells the fields to the display, which then changes for all.
+    // Side a sends the fields to the display, which then changes for all.
     if (scene && this.side === "a") this.display.setFields(scene.fields, scene.field, scene.bodies.length);
     else this.applyDisplay();
   }

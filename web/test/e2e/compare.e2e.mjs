@@ -32,7 +32,7 @@ test("each offered comparison opens two sides, which advance together", async ()
     await until("two sides", async () => (await page.locator(".side").count()) === 2);
     await page.getByText(`B: ${label}`).waitFor();
     assert.equal(heard.scenes.b.label, label);
-    const told = heard.messages.length;
+    const reported = heard.messages.length;
     for (let i = 0; i < 3; ++i) {
       const { a, b } = heard.state;
       await page.keyboard.press("s");
@@ -46,7 +46,7 @@ test("each offered comparison opens two sides, which advance together", async ()
       const h = Math.max(heard.scenes.a.h, heard.scenes.b.h);
       assert.ok(Math.abs(heard.state.a.time - heard.state.b.time) < 0.51 * h, `${heard.state.a.time} and ${heard.state.b.time} s`);
     }
-    for (const side of ["a", "b"]) assert.ok(heard.messages.slice(told).some((m) => m.kind === "steps" && m.side === side));
+    for (const side of ["a", "b"]) assert.ok(heard.messages.slice(reported).some((m) => m.kind === "steps" && m.side === side));
     await until("both pictures", ({ pictures }) => pictures.a.step > 0 && pictures.b.step > 0);
     await endCompare(opened);
   }
@@ -107,7 +107,7 @@ test("settings of the sides are set apart or together", async () => {
   await close();
 });
 
-test("what cannot be compared is told in the dialog", async () => {
+test("what cannot be compared is reported in the dialog", async () => {
   const opened = await openSession(program);
   const { page, heard, close } = opened;
   await page.keyboard.press("c");

@@ -50,7 +50,7 @@ test("a workspace brings back settings, comparison, camera and panels", async ()
   await close();
 });
 
-test("files that are none of Aspic's are told from those that are", async () => {
+test("files that are none of Aspic's are distinguished from those that are", async () => {
   const opened = await openSession(program);
   const { page, heard, close } = opened;
   const files = ["not json", "[]", "{}", '{"aspic_workspace": 7}', '{"aspic_workspace": 1}', '{"aspic_workspace": 1, "scene": "/none.toml"}', '{"scene": "x", "events": [], "steps": 3}'];
@@ -158,9 +158,9 @@ test("a recorded session is repeated to the bit, from memory and from its file",
   const recording = await read(await downloaded(page, () => page.keyboard.press("Shift+R")));
   assert.ok(JSON.parse(recording).events.length >= 4);
   const repeat = async (start) => {
-    const told = heard.messages.length;
+    const reported = heard.messages.length;
     await start();
-    await until("the repetition", () => heard.messages.slice(told).some(({ kind, replaying }) => kind === "state" && replaying));
+    await until("the repetition", () => heard.messages.slice(reported).some(({ kind, replaying }) => kind === "state" && replaying));
     const isNewest = ({ pictures, geometries }) => pictures.a.generation === geometries.a.generation && pictures.a.step === 5;
     await until("its end", ({ state }) => !state.replaying && state.a.step === 5 && isNewest(heard));
     assertSameBits(heard.pictures.a.positions, known);

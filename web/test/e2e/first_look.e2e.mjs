@@ -123,7 +123,7 @@ test("changes are undone one by one, and a reset brings all back", async () => {
   await until("the material again", () => young(heard) === 3000 && settingOf(heard, "material.density").value === 920);
   await answered(opened, "the material's undo", isSet, () => page.keyboard.press("z"));
   await until("its end", () => heard.scenes.a.overrides.length === 0);
-  assert.equal(heard.state.a.step, steps, "the motion goes on from where it was");
+  assert.equal(heard.state.a.step, steps, "the motion continues from where it was");
   await close();
 });
 

@@ -35,12 +35,12 @@ export function temporaryFolder() {
   return folder;
 }
 
-export async function until(what, condition, told = () => "") {
+export async function until(what, condition, reported = () => "") {
   const end = Date.now() + kPatience;
   for (;;) {
     const found = await condition();
     if (found) return found;
-    if (Date.now() > end) throw new Error(`never: ${what}; ${told()}`);
+    if (Date.now() > end) throw new Error(`never: ${what}; ${reported()}`);
     await new Promise((resolve) => setTimeout(resolve, 20));
   }
 }
@@ -83,7 +83,7 @@ export async function theBrowser() {
   return browser;
 }
 
-// What the program told the page, as far as a test wants to know.
+// What the program reported the page, as far as a test wants to know.
 function listener() {
   const heard = { messages: [], sent: [], state: null, states: 0, scenes: {}, geometries: {}, pictures: {}, counted: 0, bytes: 0 };
   const forget = { end_compare: () => ["scenes", "geometries", "pictures"].forEach((kind) => delete heard[kind].b) };
@@ -150,8 +150,8 @@ function noteDrawnTexts() {
 
 // The last that was said, for a test that fails.
 function story({ state, sent, messages, pictures }) {
-  const told = messages.slice(-8).map(({ kind, why, a }) => [kind, why ?? a?.step].join(" "));
-  return `${JSON.stringify(state)}; sent: ${sent.slice(-5).join(" ").slice(-800)}; told: ${told.join(", ")}; picture of step ${pictures.a?.step}`;
+  const reported = messages.slice(-8).map(({ kind, why, a }) => [kind, why ?? a?.step].join(" "));
+  return `${JSON.stringify(state)}; sent: ${sent.slice(-5).join(" ").slice(-800)}; reported: ${reported.join(", ")}; picture of step ${pictures.a?.step}`;
 }
 
 // A page of its own. `close` fails on every error of its scripts, refusal of its content policy and foreign request,
@@ -225,11 +225,11 @@ export const settingOf = (heard, key, side = "a") => heard.scenes[side].settings
 
 // Acts, and waits for the program's answer to the first message that this sends and that `isIt`.
 export async function answered({ heard, until }, what, isIt, act) {
-  const [asked, told] = [heard.sent.length, heard.messages.length];
+  const [asked, reported] = [heard.sent.length, heard.messages.length];
   await act();
   const sent = () => heard.sent.slice(asked).map((text) => JSON.parse(text)).find(isIt);
   const { id } = await until(`${what} is sent`, sent);
-  return until(`an answer about ${what}`, () => heard.messages.slice(told).find((message) => message.id === id));
+  return until(`an answer about ${what}`, () => heard.messages.slice(reported).find((message) => message.id === id));
 }
 
 // Until the program has answered whatever the page asked, and the page has drawn that.
@@ -243,21 +243,21 @@ export async function settled({ page, heard, until }) {
   }
 }
 
-// What a shortcut leads to: a state that the program tells after the key was pressed.
+// What a shortcut leads to: a state that the program sends after the key was pressed.
 export async function pressAndWait({ page, heard, until }, key, what, condition) {
-  const told = heard.states;
+  const reported = heard.states;
   await page.keyboard.press(key);
-  await until(what, () => heard.states > told && condition(heard));
+  await until(what, () => heard.states > reported && condition(heard));
 }
 
 // The key that plays and pauses, until that is so: what plays may end by itself before the key is pressed.
 export const setPlaying = (opened, wanted) =>
   opened.until(wanted ? "play" : "a pause", async () => {
     const { page, heard } = opened;
-    const told = heard.messages.length;
+    const reported = heard.messages.length;
     if (heard.state.playing === wanted) return true;
     await answered(opened, "play or pause", ({ do: what }) => ["play", "pause"].includes(what), () => page.keyboard.press(" "));
-    return heard.messages.slice(told).some(({ kind, playing }) => kind === "state" && playing === wanted);
+    return heard.messages.slice(reported).some(({ kind, playing }) => kind === "state" && playing === wanted);
   });
 
 // What the page does once per frame is done, also what that asks of the next frame.

@@ -26,13 +26,13 @@ test("each page of the lecture opens its scene and its panel, and says what to l
       assert.ok(lesson.missing.length > 10, tell);
       continue;
     }
-    const told = heard.messages.length;
+    const reported = heard.messages.length;
     const answer = await answered(opened, tell, isLesson, () => entry.click());
     assert.equal(answer.kind, "reply", `${tell}: ${answer.why}`);
     await page.locator("#left .lesson h2").filter({ hasText: lesson.title }).waitFor();
     assert.ok(lesson.look.length > 20 && lesson.claim.length > 5, tell);
     await page.locator(`[role=tab][aria-selected="true"]`, { hasText: { energy: "Energy", microscope: "Microscope", landscape: "Landscape", functions: "Functions" }[lesson.panel] }).waitFor();
-    if (lesson.function) await until(`the function of ${tell}`, () => heard.messages.slice(told).some(({ reply }) => reply?.formula !== undefined));
+    if (lesson.function) await until(`the function of ${tell}`, () => heard.messages.slice(reported).some(({ reply }) => reply?.formula !== undefined));
     await until(`a picture of ${tell}`, ({ pictures, geometries }) => pictures.a && pictures.a.generation === geometries.a.generation);
     if (i % 6 === 1) await keepPicture(page, `lecture_${lesson.id}`);
   }
@@ -48,9 +48,9 @@ test("the recorded mouse plays until the reader takes over", async (t) => {
   let found = null;
   for (const [i, lesson] of lessons.entries()) {
     if (lesson.missing) continue;
-    const told = heard.messages.length;
+    const reported = heard.messages.length;
     await answered(opened, lesson.title, isLesson, () => page.locator("#left ol.lessons li button").nth(i).click());
-    if (heard.messages.slice(told).some(({ kind, replaying }) => kind === "state" && replaying)) found = lesson;
+    if (heard.messages.slice(reported).some(({ kind, replaying }) => kind === "state" && replaying)) found = lesson;
     if (found) break;
   }
   assert.ok(found, "a page with a recorded mouse");

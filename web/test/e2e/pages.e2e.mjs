@@ -78,7 +78,7 @@ test("without the token, or with a wrong one, there is no page and no session", 
   await page.context().close();
 });
 
-test("nonsense is refused, and the pages go on", async () => {
+test("nonsense is refused, and the pages continue", async () => {
   const one = await openSession(program);
   const two = await openPage(program.address, { prepare: (page) => page.addInitScript(() => {
     const Native = WebSocket;
@@ -120,7 +120,7 @@ test("nonsense is refused, and the pages go on", async () => {
   await one.close();
 });
 
-test("what is no request is answered, and the server goes on", async () => {
+test("what is no request is answered, and the server continues", async () => {
   const { hostname, port, search } = new URL(program.address);
   const say = (text) => new Promise((resolve) => {
     let heard = "";
@@ -137,7 +137,7 @@ test("what is no request is answered, and the server goes on", async () => {
   await one.close();
 });
 
-test("a dropped connection is told and made anew, with all that was known", async () => {
+test("a dropped connection is reported and made anew, with all that was known", async () => {
   let isCut = false;
   const links = [];
   const opened = await openPage(program.address, { expected: kLostSocket, prepare: (page) =>

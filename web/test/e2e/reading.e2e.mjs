@@ -61,13 +61,13 @@ async function nameless(page, context) {
   const { nodes } = await session.send("Accessibility.getFullAXTree");
   const roles = /^(button|textbox|searchbox|combobox|checkbox|radio|slider|spinbutton|tab|switch|menuitem|separator|grid|ColorWell|DisclosureTriangle|application|dialog)$/;
   const wrong = nodes.filter((node) => !node.ignored && roles.test(node.role?.value) && !node.name?.value?.trim());
-  const told = [];
+  const reported = [];
   for (const node of wrong) {
     const { node: found } = await session.send("DOM.describeNode", { backendNodeId: node.backendDOMNodeId });
-    told.push(`${context}: ${node.role.value} <${found.localName} ${found.attributes.join(" ")}>`);
+    reported.push(`${context}: ${node.role.value} <${found.localName} ${found.attributes.join(" ")}>`);
   }
   await session.detach();
-  return told;
+  return reported;
 }
 
 test("every control has a name, in every panel and dialog", async () => {

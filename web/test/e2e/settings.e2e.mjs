@@ -124,7 +124,7 @@ test("every choice of every setting is taken or refused in words, and a step can
   await close();
 });
 
-test("what is typed wrongly is refused in words, put back, and the simulation goes on", async () => {
+test("what is typed wrongly is refused in words, put back, and the simulation continues", async () => {
   const opened = await openSettings();
   const { page, heard, until, close } = opened;
   for (const { key } of heard.scenes.a.settings.filter(({ kind }) => ["number", "integer", "vector"].includes(kind))) {
@@ -159,7 +159,7 @@ test("what is typed wrongly is refused in words, put back, and the simulation go
   await close();
 });
 
-test("extremes while it plays: it goes on, and says what failed", async () => {
+test("extremes while it plays: it continues, and says what failed", async () => {
   const opened = await openSettings();
   const { page, heard, until, close } = opened;
   await setPlaying(opened, true);

@@ -194,7 +194,7 @@ test("impossible functions are refused in words", async () => {
   await close();
 });
 
-test("energies are told as they are, and saved with a row for each step", async () => {
+test("energies are reported as they are, and saved with a row for each step", async () => {
   const opened = await open("Energy");
   const { page, heard, close } = opened;
   for (let step = 1; step <= 12; ++step) await pressAndWait(opened, "s", `step ${step}`, ({ state }) => state.a.step === step);
@@ -204,11 +204,11 @@ test("energies are told as they are, and saved with a row for each step", async 
   assert.equal(rows.filter(([step]) => Number(step) > 0).length, 12);
   const kinetic = head.findIndex((name) => /kinetic/.test(name));
   assert.ok(kinetic > 0, head.join());
-  const told = new Map(heard.messages.filter(({ kind }) => kind === "steps").flatMap(({ steps }) => steps).map((row) => [row.step, row]));
+  const reported = new Map(heard.messages.filter(({ kind }) => kind === "steps").flatMap(({ steps }) => steps).map((row) => [row.step, row]));
   for (const row of rows) {
     assert.equal(row.length, head.length);
     assert.ok(row.every((entry) => entry === "" || Number.isFinite(Number(entry))), row.join());
-    if (Number(row[0]) > 0) assert.equal(Number(row[kinetic]), told.get(Number(row[0])).kinetic);
+    if (Number(row[0]) > 0) assert.equal(Number(row[kinetic]), reported.get(Number(row[0])).kinetic);
   }
   const picture = await downloaded(page, () => panel.getByRole("button", { name: "PNG" }).click());
   assert.ok((await contrast(page, readFileSync(await picture.path()))) > 3);

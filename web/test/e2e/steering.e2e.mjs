@@ -134,14 +134,14 @@ test("the brush pins and unpins what it covers", async () => {
   await page.keyboard.press("b");
   const [x, y] = await findBody(opened);
   const stroke = async () => {
-    const [sent, told] = [heard.sent.length, heard.messages.length];
+    const [sent, reported] = [heard.sent.length, heard.messages.length];
     await page.mouse.move(x, y);
     await page.mouse.down();
     await page.mouse.move(x + 12, y, { steps: 3 });
     await page.mouse.up();
     await frames(page);
     const asked = heard.sent.slice(sent).filter((text) => JSON.parse(text).do === "pin").length;
-    await until("the pins of the stroke", () => heard.messages.slice(told).filter(({ kind }) => kind === "pins").length >= asked);
+    await until("the pins of the stroke", () => heard.messages.slice(reported).filter(({ kind }) => kind === "pins").length >= asked);
   };
   await stroke();
   await until("pins", () => pins().length > clamped);
@@ -159,7 +159,7 @@ test("the brush pins and unpins what it covers", async () => {
   await close();
 });
 
-test("a click of the reading tool tells the numbers of a vertex and its tet", async () => {
+test("a click of the reading tool shows the numbers of a vertex and its tet", async () => {
   const opened = await openSession(program);
   const { page, close } = opened;
   const [x, y] = await findBody(opened);
