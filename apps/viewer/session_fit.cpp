@@ -105,22 +105,22 @@ void Session::Impl::forget_fit() {
   show_fit();
 }
 
-void Session::Impl::note_fit(const FitNews& news) {
-  if (news.task != capture.task || !capture.bench) return;
-  if (!news.stage.empty()) capture.stage = news.stage;
-  if (news.is_new_stage) capture.history.clear();
-  capture.history.insert(capture.history.end(), news.iterations.begin(), news.iterations.end());
-  if (!news.young.empty()) capture.young = news.young;
-  if (!news.failure.empty()) capture.failure = news.failure;
-  if (news.outcome) {
-    capture.outcome = news.outcome;
+void Session::Impl::note_fit(const FitNews& update) {
+  if (update.task != capture.task || !capture.bench) return;
+  if (!update.stage.empty()) capture.stage = update.stage;
+  if (update.is_new_stage) capture.history.clear();
+  capture.history.insert(capture.history.end(), update.iterations.begin(), update.iterations.end());
+  if (!update.young.empty()) capture.young = update.young;
+  if (!update.failure.empty()) capture.failure = update.failure;
+  if (update.outcome) {
+    capture.outcome = update.outcome;
     capture.saved.clear();
-    capture.failure = news.outcome->failure;
-    capture.words = news.outcome->report.words;
-    for (const FittedQuantity& quantity : news.outcome->quantities)
+    capture.failure = update.outcome->failure;
+    capture.words = update.outcome->report.words;
+    for (const FittedQuantity& quantity : update.outcome->quantities)
       if (quantity.name == "young") capture.deviation = quantity.deviation;
   }
-  if (news.has_ended) capture.is_fitting = false, capture.stage.clear();
+  if (update.has_ended) capture.is_fitting = false, capture.stage.clear();
   show_fit();
   tell_capture();
 }

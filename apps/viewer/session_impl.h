@@ -132,7 +132,7 @@ struct Session::Impl {
   void fit(Arguments&);
   void stop_fit(Arguments&);
   void simulate_fit(Arguments&);
-  void note_fit(const FitNews& news);
+  void note_fit(const FitNews& update);
   void show_fit();  // as colors
   void forget_fit();
   void save_material(const std::filesystem::path& folder);
