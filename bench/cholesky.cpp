@@ -61,9 +61,9 @@ CholeskyTimes run_once(const Problem& problem, Cholesky& solver, Time time) {
   solver.analyze(problem.pattern);
   times.analysis = time(analysis);
   solver.factorize(*problem.H);  // touches the memory
-  const bench::Stopwatch factorisation;
+  const bench::Stopwatch factorization;
   if (!solver.factorize(*problem.H)) std::puts("the matrix is not positive definite");
-  times.factorisation = time(factorisation);
+  times.factorization = time(factorization);
   solver.solve(problem.b, x, 1e-10);
   const bench::Stopwatch solve;
   solver.solve(problem.b, x, 1e-10);
@@ -90,9 +90,9 @@ void compare(const std::string& name, const TetMesh& mesh) {
   const double ms = 1e3;
   std::printf("%-12s %6zu %6.2f %6.1f | %6.1f %7.1f %6.2f | %5.2f %5.2f %5.2f | %5.2f %5.2f %5.2f | %4.1f\n",
               name.c_str(), problem.b.size(), static_cast<double>(cost.nnz) * 1e-6, cost.flops * 1e-9,
-              own.analysis * ms, own.factorisation * ms, own.solve * ms, own.analysis / cholmod.analysis,
-              own.factorisation / cholmod.factorisation, own.solve / cholmod.solve, two.analysis / one.analysis,
-              two.factorisation / one.factorisation, two.solve / one.solve, cost.flops * 1e-9 / own.factorisation);
+              own.analysis * ms, own.factorization * ms, own.solve * ms, own.analysis / cholmod.analysis,
+              own.factorization / cholmod.factorization, own.solve / cholmod.solve, two.analysis / one.analysis,
+              two.factorization / one.factorization, two.solve / one.solve, cost.flops * 1e-9 / own.factorization);
   std::fflush(stdout);
 }
 

@@ -46,9 +46,9 @@ CholeskyTimes Cholmod::run_once(std::span<const double> b) {
   cholmod_factor* L = cholmod_analyze(matrix_->A, common);
   times.analysis = analysis.cpu_seconds();
   cholmod_factorize(matrix_->A, L, common);  // touches the memory
-  const Stopwatch factorisation;
+  const Stopwatch factorization;
   cholmod_factorize(matrix_->A, L, common);
-  times.factorisation = factorisation.cpu_seconds();
+  times.factorization = factorization.cpu_seconds();
   cholmod_dense* B = cholmod_allocate_dense(b.size(), 1, b.size(), CHOLMOD_REAL, common);
   std::copy(b.begin(), b.end(), static_cast<double*>(B->x));
   cholmod_dense *X = nullptr, *Y = nullptr, *E = nullptr;

@@ -11,11 +11,11 @@ namespace aspic::bench {
 
 struct CholeskyTimes {  // [s]
   double analysis = std::numeric_limits<double>::max();
-  double factorisation = analysis, solve = analysis;
+  double factorization = analysis, solve = analysis;
 
   void lower_to(const CholeskyTimes& other) {
     analysis = std::min(analysis, other.analysis);
-    factorisation = std::min(factorisation, other.factorisation);
+    factorization = std::min(factorization, other.factorization);
     solve = std::min(solve, other.solve);
   }
 };

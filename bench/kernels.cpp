@@ -170,14 +170,14 @@ void Registry::add_cholesky() const {
   constexpr double kMostFlops = 2e11;  // more than ten seconds: not in a benchmark of kernels
   const auto prepared = [=](benchmark::State& state, KernelBeam& beam, Cholesky& solver) {
     solver.analyze(beam.pattern);
-    if (solver.analysis().flops > kMostFlops) state.SkipWithError("left out: the factorisation takes too long");
+    if (solver.analysis().flops > kMostFlops) state.SkipWithError("left out: the factorization takes too long");
     return solver.analysis().flops <= kMostFlops;
   };
   add("cholesky/analysis", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
     for (auto _ : state) Cholesky().analyze(beam.pattern);
     return place.facts({}, beam.vertices());
   });
-  add("cholesky/factorisation", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
+  add("cholesky/factorization", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
     Cholesky solver;
     if (!prepared(state, beam, solver)) return place.facts({}, 1);
     for (auto _ : state)

@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "io/mesh_file.h"
-#include "io/tetrahedralise.h"
+#include "io/tetrahedralize.h"
 #include "mesh/generators.h"
 #include "mesh/numbering.h"
 
@@ -20,7 +20,7 @@ TetMesh filled(const Shape& shape, const Detail& detail, const fs::path& folder)
   if (shape.file.empty()) return make_torus(0.35, 0.15, detail.edge);
   const fs::path kept = folder / (shape.name + "_" + detail.name + ".mesh");
   if (fs::exists(kept)) return read_tet_mesh(kept);
-  const TetMesh mesh = tetrahedralise(folder / shape.file, {.size = detail.edge, .program = {}}).tets;
+  const TetMesh mesh = tetrahedralize(folder / shape.file, {.size = detail.edge, .program = {}}).tets;
   write_mesh(kept, mesh);
   return mesh;
 }

@@ -222,7 +222,7 @@ class Minimize(CommandLine):
         text = self.aspic("minimize", "--help").stdout
         self.assertIn("auto, on_demand, progressive, clamped, absolute, exact", text)
 
-    def test_a_function_without_a_model_to_minimise_is_not_blamed_on_the_projection(self):
+    def test_a_function_without_a_model_to_minimize_is_not_blamed_on_the_projection(self):
         start = ("minimize", "--expression", "x", "--start", "1,2")
         self.assertNotIn("--definiteness", self.aspic(*start, code=3).stdout)
         self.assertIn("--definiteness on_demand", self.aspic(*start, "--definiteness", "exact", code=3).stdout)
@@ -631,7 +631,7 @@ class Render(CommandLine):
         self.aspic("run", self.beam(duration=0.04))
 
     def test_frames_a_picture_and_a_video(self):
-        self.aspic("render", "out/beam", "-o", "frames", "--size", "160x120", "--colour", "von_mises", timeout=200)
+        self.aspic("render", "out/beam", "-o", "frames", "--size", "160x120", "--color", "von_mises", timeout=200)
         frames = sorted((self.folder / "frames").iterdir())
         self.assertEqual([f.name for f in frames], [f"frame_{i:06}.png" for i in range(1, 6)])
         for frame in frames:
@@ -651,7 +651,7 @@ class Render(CommandLine):
         self.assertIn("one picture needs --step", render("-o", "a.png"))
         self.assertIn("a video needs even numbers", render("-o", "a.mp4", "--size", "101x100"))
         self.assertIn("a.bmp: pictures become", render("-o", "a.bmp"))
-        self.assertIn("choose one of displacement", render("-o", "a.png", "--step", "1", "--colour", "stress"))
+        self.assertIn("choose one of displacement", render("-o", "a.png", "--step", "1", "--color", "stress"))
         self.assertIn("choose one of front", render("-o", "a.png", "--step", "1", "--view", "above"))
         self.assertFalse((self.folder / "a.png").exists())
 
@@ -664,10 +664,10 @@ class Render(CommandLine):
 
 
 class Compare(CommandLine):
-    def test_methods_reach_the_same_minimiser(self):
+    def test_methods_reach_the_same_minimizer(self):
         out = self.aspic("compare", self.beam(), "--methods", "newton,newton:clamped:cholesky,gradient_descent",
                          "--step", "2").stdout
-        self.assertEqual(out.count("same minimiser"), 3)
+        self.assertEqual(out.count("same minimizer"), 3)
         folder = self.folder / "out" / "compare_beam"
         for name in ("index.html", "methods.csv", "work.csv", "comparison.json"):
             self.assertTrue((folder / name).exists(), name)
@@ -764,7 +764,7 @@ class Lecture(CommandLine):
         text = self.lecture("26", "--mesh", self.mesh(4), "--out", "here")
         self.assertIn("PASS", text)
         self.assertIn("box4.mesh", text)
-        self.aspic("run", "here/26-31_optimisation/05_swing.toml", "--steps", "1")
+        self.aspic("run", "here/26-31_optimization/05_swing.toml", "--steps", "1")
 
     def test_a_demonstration_that_does_not_show_the_claim_fails(self):
         text = self.lecture("53", "--mesh", self.mesh(1), code=3)  # too few tets to make Newton's method fail
@@ -817,8 +817,8 @@ class Lecture(CommandLine):
             self.assertIn(demonstration["title"], page)
         self.assertNotIn("http://", page.replace("http://www.w3.org", ""))
 
-    def test_a_step_that_is_not_one_minimisation_is_refused(self):
-        for setting, message in (("time.integrator=tr_bdf2", "minimises twice"),
+    def test_a_step_that_is_not_one_minimization_is_refused(self):
+        for setting, message in (("time.integrator=tr_bdf2", "minimizes twice"),
                                  ("time.integrator=bdf2", "--step 2"),
                                  ("time.integrator=linearly_implicit_euler", "one iteration"),
                                  ("time.adaptive.tolerance=1e-3", "time.adaptive.tolerance=0")):

@@ -158,7 +158,7 @@ class Mesher(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.expect_sound(4 * 4 * math.pi / 3 * 0.008, 0.1, 8)
 
-    def test_a_labelled_image_keeps_its_regions_and_their_sizes(self):
+    def test_a_labeled_image_keeps_its_regions_and_their_sizes(self):
         n = 16
         inside = lambda x, y, z: (x - 7.5)**2 + (y - 7.5)**2 + (z - 7.5)**2 < 36
         labels = [[[(1 if x < 8 else 2) if inside(x, y, z) else 0 for x in range(n)] for y in range(n)]
@@ -301,7 +301,7 @@ class Mesher(unittest.TestCase):
         (self.folder / "sheet.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
         self.expect_error(2, ["sheet.obj", "sheet", "thickness"], self.folder / "sheet.obj", "--rebuild")
 
-    def test_help_and_version_name_the_licence(self):
+    def test_help_and_version_name_the_license(self):
         for flag in ("--help", "--version"):
             result = run(flag)
             self.assertEqual(result.returncode, 0)

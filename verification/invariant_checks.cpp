@@ -136,7 +136,7 @@ void check_units(const Subject& subject, Findings& found) {
     for (double& x : q) x /= a;
     return q;
   };
-  const std::vector<double> metres = run(1, 1);
+  const std::vector<double> meters = run(1, 1);
   struct Units {
     const char* name;
     double a, b;
@@ -146,7 +146,7 @@ void check_units(const Subject& subject, Findings& found) {
                              {"moduli and densities / 1000", 1, 1e-3},
                              {"moduli and densities x 1e6", 1, 1e6}})
     found.expect_small(std::string("largest relative change by ") + units.name,
-                       largest_difference(run(units.a, units.b), metres), 1e-9,
+                       largest_difference(run(units.a, units.b), meters), 1e-9,
                        "the same iterations, apart from round-off");
 }
 

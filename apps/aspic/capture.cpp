@@ -39,7 +39,7 @@ void read_tip(const std::string& text, SynthesisOptions& bench) {
   if (colon == std::string::npos) return;
   const Value radius = read_toml_value(text.substr(colon + 1), "--tip " + text);
   if (!radius.is_number() || !(radius.number() > 0) || !std::isfinite(radius.number()))
-    throw InvalidInput(fmt::format("--tip {}: the radius in metres must be > 0, as in sphere:0.01", text));
+    throw InvalidInput(fmt::format("--tip {}: the radius in meters must be > 0, as in sphere:0.01", text));
   bench.tip_radius = radius.number();
 }
 

@@ -29,7 +29,7 @@ class Comparer {
   Comparer(Simulation& simulation, const ComparisonOptions& options)
       : simulation_(simulation), options_(options), base_(simulation.options().solver) {
     for (const std::string& method : options.methods) solvers_.push_back(method_named(method, base_));
-    require_one_minimisation();
+    require_one_minimization();
   }
 
   Comparison compare() {
@@ -51,18 +51,18 @@ class Comparer {
  private:
   // Where a step is one minimization, all methods have the same minimizer to find. A later stage begins with what an
   // earlier one left, and one iteration looks for none.
-  void require_one_minimisation() const {
+  void require_one_minimization() const {
     const std::string& integrator = simulation_.options().integrator;
     const auto require = [&](bool holds, const char* reason) {
       if (!holds)
         throw InvalidInput("time.integrator = '" + integrator + "' " + reason +
-                           "; compare methods with an implicit one of one minimisation per step, such as "
+                           "; compare methods with an implicit one of one minimization per step, such as "
                            "backward_euler");
     };
-    require(simulation_.integrator().is_implicit, "minimises nothing");
+    require(simulation_.integrator().is_implicit, "minimizes nothing");
     require(integrator != "linearly_implicit_euler", "takes one iteration, wherever it leads");
-    require(integrator != "tr_bdf2", "minimises twice per step, the second time from what the first one left");
-    require(integrator != "bdf2" || options_.step > 1, "minimises twice in its first step (try --step 2)");
+    require(integrator != "tr_bdf2", "minimizes twice per step, the second time from what the first one left");
+    require(integrator != "bdf2" || options_.step > 1, "minimizes twice in its first step (try --step 2)");
     if (simulation_.options().adaptive.tolerance > 0)
       throw InvalidInput(
           "time.adaptive divides a step into parts, each from what the one before left; compare methods with "
@@ -94,7 +94,7 @@ class Comparer {
     report = simulation_.step({}, options_.stop);
     if (report.status == Status::interrupted) return false;
     if (!is_success(report.status))
-      throw InvalidInput(fmt::format("Newton's method found no minimiser of step {} to compare with ({})",
+      throw InvalidInput(fmt::format("Newton's method found no minimizer of step {} to compare with ({})",
                                      options_.step, to_string(report.status)));
     reference_ = simulation_.state().q;
     return true;
@@ -167,7 +167,7 @@ class Comparer {
     result.allowed_distance = is_static ? INFINITY : gradients / std::sqrt(smallest_mass_eigenvalue(mass));
     const double noise = 1e-12 * std::abs(reference.objective);
     const bool energies_agree = std::abs(excess) <= gradients * std::sqrt(norm) + noise;
-    result.same_minimiser = is_success(result.report.status) && energies_agree &&
+    result.same_minimizer = is_success(result.report.status) && energies_agree &&
                             (result.mass_distance <= result.allowed_distance || result.distance <= 1e-12 * size());
   }
 

@@ -260,7 +260,7 @@ void add_choices(CLI::App* command, FitArguments& a) {
       ->allow_extra_args(false);
   command->add_option("--known", a.known, "QUANTITY=NUMBER: is not fitted, such as poisson=0.45; can be repeated")
       ->allow_extra_args(false);
-  command->add_option("--smooth", a.smooth, "How neighbours differ: h1 little, tv at few edges, none: as they like")
+  command->add_option("--smooth", a.smooth, "How neighbors differ: h1 little, tv at few edges, none: as they like")
       ->check(CLI::IsMember({"h1", "tv", "none"}));
   command->add_option("--weight", a.weight, "Of the smoothness and the prior against the data: auto or a number");
   command->add_option("--rule", a.fit.weight_rule, "That chooses the weight: discrepancy, evidence, l_curve or prior")

@@ -56,7 +56,7 @@ std::vector<Prediction> predictions_of(const DataSet& data, const FitOutcome& ou
 
 std::string percent(double part) { return fmt::format("{:.3g} %", 100 * part); }
 
-void print_judgement(std::FILE* stream, const Judgement& j) {
+void print_judgment(std::FILE* stream, const Judgment& j) {
   if (j.quantity == "poisson")
     fmt::print(stream, "truth      {}: error {:.3g} (root mean square)\n", j.quantity, j.error);
   else
@@ -90,7 +90,7 @@ void print_prediction(std::FILE* stream, const Prediction& prediction) {
   fmt::print(stream, "\n");
 }
 
-Json json_of(const Judgement& j) {
+Json json_of(const Judgment& j) {
   Json phases = Json::array();
   for (const Phase& p : j.phases) phases.push_back({{"share", p.share}, {"truth", p.truth}, {"fitted", p.fitted}});
   return {{"quantity", j.quantity},
@@ -139,13 +139,13 @@ FitFigures figures_of(const DataSet& data, const FitOutcome& outcome, const std:
                       bool with_baselines) {
   FitFigures figures;
   std::error_code error;
-  if (std::filesystem::exists(truth, error)) figures.judgements = judge(outcome.material, read_material(truth));
+  if (std::filesystem::exists(truth, error)) figures.judgments = judge(outcome.material, read_material(truth));
   figures.predictions = predictions_of(data, outcome, with_baselines);
   return figures;
 }
 
 void print_figures(std::FILE* stream, const FitFigures& figures) {
-  for (const Judgement& j : figures.judgements) print_judgement(stream, j);
+  for (const Judgment& j : figures.judgments) print_judgment(stream, j);
   for (const Prediction& p : figures.predictions) print_prediction(stream, p);
 }
 
@@ -173,7 +173,7 @@ void write_figures(const std::filesystem::path& file, const FitOutcome& outcome,
     json["cross_validation"] = {{"position_error", outcome.held_out->position_error},
                                 {"force_error", outcome.held_out->force_error}};
   json["truth"] = Json::array();
-  for (const Judgement& j : figures.judgements) json["truth"].push_back(json_of(j));
+  for (const Judgment& j : figures.judgments) json["truth"].push_back(json_of(j));
   json["left_out"] = Json::object();
   for (const Prediction& p : figures.predictions) json["left_out"][p.method] = json_of(p.held_out);
   write_file(file, json.dump(1) + "\n");

@@ -17,7 +17,7 @@ struct Prediction {
 };
 
 struct FitFigures {
-  std::vector<Judgement> judgements;    // empty: the data have no truth
+  std::vector<Judgment> judgments;      // empty: the data have no truth
   std::vector<Prediction> predictions;  // empty: nothing was left out
 };
 

@@ -97,7 +97,7 @@ int report_parse_error(const CLI::App& app, const CLI::ParseError& error, const 
 }
 
 int run_program(int argc, char** argv) {
-  CLI::App app("Aspic animates soft bodies; every time step is one minimisation.", "aspic");
+  CLI::App app("Aspic animates soft bodies; every time step is one minimization.", "aspic");
   app.footer(kFooter);
   app.require_subcommand(1);
   app.set_version_flag("--version", version_text, "Version, and how this program was built");

@@ -1,4 +1,4 @@
-// `aspic mesh`: becomes the separate program aspic-mesh, which is not linked for its licence (CGAL's GPL).
+// `aspic mesh`: becomes the separate program aspic-mesh, which is not linked for its license (CGAL's GPL).
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>

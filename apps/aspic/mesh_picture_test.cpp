@@ -57,7 +57,7 @@ double covered(const Image& image, double left, double right, double top, double
   return static_cast<double>(found) / static_cast<double>(count);
 }
 
-bool is_grey(const Pixel& p) { return std::max({p[0], p[1], p[2]}) - std::min({p[0], p[1], p[2]}) < 12; }
+bool is_gray(const Pixel& p) { return std::max({p[0], p[1], p[2]}) - std::min({p[0], p[1], p[2]}) < 12; }
 
 TEST_F(MeshPictures, PanelsStandSideBySideWithTitleAndCaptions) {
   MeshPicture picture{.title = "A beam & its <b>shape</b>", .panels = {{"at rest", beam()}, {"bent", beam()}}};
@@ -84,7 +84,7 @@ TEST_F(MeshPictures, PanelsHaveOneScale) {
   EXPECT_NEAR(covered(image, 0, 0.5, 0, 1) / covered(image, 0.5, 1, 0, 1), 4, 0.1);
 }
 
-TEST_F(MeshPictures, ColoursRunFromTheSmallestToTheLargestValue) {
+TEST_F(MeshPictures, ColorsRunFromTheSmallestToTheLargestValue) {
   ShadedSurface per_vertex{"", beam()}, per_triangle{"", beam()};
   for (const Vec3d& x : per_vertex.surface.vertices) per_vertex.values.push_back(x[0]);
   for (const Triangle& t : per_triangle.surface.triangles)
@@ -104,10 +104,10 @@ TEST_F(MeshPictures, ColoursRunFromTheSmallestToTheLargestValue) {
   EXPECT_GT(std::count_if(row.begin(), half, yellow), 10) << "the largest";
   EXPECT_LT(std::count_if(half, half + 300, green), 5) << "values of triangles end at their edges";
   EXPECT_GT(std::count_if(half, half + 300, yellow), 100);
-  EXPECT_GT(covered(image, 0.85, 1, 0, 1), 0.03) << "the colour bar";
+  EXPECT_GT(covered(image, 0.85, 1, 0, 1), 0.03) << "the color bar";
 }
 
-TEST_F(MeshPictures, WhatHasNoValueIsGreyAndWhatIsNotFiniteIsLeftOut) {
+TEST_F(MeshPictures, WhatHasNoValueIsGrayAndWhatIsNotFiniteIsLeftOut) {
   ShadedSurface panel{"", beam()};
   for (const Vec3d& x : panel.surface.vertices) panel.values.push_back(x[0] < 1 ? NAN : 1.0);
   panel.values.back() = 2;
@@ -116,14 +116,14 @@ TEST_F(MeshPictures, WhatHasNoValueIsGreyAndWhatIsNotFiniteIsLeftOut) {
     if (x[0] > 1.2) x[2] = x[0] > 1.6 ? INFINITY : 1e300;
   ASSERT_TRUE(draw({{folder / "gaps.png", picture}}));
   const Image image = read_png(folder / "gaps.png");
-  const auto is_grey_ink = [](const Pixel& p) { return is_grey(p) && p[0] < 230; };
-  size_t grey = 0, coloured = 0;
+  const auto is_gray_ink = [](const Pixel& p) { return is_gray(p) && p[0] < 230; };
+  size_t gray = 0, colored = 0;
   for (unsigned x = 10; x < 300; ++x) {
     const Pixel& p = image.at(x, image.height / 2);
-    grey += is_grey_ink(p), coloured += !is_grey(p);
+    gray += is_gray_ink(p), colored += !is_gray(p);
   }
-  EXPECT_GT(grey, 100u);
-  EXPECT_GT(coloured, 100u);
+  EXPECT_GT(gray, 100u);
+  EXPECT_GT(colored, 100u);
 }
 
 TEST_F(MeshPictures, DrawingStopsWhenAsked) {

@@ -249,7 +249,7 @@ void add_solver_options(CLI::App* command, MinimizeArguments& arguments) {
 void add_minimize(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<MinimizeArguments>();
   CLI::App* command =
-      app.add_subcommand("minimize", "Minimises a function of two variables with the simulation's own methods");
+      app.add_subcommand("minimize", "Minimizes a function of two variables with the simulation's own methods");
   command->footer(R"(
 Examples:
   aspic minimize rosenbrock

@@ -67,7 +67,7 @@ Definiteness projection(const Minimization& done, const IterationRecord& record)
 }
 
 // A square about x and x + d, so that both and the way between them can be seen.
-Region neighbourhood(const IterationRecord& record, const Region& whole) {
+Region neighborhood(const IterationRecord& record, const Region& whole) {
   const double size = std::max(whole.upper[0] - whole.lower[0], whole.upper[1] - whole.lower[1]);
   const double reach = std::hypot(record.direction[0], record.direction[1]);
   const double half = std::clamp(1.6 * reach, 0.1 * size, 0.5 * size);
@@ -105,7 +105,7 @@ void draw_model(const std::filesystem::path& path, const Problem& problem, const
   const IterationRecord& record = done.iterations[static_cast<size_t>(iteration)];
   const QuadraticModel model = f.model(record.x, projection(done, record));
   const Planar target = along(record, 1);
-  const Region box = neighbourhood(record, region(problem, {&done, 1}));
+  const Region box = neighborhood(record, region(problem, {&done, 1}));
   SurfacePlot plot{.title = fmt::format("{}, iteration {}: f = {}", done.method, iteration, problem.formula),
                    .z_label = "f",
                    .function = sampled(box, 45, [&](const Planar& p) { return f.at(p); }),

@@ -196,7 +196,7 @@ TEST_F(Pictures, ASurfaceHasItsModelOverIt) {
   plot.model_label = "quadratic model";
   plot.z_min = -30;
   plot.z_max = 420;
-  plot.points = {{"iterate", x0, y0, rosenbrock(x0, y0)}, {"its minimiser", -0.5, 0.1, 10}};
+  plot.points = {{"iterate", x0, y0, rosenbrock(x0, y0)}, {"its minimizer", -0.5, 0.1, 10}};
   draw(folder / "surface.png", plot);
   EXPECT_EQ(png_size(folder / "surface.png"), std::pair(1400u, 1120u));
   draw(folder / "bump_surface.png", SurfacePlot{.title = "two bumps", .function = sampled(-2, 2, 61, two_bump)});

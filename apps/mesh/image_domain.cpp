@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "labelled.h"
+#include "labeled.h"
 #include "unit_frame.h"
 
 namespace aspic {
@@ -15,9 +15,9 @@ CGAL::Image_3 read_image(const std::filesystem::path& path) {
     throw InvalidInput(path.string() + ": not an INRIMAGE that can be read; save the labels as .inr or .inr.gz");
   if (image.image()->vdim != 1)
     throw InvalidInput(path.string() + ": " + std::to_string(image.image()->vdim) +
-                       " values per voxel; a labelled image has one");
+                       " values per voxel; a labeled image has one");
   if (image.image()->wordKind != WK_FIXED)
-    throw InvalidInput(path.string() + ": voxels are not integers; a labelled image has one integer label per voxel");
+    throw InvalidInput(path.string() + ": voxels are not integers; a labeled image has one integer label per voxel");
   return image;
 }
 
@@ -61,14 +61,14 @@ TetMesh mesh_image(const std::filesystem::path& path, const MesherOptions& optio
       options.size > 0 ? options.size / frame.unit : std::hypot(box.x_span(), box.y_span(), box.z_span()) / 25;
   for (auto& [label, size] : in_frame.region_size) size /= frame.unit;
   check_size(frame.unit * Vec3d{{box.x_span(), box.y_span(), box.z_span()}}, in_frame.size * frame.unit);
-  const LabelledDomain domain = LabelledDomain::create_labeled_image_mesh_domain(
+  const LabeledDomain domain = LabeledDomain::create_labeled_image_mesh_domain(
       image, CGAL::parameters::relative_error_bound = kSurfaceTolerance);
   const LabelGrid grid(domain, widened_by_voxel(box, image), std::min({image.vx(), image.vy(), image.vz()}));
   if (grid.is_empty()) throw InvalidInput(path.string() + ": all labels are 0; there is nothing to fill");
   for (const auto& [label, unused] : options.region_size)
     if (!grid.has(label))
       throw InvalidInput("--region-size: " + path.string() + " has no label " + std::to_string(label));
-  TetMesh mesh = mesh_labelled(path.string(), domain, grid, in_frame);
+  TetMesh mesh = mesh_labeled(path.string(), domain, grid, in_frame);
   from_frame(frame, mesh.rest);
   return mesh;
 }

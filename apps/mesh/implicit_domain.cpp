@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "labelled.h"
+#include "labeled.h"
 #include "scene/expression.h"
 #include "unit_frame.h"
 
@@ -53,13 +53,13 @@ TetMesh mesh_implicit(const ImplicitShape& shape, const MesherOptions& options) 
     return f.at({{x[0], x[1], x[2]}}) < 0 ? 1 : 0;
   };
   const CGAL::Bbox_3 wide = widened(bounds, 0.05 * diagonal);
-  const LabelledDomain domain(label, wide, CGAL::parameters::relative_error_bound = kSurfaceTolerance);
+  const LabeledDomain domain(label, wide, CGAL::parameters::relative_error_bound = kSurfaceTolerance);
   const LabelGrid grid(domain, wide, in_frame.size / 2);
   if (grid.is_empty())
     throw InvalidInput("--implicit: '" + shape.expression +
                        "' is negative at no point of a grid over the bounds; check --bounds and the sign (f < 0 is "
                        "inside), or give a smaller --size if the shape is thin");
-  TetMesh mesh = mesh_labelled("--implicit", domain, grid, in_frame);
+  TetMesh mesh = mesh_labeled("--implicit", domain, grid, in_frame);
   from_frame(frame, mesh.rest);
   mesh.region.clear();
   return mesh;

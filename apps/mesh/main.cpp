@@ -1,4 +1,4 @@
-// aspic-mesh: fills a closed surface, an implicit shape or a labelled image with tetrahedra.
+// aspic-mesh: fills a closed surface, an implicit shape or a labeled image with tetrahedra.
 #include <CLI/CLI.hpp>
 
 #include <chrono>
@@ -21,9 +21,9 @@ namespace {
 
 enum ExitCode { kDone = 0, kFailed = 1, kBadInput = 2 };
 
-constexpr const char* kLicence =
+constexpr const char* kLicense =
     "aspic-mesh links CGAL's packages under the GNU General Public License, version 3 or later; as a whole it is\n"
-    "distributed under that licence. It comes without any warranty. Meshes made with it are yours.";
+    "distributed under that license. It comes without any warranty. Meshes made with it are yours.";
 
 constexpr const char* kExamples =
     "Examples:\n"
@@ -45,10 +45,10 @@ struct Arguments {
 
 void declare(CLI::App& app, Arguments& arguments) {
   app.set_version_flag("--version",
-                       std::string("aspic-mesh ") + ASPIC_VERSION + " (CGAL " + CGAL_VERSION_TEXT + ")\n" + kLicence);
-  app.footer(std::string(kExamples) + kLicence);
+                       std::string("aspic-mesh ") + ASPIC_VERSION + " (CGAL " + CGAL_VERSION_TEXT + ")\n" + kLicense);
+  app.footer(std::string(kExamples) + kLicense);
   app.add_option("input", arguments.input,
-                 "a closed surface (.obj .stl .ply .off ...), or a labelled image (.inr .inr.gz)");
+                 "a closed surface (.obj .stl .ply .off ...), or a labeled image (.inr .inr.gz)");
   app.add_option("--implicit", arguments.expression, "instead of a file: a formula of x, y, z that is negative inside");
   app.add_option("--bounds", arguments.bounds, "x0 y0 z0 x1 y1 z1: the box that holds the implicit shape")->expected(6);
   app.add_option("-o,--output", arguments.output, "the file to write; its extension names the format")->required();
@@ -90,7 +90,7 @@ void check_combination(const Arguments& arguments) {
   if (arguments.expression.empty() && !arguments.bounds.empty())
     throw InvalidInput("--bounds belongs to --implicit; a file has its own");
   if (!arguments.region_sizes.empty() && !is_image(arguments.input))
-    throw InvalidInput("--region-size needs a labelled image (.inr, .inr.gz); use --size");
+    throw InvalidInput("--region-size needs a labeled image (.inr, .inr.gz); use --size");
   if (arguments.fill_holes && (arguments.input.empty() || is_image(arguments.input)))
     throw InvalidInput("--fill-holes needs a surface");
   if (arguments.rebuild && (arguments.input.empty() || is_image(arguments.input)))
@@ -149,7 +149,7 @@ void run(const Arguments& arguments) {
 }  // namespace aspic
 
 int main(int argc, char** argv) {
-  CLI::App app("Fills a closed surface, an implicit shape or a labelled image with tetrahedra.", "aspic-mesh");
+  CLI::App app("Fills a closed surface, an implicit shape or a labeled image with tetrahedra.", "aspic-mesh");
   aspic::Arguments arguments;
   aspic::declare(app, arguments);
   try {

@@ -155,7 +155,7 @@ Json iteration_reply(Side& side, int step, int iteration, const StopToken& stop)
       step, [&](const LiveIteration& live) { look.follow(live); }, stop);
   if (stop.stopped()) throw InvalidInput("interrupted: the program was told to do something else; ask again");
   if (!look.is_met())
-    throw InvalidInput(look.iterations() == 0 ? fmt::format("step {} minimises nothing", step)
+    throw InvalidInput(look.iterations() == 0 ? fmt::format("step {} minimizes nothing", step)
                                               : fmt::format("iteration {}: step {} has iterations 0 to {}", iteration,
                                                             step, look.iterations() - 1));
   Json reply = std::move(look).reply();

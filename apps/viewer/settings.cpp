@@ -11,7 +11,7 @@
 namespace aspic::viewer {
 namespace {
 
-// A row of the page: a key of the scene, how it is labelled, and the span of its slider.
+// A row of the page: a key of the scene, how it is labeled, and the span of its slider.
 struct Row {
   std::string key, label, group;
   double min = 0, max = 1;

@@ -105,7 +105,7 @@ class CaseReader {
     if (!touch && center && depth) touch = *center - *depth * unit(*axis);
     if (!touch || (!center && !depth))
       return table_.error(
-          "the pose of the tip is incomplete; give touch_x, touch_y, touch_z, where its centre was when "
+          "the pose of the tip is incomplete; give touch_x, touch_y, touch_z, where its center was when "
           "it touched the body at rest, and center_x, center_y, center_z or depth");
     load.touch = {*touch, *axis, {}};
     load.pose = {center ? *center : *touch + *depth * unit(*axis), turned_axis(load.touch, rotation), rotation};

@@ -5,7 +5,7 @@
 #include "capture/synthesis.h"
 #include "io/external_program.h"
 #include "io/mesh_file.h"
-#include "io/tetrahedralise.h"
+#include "io/tetrahedralize.h"
 #include "mesh/surface.h"
 #include "scene/body_mesh.h"
 #include "scene/toml_reader.h"
@@ -43,7 +43,7 @@ TetMesh filled_coarser(const TetMesh& mesh, const std::filesystem::path& mesher)
   const TemporaryFolder folder;
   const std::filesystem::path surface = folder.path() / "surface.off";
   write_mesh(surface, boundary_surface(mesh).surface);
-  return tetrahedralise(surface, {.size = kCoarser * edge_length(mesh), .program = mesher}).tets;
+  return tetrahedralize(surface, {.size = kCoarser * edge_length(mesh), .program = mesher}).tets;
 }
 
 }  // namespace

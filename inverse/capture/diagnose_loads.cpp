@@ -126,12 +126,12 @@ class LoadDiagnosis {
                              "the tip touches nothing: it was " + three_digits(gap) +
                                  " m away from the surface at the touch, and goes " + three_digits(load_size(load)) +
                                  " m",
-                             "touch is the centre of the tip (of a disc: of its flat end) when it begins to touch");
+                             "touch is the center of the tip (of a disc: of its flat end) when it begins to touch");
     if (tip.contact == TipContact::sliding && gap > kLoose * size_)
       findings_.warning(where_,
                         "the tip was " + three_digits(gap) + " m away from the surface at the touch, and then goes " +
                             three_digits(load_size(load)) + " m",
-                        "touch is the centre of the tip (of a disc: of its flat end) when it begins to touch");
+                        "touch is the center of the tip (of a disc: of its flat end) when it begins to touch");
   }
 
   void examine_gravity(const LoadCase& load) {

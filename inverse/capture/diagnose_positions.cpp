@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-constexpr int kNeighbours = 12;
+constexpr int kNeighbors = 12;
 constexpr size_t kMostListed = 5;         // of one kind; the rest is counted
 constexpr double kOffSurface = 0.02;      // of the body's size
 constexpr double kSuspicious = 6;         // times what neighbors differ by
@@ -22,7 +22,7 @@ constexpr double kLever = 3;              // times the way of the tip: a motion 
 constexpr double kFinestPosition = 1e-9;  // of the body's size: a deviation that no instrument has
 
 // The markers nearest to each at rest, of those given.
-std::vector<std::vector<int>> neighbours(const std::vector<Vec3d>& X) {
+std::vector<std::vector<int>> neighbors(const std::vector<Vec3d>& X) {
   std::vector<Box> boxes(X.size());
   for (size_t i = 0; i < X.size(); ++i) boxes[i].add(X[i]);
   const BoxTree tree(boxes);
@@ -34,8 +34,8 @@ std::vector<std::vector<int>> neighbours(const std::vector<Vec3d>& X) {
       if (j == static_cast<int>(i)) return;
       const std::pair<double, int> candidate = {dot(X[j] - X[i], X[j] - X[i]), j};
       found.insert(std::upper_bound(found.begin(), found.end(), candidate), candidate);
-      if (found.size() > kNeighbours) found.pop_back();
-      if (found.size() == kNeighbours) reach = found.back().first;
+      if (found.size() > kNeighbors) found.pop_back();
+      if (found.size() == kNeighbors) reach = found.back().first;
     });
     for (const auto& [distance, j] : found) nearest[i].push_back(j);
   }
@@ -240,14 +240,14 @@ class PositionDiagnosis {
 
   void examine_outliers(int c) {
     const std::vector<MarkerReading>& readings = experiment_.cases[c].positions;
-    if (readings.size() <= kNeighbours) return;
+    if (readings.size() <= kNeighbors) return;
     std::vector<Vec3d> X, u;
     double largest = 0;
     for (const MarkerReading& r : readings) {
       X.push_back(position(experiment_.markers[r.marker], experiment_.mesh.rest));
       u.push_back(displacement(experiment_, r));
     }
-    const std::vector<std::vector<int>> near = neighbours(X);
+    const std::vector<std::vector<int>> near = neighbors(X);
     std::vector<double> excess(u.size()), spread(u.size()), range(u.size());
     for (size_t i = 0; i < u.size(); ++i) {
       const Expected usual = expected(X, u, static_cast<int>(i), near[i]);
@@ -264,7 +264,7 @@ class PositionDiagnosis {
           ++outliers_ <= kMostListed)
         findings_.warning(data_.source.position(c, static_cast<int>(i)),
                           name(readings[i].marker) + " in '" + experiment_.cases[c].name + "' is " +
-                              three_digits(excess[i]) + " m away from where its neighbours go, which differ by " +
+                              three_digits(excess[i]) + " m away from where its neighbors go, which differ by " +
                               three_digits(spread[i]) + " m",
                           "mend the tracking, leave the row out, or raise its sd");
     }

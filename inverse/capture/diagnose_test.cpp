@@ -199,14 +199,14 @@ TEST(Diagnosis, LengthsInMillimetresAreNoticed) {
   EXPECT_THAT(findings, Contains(finding(Severity::error, "positions.csv", "markers move by", "in mm they would fit")));
 }
 
-TEST(Diagnosis, AMarkerThatLeavesItsNeighboursIsNamedAndOthersAreNot) {
+TEST(Diagnosis, AMarkerThatLeavesItsNeighborsIsNamedAndOthersAreNot) {
   DataSet data = data_in_lines();
   data.experiment.cases[3].positions[17].position[0] += 0.006;
   const auto findings = diagnose(data);
   EXPECT_THAT(findings,
-              Contains(finding(Severity::warning, data.source.position(3, 17), "away from where its neighbours")));
+              Contains(finding(Severity::warning, data.source.position(3, 17), "away from where its neighbors")));
   EXPECT_EQ(std::count_if(findings.begin(), findings.end(),
-                          [](const DataFinding& f) { return f.what.find("neighbours") != std::string::npos; }),
+                          [](const DataFinding& f) { return f.what.find("neighbors") != std::string::npos; }),
             1);
 }
 

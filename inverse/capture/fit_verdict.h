@@ -1,4 +1,4 @@
-// Whether a fitted material can be relied on: one judgement for the command line, the JSON file, and the page.
+// Whether a fitted material can be relied on: one judgment for the command line, the JSON file, and the page.
 #pragma once
 #include <string>
 #include <vector>

@@ -58,10 +58,10 @@ class Judge {
     for (int t = 0; t < fitted.mesh.tet_count(); ++t) volume_.push_back(volume(fitted.mesh, t));
   }
 
-  Judgement of(const std::string& quantity, const std::vector<double>& values) {
+  Judgment of(const std::string& quantity, const std::vector<double>& values) {
     is_log_ = quantity != "poisson";
     true_values_ = truth_.find(quantity);
-    Judgement result{.quantity = quantity};
+    Judgment result{.quantity = quantity};
     std::vector<double> z, truth;
     for (size_t t = 0; t < values.size(); ++t) {
       z.push_back(fitted_scale(values[t]));
@@ -80,7 +80,7 @@ class Judge {
   double value(double z) const { return is_log_ ? std::exp(z) : z; }
   double truth_at(size_t t, int point) const { return (*true_values_)[tet_[t * kPoints + point]]; }
 
-  void set_errors(const std::vector<double>& z, const std::vector<double>& truth, Judgement& result) const {
+  void set_errors(const std::vector<double>& z, const std::vector<double>& truth, Judgment& result) const {
     const double mean = weighted_mean(volume_, truth);
     std::vector<double> difference, squares, variation;
     for (size_t t = 0; t < z.size(); ++t) {
@@ -95,7 +95,7 @@ class Judge {
     if (spread > kSame * std::max(std::abs(mean), 1e-300)) result.relative_error = result.error / spread;
   }
 
-  void set_coverage(const std::vector<double>& z, const std::vector<double>& truth, Judgement& result) const {
+  void set_coverage(const std::vector<double>& z, const std::vector<double>& truth, Judgment& result) const {
     for (const auto& [name, deviation] : fitted_.further) {
       if (name != result.quantity + "_deviation") continue;
       int covered = 0;
@@ -126,13 +126,13 @@ class Judge {
     return result;
   }
 
-  void set_phases(const std::vector<double>& z, Judgement& result) const {
+  void set_phases(const std::vector<double>& z, Judgment& result) const {
     const std::vector<double> levels = levels_of(*true_values_);
     for (const double level : levels) result.phases.push_back(phase(z, level));
     if (levels.size() == 2) set_overlap(z, result);
   }
 
-  void set_overlap(const std::vector<double>& z, Judgement& result) const {
+  void set_overlap(const std::vector<double>& z, Judgment& result) const {
     const int smaller = result.phases[0].share < result.phases[1].share ? 0 : 1;
     const double threshold = otsu_threshold(volume_, z);
     double both = 0, either = 0;
@@ -165,9 +165,9 @@ std::vector<double> levels_of(std::vector<double> values) {
   return levels;
 }
 
-std::vector<Judgement> judge(const FittedMaterial& fitted, const FittedMaterial& truth) {
+std::vector<Judgment> judge(const FittedMaterial& fitted, const FittedMaterial& truth) {
   Judge judge(fitted, truth);
-  std::vector<Judgement> result;
+  std::vector<Judgment> result;
   for (const auto& [quantity, values] : fitted.values)
     if (quantity != "density" && truth.find(quantity)) result.push_back(judge.of(quantity, values));
   return result;

@@ -16,7 +16,7 @@ struct Phase {
 
 // Over the tets of the fit, by volume, of z = log q for positive quantities and z = q for Poisson's ratio. In a tet
 // where the truth varies, it is the mean of its z.
-struct Judgement {
+struct Judgment {
   std::string quantity;
   double error = 0;            // root mean square of z - truth: 0.15 is 15 % of E
   double relative_error = -1;  // that by the root mean square of the truth about its mean; < 0: the truth is uniform
@@ -36,6 +36,6 @@ std::vector<double> levels_of(std::vector<double> values);
 
 // Of each quantity that both have, except the density. What was fitted is told from the rest of the body by the
 // threshold of [Otsu 1979], which does not know the truth.
-std::vector<Judgement> judge(const FittedMaterial& fitted, const FittedMaterial& truth);
+std::vector<Judgment> judge(const FittedMaterial& fitted, const FittedMaterial& truth);
 
 }  // namespace aspic

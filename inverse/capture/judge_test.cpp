@@ -24,7 +24,7 @@ FittedMaterial layers(int cells, double contrast, double level = 1e4) {
 }
 
 TEST(Judge, TheTruthHasNoErrorOnAnotherMesh) {
-  const std::vector<Judgement> found = judge(layers(4, 5), layers(6, 5));
+  const std::vector<Judgment> found = judge(layers(4, 5), layers(6, 5));
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].quantity, "young");
   EXPECT_NEAR(found[0].error, 0, 1e-12);
@@ -40,7 +40,7 @@ TEST(Judge, TheTruthHasNoErrorOnAnotherMesh) {
 
 TEST(Judge, OneValueMissesLayersByHalfTheLogarithmOfTheirContrast) {
   FittedMaterial one = layers(4, 1, 2e4);
-  const Judgement found = judge(one, layers(4, 4))[0];
+  const Judgment found = judge(one, layers(4, 4))[0];
   EXPECT_NEAR(found.error, std::log(2.0), 1e-12);
   EXPECT_NEAR(found.relative_error, 1, 1e-12);
   EXPECT_NEAR(found.level, 0, 1e-12);
@@ -50,7 +50,7 @@ TEST(Judge, OneValueMissesLayersByHalfTheLogarithmOfTheirContrast) {
 }
 
 TEST(Judge, AWrongContrastIsOnlyThat) {
-  const Judgement found = judge(layers(4, 3), layers(4, 4))[0];
+  const Judgment found = judge(layers(4, 3), layers(4, 4))[0];
   EXPECT_NEAR(found.contrast(), 3, 1e-9);
   EXPECT_NEAR(found.phases[1].fitted, 3e4, 1e-6);
   EXPECT_DOUBLE_EQ(found.overlap, 1);
@@ -68,7 +68,7 @@ TEST(Judge, CountsTetsWhoseIntervalHoldsTheTruth) {
 }
 
 TEST(Judge, ATetThatTwoPhasesShareHasTheMeanOfTheirLogarithms) {
-  const Judgement found = judge(layers(3, 1, 2e4), layers(8, 4))[0];  // the middle of three layers of cells is shared
+  const Judgment found = judge(layers(3, 1, 2e4), layers(8, 4))[0];  // the middle of three layers of cells is shared
   EXPECT_NEAR(found.level, 0, 0.02);
   EXPECT_NEAR(found.error, std::log(2.0) * std::sqrt(2.0 / 3 + 1.0 / 3 * 0.4), 0.1);
   EXPECT_NEAR(found.phases[0].fitted, 2e4, 1e-6);
@@ -77,7 +77,7 @@ TEST(Judge, ATetThatTwoPhasesShareHasTheMeanOfTheirLogarithms) {
 TEST(Judge, AFieldHasNoPhases) {
   FittedMaterial truth = layers(4, 1);
   for (size_t t = 0; t < truth.mesh.tets.size(); ++t) truth.values[0].second[t] *= 1 + 0.01 * static_cast<double>(t);
-  const Judgement found = judge(truth, truth)[0];
+  const Judgment found = judge(truth, truth)[0];
   EXPECT_TRUE(found.phases.empty());
   EXPECT_EQ(found.contrast(), 1);
   EXPECT_LT(found.overlap, 0);

@@ -36,7 +36,7 @@ void MaterialFit::learn_uncertainty(FitModel& model) {
   if (!is_learnt && plan_.fit.weight <= 0 && report.weight > 1) {
     outcome_.posterior = posterior(about_fit, *model.prior, 1, model.map, mesh(), report.p);
     std::erase_if(outcome_.posterior->warnings,
-                  [](const std::string& warning) { return warning.starts_with("the weight of the regulariser"); });
+                  [](const std::string& warning) { return warning.starts_with("the weight of the regularizer"); });
     add_warnings(
         {"the data say next to nothing of how the stiffness varies: the deviations are those of what was "
          "believed beforehand (--unknown young=uniform fits that value)"});

@@ -87,7 +87,7 @@ TEST_F(Recovery, OfTwoLayersAtOnePercentNoise) {
   const FitOutcome outcome = fit_material(made.data, fit, {}, {});
   ASSERT_TRUE(outcome.has_material()) << outcome.failure;
   const FittedQuantity& young = outcome.quantities.at(0);
-  const Judgement found = judge(outcome.material, made.truth).at(0);
+  const Judgment found = judge(outcome.material, made.truth).at(0);
   ASSERT_EQ(young.deviation.size(), outcome.material.mesh.tets.size());
   const double deviation = *std::max_element(young.deviation.begin(), young.deviation.end());
   EXPECT_LT(deviation, 0.05);

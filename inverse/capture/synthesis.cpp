@@ -100,7 +100,7 @@ class Bench {
     const std::vector<double>& young = *result_.truth.find("young");
     const std::vector<double> levels = levels_of(young);
     if (levels.empty())
-      throw InvalidInput("the stiffness varies from tet to tet; there are no regions that could be labelled");
+      throw InvalidInput("the stiffness varies from tet to tet; there are no regions that could be labeled");
     data().mesh.region.clear();
     for (const double E : sample(result_.truth, young, data().mesh)) {
       const auto next = std::ranges::lower_bound(levels, E * (1 - 1e-6));

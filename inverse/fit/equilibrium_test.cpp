@@ -100,7 +100,7 @@ TEST(Equilibrium, AdjointIsTheTransposeOfTheTangentWithEveryLinearSolver) {
   }
 }
 
-TEST(Equilibrium, DerivativesBelongToTheLinearisationWhateverIsSolvedAfterwards) {
+TEST(Equilibrium, DerivativesBelongToTheLinearizationWhateverIsSolvedAfterwards) {
   Sagging body("fung");
   Equilibrium equilibrium(std::move(body.model), body.rest, kExact);
   solved(equilibrium, body.parameters);
@@ -119,7 +119,7 @@ TEST(Equilibrium, DerivativesBelongToTheLinearisationWhateverIsSolvedAfterwards)
   EXPECT_LE(norm(other) - norm({equilibrium.x().begin(), equilibrium.x().end()}), 1e-12);
 }
 
-TEST(Equilibrium, AnAdjointCostsOneFactorisationAndOneSolveWhileTheForwardSolveTakesSeveral) {
+TEST(Equilibrium, AnAdjointCostsOneFactorizationAndOneSolveWhileTheForwardSolveTakesSeveral) {
   Sagging body("neo_hookean");
   Equilibrium equilibrium(std::move(body.model), body.rest, {.linear = "cholesky", .adjoint = "cholesky"});
   equilibrium.set_parameters(body.parameters);

@@ -15,27 +15,27 @@ namespace {
 // inside the support of a function, and some overlap.
 constexpr double kReach = 2.5;
 
-struct Centres {
+struct Centers {
   std::vector<Vec3d> at;
   double radius = 0;  // the largest distance of a point from the nearest center
 };
 
 // Farthest-point sampling, from the point next to the middle of all.
-Centres spread_centres(const std::vector<Vec3d>& points, int count) {
+Centers spread_centers(const std::vector<Vec3d>& points, int count) {
   Vec3d middle{};
   for (const Vec3d& x : points) middle = middle + (1.0 / static_cast<double>(points.size())) * x;
   const auto nearer = [&](const Vec3d& a, const Vec3d& b) { return length(a - middle) < length(b - middle); };
   Vec3d next = *std::min_element(points.begin(), points.end(), nearer);
   std::vector<double> distance(points.size(), std::numeric_limits<double>::infinity());
-  Centres centres;
+  Centers centers;
   for (int i = 0; i < count; ++i) {
-    centres.at.push_back(next);
+    centers.at.push_back(next);
     for (size_t t = 0; t < points.size(); ++t) distance[t] = std::min(distance[t], length(points[t] - next));
     const auto farthest = std::max_element(distance.begin(), distance.end());
     next = points[farthest - distance.begin()];
-    centres.radius = *farthest;
+    centers.radius = *farthest;
   }
-  return centres;
+  return centers;
 }
 
 // (1 - r)^4 (4 r + 1) for r < 1
@@ -78,15 +78,15 @@ FieldBasis FieldBasis::radial(const TetMesh& mesh, int count) {
   ASPIC_CHECK(count >= 1 && count <= mesh.tet_count());
   std::vector<Vec3d> points;
   for (int t = 0; t < mesh.tet_count(); ++t) points.push_back(centroid(mesh, t));
-  const Centres centres = spread_centres(points, count);
-  if (centres.radius == 0) return tets(mesh.tet_count());
+  const Centers centers = spread_centers(points, count);
+  if (centers.radius == 0) return tets(mesh.tet_count());
   FieldBasis basis;
   basis.size_ = count;
   for (const Vec3d& x : points) {
     const size_t begin = basis.weight_.size();
     double sum = 0;
     for (int j = 0; j < count; ++j) {
-      const double w = wendland(length(x - centres.at[j]) / (kReach * centres.radius));
+      const double w = wendland(length(x - centers.at[j]) / (kReach * centers.radius));
       if (w == 0) continue;
       basis.index_.push_back(j);
       basis.weight_.push_back(w);

@@ -15,13 +15,13 @@ namespace {
 constexpr double kWidest = 2;       // of a level about where it began: a deviation of log E
 constexpr double kLargestMove = 1;  // of a level, from one linearization to the next
 
-struct Neighbour {
+struct Neighbor {
   int tet;
   double area;  // of the face between, by the mean
 };
 
-std::vector<std::vector<Neighbour>> neighbours_of(const TetMesh& mesh) {
-  std::vector<std::vector<Neighbour>> all(mesh.tets.size());
+std::vector<std::vector<Neighbor>> neighbors_of(const TetMesh& mesh) {
+  std::vector<std::vector<Neighbor>> all(mesh.tets.size());
   const auto faces = grouped_elements<3>(mesh.vertex_count(), [&](const auto& visit) {
     for (int t = 0; t < mesh.tet_count(); ++t) {
       const auto& [a, b, c, d] = mesh.tets[t];
@@ -40,7 +40,7 @@ std::vector<std::vector<Neighbour>> neighbours_of(const TetMesh& mesh) {
     all[begin[1].place].push_back({begin[0].place, area});
   });
   for (auto& list : all)
-    for (Neighbour& n : list) n.area *= count / sum;
+    for (Neighbor& n : list) n.area *= count / sum;
   return all;
 }
 
@@ -56,7 +56,7 @@ class Sampler {
   Sampler(const TetMesh& mesh, const Spectrum& s, std::span<const double> gradient, int first,
           std::span<const double> z, std::vector<double> levels, double noise_factor, const PartsOptions& options)
       : options_(options),
-        neighbours_(neighbours_of(mesh)),
+        neighbors_(neighbors_of(mesh)),
         rank_(s.dual.count()),
         tets_(static_cast<int>(z.size())),
         start_(levels),
@@ -147,7 +147,7 @@ class Sampler {
       double pull = 0;
       for (int j = 0; j < rank_; ++j) pull += force_[j] * r[j];
       std::fill(energy.begin(), energy.end(), 0.0);
-      for (const Neighbour& n : neighbours_[t]) energy[label_[n.tet]] -= options_.surface * n.area;
+      for (const Neighbor& n : neighbors_[t]) energy[label_[n.tet]] -= options_.surface * n.area;
       for (int k = 0; k < K; ++k) {
         const double step = levels_[k] - levels_[label_[t]];
         energy[k] += step * pull + step * step * own_[t] / 2;
@@ -166,7 +166,7 @@ class Sampler {
   }
 
   const PartsOptions& options_;
-  std::vector<std::vector<Neighbour>> neighbours_;
+  std::vector<std::vector<Neighbor>> neighbors_;
   int rank_, tets_;
   std::vector<double> start_, levels_;
   std::vector<double> d_, slope_, origin_, force_;  // along each direction

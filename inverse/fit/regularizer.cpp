@@ -156,7 +156,7 @@ class FieldBelief : public Belief {
     }
     if (!made_shift_) inverse_.analyze(basis_.size(), places);
     const bool is_definite = inverse_.factorize(entries);
-    if (!is_definite) throw std::runtime_error("the regulariser's matrix could not be factorised");
+    if (!is_definite) throw std::runtime_error("the regularizer's matrix could not be factorized");
     made_shift_ = shift;
     made_p_.assign(p.begin(), p.end());
   }

@@ -138,7 +138,7 @@ TEST(Spectrum, OfDataThatSayNothingIsEmpty) {
   EXPECT_EQ(s.missed, 0);
 }
 
-TEST(PriorGaussian, HoldsWhatTheRegulariserLeavesFree) {
+TEST(PriorGaussian, HoldsWhatTheRegularizerLeavesFree) {
   test::QuadraticBelief belief = test::chain_belief(10, 1, 1e30);  // only differences
   const std::vector<double> p(10);
   PriorGaussian before(belief, 1, p);

@@ -172,7 +172,7 @@ TEST(Posterior, DoesNotTakeTheStiffnessOfAContactForAForce) {
   EXPECT_LT(posterior.unseen[0].information, 0.5);
 }
 
-// ---------------------------------------------------------------------------------------------------- judgement
+// ---------------------------------------------------------------------------------------------------- judgment
 
 TEST(Posterior, IsContentWithTheRightNoiseAndWeight) {
   Field f(8, 300, 1);
@@ -184,7 +184,7 @@ TEST(Posterior, IsContentWithTheRightNoiseAndWeight) {
     EXPECT_NEAR(posterior.noise_factor, 1, 0.2);
     EXPECT_EQ(posterior.applied_factor, 1);
   }
-  EXPECT_LE(warned, 3);  // each judgement is wrong by chance about once in 200 times
+  EXPECT_LE(warned, 3);  // each judgment is wrong by chance about once in 200 times
 }
 
 TEST(Posterior, WidensWhenTheMeasurementsScatterMoreThanTheySay) {

@@ -43,7 +43,7 @@ double largest_distance(const std::vector<double>& a, const std::vector<double>&
   return largest;
 }
 
-const std::vector<double>& minimiser() {
+const std::vector<double>& minimizer() {
   static const std::vector<double> q = third_step(Criterion::scale, 1e-12).q;
   return q;
 }
@@ -54,7 +54,7 @@ TEST(Criteria, VelocityBoundsVelocityError) {
   for (const double tolerance : {1e-2, 1e-4}) {  // [m/s]
     const Solved solved = third_step(Criterion::velocity, tolerance);
     EXPECT_EQ(solved.report.status, Status::converged);
-    EXPECT_LE(largest_distance(solved.q, minimiser()), tolerance * h);
+    EXPECT_LE(largest_distance(solved.q, minimizer()), tolerance * h);
   }
 }
 
@@ -63,7 +63,7 @@ TEST(Criteria, AccelerationBoundsAccelerationError) {
   for (const double tolerance : {1.0, 1e-2}) {  // [m/s^2]
     const Solved solved = third_step(Criterion::acceleration, tolerance);
     EXPECT_EQ(solved.report.status, Status::converged);
-    EXPECT_LE(largest_distance(solved.q, minimiser()), tolerance * h * h);
+    EXPECT_LE(largest_distance(solved.q, minimizer()), tolerance * h * h);
   }
 }
 

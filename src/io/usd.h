@@ -1,4 +1,4 @@
-// One USD scene as text (.usda): a mesh per body whose points are sampled over time. Y is up, units are metres.
+// One USD scene as text (.usda): a mesh per body whose points are sampled over time. Y is up, units are meters.
 #pragma once
 #include <filesystem>
 #include <functional>

@@ -14,7 +14,7 @@ constexpr double kDependent = 1e-7;
 constexpr int kTasks = 16;
 
 // Modified Gram-Schmidt, twice, on the rows of one aggregate: value = weight R; rows of R go to `coarse_value`.
-void orthonormalise(std::span<const int> rows, std::span<const FourValues> value, std::vector<FourValues>& weight,
+void orthonormalize(std::span<const int> rows, std::span<const FourValues> value, std::vector<FourValues>& weight,
                     FourValues* coarse_value) {
   for (const int i : rows) weight[i] = value[i];
   for (int m = 0; m < 4; ++m) coarse_value[m] = {};
@@ -68,7 +68,7 @@ AffineCoarsening make_affine_coarsening(const Graph& graph, const Aggregates& ag
   c.weight.assign(rows, {});
   c.coarse_value.resize(4 * static_cast<size_t>(aggregates.count()));
   parallel_for(aggregates.count(),
-               [&](int a) { orthonormalise(c.rows_of(a), value, c.weight, &c.coarse_value[4 * a]); });
+               [&](int a) { orthonormalize(c.rows_of(a), value, c.weight, &c.coarse_value[4 * a]); });
   c.graph = quotient(graph, aggregates.of_vertex, aggregates.count());
   c.pattern = coarse_pattern(c.graph);
   return c;
@@ -78,7 +78,7 @@ AffineCoarsening make_affine_coarsening(const Graph& graph, const Aggregates& ag
 class MatrixRestriction::Task {
  public:
   Task(const AffineCoarsening& c, const BlockSparse& fine, BlockSparse& coarse, Scratch& scratch)
-      : c_(c), fine_(fine), coarse_(coarse), place_(scratch.place), neighbours_(scratch.neighbours) {}
+      : c_(c), fine_(fine), coarse_(coarse), place_(scratch.place), neighbors_(scratch.neighbors) {}
 
   void run(int a) {
     const BlockPattern& p = *fine_.pattern;
@@ -89,7 +89,7 @@ class MatrixRestriction::Task {
         add(p.upper_row[u], transpose(fine_.block[p.upper_slot[u]]));
       finish_row(c_.weight[i]);
     }
-    for (const Neighbour& b : neighbours_) write(a, b);
+    for (const Neighbor& b : neighbors_) write(a, b);
     for (int m = 0; m < 4; ++m)
       if (c_.coarse_value[4 * a + m][m] == 0)  // the function is zero
         coarse_.block[c_.pattern.diagonal(4 * a + m)] = identity3<double>();
@@ -98,24 +98,24 @@ class MatrixRestriction::Task {
  private:
   // The coarse matrix is stored by its lower triangle: only aggregates b <= a are listed.
   void begin(int a) {
-    neighbours_.clear();
+    neighbors_.clear();
     for (const int b : c_.graph.around(a))
-      if (b < a) neighbours_.push_back({.block = {}, .row = {}, .aggregate = b});
-    neighbours_.push_back({.block = {}, .row = {}, .aggregate = a});
-    for (size_t k = 0; k < neighbours_.size(); ++k) place_[neighbours_[k].aggregate] = static_cast<int>(k);
+      if (b < a) neighbors_.push_back({.block = {}, .row = {}, .aggregate = b});
+    neighbors_.push_back({.block = {}, .row = {}, .aggregate = a});
+    for (size_t k = 0; k < neighbors_.size(); ++k) place_[neighbors_[k].aggregate] = static_cast<int>(k);
   }
 
   void add(int j, const Mat3d& H) {
     const int b = c_.aggregate[j];
     if (b < 0 || place_[b] < 0) return;
-    Neighbour& sum = neighbours_[place_[b]];
+    Neighbor& sum = neighbors_[place_[b]];
     sum.is_reached = true;
     const auto w = Quad<double>::load(c_.weight[j].data());
     for (int k = 0; k < 9; ++k) sum.row[k] += Quad<double>::all(H.a[k]) * w;
   }
 
   void finish_row(const FourValues& w) {
-    for (Neighbour& sum : neighbours_) {
+    for (Neighbor& sum : neighbors_) {
       if (!sum.is_reached) continue;
       for (int m = 0; m < 4; ++m)
         for (int k = 0; k < 9; ++k) sum.block[m][k] += Quad<double>::all(w[m]) * sum.row[k];
@@ -124,7 +124,7 @@ class MatrixRestriction::Task {
     }
   }
 
-  void write(int a, const Neighbour& from) {
+  void write(int a, const Neighbor& from) {
     place_[from.aggregate] = -1;
     for (int m = 0; m < 4; ++m) {
       const int64_t first =
@@ -138,7 +138,7 @@ class MatrixRestriction::Task {
   const BlockSparse& fine_;
   BlockSparse& coarse_;
   std::vector<int>& place_;
-  std::vector<Neighbour>& neighbours_;
+  std::vector<Neighbor>& neighbors_;
 };
 
 void MatrixRestriction::reserve(const AffineCoarsening& c) {
@@ -147,7 +147,7 @@ void MatrixRestriction::reserve(const AffineCoarsening& c) {
   scratch_.resize(kTasks);
   for (Scratch& scratch : scratch_) {
     scratch.place.assign(c.count(), -1);
-    scratch.neighbours.reserve(most + 1);
+    scratch.neighbors.reserve(most + 1);
   }
 }
 

@@ -42,7 +42,7 @@ class MatrixRestriction {
 
  private:
   // Of the coarse blocks that an aggregate shares with another: entry k of block (m, n) is lane n of block[m][k].
-  struct Neighbour {
+  struct Neighbor {
     Quad<double> block[4][9];
     Quad<double> row[9];  // of one fine row i: sum over j of H_ij w_jn
     int aggregate = 0;
@@ -50,7 +50,7 @@ class MatrixRestriction {
   };
   struct Scratch {
     std::vector<int> place;  // of an aggregate in `neighbors`; -1: not there
-    std::vector<Neighbour> neighbours;
+    std::vector<Neighbor> neighbors;
   };
   class Task;
   std::vector<Scratch> scratch_;

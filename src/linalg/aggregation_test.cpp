@@ -29,7 +29,7 @@ size_t reachable(const AggregationInput& in, const Aggregates& aggregates, int a
   return queue.size();
 }
 
-bool has_strong_neighbour(const AggregationInput& in, const Aggregates& aggregates, int a) {
+bool has_strong_neighbor(const AggregationInput& in, const Aggregates& aggregates, int a) {
   for (const int v : aggregates.members(a))
     for (const int w : in.graph.around(v))
       if (aggregates.of_vertex[w] >= 0 && aggregates.of_vertex[w] != a && is_strong(in, v, w)) return true;
@@ -51,7 +51,7 @@ void expect_valid(const AggregationInput& in, const Aggregates& aggregates) {
     }
     EXPECT_EQ(reachable(in, aggregates, a), members.size()) << "aggregate " << a << " does not hang together";
     if (members.size() < kFew) {
-      EXPECT_FALSE(has_strong_neighbour(in, aggregates, a)) << "aggregate " << a << " is a crumb";
+      EXPECT_FALSE(has_strong_neighbor(in, aggregates, a)) << "aggregate " << a << " is a crumb";
     }
   }
   for (int v = 0; v < n; ++v) {
@@ -138,7 +138,7 @@ TEST(Aggregation, KeepsBodiesApart) {
   EXPECT_EQ(valid_aggregates({.graph = graph, .position = position}).count(), 20);
 }
 
-TEST(Aggregation, GivesCrumbsToANeighbour) {
+TEST(Aggregation, GivesCrumbsToANeighbor) {
   const Graph path = graph_of(make_pattern(7, {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5}, {5, 6}}));
   std::vector<Vec3d> position(7);
   for (int v = 0; v < 7; ++v) position[v][0] = v;

@@ -26,19 +26,19 @@ constexpr int kMultigridCap = 500;
 constexpr int kPatience = 10'000;  // iterations where there is nothing to fall back to
 
 template <class Visit>
-void for_each_neighbour(const BlockPattern& p, int row, Visit visit) {
+void for_each_neighbor(const BlockPattern& p, int row, Visit visit) {
   for (int64_t s = p.row_start[row]; s < p.diagonal(row); ++s) visit(p.column[s]);
   for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u) visit(p.upper_row[u]);
 }
 
 // Breadth-first search from queue[begin]; appends what it reaches to the queue and returns the number of levels.
-int search(const BlockPattern& p, std::vector<int>& queue, size_t begin, std::vector<int>& mark, int colour) {
-  mark[queue[begin]] = colour;
+int search(const BlockPattern& p, std::vector<int>& queue, size_t begin, std::vector<int>& mark, int color) {
+  mark[queue[begin]] = color;
   int levels = 0;
   for (size_t head = begin, level_end = queue.size(); head < queue.size(); level_end = queue.size(), ++levels)
     for (; head < level_end; ++head)
-      for_each_neighbour(p, queue[head], [&](int row) {
-        if (mark[row] != colour) mark[row] = colour, queue.push_back(row);
+      for_each_neighbor(p, queue[head], [&](int row) {
+        if (mark[row] != color) mark[row] = color, queue.push_back(row);
       });
   return levels;
 }
@@ -106,9 +106,9 @@ double predict_iterations(const BlockSparse& H, std::vector<char>& held) {
   for (int row = 0; row < p.rows(); ++row) {
     double sum = 0;
     bool beside_pin = held[row];
-    const auto add = [&](int64_t slot, int neighbour) {
+    const auto add = [&](int64_t slot, int neighbor) {
       sum += trace(H.block[slot]);
-      beside_pin = beside_pin || held[neighbour] || squared_norm(H.block[slot]) == 0;
+      beside_pin = beside_pin || held[neighbor] || squared_norm(H.block[slot]) == 0;
     };
     for (int64_t s = p.row_start[row]; s < p.diagonal(row); ++s) add(s, p.column[s]);
     for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u) add(p.upper_slot[u], p.upper_row[u]);
@@ -209,7 +209,7 @@ Cholesky* as_cholesky(LinearSolver& solver) {
 
 std::string AutoSolver::description() const {
   if (!has_chosen_) return "auto";
-  const std::string flops = "a factorisation takes about " + approximate(prediction_.flops) + " flops";
+  const std::string flops = "a factorization takes about " + approximate(prediction_.flops) + " flops";
   std::string text = "auto: " + chosen().description() + ", since ";
   text += fits_ ? flops : "a factor needs about " + approximate(prediction_.bytes / 1e6) + " MB, more than is free";
   if (expected_ > 0)

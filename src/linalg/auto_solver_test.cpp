@@ -62,7 +62,7 @@ TEST(AutoSolver, ChoosesByTheMatrix) {
   }
 }
 
-TEST(AutoSolver, FactorisesForManyRightHandSidesWhereItIteratesForOne) {
+TEST(AutoSolver, FactorizesForManyRightHandSidesWhereItIteratesForOne) {
   const Matrix H = spring_lattice({28, 7, 7, 1, 1});
   for (const int solves : {1, 20}) {
     AutoSolver solver(std::numeric_limits<int64_t>::max(), solves);

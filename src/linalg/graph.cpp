@@ -9,13 +9,13 @@ namespace aspic {
 Graph graph_of(const BlockPattern& p) {
   Graph graph;
   graph.start.resize(p.rows() + 1);
-  graph.neighbour.reserve(2 * (p.block_count() - p.rows()));
+  graph.neighbor.reserve(2 * (p.block_count() - p.rows()));
   for (int row = 0; row < p.rows(); ++row) {
     const auto column = p.column.begin();
-    graph.neighbour.insert(graph.neighbour.end(), column + p.row_start[row], column + p.diagonal(row));
+    graph.neighbor.insert(graph.neighbor.end(), column + p.row_start[row], column + p.diagonal(row));
     const auto upper = p.upper_row.begin();
-    graph.neighbour.insert(graph.neighbour.end(), upper + p.upper_start[row], upper + p.upper_start[row + 1]);
-    graph.start[row + 1] = static_cast<int64_t>(graph.neighbour.size());
+    graph.neighbor.insert(graph.neighbor.end(), upper + p.upper_start[row], upper + p.upper_start[row + 1]);
+    graph.start[row + 1] = static_cast<int64_t>(graph.neighbor.size());
   }
   return graph;
 }
@@ -35,10 +35,10 @@ Graph quotient(const Graph& graph, std::span<const int> group, int groups) {
         const int other = group[w];
         if (other < 0 || seen[other] == g) continue;
         seen[other] = g;
-        result.neighbour.push_back(other);
+        result.neighbor.push_back(other);
       }
-    std::sort(result.neighbour.begin() + result.start.back(), result.neighbour.end());
-    result.start.push_back(static_cast<int64_t>(result.neighbour.size()));
+    std::sort(result.neighbor.begin() + result.start.back(), result.neighbor.end());
+    result.start.push_back(static_cast<int64_t>(result.neighbor.size()));
   }
   return result;
 }

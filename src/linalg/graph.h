@@ -10,9 +10,9 @@ namespace aspic {
 
 struct Graph {
   std::vector<int64_t> start;  // vertex_count() + 1
-  std::vector<int> neighbour;  // of vertex v: neighbor[start[v]] ... ascending, without v
+  std::vector<int> neighbor;   // of vertex v: neighbor[start[v]] ... ascending, without v
   int vertex_count() const { return static_cast<int>(start.size()) - 1; }
-  std::span<const int> around(int v) const { return std::span(neighbour).subspan(start[v], start[v + 1] - start[v]); }
+  std::span<const int> around(int v) const { return std::span(neighbor).subspan(start[v], start[v + 1] - start[v]); }
 };
 
 Graph graph_of(const BlockPattern& pattern);

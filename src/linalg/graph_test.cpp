@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-std::vector<std::set<int>> neighbours(int rows, const Couplings& couplings) {
+std::vector<std::set<int>> neighbors(int rows, const Couplings& couplings) {
   std::vector<std::set<int>> around(rows);
   for (const auto& [i, j] : couplings)
     if (i != j) around[i].insert(j), around[j].insert(i);
@@ -30,11 +30,11 @@ void expect_graph(const Graph& graph, const std::vector<std::set<int>>& expected
 TEST(Graph, HasTheCouplingsOfThePatternBothWaysInOrder) {
   for (const int rows : {0, 1, 2, 40}) {
     const Couplings couplings = random_couplings(rows, 2 * rows, 1);
-    expect_graph(graph_of(make_pattern(rows, couplings)), neighbours(rows, couplings));
+    expect_graph(graph_of(make_pattern(rows, couplings)), neighbors(rows, couplings));
   }
 }
 
-TEST(Graph, VerticesWithoutCouplingsHaveNoNeighbours) {
+TEST(Graph, VerticesWithoutCouplingsHaveNoNeighbors) {
   const Graph graph = graph_of(make_pattern(4, {{3, 1}}));
   expect_graph(graph, {{}, {3}, {}, {1}});
   EXPECT_EQ(greedy_coloring(graph), (std::vector<int>{0, 0, 0, 1}));
@@ -63,7 +63,7 @@ TEST(Quotient, MayHaveEmptyGroupsOrNone) {
   expect_graph(quotient(graph, std::vector{0, -1, 1}, 2), {{}, {}});  // a path through the vertex in between is none
 }
 
-TEST(GreedyColoring, NeighboursDifferAndNoColourIsHigherThanNeeded) {
+TEST(GreedyColoring, NeighborsDifferAndNoColorIsHigherThanNeeded) {
   for (const unsigned seed : {1U, 2U, 3U, 4U}) {
     const int rows = 100;
     const Graph graph = graph_of(make_pattern(rows, random_couplings(rows, 120 * static_cast<int>(seed), seed)));
@@ -75,7 +75,7 @@ TEST(GreedyColoring, NeighboursDifferAndNoColourIsHigherThanNeeded) {
         EXPECT_NE(color[v], color[w]);
         if (w < v) before.insert(color[w]);
       }
-      for (int c = 0; c < color[v]; ++c) EXPECT_TRUE(before.count(c)) << "vertex " << v << " could have colour " << c;
+      for (int c = 0; c < color[v]; ++c) EXPECT_TRUE(before.count(c)) << "vertex " << v << " could have color " << c;
     }
   }
 }

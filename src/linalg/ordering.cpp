@@ -25,13 +25,13 @@ bool is_permutation(const std::vector<int>& order) {
 
 std::vector<int> nested_dissection_order(const BlockPattern& pattern) {
   idx_t rows = pattern.rows();
-  std::vector<idx_t> start(rows + 1, 0), neighbour;
-  neighbour.reserve(2 * (pattern.block_count() - rows));
+  std::vector<idx_t> start(rows + 1, 0), neighbor;
+  neighbor.reserve(2 * (pattern.block_count() - rows));
   for (idx_t row = 0; row < rows; ++row) {
-    for (int64_t s = pattern.row_start[row]; s < pattern.diagonal(row); ++s) neighbour.push_back(pattern.column[s]);
+    for (int64_t s = pattern.row_start[row]; s < pattern.diagonal(row); ++s) neighbor.push_back(pattern.column[s]);
     for (int64_t u = pattern.upper_start[row]; u < pattern.upper_start[row + 1]; ++u)
-      neighbour.push_back(pattern.upper_row[u]);
-    start[row + 1] = static_cast<idx_t>(neighbour.size());
+      neighbor.push_back(pattern.upper_row[u]);
+    start[row + 1] = static_cast<idx_t>(neighbor.size());
   }
   std::vector<idx_t> order(rows), position(rows);
   idx_t options[METIS_NOPTIONS];
@@ -41,7 +41,7 @@ std::vector<int> nested_dissection_order(const BlockPattern& pattern) {
   static std::mutex metis;         // its random numbers come from rand(), which all threads share
   const std::lock_guard lock(metis);
   const int status =
-      METIS_NodeND(&rows, start.data(), neighbour.data(), nullptr, options, order.data(), position.data());
+      METIS_NodeND(&rows, start.data(), neighbor.data(), nullptr, options, order.data(), position.data());
   if (status != METIS_OK) return {};
   return {order.begin(), order.end()};
 }

@@ -7,10 +7,10 @@
 namespace aspic {
 namespace {
 
-struct Neighbours {
+struct Neighbors {
   std::vector<int> start, of;
 
-  Neighbours(int rows, std::span<const MatrixPlace> places) : start(static_cast<size_t>(rows) + 1, 0) {
+  Neighbors(int rows, std::span<const MatrixPlace> places) : start(static_cast<size_t>(rows) + 1, 0) {
     for (const auto& [i, j] : places)
       if (i != j) ++start[i + 1], ++start[j + 1];
     for (int i = 0; i < rows; ++i) start[i + 1] += start[i];
@@ -27,7 +27,7 @@ struct Neighbours {
 // Greedy: each free row takes free neighbors, or those of a neighbor; what stands alone fills up blocks in the end.
 void ScalarCholesky::put_together(std::span<const MatrixPlace> places) {
   const int rows = static_cast<int>(slot_.size());
-  const Neighbours graph(rows, places);
+  const Neighbors graph(rows, places);
   std::fill(slot_.begin(), slot_.end(), -1);
   int blocks = 0;
   std::vector<std::vector<int>> parts;  // of fewer than three

@@ -5,10 +5,10 @@
 namespace aspic {
 
 BoxTree::BoxTree(std::span<const Box> boxes) {
-  std::vector<Vec3d> centres;
-  centres.reserve(boxes.size());
-  for (const Box& box : boxes) centres.push_back(0.5 * box.lower + 0.5 * box.upper);
-  items_ = morton_order(centres);
+  std::vector<Vec3d> centers;
+  centers.reserve(boxes.size());
+  for (const Box& box : boxes) centers.push_back(0.5 * box.lower + 0.5 * box.upper);
+  items_ = morton_order(centers);
   if (items_.empty()) return;
   bounds_.resize(2 * items_.size() - 1);
   bound({0, 0, static_cast<int>(items_.size())}, boxes);

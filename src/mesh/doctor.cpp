@@ -124,7 +124,7 @@ void examine_faces(const TetMesh& mesh, Findings& findings) {
                 "remove the extra tets where the mesh was made", crowded, false});
   findings.add({Severity::warning, "folded_tets",
                 count_of(folded.size(), mesh.tets.size(), "tets",
-                         "lie on the same side of a face as their neighbour, so they overlap"),
+                         "lie on the same side of a face as their neighbor, so they overlap"),
                 "mesh the shape anew", folded, false});
 }
 
@@ -133,7 +133,7 @@ std::vector<int> overlapping_tets(const TetMesh& mesh) {
   constexpr double kInside = 1e-6;    // smallest barycentric weight that counts
   constexpr size_t kMostNear = 4096;  // of a few tets: a pile of them would be compared in all pairs
   std::vector<Box> boxes(mesh.tets.size());
-  const std::vector<Vec3d> centres = centroids(mesh);
+  const std::vector<Vec3d> centers = centroids(mesh);
   for (size_t t = 0; t < boxes.size(); ++t)
     for (int v : mesh.tets[t]) boxes[t].add(mesh.rest[v]);
   const BoxTree tree(boxes);
@@ -147,7 +147,7 @@ std::vector<int> overlapping_tets(const TetMesh& mesh) {
   // False where too many are near all of these, and each must be examined alone.
   const auto examine = [&](std::span<const int> tets, std::vector<int>& near) {
     Box here;
-    for (const int t : tets) here.add(centres[t]);
+    for (const int t : tets) here.add(centers[t]);
     near.clear();
     tree.for_each_overlap(here, [&](int other) {
       near.push_back(other);
@@ -156,7 +156,7 @@ std::vector<int> overlapping_tets(const TetMesh& mesh) {
     if (near.size() == kMostNear && tets.size() > 1) return false;
     for (const int t : tets)
       is_held[t] = std::any_of(near.begin(), near.end(), [&](int other) {
-        return other != t && boxes[other].contains(centres[t]) && holds(other, centres[t]);
+        return other != t && boxes[other].contains(centers[t]) && holds(other, centers[t]);
       });
     return true;
   };

@@ -108,7 +108,7 @@ TEST(DoctorOfTets, FindsADoubledTetBesideAPileOfOthers) {
   EXPECT_THAT(found(mesh, "overlapping_tets").indices, testing::IsSupersetOf({4104, 4105}));
 }
 
-TEST(DoctorOfTets, FindsTetsFoldedOntoTheirNeighbour) {
+TEST(DoctorOfTets, FindsTetsFoldedOntoTheirNeighbor) {
   TetMesh mesh;
   mesh.rest = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}, {{0.1, 0.1, 0.7}}};
   mesh.tets = {{0, 1, 2, 3}, {0, 1, 2, 4}};
@@ -183,7 +183,7 @@ TEST(DoctorOfTets, RefusesCoordinatesWhosePowersOverflow) {
 
 TEST(DoctorOfTets, NotesSuspiciousUnits) {
   EXPECT_THAT(found(make_sphere(81, 20), "suspicious_units").message,
-              "extent 162 m; if the file is in millimetres use scale = 0.001");
+              "extent 162 m; if the file is in millimeters use scale = 0.001");
   EXPECT_EQ(found(make_sphere(1e-4, 5e-5), "suspicious_units").severity, Severity::note);
 }
 

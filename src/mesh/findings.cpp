@@ -113,15 +113,15 @@ void examine_units(const std::vector<Vec3d>& vertices, Findings& findings) {
   if (extent > kLargest)
     findings.add_general({Severity::note,
                           "suspicious_units",
-                          "extent " + number(extent) + " m; if the file is in millimetres use scale = 0.001",
-                          "set scale in the scene when the file is not in metres",
+                          "extent " + number(extent) + " m; if the file is in millimeters use scale = 0.001",
+                          "set scale in the scene when the file is not in meters",
                           {},
                           false});
   if (extent < kSmallest)
     findings.add_general({Severity::note,
                           "suspicious_units",
-                          "extent " + number(extent) + " m; if the file is in kilometres use scale = 1000",
-                          "set scale in the scene when the file is not in metres",
+                          "extent " + number(extent) + " m; if the file is in kilometers use scale = 1000",
+                          "set scale in the scene when the file is not in meters",
                           {},
                           false});
 }

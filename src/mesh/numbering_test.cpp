@@ -47,7 +47,7 @@ TEST(Renumbering, PartsFollowEachOther) {
   }
 }
 
-TEST(Numbering, BringsNeighboursTogetherAndIsUndone) {
+TEST(Numbering, BringsNeighborsTogetherAndIsUndone) {
   TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {6, 6, 6});
   for (int t = 0; t < mesh.tet_count(); ++t) mesh.region.push_back(t);
   std::vector<int> shuffled(mesh.rest.size());

@@ -100,11 +100,11 @@ std::vector<int> hilbert_order(std::span<const Vec3d> points) { return order_by(
 std::vector<Vec3d> centroids(const TetMesh& mesh) { return centroids(mesh, 0, mesh.tets.size()); }
 
 std::vector<Vec3d> centroids(const TetMesh& mesh, int first, size_t count) {
-  std::vector<Vec3d> centres;
-  centres.reserve(count);
+  std::vector<Vec3d> centers;
+  centers.reserve(count);
   for (const auto& [a, b, c, d] : std::span(mesh.tets).subspan(static_cast<size_t>(first), count))
-    centres.push_back(0.25 * ((mesh.rest[a] + mesh.rest[b]) + (mesh.rest[c] + mesh.rest[d])));
-  return centres;
+    centers.push_back(0.25 * ((mesh.rest[a] + mesh.rest[b]) + (mesh.rest[c] + mesh.rest[d])));
+  return centers;
 }
 
 }  // namespace aspic

@@ -25,12 +25,12 @@ TEST(MortonOrder, VisitsTheCornersOfACubeWithXFastest) {
 }
 
 TEST(MortonOrder, IsAPermutationThatShortensTheWayThroughAMesh) {
-  const std::vector<Vec3d> centres = centroids(make_box({{0, 0, 0}}, {{1, 1, 1}}, {16, 16, 16}));
-  std::vector<int> order = morton_order(centres), natural(centres.size());
+  const std::vector<Vec3d> centers = centroids(make_box({{0, 0, 0}}, {{1, 1, 1}}, {16, 16, 16}));
+  std::vector<int> order = morton_order(centers), natural(centers.size());
   std::iota(natural.begin(), natural.end(), 0);
   std::vector<int> shuffled = natural;
   for (size_t i = 0; i < shuffled.size(); ++i) shuffled[i] = static_cast<int>(i * 7919 % shuffled.size());
-  EXPECT_LT(path_length(centres, order), 0.1 * path_length(centres, shuffled));
+  EXPECT_LT(path_length(centers, order), 0.1 * path_length(centers, shuffled));
   std::sort(order.begin(), order.end());
   EXPECT_EQ(order, natural);
 }
@@ -47,7 +47,7 @@ TEST(MortonOrder, LeavesPointsFartherApartThanADoubleCanSayInTheirOrder) {
             (std::vector<int>{0, 1, 2}));
 }
 
-TEST(HilbertOrder, StepsFromCellToNeighbouringCell) {
+TEST(HilbertOrder, StepsFromCellToNeighboringCell) {
   std::vector<Vec3d> grid;
   for (int i = 0; i < 8; ++i)
     for (int j = 0; j < 8; ++j)

@@ -60,7 +60,7 @@ void examine_edges(const TriMesh& mesh, const SurfaceTopology& surface, Findings
                 "separate or join the sheets where it was made", surface.non_manifold_vertices, false});
   const bool is_repairable = !surface.disagreeing.empty() && can_be_oriented(mesh);
   findings.add({Severity::error, "inconsistent_orientation",
-                count_of(surface.disagreeing.size(), total, "triangles", "face the other way than a neighbour"),
+                count_of(surface.disagreeing.size(), total, "triangles", "face the other way than a neighbor"),
                 is_repairable ? "turn them with --repair"
                               : "the sheet has one side only, which --repair cannot turn; cut it where it was made",
                 surface.disagreeing, is_repairable});

@@ -194,7 +194,7 @@ TEST(SelfIntersection, AgreesWithBruteForceOverRandomSegments) {
   EXPECT_EQ(self_intersections(soup).pairs, expected);
 }
 
-TEST(SelfIntersection, OfNeighboursIsFound) {
+TEST(SelfIntersection, OfNeighborsIsFound) {
   TriMesh fold;  // the second triangle lies on the first, beyond their common edge or corner
   fold.vertices = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0.2, 0.3, 0}}, {{1, 1, 0}}};
   fold.triangles = {{0, 1, 2}, {1, 0, 3}};

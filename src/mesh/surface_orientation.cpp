@@ -11,13 +11,13 @@ namespace aspic {
 namespace {
 
 // Neighbors across edges that exactly two triangles share, and whether the two agree there.
-struct Neighbour {
+struct Neighbor {
   int triangle;
   bool agrees;
 };
 
-std::vector<std::array<Neighbour, 3>> neighbours(const std::vector<Triangle>& triangles) {
-  std::vector<std::array<Neighbour, 3>> list(triangles.size(), {{{-1, true}, {-1, true}, {-1, true}}});
+std::vector<std::array<Neighbor, 3>> neighbors(const std::vector<Triangle>& triangles) {
+  std::vector<std::array<Neighbor, 3>> list(triangles.size(), {{{-1, true}, {-1, true}, {-1, true}}});
   std::vector<int> known(triangles.size(), 0);
   for_each_edge(edge_uses(triangles), [&](const EdgeUse* first, const EdgeUse* last) {
     if (last - first != 2) return;
@@ -33,7 +33,7 @@ void turn(Triangle& triangle) { std::swap(triangle[1], triangle[2]); }
 
 // Triangles reached from `start` across shared edges; `flip` says which of them must turn to agree with it. Empty when
 // no choice agrees (a Moebius strip).
-std::vector<int> sheet(const std::vector<std::array<Neighbour, 3>>& next, int start, std::vector<int>& flip) {
+std::vector<int> sheet(const std::vector<std::array<Neighbor, 3>>& next, int start, std::vector<int>& flip) {
   std::vector<int> reached = {start};
   flip[start] = 0;
   bool is_orientable = true;
@@ -66,7 +66,7 @@ double enclosed_volume(const TriMesh& mesh) {
 }
 
 size_t orient(TriMesh& mesh) {
-  const auto next = neighbours(mesh.triangles);
+  const auto next = neighbors(mesh.triangles);
   std::vector<int> flip(mesh.triangles.size(), -1);
   size_t turned = 0, sheets = 0;
   for (int start = 0; start < mesh.triangle_count(); ++start) {

@@ -10,7 +10,7 @@
 #include "base/free_memory.h"
 #include "base/printable.h"
 #include "io/mesh_file.h"
-#include "io/tetrahedralise.h"
+#include "io/tetrahedralize.h"
 #include "mesh/doctor.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
@@ -215,7 +215,7 @@ LoadedMesh load_mesh(const fs::path& path, double size, MeshLoader& loader) {
                          " (choose a larger mesh_size)");
   loader.report("filling " + path.filename().string() + " with tets");
   Tetrahedralization filled =
-      tetrahedralise(path, {.size = size, .seconds = loader.mesher_seconds, .program = loader.mesher});
+      tetrahedralize(path, {.size = size, .seconds = loader.mesher_seconds, .program = loader.mesher});
   const std::string length = size > 0 ? number_text(size) : "the diagonal of the bounding box / 25";
   loader.notes.push_back(path.filename().string() + ": a surface; filled with " +
                          std::to_string(filled.tets.tet_count()) + " tets of edge length " + length +

@@ -90,7 +90,7 @@ std::vector<Case> integrators() {
   return cases;
 }
 
-std::vector<Case> minimisers() {
+std::vector<Case> minimizers() {
   std::vector<Case> cases;
   for (const char* method : {"newton", "newton_cg"})
     for (const char* definiteness : {"on_demand", "progressive", "clamped", "absolute"})
@@ -225,10 +225,10 @@ std::vector<Case> sensitive(std::vector<Case> cases) {
 
 std::string case_name(const testing::TestParamInfo<Case>& info) { return info.param.name; }
 INSTANTIATE_TEST_SUITE_P(Integrators, InOtherUnits, testing::ValuesIn(integrators()), case_name);
-INSTANTIATE_TEST_SUITE_P(Minimisers, InOtherUnits, testing::ValuesIn(minimisers()), case_name);
+INSTANTIATE_TEST_SUITE_P(Minimizers, InOtherUnits, testing::ValuesIn(minimizers()), case_name);
 INSTANTIATE_TEST_SUITE_P(Bodies, InOtherUnits, testing::ValuesIn(materials_and_loads()), case_name);
 INSTANTIATE_TEST_SUITE_P(RealMeshes, InOtherUnits, testing::ValuesIn(real_meshes()), case_name);
-INSTANTIATE_TEST_SUITE_P(Minimisers, SensitiveInOtherUnits, testing::ValuesIn(sensitive(minimisers())), case_name);
+INSTANTIATE_TEST_SUITE_P(Minimizers, SensitiveInOtherUnits, testing::ValuesIn(sensitive(minimizers())), case_name);
 INSTANTIATE_TEST_SUITE_P(RealMeshes, SensitiveInOtherUnits, testing::ValuesIn(sensitive(real_meshes())), case_name);
 INSTANTIATE_TEST_SUITE_P(Hands, InOtherUnits, testing::ValuesIn(hands()), case_name);
 

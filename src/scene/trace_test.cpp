@@ -43,7 +43,7 @@ struct Recorded {
 };
 
 // Newton's method on Rosenbrock's function, traced as step 3.
-std::vector<Recorded> traced_minimisation(Trace& trace) {
+std::vector<Recorded> traced_minimization(Trace& trace) {
   Rosenbrock f;
   Newton direction(make_linear_solver("cholesky"));
   std::vector<double> x = {-0.8, 0.6, 0};
@@ -58,7 +58,7 @@ std::vector<Recorded> traced_minimisation(Trace& trace) {
 
 TEST_F(Traces, TablesReadBackToSameBits) {
   Trace trace(path("trace"));
-  const std::vector<Recorded> recorded = traced_minimisation(trace);
+  const std::vector<Recorded> recorded = traced_minimization(trace);
   const Table iterations = read_table(path("trace") / "iterations.csv");
   const Table trials = read_table(path("trace") / "trials.csv");
   ASSERT_EQ(iterations.size(), recorded.size());
@@ -84,7 +84,7 @@ TEST_F(Traces, TablesReadBackToSameBits) {
 
 TEST_F(Traces, JsonLinesMatchIterations) {
   Trace trace(path("trace"));
-  const std::vector<Recorded> recorded = traced_minimisation(trace);
+  const std::vector<Recorded> recorded = traced_minimization(trace);
   std::ifstream file(path("trace") / "trace.jsonl");
   size_t i = 0;
   for (std::string line; std::getline(file, line); ++i) {
@@ -107,7 +107,7 @@ TEST_F(Traces, JsonLinesMatchIterations) {
 
 TEST_F(Traces, LandscapeIsWrittenOnRequest) {
   Trace trace(path("trace"), {.landscapes = {{3, 1}, {3, 999}}});
-  const std::vector<Recorded> recorded = traced_minimisation(trace);
+  const std::vector<Recorded> recorded = traced_minimization(trace);
   const Table curve = read_table(path("trace") / "curve_3_1.csv");
   EXPECT_EQ(curve.size(), 101u);
   const Table slice = read_table(path("trace") / "slice_3_1.csv");

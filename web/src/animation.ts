@@ -1,5 +1,5 @@
 // Hands the motion so far to other programs, as a file.
-import { element, labelled, messageOf, openDialog, saveFile } from "./dom";
+import { element, labeled, messageOf, openDialog, saveFile } from "./dom";
 import { Gif } from "./gif";
 import type { Page } from "./page";
 import type { FileReply, Query, Recording, SideName, State } from "./protocol";
@@ -24,8 +24,8 @@ export function openAnimation(store: Store, page: Page, video: Video): void {
   const form = element(
     "form",
     {},
-    labelled("Format", format),
-    store.side("b") ? labelled("Side", side) : null,
+    labeled("Format", format),
+    store.side("b") ? labeled("Side", side) : null,
     problem,
     element("div", { class: "actions" }, submit),
   );

@@ -1,5 +1,5 @@
 // Two simulations side by side: the dialog that opens the second.
-import { button, element, labelled, messageOf, openDialog } from "./dom";
+import { button, element, labeled, messageOf, openDialog } from "./dom";
 import type { Page } from "./page";
 import { faultOfOverrides, parseOverrides, presets } from "./presets";
 import type { Scene } from "./protocol";
@@ -44,8 +44,8 @@ function openCompare(store: Store, scene: Scene): void {
     {},
     element("p", {}, "Side A stays as it is. Side B is the same scene, but for:"),
     element("div", { class: "choices" }, ...choices),
-    labelled("What differs, one KEY=VALUE per line", overrides),
-    labelled("Name of side B", label),
+    labeled("What differs, one KEY=VALUE per line", overrides),
+    labeled("Name of side B", label),
     problem,
     element("div", { class: "actions" }, submit),
   );

@@ -64,8 +64,8 @@ export function button(options: ButtonOptions, run: () => void): HTMLButtonEleme
   return made;
 }
 
-export function labelled(text: string, control: HTMLElement, title = ""): HTMLLabelElement {
-  return element("label", { title, class: "labelled" }, element("span", {}, text), control);
+export function labeled(text: string, control: HTMLElement, title = ""): HTMLLabelElement {
+  return element("label", { title, class: "labeled" }, element("span", {}, text), control);
 }
 
 // A modal dialog; it is removed when it closes.

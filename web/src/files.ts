@@ -1,6 +1,6 @@
 // The menu of files: scenes, workspaces, the recorded mouse, deformed meshes.
 import { openAnimation } from "./animation";
-import { chooseFile, element, labelled, messageOf, openDialog, saveFile } from "./dom";
+import { chooseFile, element, labeled, messageOf, openDialog, saveFile } from "./dom";
 import { openGallery } from "./gallery";
 import { makeMenu } from "./menu";
 import type { Page } from "./page";
@@ -55,8 +55,8 @@ export class Files {
     const form = element(
       "form",
       {},
-      labelled("Format: obj and ply hold the surface; vtu, msh and mesh the tets", format),
-      this.store.side("b") ? labelled("Side", side) : null,
+      labeled("Format: obj and ply hold the surface; vtu, msh and mesh the tets", format),
+      this.store.side("b") ? labeled("Side", side) : null,
       element("div", { class: "actions" }, submit),
     );
     const dialog = openDialog("Save the deformed mesh", [form]);

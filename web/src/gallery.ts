@@ -1,7 +1,7 @@
 // The dialog that opens another scene: those that come with the program, those opened before, files of the reader's
 // machine, and a path on the program's machine.
 import "./gallery.css";
-import { button, element, labelled, messageOf, openDialog } from "./dom";
+import { button, element, labeled, messageOf, openDialog } from "./dom";
 import type { GalleryReply } from "./protocol";
 import type { Store } from "./store";
 
@@ -38,7 +38,7 @@ function makePathForm(store: Store, load: (scene: string) => Promise<void>): HTM
   const path = element("input", { type: "text", required: true, spellcheck: "false", size: "50" });
   path.value = store.side("a")?.scene.path ?? "";
   const submit = element("button", { type: "submit", class: "primary" }, "Load");
-  const form = element("form", {}, labelled("Scene, mesh or run, a path on the machine of the program", path), submit);
+  const form = element("form", {}, labeled("Scene, mesh or run, a path on the machine of the program", path), submit);
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     void load(path.value.trim());

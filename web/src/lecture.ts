@@ -18,7 +18,7 @@ export function matches(lesson: Lesson, words: string): boolean {
 }
 
 // The next lesson that can be shown, forward (1) or backward (-1).
-export function neighbour(lessons: Lesson[], from: Lesson | null, by: 1 | -1): Lesson | null {
+export function neighbor(lessons: Lesson[], from: Lesson | null, by: 1 | -1): Lesson | null {
   const shown = lessons.filter((lesson) => !lesson.missing);
   if (!from) return shown[0] ?? null;
   return shown[shown.indexOf(from) + by] ?? null;
@@ -81,8 +81,8 @@ export class Lecture {
     this.list.replaceChildren(...found.map((lesson) => element("li", {}, this.entry(lesson))));
     if (found.length === 0) this.list.append(element("li", { class: "faint" }, "No page has these words."));
     this.previous.hidden = this.next.hidden = this.current === null;
-    this.previous.classList.toggle("faint", neighbour(this.lessons, this.current, -1) === null);
-    this.next.classList.toggle("faint", neighbour(this.lessons, this.current, 1) === null);
+    this.previous.classList.toggle("faint", neighbor(this.lessons, this.current, -1) === null);
+    this.next.classList.toggle("faint", neighbor(this.lessons, this.current, 1) === null);
   }
 
   private entry(lesson: Lesson): HTMLElement {
@@ -100,7 +100,7 @@ export class Lecture {
   }
 
   private move(by: 1 | -1): void {
-    const lesson = neighbour(this.lessons, this.current, by);
+    const lesson = neighbor(this.lessons, this.current, by);
     if (lesson) void this.open(lesson);
     else this.page.notice(by === 1 ? "This is the last page." : "This is the first page.");
   }

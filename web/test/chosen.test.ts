@@ -64,7 +64,7 @@ test("the newest step is chosen until the reader chooses another", () => {
   assert.equal(chosen.step, 8);
 });
 
-test("walking goes on into the neighbouring steps, and ends at the ends", () => {
+test("walking goes on into the neighboring steps, and ends at the ends", () => {
   const { chosen } = opened();
   chosen.choose("a", 2, 2);
   chosen.walk(1);

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { matches, neighbour } from "../src/lecture";
+import { matches, neighbor } from "../src/lecture";
 import type { Lesson } from "../src/protocol";
 
 const lesson = (id: string, more: Partial<Lesson> = {}): Lesson => ({
@@ -22,8 +22,8 @@ test("a lesson is found by words of its text, in any order and case", () => {
 
 test("previous and next skip what cannot be shown", () => {
   const lessons = [lesson("a"), lesson("b", { missing: "a film" }), lesson("c")];
-  assert.equal(neighbour(lessons, lessons[0], 1), lessons[2]);
-  assert.equal(neighbour(lessons, lessons[2], -1), lessons[0]);
-  assert.equal(neighbour(lessons, lessons[2], 1), null);
-  assert.equal(neighbour(lessons, null, 1), lessons[0]);
+  assert.equal(neighbor(lessons, lessons[0], 1), lessons[2]);
+  assert.equal(neighbor(lessons, lessons[2], -1), lessons[0]);
+  assert.equal(neighbor(lessons, lessons[2], 1), null);
+  assert.equal(neighbor(lessons, null, 1), lessons[0]);
 });

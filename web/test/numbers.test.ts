@@ -29,7 +29,7 @@ test("short numbers keep few digits and no zeros at the end", () => {
   assert.equal(plural(0, "iteration"), "0 iterations");
 });
 
-test("ticks tell their neighbours apart", () => {
+test("ticks tell their neighbors apart", () => {
   assert.deepEqual(ticks([-0.5, 0, 0.5, 1]), ["−0.5", "0", "0.5", "1.0"]);
   assert.deepEqual(ticks([1000, 1500, 2000], 1000), ["1.0", "1.5", "2.0"]);
   assert.deepEqual(ticks([0, 2500, 5000, 7500], 1000), ["0", "2.5", "5.0", "7.5"]);

@@ -69,7 +69,7 @@ test("triangles that are not finite or have no area are passed over", () => {
   assert(hit && hit.point.every(Number.isFinite));
 });
 
-test("micrometres are picked like kilometres", () => {
+test("micrometers are picked like kilometers", () => {
   for (const size of [1e-6, 1e3]) {
     const rig = new CameraRig();
     rig.show("ball", [-size, -size, -size], [size, size, size], [0, 0, 1]);

@@ -17,7 +17,7 @@ test("side b gets what side a does not have", () => {
   assert.deepEqual(overridesOf(scene({ "solver.method": "gradient_descent" }), title), ['solver.method="newton"']);
 });
 
-test("an explicit scene is compared with an implicit one, and has no minimiser to compare", () => {
+test("an explicit scene is compared with an implicit one, and has no minimizer to compare", () => {
   const explicit = scene({}, false);
   assert.deepEqual(overridesOf(explicit, "Explicit or implicit"), ['time.integrator="backward_euler"']);
   assert.equal(overridesOf(explicit, "Gradient descent or Newton"), undefined);

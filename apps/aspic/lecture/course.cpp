@@ -24,7 +24,7 @@ const std::vector<Demonstration>& demonstrations() {
       {"03_tissue",
        {3},
        "soft tissue in layers",
-       "Capture and modelling of non-linear heterogeneous soft tissue [Bickel et al. 2009]: a slab of layers is poked "
+       "Capture and modeling of non-linear heterogeneous soft tissue [Bickel et al. 2009]: a slab of layers is poked "
        "and "
        "the force is measured. Here the layers' moduli are given; aspic capture records such pokes of a body, and "
        "aspic fit estimates its stiffness from them.",
@@ -61,13 +61,13 @@ const std::vector<Demonstration>& demonstrations() {
        "dragged by the ear",
        "A spring between an ear and the cursor bends it; the spring's force is shown.",
        show_drag},
-      {"26-31_optimisation", range(26, 31), "from finding a root to minimizing",
-       "M (q - q~) + h^2 dV/dq = 0 is the gradient of E(q) = 1/2 (q - q~)' M (q - q~) + h^2 V(q).", show_optimisation},
-      {"32_one_minimisation_per_step",
+      {"26-31_optimization", range(26, 31), "from finding a root to minimizing",
+       "M (q - q~) + h^2 dV/dq = 0 is the gradient of E(q) = 1/2 (q - q~)' M (q - q~) + h^2 V(q).", show_optimization},
+      {"32_one_minimization_per_step",
        {32},
        "for each time step, use optimization",
        "q_(i+1) = argmin E(q), once for each time step.",
-       show_one_minimisation_per_step},
+       show_one_minimization_per_step},
       {"33-34_explosion",
        {33, 34},
        "explicit and linearized schemes explode",

@@ -21,7 +21,7 @@ class Stage {
 
   // A scene of scenes/lecture on the shape that it describes.
   Scene scene(const std::string& name, const std::vector<std::string>& overrides = {}) const;
-  // The same with its bodies of the real mesh, made one metre large; where there is none, of the scene's own shape.
+  // The same with its bodies of the real mesh, made one meter large; where there is none, of the scene's own shape.
   Scene on_real_mesh(const std::string& name, const std::vector<std::string>& overrides = {}) const;
   // The same with a mesh of at least `tets` tets.
   Scene on_fine_mesh(const std::string& name, int tets, Sheet& sheet) const;
@@ -63,8 +63,8 @@ void show_explicit_or_implicit(const Stage& stage, Sheet& sheet);
 void show_printed_forward_euler(const Stage& stage, Sheet& sheet);
 void show_backward_euler(const Stage& stage, Sheet& sheet);
 void show_drag(const Stage& stage, Sheet& sheet);
-void show_optimisation(const Stage& stage, Sheet& sheet);
-void show_one_minimisation_per_step(const Stage& stage, Sheet& sheet);
+void show_optimization(const Stage& stage, Sheet& sheet);
+void show_one_minimization_per_step(const Stage& stage, Sheet& sheet);
 void show_explosion(const Stage& stage, Sheet& sheet);
 void show_velocity_form(const Stage& stage, Sheet& sheet);
 void show_gradient_descent(const Stage& stage, Sheet& sheet);

@@ -170,7 +170,7 @@ void show_backward_euler(const Stage& stage, Sheet& sheet) {
   sheet.at_most("backward Euler: largest energy / first", implicit.largest_energy / first, 1 + 1e-9, "",
                 "V_(i+1) + T_(i+1) <= V_i + T_i while V is convex along the step");
   sheet.at_most("largest of (V_(i+1) + 1/2 |v_(i+1) - v_i|_M^2 - V_i - T_i) / first energy", worst, 1e-12, "",
-                "E does not rise above E(q_i), the start of the minimisation");
+                "E does not rise above E(q_i), the start of the minimization");
   sheet.at_least("explicit, same h: largest energy / first", explicit_run.largest_energy / first, 1e3, "",
                  "h is far above its stable step");
   sheet.at_least("backward Euler: linear systems per step", static_cast<double>(implicit.iterations) / kSteps, 1, "",

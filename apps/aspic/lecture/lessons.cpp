@@ -143,14 +143,14 @@ const std::vector<Staging>& stagings() {
        .scene = "25_drag",
        .overrides = {"spring=[]"},
        .drag = slow_drag()},
-      {.demonstration = "26-31_optimisation",
+      {.demonstration = "26-31_optimization",
        .part = "",
        .look =
            "Take single steps and choose an iteration: the gradient of E is what the equation leaves over. Where it "
            "is zero E is at its minimum, and the equation holds.",
        .panel = "microscope",
        .scene = "05_swing"},
-      {.demonstration = "32_one_minimisation_per_step",
+      {.demonstration = "32_one_minimization_per_step",
        .part = "",
        .look =
            "Take one iteration at a time: the body moves a little, E falls, and the time stands still. Only when the "

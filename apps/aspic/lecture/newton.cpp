@@ -103,10 +103,10 @@ void show_overshoot(const Stage&, Sheet& sheet) {
   for (const Trial& t : first.tried) table.append(CsvRow().add(t.alpha).add(t.value).add(t.bound).add(t.accepted));
 
   // By hand at (0, 0): E = 1, g = (-2, 0), H = diag(2, 200), d = (1, 0), the model is 0 and E is 100 at (1, 0).
-  sheet.at_most("distance of the model's minimiser from (1, 0)", std::hypot(full[0] - 1, full[1]), 1e-12, "",
+  sheet.at_most("distance of the model's minimizer from (1, 0)", std::hypot(full[0] - 1, full[1]), 1e-12, "",
                 "H d = -g by hand");
-  sheet.at_most("the model's change at its minimiser", model.at(full) - start, -1 + 1e-12, "", "it promises E = 0");
-  sheet.at_most("|E at the model's minimiser - 100|", std::abs(problem.function->at(full) - 100), 1e-10, "",
+  sheet.at_most("the model's change at its minimizer", model.at(full) - start, -1 + 1e-12, "", "it promises E = 0");
+  sheet.at_most("|E at the model's minimizer - 100|", std::abs(problem.function->at(full) - 100), 1e-10, "",
                 "by hand: 100 (0 - 1)^2");
   sheet.at_least("E there / at the start", problem.function->at(full) / start, 2, "", "Newton overshoots");
   sheet.at_most("E at the backtracked point / at the start", problem.function->at(first.next) / start, 1 - 1e-6, "",
@@ -115,7 +115,7 @@ void show_overshoot(const Stage&, Sheet& sheet) {
   sheet.at_most("distance from (1, 1) at the end", std::hypot(done.end[0] - 1, done.end[1] - 1), 1e-6 / 0.39, "",
                 "|g| <= 1e-6 over the least eigenvalue of H there");
   sheet.show("iterations", done.report.iterations, "");
-  sheet.draw_by("model.png", "The surface, the model, its minimiser and the backtracked point",
+  sheet.draw_by("model.png", "The surface, the model, its minimizer and the backtracked point",
                 [&](const auto& path) { draw_model(path, problem, done, 0); });
   sheet.draw_by("path.svg", "The path with the rejected trials",
                 [&](const auto& path) { draw_paths(path, problem.formula, problem, {done}); });
@@ -225,7 +225,7 @@ void show_backtracking(const Stage& stage, Sheet& sheet) {
                "1 and 1/2 lie higher, and 1/4 is shorter than tol");
   sheet.equals("tol = 1e-10 on the same: converged", fine.status == Status::converged, 1, "", "1/4 is accepted");
   sheet.remark(
-      "\"Or you get stuck\": when no alpha >= tol decreases E enough, the minimisation ends as `stuck`, never as "
+      "\"Or you get stuck\": when no alpha >= tol decreases E enough, the minimization ends as `stuck`, never as "
       "converged. The reasons are a tol that is too large (as provoked here), a wrong gradient, or an E whose "
       "differences drown in round-off.");
 }

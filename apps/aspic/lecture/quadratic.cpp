@@ -75,9 +75,9 @@ void show_on_rosenbrock(Sheet& sheet) {
   sheet.at_most("Rosenbrock: order of E - model along d, distance from 3", std::abs(observed_order(d.s, d.error) - 3),
                 0.1, "", "the model has the value, the slope and the curvature; the next term is below 10 %");
   sheet.at_most("Rosenbrock: |H d + g| / |g|", residual_of_direction(*problem.function, x), 1e-12, "",
-                "the model's gradient is zero at its minimiser");
+                "the model's gradient is zero at its minimizer");
   const Minimization done = minimize(problem, {});
-  sheet.draw_by("model.png", "Rosenbrock's function and its quadratic model at the start, with the model's minimiser",
+  sheet.draw_by("model.png", "Rosenbrock's function and its quadratic model at the start, with the model's minimizer",
                 [&](const auto& path) { draw_model(path, problem, done, 0); });
 }
 
@@ -94,7 +94,7 @@ void show_quadratic_model(const Stage& stage, Sheet& sheet) {
   sheet.at_most("real step: order of E - model along d, distance from 3",
                 std::abs(observed_order(real.s, real.error) - 3), 0.2, "", "tangent to second order");
   sheet.at_most("real step: |H d + g| / |g|", residual_of_direction(step.E, step.start), 1e-10, "",
-                "a factorisation solves to round-off times the condition number, below 1e5");
+                "a factorization solves to round-off times the condition number, below 1e5");
 
   VelocityForm form(step.E, step.q_t, step.h);
   const Vector v = scaled(plus(step.start, -1, step.q_t), 1 / step.h);
@@ -107,7 +107,7 @@ void show_quadratic_model(const Stage& stage, Sheet& sheet) {
 
   OpenStep quadratic(in_motion(stage.on_real_mesh("05_swing", {"material.model=linear"})));
   sheet.at_most("linear material: |gradient| after one step / before", gradient_left(quadratic.E, quadratic.start),
-                1e-9, "", "E is quadratic, so the model's minimiser is that of E, but for round-off");
+                1e-9, "", "E is quadratic, so the model's minimizer is that of E, but for round-off");
   sheet.show("neo-Hookean: |gradient| after one step / before", gradient_left(step.E, step.start), "",
              "E is not quadratic: more steps are needed");
   sheet.draw("departure.svg", "Distance between E and its model along a direction, on a step of the real mesh",

@@ -9,7 +9,7 @@
 #include "aspic/shipped_files.h"
 #include "base/error.h"
 #include "io/mesh_file.h"
-#include "io/tetrahedralise.h"
+#include "io/tetrahedralize.h"
 #include "scene/scene_files.h"
 
 namespace aspic::cli::lecture {
@@ -51,11 +51,11 @@ fs::path filled(const fs::path& surface, double size, const fs::path& cache) {
   std::error_code error;
   if (fs::exists(kept, error)) return kept;
   fs::create_directories(cache, error);
-  write_mesh(kept, tetrahedralise(surface, {.size = size}).tets);
+  write_mesh(kept, tetrahedralize(surface, {.size = size}).tets);
   return kept;
 }
 
-// The mesh in the place of the bodies' own ones, one metre large.
+// The mesh in the place of the bodies' own ones, one meter large.
 std::vector<std::string> overrides_for(const fs::path& mesh) {
   if (mesh.empty()) return {};
   return {"mesh=" + toml_string(mesh.string()), fmt::format("scale={}", 1 / extent_of(mesh))};
@@ -72,7 +72,7 @@ Stage::Stage(const fs::path& mesh, fs::path cache) : scenes_(shipped_file("scene
     const fs::path path = fs::absolute(mesh);
     if (!holds_tets(path)) surface_ = path;
     mesh_ = surface_.empty() ? path : filled(surface_, 0, cache_);
-    note_ = "real mesh: " + mesh.string() + ", made one metre large";
+    note_ = "real mesh: " + mesh.string() + ", made one meter large";
     return;
   }
   surface_ = shipped_file("assets/bunny.obj");
@@ -87,7 +87,7 @@ Stage::Stage(const fs::path& mesh, fs::path cache) : scenes_(shipped_file("scene
   note_ = mesh_.empty() ? note_ +
                               "no real mesh: assets/bunny.mesh is not found, nor was --mesh given; "
                               "each scene keeps the shape that it describes"
-                        : "real mesh: the bunny, made one metre large";
+                        : "real mesh: the bunny, made one meter large";
 }
 
 Scene Stage::scene(const std::string& name, const std::vector<std::string>& overrides) const {

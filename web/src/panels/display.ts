@@ -46,7 +46,7 @@ class Folder {
     controller.onChange((value: number) => this.display.change({ ...also, [key]: value }));
   }
 
-  colour(key: Key, label: string): void {
+  color(key: Key, label: string): void {
     this.follow(this.gui.addColor({ ...this.display.settings }, key), key, label);
   }
 
@@ -125,15 +125,15 @@ function addNumbers(folder: Folder): void {
 
 function addLook(folder: Folder): void {
   folder.add("smooth", "Smooth shading");
-  folder.colour("bodyColour", "Body");
-  folder.colour("lineColour", "Wires");
+  folder.color("bodyColor", "Body");
+  folder.color("lineColor", "Wires");
   folder.add("wiresOnTop", "Wires shine through");
   folder.add("inside", "Inside", { "its own color": "own", "as outside": "same", hidden: "hidden" });
-  folder.colour("insideColour", "Inside's color");
+  folder.color("insideColor", "Inside's color");
   folder.add("invert", "Invert normals");
   folder.slider("shininess", "Shininess", 0, 200, 1);
   folder.add("ownBackground", "Own background");
-  folder.colour("background", "Background");
+  folder.color("background", "Background");
 }
 
 // The field that colors the body, and the range of its colors.
@@ -142,7 +142,7 @@ function addField(folder: Folder, display: Display, views: () => View[]): void {
     const known = display.fields.map((field) => [field.label, field.name] as const);
     return { [display.bodies > 1 ? "body" : "none"]: "", ...Object.fromEntries(known) };
   };
-  const choose = (field: string): void => views()[0]?.store.source.send({ do: "colour", field });
+  const choose = (field: string): void => views()[0]?.store.source.send({ do: "color", field });
   folder.choice("Color by", fields, () => display.field, choose);
   const range = folder.within("Color range");
   const maps = { "by field": "auto", viridis: "viridis", cividis: "cividis", "blue to orange": "blue_orange" };
@@ -162,7 +162,7 @@ function addCamera(folder: Folder, display: Display, views: () => View[]): void 
   const kinds = { perspective: "no", orthographic: "yes" };
   const kind = (): string => (display.cameras.a.orthographic ? "yes" : "no");
   folder.choice("Projection", () => kinds, kind, (value) => each((rig) => rig.setOrthographic(value === "yes")));
-  folder.button("Centre the body", () => views().forEach((view) => view.centre()));
+  folder.button("Center the body", () => views().forEach((view) => view.center()));
   const look = folder.within("Look from");
   for (const name of kViewNames) look.button(name, () => each((rig) => rig.look(name)));
   folder.add("linked", "One for both sides");
@@ -192,9 +192,9 @@ function addCameraShortcuts(page: Page, display: Display, views: () => View[]): 
   const add = (key: string, does: string, run: () => void): void => page.shortcut({ key, does, group: "Camera", run });
   const look = (name: ViewName): void => display.eachCamera((rig) => rig.look(name));
   kViewNames.forEach((name, i) => add(String(i + 1), `Look from: ${name}`, () => look(name)));
-  const centre = (): void => views().forEach((view) => view.centre());
-  add("0", "Centre the body", centre);
-  add(".", "Centre the body", centre);
+  const center = (): void => views().forEach((view) => view.center());
+  add("0", "Center the body", center);
+  add(".", "Center the body", center);
   add("o", "Orthographic or perspective", () => display.eachCamera((rig) => rig.setOrthographic(!rig.orthographic)));
   add("v", "Camera: two axes, orbit, 2-D", () => {
     const next = kCameraModes[(kCameraModes.indexOf(display.cameras.a.mode) + 1) % kCameraModes.length];

@@ -30,7 +30,7 @@ class PlanarPanel implements FunctionsPanel {
   readonly element = element("div", {
     class: "plot-panel",
     role: "group",
-    "aria-label": "Minimising a function of two variables",
+    "aria-label": "Minimizing a function of two variables",
   });
   private readonly form = new FunctionForm(() => this.formChanged());
   private readonly view = new SurfaceView();

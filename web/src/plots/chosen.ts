@@ -116,8 +116,8 @@ export class Chosen extends Emitter<Events> {
     if (!row) return;
     const next = this.iteration + by;
     if (next >= 0 && next < row.iterations.length) return this.choose(this.side, this.step, next);
-    const neighbour = this.rowOf(this.step + by);
-    if (neighbour) this.choose(this.side, neighbour.step, by > 0 ? 0 : Math.max(0, neighbour.iterations.length - 1));
+    const neighbor = this.rowOf(this.step + by);
+    if (neighbor) this.choose(this.side, neighbor.step, by > 0 ? 0 : Math.max(0, neighbor.iterations.length - 1));
   }
 
   follow(on: boolean): void {

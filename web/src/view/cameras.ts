@@ -52,11 +52,11 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
     this.shown = key;
     this.orientation.copy(this.viewOrientation("isometric"));
     if (this.mode === "flat") this.orientation.copy(this.viewOrientation("front"));
-    this.centre(lower, upper);
+    this.center(lower, upper);
   }
 
   // The box fills the view.
-  centre(lower: Vec3, upper: Vec3): void {
+  center(lower: Vec3, upper: Vec3): void {
     const radius = new Vector3(...upper).sub(new Vector3(...lower)).length() / 2;
     if (!Number.isFinite(radius)) return;
     this.target.set(...lower).add(new Vector3(...upper)).multiplyScalar(0.5);

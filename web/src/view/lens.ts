@@ -1,4 +1,4 @@
-// Where a camera puts a point on the screen, and the ray behind a pixel. In metres and CSS pixels, in double precision,
+// Where a camera puts a point on the screen, and the ray behind a pixel. In meters and CSS pixels, in double precision,
 // apart from what draws.
 import type { Vec3 } from "../protocol";
 
@@ -34,7 +34,7 @@ export function unit(a: Vec3): Vec3 {
   return size > 0 ? [a[0] / size, a[1] / size, a[2] / size] : [0, 0, 0];
 }
 
-// Pixels per metre at a depth.
+// Pixels per meter at a depth.
 export function pixelsPerMetre(lens: Lens, depth: number): number {
   const half = lens.extent > 0 ? lens.extent : lens.slope * depth;
   return lens.height / 2 / half;

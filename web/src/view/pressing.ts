@@ -4,7 +4,7 @@ import { along, cross, minus, pixelsPerMetre, project, unit, type Lens } from ".
 
 export interface Way {
   direction: [number, number]; // on the screen
-  metres: number; // per pixel
+  meters: number; // per pixel
 }
 
 const kSlant = 0.3; // sine of the angle between the way in and the line of sight, below which down on the screen is in
@@ -24,10 +24,10 @@ export function wayIn(lens: Lens, point: Vec3, axis: Vec3): Way {
   const step = 1 / pixels; // one pixel, where nothing is foreshortened
   const [u, v] = project(lens, along(point, step, axis));
   const seen = Math.hypot(u - x, v - y);
-  if (!(seen > kSlant)) return { direction: [0, 1], metres: step };
-  return { direction: [(u - x) / seen, (v - y) / seen], metres: step / seen };
+  if (!(seen > kSlant)) return { direction: [0, 1], meters: step };
+  return { direction: [(u - x) / seen, (v - y) / seen], meters: step / seen };
 }
 
 export function depthOf(way: Way, [dx, dy]: [number, number]): number {
-  return way.metres * (dx * way.direction[0] + dy * way.direction[1]);
+  return way.meters * (dx * way.direction[0] + dy * way.direction[1]);
 }

@@ -1,5 +1,5 @@
 // The three.js scene around a body: lights, ground, camera and renderer. Lengths are in radii of the scene's box, so
-// that bodies of micrometres and of kilometres are the same to the GPU's single precision.
+// that bodies of micrometers and of kilometers are the same to the GPU's single precision.
 import * as THREE from "three";
 import type { ProbeState, Scene, Vec3 } from "../protocol";
 import type { Body, Box } from "./body";
@@ -22,7 +22,7 @@ export class Stage {
   hasLeft = false; // the middle of a body that is not larger than the view
   radius = 1; // of the scene's box [m]
   readonly extras = new THREE.Group(); // what stands beside the body [m]
-  private centre: Vec3 = [0, 0, 0];
+  private center: Vec3 = [0, 0, 0];
   private up: Vec3 = [0, 0, 1];
   private body: Body | null = null;
   private floor = 0; // height of the ground along `up` [m]
@@ -36,7 +36,7 @@ export class Stage {
   private readonly grid = {
     gridStep: { value: 1 },
     gridOrigin: { value: new THREE.Vector2() },
-    gridColour: { value: new THREE.Color() },
+    gridColor: { value: new THREE.Color() },
   };
   private readonly tip = new TipBody();
   private readonly lit = new THREE.Sphere(new THREE.Vector3(), 0); // what the shadow map covers
@@ -59,7 +59,7 @@ export class Stage {
 
   // Places ground and lights around the box of a scene.
   place(scene: Pick<Scene, "lower" | "upper" | "up">): void {
-    this.centre = [0, 1, 2].map((c) => (scene.lower[c] + scene.upper[c]) / 2) as Vec3;
+    this.center = [0, 1, 2].map((c) => (scene.lower[c] + scene.upper[c]) / 2) as Vec3;
     this.radius = Math.max(length(minus(scene.upper, scene.lower)) / 2, 1e-12);
     const { right, front, up } = sceneAxes(scene.up);
     this.up = up.toArray();
@@ -67,7 +67,7 @@ export class Stage {
     this.gridStep = roundStep(this.radius / 4);
     this.grid.gridStep.value = this.gridStep / this.radius;
     // Lines pass through the origin of the scene.
-    const away = (axis: THREE.Vector3): number => -dot(axis.toArray(), this.centre) / this.radius;
+    const away = (axis: THREE.Vector3): number => -dot(axis.toArray(), this.center) / this.radius;
     this.grid.gridOrigin.value.set(away(right), away(front.clone().negate()));
     this.ground.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(right, front.clone().negate(), up));
     this.sky.position.copy(up);
@@ -79,14 +79,14 @@ export class Stage {
     this.remove();
     this.body = body;
     const scale = 1 / this.radius;
-    const [x, y, z] = this.centre;
+    const [x, y, z] = this.center;
     body.root.matrix.makeScale(scale, scale, scale).multiply(new THREE.Matrix4().makeTranslation(-x, -y, -z));
     this.extras.matrix.copy(body.root.matrix);
     this.scene.add(body.root);
   }
 
-  showTip(tip: ProbeState | null, colour: string): void {
-    if (this.tip.show(tip, colour, (point) => this.toUnits(point), this.radius)) this.renderer.shadowMap.needsUpdate = true;
+  showTip(tip: ProbeState | null, color: string): void {
+    if (this.tip.show(tip, color, (point) => this.toUnits(point), this.radius)) this.renderer.shadowMap.needsUpdate = true;
   }
 
   remove(): void {
@@ -106,10 +106,10 @@ export class Stage {
     this.renderer.shadowMap.needsUpdate = true;
   }
 
-  apply(settings: DisplaySettings, colours: { background: string; grid: string }): void {
-    this.scene.background = new THREE.Color(colours.background);
+  apply(settings: DisplaySettings, colors: { background: string; grid: string }): void {
+    this.scene.background = new THREE.Color(colors.background);
     this.ground.visible = settings.ground;
-    this.grid.gridColour.value.set(colours.grid);
+    this.grid.gridColor.value.set(colors.grid);
     this.sun.castShadow = settings.shadows;
     this.renderer.shadowMap.needsUpdate = true;
   }
@@ -117,22 +117,22 @@ export class Stage {
   clip(clip: Clip | null): void {
     const planes: THREE.Plane[] = [];
     if (clip) {
-      const inside = (dot(clip.normal, this.centre) - clip.offset) / this.radius; // of the middle of the scene
+      const inside = (dot(clip.normal, this.center) - clip.offset) / this.radius; // of the middle of the scene
       planes.push(new THREE.Plane(new THREE.Vector3(...clip.normal), inside));
     }
     this.body?.clip(planes);
     this.renderer.shadowMap.needsUpdate = true;
   }
 
-  render(lens: Lens, orientation: THREE.Quaternion, pinColour: string): void {
+  render(lens: Lens, orientation: THREE.Quaternion, pinColor: string): void {
     const camera = this.camera(lens);
     camera.position.copy(this.toUnits(lens.eye));
     camera.quaternion.copy(orientation);
     this.lamp.position.copy(camera.position);
     this.lamp.target.position.copy(camera.position).add(new THREE.Vector3(...lens.forward));
-    const drop = (this.floor - dot(this.up, this.centre)) / this.radius;
+    const drop = (this.floor - dot(this.up, this.center)) / this.radius;
     this.ground.position.set(...this.up).multiplyScalar(drop);
-    if (this.body) this.adapt(this.body, lens, pinColour);
+    if (this.body) this.adapt(this.body, lens, pinColor);
     this.renderer.render(this.scene, camera);
   }
 
@@ -147,7 +147,7 @@ export class Stage {
   }
 
   private toUnits(point: Vec3): THREE.Vector3 {
-    return new THREE.Vector3(...minus(point, this.centre)).divideScalar(this.radius);
+    return new THREE.Vector3(...minus(point, this.center)).divideScalar(this.radius);
   }
 
   private camera(lens: Lens): THREE.PerspectiveCamera | THREE.OrthographicCamera {
@@ -176,18 +176,18 @@ export class Stage {
     return box ? Math.min(kFarthest, Math.max(1, this.toUnits(box.lower).length(), this.toUnits(box.upper).length())) : 1;
   }
 
-  private adapt(body: Body, lens: Lens, pinColour: string): void {
-    const middle = body.box ? ([0, 1, 2].map((c) => (body.box!.lower[c] + body.box!.upper[c]) / 2) as Vec3) : this.centre;
+  private adapt(body: Body, lens: Lens, pinColor: string): void {
+    const middle = body.box ? ([0, 1, 2].map((c) => (body.box!.lower[c] + body.box!.upper[c]) / 2) as Vec3) : this.center;
     const depth = Math.max(dot(minus(middle, lens.eye), lens.forward), 1e-3 * this.radius);
     const half = lens.extent > 0 ? lens.extent : lens.slope * depth;
-    const pixels = lens.height / 2 / half; // per metre
+    const pixels = lens.height / 2 / half; // per meter
     const lift = (lens.extent > 0 ? lens.extent / this.radius : lens.slope) / (lens.height / 2);
     // Each triangle would fill the view: nothing to be seen in it, and minutes for a renderer without a GPU.
-    const height = lens.extent > 0 ? lens.extent : lens.slope * length(minus(this.centre, lens.eye));
+    const height = lens.extent > 0 ? lens.extent : lens.slope * length(minus(this.center, lens.eye));
     this.isFar = this.reach() > kFar && this.reach() * this.radius > kFar * height;
     body.root.visible = !this.isFar;
     this.hasLeft = body.box !== null && this.reach() * this.radius < 2 * half && !isInside(lens, middle);
-    body.adapt(body.edge * pixels, this.renderer.getPixelRatio(), lift, pinColour);
+    body.adapt(body.edge * pixels, this.renderer.getPixelRatio(), lift, pinColor);
   }
 
   // The shadow map covers the body, and changes only when it has to: else shadows would crawl.

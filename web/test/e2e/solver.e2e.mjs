@@ -117,7 +117,7 @@ test("the landscape shows E, its model and the path", async () => {
   await close();
 });
 
-test("each example of the functions is minimised, from any start", async () => {
+test("each example of the functions is minimized, from any start", async () => {
   const opened = await open("Functions");
   const { page, heard, until, close } = opened;
   const panel = page.getByRole("tabpanel", { name: "Functions" });

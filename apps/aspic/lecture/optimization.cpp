@@ -43,7 +43,7 @@ void write_derivatives(const Sheet& sheet, const DerivativeReport& check) {
 
 }  // namespace
 
-void show_optimisation(const Stage& stage, Sheet& sheet) {
+void show_optimization(const Stage& stage, Sheet& sheet) {
   OpenStep step(in_motion(stage.on_real_mesh("05_swing")));
   sheet.keep(step.scene);
   const Vector d = smooth_direction(step);
@@ -63,22 +63,21 @@ void show_optimisation(const Stage& stage, Sheet& sheet) {
                 "central differences are of second order");
 
   const Root root = find_root(step);
-  Vector minimiser = step.start;
+  Vector minimum = step.start;
   Newton newton(make_linear_solver("cholesky"));
-  Minimizer minimizer;
-  const MinimizeReport report = minimizer.minimize(step.E, newton, minimiser, {.tolerance = 1e-13});
+  const MinimizeReport report = Minimizer().minimize(step.E, newton, minimum, {.tolerance = 1e-13});
   Vector g_root(q.size()), g_minimum(q.size());
   step.E.gradient(root.q, g_root);
-  step.E.gradient(minimiser, g_minimum);
+  step.E.gradient(minimum, g_minimum);
   // E is at least as curved as the inertia where V is convex, so a gradient g is left over at most g / m from the root.
   const double bound = (norm(g_root) + norm(g_minimum) + 2 * step.E.scales().gradient_round_off) / step.smallest_mass();
-  sheet.at_most("|root of the equation - minimiser of E|", largest(plus(root.q, -1, minimiser)), bound, "m",
+  sheet.at_most("|root of the equation - minimizer of E|", largest(plus(root.q, -1, minimum)), bound, "m",
                 "what is left of both gradients over the least eigenvalue of M");
-  sheet.at_most("the bound itself", bound, 1e-3 * largest(plus(minimiser, -1, step.q_t)), "m",
+  sheet.at_most("the bound itself", bound, 1e-3 * largest(plus(minimum, -1, step.q_t)), "m",
                 "so that it tells the solution from a thousandth of the step's motion");
   sheet.show("iterations of root finding", static_cast<double>(root.residuals.size()) - 1, "");
-  sheet.show("iterations of minimising", report.iterations, "");
-  sheet.at_most("E at the minimiser - E at the start", step.E.value(minimiser) - step.E.value(step.start), 0, "kg m^2",
+  sheet.show("iterations of minimizing", report.iterations, "");
+  sheet.at_most("E at the minimizer - E at the start", step.E.value(minimum) - step.E.value(step.start), 0, "kg m^2",
                 "it is a minimum");
   CsvFile residuals = sheet.table("root_finding.csv", {"iteration", "residual_kg_m"});
   Vector iteration;
@@ -93,12 +92,12 @@ void show_optimisation(const Stage& stage, Sheet& sheet) {
                    {{"", iteration, root.residuals, SeriesStyle::line_and_points}}});
 }
 
-void show_one_minimisation_per_step(const Stage& stage, Sheet& sheet) {
+void show_one_minimization_per_step(const Stage& stage, Sheet& sheet) {
   constexpr int kSteps = 20;
   Scene scene = stage.on_real_mesh("05_swing");
   sheet.keep(scene);
   std::vector<int> begun(kSteps, 0);
-  CsvFile table = sheet.table("steps.csv", {"step", "minimisations", "iterations", "values", "status"});
+  CsvFile table = sheet.table("steps.csv", {"step", "minimizations", "iterations", "values", "status"});
   int taken = 0;
   const Run result = run(
       scene.simulation, kSteps,
@@ -108,10 +107,10 @@ void show_one_minimisation_per_step(const Stage& stage, Sheet& sheet) {
       },
       [&](const LiveIteration& iteration) { begun[taken] += iteration.index == 0; });
   sheet.equals("time steps", taken, kSteps, "", "all were taken");
-  sheet.equals("fewest minimisations in a step", *std::min_element(begun.begin(), begun.end()), 1, "", "for each one");
-  sheet.equals("most minimisations in a step", *std::max_element(begun.begin(), begun.end()), 1, "", "and no more");
-  sheet.equals("minimisations that converged", kSteps - result.unconverged, kSteps, "", "all of them");
-  sheet.show("iterations per minimisation", static_cast<double>(result.iterations) / kSteps, "");
+  sheet.equals("fewest minimizations in a step", *std::min_element(begun.begin(), begun.end()), 1, "", "for each one");
+  sheet.equals("most minimizations in a step", *std::max_element(begun.begin(), begun.end()), 1, "", "and no more");
+  sheet.equals("minimizations that converged", kSteps - result.unconverged, kSteps, "", "all of them");
+  sheet.show("iterations per minimization", static_cast<double>(result.iterations) / kSteps, "");
 }
 
 }  // namespace aspic::cli::lecture

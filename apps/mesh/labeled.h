@@ -11,7 +11,7 @@
 
 namespace aspic {
 
-using LabelledDomain = CGAL::Labeled_mesh_domain_3<Kernel>;
+using LabeledDomain = CGAL::Labeled_mesh_domain_3<Kernel>;
 
 // Relative to the bounding box: how well intersections with the surface are located.
 inline constexpr double kSurfaceTolerance = 1e-5;
@@ -20,12 +20,12 @@ inline constexpr double kSurfaceTolerance = 1e-5;
 // them some points on the surface of every connected component that the grid can see.
 class LabelGrid {
  public:
-  LabelGrid(const LabelledDomain& domain, const CGAL::Bbox_3& box, double spacing) : domain_(domain), box_(box) {
+  LabelGrid(const LabeledDomain& domain, const CGAL::Bbox_3& box, double spacing) : domain_(domain), box_(box) {
     constexpr double kLeast = 16, kMost = 96;  // cells per axis
     for (int axis = 0; axis < 3; ++axis)
       cells_[axis] = static_cast<int>(std::clamp((box.max(axis) - box.min(axis)) / spacing, kLeast, kMost));
     labels_.resize(static_cast<size_t>(cells_[0]) * cells_[1] * cells_[2]);
-    for (int i = 0; i < static_cast<int>(labels_.size()); ++i) labels_[i] = label(centre(i));
+    for (int i = 0; i < static_cast<int>(labels_.size()); ++i) labels_[i] = label(center(i));
   }
 
   bool has(int wanted) const { return std::find(labels_.begin(), labels_.end(), wanted) != labels_.end(); }
@@ -35,14 +35,14 @@ class LabelGrid {
 
   double box_volume() const { return box_.x_span() * box_.y_span() * box_.z_span(); }
 
-  Seeds<LabelledDomain> seeds() const {
-    Seeds<LabelledDomain> seeds;
+  Seeds<LabeledDomain> seeds() const {
+    Seeds<LabeledDomain> seeds;
     for (const auto& [component, crossings] : crossings_of_components()) {
       constexpr size_t kSeedsPerComponent = 20;
       const size_t count = std::min(kSeedsPerComponent, crossings.size());
       for (size_t i = 0; i < count; ++i) {
         const auto& [from, to] = crossings[i * crossings.size() / count];
-        const auto hit = domain_.construct_intersection_object()(Kernel::Segment_3(centre(from), centre(to)));
+        const auto hit = domain_.construct_intersection_object()(Kernel::Segment_3(center(from), center(to)));
         if (std::get<2>(hit) == 2) seeds.emplace_back(std::get<0>(hit), std::get<1>(hit));
       }
     }
@@ -55,7 +55,7 @@ class LabelGrid {
   std::map<int, Crossings> crossings_of_components() const {
     DisjointSets sets(static_cast<int>(labels_.size()));
     Crossings all;
-    for_each_neighbours([&](int a, int b) {
+    for_each_neighbors([&](int a, int b) {
       if (labels_[a] == labels_[b])
         sets.join(a, b);
       else
@@ -69,14 +69,14 @@ class LabelGrid {
   }
 
   template <class Visit>
-  void for_each_neighbours(Visit visit) const {
+  void for_each_neighbors(Visit visit) const {
     const std::array<int, 3> stride = {1, cells_[0], cells_[0] * cells_[1]};
     for (int i = 0; i < static_cast<int>(labels_.size()); ++i)
       for (int axis = 0; axis < 3; ++axis)
         if (i / stride[axis] % cells_[axis] + 1 < cells_[axis]) visit(i, i + stride[axis]);
   }
 
-  Point centre(int i) const {
+  Point center(int i) const {
     const std::array<int, 3> cell = {i % cells_[0], i / cells_[0] % cells_[1], i / cells_[0] / cells_[1]};
     double x[3];
     for (int axis = 0; axis < 3; ++axis)
@@ -89,14 +89,14 @@ class LabelGrid {
     return subdomain ? static_cast<int>(*subdomain) : 0;
   }
 
-  const LabelledDomain& domain_;
+  const LabeledDomain& domain_;
   CGAL::Bbox_3 box_;
   std::array<int, 3> cells_;
   std::vector<int> labels_;
 };
 
-// Defined once, in labelled.cpp, for images and implicit shapes alike. `name`: what is filled, in messages.
-TetMesh mesh_labelled(const std::string& name, const LabelledDomain& domain, const LabelGrid& grid,
-                      const MesherOptions& options);
+// Defined once, in labeled.cpp, for images and implicit shapes alike. `name`: what is filled, in messages.
+TetMesh mesh_labeled(const std::string& name, const LabeledDomain& domain, const LabelGrid& grid,
+                     const MesherOptions& options);
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-#include "io/tetrahedralise.h"
+#include "io/tetrahedralize.h"
 
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -21,21 +21,21 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 // The mesher's place is taken by shell scripts that keep to its command line: SURFACE -o OUT --size S.
-class Tetrahedralise : public FolderTest {
+class Tetrahedralize : public FolderTest {
  protected:
-  Tetrahedralise() {
+  Tetrahedralize() {
     fs::create_directory(folder / "temporary");
     surface = folder / "a b;c.off";  // no shell may see this name
     write_mesh(surface, boundary_surface(make_box({{0, 0, 0}}, {{2, 2, 1}}, {1, 1, 1})).surface);
     write_mesh(folder / "tets.mesh", make_box({{0, 0, 0}}, {{2, 2, 1}}, {1, 1, 1}));
     ::setenv("TMPDIR", (folder / "temporary").c_str(), 1);
   }
-  ~Tetrahedralise() override { ::unsetenv("TMPDIR"); }
+  ~Tetrahedralize() override { ::unsetenv("TMPDIR"); }
 
   TetMesh run(const std::string& script, double size = 0) {
     write_file(folder / "mesher", "#!/bin/sh\n" + script);
     fs::permissions(folder / "mesher", fs::perms::owner_all);
-    return tetrahedralise(surface, {.size = size, .program = folder / "mesher"}).tets;
+    return tetrahedralize(surface, {.size = size, .program = folder / "mesher"}).tets;
   }
   void expect_no_leftovers() { EXPECT_TRUE(fs::is_empty(folder / "temporary")); }
 
@@ -46,34 +46,34 @@ class Tetrahedralise : public FolderTest {
   fs::path surface;
 };
 
-TEST_F(Tetrahedralise, ReturnsTheTetsThatTheProgramWrote) {
+TEST_F(Tetrahedralize, ReturnsTheTetsThatTheProgramWrote) {
   EXPECT_EQ(run(good(), 0.25).tet_count(), 6);
   EXPECT_EQ(read_file(folder / "said"), (folder / "mesher").string() + " " + surface.string() + " -o --size 0.25\n");
   expect_no_leftovers();
 }
 
-TEST_F(Tetrahedralise, LeavesDefaultsToTheProgram) {
+TEST_F(Tetrahedralize, LeavesDefaultsToTheProgram) {
   run(good());
   EXPECT_EQ(read_file(folder / "said"), (folder / "mesher").string() + " " + surface.string() + " -o  \n");
 }
 
-TEST_F(Tetrahedralise, ReturnsTheNotesOfTheProgram) {
+TEST_F(Tetrahedralize, ReturnsTheNotesOfTheProgram) {
   write_file(folder / "mesher",
              "#!/bin/sh\necho \"$1: it is thin\"; echo 'tets 6'; cp '" + (folder / "tets.mesh").string() + "' \"$3\"");
   fs::permissions(folder / "mesher", fs::perms::owner_all);
-  EXPECT_THAT(tetrahedralise(surface, {.program = folder / "mesher"}).notes, testing::ElementsAre("it is thin"));
+  EXPECT_THAT(tetrahedralize(surface, {.program = folder / "mesher"}).notes, testing::ElementsAre("it is thin"));
 }
 
-TEST_F(Tetrahedralise, PassesTheTimeLimitAndItsFailure) {
+TEST_F(Tetrahedralize, PassesTheTimeLimitAndItsFailure) {
   write_file(folder / "mesher", "#!/bin/sh\necho \"error: $4 $5: too slow\" >&2; exit 4");
   fs::permissions(folder / "mesher", fs::perms::owner_all);
-  EXPECT_THROW(tetrahedralise(surface, {.seconds = 2.5, .program = folder / "mesher"}), TimeLimitPassed);
-  EXPECT_THAT(message_of([&] { tetrahedralise(surface, {.seconds = 2.5, .program = folder / "mesher"}); }),
+  EXPECT_THROW(tetrahedralize(surface, {.seconds = 2.5, .program = folder / "mesher"}), TimeLimitPassed);
+  EXPECT_THAT(message_of([&] { tetrahedralize(surface, {.seconds = 2.5, .program = folder / "mesher"}); }),
               HasSubstr("ran out of time: --time-limit 2.5: too slow"));
 }
 
 // A process starts the program and is killed; the program's end of a pipe then closes.
-TEST_F(Tetrahedralise, TheProgramDiesWithItsParent) {
+TEST_F(Tetrahedralize, TheProgramDiesWithItsParent) {
   int ends[2];
   ASSERT_EQ(::pipe(ends), 0);
   const pid_t parent = ::fork();
@@ -96,7 +96,7 @@ TEST_F(Tetrahedralise, TheProgramDiesWithItsParent) {
   fs::remove_all(folder / "temporary");
 }
 
-TEST_F(Tetrahedralise, TheReasonOfAFailureIsPassedOn) {
+TEST_F(Tetrahedralize, TheReasonOfAFailureIsPassedOn) {
   EXPECT_THAT(message_of([&] { run("echo the surface is open >&2; exit 2"); }),
               testing::AllOf(HasSubstr(surface.string()), HasSubstr("aspic-mesh failed: the surface is open")));
   EXPECT_THAT(message_of([&] { run("exit 3"); }), HasSubstr("it gave no reason"));
@@ -106,9 +106,9 @@ TEST_F(Tetrahedralise, TheReasonOfAFailureIsPassedOn) {
   expect_no_leftovers();
 }
 
-TEST_F(Tetrahedralise, BadSizesAndProgramsAreRefused) {
+TEST_F(Tetrahedralize, BadSizesAndProgramsAreRefused) {
   EXPECT_THAT(message_of([&] { run(good(), -1); }), HasSubstr("must be positive"));
-  EXPECT_THAT(message_of([&] { tetrahedralise(surface, {.program = folder / "none"}); }),
+  EXPECT_THAT(message_of([&] { tetrahedralize(surface, {.program = folder / "none"}); }),
               HasSubstr("is not a program"));
   ::setenv("TMPDIR", "/nowhere", 1);
   EXPECT_THAT(message_of([&] { run(good()); }), HasSubstr("set TMPDIR to a folder with space"));

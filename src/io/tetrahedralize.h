@@ -8,7 +8,7 @@
 
 namespace aspic {
 
-struct TetrahedraliseOptions {
+struct TetrahedralizeOptions {
   double size = 0;     // target edge length in the units of the surface; 0: the diagonal of the bounding box / 25
   double seconds = 0;  // wall time after which filling fails; 0: the program's default
   std::filesystem::path program;  // aspic-mesh; empty: beside the running program, then on the PATH
@@ -20,6 +20,6 @@ struct Tetrahedralization {
 };
 
 // Throws InvalidInput with the message of the program, or how to install it; TimeLimitPassed when time ran out.
-Tetrahedralization tetrahedralise(const std::filesystem::path& surface, const TetrahedraliseOptions& options);
+Tetrahedralization tetrahedralize(const std::filesystem::path& surface, const TetrahedralizeOptions& options);
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-#include "io/tetrahedralise.h"
+#include "io/tetrahedralize.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ std::vector<std::string> notes(const fs::path& output, const std::string& surfac
 
 }  // namespace
 
-Tetrahedralization tetrahedralise(const fs::path& surface, const TetrahedraliseOptions& options) {
+Tetrahedralization tetrahedralize(const fs::path& surface, const TetrahedralizeOptions& options) {
   if (!(options.size >= 0) || !std::isfinite(options.size))
     throw InvalidInput(surface.string() + ": the target edge length is " + std::to_string(options.size) +
                        "; it must be positive, or 0 for a default");

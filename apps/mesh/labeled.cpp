@@ -1,4 +1,4 @@
-#include "labelled.h"
+#include "labeled.h"
 
 #include <algorithm>
 
@@ -8,9 +8,9 @@ namespace {
 // The edge length of the region a point is in or, on a surface, of the finer of the two regions it separates.
 class RegionSize {
  public:
-  using Index = LabelledDomain::Index;
+  using Index = LabeledDomain::Index;
 
-  RegionSize(const LabelledDomain& domain, const MesherOptions& options) : domain_(&domain), options_(&options) {}
+  RegionSize(const LabeledDomain& domain, const MesherOptions& options) : domain_(&domain), options_(&options) {}
 
   double operator()(const Point&, int dimension, const Index& index) const {
     if (options_->region_size.empty()) return options_->size;
@@ -25,7 +25,7 @@ class RegionSize {
     return found == options_->region_size.end() ? options_->size : found->second;
   }
 
-  const LabelledDomain* domain_;
+  const LabeledDomain* domain_;
   const MesherOptions* options_;
 };
 
@@ -37,15 +37,15 @@ double smallest_size(const MesherOptions& options) {
 
 }  // namespace
 
-TetMesh mesh_labelled(const std::string& name, const LabelledDomain& domain, const LabelGrid& grid,
-                      const MesherOptions& options) {
+TetMesh mesh_labeled(const std::string& name, const LabeledDomain& domain, const LabelGrid& grid,
+                     const MesherOptions& options) {
   // Of tets of the smallest size in the whole box, there is one vertex for five.
   const double size = smallest_size(options), cells = grid.box_volume() / (0.11785 * size * size * size);
   const auto most_vertices = static_cast<size_t>(5e4 + std::min(cells, 1e9));
   bool is_complete = false;
   const RegionSize edge(domain, options);
-  const Seeds<LabelledDomain> seeds = grid.seeds();
-  TetMesh mesh = filled(Filling<LabelledDomain, RegionSize>{domain, edge, seeds, most_vertices}, is_complete);
+  const Seeds<LabeledDomain> seeds = grid.seeds();
+  TetMesh mesh = filled(Filling<LabeledDomain, RegionSize>{domain, edge, seeds, most_vertices}, is_complete);
   if (!is_complete)
     throw InvalidInput(name + ": refinement did not end within " + std::to_string(most_vertices) +
                        " vertices: the border between its regions is too rough for edges of this length; smooth the "
