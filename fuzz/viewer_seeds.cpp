@@ -24,7 +24,7 @@ std::vector<Seed> viewer_seeds() {
        "10}"},
       {"session", "settings",
        "{\"do\":\"set\",\"key\":\"material.young\",\"value\":2e5}\n{\"do\":\"set\",\"key\":\"solver.method\",\"value\":"
-       "\"lbfgs\"}\n{\"do\":\"set\",\"key\":\"gravity\",\"value\":[0,1,0]}\n{\"do\":\"colour\",\"field\":\"stretch\"}"},
+       "\"lbfgs\"}\n{\"do\":\"set\",\"key\":\"gravity\",\"value\":[0,1,0]}\n{\"do\":\"color\",\"field\":\"stretch\"}"},
       {"session", "questions",
        "{\"ask\":\"vertex\",\"id\":1,\"side\":\"a\",\"vertex\":0}\n{\"ask\":\"tet\",\"id\":2,\"side\":\"a\","
        "\"triangle\":1}\n"

@@ -631,7 +631,7 @@ class Render(CommandLine):
         self.aspic("run", self.beam(duration=0.04))
 
     def test_frames_a_picture_and_a_video(self):
-        self.aspic("render", "out/beam", "-o", "frames", "--size", "160x120", "--colour", "von_mises", timeout=200)
+        self.aspic("render", "out/beam", "-o", "frames", "--size", "160x120", "--color", "von_mises", timeout=200)
         frames = sorted((self.folder / "frames").iterdir())
         self.assertEqual([f.name for f in frames], [f"frame_{i:06}.png" for i in range(1, 6)])
         for frame in frames:
@@ -651,7 +651,7 @@ class Render(CommandLine):
         self.assertIn("one picture needs --step", render("-o", "a.png"))
         self.assertIn("a video needs even numbers", render("-o", "a.mp4", "--size", "101x100"))
         self.assertIn("a.bmp: pictures become", render("-o", "a.bmp"))
-        self.assertIn("choose one of displacement", render("-o", "a.png", "--step", "1", "--colour", "stress"))
+        self.assertIn("choose one of displacement", render("-o", "a.png", "--step", "1", "--color", "stress"))
         self.assertIn("choose one of front", render("-o", "a.png", "--step", "1", "--view", "above"))
         self.assertFalse((self.folder / "a.png").exists())
 

@@ -301,7 +301,7 @@ class Mesher(unittest.TestCase):
         (self.folder / "sheet.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
         self.expect_error(2, ["sheet.obj", "sheet", "thickness"], self.folder / "sheet.obj", "--rebuild")
 
-    def test_help_and_version_name_the_licence(self):
+    def test_help_and_version_name_the_license(self):
         for flag in ("--help", "--version"):
             result = run(flag)
             self.assertEqual(result.returncode, 0)

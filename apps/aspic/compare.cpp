@@ -32,7 +32,7 @@ void print_table(const Comparison& comparison) {
              "gradients", "Hessians", "time [ms]", "excess of E", "dist. [m]");
   for (const MethodResult& result : comparison.results) {
     const StepReport& report = result.report;
-    const std::string reached = result.same_minimiser       ? "same minimizer"
+    const std::string reached = result.same_minimizer       ? "same minimizer"
                                 : is_success(report.status) ? "another point"
                                                             : std::string(to_string(report.status));
     fmt::print("{:<{}}  {:<16} {:>10} {:>10} {:>8} {:>10.3g} {:>11.1e} {:>10.1e}\n", result.method, width, reached,
@@ -81,7 +81,7 @@ int compare(const CompareArguments& arguments) {
                arguments.methods.size());
     return exit_signal + interrupt_signal();
   }
-  const auto agrees = [](const MethodResult& result) { return result.same_minimiser; };
+  const auto agrees = [](const MethodResult& result) { return result.same_minimizer; };
   return std::all_of(comparison.results.begin(), comparison.results.end(), agrees) ? exit_done : exit_unconverged;
 }
 

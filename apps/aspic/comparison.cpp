@@ -167,7 +167,7 @@ class Comparer {
     result.allowed_distance = is_static ? INFINITY : gradients / std::sqrt(smallest_mass_eigenvalue(mass));
     const double noise = 1e-12 * std::abs(reference.objective);
     const bool energies_agree = std::abs(excess) <= gradients * std::sqrt(norm) + noise;
-    result.same_minimiser = is_success(result.report.status) && energies_agree &&
+    result.same_minimizer = is_success(result.report.status) && energies_agree &&
                             (result.mass_distance <= result.allowed_distance || result.distance <= 1e-12 * size());
   }
 

@@ -21,9 +21,9 @@ struct MethodResult {
   double seconds = 0;           // of the fastest run
   double excess = 0;            // (E - E*) / (E at the start - E*), where E* is that of the reference
   double distance = 0;          // of the vertex that is furthest from where the reference has it [m]
-  double allowed_distance = 0;  // in the norm of the mass [m sqrt(kg)], see same_minimiser(); infinite in statics
+  double allowed_distance = 0;  // in the norm of the mass [m sqrt(kg)], see same_minimizer(); infinite in statics
   double mass_distance = 0;     // in that norm
-  bool same_minimiser = false;
+  bool same_minimizer = false;
 };
 
 struct Comparison {

@@ -19,12 +19,12 @@ namespace fs = std::filesystem;
 
 void write_methods(const fs::path& path, const Comparison& comparison) {
   CsvFile file = CsvFile::create(
-      path, {"method", "status", "same_minimiser", "iterations", "gradients", "hessians", "factorizations",
+      path, {"method", "status", "same_minimizer", "iterations", "gradients", "hessians", "factorizations",
              "linear_iterations", "trials", "seconds", "objective", "excess", "gradient_norm", "distance"});
   for (const MethodResult& result : comparison.results) {
     const StepReport& report = result.report;
     CsvRow row;
-    row.add(result.method).add(to_string(report.status)).add(result.same_minimiser ? 1 : 0);
+    row.add(result.method).add(to_string(report.status)).add(result.same_minimizer ? 1 : 0);
     row.add(report.iterations).add(report.gradients).add(report.hessians).add(report.factorizations);
     row.add(report.linear_iterations).add(report.trials).add(result.seconds).add(report.objective);
     file.append(row.add(result.excess).add(report.objective_gradient).add(result.distance));
@@ -48,7 +48,7 @@ nlohmann::ordered_json json_of(const MethodResult& result) {
   return {{"method", result.method},
           {"description", result.description},
           {"status", to_string(result.report.status)},
-          {"same_minimiser", result.same_minimiser},
+          {"same_minimizer", result.same_minimizer},
           {"iterations", result.report.iterations},
           {"gradients", result.report.gradients},
           {"hessians", result.report.hessians},
@@ -102,7 +102,7 @@ Chart precision_chart(const Comparison& comparison, Work work) {
 }
 
 std::vector<Cell> row_of(const MethodResult& result) {
-  const Verdict verdict = result.same_minimiser ? Verdict::pass : Verdict::fail;
+  const Verdict verdict = result.same_minimizer ? Verdict::pass : Verdict::fail;
   const StepReport& report = result.report;
   return {{result.method},
           {std::string(is_success(report.status) ? "same minimizer" : to_string(report.status)), verdict},

@@ -84,7 +84,7 @@ TEST_F(MeshPictures, PanelsHaveOneScale) {
   EXPECT_NEAR(covered(image, 0, 0.5, 0, 1) / covered(image, 0.5, 1, 0, 1), 4, 0.1);
 }
 
-TEST_F(MeshPictures, ColoursRunFromTheSmallestToTheLargestValue) {
+TEST_F(MeshPictures, ColorsRunFromTheSmallestToTheLargestValue) {
   ShadedSurface per_vertex{"", beam()}, per_triangle{"", beam()};
   for (const Vec3d& x : per_vertex.surface.vertices) per_vertex.values.push_back(x[0]);
   for (const Triangle& t : per_triangle.surface.triangles)
@@ -104,7 +104,7 @@ TEST_F(MeshPictures, ColoursRunFromTheSmallestToTheLargestValue) {
   EXPECT_GT(std::count_if(row.begin(), half, yellow), 10) << "the largest";
   EXPECT_LT(std::count_if(half, half + 300, green), 5) << "values of triangles end at their edges";
   EXPECT_GT(std::count_if(half, half + 300, yellow), 100);
-  EXPECT_GT(covered(image, 0.85, 1, 0, 1), 0.03) << "the colour bar";
+  EXPECT_GT(covered(image, 0.85, 1, 0, 1), 0.03) << "the color bar";
 }
 
 TEST_F(MeshPictures, WhatHasNoValueIsGrayAndWhatIsNotFiniteIsLeftOut) {
@@ -117,13 +117,13 @@ TEST_F(MeshPictures, WhatHasNoValueIsGrayAndWhatIsNotFiniteIsLeftOut) {
   ASSERT_TRUE(draw({{folder / "gaps.png", picture}}));
   const Image image = read_png(folder / "gaps.png");
   const auto is_gray_ink = [](const Pixel& p) { return is_gray(p) && p[0] < 230; };
-  size_t gray = 0, coloured = 0;
+  size_t gray = 0, colored = 0;
   for (unsigned x = 10; x < 300; ++x) {
     const Pixel& p = image.at(x, image.height / 2);
-    gray += is_gray_ink(p), coloured += !is_gray(p);
+    gray += is_gray_ink(p), colored += !is_gray(p);
   }
   EXPECT_GT(gray, 100u);
-  EXPECT_GT(coloured, 100u);
+  EXPECT_GT(colored, 100u);
 }
 
 TEST_F(MeshPictures, DrawingStopsWhenAsked) {

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 struct RenderArguments {
   fs::path run, out;
-  std::string size = "1280x720", view = "isometric", colour;
+  std::string size = "1280x720", view = "isometric", color;
   double fps = 30, speed = 1;
   int step = -1;
   bool wires = true, dark = false, every_frame = false;
@@ -37,7 +37,7 @@ viewer::RenderOptions render_options(const RenderArguments& arguments) {
   if (!std::isfinite(arguments.fps) || !std::isfinite(arguments.speed))
     throw InvalidInput("--fps and --speed: finite numbers are needed");
   viewer::RenderOptions options{.view = arguments.view,
-                                .colour = arguments.colour,
+                                .color = arguments.color,
                                 .wires = arguments.wires,
                                 .dark = arguments.dark,
                                 .step = arguments.step};
@@ -154,7 +154,7 @@ void add_render(CLI::App& app, Action& action) {
   command->footer(R"(
 Examples:
   aspic render out/bunny -o bunny.mp4                          as fast as it happened; needs ffmpeg
-  aspic render out/bunny -o slow.webm --speed 0.25 --colour von_mises
+  aspic render out/bunny -o slow.webm --speed 0.25 --color von_mises
   aspic render out/bunny -o frames/ --size 1920x1080           frame_000001.png, ... of every frame of the run
   aspic render out/bunny -o bunny.png --step 40 --view front --dark
 
@@ -164,7 +164,7 @@ Chromium draws them with the page of aspic view and aspic report, on the process
   command->add_option("--size", arguments->size, "Width and height in pixels, 1280x720 by default");
   command->add_option("--view", arguments->view,
                       "front, back, left, right, top, bottom, isometric, or the direction to look from: \"1,2,0.5\"");
-  command->add_option("--colour,--color", arguments->colour, "Field, such as von_mises or displacement");
+  command->add_option("--color,--colour", arguments->color, "Field, such as von_mises or displacement");
   command->add_option("--fps", arguments->fps, "Pictures per second of a video, 30 by default")
       ->check(CLI::Range(1.0, 240.0));
   command->add_option("--speed", arguments->speed, "Simulated seconds per second of a video, 1 by default")

@@ -147,7 +147,7 @@ TEST(Bench, AFitFindsTheStifferHalfAndIsSimulated) {
     if (X > 0.08F) stiff += picture.values[v], ++stiffs;
   }
   EXPECT_GT(stiff / stiffs, 1.7 * soft / softs);
-  for (const char* name : {"fit_error", "young_deviation", "young"}) page.send({{"do", "colour"}, {"field", name}});
+  for (const char* name : {"fit_error", "young_deviation", "young"}) page.send({{"do", "color"}, {"field", name}});
 
   page.send({{"do", "simulate_fit"}});
   EXPECT_EQ(page.scene("b")["label"], "fitted material");

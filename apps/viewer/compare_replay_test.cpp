@@ -40,9 +40,9 @@ TEST(Comparison, IsGrabbedPinnedAndSetOnBothSides) {
   EXPECT_EQ(page.pins("a"), page.pins("b"));
   page.send({{"do", "set"}, {"key", "material.density"}, {"value", 900}});
   page.send({{"do", "set"}, {"key", "material.young"}, {"value", 2e5}});  // what is compared stays apart
-  page.send({{"do", "colour"}, {"field", "density"}});
+  page.send({{"do", "color"}, {"field", "density"}});
   for (const int side : {0, 1}) EXPECT_EQ(page.picture(side).max, 900);
-  page.send({{"do", "colour"}, {"field", "young"}});
+  page.send({{"do", "color"}, {"field", "young"}});
   EXPECT_EQ(page.picture(0).max, 2e5F);
   EXPECT_EQ(page.picture(1).max, 1e6F);
   page.send({{"do", "set"}, {"key", "material.young"}, {"value", 3e6}, {"side", "b"}});
@@ -151,7 +151,7 @@ TEST(Recording, WhoeverSteersTakesOver) {
   page.send({{"do", "replay"}, {"recording", recording}});
   for (int i = 0; i < 3; ++i) page.advance();
   EXPECT_TRUE(page.state()["replaying"].get<bool>());
-  page.send({{"do", "colour"}, {"field", "speed"}});
+  page.send({{"do", "color"}, {"field", "speed"}});
   EXPECT_TRUE(page.state()["replaying"].get<bool>());
   page.grab_end({1, 1, 0});
   EXPECT_FALSE(page.state()["replaying"].get<bool>());

@@ -60,29 +60,29 @@ TEST(Pictures, CarryEveryField) {
   const Json fields = page.scene()["fields"];
   ASSERT_GE(fields.size(), 10u);
   for (const Json& field : fields) {
-    page.send({{"do", "colour"}, {"field", field["name"]}});
+    page.send({{"do", "color"}, {"field", field["name"]}});
     EXPECT_EQ(page.scene()["field"], field["name"]);
     const Picture picture = page.picture();
     ASSERT_EQ(picture.values.size(), picture.positions.size() / 3) << field;
     EXPECT_EQ(*std::min_element(picture.values.begin(), picture.values.end()), picture.min);
     EXPECT_EQ(*std::max_element(picture.values.begin(), picture.values.end()), picture.max);
   }
-  page.send({{"do", "colour"}, {"field", ""}});
+  page.send({{"do", "color"}, {"field", ""}});
   EXPECT_TRUE(page.picture().values.empty());
-  EXPECT_NE(page.refused({{"do", "colour"}, {"field", "von_misses"}}).find("von_mises"), std::string::npos);
+  EXPECT_NE(page.refused({{"do", "color"}, {"field", "von_misses"}}).find("von_mises"), std::string::npos);
 }
 
 TEST(Pictures, OfDisplacementAndStressAgreeWithTheState) {
   Page page;
   page.steps(4);
-  page.send({{"do", "colour"}, {"field", "displacement"}});
+  page.send({{"do", "color"}, {"field", "displacement"}});
   const Picture picture = page.picture();
   for (size_t v = 0; v < picture.values.size(); ++v) {
     double squared = 0;
     for (int r = 0; r < 3; ++r) squared += std::pow(picture.positions[3 * v + r] - page.geometry().rest[3 * v + r], 2);
     EXPECT_NEAR(picture.values[v], std::sqrt(squared), 1e-6);
   }
-  page.send({{"do", "colour"}, {"field", "det_F"}});
+  page.send({{"do", "color"}, {"field", "det_F"}});
   EXPECT_NEAR(page.picture().min, 1, 0.2);
   EXPECT_GE(page.picture().min, page.rows().back()["min_det_F"].get<double>() - 1e-6);
 }

@@ -146,7 +146,7 @@ const std::vector<Json>& valid_messages() {
       {{"do", "pin"}, {"side", "a"}, {"vertices", {1, 2, 3}}, {"pinned", false}},
       {{"do", "compare"}, {"overrides", {"time.step=0.005"}}, {"label", "b"}},
       {{"do", "end_compare"}},
-      {{"do", "colour"}, {"field", "von_mises"}},
+      {{"do", "color"}, {"field", "von_mises"}},
       {{"do", "surface"}, {"which", "cage"}},
       {{"do", "replay"},
        {"recording",

@@ -26,9 +26,9 @@ std::string percent_coded(std::string_view text) {
 }
 
 std::string query(const RenderOptions& options) {
-  std::string text = fmt::format("&render=1&width={}&height={}&view={}&colour={}&wires={}&dark={}&every={}",
+  std::string text = fmt::format("&render=1&width={}&height={}&view={}&color={}&wires={}&dark={}&every={}",
                                  options.width, options.height, percent_coded(options.view),
-                                 percent_coded(options.colour), int{options.wires}, int{options.dark}, options.every);
+                                 percent_coded(options.color), int{options.wires}, int{options.dark}, options.every);
   if (options.step >= 0) text += fmt::format("&step={}", options.step);
   return text;
 }

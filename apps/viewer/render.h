@@ -14,7 +14,7 @@ namespace aspic::viewer {
 struct RenderOptions {
   int width = 1280, height = 720;  // [px]
   std::string view = "isometric";  // a name, or the direction "x,y,z" that the camera looks from
-  std::string colour = {};         // a field; empty: none
+  std::string color = {};          // a field; empty: none
   bool wires = true, dark = false;
   int step = -1;     // one picture, of the frame nearest to that step; -1: of the whole run
   double every = 0;  // simulated time from picture to picture [s]; 0: one of each frame

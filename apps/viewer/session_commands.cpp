@@ -43,7 +43,7 @@ const std::map<std::string, Session::Impl::Command>& Session::Impl::commands() {
                                                        {"simulate_fit", {&Impl::simulate_fit}},
                                                        {"compare", {&Impl::compare}},
                                                        {"end_compare", {&Impl::end_compare}},
-                                                       {"colour", {&Impl::colour, false}},
+                                                       {"color", {&Impl::color, false}},
                                                        {"surface", {&Impl::surface}},
                                                        {"replay", {&Impl::replay}},
                                                        {"take", {&Impl::take, false}}};
@@ -153,7 +153,7 @@ void Session::Impl::set_speed(Arguments& arguments) {
 
 // ---------------------------------------------------------------- what is shown
 
-void Session::Impl::colour(Arguments& arguments) {
+void Session::Impl::color(Arguments& arguments) {
   const std::string name = arguments.text("field", 100);
   arguments.finish();
   std::vector<std::string> known;

@@ -92,7 +92,7 @@ struct Session::Impl {
   void reset(Arguments&);
   void rewind(Arguments&);
   void set_speed(Arguments&);
-  void colour(Arguments&);
+  void color(Arguments&);
   void surface(Arguments&);
   void take(Arguments& arguments) { arguments.finish(); }  // roles are given by who knows the pages
   void rewind_to(int step);

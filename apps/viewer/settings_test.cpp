@@ -178,7 +178,7 @@ shape = { box = { upper = [0.2, 0.2, 0.2], cells = [1, 1, 1] } }
 )");
   page.send({{"do", "set"}, {"key", "material.young"}, {"value", 3e5}});
   EXPECT_NE(setting(page, "material.young")["meaning"].get<std::string>().find("all 2"), std::string::npos);
-  page.send({{"do", "colour"}, {"field", "young"}});
+  page.send({{"do", "color"}, {"field", "young"}});
   EXPECT_EQ(page.picture().min, 3e5F);
   EXPECT_EQ(page.picture().max, 3e5F);
 }

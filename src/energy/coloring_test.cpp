@@ -20,7 +20,7 @@ TEST(Coloring, GroupsOfOneColorShareNoVertexAndEachGroupAppearsOnce) {
     for (const int group : color) {
       seen.insert(group);
       for (const int v : std::set<int>(groups[group].begin(), groups[group].end()))
-        EXPECT_TRUE(touched.insert(v).second) << "vertex " << v << " twice in one colour";
+        EXPECT_TRUE(touched.insert(v).second) << "vertex " << v << " twice in one color";
     }
   }
   EXPECT_EQ(seen.size(), groups.size());

@@ -210,7 +210,7 @@ inline std::vector<MeshExample> mesh_examples() {
       {"obj", ".obj", "# quad\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nf 1/1/1 2//1 3 -1\n", 4, 0, 2},
       {"off", ".off", "OFF # a comment\n# another\n4 1 0\n0 0 0\n1 0 0\n1 1 0 # third\n0 1 0\n4 0 1 2 3 255 0 0\n", 4,
        0, 2},
-      {"off with colours", ".off", "COFF 3 1 3\n0 0 0 255 0 0 255\n1 0 0 0 0 0 0\n1 1 0 1 1 1 1\n3 0 1 2\n", 3, 0, 1},
+      {"off with colors", ".off", "COFF 3 1 3\n0 0 0 255 0 0 255\n1 0 0 0 0 0 0\n1 1 0 1 1 1 1\n3 0 1 2\n", 3, 0, 1},
       {"ply text", ".ply", ascii_ply(), 4, 0, 3},
       {"ply binary little", ".ply", binary_ply(std::endian::little), 4, 0, 3},
       {"ply binary big", ".ply", binary_ply(std::endian::big), 4, 0, 3},

@@ -25,7 +25,7 @@ std::string surface_error(const std::string& contents) {
   return "no error";
 }
 
-TEST(Off, PolygonsAreFannedAndColoursSkipped) {
+TEST(Off, PolygonsAreFannedAndColorsSkipped) {
   const MeshContent mesh =
       parse_off("a", "OFF\n5 2 0\n0 0 0\n1 0 0\n1 1 0 255 0 0\n0 1 0\n0 2 0\n5 0 1 2 3 4 1 1 1\n3 0 1 2\n");
   EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 3, 4}, Triangle{0, 1, 2}));

@@ -32,13 +32,13 @@ void for_each_neighbor(const BlockPattern& p, int row, Visit visit) {
 }
 
 // Breadth-first search from queue[begin]; appends what it reaches to the queue and returns the number of levels.
-int search(const BlockPattern& p, std::vector<int>& queue, size_t begin, std::vector<int>& mark, int colour) {
-  mark[queue[begin]] = colour;
+int search(const BlockPattern& p, std::vector<int>& queue, size_t begin, std::vector<int>& mark, int color) {
+  mark[queue[begin]] = color;
   int levels = 0;
   for (size_t head = begin, level_end = queue.size(); head < queue.size(); level_end = queue.size(), ++levels)
     for (; head < level_end; ++head)
       for_each_neighbor(p, queue[head], [&](int row) {
-        if (mark[row] != colour) mark[row] = colour, queue.push_back(row);
+        if (mark[row] != color) mark[row] = color, queue.push_back(row);
       });
   return levels;
 }

@@ -63,7 +63,7 @@ TEST(Quotient, MayHaveEmptyGroupsOrNone) {
   expect_graph(quotient(graph, std::vector{0, -1, 1}, 2), {{}, {}});  // a path through the vertex in between is none
 }
 
-TEST(GreedyColoring, NeighborsDifferAndNoColourIsHigherThanNeeded) {
+TEST(GreedyColoring, NeighborsDifferAndNoColorIsHigherThanNeeded) {
   for (const unsigned seed : {1U, 2U, 3U, 4U}) {
     const int rows = 100;
     const Graph graph = graph_of(make_pattern(rows, random_couplings(rows, 120 * static_cast<int>(seed), seed)));
@@ -75,7 +75,7 @@ TEST(GreedyColoring, NeighborsDifferAndNoColourIsHigherThanNeeded) {
         EXPECT_NE(color[v], color[w]);
         if (w < v) before.insert(color[w]);
       }
-      for (int c = 0; c < color[v]; ++c) EXPECT_TRUE(before.count(c)) << "vertex " << v << " could have colour " << c;
+      for (int c = 0; c < color[v]; ++c) EXPECT_TRUE(before.count(c)) << "vertex " << v << " could have color " << c;
     }
   }
 }

@@ -9,7 +9,7 @@
 namespace aspic {
 namespace {
 
-TEST(RowColoring, EachRowHasOneColourThatNoNeighborHas) {
+TEST(RowColoring, EachRowHasOneColorThatNoNeighborHas) {
   Couplings couplings;  // a grid of 7 x 5 rows with diagonals one way
   for (int i = 0; i < 7; ++i)
     for (int j = 0; j < 5; ++j) {
@@ -33,7 +33,7 @@ TEST(RowColoring, EachRowHasOneColourThatNoNeighborHas) {
   for (const auto& [i, j] : couplings) EXPECT_NE(color_of_row[i], color_of_row[j]);
 }
 
-TEST(RowColoring, RowsWithoutNeighborsShareOneColour) { EXPECT_EQ(color_rows(make_pattern(4, {})).size(), 1u); }
+TEST(RowColoring, RowsWithoutNeighborsShareOneColor) { EXPECT_EQ(color_rows(make_pattern(4, {})).size(), 1u); }
 
 }  // namespace
 }  // namespace aspic

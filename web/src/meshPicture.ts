@@ -9,9 +9,9 @@ import { Body, type Box } from "./view/body";
 import { lookingFrom, sceneAxes } from "./view/cameras";
 import { type DisplaySettings, kDefaults } from "./view/display";
 import { along, dot, type Lens, minus } from "./view/lens";
-import { colourBar, type Ink, kBarWidth, text } from "./view/marks";
+import { colorBar, type Ink, kBarWidth, text } from "./view/marks";
 import { png } from "./view/overlay";
-import type { ColourRange } from "./view/ranges";
+import type { ColorRange } from "./view/ranges";
 import { Stage } from "./view/stage";
 
 interface MeshPicture {
@@ -28,7 +28,7 @@ interface MeshPicture {
 }
 
 const kMargin = 0.94; // of a panel's width and height that the surface may fill
-const kColours = { background: "#ffffff", grid: "#8a93a1", text: "#2b303a" };
+const kColors = { background: "#ffffff", grid: "#8a93a1", text: "#2b303a" };
 
 // Where the camera looks from, for all panels.
 class Outlook {
@@ -130,14 +130,14 @@ class Painter {
 
     [canvas.width, canvas.height] = [head.width, height + top + bottom];
     context.font = `${em}px ${this.font}`;
-    context.fillStyle = kColours.background;
+    context.fillStyle = kColors.background;
     context.fillRect(0, 0, canvas.width, canvas.height);
     panels.forEach((panel, index) => {
       const lens = outlook.lens(panel.middle, height / 2 / scale, width, height);
       this.draw(panel, lens, outlook, head);
       context.drawImage(this.glCanvas, index * width, top);
     });
-    const ink: Ink = { context, em, text: kColours.text, halo: kColours.background, accent: kColours.text };
+    const ink: Ink = { context, em, text: kColors.text, halo: kColors.background, accent: kColors.text };
     text(ink, head.title, head.width / 2, 1.3 * em, "center");
     head.panels.forEach(({ caption }, i) => text(ink, caption, (i + 0.5) * width, top + height + 1.1 * em, "center"));
     if (head.range) this.addBar(ink, head, head.range, top, height);
@@ -166,10 +166,10 @@ class Painter {
     });
     stage.show(body);
     body.apply(settings);
-    body.colour(panel.values && head.range ? colours(head.range) : null, "viridis");
-    stage.apply(settings, kColours);
+    body.color(panel.values && head.range ? colors(head.range) : null, "viridis");
+    stage.apply(settings, kColors);
     stage.moved();
-    stage.render(lens, outlook.orientation, kColours.text);
+    stage.render(lens, outlook.orientation, kColors.text);
   }
 
   // Half as high as the panels beside it, in their middle.
@@ -177,12 +177,12 @@ class Painter {
     const field: Field = { name: "", label: head.value_label, unit: "", diverging: false, center: 0, log: false };
     const lens = { width: head.width - kBarWidth * ink.em, height } as Lens;
     ink.context.translate(0, top + Math.max(0, (height - 23 * ink.em) / 2));
-    colourBar(ink, lens, field, colours(range), "viridis");
+    colorBar(ink, lens, field, colors(range), "viridis");
     ink.context.resetTransform();
   }
 }
 
-function colours([low, high]: [number, number]): ColourRange {
+function colors([low, high]: [number, number]): ColorRange {
   return { low, high, log: false };
 }
 

@@ -43,7 +43,7 @@ export type Command = { id?: number } & (
   | { do: "simulate_fit" } // side b has the fitted material
   | { do: "compare"; overrides: string[]; label: string } // opens side b: the scene of side a with these overrides
   | { do: "end_compare" }
-  | { do: "colour"; field: string } // name in Scene.fields; "" for none
+  | { do: "color"; field: string } // name in Scene.fields; "" for none
   | { do: "surface"; which: "skin" | "cage" }
   | { do: "replay"; recording: Recording } // resets, then repeats what the mouse did, and the settings
   | { do: "take" } // this page wants to steer; any page may send it

@@ -71,8 +71,8 @@ export class RecordedSource implements Source {
         if (!(command.value > 0 && command.value < Infinity)) throw new Error("speed: a number above 0 is expected");
         this.speed = command.value;
         return this.tellState();
-      case "colour":
-        return this.colour(command.field);
+      case "color":
+        return this.color(command.field);
       case "surface":
         return this.showSurface(command.which);
       case "iterate":
@@ -194,7 +194,7 @@ export class RecordedSource implements Source {
     this.tellState();
   }
 
-  private colour(field: string): void {
+  private color(field: string): void {
     if (field !== "" && !this.surface.scene.fields.some(({ name }) => name === field))
       throw new Error(`the recording has no field '${field}'`);
     this.field = field;

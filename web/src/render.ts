@@ -15,7 +15,7 @@ export interface RenderRequest {
   width: number;
   height: number;
   view: ViewName | [number, number, number]; // or the direction that the camera looks from
-  colour: string; // a field; "" for none
+  color: string; // a field; "" for none
   wires: boolean;
   dark: boolean;
   step: number | null; // one picture, of the frame nearest to it
@@ -31,7 +31,7 @@ export function renderRequest(query: URLSearchParams): RenderRequest {
     width: number("width", 1280),
     height: number("height", 720),
     view: direction.length === 3 && direction.every(Number.isFinite) && Math.hypot(...direction) > 0 ? [direction[0], direction[1], direction[2]] : named(view),
-    colour: query.get("colour") ?? "",
+    color: query.get("color") ?? "",
     wires: query.get("wires") !== "0",
     dark: query.get("dark") === "1",
     step: query.has("step") ? number("step", 0) : null,
@@ -80,10 +80,10 @@ function started(store: Store): Promise<void> {
 }
 
 // In a video the same color stands for the same value throughout.
-async function colour(request: RenderRequest, source: RecordedSource, display: Display, fields: Field[]): Promise<void> {
-  const field = fields.find(({ name }) => name === request.colour);
-  if (!field) throw new Error(`--colour: the run has no field '${request.colour}'; choose one of ${fields.map(({ name }) => name).join(", ")}`);
-  await source.request({ do: "colour", field: field.name });
+async function color(request: RenderRequest, source: RecordedSource, display: Display, fields: Field[]): Promise<void> {
+  const field = fields.find(({ name }) => name === request.color);
+  if (!field) throw new Error(`--color: the run has no field '${request.color}'; choose one of ${fields.map(({ name }) => name).join(", ")}`);
+  await source.request({ do: "color", field: field.name });
   if (request.step !== null) return;
   const [least, most] = source.range(field.name);
   const reach = Math.max(most - field.center, field.center - least);
@@ -105,7 +105,7 @@ async function draw(request: RenderRequest, source: RecordedSource, tell: Tell):
   if (!scene) throw new Error("the recording has no scene");
   if (request.step !== null) await source.request({ do: "rewind", step: request.step }); // whose range colors it
   view.drawNow();
-  if (request.colour !== "") await colour(request, source, display, scene.fields);
+  if (request.color !== "") await color(request, source, display, scene.fields);
   aim(display.camera("a"), request, source, scene.up);
   const steps = stepsToShow(source.frames, request);
   await tell("/count", String(steps.length));

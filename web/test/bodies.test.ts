@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { bodiesOf, bodyColours, bodyTexels } from "../src/view/bodies";
+import { bodiesOf, bodyColors, bodyTexels } from "../src/view/bodies";
 
 const geometry = (tet: number[]): Parameters<typeof bodiesOf>[0] => ({
   rest: new Float32Array(9 * tet.length),
@@ -14,8 +14,8 @@ test("each vertex belongs to the body of its tet", () => {
 });
 
 test("two bodies have two colors, the first the reader's own", () => {
-  const colours = bodyColours("#4f8fd0", 8);
-  assert.equal(colours[0], "#4f8fd0");
-  assert.equal(new Set(colours).size, 8);
+  const colors = bodyColors("#4f8fd0", 8);
+  assert.equal(colors[0], "#4f8fd0");
+  assert.equal(new Set(colors).size, 8);
   assert.deepEqual([...bodyTexels(["#010203", "#ff8000"])], [1, 2, 3, 255, 255, 128, 0, 255]);
 });

@@ -10,7 +10,7 @@ const kYoung: Field = { name: "young", label: "E", unit: "Pa", diverging: false,
 
 test("settings are restored from what was saved", () => {
   const display = new Display();
-  display.change({ wires: false, brush: 60, clip: "y", bodyColour: "#123456" });
+  display.change({ wires: false, brush: 60, clip: "y", bodyColor: "#123456" });
   const other = new Display();
   other.restore(JSON.parse(JSON.stringify(display.save())));
   assert.deepEqual(other.settings, display.settings);
@@ -18,7 +18,7 @@ test("settings are restored from what was saved", () => {
 
 test("saved settings that make no sense are left out", () => {
   const display = new Display();
-  for (const saved of [null, 7, "x", { clip: "w" }, { bodyColour: "red" }, { wires: "yes" }, { constructor: 1 }, { low: null }]) display.restore(saved);
+  for (const saved of [null, 7, "x", { clip: "w" }, { bodyColor: "red" }, { wires: "yes" }, { constructor: 1 }, { low: null }]) display.restore(saved);
   assert.deepEqual(display.settings, kDefaults);
   display.restore({ brush: 1e9, shininess: -5 });
   assert.equal(display.settings.brush, 200);

@@ -115,7 +115,7 @@ test("rows of zeros are not shown, until they are something", () => {
 
 test("no two rows of the legend have the same color", () => {
   const columns = ledgerColumns(Array.from({ length: 30 }, (_, i) => `term_${i}`));
-  assert.equal(new Set(columns.map(({ colour }) => colour)).size, columns.length);
+  assert.equal(new Set(columns.map(({ color }) => color)).size, columns.length);
 });
 
 test("an explosion is not called a flat balance", () => {

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { colourAt, kMapNames, mapTexels } from "../src/view/colourMaps";
+import { colorAt, kMapNames, mapTexels } from "../src/view/colorMaps";
 import { about, fraction, logRange, logTicks, RunningRange, ticks } from "../src/view/ranges";
 
 const luminance = ([r, g, b]: number[]): number => {
@@ -76,7 +76,7 @@ test("a logarithmic range needs something positive", () => {
 
 test("sequential maps get lighter all the way, the diverging one is lightest in the middle", () => {
   for (const map of kMapNames) {
-    const light = Array.from({ length: 65 }, (_, i) => luminance(colourAt(map, i / 64)));
+    const light = Array.from({ length: 65 }, (_, i) => luminance(colorAt(map, i / 64)));
     for (let i = 1; i < 65; ++i) {
       const rises = map !== "blue_orange" || i <= 32;
       assert(rises ? light[i] > light[i - 1] : light[i] < light[i - 1], `${map} at ${i}`);
@@ -84,10 +84,10 @@ test("sequential maps get lighter all the way, the diverging one is lightest in 
   }
 });
 
-test("a map's texels are its colours, and values outside take the ends", () => {
+test("a map's texels are its colors, and values outside take the ends", () => {
   const texels = mapTexels("viridis", 256);
   assert.deepEqual([...texels.slice(0, 4)], [0x44, 0x01, 0x54, 255]);
   assert.deepEqual([...texels.slice(-4)], [0xfd, 0xe7, 0x25, 255]);
-  assert.deepEqual(colourAt("viridis", -3), colourAt("viridis", 0));
-  assert.deepEqual(colourAt("viridis", 7), colourAt("viridis", 1));
+  assert.deepEqual(colorAt("viridis", -3), colorAt("viridis", 0));
+  assert.deepEqual(colorAt("viridis", 7), colorAt("viridis", 1));
 });

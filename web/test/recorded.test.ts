@@ -196,13 +196,13 @@ test("a picture waits until the one before is drawn; then the newest comes", asy
 
 test("fields are of places that vertices share; what is no number stays none", async () => {
   const reader = await opened();
-  await reader.source.request({ do: "colour", field: "stress" });
+  await reader.source.request({ do: "color", field: "stress" });
   assert.deepEqual([...reader.picture.values!], [0, 10, 10]);
   assert.equal(reader.picture.max, 10);
   await reader.source.request({ do: "rewind", step: 20 });
   reader.source.ready();
   assert.deepEqual([...reader.picture.values!].map(Number.isNaN), [true, true, true]);
-  await assert.rejects(reader.source.request({ do: "colour", field: "colour" }), /no field 'colour'/);
+  await assert.rejects(reader.source.request({ do: "color", field: "color" }), /no field 'color'/);
 });
 
 test("it answers what it knows and refuses the rest in words", async () => {

@@ -101,7 +101,7 @@ void show_differences(const Stage& stage, Sheet& sheet) {
   const TriMesh now_surface = surface_at(step.model(), now), ghost_surface = surface_at(step.model(), ghost);
   std::vector<double> on_surface;
   for (const int v : boundary_surface(step.model().mesh).tet_vertex) on_surface.push_back(ahead[v]);
-  sheet.draw("ghost.png", "q_i, and q~ where the body would fly without forces, coloured by how far that is",
+  sheet.draw("ghost.png", "q_i, and q~ where the body would fly without forces, colored by how far that is",
              MeshPicture{.panels = {{"q_i", now_surface, std::vector<double>(on_surface.size(), 0.0)},
                                     {"q~", ghost_surface, on_surface}},
                          .eye = {{0.4, 0.3, 1}},

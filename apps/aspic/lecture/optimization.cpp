@@ -63,22 +63,21 @@ void show_optimization(const Stage& stage, Sheet& sheet) {
                 "central differences are of second order");
 
   const Root root = find_root(step);
-  Vector argmin = step.start;
+  Vector minimum = step.start;
   Newton newton(make_linear_solver("cholesky"));
-  Minimizer minimizer;
-  const MinimizeReport report = minimizer.minimize(step.E, newton, argmin, {.tolerance = 1e-13});
+  const MinimizeReport report = Minimizer().minimize(step.E, newton, minimum, {.tolerance = 1e-13});
   Vector g_root(q.size()), g_minimum(q.size());
   step.E.gradient(root.q, g_root);
-  step.E.gradient(argmin, g_minimum);
+  step.E.gradient(minimum, g_minimum);
   // E is at least as curved as the inertia where V is convex, so a gradient g is left over at most g / m from the root.
   const double bound = (norm(g_root) + norm(g_minimum) + 2 * step.E.scales().gradient_round_off) / step.smallest_mass();
-  sheet.at_most("|root of the equation - minimizer of E|", largest(plus(root.q, -1, argmin)), bound, "m",
+  sheet.at_most("|root of the equation - minimizer of E|", largest(plus(root.q, -1, minimum)), bound, "m",
                 "what is left of both gradients over the least eigenvalue of M");
-  sheet.at_most("the bound itself", bound, 1e-3 * largest(plus(argmin, -1, step.q_t)), "m",
+  sheet.at_most("the bound itself", bound, 1e-3 * largest(plus(minimum, -1, step.q_t)), "m",
                 "so that it is below a thousandth of the motion of the step");
   sheet.show("iterations of root finding", static_cast<double>(root.residuals.size()) - 1, "");
   sheet.show("iterations of minimizing", report.iterations, "");
-  sheet.at_most("E at the minimizer - E at the start", step.E.value(argmin) - step.E.value(step.start), 0, "kg m^2",
+  sheet.at_most("E at the minimizer - E at the start", step.E.value(minimum) - step.E.value(step.start), 0, "kg m^2",
                 "it is a minimum");
   CsvFile residuals = sheet.table("root_finding.csv", {"iteration", "residual_kg_m"});
   Vector iteration;

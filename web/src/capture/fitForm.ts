@@ -39,7 +39,7 @@ export class FitForm {
   private readonly sameMesh = checkbox("on the mesh that was measured", "An inverse crime: sharper than any real measurement would be. Without it, what the coarser mesh gets wrong hides much of the stiffness. Forget the recorded cases to change it", true, (on) =>
     this.send({ do: "bench", same_mesh: on }),
   );
-  private readonly colours = element("div", { class: "capture-row", role: "group", "aria-label": "Colours of the body" });
+  private readonly colors = element("div", { class: "capture-row", role: "group", "aria-label": "Colors of the body" });
   private readonly note = element("div", { class: "faint capture-note" });
 
   constructor(
@@ -47,12 +47,12 @@ export class FitForm {
     private readonly page: Page,
   ) {
     for (const [field, words] of kFields) {
-      const choose = button({ text: words, title: `Colour the body: ${words}`, steers: true }, () => this.send({ do: "colour", field }));
+      const choose = button({ text: words, title: `Color the body: ${words}`, steers: true }, () => this.send({ do: "color", field }));
       choose.dataset.field = field;
-      this.colours.append(choose);
+      this.colors.append(choose);
     }
     const buttons = element("div", { class: "capture-row" }, this.begin, this.end, this.simulate);
-    this.element.append(element("h3", {}, "3  Fit"), buttons, this.sameMesh.element, this.bar, this.status, this.colours, this.result, this.note);
+    this.element.append(element("h3", {}, "3  Fit"), buttons, this.sameMesh.element, this.bar, this.status, this.colors, this.result, this.note);
     store.on("scene", () => this.mark());
     this.show(null);
   }
@@ -87,7 +87,7 @@ export class FitForm {
 
   private mark(): void {
     const scene = this.store.side("a")?.scene;
-    for (const choose of this.colours.querySelectorAll("button")) {
+    for (const choose of this.colors.querySelectorAll("button")) {
       choose.hidden = !scene?.fields.some(({ name }) => name === choose.dataset.field);
       choose.setAttribute("aria-pressed", String(scene?.field === choose.dataset.field));
       choose.classList.add("plot-button");

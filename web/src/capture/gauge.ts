@@ -29,8 +29,8 @@ export class Gauge {
       x: { label: "depth", unit: "m" },
       y: { label: "force", unit: "N" },
       curves: [
-        { key: "live", label: "now", meaning: "What the gauge showed at this touch", colour: "series2", width: 2, shape: "both" },
-        { key: "recorded", label: "recorded", meaning: "The recorded cases, with their noise", colour: "series1", shape: "points" },
+        { key: "live", label: "now", meaning: "What the gauge showed at this touch", color: "series2", width: 2, shape: "both" },
+        { key: "recorded", label: "recorded", meaning: "The recorded cases, with their noise", color: "series1", shape: "points" },
       ],
       legend: "top",
       read: () => [],

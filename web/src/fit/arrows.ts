@@ -19,8 +19,8 @@ function instanced(geometry: THREE.BufferGeometry, material: THREE.Material, mat
 }
 
 // Round shafts with heads, `radius` thick [m].
-export function makeArrows(arrows: readonly Arrow[], radius: number, colour: string): THREE.Group {
-  const material = new THREE.MeshLambertMaterial({ color: colour });
+export function makeArrows(arrows: readonly Arrow[], radius: number, color: string): THREE.Group {
+  const material = new THREE.MeshLambertMaterial({ color: color });
   const [shafts, heads]: [THREE.Matrix4[], THREE.Matrix4[]] = [[], []];
   for (const { from, to } of arrows) {
     const start = new THREE.Vector3(...from);
@@ -40,8 +40,8 @@ export function makeArrows(arrows: readonly Arrow[], radius: number, colour: str
   return group;
 }
 
-export function makeBalls(centers: readonly Vec3[], radius: number, colour: string, opacity = 1): THREE.Group {
-  const material = new THREE.MeshLambertMaterial({ color: colour, transparent: opacity < 1, opacity });
+export function makeBalls(centers: readonly Vec3[], radius: number, color: string, opacity = 1): THREE.Group {
+  const material = new THREE.MeshLambertMaterial({ color: color, transparent: opacity < 1, opacity });
   const matrices = centers.map((c) => new THREE.Matrix4().makeScale(radius, radius, radius).setPosition(...c));
   const group = new THREE.Group();
   group.add(instanced(new THREE.SphereGeometry(1, 20, 14), material, matrices));

@@ -6,11 +6,11 @@ import { element } from "../dom";
 import type { Geometry, Vec3 } from "../protocol";
 import { Body } from "../view/body";
 import type { CameraRig } from "../view/cameras";
-import type { MapName } from "../view/colourMaps";
+import type { MapName } from "../view/colorMaps";
 import { kDefaults } from "../view/display";
 import { kSkinPoint } from "../view/labels";
 import { Overlay, readStyle } from "../view/overlay";
-import { logRange, type ColourRange } from "../view/ranges";
+import { logRange, type ColorRange } from "../view/ranges";
 import { Stage } from "../view/stage";
 import { disposeOf } from "./arrows";
 import { bodyBelow, boundaryOf, type Boundary, type Plane, type Soup, type TetMesh } from "./cut";
@@ -105,7 +105,7 @@ export class BodyView {
 
   show(shown: Shown | null): void {
     this.shown = shown;
-    this.recolour();
+    this.recolor();
   }
 
   slice(cut: Cut | null): void {
@@ -166,10 +166,10 @@ export class BodyView {
     this.body.show({ side: "a", generation: 1, step: 0, iteration: -1, time: 0, positions, normals: packed, values: new Float32Array(corners), min: 0, max: 0 });
     this.stage?.moved();
     this.applyDisplay();
-    this.recolour();
+    this.recolor();
   }
 
-  private recolour(): void {
+  private recolor(): void {
     const { body, soup, shown } = this;
     if (!body || !soup) return;
     if (shown) {
@@ -177,11 +177,11 @@ export class BodyView {
       for (let i = 0; i < values.length; ++i) values[i] = shown.values[soup.tet[Math.floor(i / 3)]];
       body.show({ side: "a", generation: 1, step: 0, iteration: -1, time: 0, positions: body.current, normals: body.shading, values, min: 0, max: 0 });
     }
-    body.colour(shown && this.range(shown), shown?.map ?? "viridis");
+    body.color(shown && this.range(shown), shown?.map ?? "viridis");
     this.redraw();
   }
 
-  private range(shown: Shown): ColourRange {
+  private range(shown: Shown): ColorRange {
     let [low, high] = shown.range ?? [Infinity, -Infinity];
     if (!shown.range)
       for (const value of shown.values) {
@@ -194,7 +194,7 @@ export class BodyView {
 
   private applyDisplay(): void {
     const style = this.style();
-    this.body?.apply({ ...kDefaults, wires: this.wires, bodyColour: "#b9c3d0", inside: "same" });
+    this.body?.apply({ ...kDefaults, wires: this.wires, bodyColor: "#b9c3d0", inside: "same" });
     this.stage?.apply({ ...kDefaults, ground: false }, style);
     this.redraw();
   }

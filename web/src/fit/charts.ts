@@ -17,10 +17,10 @@ function valueAt(x: readonly number[], column: readonly MaybeNumber[], at: numbe
 }
 
 // Bars of one standard deviation, in device pixels.
-function paintErrorBars(u: uPlot, colours: Palette, curve: GroupCurve): void {
+function paintErrorBars(u: uPlot, colors: Palette, curve: GroupCurve): void {
   const { ctx } = u;
   ctx.save();
-  ctx.strokeStyle = colours.text;
+  ctx.strokeStyle = colors.text;
   ctx.lineWidth = devicePixelRatio;
   const cap = 4 * devicePixelRatio;
   ctx.beginPath();
@@ -54,11 +54,11 @@ export function loadChart(name: string, curve: GroupCurve): Chart {
   const hasFitted = curve.fitted.some((v) => v !== null);
   const shape = curve.x.length > 2 ? "line" : "both";
   const curves: Curve[] = [
-    ...(hasFitted ? [{ key: "fitted", label: "fitted", meaning: "by the fitted material", colour: "series1", width: 2, shape } as Curve] : []),
+    ...(hasFitted ? [{ key: "fitted", label: "fitted", meaning: "by the fitted material", color: "series1", width: 2, shape } as Curve] : []),
     ...(hasHeldOut
-      ? [{ key: "heldOut", label: curve.leftOut ? "predicted" : "held out", meaning: "predicted by a material that was fitted without this group", colour: "series2", width: 2, dash: [6, 4], shape } as Curve]
+      ? [{ key: "heldOut", label: curve.leftOut ? "predicted" : "held out", meaning: "predicted by a material that was fitted without this group", color: "series2", width: 2, dash: [6, 4], shape } as Curve]
       : []),
-    { key: "measured", label: "measured", meaning: "as measured, ± one standard deviation", colour: "text", shape: "points" },
+    { key: "measured", label: "measured", meaning: "as measured, ± one standard deviation", color: "text", shape: "points" },
   ];
   const columns: Record<string, MaybeNumber[]> = { measured: curve.measured, fitted: curve.fitted, heldOut: curve.heldOut };
   const spread = curve.measured.flatMap((m, i) => (m === null ? [] : [m - curve.deviation[i], m + curve.deviation[i]]));
@@ -71,7 +71,7 @@ export function loadChart(name: string, curve: GroupCurve): Chart {
     read: (key, x) => [withUnit(valueAt(curve.x, columns[key], x), curve.yUnit, 3)],
     xRange: () => around(curve.x, true),
     yRange: () => around([...spread, ...curve.fitted, ...curve.heldOut], true),
-    paint: (u, colours) => paintErrorBars(u, colours, curve),
+    paint: (u, colors) => paintErrorBars(u, colors, curve),
   });
   chart.show(curve.x, curves.map((c) => columns[c.key]));
   return chart;
@@ -92,8 +92,8 @@ export function histogramChart(values: readonly number[]): Chart {
     x: { label: "residual [standard deviations]" },
     y: { label: "readings" },
     curves: [
-      { key: "count", label: "residuals", meaning: "(fitted − measured) / standard deviation; those beyond ±4 stand at the ends", colour: "series1", shape: "bars" },
-      { key: "normal", label: "normal", meaning: "what noise of the stated deviations would leave", colour: "series2", width: 2 },
+      { key: "count", label: "residuals", meaning: "(fitted − measured) / standard deviation; those beyond ±4 stand at the ends", color: "series1", shape: "bars" },
+      { key: "normal", label: "normal", meaning: "what noise of the stated deviations would leave", color: "series2", width: 2 },
     ],
     legend: "top",
     read: (key, x) => (x === null ? [] : [short(valueAt(middle, columns[key], x), 3)]),
@@ -113,8 +113,8 @@ export function caseChart(names: readonly string[], ofCase: readonly MaybeNumber
     x: { label: "case", integer: true },
     y: { label: "rms [standard deviations]" },
     curves: [
-      { key: "rms", label: "of a case", colour: "series1", shape: "bars" },
-      { key: "one", label: "as expected", meaning: "1: as close as the standard deviations say", colour: "series2", dash: [6, 4] },
+      { key: "rms", label: "of a case", color: "series1", shape: "bars" },
+      { key: "one", label: "as expected", meaning: "1: as close as the standard deviations say", color: "series2", dash: [6, 4] },
     ],
     legend: "top",
     read: (key, at) => (key === "rms" && at !== null ? [short(valueAt(x, ofCase, at), 3)] : []),
@@ -144,31 +144,31 @@ export function weightChart(head: FitHead): Chart | null {
     x: { label: "roughness R, as a power of ten" },
     y: { label: "|r|² per reading", log },
     curves: [
-      { key: "trials", label: "weights tried", colour: "series1", width: 2, shape: "both" },
-      { key: "target", label: "noise", meaning: "1: what the standard deviations leave", colour: "series7", dash: [6, 4] },
+      { key: "trials", label: "weights tried", color: "series1", width: 2, shape: "both" },
+      { key: "target", label: "noise", meaning: "1: what the standard deviations leave", color: "series7", dash: [6, 4] },
     ],
     legend: "top",
     read: (key, at) => (key === "trials" && at !== null ? [`weight ${short(valueAt(x, trials.map((t) => t.weight), at), 3)}`] : []),
     xRange: () => around([...x, log10(head.fit.roughness)], false),
     yRange: () => (log ? null : around([...misfit, 1], true)),
-    paint: (u, colours) => paintChosen(u, colours, log10(head.fit.roughness), closeness(head.fit.misfit, head.counts.residuals), `chosen: ${short(head.fit.weight, 3)}`),
+    paint: (u, colors) => paintChosen(u, colors, log10(head.fit.roughness), closeness(head.fit.misfit, head.counts.residuals), `chosen: ${short(head.fit.weight, 3)}`),
   });
   chart.show(x, [misfit, target]);
   return chart;
 }
 
-function paintChosen(u: uPlot, colours: Palette, x: MaybeNumber, y: MaybeNumber, words: string): void {
+function paintChosen(u: uPlot, colors: Palette, x: MaybeNumber, y: MaybeNumber, words: string): void {
   if (x === null || y === null || !(y > 0)) return;
   const { ctx } = u;
   const scale = devicePixelRatio;
   const [column, row] = [u.valToPos(x, "x", true), u.valToPos(y, "y", true)];
   ctx.save();
-  ctx.strokeStyle = ctx.fillStyle = colours.series2;
+  ctx.strokeStyle = ctx.fillStyle = colors.series2;
   ctx.lineWidth = 2.5 * scale;
   ctx.beginPath();
   ctx.arc(column, row, 7 * scale, 0, 2 * Math.PI);
   ctx.stroke();
-  ctx.font = `600 ${colours.fontSize * 0.86 * scale}px sans-serif`;
+  ctx.font = `600 ${colors.fontSize * 0.86 * scale}px sans-serif`;
   const leftwards = column > u.bbox.left + 0.6 * u.bbox.width;
   ctx.textAlign = leftwards ? "right" : "left";
   ctx.fillText(words, column + (leftwards ? -4 : 4) * scale, row - 16 * scale);
@@ -187,9 +187,9 @@ export function historyChart(head: FitHead): Chart | null {
     decrement: head.history.map((i) => positive(i.decrement)),
   };
   const curves: Curve[] = [
-    { key: "misfit", label: "misfit", meaning: "|r|²/2", colour: "series1", width: 2, shape: "both" },
-    { key: "prior", label: "weight · R", meaning: "what the smoothness and the prior cost", colour: "series3", width: 2, shape: "both" },
-    { key: "decrement", label: "decrement", meaning: "how far the fit is from its minimum, in standard deviations of what is known", colour: "series2", width: 1.5, dash: [6, 4], shape: "both" },
+    { key: "misfit", label: "misfit", meaning: "|r|²/2", color: "series1", width: 2, shape: "both" },
+    { key: "prior", label: "weight · R", meaning: "what the smoothness and the prior cost", color: "series3", width: 2, shape: "both" },
+    { key: "decrement", label: "decrement", meaning: "how far the fit is from its minimum, in standard deviations of what is known", color: "series2", width: 1.5, dash: [6, 4], shape: "both" },
   ];
   chart.configure({
     label: "Misfit, prior and decrement over the iterations",

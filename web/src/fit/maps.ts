@@ -3,7 +3,7 @@ import { element } from "../dom";
 import { checkbox, choice } from "../plots/dom";
 import type { Vec3 } from "../protocol";
 import { sceneAxes, type CameraRig } from "../view/cameras";
-import type { MapName } from "../view/colourMaps";
+import type { MapName } from "../view/colorMaps";
 import { makeArrows, makeBalls } from "./arrows";
 import { BodyView, type Cut, type FittedBody, type Note, type Shown } from "./bodyView";
 import type { Fit, Quantity } from "./data";

@@ -46,7 +46,7 @@ class Folder {
     controller.onChange((value: number) => this.display.change({ ...also, [key]: value }));
   }
 
-  colour(key: Key, label: string): void {
+  color(key: Key, label: string): void {
     this.follow(this.gui.addColor({ ...this.display.settings }, key), key, label);
   }
 
@@ -125,15 +125,15 @@ function addNumbers(folder: Folder): void {
 
 function addLook(folder: Folder): void {
   folder.add("smooth", "Smooth shading");
-  folder.colour("bodyColour", "Body");
-  folder.colour("lineColour", "Wires");
+  folder.color("bodyColor", "Body");
+  folder.color("lineColor", "Wires");
   folder.add("wiresOnTop", "Wires shine through");
   folder.add("inside", "Inside", { "its own color": "own", "as outside": "same", hidden: "hidden" });
-  folder.colour("insideColour", "Inside's color");
+  folder.color("insideColor", "Inside's color");
   folder.add("invert", "Invert normals");
   folder.slider("shininess", "Shininess", 0, 200, 1);
   folder.add("ownBackground", "Own background");
-  folder.colour("background", "Background");
+  folder.color("background", "Background");
 }
 
 // The field that colors the body, and the range of its colors.
@@ -142,7 +142,7 @@ function addField(folder: Folder, display: Display, views: () => View[]): void {
     const known = display.fields.map((field) => [field.label, field.name] as const);
     return { [display.bodies > 1 ? "body" : "none"]: "", ...Object.fromEntries(known) };
   };
-  const choose = (field: string): void => views()[0]?.store.source.send({ do: "colour", field });
+  const choose = (field: string): void => views()[0]?.store.source.send({ do: "color", field });
   folder.choice("Color by", fields, () => display.field, choose);
   const range = folder.within("Color range");
   const maps = { "by field": "auto", viridis: "viridis", cividis: "cividis", "blue to orange": "blue_orange" };

@@ -142,7 +142,7 @@ class EnergyPanel implements Panel {
       caption: (x) => this.captionAt(x),
       xRange: () => this.xRange(),
       yRange: () => (log ? null : this.calmRange()),
-      paint: (u, colours) => this.paintNow(u, colours),
+      paint: (u, colors) => this.paintNow(u, colors),
       zoomed: (range) => {
         this.range = range;
         this.redraw();
@@ -248,11 +248,11 @@ class EnergyPanel implements Panel {
   }
 
   // A line where the picture is, when that is not the end.
-  private paintNow(u: uPlot, colours: Palette): void {
+  private paintNow(u: uPlot, colors: Palette): void {
     const state = this.store.state?.a;
     const ledger = this.ledgers.a;
     if (!state || !ledger || ledger.step.length === 0 || state.step >= ledger.step[ledger.step.length - 1]!) return;
-    paintVerticalLine(u, this.byStep ? state.step : state.time, colours.accent);
+    paintVerticalLine(u, this.byStep ? state.step : state.time, colors.accent);
   }
 
   private sceneName(): string {

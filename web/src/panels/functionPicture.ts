@@ -26,7 +26,7 @@ export function pictureOf(reply: FunctionReply, look: FunctionLook): FunctionPic
   };
   const model = look.model && reply.iterations.length > 0;
   const marks: Mark[] = [];
-  const signs: Sign[] = [{ sign: "▇", colour: "series3", text: `f = ${reply.formula}` }];
+  const signs: Sign[] = [{ sign: "▇", color: "series3", text: `f = ${reply.formula}` }];
   addTrials(reply, look.iteration, marks, signs);
   if (model) addModel(reply, grid, marks, signs);
   addMinimum(reply, marks, signs);
@@ -58,37 +58,37 @@ function addTrials(reply: FunctionReply, iteration: number, marks: Mark[], signs
   const rejected = reply.trials.filter((trial) => !trial.accepted);
   for (const { alpha: tried, value } of rejected) {
     const [x, y] = [from.x + (tried / alpha) * (to.x - from.x), from.y + (tried / alpha) * (to.y - from.y)];
-    marks.push({ x, y, value, shape: "cross", colour: "bad", size: 10 });
+    marks.push({ x, y, value, shape: "cross", color: "bad", size: 10 });
   }
-  if (rejected.length > 0) signs.push({ sign: "✕", colour: "bad", text: plural(rejected.length, "rejected trial") });
+  if (rejected.length > 0) signs.push({ sign: "✕", color: "bad", text: plural(rejected.length, "rejected trial") });
 }
 
 function addModel(reply: FunctionReply, grid: Grid, marks: Mark[], signs: Sign[]): void {
-  signs.push({ sign: "▇", colour: "series2", text: "this iteration's quadratic model" });
+  signs.push({ sign: "▇", color: "series2", text: "this iteration's quadratic model" });
   const lowest = minimizerOf(reply.model);
-  if (!lowest) return void signs.push({ sign: "◆", colour: "series4", text: "the model has no minimum" });
+  if (!lowest) return void signs.push({ sign: "◆", color: "series4", text: "the model has no minimum" });
   const value = quadraticAt(reply.model, lowest.x, lowest.y);
-  marks.push({ ...lowest, value, shape: "diamond", colour: "series4", size: 12 });
+  marks.push({ ...lowest, value, shape: "diamond", color: "series4", size: 12 });
   const place = isInside(grid, lowest) ? "" : `, outside at (${short(lowest.x, 3)}, ${short(lowest.y, 3)})`;
-  signs.push({ sign: "◆", colour: "series4", text: `the model's minimum${place}` });
+  signs.push({ sign: "◆", color: "series4", text: `the model's minimum${place}` });
 }
 
 function addMinimum({ minimizer }: FunctionReply, marks: Mark[], signs: Sign[]): void {
   if (!minimizer) return;
   const [x, y] = minimizer;
-  marks.push({ x, y, value: null, shape: "cross", colour: "series8", size: 11, label: "minimum" });
-  signs.push({ sign: "✕", colour: "series8", text: "the minimum of f" });
+  marks.push({ x, y, value: null, shape: "cross", color: "series8", size: 11, label: "minimum" });
+  signs.push({ sign: "✕", color: "series8", text: "the minimum of f" });
 }
 
 // Of the iteration, and the start of them all.
 function addEnds(reply: FunctionReply, look: FunctionLook, marks: Mark[], signs: Sign[]): void {
   const from = reply.path[look.iteration];
   const to = reply.path[look.iteration + 1];
-  if (from) marks.push({ ...from, shape: "dot", colour: "accent", size: 12 });
-  if (to) marks.push({ ...to, shape: "dot", colour: "good", size: 12 });
+  if (from) marks.push({ ...from, shape: "dot", color: "accent", size: 12 });
+  if (to) marks.push({ ...to, shape: "dot", color: "good", size: 12 });
   const [x, y] = look.start;
-  marks.push({ x, y, value: null, shape: "ring", colour: "bad", size: 13, label: "start: drag me" });
-  signs.push({ sign: "●", colour: "accent", text: "this iteration begins here" });
-  signs.push({ sign: "●", colour: "good", text: "and ends here" });
-  signs.push({ sign: "•─", colour: "text", text: "iterates so far" });
+  marks.push({ x, y, value: null, shape: "ring", color: "bad", size: 13, label: "start: drag me" });
+  signs.push({ sign: "●", color: "accent", text: "this iteration begins here" });
+  signs.push({ sign: "●", color: "good", text: "and ends here" });
+  signs.push({ sign: "•─", color: "text", text: "iterates so far" });
 }

@@ -131,37 +131,37 @@ class LandscapePanel implements Panel {
     const showModel = this.model.input.checked;
     const marks: Mark[] = [];
     const signs: Sign[] = [
-      { sign: "▇", colour: "series3", text: "E, by colour and height" },
-      { sign: "╌", colour: "accent", text: "direction d" },
+      { sign: "▇", color: "series3", text: "E, by color and height" },
+      { sign: "╌", color: "accent", text: "direction d" },
     ];
-    if (showModel) signs.push({ sign: "▇", colour: "series2", text: "quadratic model" });
+    if (showModel) signs.push({ sign: "▇", color: "series2", text: "quadratic model" });
     for (const trial of reply.trials.filter((t) => !t.accepted))
-      marks.push({ x: trial.alpha, y: 0, value: trial.value, shape: "cross", colour: "bad", size: 10 });
-    if (marks.length > 0) signs.push({ sign: "✕", colour: "bad", text: plural(marks.length, "rejected trial") });
+      marks.push({ x: trial.alpha, y: 0, value: trial.value, shape: "cross", color: "bad", size: 10 });
+    if (marks.length > 0) signs.push({ sign: "✕", color: "bad", text: plural(marks.length, "rejected trial") });
     if (showModel && lowest && quadratic) {
       marks.push({
         ...lowest,
         value: quadraticAt(quadratic, lowest.x, lowest.y),
         shape: "diamond",
-        colour: "series4",
+        color: "series4",
         size: 12,
         label: "model's minimum",
       });
       const place = isInside(grid, lowest) ? "" : `, outside at s = ${short(lowest.x, 3)}, t = ${short(lowest.y, 3)}`;
-      signs.push({ sign: "◆", colour: "series4", text: `the model's minimum${place}` });
-    } else if (showModel) signs.push({ sign: "◆", colour: "series4", text: "the model has no minimum in this plane" });
-    marks.push({ x: 0, y: 0, value: reply.value, shape: "ring", colour: "series5", size: 13, label: "start" });
-    signs.push({ sign: "○", colour: "series5", text: `start: E = ${short(reply.value, 6)}` });
+      signs.push({ sign: "◆", color: "series4", text: `the model's minimum${place}` });
+    } else if (showModel) signs.push({ sign: "◆", color: "series4", text: "the model has no minimum in this plane" });
+    marks.push({ x: 0, y: 0, value: reply.value, shape: "ring", color: "series5", size: 13, label: "start" });
+    signs.push({ sign: "○", color: "series5", text: `start: E = ${short(reply.value, 6)}` });
     const accepted = reply.trials.find((t) => t.accepted)?.value ?? null;
     if (reply.alpha > 0) {
-      marks.push({ x: reply.alpha, y: 0, value: accepted, shape: "dot", colour: "good", size: 13, label: "accepted" });
+      marks.push({ x: reply.alpha, y: 0, value: accepted, shape: "dot", color: "good", size: 13, label: "accepted" });
       signs.push({
         sign: "●",
-        colour: "good",
+        color: "good",
         text: `accepted: α = ${short(reply.alpha, 3)}${accepted === null ? "" : `, E lower by ${short(reply.value - accepted, 3)}`}`,
       });
-    } else signs.push({ sign: "✕", colour: "series11", text: "no step was found along d" });
-    signs.push({ sign: "•─", colour: "text", text: "iterates, projected" });
+    } else signs.push({ sign: "✕", color: "series11", text: "no step was found along d" });
+    signs.push({ sign: "•─", color: "text", text: "iterates, projected" });
     this.signs = signs;
     const end = grid.x[grid.x.length - 1]!;
     return {

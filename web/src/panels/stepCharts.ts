@@ -23,7 +23,7 @@ export const kCharts = [
 export type ChartName = (typeof kCharts)[number][0];
 
 const kStages = ["hessian", "factorize", "solve", "line_search", "gradient"] as const;
-const kStageColours = ["series1", "series2", "series3", "series4", "series5"] as const;
+const kStageColors = ["series1", "series2", "series3", "series4", "series5"] as const;
 
 interface Plan {
   options: Pick<ChartOptions, "label" | "x" | "y"> & { curves: Curve[] };
@@ -36,10 +36,10 @@ function curve(
   key: string,
   label: string,
   meaning: string,
-  colour: Curve["colour"],
+  color: Curve["color"],
   shape: Curve["shape"] = "both",
 ): Curve {
-  return { key, label, meaning, colour, shape, width: 1.75 };
+  return { key, label, meaning, color, shape, width: 1.75 };
 }
 
 function convergence(rows: readonly IterationRow[]): Plan {
@@ -108,7 +108,7 @@ function stages(rows: readonly IterationRow[]): Plan {
           stage,
           stage.replace("_", " "),
           "wall time of this stage",
-          kStageColours[kStages.indexOf(stage)]!,
+          kStageColors[kStages.indexOf(stage)]!,
           "bars",
         ),
       ),
@@ -218,7 +218,7 @@ export class StepChart {
     if (this.configured !== name) {
       this.configured = name;
       const read = (key: string, x: number | null): string[] => this.read(key, x);
-      const paint = (u: uPlot, colours: Palette): void => this.paintChosen(u, colours);
+      const paint = (u: uPlot, colors: Palette): void => this.paintChosen(u, colors);
       const xRange = (): [number, number] | null => this.xRange();
       this.chart.configure({ ...plan.options, legend: "top", read, paint, xRange, clicked: (x) => this.clicked(x) });
     }
@@ -251,7 +251,7 @@ export class StepChart {
   }
 
   // A line at the chosen iteration, or step.
-  private paintChosen(u: uPlot, colours: Palette): void {
-    paintVerticalLine(u, this.name === "steps" ? this.chosen.step : this.chosen.iteration, colours.accent, 0.6);
+  private paintChosen(u: uPlot, colors: Palette): void {
+    paintVerticalLine(u, this.name === "steps" ? this.chosen.step : this.chosen.iteration, colors.accent, 0.6);
   }
 }

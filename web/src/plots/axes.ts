@@ -9,36 +9,36 @@ export interface Axis {
   integer?: boolean;
 }
 
-export function axis(options: Axis & { log?: boolean }, colours: Palette, vertical: boolean): uPlot.Axis {
+export function axis(options: Axis & { log?: boolean }, colors: Palette, vertical: boolean): uPlot.Axis {
   const measure = document.createElement("canvas").getContext("2d")!;
-  measure.font = colours.font;
+  measure.font = colors.font;
   const factorOf = (u: uPlot): { factor: number; letter: string } => {
     const scale = u.scales[vertical ? "y" : "x"]!;
     const size = Math.max(Math.abs(scale.min ?? 0), Math.abs(scale.max ?? 0));
     return options.unit === undefined || options.log === true ? { factor: 1, letter: "" } : prefixOf(size);
   };
   return {
-    stroke: colours.faint,
-    font: colours.font,
-    labelFont: colours.font,
-    grid: { stroke: colours.line, width: 1 },
-    splits: options.log === true ? (u) => powersOfTen(u, colours.fontSize) : undefined,
+    stroke: colors.faint,
+    font: colors.font,
+    labelFont: colors.font,
+    grid: { stroke: colors.line, width: 1 },
+    splits: options.log === true ? (u) => powersOfTen(u, colors.fontSize) : undefined,
     filter: (_u, splits) => splits,
-    ticks: { stroke: colours.line, width: 1, size: 4 },
+    ticks: { stroke: colors.line, width: 1, size: 4 },
     gap: 3,
     label: (u) =>
       options.unit === undefined ? options.label : `${options.label} [${factorOf(u).letter}${options.unit}]`,
-    labelSize: colours.fontSize * 1.35,
+    labelSize: colors.fontSize * 1.35,
     labelGap: 0,
-    space: vertical ? colours.fontSize * 2.2 : colours.fontSize * 5,
+    space: vertical ? colors.fontSize * 2.2 : colors.fontSize * 5,
     incrs:
       options.integer === true
         ? [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000, 1e6, 1e7]
         : undefined,
     size: (_u, values) =>
       vertical
-        ? Math.max(...(values ?? []).map((v) => measure.measureText(v ?? "").width), colours.fontSize) + 10
-        : colours.fontSize * 1.7,
+        ? Math.max(...(values ?? []).map((v) => measure.measureText(v ?? "").width), colors.fontSize) + 10
+        : colors.fontSize * 1.7,
     values: (u, splits) => (options.log === true ? splits.map(superscript) : ticks(splits, factorOf(u).factor)),
   };
 }

@@ -6,13 +6,13 @@ import "./plots.css";
 import type { MaybeNumber } from "../protocol";
 import { axis, padded, ranged, type Axis } from "./axes";
 import { element, oncePerFrame } from "./dom";
-import { cssOf, inkOf, palette, sameLook, type Colour, type Palette } from "./palette";
+import { cssOf, inkOf, palette, sameLook, type Color, type Palette } from "./palette";
 
 export interface Curve {
   key: string; // curves of the same key share an entry of the legend
   label: string;
   meaning?: string;
-  colour: Colour;
+  color: Color;
   width?: number;
   dash?: number[];
   shape?: "line" | "points" | "both" | "bars";
@@ -28,7 +28,7 @@ export interface ChartOptions {
   caption?: (x: number | null) => string; // above them
   xRange?: () => [number, number] | null;
   yRange?: () => [number, number] | null; // null: what is shown decides
-  paint?: (u: uPlot, colours: Palette) => void; // over the curves
+  paint?: (u: uPlot, colors: Palette) => void; // over the curves
   zoomed?: (range: [number, number] | null) => void; // chosen with the mouse; null: all again
   clicked?: (x: number) => void;
 }
@@ -86,9 +86,9 @@ export class Chart {
     const [width, height] = [this.plot.clientWidth, this.plot.clientHeight];
     const options = this.options;
     if (!options || width < 60 || height < 40 || this.data.columns.length !== options.curves.length) return;
-    const colours = (this.look = palette(this.element));
+    const colors = (this.look = palette(this.element));
     this.chart = new uPlot(
-      this.settings(options, colours, width, height),
+      this.settings(options, colors, width, height),
       [this.data.x, ...this.data.columns],
       this.plot,
     );
@@ -108,27 +108,27 @@ export class Chart {
     if (!this.chart || !this.options) return null;
     const source = this.chart.ctx.canvas;
     const scale = uPlot.pxRatio;
-    const colours = palette(this.element);
-    const line = colours.fontSize * 1.5 * scale;
+    const colors = palette(this.element);
+    const line = colors.fontSize * 1.5 * scale;
     const shown = this.entries.filter((entry) => !this.hidden.has(entry.key));
     const columns = Math.max(1, Math.floor(source.width / (line * 12)));
     const canvas = document.createElement("canvas");
     canvas.width = source.width;
     canvas.height = source.height + line * (1.6 + Math.ceil(shown.length / columns) + 0.5);
     const pen = canvas.getContext("2d")!;
-    pen.fillStyle = colours.panel;
+    pen.fillStyle = colors.panel;
     pen.fillRect(0, 0, canvas.width, canvas.height);
     pen.drawImage(source, 0, line * 1.6);
     pen.textBaseline = "middle";
-    pen.fillStyle = colours.text;
-    pen.font = `600 ${colours.fontSize * scale}px sans-serif`;
+    pen.fillStyle = colors.text;
+    pen.font = `600 ${colors.fontSize * scale}px sans-serif`;
     pen.fillText(title, line * 0.5, line * 0.8);
-    pen.font = `${colours.fontSize * 0.86 * scale}px sans-serif`;
+    pen.font = `${colors.fontSize * 0.86 * scale}px sans-serif`;
     shown.forEach((entry, i) => {
       const left = line * 0.5 + (i % columns) * ((canvas.width - line) / columns);
       const y = source.height + line * (2.1 + Math.floor(i / columns));
-      this.strokeSample(pen, entry.key, colours, left, y, line);
-      pen.fillStyle = colours.text;
+      this.strokeSample(pen, entry.key, colors, left, y, line);
+      pen.fillStyle = colors.text;
       pen.fillText(this.labelOf(entry.key), left + line * 1.5, y);
     });
     return canvas;
@@ -137,13 +137,13 @@ export class Chart {
   private strokeSample(
     pen: CanvasRenderingContext2D,
     key: string,
-    colours: Palette,
+    colors: Palette,
     x: number,
     y: number,
     line: number,
   ): void {
     const curve = this.options!.curves.find((c) => c.key === key)!;
-    pen.strokeStyle = inkOf(colours, curve.colour);
+    pen.strokeStyle = inkOf(colors, curve.color);
     pen.lineWidth = (curve.width ?? 1.5) * uPlot.pxRatio;
     pen.setLineDash((curve.dash ?? []).map((d) => d * uPlot.pxRatio));
     pen.beginPath();
@@ -157,13 +157,13 @@ export class Chart {
     return this.options!.curves.find((c) => c.key === key)!.label;
   }
 
-  private settings(options: ChartOptions, colours: Palette, width: number, height: number): uPlot.Options {
+  private settings(options: ChartOptions, colors: Palette, width: number, height: number): uPlot.Options {
     const log = options.y.log === true;
     return {
       width,
       height,
       legend: { show: false },
-      padding: [colours.fontSize * 0.6, colours.fontSize * 1.6, 0, 0],
+      padding: [colors.fontSize * 0.6, colors.fontSize * 1.6, 0, 0],
       cursor: {
         y: false,
         points: { size: 6 },
@@ -176,19 +176,19 @@ export class Chart {
         },
         y: { distr: log ? 3 : 1, log: 10, range: (_u, low, high) => options.yRange?.() ?? ranged(low, high, log) },
       },
-      axes: [axis(options.x, colours, false), axis(options.y, colours, true)],
-      series: [{}, ...options.curves.map((curve) => this.series(curve, colours))],
+      axes: [axis(options.x, colors, false), axis(options.y, colors, true)],
+      series: [{}, ...options.curves.map((curve) => this.series(curve, colors))],
       hooks: {
         setCursor: [(u) => this.moved(u)],
         setSelect: [(u) => this.selected(u)],
-        draw: [(u) => options.paint?.(u, colours)],
+        draw: [(u) => options.paint?.(u, colors)],
         ready: [(u) => this.listen(u)],
       },
     };
   }
 
-  private series(curve: Curve, colours: Palette): uPlot.Series {
-    const stroke = inkOf(colours, curve.colour);
+  private series(curve: Curve, colors: Palette): uPlot.Series {
+    const stroke = inkOf(colors, curve.color);
     const shape = curve.shape ?? "line";
     return {
       show: !this.hidden.has(curve.key),
@@ -249,7 +249,7 @@ export class Chart {
       const values = element("span", { class: "chart-values" });
       const sample = element("span", { class: "chart-sample" });
       const dashed = curve.dash ? "dashed" : "solid";
-      sample.style.borderTop = `${Math.max(2, (curve.width ?? 1.5) * 1.4)}px ${dashed} ${cssOf(curve.colour)}`;
+      sample.style.borderTop = `${Math.max(2, (curve.width ?? 1.5) * 1.4)}px ${dashed} ${cssOf(curve.color)}`;
       const entry = element("button", {
         type: "button",
         class: "chart-entry",

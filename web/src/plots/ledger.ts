@@ -2,33 +2,33 @@
 import type { MaybeNumber, StepRow } from "../protocol";
 import { lowerBound } from "./table";
 import { short, withUnit } from "./numbers";
-import { furtherColour, type Colour } from "./palette";
+import { furtherColor, type Color } from "./palette";
 
 export interface LedgerColumn {
   key: string;
   label: string;
   meaning: string;
-  colour: Colour;
+  color: Color;
   width: number; // of the line [CSS px]
   dotted: boolean; // sums over the steps
 }
 
 // No two curves of a legend have the same color.
-const kTermColours: Colour[] = ["series6", "series4", "series5", "series12", "series13", "series14", "series11"];
+const kTermColors: Color[] = ["series6", "series4", "series5", "series12", "series13", "series14", "series11"];
 
 export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
   const line = (
     key: string,
     label: string,
     meaning: string,
-    colour: Colour,
+    color: Color,
     width = 1.5,
     dotted = false,
   ): LedgerColumn => ({
     key,
     label,
     meaning,
-    colour,
+    color,
     width,
     dotted,
   });
@@ -37,7 +37,7 @@ export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
       `potential_${name}`,
       `V: ${name.replaceAll("_", " ")}`,
       "a term of the potential energy",
-      kTermColours[i] ?? furtherColour(i),
+      kTermColors[i] ?? furtherColor(i),
       1.25,
     ),
   );

@@ -1,18 +1,18 @@
 // What the signs in a picture of a surface mean.
 import { element } from "./dom";
-import { cssOf, inkOf, type Colour, type Palette } from "./palette";
+import { cssOf, inkOf, type Color, type Palette } from "./palette";
 
 export interface Sign {
   sign: string;
-  colour: Colour;
+  color: Color;
   text: string;
 }
 
 export function legendOf(signs: readonly Sign[]): HTMLDListElement {
   const list = element("dl", { class: "surface-legend" });
-  for (const { sign, colour, text } of signs) {
+  for (const { sign, color, text } of signs) {
     const term = element("dt", {}, sign);
-    term.style.color = cssOf(colour);
+    term.style.color = cssOf(color);
     list.append(term, element("dd", {}, text));
   }
   return list;
@@ -22,19 +22,19 @@ export function legendOf(signs: readonly Sign[]): HTMLDListElement {
 export function paintLegend(
   pen: CanvasRenderingContext2D,
   signs: readonly Sign[],
-  colours: Palette,
+  colors: Palette,
   top: number,
   line: number,
 ): void {
   const columns = legendColumns(pen.canvas.width, line);
-  signs.forEach(({ sign, colour, text }, i) => {
+  signs.forEach(({ sign, color, text }, i) => {
     const [x, y] = [
       line * 0.5 + (i % columns) * ((pen.canvas.width - line) / columns),
       top + line * (Math.floor(i / columns) + 0.5),
     ];
-    pen.fillStyle = inkOf(colours, colour);
+    pen.fillStyle = inkOf(colors, color);
     pen.fillText(sign, x, y);
-    pen.fillStyle = colours.text;
+    pen.fillStyle = colors.text;
     pen.fillText(text, x + line * 1.5, y);
   });
 }

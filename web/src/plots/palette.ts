@@ -25,21 +25,21 @@ const kNames = {
 } as const;
 
 type Name = keyof typeof kNames;
-export type Colour = Name | `hsl(${string}`; // of the style sheet, or one that is made
+export type Color = Name | `hsl(${string}`; // of the style sheet, or one that is made
 
 // Colors without end, hues far from each other.
-export function furtherColour(i: number): Colour {
+export function furtherColor(i: number): Color {
   return `hsl(${((137.508 * i) % 360).toFixed(1)} ${i % 2 === 0 ? 60 : 35}% 50%)`;
 }
 
 // As a canvas takes it.
-export function inkOf(colours: Palette, colour: Colour): string {
-  return colour in kNames ? colours[colour as Name] : colour;
+export function inkOf(colors: Palette, color: Color): string {
+  return color in kNames ? colors[color as Name] : color;
 }
 
 // As a style takes it.
-export function cssOf(colour: Colour): string {
-  return colour in kNames ? `var(${kNames[colour as Name]})` : colour;
+export function cssOf(color: Color): string {
+  return color in kNames ? `var(${kNames[color as Name]})` : color;
 }
 
 export interface Palette extends Record<Name, string> {
@@ -53,9 +53,9 @@ export function sameLook(a: Palette | null, b: Palette): boolean {
 
 export function palette(of: HTMLElement): Palette {
   const style = getComputedStyle(of);
-  const colours = Object.fromEntries(
+  const colors = Object.fromEntries(
     Object.entries(kNames).map(([name, variable]) => [name, style.getPropertyValue(variable).trim() || "#888888"]),
   ) as Record<Name, string>;
   const fontSize = Number.parseFloat(style.fontSize) || 14;
-  return { ...colours, fontSize, font: `${fontSize * 0.86}px ${style.fontFamily || "sans-serif"}` };
+  return { ...colors, fontSize, font: `${fontSize * 0.86}px ${style.fontFamily || "sans-serif"}` };
 }

@@ -66,7 +66,7 @@ export class SearchChart {
       read: (key, alpha) => this.read(key, alpha),
       xRange: () => alphaRange(search.curve.alpha, search.trials),
       yRange: () => this.range(),
-      paint: (u, colours) => this.paintTrials(u, colours),
+      paint: (u, colors) => this.paintTrials(u, colors),
     });
     const { alpha } = search.curve;
     this.chart.show(alpha, this.columns());
@@ -110,13 +110,13 @@ export class SearchChart {
   }
 
   // Rejected trials are crosses, the accepted one a dot; what lies off the axis stands at its edge.
-  private paintTrials(u: uPlot, colours: Palette): void {
+  private paintTrials(u: uPlot, colors: Palette): void {
     const { trials } = this.search!;
     const pen = u.ctx;
     const scale = u.bbox.width / u.over.clientWidth || 1;
     const origin = this.origin();
     pen.save();
-    pen.font = `${colours.fontSize * 0.82 * scale}px sans-serif`;
+    pen.font = `${colors.fontSize * 0.82 * scale}px sans-serif`;
     let right = -Infinity; // where the last text ends: texts do not overlap
     for (const trial of [...trials].sort((p, q) => p.alpha - q.alpha)) {
       const x = u.valToPos(trial.alpha, "x", true);
@@ -124,15 +124,15 @@ export class SearchChart {
       const value = trial.value === null ? Infinity : trial.value - origin;
       const at = Number.isFinite(value) ? u.valToPos(value, "y", true) : -Infinity;
       const y = Math.max(u.bbox.top + 6 * scale, at);
-      mark(pen, trial.accepted, x, y, 5 * scale, trial.accepted ? colours.good : colours.bad);
+      mark(pen, trial.accepted, x, y, 5 * scale, trial.accepted ? colors.good : colors.bad);
       const off = at < u.bbox.top ? "↑ " : "";
       const text = `${off}α = ${short(trial.alpha, 3)}: ${short(value, 3)}`;
       const width = pen.measureText(text).width;
       const left = Math.min(Math.max(u.bbox.left, x + 8 * scale), u.bbox.left + u.bbox.width - width);
       if (left < right && !trial.accepted) continue;
       right = left + width;
-      pen.fillStyle = trial.accepted ? colours.good : colours.bad;
-      pen.strokeStyle = colours.panel;
+      pen.fillStyle = trial.accepted ? colors.good : colors.bad;
+      pen.strokeStyle = colors.panel;
       pen.lineWidth = 4 * scale;
       pen.lineJoin = "round";
       pen.textBaseline = "middle";
@@ -145,10 +145,10 @@ export class SearchChart {
   }
 }
 
-function mark(pen: CanvasRenderingContext2D, accepted: boolean, x: number, y: number, r: number, colour: string): void {
+function mark(pen: CanvasRenderingContext2D, accepted: boolean, x: number, y: number, r: number, color: string): void {
   pen.beginPath();
   pen.setLineDash([]);
-  pen.fillStyle = pen.strokeStyle = colour;
+  pen.fillStyle = pen.strokeStyle = color;
   pen.lineWidth = r * 0.45;
   if (accepted) {
     pen.arc(x, y, r, 0, 2 * Math.PI);
@@ -163,12 +163,12 @@ function mark(pen: CanvasRenderingContext2D, accepted: boolean, x: number, y: nu
 
 function curvesOf(search: Search, symbol: string): Curve[] {
   const curves: Curve[] = [
-    { key: "value", label: symbol, meaning: "the objective along d", colour: "series1", width: 2.25 },
+    { key: "value", label: symbol, meaning: "the objective along d", color: "series1", width: 2.25 },
     {
       key: "model",
       label: "quadratic model",
       meaning: "E + α g·d + α²/2 d·H d",
-      colour: "series2",
+      color: "series2",
       width: 1.75,
       dash: [6, 4],
     },
@@ -178,7 +178,7 @@ function curvesOf(search: Search, symbol: string): Curve[] {
       key: "textbook",
       label: search.test === "slide" ? "Armijo line (textbook)" : "Armijo line: accepted below it",
       meaning: "E + c α g·d, which the textbook's test asks for",
-      colour: "series3",
+      color: "series3",
       dash: [2, 3],
     });
   if (search.test === "slide")
@@ -186,7 +186,7 @@ function curvesOf(search: Search, symbol: string): Curve[] {
       key: "slide",
       label: "slide's line: accepted below it",
       meaning: "E + c g·d, as printed in the lecture",
-      colour: "series4",
+      color: "series4",
       dash: [2, 3],
     });
   return curves;

@@ -29,7 +29,7 @@ export class SurfaceView {
   private shown: SurfaceContent | null = null;
   private body: SurfaceBody | null = null;
   private readonly left: SurfaceBody[] = []; // until the next one is drawn, which then finds its shaders compiled
-  private colours: Palette | null = null;
+  private colors: Palette | null = null;
   private visible = false;
   private stretch = 1; // of the width: flat panels show flat boxes
   private fitted = 0; // distance of the camera that shows all
@@ -61,13 +61,13 @@ export class SurfaceView {
 
   // Colors or the font may be others now.
   retheme(): void {
-    if (!sameLook(this.colours, palette(this.element))) this.build();
+    if (!sameLook(this.colors, palette(this.element))) this.build();
   }
 
   private build(): void {
     this.clear();
     const content = this.shown;
-    this.colours = palette(this.element);
+    this.colors = palette(this.element);
     if (!content || content.grid.x.length < 2 || content.grid.y.length < 2) return this.redraw();
     if (this.renderer)
       this.renderer.domElement.setAttribute(
@@ -75,36 +75,36 @@ export class SurfaceView {
         `${content.label}. The arrow keys turn it, + and − zoom, 0 resets.`,
       );
     this.stretch = this.wantedStretch();
-    this.body = new SurfaceBody(content, this.colours, this.stretch);
+    this.body = new SurfaceBody(content, this.colors, this.stretch);
     this.scene.add(this.body.group);
     this.redraw();
   }
 
   // The view with its labels on it, a title above and what the signs mean below.
   picture(title: string, legend: readonly Sign[]): HTMLCanvasElement | null {
-    if (!this.renderer || !this.colours) return null;
+    if (!this.renderer || !this.colors) return null;
     this.draw();
     const source = this.renderer.domElement;
     const scale = source.width / Math.max(1, this.element.clientWidth);
-    const line = this.colours.fontSize * 1.5 * scale;
+    const line = this.colors.fontSize * 1.5 * scale;
     const canvas = document.createElement("canvas");
     canvas.width = source.width;
     const rows = Math.ceil(legend.length / legendColumns(canvas.width, line));
     canvas.height = source.height + line * (2 + rows);
     const pen = canvas.getContext("2d")!;
-    pen.fillStyle = this.colours.panel;
+    pen.fillStyle = this.colors.panel;
     pen.fillRect(0, 0, canvas.width, canvas.height);
     pen.drawImage(source, 0, line * 1.5);
     pen.textBaseline = "middle";
-    pen.font = `${this.colours.fontSize * 0.82 * scale}px sans-serif`;
+    pen.font = `${this.colors.fontSize * 0.82 * scale}px sans-serif`;
     for (const { label, x, y } of this.placedLabels()) {
-      pen.fillStyle = inkOf(this.colours, label.colour);
+      pen.fillStyle = inkOf(this.colors, label.color);
       pen.fillText(label.text, x * scale, y * scale + line * 1.5);
     }
-    pen.fillStyle = this.colours.text;
-    paintLegend(pen, legend, this.colours, source.height + line * 1.6, line);
-    pen.fillStyle = this.colours.text;
-    pen.font = `600 ${this.colours.fontSize * scale}px sans-serif`;
+    pen.fillStyle = this.colors.text;
+    paintLegend(pen, legend, this.colors, source.height + line * 1.6, line);
+    pen.fillStyle = this.colors.text;
+    pen.font = `600 ${this.colors.fontSize * scale}px sans-serif`;
     pen.fillText(title, line * 0.5, line * 0.75);
     return canvas;
   }
@@ -173,7 +173,7 @@ export class SurfaceView {
     const probe = this.camera.clone();
     const [w, d, h] = [1.15 * (this.body?.frame.width ?? 2) * 0.5, 1.15 * (this.body?.frame.depth ?? 2) * 0.5, 0.95];
     const corners = [-w, w].flatMap((x) => [-d, d].flatMap((z) => [-0.02, h].map((y) => new THREE.Vector3(x, y, z))));
-    const margin = 1 - (1.2 * (this.colours?.fontSize ?? 14)) / Math.max(1, this.element.clientHeight);
+    const margin = 1 - (1.2 * (this.colors?.fontSize ?? 14)) / Math.max(1, this.element.clientHeight);
     let [near, far] = [1.5, 40];
     for (let i = 0; i < 24; ++i) {
       const distance = 0.5 * (near + far);
@@ -207,17 +207,17 @@ export class SurfaceView {
     const made = this.placedLabels().map(({ label, x, y }) => {
       const span = element("span", { class: "surface-label" }, label.text);
       span.style.transform = `translate(${x.toFixed(1)}px, calc(${y.toFixed(1)}px - 50%))`;
-      span.style.color = `var(--${label.colour.replace(/(\d)/, "-$1")})`;
+      span.style.color = `var(--${label.color.replace(/(\d)/, "-$1")})`;
       return span;
     });
     this.overlay.replaceChildren(...made);
   }
 
   private placedLabels(): Placed[] {
-    if (!this.body || !this.shown || !this.colours) return [];
+    if (!this.body || !this.shown || !this.colors) return [];
     const axes = axisLabels(this.body.frame, this.shown.axes, this.camera);
     const size = { width: this.element.clientWidth, height: this.element.clientHeight };
-    return placed(this.body.labels, axes, this.camera, size, this.colours.fontSize * 0.82);
+    return placed(this.body.labels, axes, this.camera, size, this.colors.fontSize * 0.82);
   }
 
   private key(event: KeyboardEvent): void {

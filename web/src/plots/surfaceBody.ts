@@ -5,7 +5,7 @@ import { LineGeometry } from "three/addons/lines/LineGeometry.js";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import type { MaybeNumber } from "../protocol";
 import { clipped, heightRange, isInside, sample, valueAtHeight, type Grid, type Point } from "./grid";
-import { inkOf, type Colour, type Palette } from "./palette";
+import { inkOf, type Color, type Palette } from "./palette";
 import type { Label } from "./surfaceLabels";
 import { Frame, gridLines, levelLines, markTexture, surfaceGeometry, type MarkShape } from "./surfaceParts";
 
@@ -14,7 +14,7 @@ const kNumbered = 40; // iterates, and the last one
 export interface Mark extends Point {
   value: MaybeNumber; // null: on the surface
   shape: MarkShape;
-  colour: Colour;
+  color: Color;
   size: number; // [CSS px]
   label?: string;
 }
@@ -40,7 +40,7 @@ export class SurfaceBody {
 
   constructor(
     private readonly content: SurfaceContent,
-    private readonly colours: Palette,
+    private readonly colors: Palette,
     stretch: number, // of the width
   ) {
     this.frame = new Frame(
@@ -77,19 +77,19 @@ export class SurfaceBody {
     const grid = new THREE.LineSegments(gridLines(this.frame, this.content.grid.value, 20), lines);
     const toValue = valueAtHeight(this.frame.range, this.frame.scale);
     const levels = Array.from({ length: 11 }, (_, i) => toValue((i + 1) / 12));
-    const level = (flat: boolean, colour: string, opacity: number): THREE.LineSegments =>
+    const level = (flat: boolean, color: string, opacity: number): THREE.LineSegments =>
       new THREE.LineSegments(
         levelLines(this.frame, this.content.grid.value, levels, flat),
-        new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity }),
+        new THREE.LineBasicMaterial({ color: color, transparent: true, opacity }),
       );
-    this.group.add(surface, grid, level(false, "#ffffff", 0.45), level(true, this.colours.faint, 0.4));
+    this.group.add(surface, grid, level(false, "#ffffff", 0.45), level(true, this.colors.faint, 0.4));
     return surface;
   }
 
   private addModel(model: MaybeNumber[]): void {
-    const colour = new THREE.Color(this.colours.series2);
+    const color = new THREE.Color(this.colors.series2);
     const material = new THREE.MeshLambertMaterial({
-      color: colour,
+      color: color,
       side: THREE.DoubleSide,
       transparent: true,
       opacity: 0.32,
@@ -99,7 +99,7 @@ export class SurfaceBody {
       polygonOffsetUnits: -1,
     });
     const mesh = new THREE.Mesh(surfaceGeometry(this.frame, model, false), material);
-    const lines = new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity: 0.65 });
+    const lines = new THREE.LineBasicMaterial({ color: color, transparent: true, opacity: 0.65 });
     mesh.renderOrder = 1;
     this.group.add(mesh, new THREE.LineSegments(gridLines(this.frame, model, 14), lines));
   }
@@ -114,7 +114,7 @@ export class SurfaceBody {
       [-w, -d],
     ] as const;
     const base = corners.map(([x, z]) => new THREE.Vector3(x, -0.02, z));
-    const material = new THREE.LineBasicMaterial({ color: this.colours.faint });
+    const material = new THREE.LineBasicMaterial({ color: this.colors.faint });
     this.group.add(new THREE.Line(new THREE.BufferGeometry().setFromPoints(base), material));
     const posts = corners
       .slice(0, 4)
@@ -122,18 +122,18 @@ export class SurfaceBody {
     this.group.add(
       new THREE.LineSegments(
         new THREE.BufferGeometry().setFromPoints(posts),
-        new THREE.LineBasicMaterial({ color: this.colours.line }),
+        new THREE.LineBasicMaterial({ color: this.colors.line }),
       ),
     );
   }
 
-  private lineThrough(points: THREE.Vector3[], colour: string, width: number, dashed = false): void {
+  private lineThrough(points: THREE.Vector3[], color: string, width: number, dashed = false): void {
     if (points.length < 2) return;
     const geometry = new LineGeometry();
     geometry.setPositions(points.flatMap((p) => p.toArray()));
     for (const hidden of [true, false]) {
       const material = new LineMaterial({
-        color: new THREE.Color(colour).getHex(),
+        color: new THREE.Color(color).getHex(),
         linewidth: width,
         transparent: true,
         opacity: hidden ? 0.35 : 1,
@@ -173,7 +173,7 @@ export class SurfaceBody {
     if (this.content.direction)
       this.lineThrough(
         this.drape(this.content.direction.from, this.content.direction.to),
-        this.colours.accent,
+        this.colors.accent,
         2.5,
         true,
       );
@@ -187,12 +187,12 @@ export class SurfaceBody {
     for (const piece of pieces) {
       const joins = line.length > 0 && piece.length > 0 && line[line.length - 1]!.distanceTo(piece[0]!) < 1e-6;
       if (!joins) {
-        this.lineThrough(line, this.colours.text, 2.5);
+        this.lineThrough(line, this.colors.text, 2.5);
         line = [];
       }
       line.push(...piece);
     }
-    this.lineThrough(line, this.colours.text, 2.5);
+    this.lineThrough(line, this.colors.text, 2.5);
     this.addDots();
   }
 
@@ -209,9 +209,9 @@ export class SurfaceBody {
       const place = this.frame.place(point.x, point.y, Math.min(point.value, this.frame.range.high), 0.008);
       places.push(place);
       if (i < kNumbered || i === this.content.path.length - 1)
-        this.labels.push({ text: String(i), place, colour: "text", important: false });
+        this.labels.push({ text: String(i), place, color: "text", important: false });
     });
-    this.addPoints(places, "dot", this.colours.text, this.colours.panel, places.length > 60 ? 4 : 7);
+    this.addPoints(places, "dot", this.colors.text, this.colors.panel, places.length > 60 ? 4 : 7);
   }
 
   private addMark(mark: Mark): void {
@@ -224,15 +224,15 @@ export class SurfaceBody {
       Math.max(Math.min(value, this.frame.range.high), this.frame.range.low),
       0.008,
     );
-    this.addPoints([place], mark.shape, inkOf(this.colours, mark.colour), this.colours.panel, mark.size);
+    this.addPoints([place], mark.shape, inkOf(this.colors, mark.color), this.colors.panel, mark.size);
     if (mark.label)
-      this.labels.push({ text: (above ? "↑ " : "") + mark.label, place, colour: mark.colour, important: true });
+      this.labels.push({ text: (above ? "↑ " : "") + mark.label, place, color: mark.color, important: true });
   }
 
-  private addPoints(places: THREE.Vector3[], shape: MarkShape, colour: string, halo: string, size: number): void {
+  private addPoints(places: THREE.Vector3[], shape: MarkShape, color: string, halo: string, size: number): void {
     if (places.length === 0) return;
     const material = new THREE.PointsMaterial({
-      map: markTexture(shape, colour, halo),
+      map: markTexture(shape, color, halo),
       size: size * 1.5,
       sizeAttenuation: false,
       transparent: true,

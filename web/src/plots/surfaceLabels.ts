@@ -2,13 +2,13 @@
 import * as THREE from "three";
 import { roundTicks, valueAtHeight } from "./grid";
 import { short, ticks } from "./numbers";
-import type { Colour } from "./palette";
+import type { Color } from "./palette";
 import type { Frame } from "./surfaceParts";
 
 export interface Label {
   text: string;
   place: THREE.Vector3;
-  colour: Colour;
+  color: Color;
   important: boolean; // placed first: others that would cover it are left out
 }
 
@@ -56,8 +56,8 @@ export function axisLabels(
   const front = camera.position.z >= 0 ? d : -d;
   const side = camera.position.x >= 0 ? w : -w;
   const out: Label[] = [];
-  const add = (text: string, place: THREE.Vector3, colour: Colour = "faint"): void =>
-    void out.push({ text, place, colour, important: false });
+  const add = (text: string, place: THREE.Vector3, color: Color = "faint"): void =>
+    void out.push({ text, place, color, important: false });
   const alongX = roundTicks(x[0]!, x[x.length - 1]!, 4);
   const alongY = roundTicks(y[0]!, y[y.length - 1]!, 4);
   add(names.x, new THREE.Vector3(0, -0.02, front * 1.34), "text");

@@ -1,7 +1,7 @@
 // Geometry for the picture of a surface: triangles, grid lines and lines of equal height, in the box of `Frame`.
 import * as THREE from "three";
 import type { MaybeNumber } from "../protocol";
-import { colourAt } from "../view/colourMaps";
+import { colorAt } from "../view/colorMaps";
 import { heightOf, type Grid, type Range, type Scale } from "./grid";
 
 // x to the right, y away from the reader, values up; the longer side of the plane is 2 long, before it is stretched.
@@ -53,17 +53,17 @@ function span(axis: readonly number[]): number {
 }
 
 // Cells with a corner that is not finite are holes.
-export function surfaceGeometry(frame: Frame, values: readonly MaybeNumber[], coloured: boolean): THREE.BufferGeometry {
+export function surfaceGeometry(frame: Frame, values: readonly MaybeNumber[], colored: boolean): THREE.BufferGeometry {
   const { x, y } = frame.grid;
   const positions = new Float32Array(3 * x.length * y.length);
-  const colours = new Float32Array(coloured ? positions.length : 0);
-  const colour = new THREE.Color();
+  const colors = new Float32Array(colored ? positions.length : 0);
+  const color = new THREE.Color();
   values.forEach((value, k) => {
     const place = frame.place(x[k % x.length]!, y[Math.floor(k / x.length)]!, value ?? frame.range.low);
     place.toArray(positions, 3 * k);
-    if (coloured) {
-      const [r, g, b] = colourAt("viridis", frame.shade(value ?? frame.range.low));
-      colour.setRGB(r / 255, g / 255, b / 255, THREE.SRGBColorSpace).toArray(colours, 3 * k);
+    if (colored) {
+      const [r, g, b] = colorAt("viridis", frame.shade(value ?? frame.range.low));
+      color.setRGB(r / 255, g / 255, b / 255, THREE.SRGBColorSpace).toArray(colors, 3 * k);
     }
   });
   const index: number[] = [];
@@ -76,7 +76,7 @@ export function surfaceGeometry(frame: Frame, values: readonly MaybeNumber[], co
     }
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
-  if (coloured) geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
+  if (colored) geometry.setAttribute("color", new THREE.BufferAttribute(colors, 3));
   geometry.setIndex(index);
   geometry.computeVertexNormals();
   return geometry;
@@ -159,8 +159,8 @@ export type MarkShape = "dot" | "ring" | "diamond" | "cross";
 const marks = new Map<string, THREE.Texture>();
 
 // A small picture of the mark, light on the outside so that it stands off from any surface.
-export function markTexture(shape: MarkShape, colour: string, halo: string): THREE.Texture {
-  const key = `${shape} ${colour} ${halo}`;
+export function markTexture(shape: MarkShape, color: string, halo: string): THREE.Texture {
+  const key = `${shape} ${color} ${halo}`;
   const known = marks.get(key);
   if (known) return known;
   const canvas = document.createElement("canvas");
@@ -168,7 +168,7 @@ export function markTexture(shape: MarkShape, colour: string, halo: string): THR
   const pen = canvas.getContext("2d")!;
   for (const [style, width] of [
     [halo, 22],
-    [colour, 10],
+    [color, 10],
   ] as const) {
     pen.strokeStyle = pen.fillStyle = style;
     pen.lineWidth = width;
@@ -193,7 +193,7 @@ export function markTexture(shape: MarkShape, colour: string, halo: string): THR
         pen.lineTo(x, y);
     } else pen.arc(32, 32, shape === "ring" ? 18 : 16, 0, 2 * Math.PI);
     pen.stroke();
-    if ((shape === "dot" || shape === "diamond") && style === colour) pen.fill();
+    if ((shape === "dot" || shape === "diamond") && style === color) pen.fill();
   }
   const texture = new THREE.CanvasTexture(canvas);
   texture.colorSpace = THREE.SRGBColorSpace;

@@ -1,13 +1,13 @@
 // A line from the bottom of a chart to its top: "here".
 import type uPlot from "uplot";
 
-export function paintVerticalLine(u: uPlot, at: number, colour: string, opacity = 1): void {
+export function paintVerticalLine(u: uPlot, at: number, color: string, opacity = 1): void {
   const x = Math.round(u.valToPos(at, "x", true));
   const { left, top, width, height } = u.bbox;
   if (x < left || x > left + width) return;
   u.ctx.save();
   u.ctx.setLineDash([]);
-  u.ctx.strokeStyle = colour;
+  u.ctx.strokeStyle = color;
   u.ctx.globalAlpha = opacity;
   u.ctx.lineWidth = 2;
   u.ctx.beginPath();

@@ -20,15 +20,15 @@ export function bodiesOf(geometry: Pick<Geometry, "rest" | "triangles" | "tet">,
   return bodies;
 }
 
-export function bodyColours(own: string, count: number): string[] {
+export function bodyColors(own: string, count: number): string[] {
   return Array.from({ length: count }, (_, i) => (i === 0 ? own : kFurther[(i - 1) % kFurther.length]));
 }
 
 // Texels of a map that has one color for each body, RGBA.
-export function bodyTexels(colours: readonly string[]): Uint8Array {
-  const texels = new Uint8Array(4 * colours.length);
-  colours.forEach((colour, i) => {
-    const channels = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+export function bodyTexels(colors: readonly string[]): Uint8Array {
+  const texels = new Uint8Array(4 * colors.length);
+  colors.forEach((color, i) => {
+    const channels = [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16));
     texels.set([...channels, 255], 4 * i);
   });
   return texels;

@@ -1,9 +1,9 @@
 // One body on the GPU. A picture's arrays go there as they came; nothing is computed from them but a coarse box.
 import * as THREE from "three";
-import type { ColourRange } from "./ranges";
+import type { ColorRange } from "./ranges";
 import type { Geometry, Picture, Vec3 } from "../protocol";
-import { bodiesOf, bodyColours, bodyTexels } from "./bodies";
-import { mapTexels, type MapName } from "./colourMaps";
+import { bodiesOf, bodyColors, bodyTexels } from "./bodies";
+import { mapTexels, type MapName } from "./colorMaps";
 import type { DisplaySettings } from "./display";
 import { kSkinPoint } from "./labels";
 import { makeFieldUniforms, makePinMaterial, makeSurfaceMaterial } from "./shading";
@@ -116,10 +116,10 @@ export class Body {
     this.mesh.visible = settings.fill;
     this.wires.visible = settings.wires || !settings.fill;
     this.pins.visible = settings.pins;
-    this.surface.color.set(settings.bodyColour);
+    this.surface.color.set(settings.bodyColor);
     this.surface.shininess = Math.max(1, settings.shininess);
     this.gloss = settings.shininess > 0 ? 0.09 : 0;
-    this.uniforms.insideColour.value.set(settings.insideColour);
+    this.uniforms.insideColor.value.set(settings.insideColor);
     this.uniforms.insideOwn.value = settings.inside === "own";
     this.uniforms.inverted.value = settings.invert;
     const hidden = settings.invert ? THREE.BackSide : THREE.FrontSide;
@@ -127,12 +127,12 @@ export class Body {
     if (this.surface.flatShading === settings.smooth || this.surface.side !== side) this.surface.needsUpdate = true;
     this.surface.flatShading = !settings.smooth;
     this.surface.side = side;
-    this.lines.color.set(settings.lineColour);
+    this.lines.color.set(settings.lineColor);
     this.lines.depthTest = !settings.wiresOnTop;
   }
 
   // Values take the colors of a range; null: the body has its own color.
-  colour(range: ColourRange | null, map: MapName): void {
+  color(range: ColorRange | null, map: MapName): void {
     this.uniforms.fieldShown.value = range !== null;
     this.surface.specular.setScalar(range ? 0.3 * this.gloss : this.gloss); // glare hides colors
     if (!range) return;
@@ -145,14 +145,14 @@ export class Body {
   }
 
   // Several bodies have a color each, the first the reader's own; one has that alone.
-  colourBodies(own: string): void {
+  colorBodies(own: string): void {
     this.uniforms.fieldShown.value = this.bodies !== null;
     this.surface.specular.setScalar(this.gloss);
     if (!this.bodies) return;
     this.values.array = this.bodies;
     this.values.needsUpdate = true;
-    const colours = bodyColours(own, this.bodyCount);
-    this.showMap(colours.join(), () => bodyTexels(colours));
+    const colors = bodyColors(own, this.bodyCount);
+    this.showMap(colors.join(), () => bodyTexels(colors));
     this.uniforms.fieldLow.value = 0;
     this.uniforms.fieldScale.value = 1 / (this.bodyCount - 1);
     this.uniforms.fieldLog.value = false;
@@ -182,12 +182,12 @@ export class Body {
 
   // What is this many pixels long would be an edge; a device pixel is 1 / ratio of them. Wires of a dense mesh fade
   // before they paint it black, and its pins shrink before they hide it.
-  adapt(edgePixels: number, ratio: number, liftPerPixel: number, pinColour: string): void {
+  adapt(edgePixels: number, ratio: number, liftPerPixel: number, pinColor: string): void {
     const density = Math.min(1, Math.max(0, (edgePixels * ratio - 2) / 10));
     this.lines.opacity = this.mesh.visible ? 0.12 + 0.5 * density : 0.35 + 0.6 * density;
     const size = Math.min(9, Math.max(4, 0.8 * edgePixels));
     this.pinMaterial.size = size * ratio;
-    this.pinMaterial.color.set(pinColour);
+    this.pinMaterial.color.set(pinColor);
     this.lift.value = size * liftPerPixel;
   }
 

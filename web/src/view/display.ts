@@ -3,9 +3,9 @@ import { Emitter } from "../emitter";
 import type { Keeper } from "../page";
 import type { Field, Scene, SideName, TipChoice, Vec3 } from "../protocol";
 import { CameraRig } from "./cameras";
-import { kMapNames, type MapName } from "./colourMaps";
+import { kMapNames, type MapName } from "./colorMaps";
 import type { Clip } from "./picking";
-import { about, logRange, RunningRange, type ColourRange } from "./ranges";
+import { about, logRange, RunningRange, type ColorRange } from "./ranges";
 
 export const kTools = { drag: "drag the body", pin: "pin by brush", read: "read values", probe: "press a probe in" } as const;
 export type Tool = keyof typeof kTools;
@@ -15,10 +15,10 @@ export const kDefaults = {
   wires: true,
   wiresOnTop: false,
   smooth: true,
-  bodyColour: "#4f8fd0",
-  lineColour: "#0d1726",
+  bodyColor: "#4f8fd0",
+  lineColor: "#0d1726",
   inside: "own" as "own" | "same" | "hidden",
-  insideColour: "#d9a05b",
+  insideColor: "#d9a05b",
   invert: false, // what counts as outside is the inside
   shininess: 40,
   ownBackground: false, // else that of the theme
@@ -134,7 +134,7 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
     this.emit("range", undefined);
   }
 
-  range(field: Field): ColourRange | null {
+  range(field: Field): ColorRange | null {
     const { fixedRange, scale, low, high } = this.settings;
     const running = this.running.get();
     if (!fixedRange && !running) return null;
@@ -171,8 +171,8 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
       if (!Object.hasOwn(kDefaults, key) || typeof value !== typeof kDefaults[known]) continue;
       if (kChoices[known] && !kChoices[known].includes(value as string)) continue;
       if (typeof value === "number" && !Number.isFinite(value)) continue;
-      const isColour = key.endsWith("Colour") || key === "background";
-      if (isColour && !/^#[0-9a-f]{6}$/i.test(String(value))) continue;
+      const isColor = key.endsWith("Color") || key === "background";
+      if (isColor && !/^#[0-9a-f]{6}$/i.test(String(value))) continue;
       changes[key] = value;
     }
     this.change(changes);

@@ -1,12 +1,12 @@
 // The body of one side on the stage, as its scene, its newest picture and the display want it.
 import type { Field, SideName } from "../protocol";
 import type { Side, Store } from "../store";
-import { bodyColours } from "./bodies";
+import { bodyColors } from "./bodies";
 import { Body } from "./body";
 import type { Display } from "./display";
 import type { Style } from "./overlay";
 import type { Surface } from "./picking";
-import type { ColourRange } from "./ranges";
+import type { ColorRange } from "./ranges";
 import type { Stage } from "./stage";
 
 export class Figure {
@@ -54,7 +54,7 @@ export class Figure {
     this.valuesOf = side.picture.values ? side.scene.field : "";
     const field = this.field();
     if (field && !this.isLost()) this.display.feed(this.name, field, side.picture.min, side.picture.max);
-    this.colour();
+    this.color();
     this.stage?.moved();
   }
 
@@ -73,25 +73,25 @@ export class Figure {
     this.body?.apply(this.display.settings);
     this.stage?.apply(this.display.settings, style);
     this.stage?.clip(this.side && this.display.clip(this.side.scene));
-    this.colour();
+    this.color();
   }
 
-  colour(): void {
-    const shown = this.coloured();
-    if (shown) this.body?.colour(shown.range, this.display.map(shown.field));
-    else this.body?.colourBodies(this.display.settings.bodyColour);
+  color(): void {
+    const shown = this.colored();
+    if (shown) this.body?.color(shown.range, this.display.map(shown.field));
+    else this.body?.colorBodies(this.display.settings.bodyColor);
   }
 
   // Names and colors of several bodies.
-  bodies(): { name: string; colour: string }[] {
+  bodies(): { name: string; color: string }[] {
     const names = this.side?.scene.bodies ?? [];
     if (names.length < 2 || !this.body) return [];
-    const colours = bodyColours(this.display.settings.bodyColour, names.length);
-    return names.map((name, i) => ({ name, colour: colours[i]! }));
+    const colors = bodyColors(this.display.settings.bodyColor, names.length);
+    return names.map((name, i) => ({ name, color: colors[i]! }));
   }
 
   // What the body's colors mean.
-  coloured(): { field: Field; range: ColourRange } | null {
+  colored(): { field: Field; range: ColorRange } | null {
     const field = this.field();
     const range = field && this.display.range(field);
     return field && range ? { field, range } : null;

@@ -2,10 +2,10 @@
 import { short, ticks as tickTexts } from "../plots/numbers";
 import type { Highlight } from "../page";
 import type { Field, Vec3 } from "../protocol";
-import { colourAt, type MapName } from "./colourMaps";
+import { colorAt, type MapName } from "./colorMaps";
 import { apart, type Box } from "./labels";
 import { dot as dotProduct, isBehind, minus, project, type Lens } from "./lens";
-import { fraction, logTicks, ticks, type ColourRange } from "./ranges";
+import { fraction, logTicks, ticks, type ColorRange } from "./ranges";
 import { unitText, valueText } from "./values";
 
 export interface Ink {
@@ -44,10 +44,10 @@ export function label(ink: Ink, words: string, x: number, y: number): void {
   text(ink, words, x, y - 0.75 * ink.em, "center");
 }
 
-function stroke(ink: Ink, points: Point[], width: number, colour: string): void {
+function stroke(ink: Ink, points: Point[], width: number, color: string): void {
   const { context } = ink;
   context.lineJoin = context.lineCap = "round";
-  for (const [w, style] of [[width + 2, ink.halo], [width, colour]] as const) {
+  for (const [w, style] of [[width + 2, ink.halo], [width, color]] as const) {
     context.lineWidth = w;
     context.strokeStyle = style;
     context.beginPath();
@@ -56,11 +56,11 @@ function stroke(ink: Ink, points: Point[], width: number, colour: string): void 
   }
 }
 
-function dot(ink: Ink, [x, y]: Point, radius: number, colour: string): void {
+function dot(ink: Ink, [x, y]: Point, radius: number, color: string): void {
   const { context } = ink;
   context.beginPath();
   context.arc(x, y, radius, 0, 2 * Math.PI);
-  context.fillStyle = colour;
+  context.fillStyle = color;
   context.fill();
   context.lineWidth = 1.5;
   context.strokeStyle = ink.halo;
@@ -99,11 +99,11 @@ export function surfaceDot(ink: Ink, lens: Lens, at: Vec3, normal: Vec3, words?:
 
 export function ring(ink: Ink, [x, y]: Point, radius: number, words: string): void {
   const { context } = ink;
-  for (const [width, colour] of [[3.5, ink.halo], [1.5, ink.accent]] as const) {
+  for (const [width, color] of [[3.5, ink.halo], [1.5, ink.accent]] as const) {
     context.beginPath();
     context.arc(x, y, radius, 0, 2 * Math.PI);
     context.lineWidth = width;
-    context.strokeStyle = colour;
+    context.strokeStyle = color;
     context.stroke();
   }
   text(ink, words, x + radius + 0.4 * ink.em, y - radius);
@@ -142,22 +142,22 @@ function outline(ink: Ink, lens: Lens, positions: Vec3[]): Point | null {
 export function axes(ink: Ink, lens: Lens): void {
   const size = 2.2 * ink.em;
   const [x0, y0] = [1.6 * ink.em + size, lens.height - 1.6 * ink.em - size];
-  const colours = ["#d1495b", "#3f9142", "#3a6fd8"];
+  const colors = ["#d1495b", "#3f9142", "#3a6fd8"];
   const ends = [0, 1, 2].map((c) => ({ c, x: lens.right[c], y: -lens.up[c], depth: lens.forward[c] }));
   for (const { c, x, y } of ends.sort((a, b) => b.depth - a.depth)) {
-    stroke(ink, [[x0, y0], [x0 + size * x, y0 + size * y]], 2, colours[c]);
+    stroke(ink, [[x0, y0], [x0 + size * x, y0 + size * y]], 2, colors[c]);
     text(ink, "xyz"[c], x0 + 1.28 * size * x, y0 + 1.28 * size * y, "center");
   }
 }
 
 // Names of bodies beside samples of their colors, in the upper left corner, as many as there is room for.
-export function bodyLegend(ink: Ink, lens: Lens, bodies: readonly { name: string; colour: string }[]): void {
+export function bodyLegend(ink: Ink, lens: Lens, bodies: readonly { name: string; color: string }[]): void {
   const { em } = ink;
   const room = Math.max(1, Math.floor(lens.height / (3 * em)));
-  bodies.slice(0, room).forEach(({ name, colour }, i) => {
+  bodies.slice(0, room).forEach(({ name, color }, i) => {
     const y = (1.6 + 1.5 * i) * em;
     const left = bodies.length > room && i === room - 1 ? bodies.length - room : 0;
-    dot(ink, [1.4 * em, y], 0.45 * em, colour);
+    dot(ink, [1.4 * em, y], 0.45 * em, color);
     text(ink, left > 0 ? `${name} and ${left} more` : name, 2.3 * em, y);
   });
 }
@@ -182,7 +182,7 @@ export function paragraph(ink: Ink, lens: Lens, words: string, x: number, y: num
 }
 
 // The colors of a field with ticks, in a strip right of the view: nothing of the body is behind it.
-export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange, map: MapName): void {
+export function colorBar(ink: Ink, lens: Lens, field: Field, range: ColorRange, map: MapName): void {
   const { em } = ink;
   ink.context.fillStyle = ink.halo;
   ink.context.fillRect(lens.width, 0, kBarWidth * em + 1, lens.height);
@@ -195,7 +195,7 @@ export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange
   if (height < 3 * em) return;
   const values = range.log ? logTicks(range.low, range.high) : ticks(range.low, range.high, height / (2.6 * em));
   const words = range.log || values.length < 2 ? values.map((value) => short(value)) : tickTexts(values);
-  colours(ink, { left, top, width, height }, map, range.high > range.low);
+  colors(ink, { left, top, width, height }, map, range.high > range.low);
   values.forEach((value, i) => {
     const y = top + height * (1 - fraction(range, value));
     ink.context.fillStyle = ink.text;
@@ -204,10 +204,10 @@ export function colourBar(ink: Ink, lens: Lens, field: Field, range: ColourRange
   });
 }
 
-function colours(ink: Ink, { left, top, width, height }: Place, map: MapName, varies: boolean): void {
+function colors(ink: Ink, { left, top, width, height }: Place, map: MapName, varies: boolean): void {
   const { context } = ink;
   for (let y = 0; y < height; ++y) {
-    const [r, g, b] = colourAt(map, varies ? 1 - y / height : 0.5);
+    const [r, g, b] = colorAt(map, varies ? 1 - y / height : 0.5);
     context.fillStyle = `rgb(${r}, ${g}, ${b})`;
     context.fillRect(left, top + y, width, 1.5);
   }

@@ -1,18 +1,18 @@
 // The 2-D canvas over a view: axes, color bar, numbers, highlights, the mouse's spring and brush.
 import type { Highlight } from "../page";
 import type { Field, Vec3 } from "../protocol";
-import type { MapName } from "./colourMaps";
+import type { MapName } from "./colorMaps";
 import type { DisplaySettings } from "./display";
 import type { Label } from "./labels";
 import type { Lens } from "./lens";
 import * as marks from "./marks";
-import type { ColourRange } from "./ranges";
+import type { ColorRange } from "./ranges";
 
 export interface Marks {
   axes: boolean;
   gridStep: number; // [m]; 0: no grid
-  bar: { field: Field; range: ColourRange; map: MapName } | null;
-  bodies: { name: string; colour: string }[]; // of the legend; empty: none
+  bar: { field: Field; range: ColorRange; map: MapName } | null;
+  bodies: { name: string; color: string }[]; // of the legend; empty: none
   labels: Label[];
   highlights: Highlight[];
   spring: { point: Vec3; target: Vec3; force: Vec3 | null } | null;
@@ -40,20 +40,20 @@ export interface Style {
 // Of the page's theme, unless the reader chose a background.
 export function readStyle(host: HTMLElement, settings: DisplaySettings, size: [number, number] | null): Style {
   const style = getComputedStyle(host);
-  const colour = (variable: string): string => style.getPropertyValue(variable).trim() || "#808080";
+  const color = (variable: string): string => style.getPropertyValue(variable).trim() || "#808080";
   const own = settings.ownBackground ? settings.background : null;
   return {
-    text: own ? (isLight(own) ? "#1b1f27" : "#e8ebf0") : colour("--text"),
-    background: own ?? colour("--background"),
-    accent: colour("--series-2"),
-    grid: colour("--faint"),
+    text: own ? (isLight(own) ? "#1b1f27" : "#e8ebf0") : color("--text"),
+    background: own ?? color("--background"),
+    accent: color("--series-2"),
+    grid: color("--faint"),
     font: style.fontFamily,
     em: size ? Math.max(10, size[1] / 45) : parseFloat(style.fontSize),
   };
 }
 
-function isLight(colour: string): boolean {
-  const [r, g, b] = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+function isLight(color: string): boolean {
+  const [r, g, b] = [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16));
   return 0.299 * r + 0.587 * g + 0.114 * b > 128;
 }
 
@@ -82,7 +82,7 @@ export class Overlay {
     for (const dot of what.dots) marks.surfaceDot(ink, lens, dot.at, dot.normal, dot.ring);
     if (what.spring) marks.spring(ink, lens, what.spring.point, what.spring.target, what.spring.force);
     if (what.brush) marks.ring(ink, what.brush.at, what.brush.radius, what.brush.words);
-    if (what.bar) marks.colourBar(ink, lens, what.bar.field, what.bar.range, what.bar.map);
+    if (what.bar) marks.colorBar(ink, lens, what.bar.field, what.bar.range, what.bar.map);
     if (what.tip) marks.paragraph(ink, lens, what.tip.words, what.tip.at[0] + style.em, what.tip.at[1] - style.em);
   }
 

@@ -1,6 +1,6 @@
 // The range of values that a color map spans, and the ticks of its bar.
 
-export interface ColourRange {
+export interface ColorRange {
   low: number;
   high: number;
   log: boolean;
@@ -54,7 +54,7 @@ export function logRange(low: number, high: number): { low: number; high: number
 }
 
 // Position of a value in the range, as the shader computes it.
-export function fraction(range: ColourRange, value: number): number {
+export function fraction(range: ColorRange, value: number): number {
   const f = range.log ? Math.log : (x: number): number => x;
   const width = f(range.high) - f(range.low);
   return width > 0 ? (f(value) - f(range.low)) / width : 0.5;

@@ -7,7 +7,7 @@ export interface FieldUniforms {
   fieldScale: { value: number };
   fieldLog: { value: boolean };
   fieldShown: { value: boolean };
-  insideColour: { value: THREE.Color };
+  insideColor: { value: THREE.Color };
   insideOwn: { value: boolean };
   inverted: { value: boolean };
 }
@@ -19,7 +19,7 @@ export function makeFieldUniforms(): FieldUniforms {
     fieldScale: { value: 1 },
     fieldLog: { value: false },
     fieldShown: { value: false },
-    insideColour: { value: new THREE.Color() },
+    insideColor: { value: new THREE.Color() },
     insideOwn: { value: true },
     inverted: { value: false },
   };
@@ -31,11 +31,11 @@ const kFieldPars = /* glsl */ `
   uniform sampler2D fieldMap;
   uniform float fieldLow, fieldScale;
   uniform bool fieldLog, fieldShown, insideOwn, inverted;
-  uniform vec3 insideColour;
+  uniform vec3 insideColor;
   varying float vFieldValue;
 `;
 
-const kFieldColour = /* glsl */ `
+const kFieldColor = /* glsl */ `
   if (fieldShown) {
     float value = fieldLog ? (vFieldValue > 0.0 ? log(vFieldValue) : -1e30) : vFieldValue;
     float texels = float(textureSize(fieldMap, 0).x);
@@ -43,7 +43,7 @@ const kFieldColour = /* glsl */ `
     diffuseColor.rgb = texture2D(fieldMap, vec2((at * (texels - 1.0) + 0.5) / texels, 0.5)).rgb;
     if (isnan(vFieldValue)) diffuseColor.rgb = vec3(0.3);
   }
-  if (insideOwn && gl_FrontFacing == inverted) diffuseColor.rgb = insideColour;
+  if (insideOwn && gl_FrontFacing == inverted) diffuseColor.rgb = insideColor;
 `;
 
 export function makeSurfaceMaterial(uniforms: FieldUniforms): THREE.MeshPhongMaterial {
@@ -58,7 +58,7 @@ export function makeSurfaceMaterial(uniforms: FieldUniforms): THREE.MeshPhongMat
       .replace("#include <begin_vertex>", "#include <begin_vertex>\nvFieldValue = fieldValue;");
     shader.fragmentShader = shader.fragmentShader
       .replace("#include <common>", `#include <common>\n${kFieldPars}`)
-      .replace("#include <color_fragment>", kFieldColour);
+      .replace("#include <color_fragment>", kFieldColor);
   };
   return material;
 }
@@ -71,7 +71,7 @@ export function makePinMaterial(lift: { value: number }): THREE.PointsMaterial {
     shader.vertexShader = shader.vertexShader
       .replace("#include <common>", "#include <common>\nuniform float lift;")
       .replace("#include <project_vertex>", kPinPosition);
-    shader.fragmentShader = shader.fragmentShader.replace("#include <map_particle_fragment>", kPinColour);
+    shader.fragmentShader = shader.fragmentShader.replace("#include <map_particle_fragment>", kPinColor);
   };
   return material;
 }
@@ -83,7 +83,7 @@ const kPinPosition = /* glsl */ `
   gl_Position = projectionMatrix * nearer;
 `;
 
-const kPinColour = /* glsl */ `
+const kPinColor = /* glsl */ `
   float radius = length(gl_PointCoord - 0.5) * 2.0;
   float blur = fwidth(radius);
   diffuseColor.rgb = mix(diffuseColor.rgb, vec3(1.0), smoothstep(0.62 - blur, 0.62 + blur, radius));
@@ -93,7 +93,7 @@ const kPinColour = /* glsl */ `
 export interface GroundUniforms {
   gridStep: { value: number };
   gridOrigin: { value: THREE.Vector2 };
-  gridColour: { value: THREE.Color };
+  gridColor: { value: THREE.Color };
 }
 
 // Catches shadows, carries a grid, and fades towards its rim.
@@ -106,7 +106,7 @@ export function makeGroundMaterial(uniforms: GroundUniforms): THREE.ShadowMateri
       .replace("#include <begin_vertex>", "#include <begin_vertex>\nvPlane = position.xy;");
     shader.fragmentShader = shader.fragmentShader
       .replace("#include <common>", `#include <common>\n${kGroundPars}`)
-      .replace("gl_FragColor = vec4( color, opacity * ( 1.0 - getShadowMask() ) );", kGroundColour);
+      .replace("gl_FragColor = vec4( color, opacity * ( 1.0 - getShadowMask() ) );", kGroundColor);
   };
   return material;
 }
@@ -114,11 +114,11 @@ export function makeGroundMaterial(uniforms: GroundUniforms): THREE.ShadowMateri
 const kGroundPars = /* glsl */ `
   uniform float gridStep;
   uniform vec2 gridOrigin;
-  uniform vec3 gridColour;
+  uniform vec3 gridColor;
   varying vec2 vPlane;
 `;
 
-const kGroundColour = /* glsl */ `
+const kGroundColor = /* glsl */ `
   vec2 cell = (vPlane - gridOrigin) / gridStep;
   vec2 blur = max(fwidth(cell), 1e-6);
   vec2 line = clamp(1.0 - abs(fract(cell - 0.5) - 0.5) / blur, 0.0, 1.0) * (1.0 - smoothstep(0.15, 0.5, blur));
@@ -126,5 +126,5 @@ const kGroundColour = /* glsl */ `
   float shade = opacity * (1.0 - getShadowMask());
   float fade = 1.0 - smoothstep(0.35, 1.0, length(vPlane) / ${kGroundRadius.toFixed(1)});
   float cover = 1.0 - (1.0 - shade) * (1.0 - grid);
-  gl_FragColor = vec4(mix(color, gridColour, cover > 0.0 ? grid * (1.0 - shade) / cover : 0.0), fade * cover);
+  gl_FragColor = vec4(mix(color, gridColor, cover > 0.0 ? grid * (1.0 - shade) / cover : 0.0), fade * cover);
 `;

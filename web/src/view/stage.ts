@@ -36,7 +36,7 @@ export class Stage {
   private readonly grid = {
     gridStep: { value: 1 },
     gridOrigin: { value: new THREE.Vector2() },
-    gridColour: { value: new THREE.Color() },
+    gridColor: { value: new THREE.Color() },
   };
   private readonly tip = new TipBody();
   private readonly lit = new THREE.Sphere(new THREE.Vector3(), 0); // what the shadow map covers
@@ -85,8 +85,8 @@ export class Stage {
     this.scene.add(body.root);
   }
 
-  showTip(tip: ProbeState | null, colour: string): void {
-    if (this.tip.show(tip, colour, (point) => this.toUnits(point), this.radius)) this.renderer.shadowMap.needsUpdate = true;
+  showTip(tip: ProbeState | null, color: string): void {
+    if (this.tip.show(tip, color, (point) => this.toUnits(point), this.radius)) this.renderer.shadowMap.needsUpdate = true;
   }
 
   remove(): void {
@@ -106,10 +106,10 @@ export class Stage {
     this.renderer.shadowMap.needsUpdate = true;
   }
 
-  apply(settings: DisplaySettings, colours: { background: string; grid: string }): void {
-    this.scene.background = new THREE.Color(colours.background);
+  apply(settings: DisplaySettings, colors: { background: string; grid: string }): void {
+    this.scene.background = new THREE.Color(colors.background);
     this.ground.visible = settings.ground;
-    this.grid.gridColour.value.set(colours.grid);
+    this.grid.gridColor.value.set(colors.grid);
     this.sun.castShadow = settings.shadows;
     this.renderer.shadowMap.needsUpdate = true;
   }
@@ -124,7 +124,7 @@ export class Stage {
     this.renderer.shadowMap.needsUpdate = true;
   }
 
-  render(lens: Lens, orientation: THREE.Quaternion, pinColour: string): void {
+  render(lens: Lens, orientation: THREE.Quaternion, pinColor: string): void {
     const camera = this.camera(lens);
     camera.position.copy(this.toUnits(lens.eye));
     camera.quaternion.copy(orientation);
@@ -132,7 +132,7 @@ export class Stage {
     this.lamp.target.position.copy(camera.position).add(new THREE.Vector3(...lens.forward));
     const drop = (this.floor - dot(this.up, this.center)) / this.radius;
     this.ground.position.set(...this.up).multiplyScalar(drop);
-    if (this.body) this.adapt(this.body, lens, pinColour);
+    if (this.body) this.adapt(this.body, lens, pinColor);
     this.renderer.render(this.scene, camera);
   }
 
@@ -176,7 +176,7 @@ export class Stage {
     return box ? Math.min(kFarthest, Math.max(1, this.toUnits(box.lower).length(), this.toUnits(box.upper).length())) : 1;
   }
 
-  private adapt(body: Body, lens: Lens, pinColour: string): void {
+  private adapt(body: Body, lens: Lens, pinColor: string): void {
     const middle = body.box ? ([0, 1, 2].map((c) => (body.box!.lower[c] + body.box!.upper[c]) / 2) as Vec3) : this.center;
     const depth = Math.max(dot(minus(middle, lens.eye), lens.forward), 1e-3 * this.radius);
     const half = lens.extent > 0 ? lens.extent : lens.slope * depth;
@@ -187,7 +187,7 @@ export class Stage {
     this.isFar = this.reach() > kFar && this.reach() * this.radius > kFar * height;
     body.root.visible = !this.isFar;
     this.hasLeft = body.box !== null && this.reach() * this.radius < 2 * half && !isInside(lens, middle);
-    body.adapt(body.edge * pixels, this.renderer.getPixelRatio(), lift, pinColour);
+    body.adapt(body.edge * pixels, this.renderer.getPixelRatio(), lift, pinColor);
   }
 
   // The shadow map covers the body, and changes only when it has to: else shadows would crawl.

@@ -21,12 +21,12 @@ export class TipBody {
   }
 
   // True when something has changed.
-  show(tip: ProbeState | null, colour: string, toUnits: (point: Vec3) => THREE.Vector3, radius: number): boolean {
+  show(tip: ProbeState | null, color: string, toUnits: (point: Vec3) => THREE.Vector3, radius: number): boolean {
     const was = this.root.visible;
     this.root.visible = tip !== null;
     if (!tip) return was;
     const size = tip.radius / radius;
-    this.metal.color.set(colour);
+    this.metal.color.set(color);
     this.sphere.visible = tip.shape === "sphere";
     this.disc.visible = tip.shape === "disc";
     this.root.position.copy(toUnits(tip.center));

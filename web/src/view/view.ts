@@ -178,7 +178,7 @@ export class View implements Touched {
     stop.push(store.on("state", () => this.takeState()));
     stop.push(store.on("capture", () => this.redraw()));
     stop.push(display.on("changed", () => this.applyDisplay()));
-    stop.push(display.on("range", () => this.recolour()));
+    stop.push(display.on("range", () => this.recolor()));
     stop.push(page.on("theme", () => this.applyDisplay()));
     stop.push(page.on("layout", () => this.applyDisplay()));
     if (this.side === "a") stop.push(page.on("highlight", (highlights) => this.highlight(highlights)));
@@ -240,8 +240,8 @@ export class View implements Touched {
     this.style = readStyle(this.host, this.display.settings, this.fixedSize);
   }
 
-  private recolour(): void {
-    this.figure.colour();
+  private recolor(): void {
+    this.figure.color();
     this.redraw();
   }
 
@@ -251,7 +251,7 @@ export class View implements Touched {
 
   // Beside the body, for the color bar.
   private strip(): number {
-    return this.figure.coloured() ? kBarWidth * this.style.em : 0;
+    return this.figure.colored() ? kBarWidth * this.style.em : 0;
   }
 
   private pixelRatio(): number {
@@ -272,7 +272,7 @@ export class View implements Touched {
 
   private marks(lens: Lens): Marks {
     const settings = this.display.settings;
-    const shown = this.figure.coloured();
+    const shown = this.figure.colored();
     const grab = this.store.state?.[this.side]?.grab;
     const { cursor, target } = this.touch;
     const brushes = settings.tool === "pin" && cursor;
@@ -315,7 +315,7 @@ export class View implements Touched {
     const { hover, cursor } = this.touch;
     if (cursor && this.touch.target && this.store.state && !this.store.state.playing)
       return { at: cursor, words: "Paused: press Space to play" };
-    const [shown, values] = [this.figure.coloured(), this.figure.side?.picture?.values];
+    const [shown, values] = [this.figure.colored(), this.figure.side?.picture?.values];
     const triangles = this.figure.body?.geometry.triangles;
     if (!hover || !cursor || !shown || !values || !triangles || this.display.settings.tool !== "read") return null;
     return { at: cursor, words: valueText(interpolated(hover, triangles, values), shown.field.unit) };

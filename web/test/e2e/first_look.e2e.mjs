@@ -73,8 +73,8 @@ test("the legend hides what is zero, and no color is used twice", async () => {
   await entries.filter({ hasText: "V: gravity" }).waitFor();
   const labels = await entries.locator(".chart-label").allInnerTexts();
   for (const absent of ["work of the mouse", "work of the probe", "V: probe"]) assert.ok(!labels.includes(absent), labels.join());
-  const colours = await entries.locator(".chart-sample").evaluateAll((samples) => samples.map((sample) => getComputedStyle(sample).borderTopColor));
-  assert.equal(new Set(colours).size, colours.length, colours.join());
+  const colors = await entries.locator(".chart-sample").evaluateAll((samples) => samples.map((sample) => getComputedStyle(sample).borderTopColor));
+  assert.equal(new Set(colors).size, colors.length, colors.join());
   await close();
 });
 

@@ -52,10 +52,10 @@ test("pictures of a surface of 26 000 vertices have less than 1.2 MB", async (t)
   const session = await page.context().newCDPSession(page);
   await session.send("Performance.enable");
   const metrics = async () => Object.fromEntries((await session.send("Performance.getMetrics")).metrics.map(({ name, value }) => [name, value]));
-  for (const colour of ["", "von_mises"]) {
+  for (const color of ["", "von_mises"]) {
     const choice = page.getByRole("combobox", { name: "Color by" }).or(page.locator("#right .lil-controller").filter({ hasText: "Color by" }).locator("select"));
-    await choice.first().selectOption({ index: colour === "" ? 0 : 1 });
-    await until("pictures of this colour", ({ scenes, pictures }) => (scenes.a.field !== "") === (pictures.a.values !== null));
+    await choice.first().selectOption({ index: color === "" ? 0 : 1 });
+    await until("pictures of this color", ({ scenes, pictures }) => (scenes.a.field !== "") === (pictures.a.values !== null));
     const [first, before] = [heard.counted, await metrics()];
     await setPlaying(opened, true);
     await until("ten pictures", () => heard.counted >= first + 10);

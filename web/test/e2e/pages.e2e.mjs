@@ -101,7 +101,7 @@ test("nonsense is refused, and the pages continue", async () => {
     '{"ask":"vertex","id":1}', '{"ask":"vertex","id":2,"side":"a","vertex":1e9}', '{"ask":"mesh","id":3,"side":"a","format":"exe"}',
     '{"ask":"function","id":4,"name":"sin(","start":[0,0],"settings":{},"iteration":0,"samples":11}',
     '{"ask":"iteration","id":5,"side":"a","step":7000000,"iteration":0}', "[".repeat(100000), `{"do":"${"x".repeat(100000)}"}`,
-    "\u0000\uffff", '{"do":"colour","field":"none such"}', '{"do":"surface","which":"skull"}',
+    "\u0000\uffff", '{"do":"color","field":"none such"}', '{"do":"surface","which":"skull"}',
   ];
   const answers = () => two.heard.messages.filter(({ kind }) => kind === "refused").length;
   for (const text of nonsense) {

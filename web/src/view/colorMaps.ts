@@ -11,7 +11,7 @@ const kStops: Record<MapName, string[]> = {
 
 export type Rgb = [number, number, number]; // 0 to 255, sRGB
 
-export function colourAt(map: MapName, t: number): Rgb {
+export function colorAt(map: MapName, t: number): Rgb {
   const stops = kStops[map];
   const at = Math.min(1, Math.max(0, t)) * (stops.length - 1);
   const k = Math.min(stops.length - 2, Math.floor(at));
@@ -23,6 +23,6 @@ export function colourAt(map: MapName, t: number): Rgb {
 // Texels of the map, RGBA.
 export function mapTexels(map: MapName, count: number): Uint8Array {
   const texels = new Uint8Array(4 * count);
-  for (let i = 0; i < count; ++i) texels.set([...colourAt(map, i / (count - 1)).map(Math.round), 255], 4 * i);
+  for (let i = 0; i < count; ++i) texels.set([...colorAt(map, i / (count - 1)).map(Math.round), 255], 4 * i);
   return texels;
 }
