@@ -35,7 +35,7 @@ export function unit(a: Vec3): Vec3 {
 }
 
 // Pixels per meter at a depth.
-export function pixelsPerMetre(lens: Lens, depth: number): number {
+export function pixelsPerMeter(lens: Lens, depth: number): number {
   const half = lens.extent > 0 ? lens.extent : lens.slope * depth;
   return lens.height / 2 / half;
 }
@@ -44,7 +44,7 @@ export function pixelsPerMetre(lens: Lens, depth: number): number {
 export function project(lens: Lens, p: Vec3): Vec3 {
   const d = minus(p, lens.eye);
   const depth = dot(d, lens.forward);
-  const scale = pixelsPerMetre(lens, depth);
+  const scale = pixelsPerMeter(lens, depth);
   return [lens.width / 2 + scale * dot(d, lens.right), lens.height / 2 - scale * dot(d, lens.up), depth];
 }
 
