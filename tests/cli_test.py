@@ -1036,7 +1036,7 @@ class Fit(Captured):
                 break
         process.kill()
         process.communicate()
-        self.assertIn("--resume goes on", self.aspic("fit", "data", *self.QUICK, "-o", "killed.vtu", code=2).stderr)
+        self.assertIn("--resume continues", self.aspic("fit", "data", *self.QUICK, "-o", "killed.vtu", code=2).stderr)
         self.assertIn("begun with", self.aspic("fit", "data", "-o", "killed.vtu", "--resume", code=2).stderr)
         self.assertIn("resuming", self.aspic("fit", "data", *self.QUICK, "-o", "killed.vtu", "--resume").stdout)
         self.assert_same_files(".", ".", "whole.vtu")
@@ -1050,7 +1050,7 @@ class Fit(Captured):
         process.send_signal(signal.SIGINT)
         out, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130)
-        self.assertIn("--resume goes on", out)
+        self.assertIn("--resume continues", out)
         self.assertTrue((self.folder / "material.vtu").exists())
         self.assertIn("resuming", self.aspic("fit", "data", "--resume").stdout)
 

@@ -195,7 +195,7 @@ class FitInterruption(FitCommand):
         return process.returncode, said + complained
 
     def resume_and_compare(self):
-        self.assertIn("--resume goes on", self.fit(*self.OPTIONS, "-o", "part.vtu", code=2).stderr)
+        self.assertIn("--resume continues", self.fit(*self.OPTIONS, "-o", "part.vtu", code=2).stderr)
         other = [*self.OPTIONS, "-o", "part.vtu", "--resume", "--smooth", "tv"]
         self.assertIn("smooth", self.fit(*other, code=2).stderr)
         before = self.rows("part.fit")

@@ -87,7 +87,7 @@ std::string words_of(const DataFinding& finding) {
   return finding.where + ": " + finding.what + (finding.remedy.empty() ? "" : "; ") + finding.remedy;
 }
 
-// Refuses data that would be fitted in vain, and tells the worst of what is odd about others.
+// Rejects data sets with errors and prints the first warnings of others.
 void heed_findings(const DataSet& data, const fs::path& path) {
   constexpr int kMostTold = 3;
   std::vector<std::string> errors, warnings;
@@ -96,7 +96,7 @@ void heed_findings(const DataSet& data, const fs::path& path) {
     if (finding.severity == Severity::warning) warnings.push_back(words_of(finding));
   }
   if (!errors.empty()) {
-    errors.push_back(fmt::format("(aspic fit --check {} tells more)", path.string()));
+    errors.push_back(fmt::format("(aspic fit --check {} prints details)", path.string()));
     throw InvalidInput(errors);
   }
   const int count = static_cast<int>(warnings.size());
@@ -271,7 +271,8 @@ void add_choices(CLI::App* command, FitArguments& a) {
   command->add_option("--starts", a.fit.starts, "Guesses to start from; the best is kept")->check(CLI::Range(1, 1000));
   command->add_option("--tolerance", a.fit.tolerance, "Of the decrement, relative to the first")
       ->check(CLI::Range(1e-12, 0.5));
-  command->add_option("--iterations", a.fit.max_iterations, "At most so many")->check(CLI::Range(1, 100000));
+  command->add_option("--iterations", a.fit.max_iterations, "Maximum number of iterations")
+      ->check(CLI::Range(1, 100000));
   command->add_option("--leave-out", a.left_out, "GROUP of cases: predicted, not fitted; can be repeated")
       ->allow_extra_args(false);
   command->add_flag("--baselines", a.baselines,
@@ -315,7 +316,7 @@ figures.json; 130 interrupted by ctrl-C, 143 by kill: what was reached is writte
   command->add_option("--threads", arguments->threads, "Threads; all cores by default; the result is the same")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--force", arguments->force, "Replace an earlier fit");
-  command->add_flag("--resume", arguments->resume, "Go on with an interrupted fit")->excludes("--force");
+  command->add_flag("--resume", arguments->resume, "Continue an interrupted fit")->excludes("--force");
   command->add_flag("-q,--quiet", arguments->quiet, "Only warnings and errors");
   command->add_flag("-v,--verbose", arguments->verbose, "A line per iteration")->excludes("--quiet");
   command->add_flag("--allow-unconverged", arguments->allow_unconverged,

@@ -45,7 +45,7 @@ std::vector<TestCurve> chosen(const std::filesystem::path& file, const std::vect
 std::string deviation_text(const FittedParameter& f) {
   if (f.is_held) return "held";
   if (f.at_bound) return "at the end of its range";
-  if (std::isinf(f.deviation)) return "not told by these curves";
+  if (std::isinf(f.deviation)) return "not determined by these curves";
   return fmt::format("+- {:.2g}", f.deviation);
 }
 

@@ -132,7 +132,7 @@ class CaseReader {
           "has a force or torque but no tip, whose force it would be; give its pose, or leave the force blank");
   }
 
-  // A gauge that tells only the force along the axis leaves the force across open.
+  // A gauge that measures only the axial force does not determine the lateral force.
   void take_force_along_axis(LoadCase& load, double force) {
     if (!load.tip) return;
     const Vec3d a = unit(load.pose.axis);

@@ -110,7 +110,7 @@ class DataSetReader {
     const bool has_corners = table.has("corner_1"), has_points = table.has("x");
     if (!has_corners && !has_points && !table.has("vertex"))
       throw InvalidInput(data_.source.markers +
-                         ":1: has no column x, vertex or corner_1 that tells where a marker is (columns in " +
+                         ":1: has no column x, vertex or corner_1 for the position of a marker (columns in " +
                          data_.source.settings + " gives them other names)");
     for (const Triangle& t : surface.triangles())
       for (int i = 0; i < 3; ++i) corner_of_.try_emplace(t[i], t, i);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStill = 4;           // standard deviations of the mean: a motion of what is fixed
 constexpr size_t kMostCompared = 300;  // whose motions are compared
-constexpr double kSameMotion = 0.02;   // what is left of a motion, relative to it, that is said to be new
+constexpr double kSameMotion = 0.02;   // smallest relative difference between two distinct motions
 constexpr int kFewNumbers = 30;
 
 bool nearly_same(const Vec3d& a, const Vec3d& b) { return norm(a - b) <= 1e-9 * (norm(a) + norm(b)); }
@@ -186,7 +186,7 @@ class ContentDiagnosis {
       findings_.warning(data_.source.positions,
                         "the data are rank-deficient: the motions of " + std::to_string(groups) +
                             " groups are combinations of " + std::to_string(rank) + ", but for noise",
-                        "poke at other sites, in other directions; the same motion again tells nothing new");
+                        "poke at other sites, in other directions; the same motion again adds no information");
   }
 
   const DataSet& data_;

@@ -17,7 +17,7 @@ constexpr double kSuspicious = 6;         // times what neighbors differ by
 constexpr double kNoticeable = 0.05;      // of the largest motion of the case
 constexpr double kReach = 2;              // of a tip, in radii, within which the surface goes its way
 constexpr double kFar = 1;                // of the body's size: a motion that is none
-constexpr double kFarthest = 10;          // likewise, of a single marker: no fit stands that
+constexpr double kFarthest = 10;          // the same of a single marker; larger ones are errors
 constexpr double kLever = 3;              // times the way of the tip: a motion of most markers that is no tip's
 constexpr double kFinestPosition = 1e-9;  // of the body's size: a deviation that no instrument has
 

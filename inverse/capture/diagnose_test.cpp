@@ -1,4 +1,4 @@
-// What is odd about measurements is told with its row and a remedy; what is well is not.
+// Diagnostics of measurements name the row and a remedy; good data have none.
 #include <gmock/gmock.h>
 
 #include <cmath>

@@ -98,7 +98,8 @@ FitFolder FitFolder::open(const fs::path& material, const std::string& options, 
     return folder;
   }
   if (existing == ExistingFit::refuse && is_unfinished)
-    throw InvalidInput(path.string() + ": holds a fit that was interrupted; --resume goes on, --force begins anew");
+    throw InvalidInput(path.string() +
+                       ": holds a fit that was interrupted; --resume continues it, --force replaces it");
   if (existing == ExistingFit::refuse && (is_begun || fs::exists(material)))
     throw InvalidInput((is_begun ? path : material).string() + ": exists; --force replaces it, -o writes another");
   fs::create_directories(path, error);

@@ -1,5 +1,5 @@
 // What a fit leaves beside its material: material.fit/ with the options it was begun with, a row per iteration, what it
-// needs to go on when it is killed, and its report.
+// needs to continue after a kill, and its report.
 #pragma once
 #include <filesystem>
 #include <memory>

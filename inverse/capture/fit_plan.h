@@ -22,8 +22,8 @@ struct FitPlan {
   std::vector<std::string> left_out;  // groups of cases that are predicted, not fitted
   bool uncertainty = true, cross_validation = true;
   int refine = 0;  // the body is simulated on the mesh of the data with every tet in 8, so often
-  // A stiffness that was fitted per tet is divided into so many parts of one value each, where that explains the data
-  // as well as the field; < 0: as few as do, up to kMostParts; 0: not.
+  // Number of parts of constant stiffness into which a field per tet is divided if that explains the data as well;
+  // < 0: the smallest sufficient number, up to kMostParts; 0: none.
   int parts = 0;
   bool mesh_errors = false;  // what the mesh gets wrong is computed on a finer one and taken off the measurements
 };

@@ -28,7 +28,7 @@ struct FittedQuantity {
   std::string name, unit;
   Spread spread = Spread::uniform;
   std::vector<double> values;                // one per tet, in the order of the data set [SI]
-  std::vector<double> deviation, reduction;  // likewise, as it is fitted (log E); empty: not known
+  std::vector<double> deviation, reduction;  // of each value in the fitted scale (log E); empty: unknown
   std::vector<ValueRow> rows;
 };
 

@@ -304,7 +304,7 @@ TEST(FitRun, RefusesToRefineBeyondWhatIsSensible) {
 
 class FitMemoryTest : public FolderTest {
  protected:
-  // Stops after so many iterations of both stages together; counts them.
+  // Stops after `limit` iterations of both stages together; counts them.
   FitOutcome fitted(const fs::path& memory, JournalStart start, int limit) {
     iterations = 0;
     fs::create_directories(memory);
@@ -366,7 +366,7 @@ TEST_F(FitMemoryTest, AFolderKnowsWhatItsFitWasBegunWith) {
   const auto opened = [&](ExistingFit existing, const std::string& with) {
     return message_of([&] { FitFolder::open(material, with, existing); });
   };
-  EXPECT_THAT(opened(ExistingFit::refuse, options), HasSubstr("--resume goes on, --force begins anew"));
+  EXPECT_THAT(opened(ExistingFit::refuse, options), HasSubstr("--resume continues it, --force replaces it"));
   FitPlan other = quick_plan();
   other.belief.smoothness = Smoothness::total_variation;
   EXPECT_THAT(opened(ExistingFit::resume, text_of(completed(other, block().experiment))),

@@ -126,7 +126,7 @@ void Journal::write(Head head, std::span<const double> answer) {
   out_.append(bytes);
 }
 
-// The journal first: a state never tells of more than it holds.
+// Writes the journal first, so that the state never refers to missing entries.
 void Journal::save_state() {
   out_.sync();
   write_checkpoint(state_path_, {.fingerprint = fingerprint_,

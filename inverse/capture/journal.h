@@ -1,4 +1,4 @@
-// A fit that can be killed and goes on to the same bits. What it asks of its model and hears is written down; resumed,
+// A fit that can be killed and continues to the same bits. Its evaluations of the model are stored; when it is resumed,
 // it asks the same again and is answered from the file, without any equilibrium, until it comes to where it was.
 #pragma once
 #include <filesystem>

@@ -34,8 +34,8 @@ struct Judgment {
 // The values of which a piecewise constant field is made, ascending; empty: it has more than a few.
 std::vector<double> levels_of(std::vector<double> values);
 
-// Of each quantity that both have, except the density. What was fitted is told from the rest of the body by the
-// threshold of [Otsu 1979], which does not know the truth.
+// Of each quantity that both have, except the density. The fitted inclusion is separated from the rest of the body by
+// the threshold of [Otsu 1979], which does not know the truth.
 std::vector<Judgment> judge(const FittedMaterial& fitted, const FittedMaterial& truth);
 
 }  // namespace aspic

@@ -46,7 +46,7 @@ TEST(Judge, OneValueMissesLayersByHalfTheLogarithmOfTheirContrast) {
   EXPECT_NEAR(found.level, 0, 1e-12);
   EXPECT_NEAR(found.largest, std::log(2.0), 1e-12);
   EXPECT_NEAR(found.contrast(), 1, 1e-12);
-  EXPECT_LT(found.overlap, 0.51) << "nothing is told from the rest";
+  EXPECT_LT(found.overlap, 0.51) << "nothing is separated from the rest";
 }
 
 TEST(Judge, AWrongContrastIsOnlyThat) {

@@ -31,7 +31,7 @@ void MaterialFit::learn_uncertainty(FitModel& model) {
   const FitReport& report = outcome_.report;
   WithUncertainLayers about_fit(model.recorded());
   outcome_.posterior = posterior(about_fit, *model.prior, report.weight, model.map, mesh(), report.p);
-  // Where the guess explains the data already, rules raise the weight, and what is believed would seem to be known.
+  // If the initial guess already explains the data, weight rules raise the weight, and the prior would look like data.
   const bool is_learnt = !outcome_.posterior->ok || outcome_.posterior->informed >= kLearnt;
   if (!is_learnt && plan_.fit.weight <= 0 && report.weight > 1) {
     outcome_.posterior = posterior(about_fit, *model.prior, 1, model.map, mesh(), report.p);

@@ -1,5 +1,5 @@
 // A table of measurements: columns under the names of the program that wrote it, units, blank cells. Errors are
-// gathered, so that one reading tells them all.
+// gathered, so that one pass reports them all.
 #pragma once
 #include <array>
 #include <filesystem>

@@ -153,7 +153,7 @@ class Bench {
         add_poke(with, truth_.mesh.rest[sites[s].vertex], sites[s].inward, static_cast<int>(s) + 1, d);
   }
 
-  // Touch and pose are told relative to the surface, which in the data's mesh may lie a little elsewhere.
+  // Touch and pose are relative to the surface, which may differ slightly in the mesh of the data.
   void add_poke(const Tip& with, const Vec3d& site, const Vec3d& inward, int number, int d) {
     LoadCase load;
     load.group = "poke " + std::to_string(number);
@@ -236,7 +236,7 @@ class Bench {
     if (load.tip && options_.forces) load.force = found.wrench.force;
     if (load.tip && options_.torques) load.torque = found.wrench.torque;
     largest_force_ = std::max(largest_force_, norm(found.wrench.force));
-    // About the center of a sphere without friction it vanishes; no gauge tells that.
+    // The moment about the center of a frictionless sphere is zero and cannot be measured.
     const double arm = load.tip ? kLeastArm * load.tip->radius : 0;
     largest_torque_ = std::max({largest_torque_, norm(found.wrench.torque), arm * norm(found.wrench.force)});
     data().cases.push_back(std::move(load));

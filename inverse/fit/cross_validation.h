@@ -1,4 +1,4 @@
-// How well the fit predicts what it has not seen: each group of cases (a poke) is left out in turn, the material is
+// Leave-one-group-out cross-validation: each group of cases (a poke) is left out in turn, the material is
 // fitted to the others, and the group is predicted.
 #pragma once
 #include <functional>
@@ -22,7 +22,7 @@ struct HeldOut {
   double largest_error = 0;                 // [m]
   double position_noise = 0;                // what the standard deviations alone would leave of it [m]
   double peak_force = 0;                    // as measured [N]
-  double force_error = 0, force_noise = 0;  // likewise [N]
+  double force_error = 0, force_noise = 0;  // the same of forces [N]
   std::vector<double> p;                    // fitted without the group
 
   double relative_position_error() const { return peak_motion > 0 ? position_error / peak_motion : 0; }

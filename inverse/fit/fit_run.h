@@ -1,4 +1,4 @@
-// What the methods of a fit share: f(p) = |r|^2 / 2 + weight R with its derivatives, counted, told to the observer.
+// Shared by the methods of a fit: f(p) = |r|^2 / 2 + weight R with derivatives, counts and calls of the observer.
 #pragma once
 #include <algorithm>
 #include <span>
@@ -73,7 +73,7 @@ struct FitGoal {
   }
 };
 
-// Each goes on from `at` for the weight of the run, and ends there with the best it found.
+// Each minimizes from `at` with the weight of the run, and writes the best point to `at`.
 Status levenberg_marquardt(FitRun& run, FitPoint& at, FitGoal& goal);
 Status gauss_newton_cg(FitRun& run, FitPoint& at, FitGoal& goal);
 Status fit_by_lbfgs(FitRun& run, FitPoint& at, FitGoal& goal);

@@ -193,7 +193,7 @@ Status fit_by_l_curve(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method
   std::vector<WeightTrial>& trials = run.report.weights;
   for (int i = 0; i < kTrials; ++i, run.weight /= std::sqrt(10.0)) {
     const Status status = fit_loosely(run, at, goal, method);
-    if (status == Status::stuck && trials.size() >= 3) break;  // the weight is too small to go on
+    if (status == Status::stuck && trials.size() >= 3) break;  // the weight is too small to continue
     if (!is_success(status)) return status;
     trials.push_back(trial_at(run, at));
     if (2 * at.misfit < 0.1 * run.residuals()) break;  // noise is being fitted

@@ -8,9 +8,9 @@
 namespace aspic {
 namespace {
 
-// Iterations go on while the k-th adds more than this, in parts of the average of all so far, to the predicted decrease
-// [Nash 2000, sec. 6]. The residual says nothing here: directions that the data see clearly dominate it, and are found
-// first. A step costs as much as some twenty inner iterations, so these go far.
+// Iterations continue while the k-th adds more than this, in parts of the average of all so far, to the predicted
+// decrease [Nash 2000, sec. 6]. The residual says nothing here: directions that the data see clearly dominate it, and
+// are found first. A step costs as much as some twenty inner iterations, so these go far.
 constexpr double kWorthwhile = 0.05;
 
 struct Solution {

@@ -16,7 +16,7 @@ class Gaussian {
   virtual void covariance(std::span<const double> v, std::span<double> z) = 0;  // z = C v
 };
 
-// What is believed before the data count: exp(-weight R), with the curvature of R at p. What R leaves free is held
+// The prior exp(-weight R), with the curvature of R at p. Directions without curvature are held
 // within +-kWidest deviations, so that the distribution exists.
 class PriorGaussian : public Gaussian {
  public:

@@ -1,4 +1,4 @@
-// Uncertainty with real equilibria: coverage, and what is told where no force was measured.
+// Uncertainty with real equilibria: coverage, and warnings without measured forces.
 #include <gmock/gmock.h>
 
 #include "fit/common_errors.h"

@@ -18,7 +18,7 @@ class IncrementalBody {
   IncrementalBody(const Experiment& experiment, const LoadCase& load, const StrainSpaceModuli& moduli,
                   const BickelOptions& options);
 
-  // Applies this part of the load and balances; false: failure() tells why.
+  // Applies this part of the load and solves for equilibrium. Returns false on failure; see failure().
   bool go_to(double part);
 
   CasePrediction prediction() const;

@@ -19,7 +19,7 @@ class LeastSquares {
   virtual void multiply_transposed(std::span<const double> w, std::span<double> pbar) = 0;  // pbar = J' w
 
   // Ways in which r changes with what the model assumes for convenience, say how stiff a contact is: what the residuals
-  // say along those tells nothing of p (WithUncertainLayers). Valid as J is.
+  // say along those does not determine p (WithUncertainLayers). Valid as J is.
   virtual int nuisance_count() const { return 0; }
   virtual void nuisance(int /*k*/, std::span<double> /*dr*/) {}
   // First residual and number of each part where what is assumed may be wrong by itself; empty: it is so everywhere.

@@ -19,7 +19,7 @@ class LoadedBody {
   std::string what(int residual) const;  // "poke 3, depth 2: marker 17, y"
 
   // Finds the equilibrium for these parameters: from `start`, then from where the body is, then by applying the load in
-  // parts to the body at rest. False: there is none, failure() tells why.
+  // parts to the body at rest. Returns false if there is none; see failure().
   bool solve(std::span<const MaterialParameters> parameters, std::span<const double> start);
   bool is_solved() const { return is_solved_; }
   std::span<const double> x() const { return equilibrium_.x(); }

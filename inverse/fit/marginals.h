@@ -8,7 +8,7 @@
 namespace aspic {
 
 struct MarginalOptions {
-  int exact = 3000;   // up to so many values each has its own solve
+  int exact = 3000;   // largest number of values with one solve each
   int samples = 256;  // else: of what the data do not see
   unsigned seed = 2;
 };

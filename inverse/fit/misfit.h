@@ -74,7 +74,7 @@ class Misfit : public LeastSquares {
   // group.
   bool evaluate(std::span<const double> p, std::span<double> r) override;
   bool linearize() override;
-  // A product that could not be computed is NaN, and failure() tells why.
+  // A product that could not be computed is NaN; see failure().
   void multiply(std::span<const double> dp, std::span<double> dr) override;
   void multiply_transposed(std::span<const double> w, std::span<double> pbar) override;
   // The logarithm of how stiff the layers of all tips are: stiffening them with the body moves nothing, so what the
@@ -84,7 +84,7 @@ class Misfit : public LeastSquares {
   std::vector<std::pair<int, int>> residuals_by_case() const override;
 
   // The equilibria of the last successful evaluate(), one case after another; empty before. A misfit that is given
-  // them, evaluated and linearized at the same p goes on to the same bits.
+  // them, evaluated and linearized at the same p continues to the same bits.
   std::vector<double> state() const;
   void set_state(std::span<const double> x);
 

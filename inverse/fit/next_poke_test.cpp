@@ -50,7 +50,7 @@ TEST(NextPoke, ToldGainAndDeviationsAreThoseOfThePokeOnceItIsMade) {
     double gain = 0;  // 1/2 log det(C / C after)
     for (const double d : after.belief->spectrum().d) gain += std::log1p(d) / 2;
     for (const double d : before.belief->spectrum().d) gain -= std::log1p(d) / 2;
-    // Told alone, the poke does not profit from what the others say of the layer of the tip.
+    // Alone, the poke has no information of the others about the layer of the tip.
     EXPECT_LT(candidate.gain, gain * (1 + 1e-6));
     EXPECT_GT(candidate.gain, 0.85 * gain);
     for (int t = 0; t < study.map.size(); ++t) {

@@ -2,7 +2,7 @@
 //   positive              q = exp(z)
 //   in (lower, upper)     q = middle + half tanh(z / 2): the logistic curve, z = +-2 reaches 12 % and 88 % of the range
 //   in a range of powers  log q = middle + half tanh(z / half), z = log(q / center) in the middle of the range
-//   powers from zero      log(1 + q) likewise: linear below 1, a logarithm above
+//   powers from zero      log(1 + q): linear below 1, a logarithm above
 #pragma once
 #include <cmath>
 

@@ -50,7 +50,7 @@ ParameterMap map_of(const Experiment& e, std::vector<Unknown> unknowns, const st
 
 const EquilibriumOptions kSynthetic{.tolerance = 1e-13};
 
-// Readings as a body with these unknowns would give them, with noise of so many standard deviations.
+// Measurements of a body with these parameters, with noise in standard deviations.
 void measure(Experiment& e, const ParameterMap& map, const std::vector<double>& p, double noise = 0) {
   Misfit body(e, map, kSynthetic);
   std::vector<double> r(body.residual_count());

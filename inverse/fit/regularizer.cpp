@@ -22,7 +22,7 @@ double excess(double distance) { return std::copysign(std::max(0.0, std::abs(dis
 
 double inverse_square(double x) { return 1 / (x * x); }
 
-// Of one unknown quantity: its entries of p and what is believed of them.
+// The entries of p of one quantity and their prior.
 class Belief {
  public:
   Belief(double guess, double deviation) : guess_(guess), precision_(inverse_square(deviation)) {}

@@ -1,4 +1,4 @@
-// What is believed of p before anything is measured: R(p), whose weight tells how much.
+// The prior of p as a penalty R(p); its weight is the strength.
 //   R = sum over the unknown quantities of   roughness(z) + mean over the body of (z - guess)^2 / (2 deviation^2)
 // for quantities per tet and at handles, with z the field that they make; roughness is H1 or total variation, see
 // field_roughness.h. Single values and values per region are believed each for itself: (p_i - guess)^2 / (2

@@ -85,7 +85,7 @@ TEST(Scale, OfAllModuliAndOfTheProbesLayerMovesNothing) {
   const std::vector<double> x = solved_with_factor(*soft.body, 1), y = solved_with_factor(*stiff.body, 10);
   const double motion = largest_difference(x, soft.rest);
   EXPECT_LT(largest_difference(y, x), 1e-10 * motion);
-  // The force tells: it is ten times larger.
+  // The force is ten times larger.
   const Wrench at_x = soft.probe->wrench(x), at_y = stiff.probe->wrench(y);
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(at_y.force[i], 10 * at_x.force[i], 1e-8 * std::abs(at_y.force[2]));
 }

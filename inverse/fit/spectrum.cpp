@@ -173,7 +173,7 @@ class RandomRange {
 };
 
 Spectrum leading_eigenpairs(LeastSquares& data, Gaussian& before, const SpectrumOptions& options) {
-  constexpr int kBatch = 24, kSpare = 8;  // so many negligible values mean that the rest is negligible, too
+  constexpr int kBatch = 24, kSpare = 8;  // kSpare negligible values imply that the rest is negligible
   RandomRange range(data, before, options.seed);
   const int limit = std::min({options.max_rank + kSpare, data.unknowns(), data.residual_count()});
   double missed = 0;

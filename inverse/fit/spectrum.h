@@ -19,7 +19,7 @@ struct Spectrum {
 };
 
 struct SpectrumOptions {
-  int dense = 600;           // up to so many unknowns or residuals the eigenpairs are exact
+  int dense = 600;           // largest number of parameters or residuals with exact eigenpairs
   int max_rank = 200;        // else: directions looked for
   double negligible = 1e-1;  // value of d that is not worth looking for
   unsigned seed = 1;

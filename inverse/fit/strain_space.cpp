@@ -43,7 +43,7 @@ void solve(std::vector<double>& A, std::vector<StrainColumns>& b) {
   }
 }
 
-// -|e_i - e_j| is positive definite for weights that sum to 0; a ridge tells examples of the same strain apart.
+// -|e_i - e_j| is positive definite for weights that sum to 0; a ridge separates examples of equal strain.
 std::vector<double> interpolation_matrix(const std::vector<Mat3d>& strains) {
   const size_t n = strains.size(), size = n + 1;
   std::vector<double> A(size * size, 0.0);

@@ -1,7 +1,7 @@
 // Moduli interpolated in the space of strains, as [Bickel 2009] represents a non-linear material: examples, each a
 // deformed body with the E and nu per tet that explain it, are points in the six-dimensional space of the co-rotated
 // Cauchy strains e = R'F - I of each tet; between them log E and nu are interpolated by radial basis functions.
-//   log E(e) = c + sum_i w_i |e - e_i|,  sum_i w_i = 0,  and likewise nu(e)
+//   log E(e) = c + sum_i w_i |e - e_i|,  sum_i w_i = 0,  and the same for nu(e)
 // Nothing is known beyond the examples: there the values are held within the range that they span, widened.
 #pragma once
 #include <span>

@@ -31,7 +31,7 @@ void require_gradient(const Model& model, const TrajectoryOptions& options) {
   if (options.stored_states < 1) throw InvalidInput("stored_states must be at least 1");
   for (const auto& D : model.damping)
     if (!dynamic_cast<const Damping*>(D.get()))
-      throw InvalidInput("the damping '" + std::string(D->name()) + "' tells no derivatives, so a trajectory with it " +
+      throw InvalidInput("the damping '" + std::string(D->name()) + "' has no derivatives, so a trajectory with it " +
                          "has no gradient");
 }
 

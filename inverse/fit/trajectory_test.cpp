@@ -319,7 +319,7 @@ TEST(Trajectory, RefusesWhatHasNoGradient) {
   refused({.stored_states = 0}, body.model(), "stored_states");
   Model strange = body.model();
   strange.damping.push_back(make_linear_load("wind", std::vector<double>(body.start.q.size())));
-  refused({}, std::move(strange), "'wind' tells no derivatives");
+  refused({}, std::move(strange), "'wind' has no derivatives");
 }
 
 TEST(Trajectory, ALoadThatIsNotTheWeightLeavesTheDensityOpen) {

@@ -24,7 +24,7 @@ struct Direction {
 struct PosteriorOptions {
   SpectrumOptions spectrum;
   MarginalOptions marginals;
-  int directions = 3;  // how many are told
+  int directions = 3;  // number of reported directions
 };
 
 struct Posterior {
@@ -35,11 +35,11 @@ struct Posterior {
   double informed = 0;                         // how many directions the data determine: sum of d / (1 + d)
   std::vector<Direction> seen, unseen;         // the best determined; those in which most uncertainty is left
   bool scale_is_unknown = false;               // no force, weight or pressure: only ratios of stiffness are known
-  double noise_factor = 1;            // the measurements scatter so many times more than their standard deviations say
-  double applied_factor = 1;          // by which the deviations were raised for that
-  double suggested_weight = 0;        // of the regularizer, by what was learnt; 0: none
-  double log_evidence = 0;            // of the data under the weight, up to a constant
-  std::vector<std::string> warnings;  // in words, for people
+  double noise_factor = 1;                     // scatter of the measurements relative to their standard deviations
+  double applied_factor = 1;                   // by which the deviations were raised for that
+  double suggested_weight = 0;                 // of the regularizer, by what was learnt; 0: none
+  double log_evidence = 0;                     // of the data under the weight, up to a constant
+  std::vector<std::string> warnings;           // in words, for people
   std::shared_ptr<PosteriorGaussian> belief;
 };
 
