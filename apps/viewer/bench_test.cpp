@@ -261,9 +261,9 @@ TEST(FitJob, RunsInAThreadOfItsOwnAndStops) {
     ASSERT_TRUE(changed.wait_for(lock, std::chrono::seconds(120), [&] { return woken; }));
     woken = false;
     lock.unlock();
-    if (const std::optional<FitNews> news = job.news()) {
-      page.note_fit(*news);
-      has_ended = news->has_ended;
+    if (const std::optional<FitNews> update = job.news()) {
+      page.note_fit(*update);
+      has_ended = update->has_ended;
     }
     if (news == 1) job.stop();
   }
