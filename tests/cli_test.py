@@ -1006,11 +1006,17 @@ class Capture(Captured):
 
 
 class Fit(Captured):
-    QUICK = ("--no-mesh-errors", "--no-uncertainty", "--no-cross-validation", "--known", "poisson=0.4")
+    QUICK = ("--options", "quick.toml", "--known", "poisson=0.4")
+    QUICK_OPTIONS = "mesh_errors = false\nuncertainty = false\ncross_validation = false\n"
 
     def setUp(self):
         super().setUp()
         self.capture()
+        self.write("quick.toml", self.QUICK_OPTIONS)
+
+    def options(self, text):
+        self.write("options.toml", text)
+        return "--options", "options.toml"
 
     def test_the_whole_way_from_a_scene_to_a_scene(self):
         done = self.aspic("fit", "data")
@@ -1024,9 +1030,11 @@ class Fit(Captured):
         self.assertIn("2 of 2", self.aspic("run", "use.toml").stdout)
 
     def test_what_is_left_out_is_predicted(self):
-        done = self.aspic("fit", "data", *self.QUICK, "--leave-out", "poke 2", "--quiet")
+        left_out = self.options(self.QUICK_OPTIONS + 'leave_out = "poke 2"\n')
+        done = self.aspic("fit", "data", *left_out, "--known", "poisson=0.4", "--quiet")
         self.assertEqual(done.stdout, "")
-        self.assertIn("poke 1", self.aspic("fit", "data", "--force", "--leave-out", "poke 9", code=2).stderr)
+        unknown = self.options('leave_out = ["poke 9"]\n')
+        self.assertIn("poke 1", self.aspic("fit", "data", "--force", *unknown, code=2).stderr)
 
     def test_a_fit_that_was_killed_goes_on_to_the_same_bits(self):
         self.aspic("fit", "data", *self.QUICK, "-o", "whole.vtu")
@@ -1065,7 +1073,7 @@ class Fit(Captured):
 
     def test_options_that_make_no_sense(self):
         for arguments, message in ((("--unknown", "yung=tets"), "young"), (("--known", "poisson=0.7"), "poisson"),
-                                   (("--weight", "-1"), ">= 0"), (("-o", "material.txt"), ".vtu"),
+                                   (self.options("weight = -1"), "options.toml:1"), (("-o", "material.txt"), ".vtu"),
                                    (("--resume",), "no such fit")):
             self.assertIn(message, self.aspic("fit", "data", *arguments, code=2).stderr)
         self.write("curves.csv", "test,stretch,stress_Pa\nuniaxial,1.1,1\n")

@@ -40,12 +40,13 @@ def measured():
 
 
 @functools.cache
-def fitted(options):
+def fitted(options, lines):
     """The same data fitted without a break, made once: a folder with whole.vtu and whole.fit."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="aspic_fit_"))
+    (folder / options[1]).write_text("\n".join(lines) + "\n")
     atexit.register(shutil.rmtree, folder)
     subprocess.run([ASPIC, "fit", str(measured()), *options, "-o", str(folder / "whole.vtu")], check=True, timeout=300,
-                   capture_output=True)
+                   capture_output=True, cwd=folder)
     return folder
 
 
@@ -53,6 +54,11 @@ class FitCommand(CommandLine):
     def setUp(self):
         super().setUp()
         shutil.copytree(measured(), self.folder / "layers")
+        self.write("quick.toml", QUICK_OPTIONS)
+
+    def options(self, *lines):
+        self.write("options.toml", "\n".join(lines) + "\n")
+        return "--options", "options.toml"
 
     def fit(self, *arguments, code=0):
         return self.aspic("fit", "layers", *arguments, code=code, timeout=300)
@@ -65,8 +71,8 @@ class FitCommand(CommandLine):
         return (self.folder / name).read_bytes()
 
 
-QUICK = ("--no-mesh-errors", "--unknown", "young=uniform", "--known", "poisson=0.4", "--no-uncertainty", "--no-cross-validation",
-         "--allow-unconverged")  # one value cannot explain the layers, which the verdict says
+QUICK_OPTIONS = "mesh_errors = false\nuncertainty = false\ncross_validation = false\n"
+QUICK = ("--options", "quick.toml", "--unknown", "young=uniform", "--known", "poisson=0.4", "--allow-unconverged")  # one value cannot explain the layers, which the verdict says
 
 
 class Fit(FitCommand):
@@ -113,7 +119,8 @@ class Fit(FitCommand):
         self.fit(*QUICK, "-q", "--force")
 
     def test_a_fit_that_does_not_converge_is_no_success(self):
-        options = ("--unknown", "young=tets", "--iterations", "2", "--no-uncertainty", "--no-cross-validation", "-q")
+        few = self.options("iterations = 2", "uncertainty = false", "cross_validation = false")
+        options = ("--unknown", "young=tets", *few, "-q")
         self.assertIn("(not_converged)", self.fit(*options, code=3).stderr)
         self.assertTrue((self.folder / "material.vtu").exists())
         self.fit(*options, "--force", "--allow-unconverged")
@@ -131,7 +138,7 @@ class Fit(FitCommand):
             writer = csv.DictWriter(file, rows[0].keys())
             writer.writeheader()
             writer.writerows(rows)
-        options = ("--no-mesh-errors", "--known", "poisson=0.4", "--no-cross-validation")
+        options = (*self.options("mesh_errors = false", "cross_validation = false"), "--known", "poisson=0.4")
         run = self.fit(*options, code=3)
         self.assertIn("not to be relied on (field_rejected): one value replaces the field", run.stderr)
         self.assertNotIn("verdict    good", run.stdout)
@@ -148,9 +155,21 @@ class Fit(FitCommand):
     def test_groups_are_left_out(self):
         with open(self.folder / "layers/cases.csv", newline="") as file:
             groups = sorted({row["group"] for row in csv.DictReader(file)})
-        self.fit(*QUICK, "--leave-out", groups[0])
-        refused = self.fit(*QUICK, "--force", "--leave-out", "poke 99", code=2).stderr
+        def leaving_out(group):
+            return [*QUICK[2:], *self.options(QUICK_OPTIONS, f'leave_out = ["{group}"]', "baselines = true")]
+
+        self.assertIn("linear", self.fit(*leaving_out(groups[0])).stdout)
+        refused = self.fit(*leaving_out("poke 99"), "--force", code=2).stderr
         self.assertIn("the data have no such group", refused)
+
+    def test_options_are_checked_with_their_line(self):
+        for line, message in (("smoth = 1", "did you mean 'smooth'?"), ('weight = "heavy"', "options.toml:1"),
+                              ('rule = "evidnce"', "did you mean 'evidence'?"), ("parts = 1", "parts = 1"),
+                              ("iterations = 0", "iterations = 0"), ("baselines = true", "leave_out"),
+                              ("prior = -1", "prior = -1"), ("mesh_errors = 1", "mesh_errors = 1")):
+            self.assertIn(message, self.fit(*self.options(line), code=2).stderr, line)
+        self.assertIn("none.toml", self.fit("--options", "none.toml", code=2).stderr)
+        self.assertIn("cross_validation = true", self.aspic("fit", "--help").stdout)
 
     def test_what_is_wrong_is_told_with_its_remedy(self):
         for arguments, message in (
@@ -159,7 +178,6 @@ class Fit(FitCommand):
                 (("--known", "poisson=0.5"), "poisson = 0.5; must be"),
                 (("--known", "poisson"), "QUANTITY=VALUE is expected"),
                 (("--unknown", "young=regions"), "no region labels"),
-                (("--weight", "heavy"), "no finite number"),
                 (("-o", "material.obj"), "a material is a .vtu file"),
                 (("--resume",), "no such fit to resume")):
             self.assertIn(message, self.fit(*arguments, code=2).stderr, arguments)
@@ -181,7 +199,12 @@ class Fit(FitCommand):
 class FitInterruption(FitCommand):
     """A fit with much to do is stopped after a few iterations, in three ways, and continued."""
 
-    OPTIONS = ("--no-mesh-errors", "--unknown", "young=tets", "--known", "poisson=0.4", "--iterations", "12", "--allow-unconverged")
+    LINES = ("mesh_errors = false", "iterations = 12")
+    OPTIONS = ("--options", "twelve.toml", "--unknown", "young=tets", "--known", "poisson=0.4", "--allow-unconverged")
+
+    def setUp(self):
+        super().setUp()
+        self.write("twelve.toml", "\n".join(self.LINES) + "\n")
 
     def interrupt(self, with_signal):
         process = self.start("fit", "layers", *self.OPTIONS, "-o", "part.vtu", "-v")
@@ -196,12 +219,12 @@ class FitInterruption(FitCommand):
 
     def resume_and_compare(self):
         self.assertIn("--resume continues", self.fit(*self.OPTIONS, "-o", "part.vtu", code=2).stderr)
-        other = [*self.OPTIONS, "-o", "part.vtu", "--resume", "--smooth", "tv"]
+        other = [*self.OPTIONS[2:], *self.options(*self.LINES, 'smooth = "tv"'), "-o", "part.vtu", "--resume"]
         self.assertIn("smooth", self.fit(*other, code=2).stderr)
         before = self.rows("part.fit")
         said = self.fit(*self.OPTIONS, "-o", "part.vtu", "--resume").stdout
         self.assertIn(f"resuming after {len(before)} iterations", said)
-        shutil.copytree(fitted(self.OPTIONS), self.folder, dirs_exist_ok=True)
+        shutil.copytree(fitted(self.OPTIONS, self.LINES), self.folder, dirs_exist_ok=True)
         self.assertEqual(self.rows("part.fit")[:len(before)], before, "nothing that was written is lost")
         self.assertEqual(self.rows("part.fit"), self.rows("whole.fit"))
         self.assertEqual(self.bytes_of("part.vtu"), self.bytes_of("whole.vtu"))

@@ -9,6 +9,7 @@
 #include "aspic/commands.h"
 #include "aspic/fit_check.h"
 #include "aspic/fit_figures.h"
+#include "aspic/fit_options.h"
 #include "aspic/fit_progress.h"
 #include "aspic/fit_report.h"
 #include "aspic/fit_summary.h"
@@ -28,53 +29,18 @@ namespace {
 namespace fs = std::filesystem;
 
 struct FitArguments {
-  fs::path data, out = "material.vtu";
-  std::string model = FitPlan().model, smooth = "h1", weight = "auto", parts = "off";
-  std::vector<std::string> unknowns, known, left_out;
-  FitOptions fit;
-  double prior_deviation = RegularizerOptions().prior_deviation;
+  fs::path data, out = "material.vtu", options;
+  std::string model = FitPlan().model;
+  std::vector<std::string> unknowns, known;
   int threads = 0;  // 0: not given
-  int refine = 0;
-  bool no_uncertainty = false, no_cross_validation = false, no_mesh_errors = false, baselines = false, check = false;
-  bool force = false, resume = false, quiet = false, verbose = false, allow_unconverged = false;
+  bool check = false, force = false, resume = false, quiet = false, verbose = false, allow_unconverged = false;
 };
-
-Smoothness smoothness_named(const std::string& name) {
-  if (name == "none") return Smoothness::none;
-  return name == "tv" ? Smoothness::total_variation : Smoothness::h1;
-}
-
-double weight_of(const std::string& text) {
-  if (text == "auto") return -1;
-  const double weight = parse_known("weight=" + text).second;
-  if (weight < 0) throw InvalidInput("--weight " + text + ": a number >= 0 is needed, or auto");
-  return weight;
-}
-
-int parts_of(const std::string& text) {
-  if (text == "off") return 0;
-  if (text == "auto") return -1;
-  const double count = parse_known("parts=" + text).second;
-  if (count < 2 || count > kMostParts || count != std::floor(count))
-    throw InvalidInput("--parts " + text + ": 2 to " + std::to_string(kMostParts) + " are possible, auto or off");
-  return static_cast<int>(count);
-}
 
 FitPlan plan_of(const FitArguments& arguments) {
   FitPlan plan;
   plan.model = material_info(arguments.model).name;
   for (const std::string& text : arguments.unknowns) plan.unknowns.push_back(parse_unknown(text));
   for (const std::string& text : arguments.known) plan.known.push_back(parse_known(text));
-  plan.belief.smoothness = smoothness_named(arguments.smooth);
-  plan.belief.prior_deviation = arguments.prior_deviation;
-  plan.fit = arguments.fit;
-  plan.fit.weight = weight_of(arguments.weight);
-  plan.left_out = arguments.left_out;
-  plan.uncertainty = !arguments.no_uncertainty;
-  plan.cross_validation = !arguments.no_cross_validation;
-  plan.refine = arguments.refine;
-  plan.parts = parts_of(arguments.parts);
-  plan.mesh_errors = !arguments.no_mesh_errors;
   return plan;
 }
 
@@ -169,7 +135,7 @@ void print_start(const FitArguments& arguments, const DataSet& data, const FitPl
   for (const Unknown& u : plan.unknowns) unknowns += (unknowns.empty() ? "" : ", ") + text_of(u);
   fmt::print("{}: {}\n", plan.model, unknowns.empty() ? "nothing is unknown" : unknowns);
   if (plan.refine > 0)
-    fmt::print("simulated on {:.0f} tets, each of the mesh in {:.0f} (--refine {})\n",
+    fmt::print("simulated on {:.0f} tets, each of the mesh in {:.0f} (refine = {})\n",
                e.mesh.tet_count() * std::pow(8, plan.refine), std::pow(8, plan.refine), plan.refine);
   if (folder.is_resumed()) fmt::print("resuming after {} iterations\n", folder.iterations_before());
   std::fflush(stdout);
@@ -210,8 +176,7 @@ int run(const FitArguments& arguments) {
   if (arguments.check) return check_data(arguments.data);
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   FitPlan plan = plan_of(arguments);
-  if (arguments.baselines && arguments.left_out.empty())
-    throw InvalidInput("--baselines predicts groups of cases that were left out; name some with --leave-out");
+  const bool has_baselines = !arguments.options.empty() && read_fit_options(arguments.options, plan);
   if (arguments.out.extension() != ".vtu")
     throw InvalidInput(arguments.out.string() + ": a material is a .vtu file; choose such a name with -o");
   const DataSet data = read_data_set(arguments.data);
@@ -230,7 +195,7 @@ int run(const FitArguments& arguments) {
   }
   write_material(arguments.out, outcome.material);
   folder.add_weights(outcome.report);
-  const FitFigures figures = figures_of(data, outcome, truth_beside(arguments.data), arguments.baselines);
+  const FitFigures figures = figures_of(data, outcome, truth_beside(arguments.data), has_baselines);
   const FitVerdict judged = verdict(data, outcome);
   write_figures(folder.path() / "figures.json", outcome, judged, figures);
   if (!arguments.quiet) print_fit(stdout, data, outcome), print_figures(stdout, figures);
@@ -250,77 +215,48 @@ std::vector<std::string> model_names() {
   return names;
 }
 
-void add_choices(CLI::App* command, FitArguments& a) {
-  command->add_option("--model", a.model, "Energy density (aspic materials); neo_hookean by default")
-      ->check(CLI::IsMember(model_names()));
-  command
-      ->add_option("--unknown", a.unknowns,
-                   "QUANTITY=tets|regions|handles:N|uniform: what is fitted; by default young=tets, all else uniform; "
-                   "can be repeated")
-      ->allow_extra_args(false);
-  command->add_option("--known", a.known, "QUANTITY=NUMBER: is not fitted, such as poisson=0.45; can be repeated")
-      ->allow_extra_args(false);
-  command->add_option("--smooth", a.smooth, "How neighbors differ: h1 little, tv at few edges, none: as they like")
-      ->check(CLI::IsMember({"h1", "tv", "none"}));
-  command->add_option("--weight", a.weight, "Of the smoothness and the prior against the data: auto or a number");
-  command->add_option("--rule", a.fit.weight_rule, "That chooses the weight: discrepancy, evidence, l_curve or prior")
-      ->check(CLI::IsMember(weight_rule_names()));
-  command->add_option("--prior", a.prior_deviation, "How far log E may lie from its guess: a standard deviation; inf");
-  command->add_option("--method", a.fit.method, "levenberg_marquardt, gauss_newton_cg or lbfgs")
-      ->check(CLI::IsMember(fit_method_names()));
-  command->add_option("--starts", a.fit.starts, "Guesses to start from; the best is kept")->check(CLI::Range(1, 1000));
-  command->add_option("--tolerance", a.fit.tolerance, "Of the decrement, relative to the first")
-      ->check(CLI::Range(1e-12, 0.5));
-  command->add_option("--iterations", a.fit.max_iterations, "Maximum number of iterations")
-      ->check(CLI::Range(1, 100000));
-  command->add_option("--leave-out", a.left_out, "GROUP of cases: predicted, not fitted; can be repeated")
-      ->allow_extra_args(false);
-  command->add_flag("--baselines", a.baselines,
-                    "What is left out is also predicted by one modulus, per-example linear and strain-space moduli");
-  command->add_option(
-      "--parts", a.parts,
-      "N or auto: a stiffness per tet is divided into parts of one value each, where these explain the "
-      "data as well; groups that are cross-validated are predicted by fields all the same; off by default");
-  command
-      ->add_option("--refine", a.refine,
-                   "Simulates the body with every tet in 8, N times, while the material stays per tet of the data")
-      ->check(CLI::Range(0, 4));
-  command->add_flag("--no-mesh-errors", a.no_mesh_errors,
-                    "What the mesh gets wrong is not computed on a finer one and taken off the measurements");
-  command->add_flag("--no-uncertainty", a.no_uncertainty,
-                    "No deviations (nor those of parts), intervals and next poke");
-  command->add_flag("--no-cross-validation", a.no_cross_validation, "No group is left out to be predicted");
-}
+constexpr std::string_view kFooter = R"(
+Examples:
+  aspic fit pillow --check                     validates the data set
+  aspic fit pillow                             writes material.vtu and material.fit/report.html
+  aspic fit pillow -o soft.vtu --known poisson=0.45 --options careful.toml
+  aspic fit pillow --model fung --unknown young=handles:40 --unknown b=uniform
+  aspic fit pillow --resume                    continues an interrupted fit to the same bits
+then in a scene: material = {{ file = "material.vtu" }}
+
+Keys of the file of --options, with their defaults:
+{}
+Exit codes: 0 the verdict is good, 2 bad input or data with errors, 3 the fit failed, did not converge, or its
+material is not reliable (unless --allow-unconverged): the reasons are printed and written to figures.json;
+130 interrupted by Ctrl-C, 143 by kill: the current material is written, --resume continues.)";
 
 }  // namespace
 
 void add_fit(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<FitArguments>();
   CLI::App* command = app.add_subcommand("fit", "Fits a material to measurements, with its uncertainty");
-  command->footer(R"(
-Examples:
-  aspic fit pillow --check                     what the data say before anything is fitted
-  aspic fit pillow                             writes material.vtu, and material.fit/report.html to be looked at
-  aspic fit pillow -o soft.vtu --known poisson=0.45 --leave-out "poke 4"
-  aspic fit pillow --model fung --unknown young=handles:40 --unknown b=uniform
-  aspic fit pillow --resume                    continues where it was interrupted, to the same bits
-then in a scene: material = { file = "material.vtu" }
-
-Exit codes: 0 the verdict is good, 2 bad input (also: data with errors), 3 the fit failed, did not converge, or
-its material is not to be relied on (unless --allow-unconverged): the reasons are printed and written into
-figures.json; 130 interrupted by ctrl-C, 143 by kill: what was reached is written, --resume continues.)");
+  command->footer(fmt::format(kFooter, fit_options_text()));
   command->add_option("DATA", arguments->data, "Folder of a data set, or its capture.toml")->required();
-  command->add_option("-o,--out", arguments->out, "The material to write; material.vtu by default");
-  command->add_flag("--check", arguments->check, "Only reads and diagnoses the data");
-  add_choices(command, *arguments);
-  command->add_option("--threads", arguments->threads, "Threads; all cores by default; the result is the same")
+  command->add_option("-o,--out", arguments->out, "Material file to write; material.vtu by default");
+  command->add_flag("--check", arguments->check, "Validate the data set and exit");
+  command->add_option("--model", arguments->model, "Strain energy density (see aspic materials); neo_hookean by default")
+      ->check(CLI::IsMember(model_names()));
+  command
+      ->add_option("--unknown", arguments->unknowns,
+                   "QUANTITY=tets|regions|handles:N|uniform to fit; by default young=tets and all others uniform; "
+                   "can be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--known", arguments->known, "QUANTITY=NUMBER to keep, such as poisson=0.45; can be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--options", arguments->options, "TOML file of further options, listed below");
+  command->add_option("--threads", arguments->threads, "Number of threads; all cores by default; results do not depend on it")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--force", arguments->force, "Replace an earlier fit");
   command->add_flag("--resume", arguments->resume, "Continue an interrupted fit")->excludes("--force");
-  command->add_flag("-q,--quiet", arguments->quiet, "Only warnings and errors");
-  command->add_flag("-v,--verbose", arguments->verbose, "A line per iteration")->excludes("--quiet");
+  command->add_flag("-q,--quiet", arguments->quiet, "Print only warnings and errors");
+  command->add_flag("-v,--verbose", arguments->verbose, "Print a line per iteration")->excludes("--quiet");
   command->add_flag("--allow-unconverged", arguments->allow_unconverged,
-                    "Exit code 0 even when the fit did not converge or its material is not to be relied on");
+                    "Exit with 0 even if the fit did not converge or its material is not reliable");
   command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }
 

@@ -68,7 +68,7 @@ void check_range(const std::string& quantity, double value) {
 void check_refinement(const FitPlan& plan, const TetMesh& mesh) {
   const int tets = mesh.tet_count();
   if (tets * std::pow(8.0, plan.refine) > kMostTets)
-    throw InvalidInput("--refine " + std::to_string(plan.refine) + " would simulate " + std::to_string(tets) + " x 8^" +
+    throw InvalidInput("refine = " + std::to_string(plan.refine) + " would simulate " + std::to_string(tets) + " x 8^" +
                        std::to_string(plan.refine) + " tets; " + std::to_string(kMostTets) + " are the most");
 }
 
@@ -160,9 +160,9 @@ FitPlan completed(FitPlan plan, const Experiment& experiment) {
   const std::vector<std::string> groups = groups_of(experiment);
   for (const std::string& group : plan.left_out)
     if (!has(groups, group))
-      throw InvalidInput("--leave-out '" + group + "': the data have no such group" + suggestion(group, groups));
+      throw InvalidInput("leave_out '" + group + "': the data have no such group" + suggestion(group, groups));
   if (!plan.left_out.empty() && without_groups(experiment, plan.left_out).cases.empty())
-    throw InvalidInput("--leave-out leaves no case to be fitted; name fewer groups");
+    throw InvalidInput("leave_out leaves no case to be fitted; name fewer groups");
   return plan;
 }
 

@@ -123,7 +123,7 @@ class Reasons {
 
   void add_against_field() {
     if (!outcome_.mesh_errors_settle)
-      add("mesh_not_settled", "the correction for the mesh and the material do not settle: refine the mesh (--refine)");
+      add("mesh_not_settled", "the correction for the mesh and the material do not settle: refine the mesh (option refine)");
     for (const std::string& where : outcome_.at_bound)
       add("at_bound", where + " lies at its bound: the readings do not determine it");
     add_missed_groups();
@@ -135,7 +135,7 @@ class Reasons {
       if (outcome_.cases[c].relative_mesh_error > kCoarse) {
         add("mesh_too_coarse", "'" + data_.experiment.cases[c].name + "': the mesh changes the force by a factor of " +
                                    three_significant(1 + outcome_.cases[c].relative_mesh_error) +
-                                   "; refine it around the tip (--refine) or use a wider tip");
+                                   "; refine it around the tip (option refine) or use a wider tip");
         break;
       }
     add_disagreement();

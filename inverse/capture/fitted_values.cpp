@@ -124,7 +124,7 @@ FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std
 std::string words_of_mesh(const FitOutcome& outcome) {
   std::string words = "a material per tet of " + std::to_string(outcome.material.mesh.tet_count()) + ", simulated on " +
                       std::to_string(outcome.simulated_tets) +
-                      (outcome.plan.refine > 0 ? " (--refine " + std::to_string(outcome.plan.refine) + ")" : " tets");
+                      (outcome.plan.refine > 0 ? " (refine = " + std::to_string(outcome.plan.refine) + ")" : " tets");
   if (outcome.mesh_error < 0) return words;
   char percent[16];
   std::snprintf(percent, sizeof percent, "%.2g", 100 * outcome.mesh_error);

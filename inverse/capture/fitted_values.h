@@ -20,7 +20,7 @@ FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std
 // "young in 3 tets".
 std::vector<std::string> values_at_bound(const ParameterMap& map, std::span<const double> p);
 
-// "a material per tet of 384, simulated on 3072 (--refine 1); positions err by ...".
+// "a material per tet of 384, simulated on 3072 (refine = 1); positions err by ...".
 std::string words_of_mesh(const FitOutcome& outcome);
 
 }  // namespace aspic

@@ -112,7 +112,7 @@ bool MaterialFit::take_off_mesh_errors() {
                   std::to_string(simulated_.mesh().tet_count()) + " tets, and " +
                   std::to_string(SimulatedData::kTooFine) +
                   " are the most; the material explains what the mesh gets wrong (a coarser mesh, or a smaller "
-                  "--refine)"});
+                  "option refine)"});
     return plan_.mesh_errors = false;
   }
   begin(FitStage::mesh_errors, "what the mesh gets wrong, by one of eight times as many tets");
@@ -143,7 +143,7 @@ void MaterialFit::fit_until_mesh_errors_settle(std::optional<FitModel>& model) {
       outcome_.mesh_errors_settle = false;
       return add_warnings({"what the mesh gets wrong and the material do not settle: after " + std::to_string(kPasses) +
                            " rounds it still changes by " + std::to_string(change) +
-                           " (of log E); a finer mesh (--refine) makes both smaller"});
+                           " (of log E); a finer mesh (option refine) makes both smaller"});
     }
     options.weight = outcome_.report.weight;
     start = p;

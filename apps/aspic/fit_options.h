@@ -1,0 +1,17 @@
+// The options of `aspic fit` beyond the command line: a TOML file.
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "capture/fit_plan.h"
+
+namespace aspic::cli {
+
+// Reads the file into the plan. Returns whether baselines predict the groups that are left out. Throws InvalidInput with
+// file, line, value and remedy.
+bool read_fit_options(const std::filesystem::path& file, FitPlan& plan);
+
+// Returns all keys with their defaults and meanings, as a TOML file.
+std::string fit_options_text();
+
+}  // namespace aspic::cli
