@@ -206,10 +206,13 @@ FitReport MaterialFit::fit_stage(FitStage which, FitModel& model, const FitOptio
   outcome_.residuals = model.misfit.residual_count();
   const auto observe = [&](const FitIteration& iteration, std::span<const double> p) {
     if (callbacks_.iterate) callbacks_.iterate(which, iteration, p);
-    if (is_stopped() && model.journal) model.journal->stop_writing();
   };
   FitOptions stoppable = options;
-  stoppable.stop = callbacks_.stop;
+  stoppable.stop = StopToken([&] {
+    if (!is_stopped()) return false;
+    if (model.journal) model.journal->stop_writing();  // a resumed fit does not repeat what follows
+    return true;
+  });
   FitReport report = fit(model.data(), *model.prior, start.empty() ? model.map.guess() : start, stoppable, observe);
   outcome_.counts = model.misfit.counts();
   return report;
