@@ -176,7 +176,7 @@ int run(const FitArguments& arguments) {
   if (arguments.check) return check_data(arguments.data);
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   FitPlan plan = plan_of(arguments);
-  const bool has_baselines = !arguments.options.empty() && read_fit_options(arguments.options, plan);
+  const bool has_baselines = read_fit_options(arguments.options, plan);
   if (arguments.out.extension() != ".vtu")
     throw InvalidInput(arguments.out.string() + ": a material is a .vtu file; choose such a name with -o");
   const DataSet data = read_data_set(arguments.data);
@@ -239,7 +239,8 @@ void add_fit(CLI::App& app, Action& action) {
   command->add_option("DATA", arguments->data, "Folder of a data set, or its capture.toml")->required();
   command->add_option("-o,--out", arguments->out, "Material file to write; material.vtu by default");
   command->add_flag("--check", arguments->check, "Validate the data set and exit");
-  command->add_option("--model", arguments->model, "Strain energy density (see aspic materials); neo_hookean by default")
+  command
+      ->add_option("--model", arguments->model, "Strain energy density (see aspic materials); neo_hookean by default")
       ->check(CLI::IsMember(model_names()));
   command
       ->add_option("--unknown", arguments->unknowns,
@@ -249,7 +250,9 @@ void add_fit(CLI::App& app, Action& action) {
   command->add_option("--known", arguments->known, "QUANTITY=NUMBER to keep, such as poisson=0.45; can be repeated")
       ->allow_extra_args(false);
   command->add_option("--options", arguments->options, "TOML file of further options, listed below");
-  command->add_option("--threads", arguments->threads, "Number of threads; all cores by default; results do not depend on it")
+  command
+      ->add_option("--threads", arguments->threads,
+                   "Number of threads; all cores by default; results do not depend on it")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--force", arguments->force, "Replace an earlier fit");
   command->add_flag("--resume", arguments->resume, "Continue an interrupted fit")->excludes("--force");

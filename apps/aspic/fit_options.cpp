@@ -108,7 +108,7 @@ int parts_of(const Value& parts) {
 }  // namespace
 
 bool read_fit_options(const std::filesystem::path& file, FitPlan& plan) {
-  Table document = read_toml(read_toml_text(file), file.string());
+  Table document = file.empty() ? Table() : read_toml(read_toml_text(file), file.string());
   check_and_complete(document, file.string(), options_schema(), "fit");
   const auto option = [&](const char* key) -> const Value& { return *document.find(key); };
   plan.belief.smoothness = smoothness_named(option("smooth").text());
@@ -127,13 +127,15 @@ bool read_fit_options(const std::filesystem::path& file, FitPlan& plan) {
   plan.cross_validation = option("cross_validation").boolean();
   const Value& left_out = option("leave_out");
   plan.left_out.clear();
-  if (left_out.is_text()) plan.left_out.push_back(left_out.text());
+  if (left_out.is_text())
+    plan.left_out.push_back(left_out.text());
   else
     for (const Value& group : left_out.array()) plan.left_out.push_back(group.text());
   const Value& baselines = option("baselines");
   if (baselines.boolean() && plan.left_out.empty())
-    throw error_at(baselines.place, "baselines = true predicts the groups of leave_out; name some, such as "
-                                    "leave_out = [\"poke 1\"]");
+    throw error_at(baselines.place,
+                   "baselines = true predicts the groups of leave_out; name some, such as "
+                   "leave_out = [\"poke 1\"]");
   return baselines.boolean();
 }
 

@@ -123,7 +123,8 @@ class Reasons {
 
   void add_against_field() {
     if (!outcome_.mesh_errors_settle)
-      add("mesh_not_settled", "the correction for the mesh and the material do not settle: refine the mesh (option refine)");
+      add("mesh_not_settled",
+          "the correction for the mesh and the material do not settle: refine the mesh (option refine)");
     for (const std::string& where : outcome_.at_bound)
       add("at_bound", where + " lies at its bound: the readings do not determine it");
     add_missed_groups();
