@@ -1,23 +1,15 @@
 #!/usr/bin/env python3
-"""Fails when a module includes what it may not know. The two tables are the architecture."""
+"""Fails when a module includes what it must not. The layers are the arrows of the picture in docs/architecture.md."""
 import pathlib
 import re
 import sys
 
-MODULES = {  # module: the modules it may include
-    "base": "",
-    "math": "base",
-    "mesh": "base math",
-    "io": "base math mesh",
-    "linalg": "base math",
-    "material": "base math",
-    "energy": "base math mesh linalg material",
-    "optimize": "base math linalg",
-    "dynamics": "base math mesh linalg material energy optimize",
-    "fit": "base math mesh linalg material energy optimize dynamics",
-    "scene": "base math mesh io linalg material energy optimize dynamics",
-    "capture": "base math mesh io linalg material energy optimize dynamics fit scene",
-    "verification": "base math mesh linalg material energy optimize dynamics",
+WEB = {  # folder of web/src: the folders it may import besides the files directly in web/src
+    "capture": "plots view",
+    "fit": "plots view",
+    "panels": "capture plots view",
+    "plots": "view",
+    "view": "plots",
 }
 LIBRARIES = {  # first part of a third-party header: the files that may include it
     "Eigen": r"src/linalg/.*\.cpp|bench/naive.*|.*_test\.(cpp|h)",
@@ -27,7 +19,7 @@ LIBRARIES = {  # first part of a third-party header: the files that may include 
     "toml++": r"src/scene/.*\.cpp",
     "nlohmann": r"src/scene/.*\.cpp|apps/.*|tests/.*|.*_test\.cpp",
     "expat.h": r"src/io/.*\.cpp",
-    "zlib.h": r"src/io/.*\.cpp|.*_test\.h",
+    "zlib.h": r"src/io/.*\.cpp|.*_test\.h|fuzz/.*",
     "boost": r"apps/viewer/server\w*\.(h|cpp)|.*_test\.cpp",
     "CGAL": r"apps/mesh/.*",
     "CLI": r"apps/aspic/.*|apps/mesh/.*|bench/.*",
@@ -40,22 +32,67 @@ LIBRARIES = {  # first part of a third-party header: the files that may include 
 }
 
 root = pathlib.Path(__file__).resolve().parent.parent
-violations = []
-folders = [root / name for name in ("src", "inverse", "verification", "apps", "bench", "tests")]
-for path in sorted(p for folder in folders for p in folder.rglob("*") if p.suffix in (".h", ".cpp")):
-    name = path.relative_to(root).as_posix()
-    module = name.removeprefix("src/").removeprefix("inverse/").split("/")[0]
-    module = module if module in MODULES else None
-    is_test = name.endswith(("_test.cpp", "_test.h"))
-    for number, line in enumerate(path.read_text().splitlines(), 1):
-        ours = re.match(r'#include "(\w+)/', line)
-        if ours and module and not is_test and ours[1] in MODULES and ours[1] != module:
-            if ours[1] not in MODULES[module].split():
-                violations.append(f"{name}:{number}: {module} must not include {ours[1]}")
-        theirs = re.match(r'#include <([\w+.]+)', line)
-        if theirs and theirs[1] in LIBRARIES and not re.fullmatch(LIBRARIES[theirs[1]], name):
-            violations.append(f"{name}:{number}: {theirs[1]} may not be included here")
-        if module and name.endswith(".h") and re.match(r"#include <(iostream|regex)>", line):
-            violations.append(f"{name}:{number}: slow to compile; not in a header")
-print("\n".join(violations) or "layers are as drawn")
-sys.exit(bool(violations))
+
+
+def layers():
+    """Each module of the picture with the modules that its arrows reach."""
+    picture = re.search(r"```mermaid\n(.*?)```", (root / "docs/architecture.md").read_text(), re.S)[1]
+    arrows = re.findall(r"^ *(\w+)(?:\[.*?\])? --> (\w+)", picture, re.M)
+    direct = {name: {to for start, to in arrows if start == name} for arrow in arrows for name in arrow}
+
+    def reached(name, on_way=()):
+        if name in on_way:
+            sys.exit(f"docs/architecture.md: the arrows from {name} lead back to {name}")
+        return direct[name].union(*(reached(to, (*on_way, name)) for to in direct[name]))
+
+    return {name: reached(name) for name in direct}
+
+
+def module_of(name):
+    """The module of a file; tests belong to none, and so do examples and benches, which use everything."""
+    parts = name.split("/")
+    if name.endswith(("_test.cpp", "_test.h")) or parts[0] not in ("src", "inverse", "apps", "verification"):
+        return None
+    module = parts[0] if parts[0] == "verification" else parts[1]
+    return {"mesh": "mesher"}.get(module, module) if parts[0] == "apps" else module
+
+
+def check_sources(may_include):
+    for folder in ("src", "inverse", "verification", "apps", "bench", "tests", "examples", "fuzz"):
+        for path in sorted(p for p in (root / folder).rglob("*") if p.suffix in (".h", ".cpp")):
+            name = path.relative_to(root).as_posix()
+            module = module_of(name)
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                ours = re.match(r'#include "(\w+)/', line)
+                if ours and module and ours[1] in may_include and ours[1] not in (module, name.split("/")[1]):
+                    if ours[1] not in may_include[module]:
+                        yield f"{name}:{number}: {module} must not include {ours[1]}"
+                theirs = re.match(r"#include <([\w+.]+)", line)
+                if theirs and theirs[1] in LIBRARIES and not re.fullmatch(LIBRARIES[theirs[1]], name):
+                    yield f"{name}:{number}: {theirs[1]} may not be included here"
+                if name.startswith("src/") and name.endswith(".h") and re.match(r"#include <(iostream|regex)>", line):
+                    yield f"{name}:{number}: slow to compile; not in a header"
+
+
+def check_page():
+    source = root / "web/src"
+    for path in sorted(source.rglob("*.ts")):
+        folder = path.relative_to(source).parts[0]
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            target = re.search(r'(?:from|import) "(\.[^"]*)"', line)
+            to = (path.parent / target[1]).resolve().relative_to(source).parts if target else ()
+            if folder in WEB and len(to) > 1 and to[0] != folder and to[0] not in WEB[folder].split():
+                yield f"{path.relative_to(root)}:{number}: {folder} must not import {to[0]}"
+
+
+def main():
+    may_include = layers()
+    folders = [p for name in ("src", "inverse", "apps") for p in (root / name).iterdir() if p.is_dir()]
+    unknown = {f.name for f in folders} - {"mesh"} - may_include.keys()
+    violations = [f"docs/architecture.md: the picture does not show {name}" for name in sorted(unknown)]
+    violations += [*check_sources(may_include), *check_page()]
+    print("\n".join(violations) or "layers are as drawn")
+    sys.exit(bool(violations))
+
+
+main()
