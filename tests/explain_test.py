@@ -7,7 +7,7 @@ import os
 import re
 import unittest
 
-from cli_test import CommandLine, box_mesh
+from command_line import CommandLine, box_mesh
 
 BODY = """[time]
 step = {step}

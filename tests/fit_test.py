@@ -15,7 +15,7 @@ import subprocess
 import tempfile
 import unittest
 
-from cli_test import ASPIC, CommandLine
+from command_line import ASPIC, CommandLine
 
 BODY = """
 [[body]]

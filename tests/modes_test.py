@@ -11,7 +11,7 @@ try:
     import numpy
 except ImportError:
     sys.exit(77)
-from cli_test import BEAM, CommandLine, box_mesh
+from command_line import BEAM, CommandLine, box_mesh
 
 YOUNG, POISSON, DENSITY = 2e5, 0.3, 900.0
 SCENE = f"""[[body]]

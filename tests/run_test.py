@@ -1,0 +1,345 @@
+#!/usr/bin/env python3
+"""Runs with their reports and pictures, and their interruption."""
+import atexit
+import fcntl
+import functools
+import json
+import os
+import pathlib
+import pty
+import re
+import select
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+from command_line import ASPIC, BEAM, CommandLine, box_mesh, reversed_mesh
+
+
+class Run(CommandLine):
+    def test_a_scene_ends_with_a_summary(self):
+        text = self.aspic("run", self.beam()).stdout
+        for part in ("done", "5 of 5", "iterations per step", "peak memory", "out/beam", ".pvd"):
+            self.assertIn(part, text)
+        self.assertEqual(len(self.steps("out/beam")), 5)
+
+    def test_a_tet_mesh_runs_without_a_scene(self):
+        self.write("box.mesh", box_mesh())
+        self.assertIn("note:", self.aspic("run", "box.mesh", "--steps", "2").stdout)
+
+    def test_the_summary_names_inverted_tets(self):
+        self.write("box.mesh", box_mesh())
+        upside_down = ["--set", "material.model=neo_hookean", "--set", 'deform.displacement=["-1.5*X",0,0]']
+        text = self.aspic("run", "box.mesh", "--steps", "2", "--set", "time.step=1e-5", *upside_down).stdout
+        self.assertRegex(text, r"inverted   \d+ tets at the end, the smallest det F is -0\.\d+ in tet \d+ at \(")
+        self.assertRegex(text, r"some tet in 2 of 2 steps, first in step 1")
+
+    def test_an_existing_run_is_kept_unless_forced(self):
+        scene = self.beam()
+        self.aspic("run", scene)
+        self.assertIn("--force", self.aspic("run", scene, code=2).stderr)
+        self.aspic("run", scene, "--force")
+
+    def test_the_resolved_scene_gives_the_same_results(self):
+        self.aspic("run", self.beam(), "--out", "a")
+        shutil.copy(self.folder / "a/scene.toml", self.folder / "beam_again.toml")
+        self.aspic("run", "beam_again.toml", "--out", "b")
+        self.assert_same_results("a", "b")
+
+    def test_results_do_not_depend_on_the_number_of_threads(self):
+        scene = self.beam()
+        self.aspic("run", scene, "--out", "one", "--threads", "1")
+        self.aspic("run", scene, "--out", "three", "--threads", "3")
+        self.assert_same_results("one", "three")
+
+    def test_set_overrides_the_scene(self):
+        scene = self.beam()
+        lines = {}
+        for young in ("1e5", "1e4"):
+            out = self.aspic("run", scene, "--json", "--out", young, "--set", f"material.young={young}").stdout
+            lines[young] = json.loads(out.splitlines()[-1])
+        self.assertNotEqual(lines["1e5"]["potential_total"], lines["1e4"]["potential_total"])
+        self.assertIn("material.yung", self.aspic("run", scene, "--set", "material.yung=1", code=2).stderr)
+
+    def test_json_is_one_line_per_step_and_nothing_else(self):
+        done = self.aspic("run", self.beam(), "--json")
+        lines = [json.loads(line) for line in done.stdout.splitlines()]
+        self.assertEqual([line["step"] for line in lines], [1, 2, 3, 4, 5])
+        self.assertTrue(all(line["converged"] and line["iterations"] >= 1 for line in lines))
+        self.assertIn("elasticity", lines[0]["potential"])
+        self.assertIn("done", done.stderr)
+
+    def test_json_names_the_worst_vertex_by_the_number_in_the_file(self):
+        worst = []
+        for text in (box_mesh(), reversed_mesh(box_mesh())):
+            self.write("box.mesh", text)
+            self.write("box.toml", '[[body]]\nmesh = "box.mesh"\nscale = [1, 1.1, 1.3]\n'
+                                   'velocity = ["sin(3*Y + Z)", "X*Y", "cos(5*X)"]\n')
+            out = self.aspic("run", "box.toml", "--json", "--force", "--steps", "2",
+                             "--set", "solver.tolerance=0.1").stdout
+            worst.append([json.loads(line)["worst_vertex"] for line in out.splitlines()])
+        self.assertEqual(worst[1], [26 - vertex for vertex in worst[0]])
+
+    def test_quiet_prints_nothing(self):
+        done = self.aspic("run", self.beam(), "--quiet")
+        self.assertEqual((done.stdout, done.stderr), ("", ""))
+
+    def test_a_misspelt_key_is_corrected_with_its_place(self):
+        self.write("bad.toml", BEAM.format(duration=0.05, cells="2, 1, 1").replace("young", "yuong"))
+        self.assertRegex(self.aspic("run", "bad.toml", code=2).stderr, r"bad\.toml:7:\d+: .*yuong.*young")
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_a_broken_mesh_is_refused(self):
+        self.write("bad.mesh", box_mesh(flip=5))
+        self.assertIn("inverted", self.aspic("run", "bad.mesh", code=2).stderr)
+
+    def test_a_trace_changes_no_result(self):
+        self.aspic("run", self.beam(), "--out", "plain")
+        out = self.aspic("run", self.beam(), "--out", "traced", "--trace", "--landscape", "2:1",
+                         "--landscape", "999").stdout
+        trace = self.folder / "traced" / "trace"
+        self.assertIn("traced/trace", out)
+        self.assertEqual(len((trace / "curve_2_1.csv").read_text().splitlines()), 102)
+        if shutil.which("gnuplot"):
+            self.assertIn("Line search", (trace / "curve_2_1.svg").read_text())
+            self.assertEqual((trace / "slice_2_1.png").read_bytes()[1:4], b"PNG")
+        rows = [json.loads(line) for line in (trace / "trace.jsonl").read_text().splitlines()]
+        self.assertEqual(len(rows), len((self.folder / "plain" / "iterations.csv").read_text().splitlines()) - 1)
+        shutil.rmtree(trace)
+        for run in ("plain", "traced"):
+            (self.folder / run / "report.html").unlink(missing_ok=True)  # it shows the trace
+        self.assert_same_results("plain", "traced")
+
+    def test_force_replaces_a_trace_too(self):
+        scene = self.beam()
+        self.aspic("run", scene, "--trace")
+        self.aspic("run", scene, "--force")
+        self.assertFalse((self.folder / "out" / "beam" / "trace").exists())
+
+    def test_a_landscape_without_its_iteration_is_told(self):
+        error = self.aspic("run", self.beam(), "--landscape", "1:77").stderr
+        self.assertIn("no landscape 1:77", error)
+        self.assertIn("STEP:ITERATION", self.aspic("run", self.beam("b.toml"), "--landscape", "x", code=2).stderr)
+        self.assertFalse((self.folder / "out" / "b").exists())
+
+    def test_a_step_that_does_not_converge_shows_in_the_exit_code(self):
+        scene = self.beam()
+        hard = ["--set", "solver.max_iterations=1", "--set", "solver.tolerance=1e-12", "--set", "material.young=1e3"]
+        self.assertIn("did not converge", self.aspic("run", scene, *hard, code=3).stderr)
+        self.aspic("run", scene, *hard, "--force", "--allow-unconverged")
+        self.aspic("run", scene, "--resume", code=3)  # also when the steps were taken before
+
+    def test_several_assignments_follow_one_set(self):
+        self.aspic("run", "--set", "time.step=0.01", "time.duration=0.03", self.beam(), "--set", "output.report=false")
+        self.assertEqual([step["time"] for step in self.steps("out/beam")], ["0.01", "0.02", "0.03"])
+
+    def test_forces_of_pins_loads_and_bodies_are_in_table_json_and_summary(self):
+        scene = self.beam(extra='[[body.pin]]\nname = "guide"\nwhere = "x > 0.399"\naxes = "z"\n')
+        done = self.aspic("run", scene, "--json", "--set", "output.report=false")
+        last, row = json.loads(done.stdout.splitlines()[-1]), self.steps("out/beam")[-1]
+        name, (pin, *_) = next(iter(last["reactions"])), last["reactions"].values()
+        self.assertEqual([float(row[f"reaction_{name}_{axis}"]) for axis in "xyz"], pin["force"])
+        self.assertEqual([float(row[f"reaction_moment_{name}_{axis}"]) for axis in "xyz"], pin["moment"])
+        self.assertEqual([float(row[f"load_gravity_{axis}"]) for axis in "xyz"], last["loads"]["gravity"]["force"])
+        guide = next(sums for name, sums in last["reactions"].items() if name.endswith("guide"))
+        self.assertEqual(guide["force"][:2], [0, 0])
+        self.assertIn(f"reactions  {name} exerts (", done.stderr)
+
+    def test_an_explicit_scheme_that_blows_up_ends_the_run(self):
+        done = self.aspic("run", self.beam(duration=100), "--set", "time.integrator=\"rk4\"", "--set", "time.step=0.1",
+                          "--allow-unconverged", code=3)
+        self.assertIn("stopped after step", done.stderr)
+        self.assertIn("blew up", done.stderr)
+        steps = self.steps("out/beam")
+        self.assertLess(len(steps), 1000)
+        self.assertEqual(steps[-1]["status"], "undefined")
+        self.assertLessEqual({step["status"] for step in steps[:-1]}, {"converged", "unstable"})
+
+    def test_an_explicit_scheme_that_blows_up_beside_a_moving_pin_is_no_success(self):
+        scene = self.beam(duration=0.2, cells="4, 1, 1", extra="""[[body.pin]]
+where = "x > 0.399"
+motion = { keyframes = [{ time = 0, displacement = [0, 0, 0] }, { time = 0.2, displacement = [0, 0.01, 0] }] }
+""")
+        explicit = ["--set", "material.model=arap", "--set", 'time.integrator="symplectic_euler"', "--force"]
+        self.aspic("run", scene, "--set", "time.step=0.001", *explicit)
+        self.aspic("run", scene, "--set", "time.step=0.01", *explicit, code=3)
+        self.assertIn("unstable", {step["status"] for step in self.steps("out/beam")})
+
+    def test_adaptive_steps_are_counted_in_table_json_and_summary(self):
+        done = self.aspic("run", self.beam(), "--set", "time.adaptive.tolerance=1e-5", "--set",
+                          "time.integrator=\"tr_bdf2\"", "--json")
+        lines = [json.loads(line) for line in done.stdout.splitlines()]
+        steps = self.steps("out/beam")
+        self.assertEqual([line["substeps"] for line in lines], [int(step["substeps"]) for step in steps])
+        self.assertEqual([line["rejected"] for line in lines], [int(step["rejected"]) for step in steps])
+        taken, rejected = sum(line["substeps"] for line in lines), sum(line["rejected"] for line in lines)
+        self.assertGreater(taken, 2 * len(steps))
+        self.assertIn(f"parts      {taken} taken, {rejected} rejected", done.stderr)
+
+    def test_an_adaptive_step_without_a_scheme_that_can_is_refused(self):
+        done = self.aspic("run", self.beam(), "--set", "time.adaptive.tolerance=1e-5", "--set",
+                          "time.integrator=\"bdf2\"", code=2)
+        self.assertIn("tr_bdf2", done.stderr)
+
+    def test_a_terminal_gets_a_progress_bar(self):
+        scene = self.beam()
+        master, slave = pty.openpty()
+        process = subprocess.Popen([ASPIC, "run", scene], cwd=self.folder, stdout=slave, stderr=slave)
+        os.close(slave)
+        text = b""
+        while True:
+            ready, _, _ = select.select([master], [], [], 60)
+            try:
+                chunk = os.read(master, 4096) if ready else b""
+            except OSError:  # the other end is closed
+                chunk = b""
+            if not chunk:
+                break
+            text += chunk
+        os.close(master)
+        self.assertEqual(process.wait(), 0)
+        self.assertIn(b"[####################] 100%", text)
+
+
+class Report(CommandLine):
+    def page(self, file):
+        return (self.folder / file).read_text()
+
+    def test_a_run_leaves_one_that_needs_nothing_else(self):
+        text = self.aspic("run", self.beam()).stdout
+        self.assertIn("browser: open out/beam/report.html: 6 frames", text)
+        page = self.page("out/beam/report.html")
+        self.assertIn('id="recording"', page)
+        self.assertIsNone(re.search(r'<(script|link|img)[^>]*(src|href)="(?!data:)', page))
+        self.assertNotIn(str(self.folder), page)
+
+    def test_it_is_made_again_to_the_same_bytes_and_replaced_by_force(self):
+        scene = self.beam()
+        self.aspic("run", scene)
+        first = self.page("out/beam/report.html")
+        self.aspic("report", "out/beam", "-o", "again.html")
+        self.assertEqual(self.page("again.html"), first)
+        self.aspic("run", scene, "--force", "--set", "output.report=false")
+        self.assertFalse((self.folder / "out/beam/report.html").exists())
+
+    def test_what_cannot_be_shown_is_no_failure_of_the_run(self):
+        off = [word for name in ("vtu", "pc2", "usd") for word in ("--set", f"output.{name}=false")]
+        done = self.aspic("run", self.beam(), "--quiet", *off)
+        self.assertIn("warning: no report.html", done.stderr)
+        self.assertIn("output.vtu = true", self.aspic("report", "out/beam", code=2).stderr)
+
+    def test_bad_input_is_named(self):
+        self.assertIn("no directory of a run", self.aspic("report", self.beam(), code=2).stderr)
+        (self.folder / "empty").mkdir()
+        self.assertIn("holds no run", self.aspic("report", "empty", code=2).stderr)
+        self.aspic("run", "beam.toml")
+        (self.folder / "out/beam/frames/body_000003.vtu").write_text("<VTKFile")
+        self.assertIn("body_000003.vtu", self.aspic("report", "out/beam", code=2).stderr)
+        self.assertIn("--max-size", self.aspic("report", "out/beam", "--max-size", "0.1", code=2).stderr)
+
+
+@unittest.skipUnless(shutil.which("chromium") and shutil.which("ffmpeg"), "chromium or ffmpeg is missing")
+class Render(CommandLine):
+    def setUp(self):
+        super().setUp()
+        self.aspic("run", self.beam(duration=0.04))
+
+    def test_frames_a_picture_and_a_video(self):
+        self.aspic("render", "out/beam", "-o", "frames", "--size", "160x120", "--color", "von_mises", timeout=200)
+        frames = sorted((self.folder / "frames").iterdir())
+        self.assertEqual([f.name for f in frames], [f"frame_{i:06}.png" for i in range(1, 6)])
+        for frame in frames:
+            self.assertEqual(frame.read_bytes()[:24], b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR" + bytes([0, 0, 0, 160, 0, 0, 0, 120]))
+        self.assertNotEqual(frames[0].read_bytes(), frames[4].read_bytes())
+        self.aspic("render", "out/beam", "-o", "last.png", "--size", "160x120", "--step", "4", "--dark", timeout=200)
+        self.assertNotEqual((self.folder / "last.png").read_bytes(), frames[4].read_bytes())
+        self.aspic("render", "out/beam", "-o", "beam.webm", "--size", "160x120", "--every-frame", timeout=200)
+        self.assertGreater((self.folder / "beam.webm").stat().st_size, 500)
+        self.aspic("render", "out/beam", "-o", "beam.gif", "--size", "160x120", "--every-frame", timeout=200)
+        self.assertEqual((self.folder / "beam.gif").read_bytes()[:6], b"GIF89a")
+        self.assertEqual([f for f in self.folder.iterdir() if f.name.startswith(".aspic")], [])
+
+    def test_bad_input_is_named(self):
+        render = lambda *arguments: self.aspic("render", "out/beam", *arguments, code=2, timeout=200).stderr
+        self.assertIn("--size 9x: write WIDTHxHEIGHT", render("-o", "a.png", "--step", "1", "--size", "9x"))
+        self.assertIn("one picture needs --step", render("-o", "a.png"))
+        self.assertIn("a video needs even numbers", render("-o", "a.mp4", "--size", "101x100"))
+        self.assertIn("a.bmp: pictures become", render("-o", "a.bmp"))
+        self.assertIn("choose one of displacement", render("-o", "a.png", "--step", "1", "--color", "stress"))
+        self.assertIn("choose one of front", render("-o", "a.png", "--step", "1", "--view", "above"))
+        self.assertFalse((self.folder / "a.png").exists())
+
+    def test_a_missing_browser_is_told_with_its_package(self):
+        without = dict(os.environ, PATH=str(self.folder))
+        done = subprocess.run([ASPIC, "render", "out/beam", "-o", "frames"], cwd=self.folder, env=without,
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("apt-get install chromium", done.stderr)
+
+
+class Interruption(CommandLine):
+    """A run of a hundred steps is stopped in its middle, in three ways, and continued."""
+
+    def setUp(self):
+        super().setUp()
+        self.scene = self.beam(duration=1.0, cells="8, 3, 3")
+        shutil.copytree(self.unbroken(), self.folder / "whole")
+
+    @staticmethod
+    @functools.cache
+    def unbroken():
+        """The same run to its end, made once."""
+        folder = pathlib.Path(tempfile.mkdtemp(prefix="aspic_cli_"))
+        atexit.register(shutil.rmtree, folder)
+        (folder / "beam.toml").write_text(BEAM.format(duration=1.0, cells="8, 3, 3"))
+        subprocess.run([ASPIC, "run", "beam.toml", "--out", "whole"], cwd=folder, check=True, timeout=600,
+                       capture_output=True)
+        return folder / "whole"
+
+    def interrupt(self, with_signal, out):
+        process = self.start("run", self.scene, "--out", out, "--json")
+        # A pipe that holds a few lines makes the run wait for its reader: it cannot end before it is interrupted.
+        fcntl.fcntl(process.stdout, fcntl.F_SETPIPE_SZ, 4096)
+        for _ in range(10):
+            self.assertTrue(process.stdout.readline())
+        process.send_signal(with_signal)
+        process.communicate(timeout=60)
+        return process.returncode
+
+    def resume_and_compare(self, out):
+        self.assertGreaterEqual(len(self.steps(out)), 10)
+        self.assertLess(len(self.steps(out)), 100, "the run ended before it was interrupted")
+        self.aspic("run", self.scene, "--out", out, "--resume")
+        self.assertEqual(len(self.steps(out)), 100)
+        self.assert_same_results("whole", out)
+
+    def test_ctrl_c_and_resume_give_the_same_bits(self):
+        self.assertEqual(self.interrupt(signal.SIGINT, "stopped"), 130)
+        self.resume_and_compare("stopped")
+
+    def test_kill_and_resume_give_the_same_bits(self):
+        self.assertEqual(self.interrupt(signal.SIGTERM, "stopped"), 143)
+        self.resume_and_compare("stopped")
+
+    def test_kill_9_and_resume_give_the_same_bits(self):
+        self.assertEqual(self.interrupt(signal.SIGKILL, "stopped"), -signal.SIGKILL)
+        self.resume_and_compare("stopped")
+
+    def test_the_steps_option_and_resume_give_the_same_bits(self):
+        self.aspic("run", self.scene, "--out", "stopped", "--steps", "30")
+        self.resume_and_compare("stopped")
+
+    def test_resume_needs_a_run(self):
+        self.assertIn("no such run", self.aspic("run", self.scene, "--resume", code=2).stderr)
+
+    def test_a_complete_run_has_nothing_to_resume(self):
+        scene = self.beam("short.toml")
+        self.aspic("run", scene)
+        self.assertIn("nothing to do", self.aspic("run", "out/short", "--resume").stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
