@@ -1,4 +1,4 @@
-// Hands the motion so far to other programs, as a file.
+// Exports the motion so far as a file for other programs.
 import { element, labeled, messageOf, openDialog, saveFile } from "./dom";
 import { Gif } from "./gif";
 import type { Page } from "./page";
@@ -58,12 +58,13 @@ async function saveAnimation(store: Store, page: Page, side: SideName, format: F
   page.notice(`${reply.name}: ${reply.note ?? ""}`);
 }
 
-// The program repeats the session. The promise is fulfilled when it begins; `atEnd` is called once, after the last picture.
+// Repeats the session in the program. The promise resolves when the replay begins; `atEnd` is called once, after the
+// last picture.
 async function repeatSession(store: Store, atEnd: () => void): Promise<void> {
   if (!store.steers) throw new Error("This page watches; take the steering to repeat the session.");
   const recording = await store.source.ask<Recording>({ ask: "recording" });
   if (recording.steps === 0) throw new Error("nothing has moved yet; play first, then export");
-  // A short session may end before the reply to the request is here, so the states are watched from before it.
+  // A short session may end before the reply arrives, so the states are watched before the request is sent.
   let [began, accepted, ended] = [false, false, false];
   const look = ({ replaying, a }: State): void => {
     began ||= replaying || a.step < recording.steps;
@@ -88,8 +89,8 @@ async function videoOfSession(store: Store, video: Video): Promise<void> {
   if (!video.isRecording) video.start();
 }
 
-const kGifWidth = 640; // at most [px]
-const kGifEvery = 0.04; // of simulated time [s]
+const kGifWidth = 640; // largest width [px]
+const kGifEvery = 0.04; // simulated time between pictures [s]
 const kMostGifFrames = 400;
 
 async function gifOfSession(store: Store, page: Page, video: Video): Promise<void> {

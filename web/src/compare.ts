@@ -1,4 +1,4 @@
-// Two simulations side by side: the dialog that opens the second.
+// Dialog that opens a second simulation beside the first.
 import { button, element, labeled, messageOf, openDialog } from "./dom";
 import type { Page } from "./page";
 import { faultOfOverrides, parseOverrides, presets } from "./presets";

@@ -1,4 +1,4 @@
-// The menu of files: scenes, workspaces, the recorded mouse, deformed meshes.
+// The file menu: scenes, workspaces, mouse recordings, deformed meshes.
 import { openAnimation } from "./animation";
 import { chooseFile, element, labeled, messageOf, openDialog, saveFile } from "./dom";
 import { openGallery } from "./gallery";
@@ -11,7 +11,7 @@ import { bytesOf, isSceneOrMesh, prepareUpload } from "./upload";
 import { fileName, type Video } from "./video";
 import { isWorkspace, openWorkspace, parseRecording, parseWorkspace, saveWorkspace } from "./workspace";
 
-const kLargestFile = 50e6; // [bytes] of a workspace or recording
+const kLargestFile = 50e6; // largest workspace or recording [bytes]
 const kFormats = ["obj", "ply", "vtu", "msh", "mesh"] as const;
 
 export class Files {
@@ -21,7 +21,7 @@ export class Files {
     private readonly video: Video,
   ) {}
 
-  // With the commands that make pictures. A recorded run has fewer of its own.
+  // Includes the commands that make pictures. A recorded run has fewer commands.
   makeMenu(pictures: HTMLButtonElement[]): HTMLElement {
     const saveScene = (): void => this.try(this.saveScene());
     const scene = this.item("Shift+T", "Save the scene with all its values (TOML)", false, saveScene);
@@ -79,7 +79,7 @@ export class Files {
     for (const note of reply.notes ?? []) this.page.notice(`Not in the file: ${note}.`);
   }
 
-  // Opens files of the reader's machine: a workspace, a recording, or a scene or mesh with what belongs to it.
+  // Opens files of the reader's machine: a workspace, a recording, or a scene or mesh with its files.
   private async openFiles(files: File[]): Promise<void> {
     if (!files.some(({ name }) => isSceneOrMesh(name))) {
       if (!/\.json$/i.test(files[0].name))

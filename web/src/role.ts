@@ -1,4 +1,4 @@
-// One page steers, the others watch; any of them may take the steering.
+// One page steers, the others watch. Any page may request to steer.
 import { button, element } from "./dom";
 import type { Store } from "./store";
 

@@ -1,4 +1,4 @@
-// The files of a ZIP archive, as the program writes them: stored or deflated, without encryption.
+// Reads ZIP archives of the program: files stored or deflated, without encryption.
 export interface ZipFile {
   name: string;
   bytes: Uint8Array<ArrayBuffer>;
@@ -13,7 +13,7 @@ const kMostFiles = 1000;
 
 const damaged = (): Error => new Error("the ZIP archive is damaged, or of a kind that is not read here");
 
-// `most`: bytes of all files together, so that a small archive cannot fill the memory.
+// `most`: limit of bytes of all files together, so that a small archive cannot exhaust the memory.
 export async function unzip(archive: ArrayBuffer, most: number): Promise<ZipFile[]> {
   const view = new DataView(archive);
   const files: ZipFile[] = [];

@@ -1,9 +1,9 @@
-// Files of the reader's machine, made ready for the command "load": a scene with its meshes, or a mesh alone.
+// Packs files of the reader's machine for the command "load": a scene with its meshes, or a single mesh.
 import type { UploadedFile } from "./protocol";
 import { unzip } from "./unzip";
 
-const kMostBytes = 200e6; // of all files
-const kMostPacked = 15e6; // characters of a message that the program takes
+const kMostBytes = 200e6; // limit for all files together
+const kMostPacked = 15e6; // longest message that the program accepts, in characters
 const kMeshes = ["msh", "vtu", "mesh", "ele", "node", "obj", "ply", "stl", "off"];
 
 export interface NamedBytes {
@@ -23,7 +23,7 @@ export function isSceneOrMesh(name: string): boolean {
   return ["toml", "zip", ...kMeshes].includes(extensionOf(name));
 }
 
-// The scene among them, the one in the fewest folders; else a mesh. Null: neither.
+// The scene in the fewest folders, or else a mesh. Null: neither.
 export function mainFile(names: readonly string[]): string | null {
   const depth = (name: string): number => name.split("/").length;
   const scenes = names.filter((name) => extensionOf(name) === "toml");
@@ -31,8 +31,8 @@ export function mainFile(names: readonly string[]): string | null {
   return [...(scenes.length > 0 ? scenes : meshes)].sort((x, y) => depth(x) - depth(y))[0] ?? null;
 }
 
-// A browser hands over files without their folders. Those that a scene names go where it looks for them, which may be
-// the folder above its own.
+// Browsers drop the folders of files. Files that a scene names are placed where it expects them, possibly in the parent
+// of its folder.
 export function placed(files: readonly NamedBytes[], scene: string): NamedBytes[] {
   const main = files.find(({ name }) => name === scene);
   if (!main || extensionOf(scene) !== "toml" || scene.includes("/")) return [...files];
@@ -83,7 +83,7 @@ async function gzipBase64(bytes: Uint8Array<ArrayBuffer>): Promise<string> {
   return base64Of(new Uint8Array(await new Response(stream).arrayBuffer()));
 }
 
-const kPortion = 0x6000; // a multiple of 3, and few enough arguments for a call
+const kPortion = 0x6000; // a multiple of 3, and within the argument limit of a call
 
 function base64Of(bytes: Uint8Array): string {
   let text = "";

@@ -6,14 +6,14 @@ test("notches continue from what was asked for, however late the program answers
   const asked = new AskedDepths();
   asked.ask(1, 0);
   asked.ask(2, 0);
-  asked.hear(0); // still on its way
+  asked.hear(0); // still under way
   assert.equal(asked.last(0), 2);
   asked.hear(1);
   assert.equal(asked.last(1), 2);
   asked.ask(3, 1);
   asked.hear(1);
   assert.equal(asked.last(1), 3);
-  asked.hear(3); // 2 was passed over
+  asked.hear(3); // 2 was skipped
   assert.equal(asked.last(3), 3);
 });
 
@@ -28,7 +28,7 @@ test("what is reported differs from what was asked for in the last digits", () =
 test("another's depth, and another tip, count", () => {
   const asked = new AskedDepths();
   asked.ask(1, 0);
-  asked.hear(0.3); // by the mouse
+  asked.hear(0.3); // set by the mouse
   assert.equal(asked.last(0.3), 0.3);
   asked.ask(0.5, 0.3);
   asked.hear(null);

@@ -32,7 +32,7 @@ test("markers lie where their weights put them, and show their front", () => {
   const [dot] = markersOn(kTop, { triangles: [0], weights: [0.5, 0.25, 0.25] });
   assert.deepEqual(dot!.at, [0.5, 0.5, 1]);
   assert.ok(dot!.normal[2] > 0.99);
-  assert.deepEqual(markersOn(kTop, { triangles: [7], weights: [1, 0, 0] }), []); // of a surface that has gone
+  assert.deepEqual(markersOn(kTop, { triangles: [7], weights: [1, 0, 0] }), []); // belongs to a surface that no longer exists
   assert.equal(nearestOn([dot!], [3, 3, 3]).normal, dot!.normal);
 });
 

@@ -10,7 +10,7 @@ import { iterationRow, stepRow } from "./rowsOfSteps";
 interface Asked {
   step: number;
   iteration: number;
-  answer: (reply?: string) => void; // a text: the refusal
+  answer: (reply?: string) => void; // a text: the program refuses
 }
 
 class Stub implements Source {

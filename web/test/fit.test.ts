@@ -21,7 +21,7 @@ import {
   type FitHead,
 } from "../src/fit/data";
 
-// A unit cube of n^3 cells, six tets each around the diagonal.
+// Unit cube of n^3 cells, six tets each around the diagonal.
 function cube(n: number): TetMesh {
   const points: number[] = [];
   for (let i = 0; i <= n; ++i) for (let j = 0; j <= n; ++j) for (let k = 0; k <= n; ++k) points.push(i / n, j / n, k / n);
@@ -43,7 +43,7 @@ function cube(n: number): TetMesh {
   return { points: Float32Array.from(points), tets: Uint32Array.from(tets) };
 }
 
-// By the divergence theorem: only right for a closed surface that faces outward.
+// Volume by the divergence theorem; correct only for a closed surface that faces outward.
 function volumeIn({ positions }: Soup): number {
   let six = 0;
   for (let t = 0; t < positions.length; t += 9) {
@@ -105,7 +105,7 @@ function poke(name: string, group: string, depth: number, first: number, more: P
   };
 }
 
-// Two pokes at one place, deepest first, and one that was left out.
+// Two pokes at one place, deepest first, and a held-out case.
 function head(): FitHead {
   return {
     format: 1,
@@ -225,7 +225,7 @@ test("markers have the names of the data set", () => {
   assert.equal(markerName(head(), 1), "2");
 });
 
-// Pressed in a little and turned about the axis, deepest first.
+// Pressed in slightly and turned about the axis, deepest first.
 function twist(name: string, angle: number, more: Partial<Case> = {}): Case {
   const torque = { measured: [0, -0.5 * angle, 0] as Vec3, deviation: [0.1, 0.02, 0.1] as Vec3, predicted: [0, -0.6 * angle, 0] as Vec3, heldOut: null };
   return poke(name, "twist", 0.01, 0, { tip: { ...kTip, center: [0, 0.99, 0], turn: [0, -angle, 0] }, torque, ...more });

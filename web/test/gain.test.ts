@@ -11,7 +11,7 @@ test("a free fall has not blown up, however far it goes", () => {
   // Backward Euler, m = 1 kg, g = 10 m/s^2, h = 0.1 s: v = n g h, and 1/2 m (g h)^2 are lost in each step.
   const falling = rows((n) => ({ kinetic: 0.5 * n * n, numerical_loss: 0.5 }));
   assert.equal(hasBlownUp(falling, 100), false);
-  // Forward Euler gains as much.
+  // Forward Euler gains the same amount.
   assert.equal(hasBlownUp(rows((n) => ({ kinetic: 0.5 * n * n, numerical_loss: -0.5 })), 100), false);
 });
 

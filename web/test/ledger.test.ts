@@ -7,7 +7,7 @@ const potentials = ["elasticity", "gravity"];
 const at = (ledger: Ledger, key: string): (number | null)[] =>
   ledger.columns[ledgerColumns(potentials).findIndex((c) => c.key === key)]!;
 
-// Energy comes in by the mouse and goes out by damping and the integrator; nothing is lost from the books.
+// The mouse adds energy; damping and the integrator dissipate it. The ledger balances.
 function steps(count: number): ReturnType<typeof stepRow>[] {
   let energy = 10;
   return Array.from({ length: count }, (_, i) => {

@@ -5,7 +5,7 @@ import { LiveSource } from "../src/live";
 import type { Socket } from "../src/live";
 import type { Incoming } from "../src/source";
 
-// Node.js 18 takes the list itself, newer versions an object that holds it.
+// Node.js 18 accepts the list itself, newer versions an object that contains it.
 function mockTimeouts(context: TestContext): void {
   const enable = context.mock.timers.enable.bind(context.mock.timers) as (what: unknown) => void;
   const isOld = Number(process.versions.node.split(".")[0]) < 20;

@@ -1,4 +1,4 @@
-// A recorded run as a source: what is packed here as apps/viewer/recording.h says plays, rewinds and answers.
+// A recorded run as a source: an archive packed as in apps/viewer/recording.h plays, rewinds and answers.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { gzipSync } from "node:zlib";
@@ -7,7 +7,7 @@ import { RecordedSource } from "../src/recorded";
 import { stepsToShow } from "../src/render";
 import type { Incoming } from "../src/source";
 
-// Three corners and one triangle that move along x: frame f is at the codes 100 f^2.
+// Three corners and one triangle that move along x: frame f has the codes 100 f^2.
 const kFrames = 5;
 const kSize = 6.5535; // so that a code is 0.0001
 
@@ -106,7 +106,7 @@ class Reader {
     });
   }
 
-  // The screen shows pictures for so long.
+  // Advances the clock by the duration of some frames.
   pass(milliseconds: number): void {
     for (let elapsed = 0; elapsed < milliseconds; elapsed += 10) {
       this.now += 10;

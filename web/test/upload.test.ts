@@ -10,7 +10,7 @@ import { unzip } from "../src/unzip";
 const bytes = (text: string) => new TextEncoder().encode(text);
 const file = (name: string, text: string) => new File([text], name) as unknown as globalThis.File;
 
-// What Node.js 18 lacks: its DecompressionStream does not know "deflate-raw".
+// Replaces "deflate-raw", which the DecompressionStream of Node.js 18 lacks.
 globalThis.DecompressionStream = class {
   constructor() {
     return Duplex.toWeb(createInflateRaw());

@@ -1,4 +1,4 @@
-// The recorded cases, and what records more of them.
+// The recorded load cases and the controls that record more.
 import { button, element, messageOf } from "../dom";
 import type { Page } from "../page";
 import { numberField } from "../plots/dom";
@@ -7,8 +7,8 @@ import type { Capture, Command, ProbeState } from "../protocol";
 import type { Store } from "../store";
 import type { Display } from "../view/display";
 
-const kDepths = 3; // of one place
-const kDeep = 0.6; // of the pokes all over, in radii
+const kDepths = 3; // load cases per site
+const kDeep = 0.6; // deepest indentation of a series, in tip radii
 
 export class CaseList {
   readonly element = element("section", { class: "capture-cases", "aria-label": "Recorded cases" });
@@ -46,7 +46,7 @@ export class CaseList {
     this.follow(null);
   }
 
-  // What the tip allows.
+  // Enables the controls that the tip's state allows.
   follow(probe: ProbeState | null): void {
     const ready = probe !== null && probe.wanted !== 0 && this.store.steers;
     this.record.disabled = this.recordDepths.disabled = !ready;

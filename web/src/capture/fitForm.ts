@@ -1,4 +1,4 @@
-// The fit: begun, watched while it converges, judged against the truth, and simulated.
+// The fit: starts it, shows its convergence, compares it with the truth, and simulates it.
 import { button, element, messageOf } from "../dom";
 import type { Page } from "../page";
 import { checkbox } from "../plots/dom";
@@ -13,7 +13,7 @@ const kFields = [
   ["young_deviation", "uncertainty"],
 ] as const;
 
-// How the fit goes, in a line.
+// One-line summary of the fit.
 export function fitText(fit: CaptureFit | null): string {
   if (!fit) return "";
   if (fit.failure !== "") return `The fit failed: ${fit.failure}`;
@@ -23,7 +23,7 @@ export function fitText(fit: CaptureFit | null): string {
   return last ? `Done: ${where}` : "";
 }
 
-// A factor that people say: 0.1 is "10 %", 0.7 "a factor of 2.0".
+// Error as a readable factor: 0.1 is "10 %", 0.7 "a factor of 2.0".
 export function errorText(log: number): string {
   return log < 0.3 ? `${short(100 * (Math.exp(log) - 1), 2)} %` : `a factor of ${short(Math.exp(log), 2)}`;
 }
@@ -78,7 +78,7 @@ export class FitForm {
     this.mark();
   }
 
-  // From the first chi to 1, on a scale of logarithms.
+  // Progress from the first chi to 1, on a logarithmic scale.
   private progress({ iterations }: CaptureFit): void {
     const [first, last] = [iterations[0]?.chi, iterations[iterations.length - 1]?.chi];
     if (!first || !last || first <= 1) return this.bar.removeAttribute("value");

@@ -1,4 +1,4 @@
-// The force gauge of the probe: dial, numbers, and the force over the depth.
+// Force gauge of the probe: dial, numbers, and force over depth.
 import { element } from "../dom";
 import { Chart } from "../plots/chart";
 import { oncePerFrame } from "../plots/dom";

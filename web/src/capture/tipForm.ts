@@ -1,4 +1,4 @@
-// Which tip touches, and how deep it is pressed: by slider, number or keys.
+// Shape and depth of the tip, set by slider, number or keys.
 import { button, element } from "../dom";
 import type { Page } from "../page";
 import { choice, numberField } from "../plots/dom";
@@ -8,8 +8,8 @@ import type { Store } from "../store";
 import type { Display } from "../view/display";
 import { AskedDepths } from "./askedDepths";
 
-const kNotches = 40; // of the slider and the keys, over the radius of the tip
-const kDeepest = 1.5; // of the slider, in radii
+const kNotches = 40; // steps of the slider and the keys per tip radius
+const kDeepest = 1.5; // end of the slider, in tip radii
 
 export class TipForm {
   readonly element = element("section", { class: "capture-tip", "aria-label": "Tip" });

@@ -1,4 +1,4 @@
-// The charts of a fit: force against depth, residuals, the trials of the weight, how it converged.
+// Charts of a fit: force against depth, residuals, trial weights, convergence.
 import type uPlot from "uplot";
 import { Chart, type Curve } from "../plots/chart";
 import { short, withUnit } from "../plots/numbers";
@@ -6,7 +6,7 @@ import type { Palette } from "../plots/palette";
 import type { MaybeNumber } from "../protocol";
 import { closeness, histogram, type FitHead, type GroupCurve } from "./data";
 
-// The value at x, or the last one.
+// Value at x, or the last value if `at` is null.
 function valueAt(x: readonly number[], column: readonly MaybeNumber[], at: number | null): MaybeNumber {
   if (at === null) return column[column.length - 1] ?? null;
   let nearest = 0;
@@ -16,7 +16,7 @@ function valueAt(x: readonly number[], column: readonly MaybeNumber[], at: numbe
   return column[nearest] ?? null;
 }
 
-// Bars of one standard deviation, in device pixels.
+// Error bars of one standard deviation, in device pixels.
 function paintErrorBars(u: uPlot, colors: Palette, curve: GroupCurve): void {
   const { ctx } = u;
   ctx.save();
@@ -77,10 +77,10 @@ export function loadChart(name: string, curve: GroupCurve): Chart {
   return chart;
 }
 
-const kLimit = 4; // of the histogram, in standard deviations
+const kLimit = 4; // range of the histogram in standard deviations
 const kBins = 32;
 
-// Against what normal noise of the given deviations would leave.
+// Histogram of residuals beside the expected counts for normally distributed noise.
 export function histogramChart(values: readonly number[]): Chart {
   const chart = new Chart();
   const { middle, count } = histogram(values, kLimit, kBins);
@@ -127,7 +127,7 @@ export function caseChart(names: readonly string[], ofCase: readonly MaybeNumber
 
 const log10 = (value: MaybeNumber): MaybeNumber => (value !== null && value > 0 ? Math.log10(value) : null);
 
-// Misfit against roughness, both as powers of ten; the chosen weight stands out.
+// Misfit against roughness, both as powers of ten. The chosen weight is highlighted.
 export function weightChart(head: FitHead): Chart | null {
   const trials = head.weights
     .map((w) => ({ x: log10(w.roughness), misfit: w.misfit, weight: w.weight }))
@@ -175,7 +175,7 @@ function paintChosen(u: uPlot, colors: Palette, x: MaybeNumber, y: MaybeNumber, 
   ctx.restore();
 }
 
-// In the order in which the iterations were made, over all starts and weights.
+// History of all iterations in order, over all starts and weights.
 export function historyChart(head: FitHead): Chart | null {
   if (head.history.length < 2) return null;
   const chart = new Chart();

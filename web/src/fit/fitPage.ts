@@ -1,4 +1,4 @@
-// The report of a fit: what was found, how sure it is, and how well it explains what was measured.
+// The report of a fit: fitted values, their uncertainty, and how well they explain the measurements.
 import "./fit.css";
 import { button, element, messageOf, type Child } from "../dom";
 import { Page } from "../page";
@@ -91,7 +91,7 @@ function figure(title: string, chart: Chart): HTMLElement {
   return element("figure", {}, element("figcaption", {}, title), chart.element);
 }
 
-// Where up is: away from where the body is held, along an axis.
+// Upward direction: along the axis that leads away from the held part of the body.
 function upward(fit: Fit): Vec3 {
   const [points, fixed] = [fit.floats("points"), fit.indices("fixed")];
   const mean = (k: number, vertices: Iterable<number>): number => {
@@ -119,7 +119,7 @@ class FitReport {
     const body = new FittedBody({ points: fit.floats("points"), tets: fit.indices("tets") }, upward(fit));
     const rig = new CameraRig();
     rig.show(fit.head.name, body.lower, body.upper, body.up);
-    rig.pan(-0.12, 0, 1); // to the left of the color bar, by a part of the view's height
+    rig.pan(-0.12, 0, 1); // moves the body left of the color bar, in parts of the view's height
     const maps = new Maps(fit, body, rig);
     const misfits = new Misfits(fit, body, rig);
     const root = element("main", { class: "fit" }, this.found(), this.maps(maps), this.loads(), this.residuals(misfits), this.made());

@@ -1,4 +1,4 @@
-// Two views of the fitted body side by side: a quantity, and how sure it is; both cut alike, seen by the same camera.
+// Two views of the fitted body side by side: a quantity and its uncertainty. Both have the same cut and camera.
 import { element } from "../dom";
 import { checkbox, choice } from "../plots/dom";
 import type { Vec3 } from "../protocol";
@@ -16,7 +16,7 @@ interface Field {
 
 const kNames: Record<string, string> = { young: "Young's modulus", poisson: "Poisson's ratio", density: "density" };
 
-// The factor within which a logarithm of that deviation is known with 95 %.
+// Half width of the 95 % interval of a normal distribution, in standard deviations.
 const kDeviations95 = 1.96;
 
 function fieldsOf(fit: Fit): { values: Field[]; doubts: Field[] } {
@@ -133,7 +133,7 @@ export class Maps {
   }
 }
 
-// Through the middle, so that the camera looks onto it.
+// Cut through the middle that faces the camera.
 function cutInFront(up: Vec3): Cut {
   const front = sceneAxes(up).front.toArray();
   const axis = [0, 1, 2].reduce((best, k) => (Math.abs(front[k]) > Math.abs(front[best]) ? k : best)) as 0 | 1 | 2;

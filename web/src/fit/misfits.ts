@@ -1,5 +1,4 @@
-// Where the fit errs: the worst markers as arrows from where they were measured to where the fit puts them, many times
-// longer than they are.
+// Shows the largest marker residuals as magnified arrows from the measured to the fitted position.
 import { element } from "../dom";
 import { choice } from "../plots/dom";
 import { roundStep } from "../view/ranges";
@@ -12,7 +11,7 @@ import { length, markerName, vectorAt, worstMarkers, type Fit, type WorstMarker 
 
 const kArrows = 60;
 const kRows = 10;
-const kLongest = 0.25; // of the body's size
+const kLongest = 0.25; // longest arrow relative to the body's size
 
 export class Misfits {
   readonly element: HTMLElement;
@@ -70,7 +69,7 @@ export class Misfits {
   }
 }
 
-// A round number near the wished one, and not above it.
+// Largest round number that does not exceed the requested one.
 function magnification(wished: number): number {
   const step = roundStep(wished);
   return step > wished * (1 + 1e-9) ? roundStep(wished / 2.5) : step;

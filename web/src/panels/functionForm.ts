@@ -1,4 +1,4 @@
-// What is asked of the functions panel: which function, from where, by which method.
+// Input of the functions panel: function, start and method.
 import { formulaElements } from "../formulas";
 import { choice, element, numberField } from "../plots/dom";
 import type { FunctionQuestion, SettingValue } from "../protocol";
@@ -40,7 +40,7 @@ export interface Preset {
   start: [number, number];
   settings: Record<string, SettingValue>;
   log: boolean;
-  model: boolean; // shown
+  model: boolean; // whether the quadratic model is visible
   iteration: number;
 }
 
@@ -91,7 +91,7 @@ export const kPresets: Preset[] = [
   },
 ];
 
-// Defaults of the settings that the form shows.
+// Defaults of the form's settings.
 const kDefaults: Record<string, SettingValue> = {
   method: "newton",
   definiteness: "auto",
@@ -124,7 +124,7 @@ export class FunctionForm {
   private readonly y = numberField("y", "y of the start", 0.6, {}, () => this.changed());
   private readonly choices = new Map<string, HTMLSelectElement>();
   private readonly numbers = new Map<string, HTMLInputElement>();
-  private others: Record<string, SettingValue> = {}; // settings that a question had and the form does not show
+  private others: Record<string, SettingValue> = {}; // settings of a question that the form does not show
 
   constructor(private readonly changed: () => void) {
     this.formula.value = "cosh(x) + (y - x)^2";
@@ -194,7 +194,7 @@ export class FunctionForm {
     for (const [key, input] of this.numbers) input.value = brief(Number(settings[key]));
   }
 
-  // A named function is shown as a formula; any other is typed.
+  // Shows a named function as a formula and any other as a text field.
   private showFormula(): void {
     const name = this.name.select.value;
     this.formula.hidden = name !== "formula";

@@ -1,4 +1,4 @@
-// What the functions panel draws: the surface, the path on it, and the model of the iteration that is looked at.
+// Picture of the functions panel: the surface, the path on it, and the quadratic model of the chosen iteration.
 import type { FunctionReply } from "../protocol";
 import { isInside, minimizerOf, quadraticAt, uniform, type Grid } from "../plots/grid";
 import type { Sign } from "../plots/legend";
@@ -7,12 +7,12 @@ import type { Mark, SurfaceContent } from "../plots/surfaceBody";
 
 export interface FunctionPicture {
   content: SurfaceContent;
-  signs: Sign[]; // what its marks mean
+  signs: Sign[]; // meaning of its marks
 }
 
 export interface FunctionLook {
   iteration: number;
-  wholePath: boolean; // not only up to that iteration
+  wholePath: boolean; // draw the path beyond that iteration
   start: [number, number];
   model: boolean;
   log: boolean;
@@ -80,7 +80,7 @@ function addMinimum({ minimizer }: FunctionReply, marks: Mark[], signs: Sign[]):
   signs.push({ sign: "✕", color: "series8", text: "the minimum of f" });
 }
 
-// Of the iteration, and the start of them all.
+// Adds the ends of the iteration and the initial point.
 function addEnds(reply: FunctionReply, look: FunctionLook, marks: Mark[], signs: Sign[]): void {
   const from = reply.path[look.iteration];
   const to = reply.path[look.iteration + 1];

@@ -1,4 +1,4 @@
-// The energy landscape of one iteration: E over the plane through its direction d, and the quadratic model beside it.
+// Energy landscape of one iteration: E over the plane through its direction d, and the quadratic model beside it.
 import type { Page, Panel } from "../page";
 import type { IterationReply, MaybeNumber } from "../protocol";
 import type { Store } from "../store";

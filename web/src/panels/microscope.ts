@@ -1,4 +1,4 @@
-// The solver under the microscope: the steps, the iterations of one of them, and the line search of one iteration.
+// The minimization in detail: steps, iterations of one step, and line search of one iteration.
 import { statusName } from "../names";
 import type { Page, Panel } from "../page";
 import type { IterationRow, SideName, StepRow, WorstReply } from "../protocol";
@@ -79,7 +79,7 @@ class MicroscopePanel implements Panel {
     return this.chosen.rows();
   }
 
-  // The newest step stands first.
+  // Step in a row of the table, the newest first.
   private stepAt(row: number): StepRow | undefined {
     const rows = this.rows();
     return rows[rows.length - 1 - row];
@@ -212,7 +212,7 @@ class MicroscopePanel implements Panel {
     this.words.dataset.kind = row && !row.converged ? "bad" : "";
   }
 
-  // E along d at the chosen iteration, asked for when a chart shows it; or why it is not there.
+  // E along d at the chosen iteration, requested when a chart shows it; or the reason why it is missing.
   private searchNow(): Search | string {
     if (!this.charts.some((chart) => chart.name === "search")) return "";
     if (!this.chosen.iterationRow()) {
@@ -234,7 +234,7 @@ class MicroscopePanel implements Panel {
     };
   }
 
-  // As many charts as there is room for.
+  // Shows as many charts as fit.
   private arrange(): void {
     const font = Number.parseFloat(getComputedStyle(this.grid).fontSize) || 14;
     const across = Math.max(1, Math.min(3, Math.floor(this.grid.clientWidth / (14.5 * font))));

@@ -8,7 +8,7 @@ import type { Store } from "../store";
 import { excess, kColumns, listed, totals } from "./certificate";
 
 const kRowsPerPage = 100;
-const kPause = 500; // between two drawings [ms]: steps may come faster than anybody reads
+const kPause = 500; // time between two drawings [ms]; steps may arrive faster
 
 function text(value: MaybeNumber | string): string {
   return typeof value === "string" ? value : short(value);
@@ -20,7 +20,7 @@ class StepTable {
   private readonly onlyFailed = element("input", { type: "checkbox" });
   private readonly range = element("span", { role: "status" });
   private column = kColumns[0];
-  private first = 0; // row of this page of the table
+  private first = 0; // first row of this page of the table
 
   constructor(private readonly store: Store) {
     this.onlyFailed.addEventListener("change", () => this.turn(-Infinity));
@@ -99,7 +99,7 @@ function drawTotals(list: HTMLElement, steps: readonly StepRow[]): void {
   );
 }
 
-// The complete scene, asked for when it is opened.
+// The complete scene, requested when it is opened.
 function makeScene(store: Store, page: Page): HTMLElement {
   const code = element("pre", { tabindex: "0", "aria-label": "Scene as TOML" });
   let file: TextReply | null = null;
@@ -130,7 +130,7 @@ export function makeReportPanel(store: Store, page: Page): Panel {
   const panel = element("div", { class: "report" }, list, aboutScene, makeScene(store, page), table.element);
   let visible = false;
   let due = false;
-  let drawn = -kPause; // when
+  let drawn = -kPause; // time of the last drawing
   const draw = (): void => {
     due = false;
     drawn = performance.now();

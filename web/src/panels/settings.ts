@@ -1,5 +1,5 @@
-// The settings of the simulation: built from what the program says it has, sent while a slider moves, and put back where
-// the program refuses.
+// Settings of the simulation: built from the program's list, sent while a slider moves, and restored if the program
+// refuses them.
 import { GUI, type Controller } from "lil-gui";
 import { button, element, messageOf } from "../dom";
 import { backTo, History, toLoaded, type SettingChange } from "../history";
@@ -14,10 +14,10 @@ import type { Row } from "./rows";
 
 type Target = SideName | "both";
 
-const kClosed = ["World", "Solver", "Line search"]; // until the reader opens them
-const kOneChange = 1000; // [ms]: values that follow each other faster are one change
+const kClosed = ["World", "Solver", "Line search"]; // closed at first
+const kOneChange = 1000; // [ms]: changes that follow each other faster are one change
 
-// Whether the same rows can show both.
+// Whether the same rows can show both lists.
 function sameShape(a: Setting[], b: Setting[]): boolean {
   const shape = (all: Setting[]): string =>
     JSON.stringify(all.map((s) => [s.key, s.label, s.group, s.unit, s.kind, s.min, s.max, s.choices]));
@@ -42,8 +42,8 @@ export class Settings {
   private readonly history = new History();
   private readonly undoer: HTMLButtonElement;
   private readonly resetter: HTMLButtonElement;
-  private newest = { key: "", at: 0 }; // the change that was made last
-  private loaded = ""; // which scene the history is about
+  private newest = { key: "", at: 0 }; // the latest change
+  private loaded = ""; // scene that the history belongs to
   private material: Controller | null = null;
 
   constructor(
@@ -123,7 +123,7 @@ export class Settings {
       if (group === "Material") this.addMaterials(folder, settings);
       for (const setting of settings) if (setting.group === group) this.addSetting(folder, setting);
     }
-    this.spring.domElement.parentElement?.append(this.spring.domElement); // the last
+    this.spring.domElement.parentElement?.append(this.spring.domElement); // keeps it last
   }
 
   private addMaterials(folder: GUI, settings: Setting[]): void {
@@ -137,7 +137,7 @@ export class Settings {
     kMaterials.forEach(({ source }, i) => (options[i + 1].title = source));
   }
 
-  // The preset whose values the scene has, if there is one.
+  // Selects the preset whose values the scene has, if any.
   private showMaterial(scene: Scene): void {
     if (!this.material) return;
     const value = (name: string): unknown => scene.settings.find(({ key }) => key === `material.${name}`)?.value;
@@ -161,7 +161,7 @@ export class Settings {
     await this.carryOut(changes);
   }
 
-  // What brings a setting back to how it is now, on each side that a change is about.
+  // Changes that restore the present value of a setting, on each side that a change affects.
   private back(key: string): SettingChange[] {
     const { a, b } = { a: this.store.side("a")?.scene, b: this.store.side("b")?.scene };
     if (!a) return [];
@@ -200,7 +200,7 @@ export class Settings {
     await this.carryOut(changes);
   }
 
-  // Whether it would make a difference.
+  // Whether a change would have an effect.
   private changes({ key, value, side }: SettingChange): boolean {
     const scene = this.store.side(side ?? "a")?.scene;
     if (!scene) return false;
@@ -266,7 +266,7 @@ export class Settings {
 
   private showSides(): void {
     const two = this.store.side("b") !== null;
-    if (two === this.top.hasChildNodes()) return; // the choice that has the focus keeps it
+    if (two === this.top.hasChildNodes()) return; // keeps the focus in the list
     this.top.replaceChildren();
     if (!two) return;
     const names: Record<Target, string> = { a: "A", b: "B", both: "both" };

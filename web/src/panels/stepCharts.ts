@@ -1,4 +1,4 @@
-// The microscope's charts: over the iterations of one step, and over the steps.
+// Charts of the microscope: over the iterations of one step, and over the steps.
 import type { Chosen } from "../plots/chosen";
 import { Chart, type ChartOptions, type Curve } from "../plots/chart";
 import { choice, element } from "../plots/dom";
@@ -92,7 +92,7 @@ function counted(
   };
 }
 
-// Bars upon each other: a later one is drawn over the sum with the stages below it.
+// Stacked bars: a later bar is drawn over the sum with the stages below it.
 function stages(rows: readonly IterationRow[]): Plan {
   const order = [...kStages].reverse();
   const columns = order.map((_, i) =>
@@ -165,7 +165,7 @@ function planOf(name: Exclude<ChartName, "search">, chosen: Chosen, steps: reado
   }
 }
 
-// A chart with a choice of what it shows.
+// A chart with a selection of its content.
 export class StepChart {
   readonly element = element("div", { class: "microscope-cell" });
   private readonly fill = element("div", { class: "plot-fill" });
@@ -199,7 +199,7 @@ export class StepChart {
     this.search.chart.retheme();
   }
 
-  // `search`: the line search of the chosen iteration, or why there is none.
+  // `search`: the line search of the chosen iteration, or the reason why it is missing.
   show(search: Search | string): void {
     const shown = this.name === "search" ? this.search.element : this.chart.element;
     if (this.fill.firstChild !== shown) this.fill.replaceChildren(shown);
@@ -250,7 +250,7 @@ export class StepChart {
     } else if (index >= 0 && index < (this.chosen.row()?.iterations.length ?? 0)) this.chosen.choose(side, step, index);
   }
 
-  // A line at the chosen iteration, or step.
+  // Draws a line at the chosen iteration or step.
   private paintChosen(u: uPlot, colors: Palette): void {
     paintVerticalLine(u, this.name === "steps" ? this.chosen.step : this.chosen.iteration, colors.accent, 0.6);
   }

@@ -1,4 +1,4 @@
-// The virtual bench: a probe that is pressed in, its gauge, recorded cases, and a fit that shows on the body.
+// Virtual bench: pressing the probe in, its gauge, recorded cases, and a fit that appears on the body.
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -31,7 +31,7 @@ async function openBench() {
   return opened;
 }
 
-// Touches the body and presses the tip in by keys, as far as that.
+// Touches the body and presses the tip to a depth by keys.
 async function pressIn(opened, notches) {
   const { page, heard, until } = opened;
   const [x, y] = await findBody(opened);

@@ -1,4 +1,4 @@
-// A/B: two simulations side by side under one mouse.
+// Comparison of two simulations side by side under one mouse.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { boxOf, findBody, keepPicture, openSession, pageModule, pressAndWait, settingOf, settled, shownBy, startProgram, toTheStart } from "./harness.mjs";
@@ -36,7 +36,7 @@ test("each offered comparison opens two sides, which advance together", async ()
     for (let i = 0; i < 3; ++i) {
       const { a, b } = heard.state;
       await page.keyboard.press("s");
-      // An explicit side that blew up has ended, and says so.
+      // An explicit side that blows up ends and reports it.
       const ended = () => [heard.state.a, heard.state.b].find(({ status }) => status === "undefined");
       await until(`both sides of '${title}' step`, () => ended() || (heard.state.a.step > a.step && heard.state.b.step > b.step));
       if (ended()) {

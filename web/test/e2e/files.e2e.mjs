@@ -1,4 +1,4 @@
-// What can be saved and loaded: workspaces, meshes, pictures, videos, recordings.
+// Saving and loading: workspaces, meshes, pictures, videos, recordings.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
@@ -27,7 +27,7 @@ test("a workspace brings back settings, comparison, camera and panels", async ()
   await until("side b", ({ scenes }) => scenes.b);
   await page.getByRole("dialog").waitFor({ state: "detached" });
   await page.keyboard.press("m");
-  await page.keyboard.press("5"); // from the top
+  await page.keyboard.press("5"); // view from the top
   const file = await downloaded(page, () => page.keyboard.press("Shift+S"));
   assert.match(file.suggestedFilename(), /\.json$/);
   const saved = await read(file);
@@ -104,7 +104,7 @@ test("a picture of the view is a PNG that shows something", async () => {
   await close();
 });
 
-// What the encoder has delivered.
+// Bytes that the encoder has delivered.
 function countVideo() {
   window.videoBytes = 0;
   const { start } = MediaRecorder.prototype;

@@ -1,5 +1,5 @@
-// What a reader sees first: bodies in their own colors, numbers that mean something, names instead of keys, and a page
-// that fits its window.
+// First impression: bodies in their own colors, meaningful numbers, names instead of keys, and a page that fits its
+// window.
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { join, relative } from "node:path";
@@ -22,7 +22,7 @@ const young = (heard) => settingOf(heard, "material.young").value;
 const fieldOf = (page, key) => page.locator("#right .lil-controller").filter({ has: page.locator(`.lil-name[title$="\\a ${key}"]`) });
 const selectOf = (page, words) => page.locator("#right .lil-controller").filter({ hasText: words }).locator("select").first();
 
-// How many pixels of the picture in 3-D are mostly blue, and mostly green.
+// Number of mostly blue and of mostly green pixels in the 3-D picture.
 const hues = (page) =>
   page.locator("#views canvas").first().evaluate((canvas) => {
     const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");

@@ -1,4 +1,4 @@
-// Scenes come and go: from the gallery, dropped onto the page, saved with their meshes, exported as animations.
+// Opening scenes: from the gallery, by drag and drop, saved with their meshes, exported as animations.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
@@ -13,14 +13,14 @@ const atStep = (opened, step) =>
   pressAndWait(opened, "s", `step ${step}`, ({ state, pictures }) => state.a.step === step && pictures.a.step === step);
 const lastHash = ({ heard }) => heard.messages.findLast(({ kind, steps }) => kind === "steps" && steps.length > 0).steps.at(-1).state_hash;
 
-// The state after `steps` of a run on the command line.
+// State after `steps` of a run on the command line.
 function hashOfRun(scene, steps) {
   const out = join(temporaryFolder(), "out");
   const said = execFileSync(aspic, ["run", scene, "--steps", String(steps), "--out", out], { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
   return said.match(/state +(\w+) after/)[1];
 }
 
-// What a reader drags from a folder.
+// Files that a reader drags from a folder.
 async function drop(page, files) {
   const transfer = await page.evaluateHandle((list) => {
     const made = new DataTransfer();
@@ -89,7 +89,7 @@ test("the motion is exported for other programs", async () => {
   const [gifName, gif] = await exported("gif");
   assert.equal(gifName, "cantilever.gif");
   if (process.env.ASPIC_PICTURES) writeFileSync(join(process.env.ASPIC_PICTURES, "exported.gif"), gif);
-  // Read by the browser.
+  // The browser reads it.
   const seen = await page.evaluate(async (base64) => {
     const data = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
     const decoder = new ImageDecoder({ data, type: "image/gif" });
@@ -144,7 +144,7 @@ test("a mesh dropped onto the page is simulated, saved with its mesh, and travel
   const { scene, files, ...rest } = JSON.parse(workspace);
   assert.deepEqual([scene, files.map(({ name }) => name)], ["dropped.toml", ["dropped.toml", "inputs/dropped.msh"]]);
   assert.deepEqual(JSON.stringify(rest).match(/.{0,80}\/tmp\/.{0,80}/), null, "no path of this machine");
-  // As on another machine, where only the files are.
+  // Simulates another machine that has only these files.
   const fresh = async (what, files) => {
     const { generation } = heard.geometries.a;
     await drop(page, files);

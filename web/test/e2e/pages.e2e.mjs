@@ -1,11 +1,11 @@
-// Several pages, lost connections, strangers and nonsense.
+// Several pages, lost connections, foreign sites and malformed messages.
 import assert from "node:assert/strict";
 import { connect } from "node:net";
 import { test } from "node:test";
 import { assertSameBits, kPatience, openPage, openSession, pressAndWait, startProgram, steering, theBrowser, until } from "./harness.mjs";
 
 const program = await startProgram("scenes/cantilever.toml");
-// What the browser says of a connection that breaks, also in the moment in which the page sends.
+// Messages of the browser about a broken connection, also during sending.
 const kLostSocket = /WebSocket connection to .* failed|WebSocket is already in CLOSING or CLOSED state/;
 
 test("a second page watches, takes the steering, and hands it over when it closes", async () => {
@@ -16,7 +16,7 @@ test("a second page watches, takes the steering, and hands it over when it close
   const before = two.heard.state.a.step;
   await pressAndWait(one, "s", "a step", () => two.heard.state.a.step === before + 1 && two.heard.pictures.a.step === before + 1 && one.heard.pictures.a.step === before + 1);
   assertSameBits(two.heard.pictures.a.positions, one.heard.pictures.a.positions);
-  await two.page.keyboard.press("s"); // does nothing: it watches
+  await two.page.keyboard.press("s"); // has no effect: the page only watches
   await two.page.getByRole("button", { name: "Steer" }).click();
   await one.page.getByText("Watching").waitFor();
   await two.page.getByText("Watching").waitFor({ state: "hidden" });

@@ -1,4 +1,4 @@
-// A run as one file, opened from disk without a network: it plays, and holds its numbers.
+// A run as one file, opened from disk without a network: it plays and contains the numbers of the run.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { readFileSync, statSync } from "node:fs";
@@ -14,7 +14,7 @@ const make = (...words) => {
   const made = spawnSync(aspic, words, { encoding: "utf8" });
   assert.equal(made.status, 0, made.stdout + made.stderr);
 };
-// With one iteration per step some do not converge: the certificate has something to find.
+// With one iteration per step some steps do not converge, which the certificate reports.
 const kOverrides = [`time.duration=${kSteps / 100}`, "solver.max_iterations=1"].flatMap((override) => ["--set", override]);
 make("run", join(root, "scenes/cantilever.toml"), "--out", run, "--allow-unconverged", ...kOverrides);
 const report = join(run, "report.html");
@@ -86,14 +86,14 @@ test("it says that a recorded body cannot be touched", async () => {
   const { page, until, close } = await open();
   await until("a picture", () => isDrawn(page.locator("#views canvas").first()));
   const box = await boxOf(page.locator("#views"));
-  // The notice goes after a while.
+  // The notice disappears after a while.
   await until("a notice", async () => {
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     await page.mouse.down();
     await page.mouse.move(box.x + box.width / 2 + 60, box.y + box.height / 2, { steps: 5 });
     await page.mouse.up();
     if (await page.getByText("This run is recorded").isVisible()) return true;
-    await page.keyboard.press("0"); // the dragging turned the camera
+    await page.keyboard.press("0"); // undoes the rotation by the drag
     await frames(page);
   });
   await close();

@@ -1,11 +1,11 @@
-// The minimization under the microscope: iterations one by one, their tables, curves and landscapes; plane functions.
+// Minimization in detail: single iterations, their tables, curves and landscapes; functions of two variables.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { answered, assertSameBits, boxOf, contrast, downloaded, frames, isDrawn, keepPicture, openSession, pageModule, pressAndWait, settled, shownBy, startProgram, toTheStart, until as eventually } from "./harness.mjs";
 
 const { kPresets } = await pageModule("panels/functionForm.ts");
-const program = await startProgram("scenes/cantilever.toml", ["--set", "time.step=0.05"]); // several iterations
+const program = await startProgram("scenes/cantilever.toml", ["--set", "time.step=0.05"]); // needs several iterations
 
 async function open(panel) {
   const opened = await openSession(program, { keepsPixels: true });
@@ -160,7 +160,7 @@ test("the start of a function is moved by keys and by the mouse", async () => {
   await eventually("a start that the mouse took", async () => {
     await settled(opened);
     const [mark, box] = [await boxOf(ring), await boxOf(view)];
-    // The label stands beside its ring. A mouse that misses it turns the picture.
+    // The label is beside its ring. A mouse that misses the ring turns the picture.
     const sides = [[-9, 9], [-10, 0], [-8, -8], [mark.width + 10, 0]];
     const [dx, dy] = sides[tries++ % sides.length];
     await page.mouse.move(mark.x + dx, mark.y + mark.height / 2 + dy);

@@ -9,7 +9,7 @@ const length = (v) => Math.hypot(...v);
 const minus = (a, b) => a.map((x, i) => x - b[i]);
 
 test("the first picture shows the body, and the token leaves the address", async () => {
-  // A reload asks without the token; the answer finds it where the tab keeps it.
+  // A reload requests the page without the token, which the tab has kept.
   const opened = await openSession(program, { expected: /status of 403/ });
   const { page, heard, until, close } = opened;
   await findBody(opened);
