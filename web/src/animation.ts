@@ -30,7 +30,7 @@ export function openAnimation(store: Store, page: Page, video: Video): void {
     element("div", { class: "actions" }, submit),
   );
   const dialog = openDialog("Export the motion", [
-    element("p", {}, "The surface at the steps that the timeline holds, from the start to now. Drags are part of it."),
+    element("p", {}, "The surface at the steps in the timeline, from the start to now, including drags."),
     form,
     element("p", { class: "faint" }, "Videos and GIFs of any size: save the scene (Shift+T), then on a command line"),
     element("pre", {}, "aspic run SCENE.toml --out out\naspic render out -o motion.gif   (or .mp4, .webm)"),
@@ -61,7 +61,7 @@ async function saveAnimation(store: Store, page: Page, side: SideName, format: F
 // Repeats the session in the program. The promise resolves when the replay begins; `atEnd` is called once, after the
 // last picture.
 async function repeatSession(store: Store, atEnd: () => void): Promise<void> {
-  if (!store.steers) throw new Error("This page watches; take the steering to repeat the session.");
+  if (!store.steers) throw new Error("This page only watches; press Steer to repeat the session.");
   const recording = await store.source.ask<Recording>({ ask: "recording" });
   if (recording.steps === 0) throw new Error("nothing has moved yet; play first, then export");
   // A short session may end before the reply arrives, so the states are watched before the request is sent.
@@ -113,7 +113,7 @@ async function gifOfSession(store: Store, page: Page, video: Video): Promise<voi
     stop();
     take(Infinity);
     saveFile(fileName(store.side("a")?.scene.name ?? "", "gif"), gif.blob());
-    page.notice(`${frames} pictures${frames === kMostGifFrames ? ", as many as a GIF gets here; aspic render makes longer ones" : ""}`);
+    page.notice(`${frames} pictures${frames === kMostGifFrames ? ", the limit of a GIF here; aspic render makes longer ones" : ""}`);
   };
   await repeatSession(store, end).catch((reason: unknown) => {
     stop();

@@ -42,9 +42,9 @@ function openCompare(store: Store, scene: Scene): void {
   const form = element(
     "form",
     {},
-    element("p", {}, "Side A stays as it is. Side B is the same scene, but for:"),
+    element("p", {}, "Side A does not change. Side B is the same scene with these differences:"),
     element("div", { class: "choices" }, ...choices),
-    labeled("What differs, one KEY=VALUE per line", overrides),
+    labeled("Overrides of side B, one KEY=VALUE per line", overrides),
     labeled("Name of side B", label),
     problem,
     element("div", { class: "actions" }, submit),

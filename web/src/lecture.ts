@@ -79,7 +79,7 @@ export class Lecture {
   private fill(): void {
     const found = this.lessons.filter((lesson) => matches(lesson, this.search.value));
     this.list.replaceChildren(...found.map((lesson) => element("li", {}, this.entry(lesson))));
-    if (found.length === 0) this.list.append(element("li", { class: "faint" }, "No page has these words."));
+    if (found.length === 0) this.list.append(element("li", { class: "faint" }, "No page matches."));
     this.previous.hidden = this.next.hidden = this.current === null;
     this.previous.classList.toggle("faint", neighbor(this.lessons, this.current, -1) === null);
     this.next.classList.toggle("faint", neighbor(this.lessons, this.current, 1) === null);

@@ -11,9 +11,9 @@ const kGone = 6; // failed reconnections after which the program has probably en
 
 export function connectionText(failures: number): string {
   return failures < kGone
-    ? "Connection lost, trying again."
+    ? "Connection lost. Reconnecting."
     : "The program does not answer. It has probably ended: start aspic view again and open the address that it prints. " +
-        "This page keeps trying.";
+        "This page continues to try.";
 }
 
 export function showNotices(root: HTMLElement, store: Store, page: Page): void {

@@ -75,5 +75,5 @@ export function parseOverrides(text: string): string[] {
 export function faultOfOverrides(overrides: string[]): string {
   const wrong = overrides.find((line) => !/^[\w.-]+\s*=\s*\S/.test(line));
   if (wrong !== undefined) return `'${wrong}' is not KEY=VALUE, such as material.young=1e6`;
-  return overrides.length === 0 ? "Nothing differs: choose a comparison, or write KEY=VALUE, one per line." : "";
+  return overrides.length === 0 ? "The sides are equal: choose a comparison, or enter KEY=VALUE, one per line." : "";
 }

@@ -11,7 +11,7 @@ export interface Pulse {
 const kScreen: Pulse = { now: () => performance.now(), next: (callback) => requestAnimationFrame(callback) };
 
 const kUnchangeable = "a recorded run cannot be changed; aspic view SCENE runs it live";
-const kNotRecorded = "a recorded run does not hold this; aspic view SCENE computes it live";
+const kNotRecorded = "a recorded run does not contain this; aspic view SCENE computes it";
 
 // Text of the page's recording; null if the page belongs to a program.
 export function findRecording(): string | null {
@@ -68,7 +68,7 @@ export class RecordedSource implements Source {
       case "rewind":
         return this.show(recording.nearestFrame(command.step));
       case "speed":
-        if (!(command.value > 0 && command.value < Infinity)) throw new Error("speed: a number above 0 is expected");
+        if (!(command.value > 0 && command.value < Infinity)) throw new Error("speed: expected a number above 0");
         this.speed = command.value;
         return this.tellState();
       case "color":
@@ -91,7 +91,7 @@ export class RecordedSource implements Source {
       return reply as Reply;
     }
     if (query.ask === "vertex") return this.vertex(query.vertex) as Reply;
-    if (query.ask === "tet") throw new Error("a recorded run holds the surface only; aspic view SCENE shows tets live");
+    if (query.ask === "tet") throw new Error("a recorded run contains only the surface; aspic view SCENE shows tets");
     if (query.ask === "mesh") throw new Error("the meshes of a run are the files in its folder frames/");
     throw new Error(kNotRecorded);
   }
@@ -127,7 +127,7 @@ export class RecordedSource implements Source {
   }
 
   private opened(): Recording {
-    if (!this.recording) throw new Error("the recording is not read yet");
+    if (!this.recording) throw new Error("the recording is still being read");
     return this.recording;
   }
 

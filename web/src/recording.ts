@@ -40,7 +40,7 @@ export class Recording extends Pack<RecordingHead> {
 
   constructor(bytes: ArrayBuffer) {
     super(bytes);
-    if (this.head.format !== 1) throw new Error(`the recording has format ${String(this.head.format)}; this page reads 1`);
+    if (this.head.format !== 1) throw new Error(`the recording has format ${String(this.head.format)}; this page reads format 1`);
     this.pointCount = this.floats("point.rest").length / 3;
     this.codes = unpredicted(this.array("positions") as Uint8Array, 3 * this.pointCount);
     for (const [name, stored] of this.arrays) if (name.startsWith("field.") && stored instanceof Uint8Array) this.add(stored);

@@ -15,8 +15,8 @@ export function placeText(state: State): string {
 export function makeTimeline(store: Store, page: Page): HTMLElement {
   const slider = element("input", {
     type: "range",
-    "aria-label": "Timeline: rewinds to a step",
-    title: "Rewinds to a step (Left and Right while it has the focus)",
+    "aria-label": "Timeline: rewind to a step",
+    title: "Rewind to a step (Left and Right while it has the focus)",
     "data-steers": store.source.live,
     step: "1",
   });

@@ -86,7 +86,7 @@ function makeIterate(store: Store, page: Page): HTMLElement {
 function makeSpeed(store: Store): HTMLElement {
   const select = element("select", {
     "aria-label": "Speed",
-    title: "Simulated seconds per second that playing aims at",
+    title: "Target speed: simulated seconds per second",
     "data-steers": store.source.live,
   });
   const offer = (speed: number): void => {
@@ -104,7 +104,7 @@ function makeSpeed(store: Store): HTMLElement {
 
 // Status of the last step in a word, with its explanation as a tooltip.
 function makeStatus(store: Store): HTMLElement {
-  const rate = element("span", { class: "rate faint", title: "Simulated seconds per second of wall time, measured" });
+  const rate = element("span", { class: "rate faint", title: "Measured speed: simulated seconds per second of wall time" });
   const chips = { a: makeChip(), b: makeChip() };
   store.on("state", (state) => {
     rate.textContent = state.rate > 0 ? `${Number(state.rate.toPrecision(2))}x real time` : "";

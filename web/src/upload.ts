@@ -60,7 +60,7 @@ export async function prepareUpload(files: readonly File[]): Promise<Upload> {
     else read.push({ name: file.name, bytes: new Uint8Array(bytes) });
   }
   const main = mainFile(read.map(({ name }) => name));
-  if (!main) throw new Error(`${files.map((file) => file.name).join(", ")}: holds no scene (.toml) and no mesh (.${kMeshes.join(", .")})`);
+  if (!main) throw new Error(`${files.map((file) => file.name).join(", ")}: contains no scene (.toml) and no mesh (.${kMeshes.join(", .")})`);
   const ready = placed(read, main);
   const scene = ready[read.findIndex(({ name }) => name === main)]!.name;
   const packed = await Promise.all(ready.map(async ({ name, bytes }) => ({ name, gzip: await gzipBase64(bytes) })));
@@ -75,7 +75,7 @@ export const isTooLarge = (files: readonly UploadedFile[]): boolean => packedSiz
 
 function tooLarge(bytes: number): Error {
   const size = `${Math.round(bytes / 1e6)} MB`;
-  return new Error(`${size} are too much to be handed over by the page; load it by its path on the machine of the program`);
+  return new Error(`${size} are too large to upload; load the scene by its path on the machine of the program`);
 }
 
 async function gzipBase64(bytes: Uint8Array<ArrayBuffer>): Promise<string> {

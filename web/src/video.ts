@@ -31,7 +31,7 @@ function compose(target: HTMLCanvasElement, views: Layers[]): void {
   const width = widths.reduce((sum, each) => sum + each, 0) & ~1;
   const height = Math.max(0, ...heights) & ~1;
   const context = target.getContext("2d");
-  if (!context || width === 0 || height === 0) throw new Error("there is nothing to be seen");
+  if (!context || width === 0 || height === 0) throw new Error("there is nothing to show");
   if (target.width !== width) target.width = width;
   if (target.height !== height) target.height = height;
   const style = getComputedStyle(document.body);
@@ -70,7 +70,7 @@ export function makeScreenshotButton(store: Store, page: Page, draw: DrawViews):
     const name = `${store.side("a")?.scene.name ?? "aspic"}_${store.state?.a.step ?? 0}`;
     canvas.toBlob((blob) => {
       if (blob) saveFile(fileName(name, "png"), blob);
-      else page.notice("This browser made no picture.", "error");
+      else page.notice("This browser created no picture.", "error");
     }, "image/png");
   };
   return shortcutButton(page, { key: "p", does: "Picture of the view (PNG)", group: "File", run }, { text: "Picture (PNG)" });
@@ -128,7 +128,7 @@ export class Video {
     recorder.ondataavailable = (event) => chunks.push(event.data);
     recorder.onstop = () => {
       stream.getTracks().forEach((track) => track.stop());
-      if (!hasPicture(chunks)) return this.page.notice("The browser made no picture of the video.", "error");
+      if (!hasPicture(chunks)) return this.page.notice("The browser created no picture of the video.", "error");
       const extension = type.startsWith("video/mp4") ? "mp4" : "webm";
       saveFile(fileName(this.store.side("a")?.scene.name ?? "", extension), new Blob(chunks, { type }));
     };

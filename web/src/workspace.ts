@@ -31,9 +31,9 @@ function parseJson(text: string, what: string): Record<string, unknown> {
   try {
     read = JSON.parse(text);
   } catch {
-    throw new Error(`The file is no JSON, so it is no ${what}.`);
+    throw new Error(`The file is not JSON, so it is not a ${what}.`);
   }
-  if (!isTable(read)) throw new Error(`The file is no ${what}.`);
+  if (!isTable(read)) throw new Error(`The file is not a ${what}.`);
   return read;
 }
 
@@ -52,11 +52,11 @@ function parseFiles(value: unknown): UploadedFile[] | null {
 // Contents of a file. Throws an error with a message; ignores unknown parts.
 export function parseWorkspace(text: string): Workspace {
   const read = parseJson(text, "workspace");
-  if (!("aspic_workspace" in read)) throw new Error("The file is no workspace of Aspic: it has no aspic_workspace.");
+  if (!("aspic_workspace" in read)) throw new Error("The file is not a workspace of Aspic: it has no aspic_workspace.");
   if (read.aspic_workspace !== 1) {
-    throw new Error(`The workspace is of version ${String(read.aspic_workspace)}; this page reads version 1.`);
+    throw new Error(`The workspace has version ${String(read.aspic_workspace)}; this page reads version 1.`);
   }
-  if (typeof read.scene !== "string") throw new Error("The workspace names no scene.");
+  if (typeof read.scene !== "string") throw new Error("The workspace contains no scene.");
   const settings = isTable(read.settings) ? read.settings : {};
   const files = parseFiles(read.files);
   return {
@@ -74,7 +74,7 @@ export function parseWorkspace(text: string): Workspace {
 export function parseRecording(text: string): Recording {
   const read = parseJson(text, "recording");
   if (typeof read.scene !== "string" || !Array.isArray(read.events) || typeof read.steps !== "number") {
-    throw new Error("The file is no recording of the mouse: it has no scene, events and steps.");
+    throw new Error("The file is not a mouse recording: it has no scene, events and steps.");
   }
   return read as unknown as Recording;
 }
@@ -126,7 +126,7 @@ function restorePage(workspace: Workspace, page: Page): void {
     try {
       keeper.restore(workspace.page[name]);
     } catch {
-      page.notice(`The workspace's "${name}" does not fit this page and was left out.`);
+      page.notice(`The workspace's "${name}" does not fit this page and was ignored.`);
     }
   }
 }

@@ -14,9 +14,9 @@ const kDeepest = 1.5; // end of the slider, in tip radii
 export class TipForm {
   readonly element = element("section", { class: "capture-tip", "aria-label": "Tip" });
   private readonly slider = element("input", { type: "range", min: "0", max: "1", step: "any", "aria-label": "Depth, slider" });
-  private readonly depth = numberField("Depth [m]", "How far the tip is pressed in from where it touched", 0, {}, (value) => this.press(value));
+  private readonly depth = numberField("Depth [m]", "Indentation since first contact", 0, {}, (value) => this.press(value));
   private readonly radius: ReturnType<typeof numberField>;
-  private readonly lift = button({ text: "Lift", title: "Take the tip away", steers: true }, () => this.store.source.send({ do: "lift" }));
+  private readonly lift = button({ text: "Lift", title: "Remove the tip", steers: true }, () => this.store.source.send({ do: "lift" }));
   private probe: ProbeState | null = null;
   private readonly asked = new AskedDepths();
   private held = false;
@@ -32,12 +32,12 @@ export class TipForm {
     );
     const contact = choice(
       "held",
-      "Bonded: glued to what it touches, so that it can also pull. Sliding: pushes without friction.",
+      "Bonded: the tip sticks to the surface and can also pull. Sliding: it pushes without friction.",
       [["bonded", "glued on"], ["sliding", "sliding"]],
       settings.tipContact,
       (value) => display.change({ tipContact: value as TipChoice["contact"] }),
     );
-    this.radius = numberField("Radius [m]", "Of the next tip; 0: the program chooses", settings.tipRadius, { min: 0 }, (value) =>
+    this.radius = numberField("Radius [m]", "Radius of the next tip; 0: chosen by the program", settings.tipRadius, { min: 0 }, (value) =>
       display.change({ tipRadius: value }),
     );
     display.on("changed", () => {

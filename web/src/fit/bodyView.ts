@@ -140,7 +140,7 @@ export class BodyView {
     try {
       return new Stage(this.canvas);
     } catch {
-      this.element.append(element("div", { class: "view-message" }, "This browser does not draw in 3-D: WebGL 2 is missing or switched off. Plots and numbers work without it."));
+      this.element.append(element("div", { class: "view-message" }, "This browser cannot draw in 3-D: WebGL 2 is missing or disabled. Plots and numbers work without it."));
       return null;
     }
   }

@@ -54,11 +54,11 @@ export function loadChart(name: string, curve: GroupCurve): Chart {
   const hasFitted = curve.fitted.some((v) => v !== null);
   const shape = curve.x.length > 2 ? "line" : "both";
   const curves: Curve[] = [
-    ...(hasFitted ? [{ key: "fitted", label: "fitted", meaning: "by the fitted material", color: "series1", width: 2, shape } as Curve] : []),
+    ...(hasFitted ? [{ key: "fitted", label: "fitted", meaning: "predicted by the fitted material", color: "series1", width: 2, shape } as Curve] : []),
     ...(hasHeldOut
-      ? [{ key: "heldOut", label: curve.leftOut ? "predicted" : "held out", meaning: "predicted by a material that was fitted without this group", color: "series2", width: 2, dash: [6, 4], shape } as Curve]
+      ? [{ key: "heldOut", label: curve.leftOut ? "predicted" : "held out", meaning: "predicted by a fit without this group", color: "series2", width: 2, dash: [6, 4], shape } as Curve]
       : []),
-    { key: "measured", label: "measured", meaning: "as measured, ± one standard deviation", color: "text", shape: "points" },
+    { key: "measured", label: "measured", meaning: "measured, ± one standard deviation", color: "text", shape: "points" },
   ];
   const columns: Record<string, MaybeNumber[]> = { measured: curve.measured, fitted: curve.fitted, heldOut: curve.heldOut };
   const spread = curve.measured.flatMap((m, i) => (m === null ? [] : [m - curve.deviation[i], m + curve.deviation[i]]));
@@ -92,8 +92,8 @@ export function histogramChart(values: readonly number[]): Chart {
     x: { label: "residual [standard deviations]" },
     y: { label: "readings" },
     curves: [
-      { key: "count", label: "residuals", meaning: "(fitted − measured) / standard deviation; those beyond ±4 stand at the ends", color: "series1", shape: "bars" },
-      { key: "normal", label: "normal", meaning: "what noise of the stated deviations would leave", color: "series2", width: 2 },
+      { key: "count", label: "residuals", meaning: "(fitted − measured) / standard deviation; values beyond ±4 are in the outermost bins", color: "series1", shape: "bars" },
+      { key: "normal", label: "normal", meaning: "expected from noise with the given standard deviations", color: "series2", width: 2 },
     ],
     legend: "top",
     read: (key, x) => (x === null ? [] : [short(valueAt(middle, columns[key], x), 3)]),
@@ -114,7 +114,7 @@ export function caseChart(names: readonly string[], ofCase: readonly MaybeNumber
     y: { label: "rms [standard deviations]" },
     curves: [
       { key: "rms", label: "of a case", color: "series1", shape: "bars" },
-      { key: "one", label: "as expected", meaning: "1: as close as the standard deviations say", color: "series2", dash: [6, 4] },
+      { key: "one", label: "as expected", meaning: "1: consistent with the standard deviations", color: "series2", dash: [6, 4] },
     ],
     legend: "top",
     read: (key, at) => (key === "rms" && at !== null ? [short(valueAt(x, ofCase, at), 3)] : []),
@@ -140,12 +140,12 @@ export function weightChart(head: FitHead): Chart | null {
   const log = Math.max(...misfit) > 30 * Math.min(...misfit);
   const target = trials.map(() => 1);
   chart.configure({
-    label: "Misfit against roughness for every weight that was tried",
+    label: "Misfit against roughness for every trial weight",
     x: { label: "roughness R, as a power of ten" },
     y: { label: "|r|² per reading", log },
     curves: [
-      { key: "trials", label: "weights tried", color: "series1", width: 2, shape: "both" },
-      { key: "target", label: "noise", meaning: "1: what the standard deviations leave", color: "series7", dash: [6, 4] },
+      { key: "trials", label: "trial weights", color: "series1", width: 2, shape: "both" },
+      { key: "target", label: "noise", meaning: "1: consistent with the standard deviations", color: "series7", dash: [6, 4] },
     ],
     legend: "top",
     read: (key, at) => (key === "trials" && at !== null ? [`weight ${short(valueAt(x, trials.map((t) => t.weight), at), 3)}`] : []),
@@ -188,8 +188,8 @@ export function historyChart(head: FitHead): Chart | null {
   };
   const curves: Curve[] = [
     { key: "misfit", label: "misfit", meaning: "|r|²/2", color: "series1", width: 2, shape: "both" },
-    { key: "prior", label: "weight · R", meaning: "what the smoothness and the prior cost", color: "series3", width: 2, shape: "both" },
-    { key: "decrement", label: "decrement", meaning: "how far the fit is from its minimum, in standard deviations of what is known", color: "series2", width: 1.5, dash: [6, 4], shape: "both" },
+    { key: "prior", label: "weight · R", meaning: "penalty of smoothness and prior", color: "series3", width: 2, shape: "both" },
+    { key: "decrement", label: "decrement", meaning: "distance from the minimum in posterior standard deviations", color: "series2", width: 1.5, dash: [6, 4], shape: "both" },
   ];
   chart.configure({
     label: "Misfit, prior and decrement over the iterations",

@@ -130,7 +130,7 @@ export async function unpackFit(text: string): Promise<Fit> {
   const packed = Uint8Array.from(atob(text.trim()), (character) => character.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
   const fit = new Pack<FitHead>(await new Response(stream).arrayBuffer());
-  if (fit.head.format !== 1) throw new Error(`the fit has format ${String(fit.head.format)}; this page reads 1`);
+  if (fit.head.format !== 1) throw new Error(`the fit has format ${String(fit.head.format)}; this page reads format 1`);
   return fit;
 }
 
@@ -355,7 +355,7 @@ export function verdict(head: FitHead): Said {
   const { fit } = head;
   const said = head.verdict?.text ?? "";
   if (head.verdict) return { text: head.verdict.text, kind: head.verdict.good ? "good" : "bad", reasons: head.verdict.reasons.map(({ text }) => text).filter((text) => !said.includes(text)) };
-  if (fit.interrupted) return { text: "Interrupted: this is what was reached. The same command with --resume continues.", kind: "bad", reasons: [] };
+  if (fit.interrupted) return { text: "Interrupted before convergence. Run the same command with --resume to continue.", kind: "bad", reasons: [] };
   if (!fit.success) return { text: `Not converged: ${fit.words}. Do not rely on it.`, kind: "bad", reasons: [] };
   return { text: fit.words, kind: "plain", reasons: [] };
 }

@@ -24,10 +24,10 @@ export class Misfits {
     private readonly body: FittedBody,
     rig: CameraRig,
   ) {
-    this.view = new BodyView(body, rig, "The worst markers on the body");
+    this.view = new BodyView(body, rig, "Largest marker residuals on the body");
     this.view.showWires(false);
     const cases: [string, string][] = [["all", "all cases"], ...fit.head.cases.map((c, i): [string, string] => [String(i), c.name])];
-    const pick = choice("worst markers of", "Whose errors are drawn", cases, "all", (value) => this.show(value === "all" ? null : Number(value)));
+    const pick = choice("worst markers of", "Case whose residuals are drawn", cases, "all", (value) => this.show(value === "all" ? null : Number(value)));
     const titles = ["marker", "case", "error", "standard deviations"];
     this.element = element(
       "div",
@@ -59,7 +59,7 @@ export class Misfits {
     const size = this.body.size;
     const notes: Note[] = worst.slice(0, 1).map((w) => ({ at: vectorAt(rest, w.marker), words: `marker ${markerName(this.fit.head, w.marker)}: ${withUnit(length(w.error), "m", 3)}` }));
     this.view.mark([makeArrows(arrows, 0.005 * size, "#d55e00"), makeBalls(arrows.map((a) => a.from), 0.006 * size, "#1b1f27")], notes);
-    this.note.textContent = worst.length > 0 ? `Arrows are drawn ${short(scale, 3)} times as long as the errors, at the markers' places at rest.` : "No positions were read in this case.";
+    this.note.textContent = worst.length > 0 ? `Arrows are ${short(scale, 3)} times as long as the residuals, at the rest positions of the markers.` : "This case has no measured positions.";
     this.table.replaceChildren(...worst.slice(0, kRows).map((w) => this.row(w)));
   }
 

@@ -10,8 +10,8 @@ import type { Store } from "../store";
 import type { Display } from "../view/display";
 
 const kHint =
-  "Click the body: a tip touches it there. Drag on to press it in; the gauge shows the force. A stiff place pushes back harder: " +
-  "from many such pokes one can tell what is inside.";
+  "Click the body to touch it with a tip. Drag on to press it in; the gauge shows the force. Stiff places need a larger force: " +
+  "many pokes together reveal the stiffness inside.";
 
 export function makeCapturePanel(store: Store, page: Page, display: Display): Panel {
   return new CapturePanel(store, page, display);

@@ -44,14 +44,14 @@ class EnergyPanel implements Panel {
   private readonly typed = numberField("", "Length of the window [s]", 1, { min: 1e-6 }, () => this.setWindow());
   private readonly windows = choice(
     "Window",
-    "Which part of the time is shown; drag in the plot to zoom, double-click for all",
+    "Visible range of time; drag in the plot to zoom, double-click for all",
     kWindows,
     "all",
     () => this.setWindow(),
   );
   private readonly logSwitch = checkbox(
     "log",
-    "Logarithmic axis, of absolute values; zeros have no place on it",
+    "Logarithmic axis of absolute values; zeros are omitted",
     false,
     () => this.configure(),
   );
@@ -67,7 +67,7 @@ class EnergyPanel implements Panel {
   ) {
     this.typed.element.hidden = true;
     const bar = element("div", { class: "plot-bar" }, this.windows.element, this.typed.element, this.logSwitch.element);
-    bar.append(button("CSV", "Save every column with all its digits", () => this.saveCsv()));
+    bar.append(button("CSV", "Save all columns as CSV with all digits", () => this.saveCsv()));
     bar.append(
       button("PNG", "Save the plot as a picture", () => this.savePng()),
       this.note,
@@ -241,8 +241,8 @@ class EnergyPanel implements Panel {
       return `${name}${balanceText(drift, scale)}`;
     });
     const dashes = this.ledgers.b ? [`${this.store.side("b")?.scene.label || "b"} is dashed`] : [];
-    const logText = this.logSwitch.input.checked ? ["absolute values; zeros are left out"] : [];
-    const wild = !this.logSwitch.input.checked && this.calmRange() ? ["one side leaves the plot; log shows it"] : [];
+    const logText = this.logSwitch.input.checked ? ["absolute values; zeros are omitted"] : [];
+    const wild = !this.logSwitch.input.checked && this.calmRange() ? ["one side exceeds the plot; use log to see it"] : [];
     const text = [...texts.filter((t) => t !== ""), ...dashes, ...wild, ...logText].join(" · ");
     if (this.note.textContent !== text) this.note.textContent = text;
   }

@@ -64,7 +64,7 @@ function addTrials(reply: FunctionReply, iteration: number, marks: Mark[], signs
 }
 
 function addModel(reply: FunctionReply, grid: Grid, marks: Mark[], signs: Sign[]): void {
-  signs.push({ sign: "▇", color: "series2", text: "this iteration's quadratic model" });
+  signs.push({ sign: "▇", color: "series2", text: "quadratic model of this iteration" });
   const lowest = minimizerOf(reply.model);
   if (!lowest) return void signs.push({ sign: "◆", color: "series4", text: "the model has no minimum" });
   const value = quadraticAt(reply.model, lowest.x, lowest.y);
@@ -89,6 +89,6 @@ function addEnds(reply: FunctionReply, look: FunctionLook, marks: Mark[], signs:
   const [x, y] = look.start;
   marks.push({ x, y, value: null, shape: "ring", color: "bad", size: 13, label: "start: drag me" });
   signs.push({ sign: "●", color: "accent", text: "this iteration begins here" });
-  signs.push({ sign: "●", color: "good", text: "and ends here" });
+  signs.push({ sign: "●", color: "good", text: "this iteration ends here" });
   signs.push({ sign: "•─", color: "text", text: "iterates so far" });
 }

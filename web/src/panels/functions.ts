@@ -44,13 +44,13 @@ class PlanarPanel implements FunctionsPanel {
     "aria-label": "Iteration",
   });
   private readonly where = element("strong");
-  private readonly playButton = button("▶ play", "Goes through the iterations", () => this.togglePlay());
-  private readonly model = checkbox("quadratic model", "Shows the model that this iteration minimized", true, () =>
+  private readonly playButton = button("▶ play", "Play the iterations", () => this.togglePlay());
+  private readonly model = checkbox("quadratic model", "Show the quadratic model that this iteration minimized", true, () =>
     this.draw(),
   );
   private readonly log = checkbox(
     "log height",
-    "Heights by the logarithm of f above its lowest value here",
+    "Logarithmic heights above the lowest value of f here",
     false,
     () => this.draw(),
   );

@@ -89,7 +89,7 @@ function drawTotals(list: HTMLElement, steps: readonly StepRow[]): void {
     entry("steps", String(all.steps)),
     entry("converged", `${all.steps - all.failed} of ${all.steps}`, all.failed ? "bad" : "good"),
     entry("iterations", `${all.iterations}, ${all.steps ? (all.iterations / all.steps).toFixed(1) : "0"} per step`),
-    entry("largest residual / wanted", at(all.worstExcess, excess)),
+    entry("largest residual / threshold", at(all.worstExcess, excess)),
     entry("smallest det F", at(all.smallestVolume, (row) => row.min_det_F), all.inverted ? "bad" : ""),
     ...(all.inverted ? [entry("steps with inverted tets", `${all.inverted} of ${all.steps}`, "bad")] : []),
     entry("largest ledger error [J]", at(all.largestError, (row) => row.ledger_error)),
@@ -106,7 +106,7 @@ function makeScene(store: Store, page: Page): HTMLElement {
   const save = button({ text: "Save", label: "Save the scene" }, () => {
     if (file) saveFile(file.name, new Blob([file.text], { type: "text/plain" }));
   });
-  const details = element("details", {}, element("summary", {}, "Scene, with every default filled in"), save, code);
+  const details = element("details", {}, element("summary", {}, "Complete scene with all defaults"), save, code);
   const load = async (): Promise<void> => {
     if (!details.open) return;
     try {
@@ -138,7 +138,7 @@ export function makeReportPanel(store: Store, page: Page): Panel {
     drawTotals(list, side?.steps ?? []);
     const reported = side?.scene.notes ?? [];
     aboutScene.hidden = reported.length === 0;
-    notesTitle.textContent = `What was chosen for this scene: ${plural(reported.length, "note")}`;
+    notesTitle.textContent = `Choices of the program for this scene: ${plural(reported.length, "note")}`;
     notes.replaceChildren(...reported.map((note) => element("li", {}, note)));
     table.draw();
   };

@@ -60,7 +60,7 @@ export class Settings {
       { key: "z", does: "Undo the last change of a setting", group: "Simulation", run: () => void this.undo() },
       { text: "Undo", steers: true },
     );
-    const title = "Every setting as it was when the scene was loaded; the motion continues from here";
+    const title = "Restore the loaded value of every setting; the motion continues";
     this.resetter = button({ text: "Reset settings", title, steers: true }, () => void this.reset());
     const actions = element("div", { class: "setting-actions" }, this.undoer, this.resetter);
     actions.hidden = !store.source.live;
@@ -132,7 +132,7 @@ export class Settings {
     const names = Object.fromEntries(kMaterials.map(({ name }) => [name, name]));
     this.material = folder.add({ value: "" }, "value", { "choose ...": "", ...names }).name("Typical values");
     this.material.onChange((name: string) => void this.takeMaterial(name));
-    this.material.$name.title = "Published moduli, with their source, and typical ones.\nmaterial.young, material.poisson, material.density";
+    this.material.$name.title = "Published moduli with their source, and typical values.\nmaterial.young, material.poisson, material.density";
     const options = [...this.material.domElement.querySelectorAll("option")];
     kMaterials.forEach(({ source }, i) => (options[i + 1].title = source));
   }
@@ -185,7 +185,7 @@ export class Settings {
       const changes = this.history.pop().filter((change) => this.changes(change));
       if (changes.length > 0) return this.carryOut(changes);
     }
-    this.page.notice("No change of a setting is left to be undone.");
+    this.page.notice("There is no change of a setting to undo.");
   }
 
   private async reset(): Promise<void> {
@@ -194,7 +194,7 @@ export class Settings {
       const scene = this.store.side(side ?? "a")?.scene;
       return scene ? toLoaded(scene, side) : [];
     });
-    if (changes.length === 0) return this.page.notice("Every setting is as it was loaded.");
+    if (changes.length === 0) return this.page.notice("All settings have their loaded values.");
     this.newest = { key: "", at: 0 };
     this.history.add("reset", changes.flatMap(({ key, side }) => backTo(this.store.side(side ?? "a")!.scene, key, side)).reverse());
     await this.carryOut(changes);
@@ -241,7 +241,7 @@ export class Settings {
     const range = { min: 1, max: 1e6, log: true, kind: "number" } as const;
     const row = new NumberRow(folder, "stiffness of the mouse's spring [N/m]", { value: 1000 }, range);
     row.name("stiffness [N/m]");
-    row.$name.title = "Of the spring between the mouse and the point of the body that it drags";
+    row.$name.title = "Stiffness of the spring between the mouse and the dragged point";
     const sender = new Newest<number>(
       (value) => this.store.source.request({ do: "stiffness", value }),
       (reason) => this.page.notice(messageOf(reason), "error"),
@@ -254,7 +254,7 @@ export class Settings {
   private makeSurface(): HTMLSelectElement {
     const select = element(
       "select",
-      { "data-steers": true, title: "What is shown: the fine skin that the tets carry, or the boundary of the tets" },
+      { "data-steers": true, title: "Visible surface: the fine skin embedded in the tets, or the boundary of the tets" },
       element("option", { value: "skin" }, "fine skin"),
       element("option", { value: "cage" }, "cage of tets"),
     );

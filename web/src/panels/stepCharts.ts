@@ -59,10 +59,10 @@ function convergence(rows: readonly IterationRow[]): Plan {
         curve(
           "energy",
           "E − lowest E",
-          "the objective before the iteration, above its lowest value in this step",
+          "objective before the iteration, above its lowest value in this step",
           "series2",
         ),
-        curve("decrement", "decrement", "−g·d / 2: what the quadratic model promises", "series3"),
+        curve("decrement", "decrement", "−g·d / 2: decrease that the quadratic model predicts", "series3"),
       ],
     },
     x: rows.map((_, i) => i),
@@ -147,7 +147,7 @@ function planOf(name: Exclude<ChartName, "search">, chosen: Chosen, steps: reado
     case "convergence":
       return convergence(rows);
     case "alpha":
-      return counted(rows, "α", "accepted step length; 0: none was found", (r) => r.alpha, "both");
+      return counted(rows, "α", "accepted step length; 0: no acceptable step", (r) => r.alpha, "both");
     case "time":
       return stages(rows);
     case "inner":
@@ -156,7 +156,7 @@ function planOf(name: Exclude<ChartName, "search">, chosen: Chosen, steps: reado
       return counted(
         rows,
         "projected elements",
-        "elements whose Hessian was made definite",
+        "elements with a modified Hessian",
         (r) => r.projected_elements,
         "bars",
       );
@@ -182,7 +182,7 @@ export class StepChart {
     private readonly steps: () => readonly StepRow[],
     changed: () => void,
   ) {
-    this.select = choice("", "What this chart shows", kCharts, name, changed);
+    this.select = choice("", "Content of this chart", kCharts, name, changed);
     this.element.append(this.select.element, this.empty, this.fill);
   }
 
@@ -213,7 +213,7 @@ export class StepChart {
     const name = this.name as Exclude<ChartName, "search">;
     const plan = planOf(name, this.chosen, this.steps(), this.chart.width);
     this.plan = plan;
-    this.empty.textContent = plan.x.length === 0 ? "No iteration of a minimizer is known here." : "";
+    this.empty.textContent = plan.x.length === 0 ? "No iteration of a minimizer is available." : "";
     this.chart.element.hidden = plan.x.length === 0;
     if (this.configured !== name) {
       this.configured = name;

@@ -46,12 +46,12 @@ export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
     ...terms,
     line("potential_total", "V", "potential energy, the sum of its terms", "series1", 2),
     line("total", "T + V", "kinetic plus potential energy", "text", 2.5),
-    line("mouse_work", "work of the mouse", "by the mouse's spring, summed over the steps", "series8", 1.5, true),
-    line("probe_work", "work of the probe", "by the tip that is pressed in, summed over the steps", "series10", 1.5, true),
-    line("pin_work", "work of pins", "by moving pins and targets, summed over the steps", "series9", 1.5, true),
+    line("mouse_work", "work of the mouse", "work of the mouse's spring, summed over the steps", "series8", 1.5, true),
+    line("probe_work", "work of the probe", "work of the tip, summed over the steps", "series10", 1.5, true),
+    line("pin_work", "work of pins", "work of moving pins and spring targets, summed over the steps", "series9", 1.5, true),
     line("damping_loss", "damping loss", "dissipated by damping, summed over the steps", "series7", 1.5, true),
     line("numerical_loss", "numerical loss", "dissipated by the integrator, summed over the steps", "bad", 1.5, true),
-    line("balance", "balance", "T + V − works + losses: flat where every step was solved accurately", "good", 2.5),
+    line("balance", "balance", "T + V − works + losses: constant if every step is solved accurately", "good", 2.5),
   ];
 }
 
@@ -194,7 +194,7 @@ function negated(value: MaybeNumber): MaybeNumber {
 }
 
 export function explosionText(peak: number): string {
-  return Number.isFinite(peak) ? `exploded: T + V rose to ${withUnit(peak, "J", 3)} out of nothing` : "exploded: T + V is no number any more";
+  return Number.isFinite(peak) ? `exploded: T + V rose to ${withUnit(peak, "J", 3)} without work` : "exploded: T + V is not finite";
 }
 
 export function balanceText(drift: number, scale: number): string {

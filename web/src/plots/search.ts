@@ -178,7 +178,7 @@ function curvesOf(search: Search, symbol: string): Curve[] {
     curves.push({
       key: "textbook",
       label: search.test === "slide" ? "Armijo line (textbook)" : "Armijo line: accepted below it",
-      meaning: "E + c α g·d, which the textbook's test asks for",
+      meaning: "E + c α g·d, the bound of the textbook's test",
       color: "series3",
       dash: [2, 3],
     });
@@ -186,7 +186,7 @@ function curvesOf(search: Search, symbol: string): Curve[] {
     curves.push({
       key: "slide",
       label: "slide's line: accepted below it",
-      meaning: "E + c g·d, as printed in the lecture",
+      meaning: "E + c g·d, the bound as printed in the lecture",
       color: "series4",
       dash: [2, 3],
     });

@@ -114,7 +114,7 @@ export class SurfaceView {
     try {
       this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
     } catch {
-      this.element.textContent = "This browser draws no 3-D pictures (WebGL is off).";
+      this.element.textContent = "This browser cannot draw in 3-D: WebGL is disabled.";
       return;
     }
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));

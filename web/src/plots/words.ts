@@ -26,7 +26,7 @@ function paceText(rows: readonly IterationRow[]): string {
   const factor = short(Number(found.factor.toPrecision(found.factor < 2 ? 3 : 2)));
   switch (found.pace) {
     case "squaring":
-      return ` The gradient fell ever faster, the last time by a factor of ${factor}: close to the minimum each iteration about squares the error.`;
+      return ` The gradient fell faster in each iteration, the last time by a factor of ${factor}: near the minimum each iteration about squares the error.`;
     case "faster":
       return ` The gradient fell faster from one iteration to the next, the last time by a factor of ${factor}.`;
     case "steady":
@@ -43,20 +43,20 @@ function residualText(row: StepRow): string {
 
 function shortened(rows: readonly IterationRow[]): string {
   const less = rows.filter((row) => row.trials.filter((trial) => !trial.accepted).length > 0).length;
-  return less > 0 ? ` In ${plural(less, "iteration")} the line search rejected the first trial and went less far.` : "";
+  return less > 0 ? ` In ${plural(less, "iteration")} the line search rejected the first trial and accepted a shorter step.` : "";
 }
 
 export function stepText(row: StepRow, implicit: boolean): string {
   if (row.explanation)
     return `${sentence(row.explanation.cause)}${row.explanation.place ? ` ${sentence(row.explanation.place)}` : ""}${row.explanation.remedy ? ` ${sentence(row.explanation.remedy)}` : ""}`;
-  if (!implicit) return "Nothing is minimized: this scheme computes the next positions from the forces at hand.";
+  if (!implicit) return "This integrator does not minimize: it computes the next positions from the present forces.";
   const count = plural(row.iterations.length, "iteration");
   if (!row.converged)
     return `Not converged (${statusName(row.status)}) after ${count}${residualText(row) ? `: ${residualText(row)}` : ""}.`;
   if (row.iterations.length === 0)
-    return `Converged: ${residualText(row) || "the criterion is met"}. It needed no iteration, or they are no longer kept.`;
+    return `Converged: ${residualText(row) || "the criterion is met"}. It needed no iteration, or its iterations are no longer stored.`;
   if (row.status === "round_off")
-    return `As good as double precision allows, after ${count}: the energy no longer changes by more than round-off.`;
+    return `Converged to round-off after ${count}: the energy no longer changes by more than round-off.`;
   return `Converged in ${count}: ${residualText(row) || "the criterion is met"}.${paceText(row.iterations)}${shortened(row.iterations)}`;
 }
 

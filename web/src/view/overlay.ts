@@ -59,7 +59,7 @@ function isLight(color: string): boolean {
 
 export function png(canvas: HTMLCanvasElement): Promise<Blob> {
   return new Promise((resolve, reject) =>
-    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the view has no pixels"))), "image/png"),
+    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the view has no size"))), "image/png"),
   );
 }
 

@@ -89,7 +89,7 @@ export class DepthGrid {
     }
   }
 
-  // Whether a point at a pixel and depth is in front of everything, up to `slack`.
+  // Whether a point at a pixel and depth is visible: at most `slack` behind the nearest surface.
   sees(x: number, y: number, depth: number, slack: number): boolean {
     const i = Math.floor((x - this.left) / this.cell);
     const j = Math.floor((y - this.top) / this.cell);

@@ -248,8 +248,8 @@ export class Touch {
   private tellWhyNot(): void {
     const { store, page } = this.view;
     if (this.mayTouch() || this.view.display.settings.tool === "read") return;
-    if (!store.source.live) page.notice("This run is recorded: it can be looked at, not touched.");
-    else page.notice("This page only watches, so dragging turns the camera. Take the controls to touch the body.");
+    if (!store.source.live) page.notice("This run is recorded; the body cannot be dragged.");
+    else page.notice("This page only watches, so dragging turns the camera. Press Steer to drag the body.");
   }
 
   private pick(at: [number, number]): Hit | null {

@@ -140,14 +140,14 @@ export class View implements Touched {
 
   private makeStage(): Stage | null {
     const { signal } = this.listeners;
-    const lost = (): void => this.say("The graphics card is busy; the picture comes back by itself.");
+    const lost = (): void => this.say("The graphics card is busy; the picture will return.");
     this.glCanvas.addEventListener("webglcontextlost", lost, { signal });
     this.glCanvas.addEventListener("webglcontextrestored", () => this.restored(), { signal });
     try {
       return new Stage(this.glCanvas);
     } catch {
       this.say(
-        "This browser does not draw in 3-D: WebGL 2 is missing or switched off. Switch on hardware acceleration in its " +
+        "This browser cannot draw in 3-D: WebGL 2 is missing or disabled. Enable hardware acceleration in its " +
           "settings, or use a current Firefox, Chromium or Safari. Plots and numbers work without it.",
       );
       return null;
@@ -232,7 +232,7 @@ export class View implements Touched {
   private tellUnnumbered(): void {
     const missing = this.display.settings.vertexLabels && this.figure.body?.numbered === false;
     if (missing && !this.toldUnnumbered)
-      this.page.notice("The points of the fine skin have no numbers; the cage's vertices have.");
+      this.page.notice("Points of the fine skin have no numbers; choose the cage of tets to see numbers.");
     this.toldUnnumbered = missing;
   }
 

@@ -21,7 +21,7 @@ async function endCompare({ page, until }) {
   await page.waitForFunction(() => document.querySelectorAll(".side").length === 1);
 }
 
-test("each offered comparison opens two sides, which advance together", async () => {
+test("each preset comparison advances two sides together", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   const all = presets(heard.scenes.a);
@@ -53,7 +53,7 @@ test("each offered comparison opens two sides, which advance together", async ()
   await close();
 });
 
-test("the cameras are one, and so is the mouse; the legend and the note name both sides", async () => {
+test("both sides share camera, mouse and legend", async () => {
   const opened = await openSession(program, { keepsPixels: true });
   const { page, heard, until, close } = opened;
   await compare(opened, "Ten times as stiff");
@@ -91,7 +91,7 @@ test("the cameras are one, and so is the mouse; the legend and the note name bot
   await close();
 });
 
-test("settings of the sides are set apart or together", async () => {
+test("settings change per side or for both", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   await compare(opened, "Half the time step");
@@ -107,7 +107,7 @@ test("settings of the sides are set apart or together", async () => {
   await close();
 });
 
-test("what cannot be compared is reported in the dialog", async () => {
+test("impossible comparisons are reported in the dialog", async () => {
   const opened = await openSession(program);
   const { page, heard, close } = opened;
   await page.keyboard.press("c");

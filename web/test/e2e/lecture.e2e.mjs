@@ -12,7 +12,7 @@ async function openList(opened) {
   await opened.page.locator("#left ol.lessons li").first().waitFor();
 }
 
-test("each page of the lecture opens its scene and its panel, and says what to look at", async () => {
+test("each lecture page opens scene and panel", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   await openList(opened);
@@ -39,7 +39,7 @@ test("each page of the lecture opens its scene and its panel, and says what to l
   await close();
 });
 
-test("the recorded mouse plays until the reader takes over", async (t) => {
+test("the recorded mouse plays until a grab", async (t) => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   await openList(opened);
@@ -76,7 +76,7 @@ test("the recorded mouse plays until the reader takes over", async (t) => {
   await close();
 });
 
-test("the list is searched, and turned page by page", async () => {
+test("the lecture is searched and paged", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   await openList(opened);

@@ -37,7 +37,7 @@ async function savedMesh(page, format) {
   return read(await downloaded(page, () => dialog.getByRole("button", { name: "Save" }).click()));
 }
 
-test("a drag while paused says how to play, and the saved scene repeats it", async () => {
+test("a paused drag is saved with the scene", async () => {
   const opened = await openSession(program);
   const { page, until, close } = opened;
   await atStep(opened, 1);
@@ -104,7 +104,7 @@ test("the motion is exported for other programs", async () => {
   await close();
 });
 
-test("the gallery opens a scene and remembers it", async () => {
+test("the gallery opens and remembers a scene", async () => {
   const opened = await openSession(program);
   const { page, until, close } = opened;
   await page.keyboard.press("Shift+O");
@@ -122,7 +122,7 @@ test("the gallery opens a scene and remembers it", async () => {
   await close();
 });
 
-test("a mesh dropped onto the page is simulated, saved with its mesh, and travels", async () => {
+test("a dropped mesh is simulated and saved", async () => {
   const opened = await openSession(program);
   const { page, until, heard, close } = opened;
   await drop(page, [["notes.txt", "hello"]]);
@@ -159,7 +159,7 @@ test("a mesh dropped onto the page is simulated, saved with its mesh, and travel
   await close();
 });
 
-test("a body in free fall has left the view and not blown up", async () => {
+test("a falling body leaves without a blow-up", async () => {
   const falling = await startProgram("scenes/free_fall.toml", ["--set", "time.step=0.05"]);
   const opened = await openSession(falling);
   const { page, until, heard, close } = opened;

@@ -28,7 +28,7 @@ async function withSteps(options) {
   return opened;
 }
 
-test("every shortcut of the list does something that goes well", async () => {
+test("every listed shortcut works without errors", async () => {
   const opened = await withSteps();
   const { page, errors, until, close } = opened;
   await page.keyboard.press("?");
@@ -70,7 +70,7 @@ async function nameless(page, context) {
   return reported;
 }
 
-test("every control has a name, in every panel and dialog", async () => {
+test("every control has an accessible name", async () => {
   const opened = await withSteps();
   const { page, close } = opened;
   await openFolders(page);
@@ -90,7 +90,7 @@ test("every control has a name, in every panel and dialog", async () => {
   await close();
 });
 
-test("the Tab key reaches every control that is shown", async () => {
+test("Tab reaches every visible control", async () => {
   const opened = await withSteps();
   const { page, close } = opened;
   await page.evaluate(() => document.body.focus());
@@ -112,7 +112,7 @@ test("the Tab key reaches every control that is shown", async () => {
   await close();
 });
 
-test("every control of the view's display can be used, and nothing breaks", async () => {
+test("every display control works without errors", async () => {
   const opened = await withSteps();
   const { page, errors, until, close } = opened;
   await openFolders(page);

@@ -43,7 +43,7 @@ async function typeInto(field, text) {
   await field.press("Enter");
 }
 
-test("every setting has a row, and takes another value", async () => {
+test("every setting accepts another value", async () => {
   const opened = await openSettings();
   const { page, heard, close } = opened;
   const settings = heard.scenes.a.settings;
@@ -86,7 +86,7 @@ test("every setting has a row, and takes another value", async () => {
   await close();
 });
 
-test("every slider moves its value by the keyboard", async () => {
+test("every slider follows the keyboard", async () => {
   const opened = await openSettings();
   const { page, heard, close } = opened;
   for (const { key, kind } of heard.scenes.a.settings.filter((setting) => setting.kind === "number" || setting.kind === "integer")) {
@@ -103,7 +103,7 @@ test("every slider moves its value by the keyboard", async () => {
   await close();
 });
 
-test("every choice of every setting is taken or refused in words, and a step can be taken with it", async () => {
+test("every choice is accepted or refused", async () => {
   const opened = await openSettings();
   const { page, heard, until, close } = opened;
   for (const { key, choices, value: first } of heard.scenes.a.settings.filter(({ kind }) => kind === "choice")) {
@@ -124,7 +124,7 @@ test("every choice of every setting is taken or refused in words, and a step can
   await close();
 });
 
-test("what is typed wrongly is refused in words, put back, and the simulation continues", async () => {
+test("wrong input is refused and restored", async () => {
   const opened = await openSettings();
   const { page, heard, until, close } = opened;
   for (const { key } of heard.scenes.a.settings.filter(({ kind }) => ["number", "integer", "vector"].includes(kind))) {
@@ -159,7 +159,7 @@ test("what is typed wrongly is refused in words, put back, and the simulation co
   await close();
 });
 
-test("extremes while it plays: it continues, and says what failed", async () => {
+test("extreme values never stop the program", async () => {
   const opened = await openSettings();
   const { page, heard, until, close } = opened;
   await setPlaying(opened, true);
