@@ -114,7 +114,7 @@ test("impossible comparisons are reported in the dialog", async () => {
   const dialog = page.getByRole("dialog");
   await dialog.getByLabel("Name of side B").fill("wrong");
   for (const typed of ["nonsense", "material.yuong=1e5", "material.young=-3", ""]) {
-    await dialog.getByRole("textbox", { name: /What differs/ }).fill(typed);
+    await dialog.getByRole("textbox", { name: /Overrides of side B/ }).fill(typed);
     await dialog.getByRole("button", { name: "Compare", exact: true }).click();
     await dialog.getByRole("alert").filter({ hasText: /\w{4}/ }).waitFor();
   }
