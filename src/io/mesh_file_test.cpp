@@ -80,7 +80,7 @@ TEST_F(MeshFile, TrianglesReadBackToTheSameBitsInEveryFormatButStl) {
   }
 }
 
-// STL numbers no vertices, so the corners of each triangle are compared.
+// STL does not number vertices, so the corners of each triangle are compared.
 TEST_F(MeshFile, TextStlKeepsEveryCornerToTheBitAndJoinsTheTrianglesAgain) {
   const TetMesh tets = make_box({{-0.1, 0, 0}}, {{1.0 / 3, 1, 1}}, {2, 2, 2});
   const TriMesh mesh = boundary_surface(tets).surface;

@@ -1,4 +1,4 @@
-// OFF, PLY and STL: the variants that other programs write, and what is refused.
+// OFF, PLY and STL: variants of other programs, and rejected files.
 #include <gmock/gmock.h>
 
 #include <bit>

@@ -27,7 +27,7 @@ class VtuFile : public FolderTest {
   }
 };
 
-// Two tets on five points, with the arrays given as `array(type, name, components, numbers)` stores them.
+// Two tets on five points; `array(type, name, components, numbers)` encodes the arrays.
 template <class ArrayText>
 std::string grid(const std::string& head, ArrayText array, const std::string& tail = "") {
   return "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" " + head +
@@ -205,7 +205,7 @@ TEST_F(VtuFile, ReadsAppendedRawAndBase64) {
   }
 }
 
-// A small file would otherwise fill the memory: as many arrays as it likes, all of them the same bytes.
+// A small file that would exhaust the memory: many arrays that share the same bytes.
 TEST_F(VtuFile, RefusesAppendedArraysThatShareTheirBytes) {
   const std::string block = stored<uint32_t>(40, false) + std::string(40, '\0');
   std::string fields;
@@ -291,7 +291,7 @@ TEST_F(VtuFile, RefusesEveryTruncation) {
   for (size_t n = 0; n + 1 < whole.size(); ++n) EXPECT_NE(message(whole.substr(0, n)), "") << n;
 }
 
-// Whatever a byte becomes, the answer is a mesh or an InvalidInput; anything else would end the test.
+// For any change of a byte the result is a mesh or an InvalidInput; anything else ends the test.
 TEST_F(VtuFile, SurvivesEveryChangedByte) {
   write_vtu(path("a.vtu"), std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, {{0, 1, 2, 3}}, {}, {});
   const std::string whole = read_file(path("a.vtu"));
