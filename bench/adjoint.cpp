@@ -1,5 +1,5 @@
-// bench_adjoint: what a gradient costs beside the solve that it belongs to, in statics (a beam that sags from rest) and
-// in motion (the same beam, let go). Processor time, the least of some runs.
+// bench_adjoint: cost of a gradient relative to its forward solve, in statics (a beam that sags from rest) and in
+// motion (the released beam). CPU time, minimum of several runs.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -37,9 +37,9 @@ Model make_beam(int n, const Arguments& arguments) {
 }
 
 struct Cost {
-  double forward = 1e300, backward = 1e300;           // [s] of processor time
-  long newton = 0, factorizations = 0;                // forward; with preconditioners that were made
-  long back_factorizations = 0, back_iterations = 0;  // of conjugate gradients
+  double forward = 1e300, backward = 1e300;           // CPU time [s]
+  long newton = 0, factorizations = 0;                // in the forward solve; with preconditioners
+  long back_factorizations = 0, back_iterations = 0;  // in the gradient; of conjugate gradients
 };
 
 void print(const char* what, int n, const std::string& linear, int vertices, const Cost& cost) {
@@ -57,7 +57,7 @@ bool bench_statics(int n, const std::string& linear, const Arguments& arguments)
   Equilibrium body(std::move(first), rest,
                    {.tolerance = arguments.tolerance, .linear = linear, .adjoint = linear, .solves = 1});
   std::vector<double> thetabar(static_cast<size_t>(body.parameters_per_tet()) * tets);
-  for (int run = 0; run <= arguments.runs; ++run) {  // the first one analyzes
+  for (int run = 0; run <= arguments.runs; ++run) {  // the first run analyzes the pattern
     body.set_x(rest);
     Stopwatch stopwatch;
     const MinimizeReport report = body.solve();

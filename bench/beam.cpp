@@ -1,5 +1,5 @@
-// bench_beam: the beam by Aspic and, where it is small, by the obvious program; one line per run, from nothing to the
-// last step, and whether the displacement of the tip is the known one. bench_beam --help lists the options.
+// bench_beam: the beam by Aspic and, for small sizes, by the naive program. Prints one line per run, with setup, and
+// checks the displacement of the tip. bench_beam --help lists the options.
 
 #include <array>
 #include <cmath>
@@ -19,7 +19,7 @@
 namespace aspic::bench {
 namespace {
 
-constexpr int kLargestNaive = 7;  // n = 14 takes the obvious program minutes
+constexpr int kLargestNaive = 7;  // n = 14 takes the naive program minutes
 
 struct Arguments {
   std::vector<int> sizes = {7};
@@ -50,11 +50,11 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_flag("--quiet", arguments.quiet, "without the facts about the machine");
 }
 
-// With every step solved to 1e-10 of its first gradient; --tolerance 1e-10 --linear cholesky repeats it.
+// Reference: every step solved to 1e-10 of its first gradient (--tolerance 1e-10 --linear cholesky).
 struct Known {
   bool bent;
   int n;
-  double displacement;  // [m]
+  double displacement;  // displacement of the tip [m]
 };
 constexpr std::array<Known, 5> kKnown = {{{false, 7, -0.0539775432},
                                           {false, 14, -0.0539697485},
@@ -68,7 +68,7 @@ std::optional<double> known_displacement(const Arguments& arguments, int n) {
   return {};
 }
 
-// What is left of the residual moves the tip by no more than the same part of its way.
+// The residual may change the tip's displacement by the same relative amount.
 double allowed_error(const Arguments& arguments, double displacement) {
   return std::max(arguments.tolerance * std::abs(displacement), 1e-10);
 }
@@ -134,7 +134,7 @@ auto fastest(int runs, const Run& run) {
   return best;
 }
 
-// One size: every solver with every number of threads, then the obvious program.
+// One size: every solver with every number of threads, then the naive program.
 bool compare(const Arguments& arguments, int n, Results& results) {
   const BeamProblem problem = make_problem(arguments, n);
   bool right = true;

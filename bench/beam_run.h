@@ -1,4 +1,4 @@
-// The benchmark beam with this library.
+// Runs the benchmark beam with this library.
 #pragma once
 #include <string>
 #include <vector>
@@ -12,8 +12,8 @@ Simulation make_beam_simulation(const BeamProblem& problem, const std::string& l
 
 struct AspicRun : BeamResult {
   std::vector<StepReport> reports;
-  std::string solver;      // what was chosen, and why
-  double peak_memory = 0;  // of the process during this run [bytes]; 0: unknown
+  std::string solver;      // solver chosen, with the reason
+  double peak_memory = 0;  // peak memory of the process during this run [bytes]; 0: unknown
 };
 AspicRun run_aspic(const BeamProblem& problem, const std::string& linear = "auto");
 

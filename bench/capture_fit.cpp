@@ -1,4 +1,4 @@
-// A material field from synthetic pokes: how long a fit takes, what it computes, and how well it finds a stiff ball.
+// Fits a material field to synthetic pokes: time, work, and accuracy for a stiff ball.
 #include <cmath>
 #include <cstdio>
 
@@ -19,16 +19,16 @@ struct Choices {
   RegularizerOptions prior;
   EquilibriumOptions equilibrium;
   std::string smoothness = "h1";
-  double guess = 2;  // times the stiffness of the tissue
+  double guess = 2;  // initial guess relative to the stiffness of the tissue
   bool quiet = false;
   std::string csv;
 };
 
-// Of the fitted field against the truth, over the body.
+// Comparison of the fitted field with the truth over the body.
 struct Recovery {
-  double error = 0;     // |z - truth| / |truth - its mean|, root of mean squares of log E
-  double contrast = 0;  // mean E inside by mean outside, as geometric means
-  double outside = 0;   // geometric mean of E outside by that of the tissue
+  double error = 0;     // relative RMS error of z = log E: |z - truth| / |truth - mean(truth)|
+  double contrast = 0;  // ratio of the geometric means of E inside and outside
+  double outside = 0;   // geometric mean of E outside relative to the tissue
 };
 
 Recovery recovery(const Captured& data, std::span<const double> z) {

@@ -1,5 +1,5 @@
 // bench_characters: converged steps of bodies with real shapes. They are 1 m high, held at their feet (the lowest 8 %),
-// and everything begins to move sideways, by 2 m/s at the top, under gravity. bench_characters --help: the options.
+// and start moving sideways with 2 m/s at the top, under gravity. bench_characters --help lists the options.
 
 #include <algorithm>
 #include <cstdio>
@@ -92,13 +92,13 @@ Simulation make_simulation(const Arguments& arguments, const TetMesh& mesh, cons
 }
 
 struct Measured {
-  std::vector<double> wall, processor;  // of each step [s]
+  std::vector<double> wall, processor;  // time of each step [s]
   StepCounts counts;
   int unconverged = 0;
-  double set_up = 0;  // and the first step [s of processor]
+  double set_up = 0;  // CPU time until the end of the first step [s]
 };
 
-// The first step also makes what all of them share, and is left out.
+// Excludes the first step, which also prepares data for all steps.
 Measured take_steps(Simulation& simulation, int steps, Stopwatch& stopwatch) {
   Measured m;
   simulation.step();
@@ -148,7 +148,7 @@ void record(Results& results, const Case& c, const TetMesh& mesh, const Measured
   }
 }
 
-// Every stiffness, rate and number of threads on one mesh. True when all steps converged.
+// Runs every stiffness, rate and number of threads on one mesh. Returns whether all steps converged.
 bool measure(const Arguments& arguments, Case c, const TetMesh& mesh, Results& results) {
   bool converged = true;
   for (const double young : arguments.young)

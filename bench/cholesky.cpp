@@ -1,7 +1,6 @@
-// The sparse Cholesky factorization on one and two threads, beside CHOLMOD's where it is installed, in alternation.
-// usage: bench_cholesky [mesh file]...   by default beams and cubes
-// The time of one thread is processor time [ms], that of two is wall time as a share of the wall time of one; least of
-// several runs. Which BLAS CHOLMOD uses is up to the system (LD_LIBRARY_PATH).
+// Sparse Cholesky factorization on one and two threads, compared with CHOLMOD if it is installed, in alternation.
+// usage: bench_cholesky [mesh file]...; default: beams and cubes. Times: CPU time [ms] for one thread, wall time
+// relative to one thread for two; minimum of several runs. The system determines the BLAS of CHOLMOD (LD_LIBRARY_PATH).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -28,7 +27,7 @@ constexpr int kRuns = 7;
 
 struct Problem {
   BlockPattern pattern;
-  std::unique_ptr<BlockSparse> H;  // of a time step at rest
+  std::unique_ptr<BlockSparse> H;  // Hessian of a time step at rest
   std::vector<double> b;
 };
 

@@ -52,7 +52,7 @@ CholeskyTimes Cholmod::run_once(std::span<const double> b) {
   cholmod_dense* B = cholmod_allocate_dense(b.size(), 1, b.size(), CHOLMOD_REAL, common);
   std::copy(b.begin(), b.end(), static_cast<double*>(B->x));
   cholmod_dense *X = nullptr, *Y = nullptr, *E = nullptr;
-  for (int warm = 0; warm < 2; ++warm) {  // the second keeps the memory of the first
+  for (int warm = 0; warm < 2; ++warm) {  // the second run reuses the memory of the first
     const Stopwatch solve;
     cholmod_solve2(CHOLMOD_A, L, B, nullptr, &X, nullptr, &Y, &E, common);
     times.solve = solve.cpu_seconds();

@@ -1,4 +1,4 @@
-// CHOLMOD beside the project's own factorization; without the library its times are zero.
+// Times of CHOLMOD's factorization; zero without the library.
 #pragma once
 #include <algorithm>
 #include <limits>
@@ -9,7 +9,7 @@
 
 namespace aspic::bench {
 
-struct CholeskyTimes {  // [s]
+struct CholeskyTimes {  // times [s]
   double analysis = std::numeric_limits<double>::max();
   double factorization = analysis, solve = analysis;
 
@@ -24,7 +24,7 @@ class Cholmod {
  public:
   explicit Cholmod(const BlockSparse& H);
   ~Cholmod();
-  CholeskyTimes run_once(std::span<const double> b);  // processor times, its default order and supernodal method
+  CholeskyTimes run_once(std::span<const double> b);  // CPU times with its default ordering and supernodal method
 
  private:
   struct Matrix;

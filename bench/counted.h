@@ -1,5 +1,5 @@
-// A number that counts the operations on it. Materials are written over any scalar, so that running one of them on this
-// counts the flops of its formula as it stands; a kernel that gets by with fewer is the faster for it.
+// Scalar type that counts its operations. Materials accept any scalar, so evaluating one with this type counts the
+// flops of its formula as written. A kernel with fewer flops is faster than this bound.
 #pragma once
 #include "math/small.h"
 #include "math/svd3.h"
@@ -17,7 +17,7 @@ struct Counted {
   friend Counted operator-(Counted a, Counted b) { return one_more(a.value - b.value); }
   friend Counted operator*(Counted a, Counted b) { return one_more(a.value * b.value); }
   friend Counted operator/(Counted a, Counted b) { return one_more(a.value / b.value); }
-  friend Counted operator-(Counted a) { return a; }  // folded into what follows
+  friend Counted operator-(Counted a) { return a; }  // merged into the next operation
   Counted& operator+=(Counted b) { return *this = *this + b; }
   Counted& operator-=(Counted b) { return *this = *this - b; }
   Counted& operator*=(Counted b) { return *this = *this * b; }
@@ -28,7 +28,7 @@ struct Counted {
     return x;
   }
 
-  // As many as math/pack.h spends; exp and pow are guesses of the same size.
+  // Counts of math/pack.h; exp and pow are estimates of the same order.
   friend Counted log(Counted a) { return several(36, std::log(a.value)); }
   friend Counted cbrt(Counted a) { return several(22, std::cbrt(a.value)); }
   friend Counted exp(Counted a) { return several(25, std::exp(a.value)); }
@@ -41,7 +41,7 @@ struct Counted {
   friend bool any_positive(Counted a) { return a.value > 0; }
 };
 
-// The rotations of Jacobi's method are not counted: how many there are depends on F.
+// The rotations of Jacobi's method are not counted because their number depends on F.
 inline Svd3<Counted> svd3(const Mat3<Counted>& F) {
   Mat3d value;
   for (int i = 0; i < 9; ++i) value.a[i] = F.a[i].value;

@@ -1,5 +1,5 @@
-// The beam takes no more work than the committed counts say. Times are for the benchmarks: counts do not depend on what
-// else the machine does.
+// The beam takes no more work than the committed counts. Counts, unlike times, do not depend on the load of the
+// machine.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -76,7 +76,7 @@ Counts measured_counts() {
   return measured;
 }
 
-// Another processor rounds differently, which may cost conjugate gradients a few iterations in a hundred.
+// Another processor rounds differently, which may change the iterations of conjugate gradients by a few percent.
 long allowed(long expected) { return expected + expected / 40; }
 
 TEST(BenchCounts, TheBeamTakesNoMoreWorkThanCommitted) {

@@ -14,8 +14,8 @@ constexpr double kDot3 = 5;                                     // three product
 constexpr double kDeformationGradient = 9 + 9 * kDot3;          // Ds: 9 differences; F = Ds Dm^-1
 constexpr double kShapeGradients = 6;                           // the first is minus the sum of the others
 constexpr double kGradientScatter = 1 + 12 * (kDot3 + 1) + 12;  // w P b_v of 4 vertices, added to g
-// w A b_v of 3 vertices, and of the first as a sum; six blocks b_u' A b_v, and those of the first as sums; 10 are
-// added.
+// w A b_v of 3 vertices, and the first as a sum; six blocks b_u' A b_v, and those of the first vertex as sums; 10
+// blocks are added.
 constexpr double kHessianScatter = 1 + 3 * 27 * (kDot3 + 1) + 27 * 2 + 6 * 9 * kDot3 + 4 * 9 * 2 + 10 * 9;
 
 template <class Fn>
@@ -25,7 +25,7 @@ double flops_of(const Fn& fn) {
   return Counted::flops - before;
 }
 
-Mat3<Counted> sheared() {  // near rest, with three different stretches
+Mat3<Counted> sheared() {  // close to rest, with three different stretches
   Mat3<Counted> F = identity3<Counted>();
   F(0, 0) = 1.1, F(1, 1) = 0.95, F(0, 1) = 0.02, F(2, 1) = 0.03;
   return F;

@@ -1,4 +1,4 @@
-// Flops per tet of the kernels of each material, by the formulas that are written in element_flops.cpp.
+// Flops per tet for the kernels of each material, by the formulas in element_flops.cpp.
 #pragma once
 #include <string>
 

@@ -12,9 +12,9 @@ namespace aspic::bench {
 namespace {
 
 constexpr double kDouble = 8, kIndex = 4, kBlock = 9 * kDouble;  // [bytes]
-constexpr double kWritten = 2;                                   // times: read, then written
+constexpr double kWritten = 2;                                   // factor for written data, which is read first
 
-// Corners, Dm^-1, volume and material of each tet; the positions of each vertex.
+// Bytes for the corners, Dm^-1, volume and material of each tet and the position of each vertex.
 double element_bytes(const KernelBeam& beam) {
   return beam.tets() * (4 * kIndex + (10 + beam.parameters) * kDouble) + beam.vertices() * 3 * kDouble;
 }
@@ -48,7 +48,7 @@ KernelBeam& kernel_beam(int n, const std::string& material) {
   static std::unique_ptr<KernelBeam> beam;
   static std::pair<int, std::string> made;
   if (!beam || made != std::pair(n, material)) {
-    beam.reset();  // two large ones need not fit into memory
+    beam.reset();  // frees memory first: two large beams need not fit
     beam = std::make_unique<KernelBeam>(n, material);
     made = {n, material};
   }
@@ -73,14 +73,15 @@ KernelWork hessian(const KernelBeam& beam, const std::string& material, bool tes
           beam.tets() * (flops.hessian + (tested ? flops.definite_test : 0))};
 }
 
-// Each block off the diagonal is read once and used twice.
+// Each off-diagonal block is read once and used twice.
 KernelWork block_product(const KernelBeam& beam) {
   const double off_diagonal = beam.blocks() - beam.vertices();
   return {beam.blocks() * (kBlock + kIndex) + beam.vertices() * (kIndex + (1 + kWritten) * 3 * kDouble),
           18 * (beam.vertices() + 2 * off_diagonal)};
 }
 
-// The product, p.q, x and r, z = D^-1 r with r.r and r.z, p: reads D^-1, p, q, x, r, z; writes q, x, r, z, p.
+// One iteration: the product, p.q, x and r, z = D^-1 r with r.r and r.z, p. Reads D^-1, p, q, x, r, z; writes q, x, r,
+// z, p.
 KernelWork preconditioned_iteration(const KernelBeam& beam) {
   const KernelWork product = block_product(beam);
   const double vectors = 2 /* p.q */ + (4 + kWritten * 2 - 2) /* x, r */ + (1 + kWritten) /* z */ + (2 + kWritten - 1);
@@ -88,11 +89,11 @@ KernelWork preconditioned_iteration(const KernelBeam& beam) {
           product.flops + beam.vertices() * (3 * (2 + 4 + 4 + 2) + 15)};
 }
 
-// Blocks in single precision, off the diagonal read twice (both triangles before the coarse levels, both after), the
-// inverses of the diagonal twice; on the finest level alone.
+// Finest level only: blocks in single precision, off-diagonal blocks read twice (both triangles before and after the
+// coarse levels), inverses of the diagonal blocks read twice.
 KernelWork finest_cycle(const KernelBeam& beam) {
   const double off_diagonal = beam.blocks() - beam.vertices();
-  const double vectors = 3 + 2 * kWritten + 2 + kWritten;  // x and r before, x after; b twice
+  const double vectors = 3 + 2 * kWritten + 2 + kWritten;  // x and r before; x after; b twice
   return {2 * 36 * (2 * off_diagonal + beam.vertices()) + vectors * 16 * beam.vertices(),
           2 * 18 * (2 * off_diagonal + beam.vertices())};
 }

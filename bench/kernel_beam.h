@@ -1,5 +1,5 @@
-// What the kernels run on: the beam bent and sheared a little, one material, and the Hessian of a time step. And what
-// each kernel moves and computes at least.
+// Input of the kernels: the beam, slightly bent and sheared, with one material, and the Hessian of a time step. Also
+// lower bounds of data and flops per kernel.
 #pragma once
 #include <memory>
 #include <string>
@@ -17,29 +17,30 @@ struct KernelBeam {
 
   double tets() const { return mesh.tet_count(); }
   double vertices() const { return mesh.vertex_count(); }
-  double blocks() const { return static_cast<double>(pattern.block_count()); }  // of the lower triangle
+  double blocks() const { return static_cast<double>(pattern.block_count()); }  // blocks of the lower triangle
 
   TetMesh mesh;
-  std::vector<double> x;  // 3 per vertex [m]
+  std::vector<double> x;  // positions, 3 per vertex [m]
   std::unique_ptr<TetElasticity> elasticity;
   BlockPattern pattern;
   std::unique_ptr<BlockSparse> H;
-  double parameters = 0;  // of the material, per tet
+  double parameters = 0;  // parameters of the material per tet
 };
 
-// The beam of the last call again where nothing changed: it takes seconds to make.
+// Returns the beam of the last call if the arguments are equal, because building it takes seconds.
 KernelBeam& kernel_beam(int n, const std::string& material);
 
-// Bytes: what must come from memory once, and what is written twice over, since its lines are read first. Indices are
-// 4 bytes. A kernel whose data stays in a cache may exceed what memory alone would allow.
+// Bytes of memory traffic: each datum is read once; written data counts twice because its cache lines are read first.
+// Indices have 4 bytes. Kernels whose data stays in a cache may exceed the bound of the memory.
 namespace kernel_work {
 
 KernelWork value(const KernelBeam& beam, const std::string& material);
 KernelWork gradient(const KernelBeam& beam, const std::string& material);
 KernelWork hessian(const KernelBeam& beam, const std::string& material, bool tested);
 KernelWork block_product(const KernelBeam& beam);
-KernelWork preconditioned_iteration(const KernelBeam& beam);  // of conjugate gradients with 3x3 diagonal blocks
-KernelWork finest_cycle(const KernelBeam& beam);              // of multigrid
+KernelWork preconditioned_iteration(
+    const KernelBeam& beam);                      // one iteration of conjugate gradients with 3x3 diagonal blocks
+KernelWork finest_cycle(const KernelBeam& beam);  // one multigrid cycle on the finest level
 KernelWork dot(double size);
 KernelWork axpy(double size);
 

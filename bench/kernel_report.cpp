@@ -41,7 +41,7 @@ void KernelReport::ReportRuns(const std::vector<Run>& runs) {
              .items = counter("items"),
              .repeats = counter("repeats")};
     kernel = run.run_name.function_name;
-    // Other programs lengthen the wall time; threads that wait for each other lengthen the processor time.
+    // Other programs increase wall time; threads that wait for each other increase CPU time.
     const double total = facts.threads == 1 ? run.cpu_accumulated_time : run.real_accumulated_time;
     seconds.push_back(total / static_cast<double>(run.iterations) / facts.repeats);
   }

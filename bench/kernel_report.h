@@ -1,4 +1,4 @@
-// One line per kernel: its time, and how near it comes to what the machine can do.
+// One line per kernel: its time, and the fraction of the machine's limits that it reaches.
 #pragma once
 #include <benchmark/benchmark.h>
 
@@ -11,13 +11,13 @@
 
 namespace aspic::bench {
 
-// Facts that a benchmark reports through its counters.
+// Data that a benchmark reports through its counters.
 struct KernelFacts {
-  int n = 0;           // cells of the beam
+  int n = 0;           // cells across the beam
   int threads = 1;     //
   KernelWork work;     // without flops no bounds are reported
-  double items = 1;    // tets, blocks, ...; the report has the time of one
-  double repeats = 1;  // how often one run of the benchmark does this work
+  double items = 1;    // tets, blocks, ...; the report has the time per item
+  double repeats = 1;  // executions of this work per benchmark iteration
 };
 void tell(benchmark::State& state, const KernelFacts& facts);
 
@@ -30,7 +30,7 @@ class KernelReport : public benchmark::BenchmarkReporter {
  private:
   void print(const std::string& kernel, const KernelFacts& facts, double seconds);
 
-  std::map<int, Roofline> rooflines_;  // by the number of threads
+  std::map<int, Roofline> rooflines_;  // by number of threads
   Results& results_;
 };
 

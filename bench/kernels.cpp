@@ -1,5 +1,5 @@
-// bench_kernels: the kernels that a step is made of, each against what the machine can do. Options: --help, and
-// those of Google Benchmark, for example --benchmark_filter=hessian, which chooses kernels by their names.
+// bench_kernels: kernels of a step, each compared with the machine's limits. Options: --help, and those of Google
+// Benchmark, such as --benchmark_filter=hessian, which selects kernels by name.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -52,7 +52,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_flag("--quiet", arguments.quiet, "without the facts about the machine");
 }
 
-// What all the benchmarks of one size and number of threads share.
+// Data that all benchmarks of one size and number of threads share.
 struct Place {
   int n = 14, threads = 1;
 
@@ -76,7 +76,7 @@ class Registry {
   void add_multigrid() const;
 
  private:
-  // fn(state, beam) loops and returns its work and items.
+  // fn(state, beam) runs the loop and returns its work and items.
   using Kernel = std::function<KernelFacts(benchmark::State&, KernelBeam&)>;
   void add(const std::string& name, const std::string& material, const Kernel& fn) const {
     const Place place = place_;
@@ -114,7 +114,7 @@ void Registry::add_elements(const std::string& material) const {
   }
 }
 
-// As the minimizer does them: in chunks, with sums in the order of the chunks.
+// Like the minimizer: in chunks, with sums in the order of the chunks.
 void Registry::add_vectors() const {
   const Place place = place_;
   add("dot", kMaterialOfMatrices, [=](benchmark::State& state, KernelBeam& beam) {
@@ -167,7 +167,7 @@ void Registry::add_matrix() const {
 
 void Registry::add_cholesky() const {
   const Place place = place_;
-  constexpr double kMostFlops = 2e11;  // more than ten seconds: not in a benchmark of kernels
+  constexpr double kMostFlops = 2e11;  // more than ten seconds, too long for a benchmark
   const auto prepared = [=](benchmark::State& state, KernelBeam& beam, Cholesky& solver) {
     solver.analyze(beam.pattern);
     if (solver.analysis().flops > kMostFlops) state.SkipWithError("left out: the factorization takes too long");
@@ -191,7 +191,7 @@ void Registry::add_cholesky() const {
     if (!solver.factorize(*beam.H)) state.SkipWithError("the matrix is not positive definite");
     std::vector<double> y(beam.x.size());
     for (auto _ : state) solver.solve(beam.x, y, 1e-10);
-    const double entries = static_cast<double>(solver.analysis().nnz);  // L is read forwards and backwards
+    const double entries = static_cast<double>(solver.analysis().nnz);  // L is read forward and backward
     return place.facts({2 * 8 * entries, 4 * entries}, beam.vertices());
   });
 }
@@ -278,7 +278,7 @@ int main(int argc, char** argv) {
   aspic::bench::declare(app, arguments);
   app.allow_extras();
   return aspic::bench::run_program(app, argc, argv, [&] {
-    std::vector<std::string> rest = app.remaining();  // for Google Benchmark, which takes what it knows
+    std::vector<std::string> rest = app.remaining();  // options of Google Benchmark
     std::vector<char*> words = {argv[0]};
     for (std::string& word : rest) words.push_back(word.data());
     int count = static_cast<int>(words.size());

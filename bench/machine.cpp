@@ -20,7 +20,7 @@ std::string line_of(const std::string& path) {
   return line;
 }
 
-// The value of the first line "key : value" of a file in /proc; empty when there is none.
+// Value of the first line "key : value" of a file in /proc; empty if there is none.
 std::string value_in(const std::string& path, const std::string& key) {
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {
@@ -47,7 +47,7 @@ std::string simd() {
   return "processor " + widest + ", program " + std::to_string(kPackWidth) + " doubles";
 }
 
-std::string caches() {  // of the first core
+std::string caches() {  // caches of the first core
   std::string text;
   for (int i = 0; i < 8; ++i) {
     const std::string folder = "/sys/devices/system/cpu/cpu0/cache/index" + std::to_string(i) + "/";
@@ -74,7 +74,7 @@ std::string frequency() {
   return "governor " + (governor.empty() ? "unknown" : governor);
 }
 
-double load() {  // programs that ran or waited, over the last minute; negative: unknown
+double load() {  // runnable processes over the last minute; negative: unknown
   std::istringstream line(line_of("/proc/loadavg"));
   double one_minute = -1;
   line >> one_minute;

@@ -1,4 +1,4 @@
-// The machine and the build that measure: what a number needs beside it to be worth anything.
+// Description of the machine and the build, recorded with each measurement.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,11 +8,11 @@ namespace aspic::bench {
 struct Fact {
   std::string name, value;
 };
-// Processor, SIMD, caches, memory, load, compiler, flags, commit. Nothing that names a person's machine.
+// Processor, SIMD, caches, memory, load, compiler, flags, commit. Contains no name of a machine or user.
 std::vector<Fact> machine_facts();
 void print_facts(const std::vector<Fact>& facts);
 
-// The largest resident memory of this process since it was last forgotten [bytes]; 0: the system does not tell.
+// Peak resident memory of this process since the last reset [bytes]; 0: unknown.
 double peak_memory();
 void forget_peak_memory();
 

@@ -1,4 +1,4 @@
-// The beam as one would first write it with Eigen: triplets into a new matrix and a factorization from scratch in each
+// Straightforward implementation of the beam with Eigen: triplets into a new matrix and a new factorization in each
 // iteration, one loop over the tets for everything, dense 9x12 matrices for the chain rule.
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
@@ -78,7 +78,7 @@ class NaiveBeam {
     weight_ = mass_ * gravity;
   }
 
-  // Minimizes E(x) = 1/2 (x - x~)' M (x - x~) + h^2 V(x) with Newton's method; returns the number of iterations.
+  // Minimizes E(x) = 1/2 (x - x~)' M (x - x~) + h^2 V(x) with Newton's method. Returns the number of iterations.
   int step() {
     const VectorXd predicted = q_ + h_ * v_;
     VectorXd x = q_;
@@ -125,7 +125,7 @@ class NaiveBeam {
     }
   }
 
-  void make_mass() {  // consistent: rho V / 10 on the diagonal, rho V / 20 beside it
+  void make_mass() {  // consistent mass: rho V / 10 on the diagonal, rho V / 20 off the diagonal
     Triplets triplets;
     for (int t = 0; t < mesh_.tet_count(); ++t) {
       for (int a : mesh_.tets[t]) {
@@ -140,7 +140,7 @@ class NaiveBeam {
     mass_.setFromTriplets(triplets.begin(), triplets.end());
   }
 
-  void make_selection() {  // the rows of the identity that belong to free coordinates
+  void make_selection() {  // rows of the identity for the free coordinates
     Triplets triplets;
     int row = 0;
     for (int i = 0; i < mesh_.vertex_count(); ++i) {
@@ -192,7 +192,7 @@ class NaiveBeam {
 
   Solid solid_;
   double h_;          // [s]
-  double tolerance_;  // of the first gradient
+  double tolerance_;  // relative to the first gradient
   TetMesh mesh_;
   VectorXd q_, v_, weight_;
   std::vector<Matrix9x12d> B_;

@@ -1,7 +1,6 @@
-// What the order of vertices and tets is worth: the product with the Hessian and the gradient of elasticity on one
-// mesh, its vertices and tets in several orders. Processor time on one thread, the least of several rounds that
-// alternate between the orders.
-// usage: bench_orders MESH [ROUNDS]
+// Effect of the order of vertices and tets: product with the Hessian, and gradient of elasticity, on one mesh in
+// several orders. CPU time on one thread, minimum of several rounds that alternate between the orders. usage:
+// bench_orders MESH [ROUNDS]
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -51,7 +50,7 @@ std::vector<int> shuffled_order(size_t count) {
   return order;
 }
 
-// Breadth first from a vertex far out, neighbors of low degree first, all reversed [CuthillMcKee1969].
+// Reverse breadth-first order from a peripheral vertex, neighbors of low degree first [CuthillMcKee1969].
 std::vector<int> reverse_cuthill_mckee(const TetMesh& mesh) {
   const int n = mesh.vertex_count();
   std::vector<std::vector<int>> neighbors(n);
@@ -91,7 +90,7 @@ std::vector<int> reverse_cuthill_mckee(const TetMesh& mesh) {
   return order;
 }
 
-// By the smallest vertex, then the next: tets follow the vertices.
+// Orders tets by their smallest vertex, then the next, so that they follow the vertices.
 std::vector<int> tets_along(const TetMesh& mesh, const std::vector<int>& vertices) {
   const std::vector<int> place = inverse_of(vertices);
   std::vector<std::pair<Tet, int>> keys;

@@ -1,5 +1,5 @@
-// Iterations of preconditioned conjugate gradients on the systems of time steps, on what is hard for a preconditioner:
-// limbs, slivers, contrasts, stiff and nearly incompressible bodies, states far from rest.
+// Iterations of preconditioned conjugate gradients in time steps that are hard for a preconditioner: limbs, slivers,
+// contrasts, stiff and nearly incompressible bodies, large deformations.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,13 +29,13 @@ namespace {
 
 constexpr double kStep = 1.0 / 60;                                 // [s]
 constexpr double kDensity = 1000;                                  // [kg/m^3]
-constexpr std::array<double, 3> kTolerances = {1e-2, 1e-4, 1e-8};  // of the right-hand side
+constexpr std::array<double, 3> kTolerances = {1e-2, 1e-4, 1e-8};  // relative to the right-hand side
 
 struct Case {
   std::string state = "bent";
   double young = 1e5;  // [Pa]
   double poisson = 0.45;
-  double contrast = 1;  // of the stiffness, in 3-D checkers of an eighth of the body
+  double contrast = 1;  // ratio of stiffness in a 3-D checkerboard with cells of an eighth of the body
 };
 
 const std::vector<Case> kCases = {{.young = 1e3},
@@ -50,7 +50,7 @@ const std::vector<Case> kCases = {{.young = 1e3},
                                   {.young = 1e5, .contrast = 1e4},
                                   {.young = 1e7, .contrast = 1e4}};
 
-// Moves every vertex at random by up to `reach` [m], but no tet to less than a fiftieth of its volume: slivers.
+// Moves every vertex randomly by up to `reach` [m] while every tet keeps a fiftieth of its volume. Creates slivers.
 void roughen(TetMesh& mesh, double reach) {
   std::vector<std::vector<int>> around(mesh.vertex_count());
   for (int t = 0; t < mesh.tet_count(); ++t)
@@ -89,7 +89,7 @@ TetMesh filled(const std::string& name, const std::string& folder) {
   throw InvalidInput("the shape '" + kind + "' has no detail '" + detail + "' (try 3k)");
 }
 
-// Its longest side along x, of 1 m.
+// Scales the mesh to a longest side of 1 m, along x.
 TetMesh lying_mesh(const std::string& name, const std::string& folder) {
   TetMesh mesh = filled(name, folder);
   Vec3d low = mesh.rest.at(0), high = low;
@@ -134,7 +134,7 @@ Vec3d moved(const std::string& state, const Vec3d& X) {
   return {3 * X[0], X[1], X[2]};  // stretched
 }
 
-// Five Newton iterations after every vertex was displaced at random by up to 3 cm, which turns many tets inside out.
+// State after five Newton iterations from random displacements of up to 3 cm, which invert many tets.
 std::vector<double> recovering(IncrementalPotential& E, std::vector<double> x, const Pins& pins) {
   std::vector<double> start = x;
   std::mt19937 random(2);
@@ -172,7 +172,7 @@ void measure(const std::string& name, const TetMesh& mesh, const Case& c, const 
   const auto solver = make_linear_solver(linear);
   Stopwatch stopwatch;
   solver->analyze(*H.pattern);
-  bool definite = solver->factorize(H);  // what is done once is done here
+  bool definite = solver->factorize(H);  // one-time work is done here
   const double analysis = stopwatch.lap().processor;
   solver->begin();
   definite = solver->factorize(H) && definite;

@@ -1,4 +1,4 @@
-// The frame of a benchmark program: options, then work, and errors in words.
+// Common main function of the benchmark programs: options, work, error messages.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -6,7 +6,7 @@
 
 namespace aspic::bench {
 
-// Parses the command line and calls `run`; exit code 2 for bad input, otherwise that of `run`.
+// Parses the command line and calls `run`. Exit code 2 for bad input, otherwise the result of `run`.
 template <class Run>
 int run_program(CLI::App& app, int argc, char** argv, const Run& run) {
   try {

@@ -9,7 +9,7 @@
 namespace aspic::bench {
 namespace {
 
-std::string four_digits(double value) {  // noise begins before the fifth
+std::string four_digits(double value) {  // more digits are noise
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", value);
   return text;

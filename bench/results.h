@@ -1,4 +1,4 @@
-// What the programs of this folder measured, as a table for other programs: one number per row.
+// Measurements of the programs in this folder as a table, one number per row.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -12,8 +12,8 @@ class Results {
 
   void begin(std::string what, int threads) { what_ = std::move(what), threads_ = threads; }
   void add(const std::string& quantity, double value, const std::string& unit);
-  // Columns bench, case, threads, quantity, value, unit. The rows of bench "machine" tell where it was measured.
-  void write(const std::filesystem::path& path) const;  // an empty path: nowhere
+  // Columns bench, case, threads, quantity, value, unit. Rows of bench "machine" describe the machine.
+  void write(const std::filesystem::path& path) const;  // an empty path writes nothing
 
  private:
   struct Row {
@@ -28,6 +28,6 @@ class Results {
   std::vector<Row> rows_;
 };
 
-double median(std::vector<double> values);  // 0 for none
+double median(std::vector<double> values);  // 0 without values
 
 }  // namespace aspic::bench

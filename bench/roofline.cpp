@@ -13,9 +13,9 @@
 namespace aspic::bench {
 namespace {
 
-constexpr int kTrials = 24;  // the fastest counts: others may use the machine
+constexpr int kTrials = 24;  // the fastest counts, because other programs may run
 
-// One thread is timed by processor time, which other programs do not lengthen.
+// A single thread is timed by CPU time, which is independent of other programs.
 template <class Fn>
 double fastest(int threads, const Fn& fn) {
   double best = std::numeric_limits<double>::infinity();
@@ -38,13 +38,13 @@ double triad(double footprint, int threads) {
       parallel_chunks(size, [&](int first, int last) {
         for (int i = first; i < last; ++i) a[i] = b[i] + s * c[i];
       });
-      s = a[sweep];  // so that no sweep can be left out
+      s = a[sweep];  // prevents removal of the sweep
     }
   });
   return 4.0 * sizeof(double) * size * sweeps / seconds;
 }
 
-// Sixteen chains of fused multiply-adds hide the latency of each other.
+// Sixteen independent chains of fused multiply-adds hide the latency.
 Pack multiply_add_chains(int length) {
   constexpr int kChains = 16;
   std::array<Pack, kChains> x;

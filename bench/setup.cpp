@@ -1,6 +1,5 @@
-// What a large scene costs before its first iteration: a box of N x N x N vertices through every stage of `aspic run`,
-// and through the mesh formats. Processor time of all threads, memory now and at most.
-// usage: bench_setup [N [FOLDER]]
+// Cost of a large scene before its first iteration: a box of N x N x N vertices through every stage of `aspic run` and
+// through the mesh formats. CPU time of all threads, present and peak memory. usage: bench_setup [N [FOLDER]]
 #include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -50,7 +49,7 @@ double most_bytes = 0;
 void stage(const char* name, const std::function<void()>& work) {
   malloc_trim(0);
   const double before = resident_bytes();
-  std::ofstream("/proc/self/clear_refs") << "5";  // the peak begins anew, where the kernel lets it
+  std::ofstream("/proc/self/clear_refs") << "5";  // resets the peak, if the kernel allows it
   const bench::Stopwatch stopwatch;
   work();
   const double cpu = stopwatch.cpu_seconds(), wall = stopwatch.seconds(), peak = peak_bytes();

@@ -60,12 +60,12 @@ TetMesh standing_mesh(const Shape& shape, const Detail& detail, const fs::path& 
   for (const Vec3d& X : mesh.rest)
     for (int i = 0; i < 3; ++i) lower[i] = std::min(lower[i], X[i]), upper[i] = std::max(upper[i], X[i]);
   const double height = upper[shape.up] - lower[shape.up];
-  for (Vec3d& X : mesh.rest) {  // a cyclic change of axes turns nothing inside out
+  for (Vec3d& X : mesh.rest) {  // a cyclic change of axes keeps the orientation
     Vec3d turned;
     for (int i = 0; i < 3; ++i) turned[(i + kY - shape.up + 3) % 3] = (X[i] - lower[i]) / height;
     X = turned;
   }
-  return from_user(locality_numbering(mesh), mesh);  // as scenes are stored
+  return from_user(locality_numbering(mesh), mesh);  // numbered as in scenes
 }
 
 }  // namespace aspic::bench

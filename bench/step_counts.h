@@ -1,4 +1,4 @@
-// The work of steps as counts, which are the same in every run, unlike times.
+// Work of steps as counts, which are equal in every run, unlike times.
 #pragma once
 #include <array>
 #include <string_view>

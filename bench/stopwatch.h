@@ -6,10 +6,10 @@ namespace aspic::bench {
 
 struct Seconds {
   double wall = 0;
-  double processor = 0;  // of all threads of this process
+  double processor = 0;  // CPU time of all threads of this process [s]
 };
 
-// Time since the last lap, or since it was made.
+// Time since the last lap, or since construction.
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(Clock::now() - wall_).count(); }  // wall time

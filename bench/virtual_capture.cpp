@@ -18,7 +18,7 @@ namespace {
 constexpr double kDensity = 1000;  // [kg/m^3]
 
 struct Site {
-  Vec3d point;  // in sides of the cube
+  Vec3d point;  // in units of the cube's side
   Vec3d inwards;
 };
 const std::array<Site, 9> kSites = {{{{0.3, 0.3, 1}, {0, 0, -1}},
@@ -61,7 +61,7 @@ std::vector<Vec3d> marker_points(const VirtualCapture& setup) {
   return points;
 }
 
-// The triangle that holds a point of the surface, with the point's weights there.
+// Surface triangle that contains a point, with the point's weights.
 SurfacePoint locate(const TetMesh& mesh, const std::vector<Triangle>& triangles, const Vec3d& p) {
   SurfacePoint best;
   double least = INFINITY;
@@ -139,7 +139,7 @@ Captured capture(const VirtualCapture& setup) {
   const auto measured = [&](const Vec3d& x, double deviation) {
     return x + setup.noise * deviation * Vec3d{normal(random), normal(random), normal(random)};
   };
-  const auto stated = [&](double size) {  // exact data need some deviation, too
+  const auto stated = [&](double size) {  // exact data need a positive standard deviation, too
     const double d = std::max(setup.noise, 1e-4) * size;
     return Vec3d{d, d, d};
   };

@@ -1,4 +1,4 @@
-// A cube of tissue with a stiff ball inside, held below, poked and measured in the computer: data for fits.
+// A cube of tissue with a stiff ball inside, held at the bottom, poked and measured in simulation: data for fits.
 #pragma once
 #include <vector>
 
@@ -7,26 +7,26 @@
 namespace aspic::bench {
 
 struct VirtualCapture {
-  int cells = 20;        // of the mesh that is fitted, along each edge
-  int data_cells = 27;   // of the mesh that the data come from
-  int pokes = 4;         // up to 9, on the top and then on the sides
+  int cells = 20;        // cells per edge of the fitted mesh
+  int data_cells = 27;   // cells per edge of the mesh of the data
+  int pokes = 4;         // up to 9; on the top first, then on the sides
   int markers = 100;     // on the top and the sides
-  double noise = 0.01;   // of positions and forces, in parts of the largest motion and force
-  double contrast = 5;   // of the ball
-  double side = 0.1;     // of the cube [m]
-  double young = 20e3;   // of the tissue [Pa]
-  double poisson = 0.4;  // of all
-  double depth = 0.01;   // of a poke [m]
-  unsigned seed = 1;     // of the noise
+  double noise = 0.01;   // noise of positions and forces relative to the largest motion and force
+  double contrast = 5;   // modulus of the ball relative to the tissue
+  double side = 0.1;     // side of the cube [m]
+  double young = 20e3;   // modulus of the tissue [Pa]
+  double poisson = 0.4;  // Poisson's ratio everywhere
+  double depth = 0.01;   // depth of a poke [m]
+  unsigned seed = 1;     // seed of the noise
 };
 
 struct Captured {
-  Experiment experiment;      // on the mesh that is fitted
-  std::vector<double> truth;  // log E of each of its tets, by centroid
-  std::vector<char> inside;   // the ball?
+  Experiment experiment;      // uses the fitted mesh
+  std::vector<double> truth;  // log E of each tet, by centroid
+  std::vector<char> inside;   // whether each tet is in the ball
 };
 
-// Throws InvalidInput when the data cannot be made.
+// Throws InvalidInput if the data cannot be computed.
 Captured capture(const VirtualCapture& setup);
 std::vector<MaterialParameters> known(const VirtualCapture& setup, const TetMesh& mesh);
 

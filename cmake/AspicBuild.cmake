@@ -9,12 +9,13 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
 
-# A unit is some files of one folder, compiled as one: headers are read once per unit.
+# A unit is a group of files of one folder that are compiled together: headers are read once per unit.
 set(unit_size 16)
 set(CMAKE_UNITY_BUILD ${ASPIC_UNITY})
 set(CMAKE_UNITY_BUILD_BATCH_SIZE ${unit_size})
 
-# group_by_folder(TARGET SOURCES...): none of the target's units mixes folders; sources not named are compiled alone.
+# group_by_folder(TARGET SOURCES...): compiles each folder's files in units of their own. Sources that are not listed
+# are compiled one by one.
 function(group_by_folder target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
   set(folders)
@@ -49,7 +50,7 @@ else()
 endif()
 
 add_library(aspic_build INTERFACE)
-# One binary gives one set of bits; fused multiply-add is used, reassociation is not.
+# Fused multiply-add is enabled; reassociation is not, so that results of a binary are bit-reproducible.
 target_compile_options(aspic_build INTERFACE ${ASPIC_ARCH} -ffp-contract=fast -fno-math-errno -Wall -Wextra -Wshadow
                                              -Wno-missing-field-initializers)  # {.a = 1}: the rest has defaults
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # false alarms inside the headers of GCC 12
@@ -59,7 +60,8 @@ if(ASPIC_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # takes the files of a
   target_compile_options(aspic_build INTERFACE -Wno-subobject-linkage)
 endif()
 
-# Compiles the code around the numerics with less optimization, for a third less time. clang's sanitizer builds keep theirs.
+# Compiles the code around the numerics with less optimization, which saves a third of the time. Sanitizer builds with
+# clang keep their flags.
 function(compile_quickly target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)

@@ -1,10 +1,10 @@
-# The libraries that libaspic links, for this build and for projects that use the installed package.
+# Libraries that libaspic links, for this build and for users of the installed package.
 include(CMakeFindDependencyMacro)
 find_dependency(Threads)
 find_dependency(ZLIB)
 find_dependency(EXPAT)
 
-# Neither of these has a CMake package that one can count on.
+# Neither of these reliably has a CMake package.
 find_library(METIS_LIBRARY metis REQUIRED)
 find_library(MUPARSER_LIBRARY muparser REQUIRED)
 foreach(name METIS MUPARSER)

@@ -1,9 +1,9 @@
-# cmake --install: the programs, the library and its headers, and a package for find_package(aspic).
+# cmake --install: programs, library, headers, and a package for find_package(aspic).
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/aspic)
 
 install(TARGETS aspic EXPORT aspic-targets)
-# Only the headers of include/aspic are installed, each with the text of what it names from src/ in it.
+# Installs only the headers of include/aspic, each expanded by the headers of src/ that it names.
 install(CODE "
   execute_process(COMMAND \"${CMAKE_COMMAND}\" \"-DHEADERS=${CMAKE_SOURCE_DIR}/include/aspic\" \"-DSOURCES=${CMAKE_SOURCE_DIR}/src\"
                           \"-DOUTPUT=${CMAKE_BINARY_DIR}/include/aspic\" -P \"${CMAKE_SOURCE_DIR}/cmake/PublicHeaders.cmake\"
@@ -16,7 +16,7 @@ configure_package_config_file(cmake/aspic-config.cmake.in ${CMAKE_BINARY_DIR}/as
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/aspic-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/aspic-config.cmake ${CMAKE_BINARY_DIR}/aspic-config-version.cmake
               cmake/AspicDependencies.cmake DESTINATION ${package_dir})
-# `aspic lecture` finds its scenes there, and the bunny where ./run has made it.
+# Folder in which `aspic lecture` finds its scenes, and the bunny that ./run creates.
 install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/aspic)
 install(DIRECTORY assets DESTINATION ${CMAKE_INSTALL_DATADIR}/aspic OPTIONAL FILES_MATCHING PATTERN "bunny.*")
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -1,4 +1,4 @@
-# cmake -DOUTPUT=... -DSOURCE=... -DVERSION=... ... -P BuildFacts.cmake: writes the header that --version prints.
+# cmake -DOUTPUT=... -DSOURCE=... -DVERSION=... ... -P BuildFacts.cmake: writes the header for --version.
 set(commit "")
 find_program(GIT git)
 if(GIT AND EXISTS ${SOURCE}/.git)

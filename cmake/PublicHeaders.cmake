@@ -1,7 +1,7 @@
-# cmake -DHEADERS=include/aspic -DSOURCES=src -DOUTPUT=... -P PublicHeaders.cmake
-# Writes each header of HEADERS to OUTPUT as one self-contained file: in place of the headers of SOURCES that it names,
-# it has their text. Fails when two headers name the same one, or when a header is reached that none of them names.
-# Installed headers therefore include nothing but each other and the standard library.
+# cmake -DHEADERS=include/aspic -DSOURCES=src -DOUTPUT=... -P PublicHeaders.cmake: writes each header of HEADERS to
+# OUTPUT as one self-contained file, in which the text of the headers of SOURCES replaces their includes. Fails if two
+# headers name the same one, or if they include a header that none of them names. Installed headers therefore include
+# only each other and the standard library.
 cmake_minimum_required(VERSION 3.25)
 
 file(GLOB headers ${HEADERS}/*.h)
@@ -19,8 +19,8 @@ foreach(header ${headers})
   endforeach()
 endforeach()
 
-# Appends the text of a header of SOURCES to `body`, after the parts of the same public header that it includes. Includes
-# of the standard library and of other public headers go to `system` and `public`.
+# Appends the text of a header of SOURCES to `body`, after the headers that it includes and that belong to the same
+# public header. Collects includes of the standard library in `system` and those of other public headers in `public`.
 macro(append_part path)
   set_property(GLOBAL APPEND PROPERTY done_${name} ${path})
   file(READ ${SOURCES}/${path} text_${path})

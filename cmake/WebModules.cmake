@@ -1,4 +1,4 @@
-# cmake -DWEB=... -DNPM=... -P WebModules.cmake: installs what the page is built with, unless it is there already.
+# cmake -DWEB=... -DNPM=... -P WebModules.cmake: installs the npm packages of the page if they are missing.
 set(installed ${WEB}/node_modules/.package-lock.json)
 if(EXISTS ${installed} AND NOT ${WEB}/package-lock.json IS_NEWER_THAN ${installed})
   return()

@@ -1,8 +1,8 @@
-// A material of your own from its energy density alone: stress and Hessian come by automatic differentiation.
+// A custom material defined by its energy density. Automatic differentiation provides stress and Hessian.
 //
 // Soft tissue stiffens exponentially when stretched [Demiray 1972]:
 //   psi = mu / (2 b) (exp(b (I1 - 3 - 2 ln J)) - 1) + lambda / 2 (ln J)^2,   I1 = tr(F'F), J = det F.
-// A bar of it is pulled to 1.6 times its length; the force grows faster and faster.
+// A bar of it is stretched to 1.6 times its length, and its force increases progressively.
 #include <aspic/aspic.h>
 #include <aspic/custom_material.h>
 
@@ -17,14 +17,14 @@ struct TissueEnergy {
     T b;           // [1]
   };
 
-  template <class T>  // double, SIMD lanes or a jet of derivatives
+  template <class T>  // double, SIMD lanes or derivatives
   static T psi(const Mat3<T>& F, const Params<T>& p) {
     const T J = determinant(F), log_J = log(J);
     const T growth = exp(p.b * (squared_norm(F) - T(3.0) - T(2.0) * log_J)) - T(1.0);
     return infinite_unless_positive(J, T(0.5) * p.mu / p.b * growth + T(0.5) * p.lambda * log_J * log_J);
   }
 
-  template <class T>  // from small-strain constants and up to three numbers of your own
+  template <class T>  // from small-strain constants and up to three additional numbers
   static Params<T> params(const MaterialParametersOver<T>& m) {
     return {m.lame.mu, m.lame.lambda, m.extra[0]};
   }
@@ -33,8 +33,8 @@ using Tissue = FromEnergy<TissueEnergy>;
 
 int main() {
   constexpr double length = 0.1, width = 0.02;     // [m]
-  constexpr double pull = 0.06, seconds = 1;       // how far the end is pulled [m], how long it takes [s]
-  const MaterialParameters skin{{2e4, 8e4}, {3}};  // the same in every tet; it need not be
+  constexpr double pull = 0.06, seconds = 1;       // displacement of the end [m], duration [s]
+  const MaterialParameters skin{{2e4, 8e4}, {3}};  // uniform here; may vary from tet to tet
   Model model = ModelBuilder(make_box({0, 0, 0}, {length, width, width}, {10, 2, 2}))
                     .material(custom_material<Tissue>("tissue", 1), skin)
                     .density(1000)  // [kg/m^3]
@@ -56,10 +56,10 @@ int main() {
       return 1;
     }
     before = force;
-    force = report.pin_work / (pull * 0.05 / seconds);  // the work of the end over the way that it went
+    force = report.pin_work / (pull * 0.05 / seconds);  // work of the end divided by its displacement
     if (i == 1) first_force = force;
     if (i % 5 == 0) std::printf("stretch %.2f: %.2f N\n", 1 + pull * report.time / seconds / length, force);
   }
   std::printf("the last step adds %.1f times as much force as the first\n", (force - before) / first_force);
-  return force - before > 3 * first_force ? 0 : 1;  // the neo-Hookean materials soften instead
+  return force - before > 3 * first_force ? 0 : 1;  // neo-Hookean materials soften instead
 }

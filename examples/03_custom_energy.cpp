@@ -1,6 +1,6 @@
-// An energy of your own: a floor that pushes back. Every vertex below y = 0 adds
+// A custom energy: an elastic floor. Every vertex below y = 0 adds
 //   V = k/2 y^2,   dV/dy = k y,   d2V/dy2 = k,
-// to the potential. A jelly cube is dropped onto it, and every step still minimizes one function.
+// to the potential. A jelly cube falls onto it, and every step still minimizes one function.
 #include <aspic/aspic.h>
 
 #include <algorithm>
@@ -21,12 +21,12 @@ class Floor : public Energy {
   void add_gradient(Positions x, const Context&, double scale, std::span<double> g) const override {
     for (size_t i = 1; i < x.size(); i += 3) g[i] += scale * k_ * depth(x[i]);
   }
-  // A vertex is coupled to nothing but itself, so the diagonal blocks are enough.
+  // Vertices are not coupled to each other, so the diagonal blocks suffice.
   void bind(const BlockPattern& pattern) override { pattern_ = &pattern; }
   int add_hessian(Positions x, const Context&, double scale, const Projection&, BlockSparse& H) const override {
     for (int v = 0; v < pattern_->rows(); ++v)
       if (depth(x[3 * v + 1]) < 0) H.block[pattern_->diagonal(v)](1, 1) += scale * k_;
-    return 0;  // nothing had to be projected: the energy is convex
+    return 0;  // no modified elements: the energy is convex
   }
 
  private:
@@ -47,7 +47,7 @@ int main() {
   for (size_t i = 1; i < start.q.size(); i += 3) start.q[i] += height;
 
   Simulation simulation(std::move(model), start, {.h = 0.005, .solver = {}});
-  double deepest = 0, highest_after = -1;  // lowest vertex so far; how high that is after the bounce
+  double deepest = 0, highest_after = -1;  // lowest position so far; its height after the bounce
   for (int i = 1; i <= 160; ++i) {
     const StepReport report = simulation.step();
     if (!is_success(report.status)) return std::printf("step %d did not converge\n", i), 1;

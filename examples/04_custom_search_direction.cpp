@@ -1,5 +1,5 @@
-// A search direction of your own: the open slot "d = ?" of the loop. Gradient descent with momentum (the heavy ball
-// [Polyak 1964]) remembers where it was going,
+// A custom search direction, the open slot "d = ?" of the loop. Gradient descent with momentum (the heavy ball [Polyak
+// 1964]) adds the previous direction,
 //   d = -g + beta d_before,
 // and needs far fewer iterations than d = -g in the curved valley of Rosenbrock's function.
 #include <aspic/optimize.h>
@@ -13,17 +13,17 @@ class HeavyBall : public SearchDirection {
   explicit HeavyBall(double beta) : beta_(beta) {}
   std::string_view name() const override { return "heavy_ball"; }
 
-  void begin() override { before_.clear(); }  // a new minimization remembers nothing
+  void begin() override { before_.clear(); }  // a new minimization starts without momentum
 
   bool compute(const Iterate& at, std::span<double> d, DirectionReport&) override {
     before_.resize(d.size());
     for (size_t i = 0; i < d.size(); ++i) d[i] = -at.g[i] + beta_ * before_[i];
-    if (!(at.E.dot(at.g, d) < 0))  // the ball rolls uphill: stop it
+    if (!(at.E.dot(at.g, d) < 0))  // not a descent direction: drop the momentum
       for (size_t i = 0; i < d.size(); ++i) d[i] = -at.g[i];
     before_.assign(d.begin(), d.end());
     return true;
   }
-  // The line search found no step along d: forget the momentum once, then give up.
+  // The line search found no step along d: drop the momentum once, then fail.
   bool retreat() override {
     const bool had_momentum = !before_.empty();
     before_.clear();

@@ -1,6 +1,6 @@
 // The lecture's loop written out: for each time step, minimize
 //   E(q) = 1/2 (q - q~)' M (q - q~) + h^2 V(q),   q~ = q + h qdot,
-// by Newton's method with backtracking line search. `Simulation` does the same with more care; both must agree.
+// by Newton's method with backtracking line search. `Simulation` does the same with more safeguards; both must agree.
 #include <aspic/aspic.h>
 
 #include <algorithm>
@@ -38,11 +38,11 @@ int main() {
     for (size_t i = 0; i < q.size(); ++i) predicted[i] = q[i] + h * qdot[i];
     E.begin_step(predicted, 1, h * h);
 
-    int iteration = 0;  // the guess is q itself
+    int iteration = 0;  // initial guess: q
     for (E.gradient(q, g); norm(g) > 1e-10; E.gradient(q, g), ++iteration) {
       if (iteration == 50) return std::printf("step %d did not converge\n", step), 1;
       if (!solver->factorize(E.hessian(q, {Definiteness::clamped}))) return 1;
-      solver->solve(g, d, 0);  // H d = g, then turned round
+      solver->solve(g, d, 0);  // H d = g, then d = -d
       double slope = 0;
       for (size_t i = 0; i < d.size(); ++i) slope -= g[i] * d[i];
       const Evaluation at_q = E.evaluate(q);

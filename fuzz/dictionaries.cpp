@@ -1,4 +1,4 @@
-// The words of scenes and data sets for libFuzzer, from the tables that check them.
+// Writes the keywords of scenes and data sets for libFuzzer, from the tables that validate them.
 #include <set>
 
 #include "capture/capture_schema.h"
@@ -9,7 +9,7 @@
 namespace aspic::fuzz {
 namespace {
 
-// As a dictionary writes it.
+// Quoted as in a dictionary file.
 std::string entry(const std::string& word) {
   std::string text = "\"";
   for (const char c : word)

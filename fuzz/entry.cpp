@@ -1,5 +1,5 @@
-// The entry of libFuzzer: "aspic_fuzz TARGET [options of libFuzzer] [files and folders]". What libFuzzer starts itself
-// finds the target in the environment.
+// Entry point of libFuzzer: "aspic_fuzz TARGET [options of libFuzzer] [files and folders]". Subprocesses of libFuzzer
+// read the target from the environment.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -15,7 +15,7 @@ const aspic::fuzz::Target* target = nullptr;
 
 }  // namespace
 
-// Inputs are small, and the machine is full of fuzzers.
+// Inputs are small, and several fuzzers run at once.
 extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
   aspic::set_thread_count(1);
   const char* known = std::getenv(kVariable);

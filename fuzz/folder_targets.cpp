@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 TetMesh small_box() { return make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}); }
 
-// What scenes of the corpus refer to.
+// Files that scenes of the corpus refer to.
 fs::path folder_with_meshes() {
   static const fs::path folder = [] {
     const fs::path& path = folder_of_process();
@@ -45,7 +45,7 @@ fs::path folder_with_meshes() {
   return folder;
 }
 
-// Asks what a fit asks, of a model that is the identity.
+// Makes the calls of a fit with the identity as its model.
 class Identity : public LeastSquares {
  public:
   int unknowns() const override { return 2; }

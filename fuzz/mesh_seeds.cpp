@@ -22,7 +22,7 @@ TetMesh two_regions() {
   return mesh;
 }
 
-// Other programs' files, by what they are for.
+// Files of other programs, by purpose.
 void append_examples(std::vector<Seed>& seeds) {
   const std::map<std::string, std::string> targets = {{".msh", "gmsh"}, {".mesh", "medit"}, {".obj", "obj"},
                                                       {".off", "off"},  {".ply", "ply"},    {".stl", "stl"}};

@@ -71,7 +71,7 @@ void vtu(std::string_view bytes) {
 }
 
 void doctor(std::string_view bytes) {
-  constexpr size_t kMost = 2000;  // elements
+  constexpr size_t kMost = 2000;  // limit of elements
   if (bytes.starts_with("OFF")) {
     MeshContent content = parse_off("file", bytes);
     TriMesh surface{std::move(content.vertices), std::move(content.triangles)};

@@ -8,7 +8,7 @@
 namespace aspic::fuzz {
 namespace {
 
-constexpr size_t kLimit = 1 << 20;  // [bytes], unpacked
+constexpr size_t kLimit = 1 << 20;  // limit after decompression [bytes]
 
 int depth_of(const XmlElement& element) {
   int deepest = 0;

@@ -37,7 +37,7 @@ std::string material_bytes() {
   return read_file(path);
 }
 
-// The state of a run of two bodies' box: what run_directory writes.
+// State of a run with two bodies, as run_directory writes it.
 Checkpoint run_checkpoint() {
   const std::vector<double> q(24, 0.5), zero(24, 0.0);
   return {.fingerprint = "0123456789abcdef",

@@ -1,5 +1,5 @@
-// Feeds files to a target without a fuzzer, in any build: "replay gmsh FILE|FOLDER ...". "replay --list" prints
-// the targets.
+// Feeds files to a target without a fuzzer, in any build: "replay gmsh FILE|FOLDER ...". "replay --list" prints the
+// targets.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -43,7 +43,7 @@ int main(int count, char** arguments) {
   }
   const std::vector<fs::path> files = files_of(count - 2, arguments + 2);
   for (const fs::path& file : files) {
-    std::fprintf(stderr, "%s: ", file.string().c_str());  // the last one named is the one at fault
+    std::fprintf(stderr, "%s: ", file.string().c_str());  // the last name printed is the faulty file
     const std::string refusal = attempt(target->feed, aspic::read_file(file));
     std::fprintf(stderr, "%s\n", refusal.empty() ? "read" : refusal.c_str());
   }

@@ -13,21 +13,21 @@ namespace aspic::fuzz {
 inline constexpr double kMostTets = 300;
 SceneOptions small_scenes();
 
-// The files of a folder, kept in memory.
+// Files of a folder in memory.
 class Folder {
  public:
   explicit Folder(const std::filesystem::path& path);
-  const std::string& contents(const std::filesystem::path& name) const;  // which is there
-  void restore(const std::filesystem::path& path) const;                 // with these files and no others
+  const std::string& contents(const std::filesystem::path& name) const;  // the file must exist
+  void restore(const std::filesystem::path& path) const;                 // replaces the folder's files by these
 
  private:
-  std::vector<std::pair<std::filesystem::path, std::string>> files_;  // by their names within it
+  std::vector<std::pair<std::filesystem::path, std::string>> files_;  // sorted by relative path
 };
 
-// A run of a box of six tets after some steps.
+// Run of a box of six tets after some steps.
 Folder begun_run(int steps);
 
-// Of whatever a scene there says, the checkpoint has its fingerprint and a right checksum.
+// Adapts the checkpoint's fingerprint and checksum to the scene in the folder.
 void make_checkpoint_right(const std::filesystem::path& path, std::string_view fingerprint);
 
 }  // namespace aspic::fuzz

@@ -1,4 +1,4 @@
-// What the fuzzers begin with.
+// Seeds of the fuzzers.
 #pragma once
 #include <string>
 #include <vector>
@@ -17,7 +17,7 @@ std::vector<Seed> scene_seeds();
 std::vector<Seed> viewer_seeds();
 
 struct Dictionary {
-  std::string target, text;  // as libFuzzer reads it
+  std::string target, text;  // input in the syntax of libFuzzer
 };
 
 std::vector<Dictionary> dictionaries();

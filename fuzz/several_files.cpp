@@ -67,7 +67,7 @@ std::string with_right_checksum(std::string_view bytes) {
 }
 
 std::string with_fingerprint(std::string_view checkpoint, std::string_view fingerprint) {
-  constexpr size_t kOffset = 32;  // after the head and its length
+  constexpr size_t kOffset = 32;  // header and its length
   std::string right(checkpoint);
   if (right.size() >= kOffset + fingerprint.size()) right.replace(kOffset, fingerprint.size(), fingerprint);
   return right;

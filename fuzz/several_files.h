@@ -1,4 +1,5 @@
-// A reader of several files fed from one text: a line "=== NAME" begins each; the break before it is part of no file.
+// Several files in one text for a reader of folders: a line "=== NAME" begins each; the line break before it belongs to
+// no file.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -10,15 +11,15 @@
 
 namespace aspic::fuzz {
 
-// Only names of `allowed` count; a text without such a line is the first of them.
+// Ignores names that are not in `allowed`. A text without such a line is the first of them.
 std::vector<std::pair<std::string, std::string_view>> split_files(std::string_view bytes,
                                                                   const std::vector<std::string>& allowed);
 std::string joined_files(const std::vector<std::pair<std::string, std::string>>& files);
 
-// Without fsync: nothing here needs to outlive the process.
+// Without fsync: the files need not outlive the process.
 void put_file(const std::filesystem::path& path, std::string_view bytes);
 
-// Puts each file of such a text into a folder, and removes them at the end.
+// Writes the files of a text into a folder and removes them in the destructor.
 class Files {
  public:
   Files(const std::filesystem::path& folder, std::string_view bytes, const std::vector<std::string>& allowed);
@@ -30,11 +31,11 @@ class Files {
   std::vector<std::filesystem::path> paths_;
 };
 
-// A folder of this process, for a target that needs files.
+// Temporary folder of this process.
 const std::filesystem::path& folder_of_process();
 
-// A checkpoint whose size and checksum are made right, so that what follows them is reached.
+// Corrects size and checksum of a checkpoint, so that fuzzing reaches the rest.
 std::string with_right_checksum(std::string_view bytes);
-std::string with_fingerprint(std::string_view checkpoint, std::string_view fingerprint);  // of the same length
+std::string with_fingerprint(std::string_view checkpoint, std::string_view fingerprint);  // must have equal lengths
 
 }  // namespace aspic::fuzz

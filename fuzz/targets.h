@@ -1,6 +1,6 @@
-// What the fuzzers feed: one function per reader of files that others wrote. Each takes any bytes, and either reads
-// them or throws InvalidInput; anything else that happens is a fault. What was read is checked for what the rest of the
-// library relies on, and messages for control characters.
+// Fuzz targets: one function per reader of foreign files. Each accepts any bytes and either reads them or throws
+// InvalidInput; any other outcome is a defect. Targets check what the rest of the library relies on, and that messages
+// contain no control characters.
 #pragma once
 #include <span>
 #include <string>
@@ -35,14 +35,14 @@ void csv(std::string_view bytes);
 void checkpoint(std::string_view bytes);
 void point_cache(std::string_view bytes);
 void run_folder(std::string_view bytes);     // files in one text, see several_files.h
-void run_recording(std::string_view bytes);  // of the files of a run
+void run_recording(std::string_view bytes);  // the files of a run
 void journal(std::string_view bytes);
 void material(std::string_view bytes);
 void data_set(std::string_view bytes);  // files in one text
 void curves(std::string_view bytes);
 // Scenes.
 void toml(std::string_view bytes);
-void scene(std::string_view bytes);   // built, with at most a few hundred tets
+void scene(std::string_view bytes);   // builds the scene, with at most a few hundred tets
 void values(std::string_view bytes);  // a table of numbers per element
 void expression(std::string_view bytes);
 void overrides(std::string_view bytes);  // one per line
@@ -52,15 +52,15 @@ void page_text(std::string_view bytes);  // addresses, heads of messages, record
 void session(std::string_view bytes);    // messages to a session, one per line
 
 std::span<const Target> targets();
-const Target* target_named(std::string_view name);  // null: there is none
+const Target* target_named(std::string_view name);  // null if unknown
 
-// Calls `feed` and returns what InvalidInput said, which is what a reader should throw; empty: it was read. The message
-// must be a few lines that a terminal can be shown.
+// Calls `feed` and returns the message of InvalidInput, or an empty text if there was none. Checks that the message is
+// a few printable lines.
 std::string attempt(Feed feed, std::string_view bytes);
 
-// Ends the program when a target's promise does not hold, in every build.
+// Ends the program in every build if a property does not hold.
 void require(bool holds, const char* what);
-void require_message(std::string_view message);                 // of an error: a few printable lines
+void require_message(std::string_view message);                 // a few printable lines
 void require_printable(const std::vector<std::string>& texts);  // notes, names
 
 }  // namespace aspic::fuzz

@@ -30,7 +30,7 @@ void overrides(std::string_view bytes) {
   read_scene_document(kScene, "scene.toml", lines);
 }
 
-// The first character chooses the variables.
+// The first character selects the variables.
 void expression(std::string_view bytes) {
   if (bytes.empty()) return;
   const auto variables = static_cast<ExpressionVariables>(static_cast<unsigned char>(bytes[0]) % 3);

@@ -1,4 +1,4 @@
-// What the viewer's page sends, and the runs that are packed into a page.
+// Messages of the viewer's page, and runs packed into a page.
 #include <string>
 #include <vector>
 
@@ -24,7 +24,7 @@ using viewer::Json;
 constexpr size_t kMostMessages = 8;
 constexpr double kFewTets = 100;
 
-// Checks that messages to a page are valid and refusals are printable.
+// Checks that messages to a page are valid and that refusals are printable.
 void require_messages(const viewer::Messages& messages) {
   for (const viewer::Message& message : messages) {
     if (message.is_binary) continue;
@@ -34,7 +34,7 @@ void require_messages(const viewer::Messages& messages) {
   }
 }
 
-// The one command that writes files.
+// The only command that writes files.
 bool saves(std::string_view line) {
   const Json json = Json::parse(line, nullptr, false);
   return json.is_object() && json.contains("do") && json["do"] == "save_capture";

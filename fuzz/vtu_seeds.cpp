@@ -1,4 +1,4 @@
-// Small grids in each of the ways in which VTK stores numbers.
+// Small grids in every encoding of VTK.
 #include <zlib.h>
 
 #include "io/base64.h"
@@ -10,7 +10,7 @@ namespace {
 
 enum class Stored { ascii, inline_base64, appended_base64, appended_raw };
 
-// Bytes with the counts in front of them that VTK writes: their size, or blocks, block size, last size, packed sizes.
+// Bytes with the header of VTK: their size, or number of blocks, block size, last size, compressed sizes.
 std::string framed(const std::string& bytes, bool compressed) {
   std::string framed_bytes;
   if (!compressed) {

@@ -14,7 +14,7 @@ inline std::atomic<long> allocations = 0;
 
 class AllocationCounter {
  public:
-  long count() const { return allocations - at_start_; }  // since this counter was made
+  long count() const { return allocations - at_start_; }  // since construction
 
  private:
   long at_start_ = allocations;
@@ -31,7 +31,7 @@ inline void* count_and_allocate(std::size_t size, std::size_t alignment) {
 }  // namespace aspic::test
 
 // NOLINTBEGIN(misc-definitions-in-headers): one source of a program includes this
-// Not inlined: GCC would see free() meet a pointer from operator new and warn.
+// Not inlined: otherwise GCC warns that free() receives a pointer from operator new.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   return aspic::test::count_and_allocate(size, __STDCPP_DEFAULT_NEW_ALIGNMENT__);
 }
@@ -42,7 +42,7 @@ inline void* count_and_allocate(std::size_t size, std::size_t alignment) {
 [[gnu::noinline]] void* operator new[](std::size_t size, std::align_val_t alignment) {
   return operator new(size, alignment);
 }
-// Of std::stable_sort; a sanitizer's own would not match the delete below.
+// For std::stable_sort. A sanitizer's own version would not match the delete below.
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   ++aspic::test::allocations;
   return std::malloc(size ? size : 1);

@@ -1,16 +1,16 @@
-# The benchmarks: that they run and give the known results, and how much work the beam takes. Never how long.
+# Benchmarks: they run, give the known results, and take the known amount of work. Times are not tested.
 if(TARGET bench_common)
   add_aspic_tests(test_bench ${CMAKE_SOURCE_DIR}/bench/counts_test.cpp)
   target_link_libraries(test_bench PRIVATE bench_common)
   target_compile_definitions(test_bench PRIVATE ASPIC_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 
-  # Aspic and the obvious program agree with the reference displacement of the beam; sanitizers make Eigen too slow.
+  # Aspic and the naive program agree with the reference displacement of the beam. Sanitizers make Eigen too slow.
   if(NOT ASPIC_SANITIZE)
     add_test(NAME bench.beam COMMAND bench_beam 7 --threads 1,2)
   endif()
   add_test(NAME bench.bent_beam COMMAND bench_beam 2 --bent --naive 0 --quiet)
   add_test(NAME bench.characters COMMAND bench_characters torus --detail tiny --steps 2 --csv characters.csv)
-  # Missing shapes are reported and are no failure.
+  # Missing shapes are reported and do not fail the test.
   add_test(NAME bench.missing_shapes COMMAND bench_characters bunny --shapes none --quiet)
   set_tests_properties(bench.missing_shapes PROPERTIES PASS_REGULAR_EXPRESSION "bunny +left out")
   add_test(NAME bench.kernels COMMAND bench_kernels 2 --all-materials --threads 1,2 --seconds 1e-4 --repetitions 1

@@ -44,32 +44,32 @@ class Captured(CommandLine):
 class Capture(Captured):
     TABLES = ("capture.toml", "markers.csv", "cases.csv", "positions.csv", "rest.msh", "truth.vtu")
 
-    def test_a_scene_becomes_a_data_set_without_faults(self):
+    def test_scene_becomes_a_faultless_data_set(self):
         self.assertIn("6 cases, 20 markers", self.capture().stdout)
         text = self.aspic("fit", "--check", "data").stdout
         self.assertIn("6 cases in 3 groups", text)
         self.assertNotIn("error:", text)
 
-    def test_by_default_it_goes_to_out_and_an_earlier_one_is_kept(self):
+    def test_writes_to_out_and_keeps_earlier_results(self):
         self.write("cube.toml", CUBE)
         self.assertIn("1 of 3: poke 1, depth 1: ", self.aspic("capture", "cube.toml", "--pokes", "1").stdout)
         self.assertTrue((self.folder / "out/cube_data/capture.toml").exists())
         self.assertIn("--force", self.aspic("capture", "cube.toml", "--pokes", "1", code=2).stderr)
 
-    def test_the_same_seed_gives_the_same_bits_and_another_does_not(self):
+    def test_seed_determines_all_bits(self):
         self.capture("one", "--threads", "1")
         self.capture("two", "--threads", "2")
         self.capture("other", "--seed", "2")
         self.assert_same_files("one", "two", *self.TABLES)
         self.assertFalse(filecmp.cmp(self.folder / "one/positions.csv", self.folder / "other/positions.csv", False))
 
-    def test_without_forces_there_are_none_and_the_check_says_what_that_means(self):
+    def test_check_explains_missing_forces(self):
         self.capture("data", "--no-force")
         with open(self.folder / "data/cases.csv", newline="") as file:
             self.assertEqual({row["force_x"] for row in csv.DictReader(file)}, {""})
         self.assertIn("only ratios of stiffness", self.aspic("fit", "--check", "data").stdout)
 
-    def test_torques_gravity_and_a_mesh_of_ones_own(self):
+    def test_accepts_torques_gravity_and_own_mesh(self):
         self.write("box.mesh", box_mesh(3))
         self.aspic("convert", "box.mesh", "box.msh")
         self.write("scaled.toml", CUBE.replace("[0.1, 0.1, 0.1]", "[1, 1, 1]").replace("0.05", "0.5"))
@@ -101,7 +101,7 @@ class Fit(Captured):
         self.capture()
         self.write("quick.toml", self.QUICK_OPTIONS)
 
-    def test_the_whole_way_from_a_scene_to_a_scene(self):
+    def test_captured_and_fitted_scene_runs(self):
         done = self.aspic("fit", "data")
         for part in ("converged", "misfit", "95 %", "held out", "next poke", 'material = { file = "material.vtu" }'):
             self.assertIn(part, done.stdout)
@@ -113,7 +113,7 @@ class Fit(Captured):
         self.assertIn("2 of 2", self.aspic("run", "use.toml").stdout)
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "needs a device that is always full")
-    def test_where_nothing_can_be_written_that_is_said(self):
+    def test_unwritable_folder_is_reported(self):
         self.assertIn("/proc", self.aspic("fit", "data", *self.QUICK, "-o", "/proc/none/material.vtu", code=2).stderr)
         with open("/dev/full", "w") as full:
             done = subprocess.run([ASPIC, "fit", "data", *self.QUICK], cwd=self.folder, stdout=full,
@@ -135,54 +135,54 @@ class BadData(Captured):
             for message in messages:
                 self.assertIn(message, done.stdout + done.stderr)
 
-    def test_a_reading_that_is_no_number(self):
+    def test_rejects_readings_that_are_not_numbers(self):
         self.change_cells("positions", ["x"], lambda x: "nan")
         self.refused("positions.csv:2: x = 'nan'", "leave the cell blank")
 
-    def test_lengths_in_millimeters(self):
+    def test_finds_lengths_in_millimeters(self):
         self.change_cells("positions", ["x", "y", "z"], lambda x: str(1e3 * float(x)))
         self.refused("positions.csv: markers move", 'units = { length = "mm" }')
 
-    def test_forces_in_grams(self):
+    def test_finds_forces_in_grams(self):
         self.change_cells("cases", ["force_x", "force_y", "force_z"], lambda f: str(round(1e4 * float(f) / 9.8)))
         text = self.aspic("fit", "--check", "data").stdout
         self.assertIn("cases.csv", text)
         self.assertIn('units = { force = "g" }', text)
 
-    def test_forces_that_are_all_zero(self):
+    def test_finds_forces_that_are_all_zero(self):
         self.change_cells("cases", ["force_x", "force_y", "force_z"], lambda f: "0")
         self.refused("cases.csv: all forces are 0", "leave them blank")
 
-    def test_deviations_of_zero(self):
+    def test_rejects_zero_standard_deviations(self):
         self.change_cells("positions", ["sd_y"], lambda sd: "0")
         self.refused("positions.csv:2: sd_y = 0", "leave the cell blank")
 
-    def test_names_that_are_given_twice(self):
+    def test_rejects_duplicate_names(self):
         self.change_cells("cases", ["case"], lambda name: "poke 1, depth 1")
         self.refused("cases.csv:3: the case 'poke 1, depth 1' is in line 2 already")
 
-    def test_poses_inside_out(self):
+    def test_rejects_axes_that_point_outward(self):
         self.change_cells("cases", ["axis_x", "axis_y", "axis_z"], lambda a: str(-float(a)))
         self.refused("cases.csv:2 (poke 1, depth 1): the axis of the tip points out of the body", "turn their signs")
 
-    def test_a_tip_that_touches_nothing(self):
+    def test_finds_tips_without_contact(self):
         self.change_cells("cases", ["touch_x", "center_x"], lambda x: str(float(x) + 0.2))
         self.refused("cases.csv:2 (poke 1, depth 1): ", "touch")
 
-    def test_tables_that_are_empty_torn_or_no_tables(self):
+    def test_rejects_empty_and_torn_tables(self):
         for content, message in ((b"", "is empty"), (b"case,marker,x,y,z\n\"poke 1", "positions.csv:2: has 1 cells"),
                                  (os.urandom(2000) + b"\n", "positions.csv:1"), (b"x" * 3_000_000, "too long")):
             (self.folder / "data/positions.csv").write_bytes(content)
             self.refused(message)
 
-    def test_settings_that_are_meant_to_break_it(self):
+    def test_rejects_hostile_settings(self):
         for content, message in ((b"", "version"), (b"a = " + b"[" * 100_000, "depth"),
                                  (b"[" + b"a." * 100_000 + b"a]", "more than 32 parts"), (os.urandom(500), "capture.toml"),
                                  (b'version = 1\nmesh = "/dev/zero"\n', "outside")):
             (self.folder / "data/capture.toml").write_bytes(content)
             self.refused(message)
 
-    def test_data_that_no_material_explains(self):
+    def test_reports_data_that_no_material_explains(self):
         self.change_cells("positions", ["z"], lambda z: str(float(z) + 0.02))
         self.write("quick.toml", Fit.QUICK_OPTIONS)
         done = self.aspic("fit", "data", *Fit.QUICK, "--unknown", "young=uniform", code=3)
@@ -207,13 +207,13 @@ class MaterialFile(CommandLine):
                    .replace("[[body.pin]]", extra + "[[body.pin]]"))
         return self.aspic("run", "use.toml", "--force", code=code)
 
-    def test_another_mesh_takes_its_values_which_is_said(self):
+    def test_another_mesh_gets_values_with_a_message(self):
         self.assertIn("are not the 1 of material.vtu", self.run_with(young="1e4", poisson="0.4").stdout)
 
-    def test_a_body_that_was_moved_takes_the_values_where_it_rests(self):
+    def test_moved_body_gets_values_at_rest_positions(self):
         self.run_with("translate = [3, 0, 0]\n", young="1e4", poisson="0.4")
 
-    def test_what_is_missing_or_no_number_is_named(self):
+    def test_missing_and_invalid_values_are_named(self):
         self.assertIn("young", self.run_with(poisson="0.4", code=2).stderr)
         self.assertIn("material.vtu", self.run_with(young="nan", poisson="0.4", code=2).stderr)
         self.assertIn("material.vtu", self.run_with(young="-1", poisson="0.4", code=2).stderr)
@@ -222,7 +222,7 @@ class MaterialFile(CommandLine):
 
 
 class Curves(CommandLine):
-    def test_a_table_of_a_spreadsheet_gives_parameters_and_a_line_for_a_scene(self):
+    def test_spreadsheet_table_gives_parameters_and_scene_line(self):
         rows = "\n".join(f"uniaxial;{l:g};{1e3 * (l - l ** -2):g}".replace(".", ",") for l in (1.1, 1.3, 1.6, 2.0))
         self.write("pull.csv", "# a neo-Hookean rubber, mu = 1 kPa\ntest;stretch;stress_Pa\n" + rows)
         text = self.aspic("fit-curves", "pull.csv", "--material", "neo_hookean_isochoric").stdout
@@ -238,7 +238,7 @@ class Curves(CommandLine):
             self.write("pull.csv", text)
             self.assertIn(message, self.aspic("fit-curves", "pull.csv", code=2).stderr)
 
-    def test_a_closed_loop_does_work_unless_there_is_an_energy(self):
+    def test_closed_loop_work_is_zero_with_energy(self):
         text = self.aspic("closed-loop", "--loops", "1", "--increments", "50").stdout
         interpolated, energy = (re.search(rf"{name}.*?(-?[\d.]+) +(-?[\d.]+) ", text) for name in
                                 ("strain space", r"an energy \(corotated\)"))

@@ -1,4 +1,4 @@
-// What every step certifies, in every scene of the project: the ledger closes, and backward Euler keeps its bound.
+// Certificate of every step in every scene of the project: the ledger is balanced, and backward Euler keeps its bound.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,7 +52,7 @@ TEST_P(CertifiedScene, ClosesItsLedgerAndKeepsTheBound) {
 INSTANTIATE_TEST_SUITE_P(Scenes, CertifiedScene, testing::ValuesIn(scene_files()),
                          [](const auto& file) { return file.param.stem().string(); });
 
-// Whatever the length of the step.
+// For time steps of any length.
 TEST(EnergyBound, HoldsForStepsOfAnyLength) {
   for (const double h : {1e-3, 1e-2, 0.1, 1.0, 10.0})
     for (const char* material : {"neo_hookean", "neo_hookean_log", "corotated"}) {
@@ -64,8 +64,8 @@ TEST(EnergyBound, HoldsForStepsOfAnyLength) {
     }
 }
 
-// Nothing but the body's own energies: what the bound allows to be lost is what the ledger says was lost.
-TEST(EnergyBound, HasTheSlackOfItsDefinition) {
+// Only elastic energies: the slack of the bound equals the loss in the ledger.
+TEST(EnergyBound, EqualsItsDefinition) {
   Simulation simulation = simulate(beam(2));
   double before = simulation.kinetic_energy();
   for (const double V : simulation.potential_energies()) before += V;
@@ -80,7 +80,7 @@ TEST(EnergyBound, HasTheSlackOfItsDefinition) {
   }
 }
 
-TEST(EnergyBound, IsJudgedOnlyWhereItIsGuaranteed) {
+TEST(EnergyBound, IsCheckedOnlyWithAGuarantee) {
   const BoundedEnergies energies{.allowed = 2, .reached = 1, .magnitude = 3};
   EXPECT_EQ(energy_bound(energies, 1.5), EnergyBound::holds);
   EXPECT_EQ(energy_bound(energies, 2.5), EnergyBound::not_guaranteed);
@@ -100,7 +100,7 @@ double energy(const Simulation& simulation) {
   return sum;
 }
 
-// With pins already moved, the start that E is compared with is another one than where the step began.
+// With moved pins the initial guess of E differs from the state at the beginning of the step.
 TEST(EnergyBound, HoldsWhilePinsMove) {
   for (const double h : {1e-3, 1e-2, 0.1})
     for (const bool is_damped : {false, true}) {
@@ -116,8 +116,8 @@ TEST(EnergyBound, HoldsWhilePinsMove) {
     }
 }
 
-// A body of which every vertex is pinned has nothing to lose: both sides of the bound are the same.
-TEST(EnergyBound, HasNoSlackWhereAllVerticesArePinned) {
+// All vertices are pinned, so nothing is dissipated: both sides of the bound are equal.
+TEST(EnergyBound, IsTightIfAllVerticesArePinned) {
   Model model = beam(1);
   Pin all{.motion = [](const Vec3d& X, double t) { return (1 + t * t) * X; }};
   for (int v = 0; v < model.mesh.vertex_count(); ++v) all.vertices.push_back(v);
@@ -132,8 +132,8 @@ TEST(EnergyBound, HasNoSlackWhereAllVerticesArePinned) {
   }
 }
 
-// Every part of a divided step keeps the bound of its own length.
-TEST(EnergyBound, HoldsInEveryPartOfADividedStep) {
+// Every substep keeps the bound of its own length.
+TEST(EnergyBound, HoldsInEverySubstep) {
   for (const bool moves : {false, true}) {
     Simulation simulation = simulate(moves ? damped_beam_with_moving_pins_and_targets() : beam(2),
                                      {.h = 0.05, .adaptive = {1e-3}, .solver = {}});
@@ -148,7 +148,7 @@ TEST(EnergyBound, HoldsInEveryPartOfADividedStep) {
   }
 }
 
-// A terrace of the potential: 0 for x < 0, the height from there on, for each vertex.
+// Terrace of the potential: 0 for x < 0, constant height beyond, for each vertex.
 class Terrace : public Energy {
  public:
   explicit Terrace(double height /* [J] */) : height_(height) {}
@@ -165,9 +165,10 @@ class Terrace : public Energy {
   double height_;
 };
 
-// The bound is no bound of kinetic + potential energy where E is not convex: what jumps over an edge within a step
+// The bound does not limit kinetic + potential energy where E is not convex: a vertex that crosses an edge within a
+// step keeps its velocity and gains the height. The ledger reports a negative loss.
 // keeps its velocity and gains the height. The ledger reports a negative loss.
-TEST(EnergyBound, HoldsWhereABodyJumpsOntoATerraceThoughItsEnergyGrows) {
+TEST(EnergyBound, HoldsOnATerraceWhereEnergyGrows) {
   Model model = make_model(make_box({{-2, 0, 0}}, {{-1, 1, 1}}, {1, 1, 1}), {.gravity = {}});
   const double height = 1;
   model.loads.push_back(std::make_unique<Terrace>(height));
@@ -183,8 +184,8 @@ TEST(EnergyBound, HoldsWhereABodyJumpsOntoATerraceThoughItsEnergyGrows) {
   EXPECT_NEAR(report.energy_slack, before - gain, 1e-9 * before);
 }
 
-// Strains are known to the last digits of 1: a stiff body that hardly moves has less energy than that.
-TEST(EnergyBound, KnowsTheRoundOffOfStrains) {
+// Strains have the absolute accuracy of eps. The energy of a stiff body that hardly moves is below that.
+TEST(EnergyBound, AllowsForRoundOffOfStrains) {
   for (const double offset : {0.0, 1e3, 1e6})
     for (const double h : {1e-6, 1e-4, 1e-2}) {
       TetMesh mesh = make_box({{0, 0, 0}}, {{4, 1, 1}}, {4, 1, 1});

@@ -1,4 +1,4 @@
-# CHOLMOD (GPL) is an oracle for the tests only; without it they are left out.
+# CHOLMOD (GPL) is a reference for tests only. Without it these tests are omitted.
 find_library(CHOLMOD_LIBRARY cholmod)
 find_path(CHOLMOD_INCLUDE suitesparse/cholmod.h)
 if(CHOLMOD_LIBRARY AND CHOLMOD_INCLUDE)

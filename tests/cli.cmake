@@ -1,7 +1,7 @@
-# The program as its users meet it; standard Python drives it.
+# Tests of the program's command line, written in standard Python.
 find_package(Python3 COMPONENTS Interpreter)
 
-# Each test case of a file is one test, PREFIX.Case.
+# Adds one test PREFIX.CLASS for each test class of a file.
 function(add_python_tests prefix file)
   foreach(case ${ARGN})
     add_test(NAME ${prefix}.${case} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/${file} ${case})

@@ -20,18 +20,18 @@ class Help(CommandLine):
             self.assertIn("Examples:", text)
             self.assertIn(" ".join(["  aspic", *arguments]), text)
 
-    def test_version_states_how_the_program_was_built(self):
+    def test_version_states_the_build(self):
         text = self.aspic("--version").stdout
         for fact in ("aspic ", "compiler", "flags", "SIMD", "libraries"):
             self.assertIn(fact, text)
 
-    def test_a_misspelt_command_is_corrected(self):
+    def test_misspelled_command_is_corrected(self):
         self.assertIn("did you mean 'check'", self.aspic("chek", "x.mesh", code=2).stderr)
 
-    def test_a_misspelt_option_is_corrected(self):
+    def test_misspelled_option_is_corrected(self):
         self.assertIn("did you mean '--threads'", self.aspic("run", "x.toml", "--thread", "2", code=2).stderr)
 
-    def test_a_file_without_a_command_is_told_about_run(self):
+    def test_file_without_command_suggests_run(self):
         self.write("box.mesh", box_mesh())
         self.assertIn("aspic run box.mesh", self.aspic("box.mesh", code=2).stderr)
 
@@ -40,7 +40,7 @@ class Help(CommandLine):
 
 
 class Completion(CommandLine):
-    def test_holds_every_option_of_the_help(self):
+    def test_scripts_list_every_option(self):
         script = self.aspic("completion", "bash").stdout
         page = self.aspic("completion", "man").stdout.replace("\\-", "-")
         for command in re.findall(r"(?m)^    ([a-z-]+)\)", script):
@@ -58,7 +58,7 @@ class Completion(CommandLine):
             self.assertEqual((done.stdout, done.stderr), (expected + "\n", ""))
 
     @unittest.skipUnless(shutil.which("groff"), "needs groff")
-    def test_the_man_page_is_well_formed(self):
+    def test_man_page_is_well_formed(self):
         done = subprocess.run(["groff", "-man", "-Tascii", "-ww", "-z"], input=self.aspic("completion", "man").stdout,
                               capture_output=True, text=True)
         self.assertEqual(done.stderr, "")
@@ -71,7 +71,7 @@ class Completion(CommandLine):
 
 
 class Materials(CommandLine):
-    def test_each_has_a_formula(self):
+    def test_each_material_has_a_formula(self):
         text = self.aspic("materials").stdout
         for name in ("neo_hookean", "neo_hookean_log", "stvk", "corotated"):
             self.assertRegex(text, rf"(?m)^{name}\n  psi = ")
@@ -80,12 +80,12 @@ class Materials(CommandLine):
         listed = json.loads(self.aspic("materials", "--json").stdout)
         self.assertTrue(all(m["name"] and m["formula"] for m in listed))
 
-    def test_a_misspelt_name_is_corrected(self):
+    def test_misspelled_name_is_corrected(self):
         self.assertIn("did you mean 'neo_hookean'", self.aspic("materials", "neo_hokean", code=2).stderr)
 
 
 class Derivatives(CommandLine):
-    def test_those_of_a_scene_are_right(self):
+    def test_derivatives_of_a_scene_are_correct(self):
         text = self.aspic("check", self.beam(), "--derivatives", "--plot", "errors.svg").stdout
         for term in ("elasticity", "gravity", "inertia", "E"):
             for state in ("start", "rest", "deformed"):
@@ -99,12 +99,12 @@ class Derivatives(CommandLine):
         for what in ("gradient", "hessian"):
             self.assertAlmostEqual(elastic[what]["order"], 2, delta=0.1)
 
-    def test_what_is_not_right_enough_is_named_with_its_own_exit_code(self):
+    def test_inaccurate_derivatives_have_their_own_exit_code(self):
         text = self.aspic("check", self.beam(), "--derivatives", "--tolerance", "1e-13", code=3).stdout
         self.assertRegex(text, r"(?m)^elasticity +deformed .* WRONG$")
         self.assertRegex(text, r"the gradient of elasticity \(deformed\) differs most at vertex \d+, [xyz] \(tet \d+\)")
 
-    def test_vertices_and_tets_have_the_numbers_of_the_file(self):
+    def test_vertices_and_tets_have_file_numbers(self):
         self.write("box.mesh", box_mesh())
         tets = [set(map(int, line.split()[:4])) for line in box_mesh().split("Tetrahedra\n48\n")[1].splitlines()[:48]]
         lines = self.aspic("check", "box.mesh", "--derivatives", "--tolerance", "1e-30", "--json", code=3).stdout
@@ -114,7 +114,7 @@ class Derivatives(CommandLine):
             self.assertIn(int(vertex) + 1, tets[int(tet)])
             self.assertIn(int(other or vertex) + 1, tets[int(tet)])
 
-    def test_options_that_do_not_go_together(self):
+    def test_rejects_contradicting_options(self):
         self.assertIn("--derivatives", self.aspic("check", self.beam(), "--json", code=2).stderr)
 
 
@@ -125,12 +125,12 @@ class Check(CommandLine):
         self.assertIn("27 vertices, 48 tets", text)
         self.assertIn("mean ratio", text)
 
-    def test_an_inverted_tet_is_named_by_its_index(self):
+    def test_inverted_tet_is_named_by_index(self):
         self.write("bad.mesh", box_mesh(flip=5))
         text = self.aspic("check", "bad.mesh", code=2).stdout
         self.assertRegex(text, r"error: inverted_tets: .*\n  indices: 5\n")
 
-    def test_repair_mends_it(self):
+    def test_repair_fixes_an_inverted_tet(self):
         self.write("bad.mesh", box_mesh(flip=5))
         self.aspic("check", "bad.mesh", "--repair", "-o", "good.mesh")
         self.aspic("check", "good.mesh")
@@ -139,10 +139,10 @@ class Check(CommandLine):
         self.write("open.obj", CUBE_OBJ.rsplit("f ", 1)[0])
         self.assertIn("open", self.aspic("check", "open.obj", code=2).stdout)
 
-    def test_a_scene(self):
+    def test_scene_passes(self):
         self.assertIn("beam", self.aspic("check", self.beam()).stdout)
 
-    def test_a_scene_is_judged_by_the_numbers_of_its_file(self):
+    def test_scene_messages_use_numbers_of_its_file(self):
         flat = box_mesh().split("\n")
         flat[4 + 13] = "0.5 0.5 0.9999 0"  # the center: the tets above it become slivers
         self.write("flat.mesh", "\n".join(flat))
@@ -152,7 +152,7 @@ class Check(CommandLine):
         self.assertTrue(found)
         self.assertEqual(re.findall(r"(?m)^  indices: .*$", of_scene), found)
 
-    def test_a_file_that_is_missing_or_broken(self):
+    def test_missing_and_broken_files_are_rejected(self):
         self.assertIn("none.mesh", self.aspic("check", "none.mesh", code=2).stderr)
         self.write("cut.mesh", box_mesh()[:200])
         self.assertIn("cut.mesh", self.aspic("check", "cut.mesh", code=2).stderr)
@@ -168,7 +168,7 @@ class Convert(CommandLine):
         self.aspic("convert", "box.vtu", "back.mesh")
         self.assertIn("27 vertices, 48 tets", self.aspic("check", "back.mesh").stdout)
 
-    def test_tets_become_their_boundary_in_a_surface_format(self):
+    def test_surface_formats_get_the_boundary(self):
         self.write("box.mesh", box_mesh())
         self.assertIn("boundary", self.aspic("convert", "box.mesh", "box.obj").stdout)
         self.assertIn("26 vertices, 48 triangles", self.aspic("check", "box.obj").stdout)

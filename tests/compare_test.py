@@ -27,7 +27,7 @@ class Interval(unittest.TestCase):
             self.assertEqual((low, high), (k, n + 1 - k), n)
             self.assertGreaterEqual(confidence, 0.95)
 
-    def test_it_covers_the_median_as_often_as_it_says(self):
+    def test_covers_the_median_at_its_level(self):
         draw, covered, trials = random.Random(1), 0, 4000
         for _ in range(trials):  # a skewed distribution with median 1, as times are
             low, high, confidence = compare.median_interval([math.exp(draw.gauss(0, 1)) for _ in range(11)])
@@ -51,14 +51,14 @@ class Verdict(unittest.TestCase):
         verdicts = [self.judged(1, 1, 0.3, seed=seed) for seed in range(200)]
         self.assertGreater(verdicts.count("no difference"), 180)
 
-    def test_differences_that_do_not_count(self):
+    def test_ignores_insignificant_differences(self):
         self.assertEqual(self.judged(1, 1.005, 0), "no difference")
         self.assertEqual(self.judged(1, 1.02, 0), "slower")
 
     def test_too_few_runs_decide_nothing(self):
         self.assertEqual(self.judged(1, 2, 0, runs=5), "no difference")
 
-    def test_a_slow_phase_of_the_machine_meets_both(self):
+    def test_slow_phases_affect_both_programs(self):
         calls = []
 
         def measure(which):
@@ -93,7 +93,7 @@ class Command(unittest.TestCase):
         self.assertIn(done.stdout.splitlines()[-1], ("faster", "slower", "no difference"), done.stderr)
         self.assertIn("medians of 6 runs", done.stdout)
 
-    def test_a_program_that_is_missing_or_fails(self):
+    def test_missing_and_failing_programs_are_reported(self):
         self.assertIn("ninja -C", self.run_compare("loop").stderr)
         self.program("old", "echo it broke; exit 3")
         self.program("new", "exit 0")

@@ -123,7 +123,7 @@ class Crash(CommandLine):
 
 
 class Killed(Crash):
-    def test_a_run_at_200_instants(self):
+    def test_run_killed_at_200_instants_resumes(self):
         scene, chance = self.scene(), random.Random(1)
         seconds = self.duration_of("run", scene, "--out", "whole")
         kills, completed, step = 0, 0, -1
@@ -154,7 +154,7 @@ class Killed(Crash):
             self.assertEqual(len(text) % mmap.PAGESIZE, 0, "a line is torn within a page")
             lines.truncate(text.rfind(b"\n") + 1)
 
-    def test_a_report(self):
+    def test_killed_report_leaves_the_old_one(self):
         self.aspic("run", self.scene(), "--out", "run")
         page = self.folder / "run/report.html"
         whole, chance = page.read_bytes(), random.Random(2)
@@ -163,7 +163,7 @@ class Killed(Crash):
             self.kill_at(chance.uniform(0, seconds), "report", "run")
             self.assertEqual(page.read_bytes(), whole)
 
-    def test_a_capture(self):
+    def test_killed_capture_leaves_whole_files(self):
         self.write("cube.toml", CUBE)
         command = ("capture", "cube.toml", *BENCH)
         seconds, chance = self.duration_of(*command, "-o", "whole"), random.Random(3)
@@ -197,7 +197,7 @@ class KilledRender(Crash):
 
 
 class KilledFit(FitCommand, Crash):
-    def test_it_goes_on_to_the_same_material(self):
+    def test_killed_fit_resumes_to_equal_bits(self):
         options = ("fit", "layers", *QUICK, "-q")
         seconds, chance = self.duration_of(*options, "-o", "whole.vtu"), random.Random(5)
         kills, completed = 0, 0
@@ -235,7 +235,7 @@ class NoRoom(Crash):
         self.assertIn("File too large", done.stderr)
         self.assertTrue(any(name in done.stderr for name in names), done.stderr)
 
-    def test_a_run_names_the_file_and_goes_on_when_there_is_room(self):
+    def test_run_on_full_disk_resumes_with_room(self):
         scene = self.scene()
         self.aspic("run", scene, "--out", "whole")
         for size in (600, 3000, 8000, 15000):
@@ -245,7 +245,7 @@ class NoRoom(Crash):
             self.aspic("run", scene, "--out", "run", "--resume" if step >= 0 else "--force")
             self.assert_same_folder("whole", "run")
 
-    def test_what_was_there_is_kept(self):
+    def test_earlier_results_survive_a_full_disk(self):
         self.aspic("run", self.scene(), "--out", "run")
         self.write("cube.toml", CUBE)
         self.aspic("capture", "cube.toml", "-o", "data", *BENCH)
@@ -255,7 +255,7 @@ class NoRoom(Crash):
         self.assertEqual({p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}, before)
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "needs a device that is always full")
-    def test_lines_of_json_that_do_not_arrive_are_an_error(self):
+    def test_lost_json_lines_are_an_error(self):
         with open("/dev/full", "w") as full:
             done = subprocess.run([ASPIC, "run", self.scene(), "--json"], cwd=self.folder, stdout=full,
                                   stderr=subprocess.PIPE, text=True, timeout=60)
@@ -274,7 +274,7 @@ class ReadOnly(Crash):
         return subprocess.run([self.folder / "aspic", *arguments], cwd=self.folder, capture_output=True, text=True,
                               timeout=120, preexec_fn=drop)
 
-    def test_an_error_names_the_place_and_nothing_changes(self):
+    def test_read_only_folder_is_named_and_unchanged(self):
         scene = self.scene(duration=0.05)
         self.aspic("run", scene, "--out", "run")
         self.write("cube.toml", CUBE)
@@ -294,7 +294,7 @@ class ReadOnly(Crash):
 
 
 class TimeLimit(Crash):
-    def test_a_run_ends_between_steps_and_goes_on_to_the_same_bits(self):
+    def test_run_ends_between_steps_and_resumes(self):
         scene = self.scene(duration=1.0, cells="8, 2, 2")
         self.aspic("run", scene, "--out", "whole")
         for _ in range(3):
@@ -310,7 +310,7 @@ class TimeLimit(Crash):
         self.aspic("run", scene, "--out", "run", "--resume")
         self.assert_same_folder("whole", "run")
 
-    def test_a_step_that_takes_too_long_is_dropped(self):
+    def test_step_beyond_the_time_limit_is_dropped(self):
         """Ten thousand iterations of gradient descent on a stiff beam: one step is minutes of work."""
         scene = self.scene(duration=0.02, cells="24, 6, 6", extra="""[solver]
 method = "gradient_descent"

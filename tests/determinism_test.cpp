@@ -1,5 +1,5 @@
-// The same bits for any number of threads and after a restart anywhere: every integrator with every linear solver, and
-// every treatment of indefinite Hessians.
+// Runs are bit-reproducible for any number of threads and after any restart: every integrator with every linear solver,
+// and every modification of indefinite Hessians.
 #include <gtest/gtest.h>
 
 #include <cctype>
@@ -53,12 +53,12 @@ std::vector<Way> all_ways() {
   return ways;
 }
 
-// 81 vertices, of which some are moved and some pulled.
+// 81 vertices with moving pins and loads.
 Simulation small_scene(const Way& way) { return simulate(damped_beam_with_moving_pins_and_targets(2), way.options); }
 
 class Determinism : public testing::TestWithParam<Way> {};
 
-TEST_P(Determinism, ARunRestartedAfterAnyOfFiftyStepsGoesOnToTheSameBits) {
+TEST_P(Determinism, RestartsChangeNoBit) {
   const Way& way = GetParam();
   Simulation whole = small_scene(way);
   std::vector<Simulation::Snapshot> snapshots;
@@ -70,13 +70,13 @@ TEST_P(Determinism, ARunRestartedAfterAnyOfFiftyStepsGoesOnToTheSameBits) {
   for (int k = 0; k < kSteps; ++k) {
     Simulation resumed = small_scene(way);
     resumed.restore(snapshots[k]);
-    // To the end from every tenth; elsewhere until what is kept from step to step has been made anew.
+    // From every tenth step to the end; from other steps until all cached data have been recomputed.
     const int last = k % 10 == 1 ? kSteps : std::min(k + 3, kSteps);
     for (int i = k; i < last; ++i) ASSERT_EQ(resumed.step().state_hash, hashes[i]) << "step " << i + 1 << " from " << k;
   }
 }
 
-// 1 225 vertices: several chunks for the threads.
+// 1 225 vertices: several chunks per loop.
 TEST_P(Determinism, ThreadsChangeNoBit) {
   const int before = thread_count();
   std::vector<std::uint64_t> one;
@@ -98,19 +98,19 @@ INSTANTIATE_TEST_SUITE_P(Ways, Determinism, testing::ValuesIn(all_ways()), [](co
   return name;
 });
 
-TEST(StateHash, TellsStatesApartAndKnowsNoOrderOfStorage) {
+TEST(StateHash, DistinguishesStatesInAnyStorageOrder) {
   State state{{1, 2, 3, 4, 5, 6}, {0, 0, 0, 0, 0, 0}, 0};
   const std::uint64_t hash = state_hash(state, {});
   EXPECT_EQ(hex_digits(hash).size(), 16u);
   State stored{{4, 5, 6, 1, 2, 3}, {0, 0, 0, 0, 0, 0}, 0};
   EXPECT_NE(state_hash(stored, {}), hash);
   EXPECT_EQ(state_hash(stored, Renumbering({1, 0})), hash);
-  state.qdot[5] = -0.0;  // another bit
+  state.qdot[5] = -0.0;  // differs only in the sign bit
   EXPECT_NE(state_hash(state, {}), hash);
 }
 
-// A clock that moves on whenever it is read.
-TEST(TimeLimit, DropsTheStepThatMissesItAndChangesNoBitOfTheOthers) {
+// A clock that advances at each reading.
+TEST(TimeLimit, DropsOnlyTheStepThatMissesIt) {
   for (const char* integrator : {"backward_euler", "tr_bdf2", "bdf2", "quasi_static"}) {
     double now = 0;
     SimulationOptions options{.integrator = integrator, .solver = {}, .clock = [&now] { return now += 1; }};

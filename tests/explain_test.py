@@ -56,11 +56,11 @@ class Explanations(CommandLine):
 
 
 class Explain(Explanations):
-    def test_an_inverted_start(self):
+    def test_inverted_initial_state(self):
         self.scene(model="neo_hookean_log", body="deform = { matrix = [[-1, 0, 0], [0, 1, 0], [0, 0, 1]] }", pins="")
         self.assert_cured(self.run_scene(code=2), "infinite energy", "tets are inverted", change="material.model=")
 
-    def test_an_explicit_step_that_is_too_long(self):
+    def test_explicit_step_too_long(self):
         self.scene(integrator="symplectic_euler", step=0.02, duration=0.4, young="1e6")
         text = self.run_scene(code=3)
         for words in ("blew up", "0.02 s", "vibrates fastest", "Hz"):
@@ -69,16 +69,16 @@ class Explain(Explanations):
         self.run_scene("--set", f"time.step={found[1]}", "--set", f"time.duration={400 * float(found[1])}")
         self.run_scene("--set", "time.integrator=" + re.search(r'time.integrator = ("\w+")', text)[1])
 
-    def test_forward_euler_whose_step_is_too_long(self):
+    def test_forward_euler_step_too_long(self):
         self.scene(integrator="forward_euler", step=0.02, duration=2, young="1e6")
         self.assert_cured(self.run_scene(code=3), "blew up", "vibrates fastest", change="time.integrator=")
 
-    def test_an_explicit_step_that_is_too_long_for_the_damping(self):
+    def test_explicit_step_too_long_for_damping(self):
         for integrator, damping in (("symplectic_euler", "stiffness = 0.05"), ("rk4", "viscosity = 5000")):
             self.scene(integrator=integrator, step=0.0005, duration=0.3, body=f"damping = {{ {damping} }}")
             self.assert_cured(self.run_scene(code=3), "longer than", "damped most strongly", change="time.step=")
 
-    def test_poissons_ratio_too_near_one_half(self):
+    def test_poissons_ratio_too_close_to_one_half(self):
         self.scene(poisson="0.5")
         text = self.run_scene(code=2)
         self.assertIn("poisson = 0.5; must be > -1 and < 0.5", text)
@@ -114,12 +114,12 @@ class Explain(Explanations):
         self.scene()
         self.run_scene()
 
-    def test_lengths_in_millimeters(self):
+    def test_finds_lengths_in_millimeters(self):
         scene = BODY.format(**USUAL).replace("[0.4, 0.1, 0.1]", "[400, 100, 100]")
         self.write("scene.toml", scene)
         self.assertNotIn("crushes", self.assert_cured(self.run_scene(), "400 m were meant in mm", change="body.beam.scale="))
 
-    def test_pins_that_crush_an_element_to_nothing(self):
+    def test_pins_that_flatten_an_element(self):
         # One cell, all of whose vertices are pinned: no step is short enough.
         self.scene(model="neo_hookean_log", pins='[[body.pin]]\nname = "press"\nwhere = "x > 1e-9"\n'
                    'motion = { keyframes = [{ time = 0, displacement = [0, 0, 0] }, { time = 0.02, displacement = [-0.21, 0, 0] }] }')
@@ -128,7 +128,7 @@ class Explain(Explanations):
             text = self.run_scene("--set", f"time.integrator={integrator}", "--set", "time.step=0.001", code=3)
             self.assertIn("pins themselves", text)
 
-    def test_an_element_of_no_volume(self):
+    def test_element_without_volume(self):
         mesh = box_mesh().replace("\n1 1 1 0\n", "\n0.5 0.5 0.5 0\n")
         self.write("flat.mesh", mesh)
         text = self.aspic("run", "flat.mesh", code=2).stderr
@@ -176,7 +176,7 @@ class Explain(Explanations):
             found = re.search(CHANGE, text[text.index("remedy:"):])
             self.run_scene("--set", f"{found[1]}={found[2]}")
 
-    def test_what_is_no_number_in_a_field(self):
+    def test_field_value_that_is_not_a_number(self):
         self.write("rho.csv", "1000\n" * 11 + "nan\n" + "1000\n" * 12)
         self.scene(density='{ file = "rho.csv" }')
         text = self.run_scene(code=2)

@@ -1,4 +1,4 @@
-# The installed library serves a project outside the tree.
+# A project outside of the tree builds with the installed library.
 if(NOT ASPIC_SANITIZE AND NOT ASPIC_COVERAGE)
   add_test(NAME installed_package
            COMMAND ${CMAKE_COMMAND} -DBUILD=${CMAKE_BINARY_DIR} -DROOT=${CMAKE_SOURCE_DIR}
@@ -6,7 +6,7 @@ if(NOT ASPIC_SANITIZE AND NOT ASPIC_COVERAGE)
                    -DCOMPILER=${CMAKE_CXX_COMPILER} -P ${CMAKE_CURRENT_SOURCE_DIR}/installed_example/check.cmake)
 endif()
 
-# Public headers are made from internal ones that they name; what they do not name must not get in.
+# Public headers contain the internal headers that they name, and must not contain others.
 function(add_header_test name fault)
   add_test(NAME public_headers.${name}
            COMMAND ${CMAKE_COMMAND} -DHEADERS=${CMAKE_CURRENT_SOURCE_DIR}/public_headers/${name}

@@ -93,7 +93,7 @@ class Fit(FitCommand):
         self.assertTrue((self.folder / "out/scene/inputs/layers.material.vtu").exists())
         self.aspic("run", "out/scene/scene.toml", "--steps", "2", "--out", "again")
 
-    def test_one_value_is_of_the_size_of_those_of_the_layers(self):
+    def test_uniform_value_lies_between_the_layers(self):
         value = re.search(r"young +everywhere +([\d.]+) kPa", self.fit(*QUICK).stdout)
         self.assertTrue(10 < float(value[1]) < 60)  # 10 and 40, on a truth whose mesh is itself some 30 % too stiff
 
@@ -112,20 +112,20 @@ class Fit(FitCommand):
         loud = self.fit(*QUICK, "-v", "--force").stdout
         self.assertEqual(loud.count("  iteration "), len(self.rows()))
 
-    def test_an_earlier_fit_is_not_replaced_unasked(self):
+    def test_earlier_fit_is_replaced_only_by_force(self):
         self.fit(*QUICK, "-q")
         self.assertIn("--force replaces it", self.fit(*QUICK, code=2).stderr)
         self.assertIn("this fit is complete", self.fit(*QUICK, "--resume", code=2).stderr)
         self.fit(*QUICK, "-q", "--force")
 
-    def test_a_fit_that_does_not_converge_is_no_success(self):
+    def test_unconverged_fit_is_no_success(self):
         few = self.options("iterations = 2", "uncertainty = false", "cross_validation = false")
         options = ("--unknown", "young=tets", *few, "-q")
         self.assertIn("(not_converged)", self.fit(*options, code=3).stderr)
         self.assertTrue((self.folder / "material.vtu").exists())
         self.fit(*options, "--force", "--allow-unconverged")
 
-    def test_a_field_that_the_data_contradict_becomes_one_value(self):
+    def test_contradicted_field_becomes_uniform(self):
         """Forces of one poke are 20 times those of the body: material, figures, exit code and report agree on it."""
         table = self.folder / "layers/cases.csv"
         with open(table, newline="") as file:
@@ -152,7 +152,7 @@ class Fit(FitCommand):
         self.assertAlmostEqual(young / figures["values"]["young"]["everywhere"]["value"], 1, places=3)
         self.fit(*options, "-q", "--force", "--allow-unconverged")
 
-    def test_groups_are_left_out(self):
+    def test_groups_are_held_out(self):
         with open(self.folder / "layers/cases.csv", newline="") as file:
             groups = sorted({row["group"] for row in csv.DictReader(file)})
         def leaving_out(group):
@@ -171,7 +171,7 @@ class Fit(FitCommand):
         self.assertIn("none.toml", self.fit("--options", "none.toml", code=2).stderr)
         self.assertIn("cross_validation = true", self.aspic("fit", "--help").stdout)
 
-    def test_what_is_wrong_is_told_with_its_remedy(self):
+    def test_bad_input_names_the_remedy(self):
         for arguments, message in (
                 (("--unknown", "yuong=tets"), "did you mean 'young'?"),
                 (("--unknown", "young=handles:many"), "handles:40"),
@@ -229,20 +229,20 @@ class FitInterruption(FitCommand):
         self.assertEqual(self.rows("part.fit"), self.rows("whole.fit"))
         self.assertEqual(self.bytes_of("part.vtu"), self.bytes_of("whole.vtu"))
 
-    def test_ctrl_c_keeps_what_was_reached_and_resumes_to_the_same_bits(self):
+    def test_ctrl_c_keeps_progress_and_resumes_equally(self):
         code, said = self.interrupt(signal.SIGINT)
         self.assertEqual(code, 130)
         self.assertIn("the same command with --resume continues", said)
         self.assertTrue((self.folder / "part.vtu").exists())
         self.resume_and_compare()
 
-    def test_kill_does_so_too(self):
+    def test_kill_keeps_progress_and_resumes_equally(self):
         code, said = self.interrupt(signal.SIGTERM)
         self.assertEqual(code, 143)
         self.assertIn("the same command with --resume continues", said)
         self.assertTrue((self.folder / "part.vtu").exists())
 
-    def test_kill_9_and_resume_give_the_same_bits(self):
+    def test_kill_9_and_resume_give_equal_bits(self):
         code, _ = self.interrupt(signal.SIGKILL)
         self.assertEqual(code, -signal.SIGKILL)
         self.resume_and_compare()

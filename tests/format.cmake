@@ -1,4 +1,4 @@
-# Every source is formatted as .clang-format requires, the language is checked, and the shell scripts parse.
+# Checks format, language and the syntax of shell scripts.
 find_program(CLANG_FORMAT clang-format)
 if(CLANG_FORMAT)
   add_test(NAME format COMMAND ${CMAKE_SOURCE_DIR}/tools/lint)

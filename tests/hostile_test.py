@@ -105,7 +105,7 @@ class Rights(Hostile):
 
 
 class Limits(Hostile):
-    def test_threads_beyond_the_memory_are_fewer(self):
+    def test_number_of_threads_respects_memory_limit(self):
         self.aspic("run", "cube.toml", "--threads", "1024", "--out", "few", code=0, memory=3 << 30)
         self.aspic("run", "cube.toml", "--threads", "1", "--out", "one", code=0)
         self.assertEqual((self.folder / "few/steps.csv").read_bytes(), (self.folder / "one/steps.csv").read_bytes())
@@ -124,7 +124,7 @@ class Limits(Hostile):
 
 
 class Numbers(Hostile):
-    def test_numbers_that_are_none_are_refused_everywhere(self):
+    def test_invalid_numbers_are_refused_everywhere(self):
         script = subprocess.run([ASPIC, "completion", "man"], capture_output=True, text=True).stdout
         self.assertIn("time\\-limit", script)
         for command in (["run", "cube.toml", "--time-limit"], ["render", "run", "-o", "a.mp4", "--fps"],

@@ -1,4 +1,4 @@
-// mesh_copy IN OUT [binary]: reads a mesh and writes it again, for comparison with other programs.
+// mesh_copy IN OUT [binary]: reads a mesh and writes it, for comparison with other programs.
 #include <cstdio>
 #include <string_view>
 

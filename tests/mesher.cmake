@@ -1,4 +1,4 @@
-# The tetrahedralizer, when it is built.
+# The mesher, if it is built.
 if(TARGET aspic-mesh)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
   add_test(NAME mesher COMMAND Python3::Interpreter ${CMAKE_SOURCE_DIR}/tests/mesher_test.py $<TARGET_FILE:aspic-mesh>)

@@ -158,7 +158,7 @@ class Mesher(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.expect_sound(4 * 4 * math.pi / 3 * 0.008, 0.1, 8)
 
-    def test_a_labeled_image_keeps_its_regions_and_their_sizes(self):
+    def test_labeled_image_keeps_regions_and_sizes(self):
         n = 16
         inside = lambda x, y, z: (x - 7.5)**2 + (y - 7.5)**2 + (z - 7.5)**2 < 36
         labels = [[[(1 if x < 8 else 2) if inside(x, y, z) else 0 for x in range(n)] for y in range(n)]
@@ -205,7 +205,7 @@ class Mesher(unittest.TestCase):
                            for z in range(6)])
         return path
 
-    def test_labels_at_the_border_of_an_image_are_filled(self):
+    def test_labels_at_the_image_border_are_filled(self):
         write_image(self.folder / "full.inr", [[[3] * 8] * 8] * 8)
         result = run(self.folder / "full.inr", "-o", self.out, "--size", 2)
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -224,11 +224,11 @@ class Mesher(unittest.TestCase):
         write_boxes(self.folder / "plate.obj", ((0, 0, 0), (0.2, 0.2, 0.01)))
         self.expect_filled(self.folder / "plate.obj", 4e-4, 0.02, 2)
 
-    def test_a_plate_too_thin_for_the_limit_is_refused(self):
+    def test_plate_too_thin_for_limit_is_refused(self):
         write_boxes(self.folder / "plate.obj", ((0, 0, 0), (1, 1, 0.0005)))
         self.expect_error(2, ["0.0005 thick", "--max-tets", "plate.obj"], self.folder / "plate.obj", "--max-tets", 1e4)
 
-    def test_a_thin_plate_gets_flat_tets_within_the_limit(self):
+    def test_thin_plate_gets_flat_tets_within_limit(self):
         write_boxes(self.folder / "plate.obj", ((0, 0, 0), (0.2, 0.2, 0.002)))
         said = self.expect_filled(self.folder / "plate.obj", 0.2 * 0.2 * 0.002, 1e-6, 2, "--max-tets", 1e4)
         self.assertIn("0.002 thick", said)

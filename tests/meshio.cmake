@@ -1,4 +1,4 @@
-# Mesh files compared with meshio, where Debian's Python has it (package python3-meshio).
+# Mesh files compared with meshio, if Debian's Python has it (package python3-meshio).
 execute_process(COMMAND /usr/bin/python3 -c "import meshio" RESULT_VARIABLE meshio_missing OUTPUT_QUIET ERROR_QUIET)
 if(NOT meshio_missing)
   add_executable(mesh_copy mesh_copy.cpp)

@@ -18,7 +18,7 @@ class Minimize(CommandLine):
         lines = self.aspic("minimize", *arguments, "--json", code=code).stdout.splitlines()
         return [json.loads(line) for line in lines[:-1]], json.loads(lines[-1])
 
-    def test_newton_with_a_line_search_descends_to_the_known_minimum(self):
+    def test_newton_with_line_search_reaches_known_minimum(self):
         for function in ("rosenbrock", "two_bump", "quadratic"):
             rows, end = self.rows(function)
             values = [row["value"] for row in rows] + [end["value"]]
@@ -32,7 +32,7 @@ class Minimize(CommandLine):
         self.assertTrue(any(b > a for a, b in zip(values, values[1:])))
         self.assertTrue(all(row["alpha"] == 1 for row in rows))
 
-    def test_gradient_descent_crosses_the_valley_at_every_iteration(self):
+    def test_gradient_descent_crosses_the_valley_each_iteration(self):
         rows, end = self.rows("rosenbrock", "--method", "gradient_descent", "--max-iterations", "300", code=3)
         self.assertEqual(end["status"], "iteration_limit")
         # The part of each direction at right angles to the floor of the valley, y = x^2.
@@ -40,7 +40,7 @@ class Minimize(CommandLine):
         self.assertEqual(len(across), 300)
         self.assertTrue(all(a * b < 0 for a, b in zip(across, across[1:])))
 
-    def test_the_table_ends_in_words(self):
+    def test_table_ends_with_a_summary(self):
         text = self.aspic("minimize", "rosenbrock", "--start", "-0.8,0.6").stdout
         self.assertIn("from (-0.8, 0.6)", text)
         self.assertIn("converged after", text)
@@ -50,18 +50,18 @@ class Minimize(CommandLine):
         text = self.aspic("minimize", "--help").stdout
         self.assertIn("auto, on_demand, progressive, clamped, absolute, exact", text)
 
-    def test_a_function_without_a_model_to_minimize_is_not_blamed_on_the_projection(self):
+    def test_definiteness_advice_only_with_exact_hessian(self):
         start = ("minimize", "--expression", "x", "--start", "1,2")
         self.assertNotIn("--definiteness", self.aspic(*start, code=3).stdout)
         self.assertIn("--definiteness on_demand", self.aspic(*start, "--definiteness", "exact", code=3).stdout)
 
-    def test_a_number_that_overflows_has_no_sign(self):
+    def test_overflow_is_printed_without_sign(self):
         text = self.aspic("minimize", "--expression", "-exp(x^2+y^2)", "--start", "1,2", code=3).stdout
         self.assertIn("|g| = nan; nan was reached", text)
         self.assertNotIn("-nan", text)
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "needs a device that is always full")
-    def test_output_that_does_not_arrive_is_an_error(self):
+    def test_lost_output_is_an_error(self):
         for arguments in (["--list"], ["rosenbrock", "--json"],
                           ["rosenbrock", "--json", "--method", "gradient_descent", "--max-iterations", "2000"]):
             with open("/dev/full", "w") as full:
@@ -69,15 +69,15 @@ class Minimize(CommandLine):
             self.assertEqual(done.returncode, 2, arguments)
             self.assertIn("standard output: cannot be written", done.stderr)
 
-    def test_a_flat_place_is_not_taken_for_the_minimum(self):
+    def test_flat_region_is_no_minimum(self):
         self.assertIn("not the minimum", self.aspic("minimize", "two_bump", "--start", "4,4").stdout)
 
-    def test_a_formula_of_your_own(self):
+    def test_minimizes_an_own_formula(self):
         _, end = self.rows("--expression", "cosh(x - 1) + 2 * (y + 0.5)^2", "--start", "2.5,1")
         self.assertAlmostEqual(end["x"][0], 1, places=5)
         self.assertAlmostEqual(end["x"][1], -0.5, places=5)
 
-    def test_functions_without_a_bound_end_with_a_status(self):
+    def test_unbounded_functions_end_with_a_status(self):
         for formula, method, status in (("x + y", "gradient_descent", "iteration_limit"), ("x + y", "newton", "iteration_limit"),
                                         ("0 - exp(x)", "gradient_descent", "undefined")):
             _, end = self.rows("--expression", formula, "--start", "0,0", "--method", method, code=3)
@@ -106,7 +106,7 @@ class Minimize(CommandLine):
         for name in names:
             self.aspic("minimize", name)
 
-    def test_pictures_and_trace(self):
+    def test_writes_pictures_and_trace(self):
         self.aspic("minimize", "rosenbrock", "--plot", "path.svg", "--plot-model", "model.png", "--iteration", "6",
                    "--trace", "trace")
         self.assertEqual(xml.etree.ElementTree.parse(self.folder / "path.svg").getroot().tag.split("}")[-1], "svg")
@@ -114,7 +114,7 @@ class Minimize(CommandLine):
         with open(self.folder / "trace" / "iterations.csv", newline="") as file:
             self.assertEqual(len(list(csv.DictReader(file))), 18)
 
-    def test_without_gnuplot_its_package_is_named_before_anything_is_done(self):
+    def test_missing_gnuplot_is_reported_first(self):
         done = subprocess.run([ASPIC, "minimize", "rosenbrock", "--plot", "path.svg"], cwd=self.folder,
                               capture_output=True, text=True, env={**os.environ, "PATH": str(self.folder)})
         self.assertEqual(done.returncode, 2)
@@ -138,7 +138,7 @@ class Compare(CommandLine):
         self.assertEqual(len(values), methods["newton"]["iterations"] + 1)
         self.assertEqual(values, sorted(values, reverse=True))
 
-    def test_a_method_that_is_cut_off_shows_in_the_exit_code(self):
+    def test_unfinished_method_shows_in_exit_code(self):
         out = self.aspic("compare", self.beam(cells="40, 10, 10"), "--methods", "newton,gradient_descent",
                          "--max-seconds", "0.01", code=3).stdout
         self.assertIn("interrupted", out)
@@ -156,13 +156,13 @@ class Verify(CommandLine):
     def results(self):
         return json.loads((self.folder / "out/verify/verify.json").read_text())["checks"]
 
-    def test_every_check_is_listed_and_nothing_is_run(self):
+    def test_list_names_every_check(self):
         rows = self.verify("--list").splitlines()
         self.assertGreater(len(rows), 20)
         self.assertIn("statics/cook", [row.split()[0] for row in rows])
         self.assertFalse((self.folder / "out").exists())
 
-    def test_rows_say_what_was_measured_against_what_and_why(self):
+    def test_rows_state_measurement_reference_and_reason(self):
         text = self.verify("--only", "free_fall", "--only", "numbering")
         self.assertRegex(text, r"pass  backward_euler: distance from the closed form .* \+- 1e-13 m")
         self.assertIn("(round-off of 10 solves", text)
@@ -173,7 +173,7 @@ class Verify(CommandLine):
                 self.assertLessEqual(abs(row["measured"] - row["reference"]), row["tolerance"])
                 self.assertTrue(row["reason"])
 
-    def test_the_page_holds_everything(self):
+    def test_page_contains_every_check(self):
         self.verify("--only", "euler_energies")
         page = (self.folder / "out/verify/index.html").read_text()
         self.assertIn("symplectic_euler: drift", page)
@@ -189,7 +189,7 @@ class Verify(CommandLine):
         self.assertEqual(len(self.results()), 1)  # not the table beside it
         self.verify("--only", "uniaxial_table", "--instead", "stvk=corotated", code=3)
 
-    def test_what_cannot_be_computed_fails(self):
+    def test_uncomputable_check_fails(self):
         # The explicit scheme explodes where the implicit one is to be measured.
         text = self.verify("--only", "pendulum", "--instead", "midpoint=forward_euler", code=3)
         self.assertIn("FAIL  could not be computed", text)
@@ -212,7 +212,7 @@ class Lecture(CommandLine):
         self.assertEqual([int(row.split()[0]) for row in rows], list(range(1, 63)))
         self.assertTrue(all(len(row.split()) > 1 for row in rows))
 
-    def test_a_page_says_what_it_claims_measured_and_judged(self):
+    def test_page_states_claim_measurement_and_verdict(self):
         text = self.lecture("54")
         self.assertIn("claim: ", text)
         self.assertRegex(text, r"pass  .*: \S+.*\((<=|>=|=) \S+")
@@ -221,17 +221,17 @@ class Lecture(CommandLine):
             alphas = [float(row["alpha"]) for row in csv.DictReader(file)]
         self.assertEqual(alphas, [1, 0.5, 0.25])
 
-    def test_pages_run_on_a_given_mesh_and_keep_its_scene(self):
+    def test_pages_run_on_a_given_mesh(self):
         text = self.lecture("26", "--mesh", self.mesh(4), "--out", "here")
         self.assertIn("PASS", text)
         self.assertIn("box4.mesh", text)
         self.aspic("run", "here/26-31_optimization/05_swing.toml", "--steps", "1")
 
-    def test_a_demonstration_that_does_not_show_the_claim_fails(self):
+    def test_demonstration_without_its_claim_fails(self):
         text = self.lecture("53", "--mesh", self.mesh(1), code=3)  # too few tets to make Newton's method fail
         self.assertRegex(text, r"FAIL  without line search: converged: 1")
 
-    def test_what_cannot_be_judged_is_no_pass(self):
+    def test_unjudged_page_is_no_pass(self):
         for page, words, code in (("6", "not available: bunnies fall on chutes: needs contact", 2),
                                   ("4", "nothing to check", 0)):
             text = self.lecture(page, code=code)
@@ -243,7 +243,7 @@ class Lecture(CommandLine):
             self.assertIn(f"'{page}' is no page", self.aspic("lecture", page, code=2).stderr)
         self.aspic("lecture", "5", "--mesh", "missing.mesh", code=2)
 
-    def test_without_browser_and_gnuplot_the_numbers_are_judged_all_the_same(self):
+    def test_judges_numbers_without_browser_and_gnuplot(self):
         without = dict(os.environ, PATH=str(self.folder))
         done = subprocess.run([ASPIC, "lecture", "25", "--mesh", self.mesh(4)], cwd=self.folder, env=without,
                               capture_output=True, text=True, timeout=60)
@@ -253,7 +253,7 @@ class Lecture(CommandLine):
         self.assertIn("PASS", done.stdout)
         self.assertEqual([f.suffix for f in (self.folder / "out/lecture/25_drag").iterdir() if f.suffix in (".png", ".svg")], [])
 
-    def test_all_pages_are_summed_up(self):
+    def test_summary_covers_all_pages(self):
         self.lecture("all", "--mesh", self.mesh(6))
         if "render" in self.aspic("--help").stdout:  # formulas are made with the viewer's page
             self.assertIn("<math", (self.folder / "out/lecture/index.html").read_text())
@@ -278,7 +278,7 @@ class Lecture(CommandLine):
             self.assertIn(demonstration["title"], page)
         self.assertNotIn("http://", page.replace("http://www.w3.org", ""))
 
-    def test_a_step_that_is_not_one_minimization_is_refused(self):
+    def test_step_without_single_minimization_is_refused(self):
         for setting, message in (("time.integrator=tr_bdf2", "minimizes twice"),
                                  ("time.integrator=bdf2", "--step 2"),
                                  ("time.integrator=linearly_implicit_euler", "one iteration"),
@@ -287,7 +287,7 @@ class Lecture(CommandLine):
             self.assertIn(message, refused.stderr)
         self.aspic("compare", self.beam(), "--methods", "newton,lbfgs", "--set", "time.integrator=bdf2", "--step", "2")
 
-    def test_a_folder_that_cannot_be_made_is_found_before_the_work(self):
+    def test_unwritable_folder_is_reported_before_the_work(self):
         (self.folder / "taken").write_text("")
         refused = self.aspic("compare", self.beam(), "--methods", "newton", "--out", "taken/here", code=2)
         self.assertIn("cannot be created", refused.stderr)

@@ -1,4 +1,4 @@
-# `aspic modes` compared with frequencies that NumPy computes, where Debian's Python has it (package python3-numpy).
+# `aspic modes` compared with frequencies by NumPy, if Debian's Python has it (package python3-numpy).
 if(TARGET aspic_cli AND ASPIC_DEBIAN_PYTHON)
   add_test(NAME cli.Modes COMMAND ${ASPIC_DEBIAN_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/modes_test.py)
   set_tests_properties(cli.Modes PROPERTIES SKIP_RETURN_CODE 77 ENVIRONMENT ASPIC=$<TARGET_FILE:aspic_cli>)

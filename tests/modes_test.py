@@ -79,7 +79,7 @@ class Modes(CommandLine):
         self.assertEqual(found["rigid"], 6)
         self.assertEqual([mode["frequency"] for mode in found["modes"]][:6], [0] * 6)
 
-    def test_more_modes_than_exist_are_all_given(self):
+    def test_excess_count_gives_all_modes(self):
         self.assertEqual(len(self.compare("", 1000, cells=1)["modes"]), 24)
 
     def test_frames_open_as_results(self):
@@ -94,7 +94,7 @@ class Modes(CommandLine):
         self.assertIn("Steps are modes",
                       self.aspic("run", "beam.toml", "--out", "out/beam_modes", "--resume", code=2).stderr)
 
-    def test_start_contributes_its_stress(self):
+    def test_initial_state_contributes_its_stress(self):
         stretched = BEAM.format(duration=1, cells="8, 2, 2").replace(
             "[[body.pin]]", 'deform = { matrix = [[1.2, 0, 0], [0, 1, 0], [0, 0, 1]] }\n[[body.pin]]')
         self.write("stretched.toml", stretched)

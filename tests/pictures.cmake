@@ -1,4 +1,4 @@
-# Charts and pages of the program; needs gnuplot. Pictures of meshes: viewer.cmake.
+# Charts and pages of the program; requires gnuplot. Pictures of meshes are in viewer.cmake.
 find_package(fmt QUIET)
 if(TARGET aspic_cli AND fmt_FOUND)
   set(program ${CMAKE_SOURCE_DIR}/apps/aspic)

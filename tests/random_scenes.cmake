@@ -1,16 +1,16 @@
-# Random small scenes through the parser and the solvers: none crashes, hangs, or claims what is not so. For a longer
-# hunt: build/bin/random_scenes --seed 1001 --count 20000
+# Random small scenes through the parser and the solvers: none crashes, hangs or reports a wrong status. A longer
+# search: build/bin/random_scenes --seed 1001 --count 20000
 add_executable(random_scenes ${CMAKE_CURRENT_LIST_DIR}/random_scenes/main.cpp
                              ${CMAKE_CURRENT_LIST_DIR}/random_scenes/judge.cpp
                              ${CMAKE_CURRENT_LIST_DIR}/random_scenes/scene_text.cpp)
 target_link_libraries(random_scenes PRIVATE aspic aspic_build)
 target_include_directories(random_scenes PRIVATE ${CMAKE_SOURCE_DIR}/src ${CMAKE_CURRENT_LIST_DIR})
 add_test(NAME random_scenes COMMAND random_scenes --seed 1 --count 1000)
-# A body that nothing holds flies 5e14 times its size away, where all sums are round-off: its ledger still closes.
+# A free body moves to 5e14 times its size, where all sums are round-off. Its ledger is still balanced.
 add_test(NAME random_scenes.far_away
          COMMAND random_scenes --file ${CMAKE_CURRENT_LIST_DIR}/random_scenes/far_away.toml)
-# Minimized without a Hessian to a tolerance near round-off: what is left over is judged by the round-off that is reported.
+# Minimized without a Hessian to a tolerance near round-off: the residual is compared with the reported round-off.
 add_test(NAME random_scenes.round_off COMMAND random_scenes --run 2657)
-# The first stage of the scheme is solved with the mass matrix alone, and forces of 1e8 N leave more than is asked for.
+# The first stage is solved with the mass matrix alone, and forces of 1e8 N leave a residual above the tolerance.
 add_test(NAME random_scenes.stiff_start
          COMMAND random_scenes --file ${CMAKE_CURRENT_LIST_DIR}/random_scenes/stiff_start.toml)

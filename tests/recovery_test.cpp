@@ -1,5 +1,5 @@
-// Bodies whose vertices lie at random places in their box, in one point or on a plane: the equilibrium that a body
-// which is held at one end finds from there in a single step.
+// Bodies whose vertices are at random positions in their box, in one point or on a plane: a body that is held at one
+// end finds an equilibrium from there in a single step.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -23,12 +23,12 @@ std::string held(const std::string& shape, const std::string& model, const std::
          "] }\n[[body.pin]]\nwhere = { lowest = 0.05 }\n";
 }
 
-// In [0, 1), without a pattern that a mesh could resolve.
+// Numbers in [0, 1) without a pattern that a mesh could resolve.
 std::string noise(int seed) {
   const std::string wave = "sin(12.9898*X+78.233*Y+37.719*Z+" + std::to_string(seed) + ")*43758.5453";
   return "(" + wave + "-floor(" + wave + "))";
 }
-// What is held stays at its place.
+// Held vertices keep their positions.
 std::string free_vertices_by(const std::string& value) { return "\"Y < 0.05 ? 0 : " + value + "\""; }
 std::string strewn(const Vec3d& low, const Vec3d& high, int seed) {
   std::string text;
@@ -40,13 +40,13 @@ std::string strewn(const Vec3d& low, const Vec3d& high, int seed) {
 
 Vec3d corner(std::span<const double> q, int v) { return {{q[3 * v], q[3 * v + 1], q[3 * v + 2]}}; }
 
-// Around an edge a b, between the faces through c and through d [rad].
+// Dihedral angle at edge a b between the faces through c and d [rad].
 double dihedral(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
   const Vec3d m = cross(b - a, c - a), n = cross(b - a, d - a), s = cross(m, n);
   return std::atan2(std::sqrt(dot(s, s)), dot(m, n));
 }
 
-// How often the tets around an interior edge turn about it: once, where the shape is not folded. The largest.
+// Largest winding number of the tets around an interior edge; 1 unless the shape is folded.
 int largest_winding(const TetMesh& mesh, std::span<const double> q) {
   std::map<std::array<int, 3>, int> faces;
   std::map<std::array<int, 2>, double> angles;
@@ -88,7 +88,7 @@ Recovery recover(const std::filesystem::path& path) {
   return found;
 }
 
-TEST(Recovery, AHeldBoxComesToRestFromAPointAPlaneAndRandomPlaces) {
+TEST(Recovery, HeldBoxRecoversFromDegenerateStates) {
   const TestFolder folder;
   const std::string box = "shape = { box = { upper = [1, 0.5, 0.5], cells = [8, 4, 4] } }";
   const auto to = [](const std::string& place, int seed) { return free_vertices_by(place + "+1e-6*" + noise(seed)); };
@@ -100,13 +100,13 @@ TEST(Recovery, AHeldBoxComesToRestFromAPointAPlaneAndRandomPlaces) {
       const Recovery found = recover(folder.write("s.toml", held(box, model, start)));
       EXPECT_TRUE(found.is_at_rest()) << found.report.potential_total << " J";
       EXPECT_EQ(found.winding, 1);
-      EXPECT_LT(found.report.iterations, 60);                         // clamped alone takes up to some hundreds,
-      EXPECT_LT(found.report.trials, 1.5 * found.report.iterations);  // most of them with short steps
+      EXPECT_LT(found.report.iterations, 60);                         // clamping alone takes up to some hundreds,
+      EXPECT_LT(found.report.trials, 1.5 * found.report.iterations);  // mostly with short steps
     }
 }
 
-// A minimum other than the rest shape is one that no path without flat tets leaves: its tets lie twice around an edge.
-TEST(Recovery, AHeldBunnyComesToRestFromRandomPlacesOrStaysWoundAroundAnEdge) {
+// From another minimum than the rest shape no path leads out without flat tets: its tets wind twice around an edge.
+TEST(Recovery, HeldBunnyRecoversOrStaysWoundAroundAnEdge) {
   const std::string mesh = std::string(ASPIC_SOURCE_DIR) + "/assets/bunny.mesh";
   const TestFolder folder;
   const std::string bunny = "mesh = \"" + mesh + "\"\nscale = 0.1";

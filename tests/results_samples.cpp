@@ -1,4 +1,4 @@
-// Writes one small file of each result format into the folder named by the only argument, for results_oracle.py.
+// Writes a small file of each result format into the folder given by the only argument, for results_oracle.py.
 #include <cstdio>
 #include <filesystem>
 

@@ -1,9 +1,9 @@
-// Prints the USD layer that tinyusdz read from a file. Arguments: the folder of the npm package tinyusdz, the file.
+// Prints the USD layer that tinyusdz read from a file. Arguments: folder of the npm package tinyusdz, file.
 import fs from 'node:fs';
 import path from 'node:path';
 
 const [folder, file] = process.argv.slice(2).map((name) => path.resolve(name));
-// The package is built for browsers and their workers and refuses Node; the next lines make Node look like a worker.
+// The package supports only browsers and their workers. The next lines make Node look like a worker.
 Object.defineProperty(process, 'type', { value: 'renderer' });
 globalThis.WorkerGlobalScope = class {};
 globalThis.self = globalThis;

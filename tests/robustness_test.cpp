@@ -1,4 +1,4 @@
-// Meshes, starts and numbers that nobody wants, each with what is to become of it.
+// Degenerate meshes, initial states and numbers, each with its expected outcome.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -28,13 +28,13 @@ std::string text_of(double x) {
 const std::string kStiffStep = "[time]\nstep = 0.05\nduration = 10\n[solver]\nmax_iterations = 500\n";
 const std::string kFloating = "gravity = [0, 0, 0]\n" + kStiffStep;
 
-// Of the material only what is not usual: "model = \"stvk\", young = 1".
+// Builds a scene. `material` lists only unusual values: "model = \"stvk\", young = 1".
 std::string body(const std::string& shape, const std::string& material, const std::string& more) {
   return "[[body]]\nname = \"b\"\n" + shape + "\nmaterial = { " + material + " }\n" + more + "\n";
 }
 const std::string kBox = "shape = { box = { upper = [1, 0.5, 0.5], cells = [4, 2, 2] } }";
 
-// Steps until next to nothing is left of some 1e4 J of elastic energy; a free body may keep rotating.
+// Number of steps until the elastic energy of about 1e4 J has almost vanished. A free body may continue to rotate.
 struct Ending {
   bool is_relaxed = false, fails = false;
   double min_det_F = 0;
@@ -61,7 +61,7 @@ Ending settle(Scene& scene, int most = 60) {
   return ending;
 }
 
-// ---- starts that are no shapes
+// ---- degenerate initial states
 
 struct Start {
   std::string name, deform;
@@ -77,7 +77,7 @@ const Start kStarts[] = {
     {"mirrored", "deform = { matrix = [[-1, 0, 0], [0, 1, 0], [0, 0, 1]] }"},
 };
 
-TEST(Robustness, MaterialsThatCannotBeTurnedInsideOutRefuseSuchAStart) {
+TEST(Robustness, BarrierMaterialsRejectInvertedStates) {
   for (const MaterialInfo& info : materials())
     for (const Start& start : kStarts) {
       if (!info.barrier) continue;
@@ -87,9 +87,10 @@ TEST(Robustness, MaterialsThatCannotBeTurnedInsideOutRefuseSuchAStart) {
     }
 }
 
-// Which of them keep a body that starts as a point, on a plane, at random places or mirrored: their remarks say so
+// Initial states that a material does not recover from are documented in its remarks (`aspic materials`), except that
+// stvk and corotated settle in folds from random positions.
 // (`aspic materials`), except for stvk and corotated at random places, which settle in folds.
-TEST(Robustness, OtherMaterialsRecoverFromAnyStartThatTheirRemarksDoNotName) {
+TEST(Robustness, OtherMaterialsRecoverExceptWhereDocumented) {
   const std::vector<std::string> kept = {"neo_hookean point", "stable_neo_hookean point",
                                          "corotated point",   "corotated random",
                                          "stvk point",        "stvk plane",
@@ -107,7 +108,7 @@ TEST(Robustness, OtherMaterialsRecoverFromAnyStartThatTheirRemarksDoNotName) {
     }
 }
 
-TEST(Robustness, ShapesRecoverFromBeingFlattenedMirroredAndStrewn) {
+TEST(Robustness, ShapesRecoverFromFlatMirroredAndRandomStates) {
   for (const char* shape :
        {"sphere = { radius = 0.5, size = 0.25 }", "torus = { major_radius = 0.5, minor_radius = 0.2, size = 0.2 }",
         "cylinder = { radius = 0.25, height = 1, size = 0.2 }"})
@@ -121,7 +122,7 @@ TEST(Robustness, ShapesRecoverFromBeingFlattenedMirroredAndStrewn) {
     }
 }
 
-TEST(Robustness, AFlattenedBunnyRecovers) {
+TEST(Robustness, FlatBunnyRecovers) {
   const std::string mesh = std::string(ASPIC_SOURCE_DIR) + "/assets/bunny.mesh";
   const TestFolder folder;
   Scene scene = load_scene(
@@ -160,26 +161,26 @@ class BadMesh : public FolderTest {
   TetMesh box = make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2});
 };
 
-TEST_F(BadMesh, InvertedAndFlatTetsAreNamedAndMended) {
+TEST_F(BadMesh, InvertedAndFlatTetsAreNamedAndRepaired) {
   TetMesh inverted = box;
   std::swap(inverted.tets[7][0], inverted.tets[7][1]);
   EXPECT_THAT(refusal_of(scene(inverted)), AllOf(HasSubstr("inverted"), HasSubstr("(7)")));
   repair(inverted);
   expect_runs(inverted);
   TetMesh flat = box;
-  flat.tets.push_back({0, 1, 3, 4});  // within one face
+  flat.tets.push_back({0, 1, 3, 4});  // inside one face
   EXPECT_THAT(refusal_of(scene(flat)), HasSubstr("have no volume: their corners lie in a plane (48)"));
   repair(flat);
   expect_runs(flat);
 }
 
-TEST_F(BadMesh, DuplicateAndUnreferencedVerticesAreToldAndMended) {
+TEST_F(BadMesh, DuplicateAndUnreferencedVerticesAreRepaired) {
   TetMesh mesh = box;
   mesh.rest.push_back({{3, 3, 3}});
   EXPECT_THAT(refusal_of(scene(mesh)), AllOf(HasSubstr("belong to none of the tets (27)"), HasSubstr("--repair")));
   repair(mesh);
   expect_runs(mesh);
-  TetMesh torn = box;  // one tet has a corner of its own where the others have theirs
+  TetMesh torn = box;  // one tet has its own copy of a shared corner
   torn.rest.push_back(torn.rest[torn.tets[0][0]]);
   torn.tets[0][0] = 27;
   std::string notes;
@@ -190,14 +191,14 @@ TEST_F(BadMesh, DuplicateAndUnreferencedVerticesAreToldAndMended) {
   EXPECT_EQ(torn.vertex_count(), 27);
 }
 
-TEST_F(BadMesh, PartsThatMeetInAnEdgeOrAVertexOrNotAtAllRun) {
+TEST_F(BadMesh, PartsRunHoweverTheyMeet) {
   const std::vector<Vec3d> corners = {{{0, 0, 0}},    {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}, {{-1, 0, 0}}, {{0, -1, 0}},
                                       {{-1, -1, -1}}, {{5, 5, 5}}, {{6, 5, 5}}, {{5, 6, 5}}, {{5, 5, 6}}};
   const auto positive = [&](std::vector<Tet> tets) {
     TetMesh mesh{corners, std::move(tets), {}};
     for (int t = 0; t < mesh.tet_count(); ++t)
       if (volume(mesh, t) < 0) std::swap(mesh.tets[t][0], mesh.tets[t][1]);
-    repair(mesh);  // drops the corners that are not used
+    repair(mesh);  // removes unused vertices
     return mesh;
   };
   expect_runs(positive({{0, 1, 2, 3}, {0, 3, 4, 5}}));
@@ -205,7 +206,7 @@ TEST_F(BadMesh, PartsThatMeetInAnEdgeOrAVertexOrNotAtAllRun) {
   expect_runs(positive({{0, 1, 2, 3}, {7, 8, 9, 10}}));
 }
 
-TEST_F(BadMesh, OneTetRunsAndNoTetIsRefused) {
+TEST_F(BadMesh, SingleTetRunsAndEmptyMeshIsRejected) {
   const TetMesh one{{{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}, {{0, 1, 2, 3}}, {}};
   expect_runs(one);
   expect_runs(one, "[[body.pin]]\nwhere = \"all\"\n");
@@ -213,7 +214,7 @@ TEST_F(BadMesh, OneTetRunsAndNoTetIsRefused) {
   EXPECT_THAT(refusal_of(folder.write("s.toml", "[[body]]\nmesh = \"m.mesh\"\n")), HasSubstr("m.mesh"));
 }
 
-TEST_F(BadMesh, NumbersThatAreNoneAreRefusedInEveryFormat) {
+TEST_F(BadMesh, InvalidNumbersAreRejectedInEveryFormat) {
   for (const char* name : {"m.mesh", "m.msh", "m.vtu", "m.obj", "m.off", "m.ply", "m.stl"}) {
     for (const char* bad : {"nan", "inf", "-inf", "1e999"}) {
       SCOPED_TRACE(std::string(name) + ", " + bad);
@@ -311,8 +312,8 @@ std::vector<Extreme> extremes() {
   all.push_back({"flat_cells", "", "scale = [1, 1e-6, 1]\n"});
   return all;
 }
-// Needles whose strains are below the last digits of their positions.
-TEST(Robustness, AStepThatDoubleRepresentsTooCoarselySaysSo) {
+// Needles whose strains are below the resolution of their positions.
+TEST(Robustness, StepBeyondDoublePrecisionIsReported) {
   Scene scene = load("[time]\nduration = 0.01\n" +
                      body(kBox, "", "scale = [1e-6, 1, 1e-6]\n[[body.pin]]\nwhere = { lowest = 0 }\n"));
   const StepReport report = scene.simulation.step();

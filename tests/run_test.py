@@ -49,7 +49,7 @@ class Run(CommandLine):
         self.aspic("run", "beam_again.toml", "--out", "b")
         self.assert_same_results("a", "b")
 
-    def test_results_do_not_depend_on_the_number_of_threads(self):
+    def test_threads_do_not_change_results(self):
         scene = self.beam()
         self.aspic("run", scene, "--out", "one", "--threads", "1")
         self.aspic("run", scene, "--out", "three", "--threads", "3")
@@ -64,7 +64,7 @@ class Run(CommandLine):
         self.assertNotEqual(lines["1e5"]["potential_total"], lines["1e4"]["potential_total"])
         self.assertIn("material.yung", self.aspic("run", scene, "--set", "material.yung=1", code=2).stderr)
 
-    def test_json_is_one_line_per_step_and_nothing_else(self):
+    def test_json_is_exactly_one_line_per_step(self):
         done = self.aspic("run", self.beam(), "--json")
         lines = [json.loads(line) for line in done.stdout.splitlines()]
         self.assertEqual([line["step"] for line in lines], [1, 2, 3, 4, 5])
@@ -72,7 +72,7 @@ class Run(CommandLine):
         self.assertIn("elasticity", lines[0]["potential"])
         self.assertIn("done", done.stderr)
 
-    def test_json_names_the_worst_vertex_by_the_number_in_the_file(self):
+    def test_json_numbers_vertices_as_the_file(self):
         worst = []
         for text in (box_mesh(), reversed_mesh(box_mesh())):
             self.write("box.mesh", text)
@@ -87,7 +87,7 @@ class Run(CommandLine):
         done = self.aspic("run", self.beam(), "--quiet")
         self.assertEqual((done.stdout, done.stderr), ("", ""))
 
-    def test_a_misspelt_key_is_corrected_with_its_place(self):
+    def test_misspelled_key_is_corrected_with_its_place(self):
         self.write("bad.toml", BEAM.format(duration=0.05, cells="2, 1, 1").replace("young", "yuong"))
         self.assertRegex(self.aspic("run", "bad.toml", code=2).stderr, r"bad\.toml:7:\d+: .*yuong.*young")
         self.assertFalse((self.folder / "out").exists())
@@ -119,24 +119,24 @@ class Run(CommandLine):
         self.aspic("run", scene, "--force")
         self.assertFalse((self.folder / "out" / "beam" / "trace").exists())
 
-    def test_a_landscape_without_its_iteration_is_told(self):
+    def test_landscape_without_its_iteration_is_reported(self):
         error = self.aspic("run", self.beam(), "--landscape", "1:77").stderr
         self.assertIn("no landscape 1:77", error)
         self.assertIn("STEP:ITERATION", self.aspic("run", self.beam("b.toml"), "--landscape", "x", code=2).stderr)
         self.assertFalse((self.folder / "out" / "b").exists())
 
-    def test_a_step_that_does_not_converge_shows_in_the_exit_code(self):
+    def test_unconverged_step_shows_in_exit_code(self):
         scene = self.beam()
         hard = ["--set", "solver.max_iterations=1", "--set", "solver.tolerance=1e-12", "--set", "material.young=1e3"]
         self.assertIn("did not converge", self.aspic("run", scene, *hard, code=3).stderr)
         self.aspic("run", scene, *hard, "--force", "--allow-unconverged")
         self.aspic("run", scene, "--resume", code=3)  # also when the steps were taken before
 
-    def test_several_assignments_follow_one_set(self):
+    def test_set_accepts_several_assignments(self):
         self.aspic("run", "--set", "time.step=0.01", "time.duration=0.03", self.beam(), "--set", "output.report=false")
         self.assertEqual([step["time"] for step in self.steps("out/beam")], ["0.01", "0.02", "0.03"])
 
-    def test_forces_of_pins_loads_and_bodies_are_in_table_json_and_summary(self):
+    def test_table_json_and_summary_contain_reactions(self):
         scene = self.beam(extra='[[body.pin]]\nname = "guide"\nwhere = "x > 0.399"\naxes = "z"\n')
         done = self.aspic("run", scene, "--json", "--set", "output.report=false")
         last, row = json.loads(done.stdout.splitlines()[-1]), self.steps("out/beam")[-1]
@@ -148,7 +148,7 @@ class Run(CommandLine):
         self.assertEqual(guide["force"][:2], [0, 0])
         self.assertIn(f"reactions  {name} exerts (", done.stderr)
 
-    def test_an_explicit_scheme_that_blows_up_ends_the_run(self):
+    def test_explicit_blow_up_ends_the_run(self):
         done = self.aspic("run", self.beam(duration=100), "--set", "time.integrator=\"rk4\"", "--set", "time.step=0.1",
                           "--allow-unconverged", code=3)
         self.assertIn("stopped after step", done.stderr)
@@ -158,7 +158,7 @@ class Run(CommandLine):
         self.assertEqual(steps[-1]["status"], "undefined")
         self.assertLessEqual({step["status"] for step in steps[:-1]}, {"converged", "unstable"})
 
-    def test_an_explicit_scheme_that_blows_up_beside_a_moving_pin_is_no_success(self):
+    def test_blow_up_beside_moving_pin_fails(self):
         scene = self.beam(duration=0.2, cells="4, 1, 1", extra="""[[body.pin]]
 where = "x > 0.399"
 motion = { keyframes = [{ time = 0, displacement = [0, 0, 0] }, { time = 0.2, displacement = [0, 0.01, 0] }] }
@@ -168,7 +168,7 @@ motion = { keyframes = [{ time = 0, displacement = [0, 0, 0] }, { time = 0.2, di
         self.aspic("run", scene, "--set", "time.step=0.01", *explicit, code=3)
         self.assertIn("unstable", {step["status"] for step in self.steps("out/beam")})
 
-    def test_adaptive_steps_are_counted_in_table_json_and_summary(self):
+    def test_table_json_and_summary_count_adaptive_steps(self):
         done = self.aspic("run", self.beam(), "--set", "time.adaptive.tolerance=1e-5", "--set",
                           "time.integrator=\"tr_bdf2\"", "--json")
         lines = [json.loads(line) for line in done.stdout.splitlines()]
@@ -179,7 +179,7 @@ motion = { keyframes = [{ time = 0, displacement = [0, 0, 0] }, { time = 0.2, di
         self.assertGreater(taken, 2 * len(steps))
         self.assertIn(f"parts      {taken} taken, {rejected} rejected", done.stderr)
 
-    def test_an_adaptive_step_without_a_scheme_that_can_is_refused(self):
+    def test_adaptive_steps_require_a_capable_integrator(self):
         done = self.aspic("run", self.beam(), "--set", "time.adaptive.tolerance=1e-5", "--set",
                           "time.integrator=\"bdf2\"", code=2)
         self.assertIn("tr_bdf2", done.stderr)
@@ -208,7 +208,7 @@ class Report(CommandLine):
     def page(self, file):
         return (self.folder / file).read_text()
 
-    def test_a_run_leaves_one_that_needs_nothing_else(self):
+    def test_run_writes_a_self_contained_report(self):
         text = self.aspic("run", self.beam()).stdout
         self.assertIn("browser: open out/beam/report.html: 6 frames", text)
         page = self.page("out/beam/report.html")
@@ -216,7 +216,7 @@ class Report(CommandLine):
         self.assertIsNone(re.search(r'<(script|link|img)[^>]*(src|href)="(?!data:)', page))
         self.assertNotIn(str(self.folder), page)
 
-    def test_it_is_made_again_to_the_same_bytes_and_replaced_by_force(self):
+    def test_report_is_reproducible_and_replaced_by_force(self):
         scene = self.beam()
         self.aspic("run", scene)
         first = self.page("out/beam/report.html")
@@ -225,7 +225,7 @@ class Report(CommandLine):
         self.aspic("run", scene, "--force", "--set", "output.report=false")
         self.assertFalse((self.folder / "out/beam/report.html").exists())
 
-    def test_what_cannot_be_shown_is_no_failure_of_the_run(self):
+    def test_failed_report_does_not_fail_the_run(self):
         off = [word for name in ("vtu", "pc2", "usd") for word in ("--set", f"output.{name}=false")]
         done = self.aspic("run", self.beam(), "--quiet", *off)
         self.assertIn("warning: no report.html", done.stderr)
@@ -247,7 +247,7 @@ class Render(CommandLine):
         super().setUp()
         self.aspic("run", self.beam(duration=0.04))
 
-    def test_frames_a_picture_and_a_video(self):
+    def test_renders_frames_picture_and_video(self):
         self.aspic("render", "out/beam", "-o", "frames", "--size", "160x120", "--color", "von_mises", timeout=200)
         frames = sorted((self.folder / "frames").iterdir())
         self.assertEqual([f.name for f in frames], [f"frame_{i:06}.png" for i in range(1, 6)])
@@ -272,7 +272,7 @@ class Render(CommandLine):
         self.assertIn("choose one of front", render("-o", "a.png", "--step", "1", "--view", "above"))
         self.assertFalse((self.folder / "a.png").exists())
 
-    def test_a_missing_browser_is_told_with_its_package(self):
+    def test_missing_browser_is_reported_with_its_package(self):
         without = dict(os.environ, PATH=str(self.folder))
         done = subprocess.run([ASPIC, "render", "out/beam", "-o", "frames"], cwd=self.folder, env=without,
                               capture_output=True, text=True, timeout=60)
@@ -316,19 +316,19 @@ class Interruption(CommandLine):
         self.assertEqual(len(self.steps(out)), 100)
         self.assert_same_results("whole", out)
 
-    def test_ctrl_c_and_resume_give_the_same_bits(self):
+    def test_ctrl_c_and_resume_give_equal_bits(self):
         self.assertEqual(self.interrupt(signal.SIGINT, "stopped"), 130)
         self.resume_and_compare("stopped")
 
-    def test_kill_and_resume_give_the_same_bits(self):
+    def test_kill_and_resume_give_equal_bits(self):
         self.assertEqual(self.interrupt(signal.SIGTERM, "stopped"), 143)
         self.resume_and_compare("stopped")
 
-    def test_kill_9_and_resume_give_the_same_bits(self):
+    def test_kill_9_and_resume_give_equal_bits(self):
         self.assertEqual(self.interrupt(signal.SIGKILL, "stopped"), -signal.SIGKILL)
         self.resume_and_compare("stopped")
 
-    def test_the_steps_option_and_resume_give_the_same_bits(self):
+    def test_steps_option_and_resume_give_equal_bits(self):
         self.aspic("run", self.scene, "--out", "stopped", "--steps", "30")
         self.resume_and_compare("stopped")
 

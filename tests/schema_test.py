@@ -29,7 +29,7 @@ def body(line):
 
 
 class Schema(unittest.TestCase):
-    def test_is_a_schema(self):
+    def test_output_is_a_json_schema(self):
         jsonschema.Draft7Validator.check_schema(SCHEMA)
 
     def test_accepts_every_scene(self):

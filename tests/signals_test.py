@@ -27,7 +27,7 @@ class Signals(Crash):
         out, err = process.communicate(timeout=60)
         return process.returncode, out + err
 
-    def test_compare_writes_the_methods_that_are_done(self):
+    def test_compare_writes_finished_methods(self):
         for with_signal, code in self.CODES.items():
             shutil.rmtree(self.folder / "out", ignore_errors=True)
             got, said = self.signalled(with_signal, "gradient_descent", "compare", self.scene(cells="16, 6, 6"), "--methods",
@@ -37,7 +37,7 @@ class Signals(Crash):
             with open(self.folder / "out/compare_beam/methods.csv", newline="") as file:
                 self.assertEqual(len(list(csv.DictReader(file))), 1)
 
-    def test_minimize_ends_with_what_it_has(self):
+    def test_minimize_reports_its_last_iterate(self):
         for with_signal, code in self.CODES.items():
             got, said = self.signalled(with_signal, "^ +100 ", "minimize", "rosenbrock", "--method", "gradient_descent",
                                        "--max-iterations", "100000000", "--tolerance", "0", "--trace", "trace",
@@ -46,7 +46,7 @@ class Signals(Crash):
             self.assertIn("interrupted after", said)
             self.assert_whole_table(self.folder / "trace/iterations.csv")
 
-    def test_capture_writes_the_cases_that_are_done(self):
+    def test_capture_writes_finished_cases(self):
         self.write("cube.toml", CUBE)
         for with_signal, code in self.CODES.items():
             got, said = self.signalled(with_signal, "2 of", "capture", "cube.toml", "-o", "data", "--pokes", "20",
@@ -56,7 +56,7 @@ class Signals(Crash):
             self.assertIn("the cases that were done", said)
             self.assertNotIn("error:", self.aspic("fit", "--check", "data").stdout)
 
-    def test_view_is_done(self):
+    def test_view_ends_successfully(self):
         for with_signal in self.CODES:
             for what in (self.scene(), "run"):
                 if what == "run" and not (self.folder / "run").exists():
@@ -64,7 +64,7 @@ class Signals(Crash):
                 got, said = self.signalled(with_signal, "ctrl-C ends it", "view", what, "--no-browser", stream="stdout")
                 self.assertEqual(got, 0, said)
 
-    def test_a_run_writes_its_report_and_says_how_to_go_on(self):
+    def test_run_writes_report_and_resume_hint(self):
         for with_signal, code in self.CODES.items():
             shutil.rmtree(self.folder / "run", ignore_errors=True)
             got, said = self.signalled(with_signal, '"step":3\\b', "run", self.scene(duration=20, cells="16, 4, 4"), "--out",
@@ -106,7 +106,7 @@ class SignalsToRender(Crash):
 
 
 class Certificate(Crash):
-    def test_the_hash_is_the_documented_one_and_everywhere_the_same(self):
+    def test_hash_matches_documentation_in_all_outputs(self):
         done = self.aspic("run", self.scene(duration=0.1), "--json", "--out", "run")
         lines = [json.loads(line) for line in done.stdout.splitlines()]
         rows = self.steps("run")
@@ -115,7 +115,7 @@ class Certificate(Crash):
         self.assertEqual(rows[-1]["state_hash"], state_hash(checkpoint(self.folder / "run/checkpoint.bin")))
         self.assertIn(f"state      {rows[-1]['state_hash']} after step 10", done.stderr)
 
-    def test_every_step_tells_how_it_ended(self):
+    def test_every_step_has_a_status(self):
         done = self.aspic("run", self.scene(duration=0.1), "--json", "--out", "run")
         for line in map(json.loads, done.stdout.splitlines()):
             self.assertEqual((line["status"], line["criterion"], line["energy_bound"]), ("converged", "scale", "holds"))
@@ -133,14 +133,14 @@ class Certificate(Crash):
 class SameBits(Crash):
     """Threads and restarts through the program; the library is tested for every combination elsewhere."""
 
-    def test_for_any_number_of_threads(self):
+    def test_threads_change_no_bit(self):
         scene = self.scene(duration=0.1, cells="12, 4, 4")
         self.aspic("run", scene, "--out", "one", "--threads", "1")
         for threads in ("2", "3", "8"):
             self.aspic("run", scene, "--out", threads, "--threads", threads)
             self.assert_same_folder("one", threads)
 
-    def test_after_a_restart_at_every_step(self):
+    def test_restarts_change_no_bit(self):
         scene = self.scene(duration=0.5)
         self.aspic("run", scene, "--out", "whole")
         for k in range(1, 50, 7):

@@ -102,13 +102,13 @@ class Streams(unittest.TestCase):
             self.assertIn(done.returncode, DOCUMENTED | {-signal.SIGPIPE}, arguments)
             self.assertNotIn(b"internal error", done.stderr)
 
-    def test_a_run_is_written_when_nobody_reads(self):
+    def test_run_completes_without_a_reader(self):
         for prefix in ("> /dev/full", ">&- 2>&-"):
             self.aspic("run", "cube.toml", "--out", "unread", "--force", prefix=prefix)
             self.assertEqual(len((self.folder / "unread/steps.csv").read_text().splitlines()), 4)  # names, the start, two steps
             self.assertNotIn("warning", (self.folder / "unread/steps.csv").read_text())
 
-    def test_a_run_ends_with_a_checkpoint_when_its_reader_has_gone(self):
+    def test_run_ends_with_checkpoint_after_reader_exits(self):
         (self.folder / "long.toml").write_text(CUBE.replace("duration = 0.02", "duration = 1000"))
         process = subprocess.Popen([ASPIC, "run", "long.toml", "--json"], cwd=self.folder, stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE)

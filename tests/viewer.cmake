@@ -21,7 +21,7 @@ if(TARGET aspic_viewer)
   add_aspic_tests(test_mesh_pictures ${CMAKE_SOURCE_DIR}/apps/aspic/mesh_picture_test.cpp)
   target_link_libraries(test_mesh_pictures PRIVATE aspic_commands ZLIB::ZLIB)
 
-  # The page with its program, in Chromium, each with two processors of its own: the browser draws with them, too.
+  # The page with its program in Chromium. Each test gets two processors, because the browser renders with them, too.
   file(GLOB page_themes CONFIGURE_DEPENDS ${web}/test/e2e/*.e2e.mjs)
   foreach(file ${page_themes})
     get_filename_component(theme ${file} NAME_WE)

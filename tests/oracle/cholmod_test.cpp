@@ -1,4 +1,4 @@
-// CHOLMOD as an oracle for the project's own Cholesky: the same solutions, the same verdicts, comparable fill.
+// Compares the project's Cholesky factorization with CHOLMOD: equal solutions and definiteness, comparable fill.
 #include <gtest/gtest.h>
 #include <suitesparse/cholmod.h>
 
@@ -81,24 +81,26 @@ void expect_same(const Matrix& H, double condition) {
   const std::vector<double> expected = oracle.solve(b);
   std::vector<double> difference(x.size());
   for (size_t i = 0; i < x.size(); ++i) difference[i] = x[i] - expected[i];
-  // Both err by a small multiple of eps cond(H); 100 covers the growth with the size of these matrices.
+  // Both errors are small multiples of eps cond(H); the factor 100 covers the growth with these sizes.
   EXPECT_LE(std::sqrt(dot(difference, difference) / dot(expected, expected)), 100 * 2.2e-16 * condition);
-  // Relaxed supernodes and whole square diagonal blocks store some zeros.
+  // Relaxed supernodes and full diagonal blocks store some zeros.
   EXPECT_LE(static_cast<double>(own.analysis().nnz), 2 * oracle.nnz() + 100.0 * H.rows());
 }
 
 TEST(CholmodOracle, AgreesOnRandomMatrices) {
   for (unsigned seed = 1; seed <= 5; ++seed)
-    expect_same(random_dominant(300, random_couplings(300, 900, seed), seed), 10);  // Gershgorin: below 10
+    expect_same(random_dominant(300, random_couplings(300, 900, seed), seed),
+                10);  // condition number by Gershgorin: below 10
 }
 
 TEST(CholmodOracle, AgreesOnLattices) {
-  // Each of at most 14 springs at a vertex adds at most 2 k to the largest eigenvalue; the smallest is the mass.
+  // Each of at most 14 springs at a vertex adds at most 2 k to the largest eigenvalue. The smallest eigenvalue is the
+  // mass.
   for (const double stiffness : {1.0, 1e4})
     expect_same(spring_lattice({.nx = 20, .ny = 8, .nz = 8, .stiffness = stiffness}), 1 + 28 * stiffness);
 }
 
-TEST(CholmodOracle, AgreesOnWhatIsDefinite) {
+TEST(CholmodOracle, AgreesOnDefiniteness) {
   for (const double mass : {1e-2, 1e-5, -1e-5, -1e-2}) {
     const Matrix H = spring_lattice({.nx = 8, .ny = 7, .nz = 6, .mass = mass});
     Cholesky own;

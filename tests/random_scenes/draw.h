@@ -1,4 +1,4 @@
-// Draws that are the same on every machine, unlike the distributions of the standard library.
+// Random draws that are equal on every machine, unlike the distributions of the standard library.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace aspic {
 
-std::string shortest(double x);  // that reads back to x
+std::string shortest(double x);  // shortest text that reads back to x
 
 class Draw {
  public:
@@ -24,7 +24,7 @@ class Draw {
   T one_of(std::initializer_list<T> choices) {
     return choices.begin()[integer(0, static_cast<int>(choices.size()) - 1)];
   }
-  // As text, with few digits.
+  // Random number as a text of few digits.
   std::string number(double low, double high) { return shortest(std::round(uniform(low, high) * 1000) / 1000); }
   std::string size(double low, double high) { return shortest(rounded(logarithmic(low, high))); }
   std::string vector(double length) {

@@ -13,9 +13,10 @@
 namespace aspic {
 namespace {
 
-constexpr double kRoundOff = 1e-9;     // of the energies that are added, and of the forces that balance
-constexpr double kLastDigits = 1e-11;  // of energies that cancel in a body at rest
-// The residual of the report is recomputed from differences of velocities. Multiple of the round-off of one evaluation.
+constexpr double kRoundOff = 1e-9;     // relative to the energies that are added and the forces that balance
+constexpr double kLastDigits = 1e-11;  // relative to energies that cancel in a body at rest
+// Round-off of the residual in units of one evaluation: the report's residual is recomputed from differences of
+// velocities.
 constexpr double kNoise = 10;
 constexpr int kMostPolls = 20'000;  // of the stop token, in all steps of a scene
 
@@ -23,7 +24,7 @@ bool is_finite(std::span<const double> v) {
   return std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
 }
 
-// Of each body, by the text: whether its material is infinitely stiff against inversion.
+// For each body, whether its material has an infinite barrier against inversion.
 std::vector<bool> barriers(const std::string& text) {
   std::vector<bool> found;
   for (size_t at = text.find("[[body]]"); at != std::string::npos;) {
@@ -88,7 +89,8 @@ class Judge {
     if (simulation_.options().integrator == "backward_euler") judge_descent(before, report);
   }
 
-  // By the volumes of the tets, whatever the materials say of det F: that is a sum of products of three entries of F,
+  // Orientation from volumes of tets, which is reliable for needles: det F of a needle of aspect ratio 10^4 has the
+  // sign of its round-off.
   // so that its sign is round-off in a needle of ten thousand times its length.
   bool is_inside_out(size_t body) const {
     const Model& model = simulation_.model();
@@ -123,7 +125,7 @@ class Judge {
     judgment_.detail = why.cause + " | " + why.place + " | " + why.remedy;
   }
 
-  // The energies of the report are those of the state, and their changes add up.
+  // Checks that the report's energies are those of the state and that their changes add up.
   void judge_ledger(const StepReport& report) {
     double potential = 0, size = std::abs(report.kinetic);
     for (const double V : simulation_.potential_energies()) potential += V, size += std::abs(V);
@@ -138,7 +140,7 @@ class Judge {
     for (const double V : report.potential) size_ += std::abs(V);
   }
 
-  // Distance of the body from the origin in sizes of its rest shape, by which the round-off of strains grows.
+  // Distance of the body from the origin in sizes of its rest shape; the round-off of strains is proportional to it.
   double distance() const {
     double far = 0, low = INFINITY, high = -INFINITY;
     for (const double q : simulation_.state().q) far = std::max(far, std::abs(q));
@@ -146,7 +148,7 @@ class Judge {
     return far / (high - low);
   }
 
-  // Young's modulus times volume: an energy is known to the last digits of that. [J]
+  // Sum of Young's modulus times volume: scale of the round-off of energies. [J]
   double stiffness() const {
     const Model& model = simulation_.model();
     double sum = 0;
@@ -154,7 +156,7 @@ class Judge {
     return sum;
   }
 
-  // Backward Euler: V1 + |v1 - v0|^2 / 2 <= V0 + T0 wherever nothing is moved, whatever the status.
+  // Backward Euler: V1 + |v1 - v0|^2 / 2 <= V0 + T0 for any status, provided that nothing is moved.
   void judge_descent(const State& before, const StepReport& report) {
     const SimulationOptions& options = simulation_.options();
     const bool descends = options.solver.minimize.line_search.test != DecreaseTest::none &&
@@ -175,9 +177,9 @@ class Judge {
 
   Scene& scene_;
   Simulation& simulation_;
-  std::vector<bool> barriers_;  // of each body
-  bool moves_;                  // pins or targets
-  double size_ = 0;             // the energies of the report, each without its sign
+  std::vector<bool> barriers_;  // per body
+  bool moves_;                  // pins or spring targets move
+  double size_ = 0;             // sum of the magnitudes of the report's energies
   double total_;                // energy before the step
   Judgment judgment_;
 };

@@ -1,5 +1,5 @@
-// What every run of every scene owes: a status that is true, numbers that are numbers, energies that add up, and words
-// where something failed.
+// Requirements on every run of every scene: a correct status, finite numbers, balanced energies, and a message for each
+// failure.
 #pragma once
 #include <string>
 
@@ -9,11 +9,11 @@ namespace aspic {
 
 struct Judgment {
   std::string ending;  // "converged", "refused", or the status of the first step that failed
-  std::string detail;  // the words of the refusal or the explanation
-  std::string fault;   // what the run owes and does not give; empty: nothing
+  std::string detail;  // message of the refusal or explanation of the failure
+  std::string fault;   // violated requirement; empty: none
 };
 
-// Runs the scene of that text to its end, whatever its steps end with.
+// Runs the scene to its end, whatever the status of its steps.
 Judgment judge(Scene& scene, const std::string& text);
 
 }  // namespace aspic

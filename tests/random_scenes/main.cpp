@@ -1,7 +1,7 @@
-// random_scenes [--seed FIRST] [--count N]: runs N random scenes, each in a process of its own, so that one that
-// crashes or never ends does not end the others. What a scene owes is in judge.h. Prints the scenes at fault.
-//   --print SEED    the text of that scene; --run SEED: in this process, for a debugger; --file FILE: the same with a
-//                   scene that was printed, because a new material changes what a seed draws
+// random_scenes [--seed FIRST] [--count N]: runs N random scenes, each in its own process, so that a crash or hang does
+// not end the others. Prints the scenes that violate a requirement of judge.h. --print SEED prints a scene; --run SEED
+// runs it in this process, for a debugger; --file FILE runs a printed scene, because a new material changes the scene
+// of a seed.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -23,12 +23,12 @@
 namespace aspic {
 namespace {
 
-constexpr rlim_t kMostSeconds = 200;  // of the processor, for scenes that take a second at most, with sanitizers thirty
+constexpr rlim_t kMostSeconds = 200;  // CPU time limit; scenes take at most one second, thirty with sanitizers
 
 struct Arguments {
   uint64_t seed = 1, count = 1000;
   bool prints = false, runs = false, verbose = false;
-  std::filesystem::path file;  // instead of a seed
+  std::filesystem::path file;  // replaces the seed
 };
 
 Judgment run_file(const std::filesystem::path& file, const std::string& text) {
@@ -55,7 +55,7 @@ Judgment run_file(const std::filesystem::path& file) {
   return run_file(file, {std::istreambuf_iterator<char>(in), {}});
 }
 
-// "ending\ndetail\nfault" through a pipe; how the process ended where nothing comes.
+// Reads "ending\ndetail\nfault" from a pipe; without output, how the process ended.
 Judgment run_apart(uint64_t seed, const std::filesystem::path& folder) {
   int ends[2];
   if (pipe(ends) != 0) throw InvalidInput("no pipe");

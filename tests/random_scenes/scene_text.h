@@ -1,11 +1,11 @@
-// Small scenes that nobody thought of: bodies, materials, loads, starts, schemes and solver options drawn at random.
+// Small random scenes: bodies, materials, loads, initial states, integrators and solver options.
 #pragma once
 #include <cstdint>
 #include <string>
 
 namespace aspic {
 
-// A TOML file; the same seed gives the same text everywhere.
+// Returns a TOML text, equal on all machines for the same seed.
 std::string random_scene(uint64_t seed);
 
 }  // namespace aspic

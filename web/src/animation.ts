@@ -1,4 +1,4 @@
-// Hands the motion so far to other programs, as a file.
+// Exports the motion so far as a file for other programs.
 import { element, labeled, messageOf, openDialog, saveFile } from "./dom";
 import { Gif } from "./gif";
 import type { Page } from "./page";
@@ -30,7 +30,7 @@ export function openAnimation(store: Store, page: Page, video: Video): void {
     element("div", { class: "actions" }, submit),
   );
   const dialog = openDialog("Export the motion", [
-    element("p", {}, "The surface at the steps that the timeline holds, from the start to now. Drags are part of it."),
+    element("p", {}, "The surface at the steps in the timeline, from the start to now, including drags."),
     form,
     element("p", { class: "faint" }, "Videos and GIFs of any size: save the scene (Shift+T), then on a command line"),
     element("pre", {}, "aspic run SCENE.toml --out out\naspic render out -o motion.gif   (or .mp4, .webm)"),
@@ -58,12 +58,13 @@ async function saveAnimation(store: Store, page: Page, side: SideName, format: F
   page.notice(`${reply.name}: ${reply.note ?? ""}`);
 }
 
-// The program repeats the session. The promise is fulfilled when it begins; `atEnd` is called once, after the last picture.
+// Repeats the session in the program. The promise resolves when the replay begins; `atEnd` is called once, after the
+// last picture.
 async function repeatSession(store: Store, atEnd: () => void): Promise<void> {
-  if (!store.steers) throw new Error("This page watches; take the steering to repeat the session.");
+  if (!store.steers) throw new Error("This page only watches; press Steer to repeat the session.");
   const recording = await store.source.ask<Recording>({ ask: "recording" });
   if (recording.steps === 0) throw new Error("nothing has moved yet; play first, then export");
-  // A short session may end before the reply to the request is here, so the states are watched from before it.
+  // A short session may end before the reply arrives, so the states are watched before the request is sent.
   let [began, accepted, ended] = [false, false, false];
   const look = ({ replaying, a }: State): void => {
     began ||= replaying || a.step < recording.steps;
@@ -88,8 +89,8 @@ async function videoOfSession(store: Store, video: Video): Promise<void> {
   if (!video.isRecording) video.start();
 }
 
-const kGifWidth = 640; // at most [px]
-const kGifEvery = 0.04; // of simulated time [s]
+const kGifWidth = 640; // largest width [px]
+const kGifEvery = 0.04; // simulated time between pictures [s]
 const kMostGifFrames = 400;
 
 async function gifOfSession(store: Store, page: Page, video: Video): Promise<void> {
@@ -112,7 +113,7 @@ async function gifOfSession(store: Store, page: Page, video: Video): Promise<voi
     stop();
     take(Infinity);
     saveFile(fileName(store.side("a")?.scene.name ?? "", "gif"), gif.blob());
-    page.notice(`${frames} pictures${frames === kMostGifFrames ? ", as many as a GIF gets here; aspic render makes longer ones" : ""}`);
+    page.notice(`${frames} pictures${frames === kMostGifFrames ? ", the limit of a GIF here; aspic render makes longer ones" : ""}`);
   };
   await repeatSession(store, end).catch((reason: unknown) => {
     stop();

@@ -1,4 +1,4 @@
-// Two simulations side by side: the dialog that opens the second.
+// Dialog that opens a second simulation beside the first.
 import { button, element, labeled, messageOf, openDialog } from "./dom";
 import type { Page } from "./page";
 import { faultOfOverrides, parseOverrides, presets } from "./presets";
@@ -42,9 +42,9 @@ function openCompare(store: Store, scene: Scene): void {
   const form = element(
     "form",
     {},
-    element("p", {}, "Side A stays as it is. Side B is the same scene, but for:"),
+    element("p", {}, "Side A does not change. Side B is the same scene with these differences:"),
     element("div", { class: "choices" }, ...choices),
-    labeled("What differs, one KEY=VALUE per line", overrides),
+    labeled("Overrides of side B, one KEY=VALUE per line", overrides),
     labeled("Name of side B", label),
     problem,
     element("div", { class: "actions" }, submit),

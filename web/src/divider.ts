@@ -3,15 +3,15 @@ import { element } from "./dom";
 
 export interface Resized {
   label: string;
-  orientation: "horizontal" | "vertical"; // of the bar
-  size: () => number; // [px]
+  orientation: "horizontal" | "vertical"; // orientation of the bar
+  size: () => number; // current size [px]
   limits: () => [number, number];
   resize: (size: number) => void;
 }
 
 const kKeyStep = 24; // [px]
 
-// The resized area lies below a horizontal bar, or right of a vertical one.
+// The resized area is below a horizontal bar, or to the right of a vertical one.
 export function makeDivider(resized: Resized): HTMLElement {
   const bar = element("div", {
     class: `divider ${resized.orientation}`,

@@ -1,4 +1,4 @@
-// The panels below the view, one at a time, chosen by tabs. Closed, only the tabs remain.
+// Panels below the view, one at a time, selected by tabs. When the dock is closed, only the tabs remain.
 import { makeDivider } from "./divider";
 import { button, element } from "./dom";
 import { whenNarrow } from "./narrow";
@@ -6,13 +6,13 @@ import type { Page, Panel } from "./page";
 import { keyName } from "./shortcuts";
 
 const kKeys: Record<string, string> = { energy: "e", microscope: "m", landscape: "a", functions: "f", certificate: "q", capture: "k" };
-const kSmallest = 120; // [px]
-const kShare = 0.62; // of the window, at most: the mesh keeps the rest
+const kSmallest = 120; // smallest height [px]
+const kShare = 0.62; // largest part of the window's height; the mesh keeps the rest
 
 export class Dock {
   private open: Panel | null = null;
-  private last: Panel | null = null; // opened again by the key
-  private height: number | null = null; // chosen by the reader [px]; null: what the style gives the panel
+  private last: Panel | null = null; // panel that the key opens again
+  private height: number | null = null; // height chosen by the reader [px]; null: the default of the style sheet
   private readonly tabs = new Map<Panel, HTMLButtonElement>();
   private readonly body = element("div", { class: "dock-body" });
   private readonly close: HTMLButtonElement;

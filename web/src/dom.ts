@@ -1,4 +1,4 @@
-// Elements in one call, and what browsers need more than one line for.
+// Creates elements in one call, and wraps browser functions that need more than one line.
 export type Child = Node | string | null;
 
 export function element<Tag extends keyof HTMLElementTagNameMap>(
@@ -15,7 +15,7 @@ export function element<Tag extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
-// Outlines on a square of 24 units.
+// Outlines in a square of 24 units.
 const kIcons = {
   play: "M7 4l13 8-13 8z",
   pause: "M7 4h4v16H7zM14 4h4v16h-4z",
@@ -43,7 +43,7 @@ export function icon(name: IconName): SVGSVGElement {
 export interface ButtonOptions {
   text?: string;
   icon?: IconName;
-  label?: string; // for screen readers, where it is not the text
+  label?: string; // name for screen readers, if it differs from the text
   title?: string;
   steers?: boolean; // disabled in a page that only watches
 }
@@ -57,7 +57,7 @@ export function button(options: ButtonOptions, run: () => void): HTMLButtonEleme
   );
   if (options.label) made.setAttribute("aria-label", options.label);
   made.addEventListener("click", (event) => {
-    // A click by mouse leaves the keyboard to the shortcuts: Space then plays and does not click again.
+    // After a click by mouse the shortcuts keep the keyboard: Space plays and does not click again.
     if (event.detail > 0) made.blur();
     run();
   });
@@ -68,7 +68,7 @@ export function labeled(text: string, control: HTMLElement, title = ""): HTMLLab
   return element("label", { title, class: "labeled" }, element("span", {}, text), control);
 }
 
-// A modal dialog; it is removed when it closes.
+// Opens a modal dialog, which is removed when it closes.
 export function openDialog(title: string, content: Child[], className = ""): HTMLDialogElement {
   const heading = element("h2", {}, title);
   const dialog = element("dialog", { "aria-label": title, class: className });

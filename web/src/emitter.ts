@@ -1,4 +1,4 @@
-// Events by name, each with its own type.
+// Typed events by name.
 export class Emitter<Events> {
   private readonly listeners = new Map<keyof Events, Set<(event: never) => void>>();
 

@@ -1,4 +1,4 @@
-// The menu of files: scenes, workspaces, the recorded mouse, deformed meshes.
+// The file menu: scenes, workspaces, mouse recordings, deformed meshes.
 import { openAnimation } from "./animation";
 import { chooseFile, element, labeled, messageOf, openDialog, saveFile } from "./dom";
 import { openGallery } from "./gallery";
@@ -11,7 +11,7 @@ import { bytesOf, isSceneOrMesh, prepareUpload } from "./upload";
 import { fileName, type Video } from "./video";
 import { isWorkspace, openWorkspace, parseRecording, parseWorkspace, saveWorkspace } from "./workspace";
 
-const kLargestFile = 50e6; // [bytes] of a workspace or recording
+const kLargestFile = 50e6; // largest workspace or recording [bytes]
 const kFormats = ["obj", "ply", "vtu", "msh", "mesh"] as const;
 
 export class Files {
@@ -21,7 +21,7 @@ export class Files {
     private readonly video: Video,
   ) {}
 
-  // With the commands that make pictures. A recorded run has fewer of its own.
+  // Includes the commands that make pictures. A recorded run has fewer commands.
   makeMenu(pictures: HTMLButtonElement[]): HTMLElement {
     const saveScene = (): void => this.try(this.saveScene());
     const scene = this.item("Shift+T", "Save the scene with all its values (TOML)", false, saveScene);
@@ -55,7 +55,7 @@ export class Files {
     const form = element(
       "form",
       {},
-      labeled("Format: obj and ply hold the surface; vtu, msh and mesh the tets", format),
+      labeled("obj and ply contain the surface; vtu, msh and mesh the tets", format),
       this.store.side("b") ? labeled("Side", side) : null,
       element("div", { class: "actions" }, submit),
     );
@@ -74,16 +74,16 @@ export class Files {
     else {
       saveFile(reply.name, new Blob([bytesOf(reply.base64)], { type: "application/zip" }));
       const folder = reply.name.replace(/\.zip$/, "");
-      this.page.notice(`The archive holds the scene with its meshes. Unpack it, then: aspic run ${folder}/${folder}.toml`);
+      this.page.notice(`The archive contains the scene with its meshes. Unpack it, then run: aspic run ${folder}/${folder}.toml`);
     }
     for (const note of reply.notes ?? []) this.page.notice(`Not in the file: ${note}.`);
   }
 
-  // Opens files of the reader's machine: a workspace, a recording, or a scene or mesh with what belongs to it.
+  // Opens files of the reader's machine: a workspace, a recording, or a scene or mesh with its files.
   private async openFiles(files: File[]): Promise<void> {
     if (!files.some(({ name }) => isSceneOrMesh(name))) {
       if (!/\.json$/i.test(files[0].name))
-        throw new Error(`${files[0].name}: a scene (.toml, .zip), a mesh, a workspace or a recording (.json) is expected`);
+        throw new Error(`${files[0].name}: expected a scene (.toml, .zip), a mesh, a workspace or a recording (.json)`);
       return this.open(files[0]);
     }
     const { scene, files: uploaded } = await prepareUpload(files);
@@ -91,7 +91,7 @@ export class Files {
       await this.store.source.request({ do: "load", scene, files: uploaded });
     } catch (reason) {
       const alone = files.length === 1 && /does not exist/.test(messageOf(reason));
-      throw new Error(messageOf(reason) + (alone ? ". Hand the scene over together with the files that it names." : ""));
+      throw new Error(messageOf(reason) + (alone ? ". Open the scene together with the files that it names." : ""));
     }
   }
 
@@ -141,7 +141,7 @@ export class Files {
       if (files.length === 0) return;
       event.preventDefault();
       if (this.store.steers) this.try(this.openFiles(files));
-      else this.page.notice("This page watches; take the steering to load files.", "error");
+      else this.page.notice("This page only watches; press Steer to load files.", "error");
     });
   }
 }

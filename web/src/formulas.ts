@@ -1,10 +1,10 @@
-// Formulas of the lecture's pages and of named functions; the build turns their TeX into MathML.
+// Formulas of the lecture and of named functions. The build converts their TeX to MathML.
 import { element } from "./dom";
 import source from "./formulas.json";
 
 const formulas: Record<string, string[]> = source;
 
-// A lesson has the formulas of the demonstration with whose name its id begins.
+// Formulas of a lesson. Its id begins with the name of the demonstration that has them.
 export function formulasOf(id: string): string[] {
   const name = Object.keys(formulas).find((known) => id === known || id.startsWith(`${known}_`));
   return name ? formulas[name]! : [];

@@ -1,5 +1,5 @@
-// The dialog that opens another scene: those that come with the program, those opened before, files of the reader's
-// machine, and a path on the program's machine.
+// Dialog that opens another scene: a scene of the program, a recent one, files of the reader's machine, or a path on
+// the program's machine.
 import "./gallery.css";
 import { button, element, labeled, messageOf, openDialog } from "./dom";
 import type { GalleryReply } from "./protocol";
@@ -47,7 +47,7 @@ function makePathForm(store: Store, load: (scene: string) => Promise<void>): HTM
   return form;
 }
 
-// The browser's own dialog, for several files: a scene and its meshes.
+// The browser's own dialog for several files: a scene and its meshes.
 function makeFileChooser(open: (files: File[]) => Promise<void>): HTMLElement {
   const input = element("input", { type: "file", multiple: true, hidden: true, "aria-label": "Files of this computer" });
   input.addEventListener("change", () => {
@@ -77,7 +77,7 @@ function makeShelves({ scenes, recent }: GalleryReply, load: (scene: string) => 
 
 const kTitles: Record<string, string> = { "": "Scenes", lecture: "Lecture", capture: "Capture and fitting" };
 
-// By folder, in the order of the program.
+// Scenes by folder, in the order of the program.
 export function shelvesOf(scenes: GalleryReply["scenes"]): { title: string; entries: GalleryReply["scenes"] }[] {
   const folders = new Map<string, GalleryReply["scenes"]>();
   for (const scene of scenes) {

@@ -1,5 +1,5 @@
-// Animated GIF [GIF89a, CompuServe 1990]: one palette for all pictures, ordered dithering, LZW.
-const kLevels = [6, 7, 6] as const; // of red, green and blue: 252 colors
+// Animated GIF [GIF89a, CompuServe 1990]: one palette for all pictures, ordered dithering, LZW compression.
+const kLevels = [6, 7, 6] as const; // levels of red, green and blue: 252 colors
 const kCodeSize = 8;
 const kClear = 1 << kCodeSize;
 const kEnd = kClear + 1;
@@ -26,7 +26,7 @@ export class Gif {
     this.parts.push(Uint8Array.from([...head, ...word(width), ...word(height), 0xf7, 0, 0]), palette, Uint8Array.from(repeated));
   }
 
-  // `rgba`: 4 bytes per pixel; it is shown for `delay` hundredths of a second.
+  // Adds a picture. `rgba` has 4 bytes per pixel; `delay` is its duration in hundredths of a second.
   add(rgba: Uint8ClampedArray, delay: number): void {
     const control = [0x21, 0xf9, 4, 0, ...word(delay), 0, 0];
     const image = [0x2c, 0, 0, 0, 0, ...word(this.width), ...word(this.height), 0, kCodeSize];
@@ -59,7 +59,7 @@ function compressed(pixels: Uint8Array): number[] {
     bits |= code << count;
     for (count += size; count >= 8; count -= 8, bits >>>= 8) bytes.push(bits & 0xff);
   };
-  const known = new Map<number, number>(); // the code of a known code and the color after it
+  const known = new Map<number, number>(); // (code, next color) -> code
   let next = kEnd + 1;
   put(kClear);
   let last = pixels[0]!;

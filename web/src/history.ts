@@ -1,10 +1,9 @@
-// Undo of settings. What is undone is an override of a side: back to the value before, or to what the scene's file has
-// when there was none.
+// Undo of settings. Undo restores an override of a side to its previous value, or removes it if there was none.
 import type { Scene, SettingValue, SideName } from "./protocol";
 
 export interface SettingChange {
   key: string;
-  value: SettingValue | null; // null: drops the override
+  value: SettingValue | null; // null: removes the override
   side?: SideName;
 }
 
@@ -12,7 +11,7 @@ function keyOf(override: string): string {
   return override.slice(0, override.indexOf("=")).replaceAll(" ", "");
 }
 
-// What brings a setting of a side back to what it is now.
+// Change that restores the present value of a setting of a side.
 export function backTo(scene: Scene, key: string, side?: SideName): SettingChange {
   const overridden = scene.overrides.some((override) => keyOf(override) === key);
   const setting = scene.settings.find((candidate) => candidate.key === key);
@@ -20,7 +19,7 @@ export function backTo(scene: Scene, key: string, side?: SideName): SettingChang
   return side ? { key, value, side } : { key, value };
 }
 
-// The value of an override's text, which is TOML; null for one that is no number, text, switch or list of these.
+// Value of an override's TOML text; null unless it is a number, text, boolean or list of these.
 function valueOf(override: string): SettingValue | null {
   const text = override.slice(override.indexOf("=") + 1).trim();
   try {
@@ -30,7 +29,7 @@ function valueOf(override: string): SettingValue | null {
   }
 }
 
-// What brings every setting of a side back to how it was loaded, the latest change first.
+// Changes that restore every setting of a side to its loaded value, the latest change first.
 export function toLoaded(scene: Scene, side?: SideName): SettingChange[] {
   const before = new Map(scene.loaded_overrides.map((override) => [keyOf(override), override]));
   const known = new Set(scene.settings.map((setting) => setting.key));
@@ -46,7 +45,7 @@ export function toLoaded(scene: Scene, side?: SideName): SettingChange[] {
 
 const kMostUndone = 100;
 
-// Changes in the order in which they were made; what belongs together is undone together.
+// Changes in the order in which they were made. A group of changes is undone together.
 export class History {
   private readonly done: { what: string; back: SettingChange[] }[] = [];
 

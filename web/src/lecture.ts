@@ -1,5 +1,5 @@
-// Lecture mode: the pages of the lecture as a list, each opening its demonstration. A recorded mouse plays; the reader
-// takes over by dragging the body.
+// Lecture mode: the pages of the lecture as a list, each opening its demonstration. A recorded mouse plays until the
+// reader drags the body.
 import { button, element, messageOf } from "./dom";
 import { formulaElements } from "./formulas";
 import type { Page } from "./page";
@@ -17,7 +17,7 @@ export function matches(lesson: Lesson, words: string): boolean {
     .every((word) => text.includes(word));
 }
 
-// The next lesson that can be shown, forward (1) or backward (-1).
+// Next available lesson, forward (1) or backward (-1).
 export function neighbor(lessons: Lesson[], from: Lesson | null, by: 1 | -1): Lesson | null {
   const shown = lessons.filter((lesson) => !lesson.missing);
   if (!from) return shown[0] ?? null;
@@ -79,7 +79,7 @@ export class Lecture {
   private fill(): void {
     const found = this.lessons.filter((lesson) => matches(lesson, this.search.value));
     this.list.replaceChildren(...found.map((lesson) => element("li", {}, this.entry(lesson))));
-    if (found.length === 0) this.list.append(element("li", { class: "faint" }, "No page has these words."));
+    if (found.length === 0) this.list.append(element("li", { class: "faint" }, "No page matches."));
     this.previous.hidden = this.next.hidden = this.current === null;
     this.previous.classList.toggle("faint", neighbor(this.lessons, this.current, -1) === null);
     this.next.classList.toggle("faint", neighbor(this.lessons, this.current, 1) === null);
@@ -113,7 +113,7 @@ export class Lecture {
     }
     this.page.emit("cleared", undefined);
     this.current = lesson;
-    this.replay.hidden = !this.replaying; // what an earlier lesson's mouse did
+    this.replay.hidden = !this.replaying; // the recorded mouse of an earlier lesson
     this.card.replaceChildren(
       element("h2", {}, `${pagesText(lesson)}: ${lesson.title}`),
       element("p", { class: "claim" }, lesson.claim),
@@ -122,7 +122,7 @@ export class Lecture {
     );
     this.fill();
     this.list.querySelector("[aria-current]")?.scrollIntoView({ block: "nearest" });
-    this.root.scrollTop = 0; // where the panel itself scrolls, as on a phone, its text comes first
+    this.root.scrollTop = 0; // on a phone the panel itself scrolls; show its text first
     this.page.emit("panel", lesson.panel);
     if (lesson.function) this.showFunction(lesson.function);
   }

@@ -1,5 +1,5 @@
-// A program that simulates, at the other end of a WebSocket. A dropped connection is made anew; the program then greets
-// the page with everything it needs.
+// Source of messages: a running simulation at the other end of a WebSocket. After a lost connection it reconnects, and
+// the program sends the complete state again.
 import { decode } from "./protocol";
 import type { Command, Query, ServerMessage } from "./protocol";
 import type { Incoming, Source } from "./source";
@@ -15,12 +15,12 @@ interface Pending {
 }
 
 const kOpen = 1;
-const kFirstPause = 250; // [ms], doubled after each failure
+const kFirstPause = 250; // first pause before a reconnection [ms]; doubled after each failure
 const kLongestPause = 5000;
 
 export class LiveSource implements Source {
   readonly live = true;
-  failures = 0; // attempts to connect since the connection was lost
+  failures = 0; // failed reconnections since the connection was lost
   private socket: Socket | null = null;
   private receive: (incoming: Incoming) => void = () => {};
   private readonly pending = new Map<number, Pending>();
@@ -107,8 +107,8 @@ export class LiveSource implements Source {
 
 const kTokenKey = "aspic.token";
 
-// The session's address. The token leaves the visible address, so that a projected page does not tell it; the tab keeps
-// it for a reload.
+// Address of the session. Removes the token from the visible address, so that a projected page does not reveal it. The
+// tab keeps the token for a reload.
 export function sessionAddress(): string {
   const here = new URL(location.href);
   let token = here.searchParams.get("token");
@@ -118,7 +118,7 @@ export function sessionAddress(): string {
     here.searchParams.delete("token");
     history.replaceState(null, "", here);
   } catch {
-    // A browser that stores nothing keeps the token in its address: a reload needs it there.
+    // Without storage the token remains in the address for a reload.
   }
   const scheme = here.protocol === "https:" ? "wss:" : "ws:";
   return `${scheme}//${here.host}/session?token=${encodeURIComponent(token ?? "")}`;

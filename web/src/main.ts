@@ -1,4 +1,4 @@
-// The page: one source of messages, one store, and panels that listen to it.
+// The page: one source of messages, one store, and panels that subscribe to it.
 import { GUI } from "lil-gui";
 import "./style.css";
 import "./shell.css";

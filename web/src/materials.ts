@@ -1,6 +1,6 @@
-// Materials to start from: one published measurement where there is a source, else a typical order of magnitude. Real
-// materials differ from sample to sample, and are not linear; Poisson's ratio is below the 0.5 of incompressible matter so
-// that every solver converges.
+// Material presets: one published measurement where there is a source, otherwise a typical order of magnitude. Real
+// materials vary from sample to sample and are not linear. Poisson's ratio stays below the 0.5 of incompressible matter
+// so that every solver converges.
 
 export interface MaterialPreset {
   name: string;

@@ -1,5 +1,5 @@
-// Pictures of meshes for a program that sends them one by one: panels side by side, seen from one direction in one
-// scale, with a color bar. apps/aspic/mesh_picture.h says what they may be.
+// Pictures of meshes for a program that sends them one by one: panels side by side with a common direction, scale and
+// color bar. apps/aspic/mesh_picture.h defines the requests.
 import { Vector3, type Quaternion } from "three";
 import { Pack } from "./pack";
 import type { Tell } from "./program";
@@ -23,14 +23,14 @@ interface MeshPicture {
   value_label: string;
   range: [number, number] | null;
   width: number; // [px]
-  height: number; // at most
-  letter: number; // height of text
+  height: number; // largest height [px]
+  letter: number; // height of text [px]
 }
 
-const kMargin = 0.94; // of a panel's width and height that the surface may fill
+const kMargin = 0.94; // largest part of a panel's width and height that the surface fills
 const kColors = { background: "#ffffff", grid: "#8a93a1", text: "#2b303a" };
 
-// Where the camera looks from, for all panels.
+// Direction of the camera, common to all panels.
 class Outlook {
   readonly orientation: Quaternion;
   private readonly right: Vec3;
@@ -44,12 +44,12 @@ class Outlook {
     [this.right, this.up, this.forward] = [axis(1, 0, 0), axis(0, 1, 0), axis(0, 0, -1)];
   }
 
-  // Across, upward and away from the eye.
+  // Coordinates across, upward and away from the eye.
   seen(point: Vec3): Vec3 {
     return [dot(point, this.right), dot(point, this.up), dot(point, this.forward)];
   }
 
-  // Parallel to the view; `extent` is half the height of what is seen [m].
+  // Orthographic camera; `extent` is half the visible height [m].
   lens(middle: Vec3, extent: number, width: number, height: number): Lens {
     const { right, up, forward } = this;
     const eye = along(along(along([0, 0, 0], middle[0], right), middle[1], up), middle[2], forward);
@@ -57,13 +57,13 @@ class Outlook {
   }
 }
 
-// The surface of a panel: as it came or, where values belong to triangles, each of these with corners of its own.
+// Surface of a panel. Where values belong to triangles, no two triangles share corners.
 class Panel {
   readonly geometry: Geometry;
   readonly values: Float32Array | null = null;
   readonly normals: Int8Array;
   readonly box: Box;
-  readonly middle: Vec3; // as the camera sees it
+  readonly middle: Vec3; // in coordinates of the camera
   readonly size: Vec3;
 
   constructor(pack: Pack<MeshPicture>, index: number, outlook: Outlook) {
@@ -74,7 +74,7 @@ class Panel {
     const { values } = pack.head.panels[index];
     if (values !== "none") this.values = pack.floats(`${index}.values`);
     if (values === "triangles") {
-      const corner = new Uint32Array(positions.length / 3); // one of those at each vertex
+      const corner = new Uint32Array(positions.length / 3); // one of the triangle corners at each vertex
       triangles.forEach((vertex, c) => (corner[vertex] = c));
       edges = edges.map((vertex) => corner[vertex]);
       const shared = positions;
@@ -121,7 +121,7 @@ class Painter {
     const bottom = head.panels.some(({ caption }) => caption !== "") ? 2.4 * em : 0;
     const width = Math.floor((head.width - bar) / panels.length);
 
-    // As large as all fit, and no higher than needed.
+    // Largest scale at which all panels fit; no higher than needed.
     const room = head.height - top - bottom;
     const largest = (axis: 0 | 1): number => Math.max(...panels.map(({ size }) => size[axis]));
     const scale = kMargin * Math.min(width / largest(0), room / largest(1)); // [px / m]
@@ -145,7 +145,7 @@ class Painter {
   }
 
   private draw(panel: Panel, lens: Lens, outlook: Outlook, head: MeshPicture): void {
-    // Where colors are values, neither glare nor the color of insides hides them.
+    // Glare and the color of inner sides would hide colors that represent values.
     const meaning: Partial<DisplaySettings> = panel.values ? { shininess: 0, inside: "same" } : {};
     const settings: DisplaySettings = { ...kDefaults, wires: head.wires, ground: false, ...meaning };
     const { stage } = this;
@@ -172,7 +172,7 @@ class Painter {
     stage.render(lens, outlook.orientation, kColors.text);
   }
 
-  // Half as high as the panels beside it, in their middle.
+  // Half as high as the panels, centered vertically.
   private addBar(ink: Ink, head: MeshPicture, range: [number, number], top: number, height: number): void {
     const field: Field = { name: "", label: head.value_label, unit: "", diverging: false, center: 0, log: false };
     const lens = { width: head.width - kBarWidth * ink.em, height } as Lens;

@@ -1,7 +1,7 @@
-// Names for people of what scenes and reports name by keys. Keys stay the values that are sent.
+// Display names of the keys in scenes and reports. Messages contain the keys.
 
 const kChoices: Record<string, string> = {
-  // material models
+  // Material models.
   neo_hookean: "Neo-Hookean",
   stable_neo_hookean: "Stable neo-Hookean",
   neo_hookean_log: "Neo-Hookean, log J",
@@ -15,7 +15,7 @@ const kChoices: Record<string, string> = {
   mooney_rivlin: "Mooney-Rivlin",
   fung: "Fung",
   spline: "Spline",
-  // integrators
+  // Integrators.
   backward_euler: "Backward Euler",
   linearly_implicit_euler: "Linearly implicit Euler",
   bdf2: "BDF2",
@@ -26,7 +26,7 @@ const kChoices: Record<string, string> = {
   forward_euler: "Forward Euler",
   rk4: "Runge-Kutta 4",
   quasi_static: "Quasi-static",
-  // solvers
+  // Solvers.
   newton: "Newton",
   newton_cg: "Newton-CG",
   lbfgs: "L-BFGS",
@@ -60,7 +60,7 @@ const kChoices: Record<string, string> = {
   slide: "As on the slide",
 };
 
-// Where a value means something else than under other keys.
+// Names of values that mean something else under these keys.
 const kChoicesOf: Record<string, Record<string, string>> = {
   "solver.criterion": { absolute: "Force in N" },
   "solver.line_search.test": { none: "None: first trial" },
@@ -81,12 +81,12 @@ const kStatuses: Record<string, string> = {
   undefined: "blew up",
 };
 
-// How a step ended.
+// Display name of a step's status.
 export function statusName(status: string): string {
   return kStatuses[status] ?? status.replaceAll("_", " ");
 }
 
-// Text without the marks of Markdown: `code`, **strong**, [link](target).
+// Text without Markdown: `code`, **strong**, [link](target).
 export function plainText(markdown: string): string {
   return markdown
     .replace(/\[([^\]]+)\]\([^)]*\)/g, "$1")

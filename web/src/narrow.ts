@@ -1,8 +1,8 @@
-// Phones and narrow windows: the view comes first, and the settings, the lecture and the plots open below it.
-// shell.css has the same limit.
+// Phones and narrow windows: the view comes first; settings, lecture and plots open below it. shell.css has the same
+// limit.
 const kNarrow = "(max-width: 48rem)";
 
-// Now, and whenever it changes.
+// Reports now, and after each change.
 export function whenNarrow(reported: (narrow: boolean) => void): void {
   const query = matchMedia(kNarrow);
   query.addEventListener("change", () => reported(query.matches));

@@ -1,4 +1,4 @@
-// Sends the newest of values that come faster than they are answered: one request under way, those in between dropped.
+// Limits a fast sequence of values to one request at a time: sends the newest and drops those in between.
 export class Newest<Value> {
   private waiting: { value: Value } | null = null;
   private sending = false;
@@ -6,7 +6,7 @@ export class Newest<Value> {
   constructor(
     private readonly send: (value: Value) => Promise<unknown>,
     private readonly failed: (reason: unknown) => void,
-    private readonly done: () => void = () => {}, // nothing is under way any more
+    private readonly done: () => void = () => {}, // called when no request is under way any more
   ) {}
 
   get busy(): boolean {

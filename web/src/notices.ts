@@ -1,19 +1,19 @@
-// What the page has to say: the state of the connection, what the program is busy with, refusals, notices and errors.
+// Messages of the page: state of the connection, activity of the program, refusals, notices and errors.
 import { button, element } from "./dom";
 import type { LiveSource } from "./live";
 import type { Page } from "./page";
 import type { Store } from "./store";
 
-const kShown = 4; // at a time
-const kInfoLasts = 6000; // [ms]
+const kShown = 4; // largest number at a time
+const kInfoLasts = 6000; // duration [ms]
 const kErrorLasts = 15000;
-const kGone = 6; // failures to connect after which the program is probably gone
+const kGone = 6; // failed reconnections after which the program has probably ended
 
 export function connectionText(failures: number): string {
   return failures < kGone
-    ? "Connection lost, trying again."
+    ? "Connection lost. Reconnecting."
     : "The program does not answer. It has probably ended: start aspic view again and open the address that it prints. " +
-        "This page keeps trying.";
+        "This page continues to try.";
 }
 
 export function showNotices(root: HTMLElement, store: Store, page: Page): void {
@@ -28,7 +28,7 @@ export function showNotices(root: HTMLElement, store: Store, page: Page): void {
     item.append(button({ icon: "close", label: "Dismiss" }, () => item.remove()));
     list.append(item);
     while (list.children.length > kShown) list.firstElementChild?.remove();
-    // From when it is drawn: a page that is slow, or hidden, shows it as long as any other.
+    // Starts the time when the notice is drawn, so that a slow or hidden page shows it equally long.
     requestAnimationFrame(() => setTimeout(() => item.remove(), kind === "info" ? kInfoLasts : kErrorLasts));
   };
   page.on("notice", ({ text, kind }) => say(text, kind));
@@ -47,7 +47,7 @@ export function showNotices(root: HTMLElement, store: Store, page: Page): void {
   showLasting();
 }
 
-// An error in the page's own scripts is shown, not swallowed.
+// Shows errors in the page's own scripts.
 export function showOwnErrors(page: Page): void {
   const tell = (text: string): void => page.notice(`Error in this page: ${text}`, "error");
   addEventListener("error", (event) => {

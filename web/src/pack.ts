@@ -1,5 +1,5 @@
-// Arrays and what belongs to them in one text of bytes, as apps/viewer/recording_code.h packs them: u32 length of the
-// JSON, the JSON, zeros up to a multiple of 4, the arrays that its "arrays" lists. All numbers little-endian.
+// Arrays and a JSON header in one text of bytes, as apps/viewer/recording_code.h packs them: u32 length of the JSON,
+// the JSON, zeros up to a multiple of 4, then the arrays listed in its "arrays". All numbers are little-endian.
 const kTypes = { u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, f32: Float32Array };
 export type Numbers = Uint8Array | Uint16Array | Uint32Array | Float32Array;
 

@@ -1,10 +1,10 @@
-// What the parts of the page share beside the messages: choices of the reader, keyboard shortcuts, and what a workspace
-// file keeps.
+// State that the parts of the page share beside the messages: choices of the reader, keyboard shortcuts, and the
+// contents of a workspace file.
 import { Emitter } from "./emitter";
 import type { PanelName, SideName, Vec3 } from "./protocol";
 
 export interface Highlight {
-  positions: Vec3[]; // one corner, or the four of a tet
+  positions: Vec3[]; // one corner, or the four corners of a tet
   text: string;
 }
 
@@ -15,24 +15,24 @@ export interface ChosenIteration {
 }
 
 interface Events {
-  chosen: ChosenIteration; // in the microscope
-  highlight: Highlight[]; // on the body of side a
-  theme: "light" | "dark"; // plots read their colors again
-  panel: Panel["name"]; // to be opened in the dock
+  chosen: ChosenIteration; // iteration in the microscope
+  highlight: Highlight[]; // highlights on the body of side a
+  theme: "light" | "dark"; // the theme has changed; plots read their colors again
+  panel: Panel["name"]; // the panel to open in the dock
   layout: void; // sizes have changed
   notice: { text: string; kind: "info" | "error" };
-  cleared: void; // notices about what was shown before go
+  cleared: void; // clears notices about the previous scene
 }
 
-// A part of the page that a workspace file keeps.
+// Part of the page that a workspace file keeps.
 export interface Keeper {
   save(): unknown;
-  restore(saved: unknown): void; // may be anything: what does not fit is ignored
+  restore(saved: unknown): void; // accepts any value and ignores what does not fit
 }
 
 export interface Shortcut {
-  key: string; // KeyboardEvent.key, "Shift+" before it where it needs that: " ", "s", "Shift+R", "1"
-  does: string; // for the list on the screen
+  key: string; // KeyboardEvent.key, with "Shift+" before it if needed: " ", "s", "Shift+R", "1"
+  does: string; // description in the list of shortcuts
   group: "Simulation" | "Camera" | "Display" | "Panels" | "File";
   run: () => void;
 }
@@ -60,6 +60,6 @@ export interface Panel {
   readonly name: PanelName | "certificate" | "capture";
   readonly title: string;
   readonly element: HTMLElement;
-  readonly isTall?: boolean; // takes more than the usual height
+  readonly isTall?: boolean; // needs more than the usual height
   show(visible: boolean): void; // draws only while it is visible
 }

@@ -1,10 +1,10 @@
-// Comparisons worth a click: what differs in side b, from the scene of side a.
+// Preset comparisons: overrides of side b relative to the scene of side a.
 import type { Scene, Setting, SettingValue } from "./protocol";
 
 export interface Preset {
   title: string;
-  label: string; // of side b
-  overrides: string[]; // as after --set
+  label: string; // label of side b
+  overrides: string[]; // in the syntax of --set
 }
 
 export function toml(value: SettingValue): string {
@@ -17,7 +17,7 @@ function find(scene: Scene, key: string): Setting | undefined {
   return scene.settings.find((setting) => setting.key === key || setting.key.endsWith(`.${key}`));
 }
 
-// The other one of two values: what side a does not have.
+// The value, of two, that side a does not have.
 function other(scene: Scene, key: string, first: string, second: string): string {
   return find(scene, key)?.value === first ? second : first;
 }
@@ -63,7 +63,7 @@ export function presets(scene: Scene): Preset[] {
   return all;
 }
 
-// One per line; empty lines do not count.
+// One override per line; empty lines are ignored.
 export function parseOverrides(text: string): string[] {
   return text
     .split("\n")
@@ -71,9 +71,9 @@ export function parseOverrides(text: string): string[] {
     .filter((line) => line !== "");
 }
 
-// Which line is not KEY=VALUE, in words; "" when all are.
+// Message about the first line that is not KEY=VALUE; "" if there is none.
 export function faultOfOverrides(overrides: string[]): string {
   const wrong = overrides.find((line) => !/^[\w.-]+\s*=\s*\S/.test(line));
   if (wrong !== undefined) return `'${wrong}' is not KEY=VALUE, such as material.young=1e6`;
-  return overrides.length === 0 ? "Nothing differs: choose a comparison, or write KEY=VALUE, one per line." : "";
+  return overrides.length === 0 ? "The sides are equal: choose a comparison, or enter KEY=VALUE, one per line." : "";
 }

@@ -1,4 +1,4 @@
-// The program that a page without a reader draws pictures for: apps/viewer/browser_pictures.h.
+// Connection to the program of a page without a reader, which draws pictures: apps/viewer/browser_pictures.h.
 import { messageOf } from "./dom";
 
 export type Tell = (path: "/count" | "/frame" | "/part", body: Blob | string) => Promise<Response>;

@@ -1,6 +1,6 @@
-// What the page and the program say to each other. Text frames are JSON: the page sends `Command`s and `Query`s, the
-// program `ServerMessage`s. Binary frames, from the program only, are geometry and pictures; all numbers little-endian.
-// docs/viewer_protocol.md describes their meaning. A number that is not finite travels as null.
+// Messages between the page and the program. Text frames are JSON: the page sends `Command`s and `Query`s, the program
+// `ServerMessage`s. Binary frames, from the program only, are geometry and pictures; all numbers are little-endian.
+// docs/viewer_protocol.md describes their meaning. A number that is not finite is null.
 
 import type { StepFields } from "./stepFields";
 
@@ -11,47 +11,47 @@ export type SettingValue = number | string | boolean | (number | string)[];
 
 // ---------------------------------------------------------------- page -> program
 
-// Changes something; only the page that steers may send it. Answered by `reply` or `refused` when it carries an id.
+// Changes the state; only the page that steers may send it. With an id, answered by `reply` or `refused`.
 export type Command = { id?: number } & (
   | { do: "play" }
   | { do: "pause" }
   | { do: "step" } // one time step
   | { do: "iterate" } // one iteration of the minimizer; after the last one the step is complete
   | { do: "reset" }
-  | { do: "rewind"; step: number } // to the end of a step that `timeline` still holds; 0 is the start
-  | { do: "speed"; value: number } // simulated seconds per second of wall time that play aims at
-  | { do: "set"; key: string; value: SettingValue | null; side?: SideName } // null: as the scene's file has it; both sides without `side`
-  // A scene or a mesh: a path on the program's machine, or the name of one of the files that come with the command.
+  | { do: "rewind"; step: number } // to the end of a step in `timeline`; 0 is the initial state
+  | { do: "speed"; value: number } // target of play: simulated seconds per second of wall time
+  | { do: "set"; key: string; value: SettingValue | null; side?: SideName } // null: value of the file; no side: both
+  // A scene or a mesh: a path on the program's machine, or the name of one of the files in this command.
   | { do: "load"; scene: string; overrides?: string[]; files?: UploadedFile[] }
   | { do: "lesson"; lesson: string }
   | { do: "grab"; side: SideName; triangle: number; weights: Vec3; target: Vec3 } // weights of the triangle's corners
   | { do: "move"; target: Vec3 }
   | { do: "release" }
-  | { do: "stiffness"; value: number } // of the mouse's spring [N/m]
-  | { do: "pin"; side: SideName; vertices: number[]; pinned: boolean } // vertices of the surface that is shown
-  // A rigid tip touches the body at that point along the inward normal; what is left out is chosen by the program.
+  | { do: "stiffness"; value: number } // stiffness of the mouse's spring [N/m]
+  | { do: "pin"; side: SideName; vertices: number[]; pinned: boolean } // vertices of the visible surface
+  // A rigid tip touches the body at that point along the inward normal. The program chooses omitted values.
   | ({ do: "touch"; side: SideName; triangle: number; weights: Vec3; stiffness?: number } & Partial<TipChoice>)
-  | { do: "press"; depth: number; shift?: Vec3 } // to so far along the tip's axis from where it touched [m]
-  | { do: "lift" } // the tip is taken away
+  | { do: "press"; depth: number; shift?: Vec3 } // indentation along the tip's axis since first contact [m]
+  | { do: "lift" } // removes the tip
   | { do: "bench"; markers?: number; noise?: number; seed?: number; same_mesh?: boolean } // sets the virtual bench up
-  | { do: "record"; depths?: number } // the tip's pose as load cases, in equal parts up to it
-  | ({ do: "poke_all"; sites: number; depths: number; depth: number } & Partial<TipChoice>) // all over the body
-  | { do: "forget"; case?: number } // a recorded case; all without it
-  | { do: "save_capture"; folder: string } // as a data set, a path on the program's machine
-  | { do: "fit" } // Young's modulus of every tet to the recorded cases, in the background
+  | { do: "record"; depths?: number } // records load cases up to the tip's pose, in equal steps
+  | ({ do: "poke_all"; sites: number; depths: number; depth: number } & Partial<TipChoice>) // pokes distributed over the body
+  | { do: "forget"; case?: number } // deletes a recorded case; without it all cases
+  | { do: "save_capture"; folder: string } // saves a data set; a path on the program's machine
+  | { do: "fit" } // fits Young's modulus of every tet to the recorded cases, in the background
   | { do: "stop_fit" }
-  | { do: "simulate_fit" } // side b has the fitted material
+  | { do: "simulate_fit" } // gives side b the fitted material
   | { do: "compare"; overrides: string[]; label: string } // opens side b: the scene of side a with these overrides
   | { do: "end_compare" }
-  | { do: "color"; field: string } // name in Scene.fields; "" for none
+  | { do: "color"; field: string } // name in Scene.fields; "": no field
   | { do: "surface"; which: "skin" | "cage" }
-  | { do: "replay"; recording: Recording } // resets, then repeats what the mouse did, and the settings
-  | { do: "take" } // this page wants to steer; any page may send it
+  | { do: "replay"; recording: Recording } // resets, then repeats the mouse's actions and the changes of settings
+  | { do: "take" } // requests to steer; any page may send it
 );
 
 export interface UploadedFile {
-  name: string; // relative, with "/" between folders
-  gzip: string; // in base64
+  name: string; // relative path with "/" between folders
+  gzip: string; // base64 of gzip
 }
 
 export interface TipChoice {
@@ -60,17 +60,17 @@ export interface TipChoice {
   radius: number; // [m]
 }
 
-// Asks; changes nothing; any page may send it. Always carries an id; answered by `reply` or `refused`.
+// Query: changes nothing; any page may send it. Always has an id; answered by `reply` or `refused`.
 export type Query =
-  | { ask: "vertex"; side: SideName; vertex: number } // of the surface that is shown
+  | { ask: "vertex"; side: SideName; vertex: number } // vertex of the visible surface
   | { ask: "tet"; side: SideName; triangle: number } // the tet behind a triangle of the surface
-  | { ask: "iteration"; side: SideName; step: number; iteration: number } // the landscape around it
+  | { ask: "iteration"; side: SideName; step: number; iteration: number } // landscape around the iteration
   | { ask: "worst"; side: SideName }
   | ({ ask: "function" } & FunctionQuestion)
-  | { ask: "mesh"; side: SideName; format: "obj" | "ply" | "vtu" | "msh" | "mesh" } // as deformed now
-  | { ask: "scene"; side: SideName } // what `aspic run` runs: complete, with the drags so far
+  | { ask: "mesh"; side: SideName; format: "obj" | "ply" | "vtu" | "msh" | "mesh" } // mesh as deformed now
+  | { ask: "scene"; side: SideName } // the complete scene for `aspic run`, including drags
   | { ask: "scene_files"; side: SideName } // the same without drags, for the command "load"
-  | { ask: "animation"; side: SideName; format: "usd" | "pc2" | "glb" } // of the steps that the timeline holds
+  | { ask: "animation"; side: SideName; format: "usd" | "pc2" | "glb" } // motion over the steps in the timeline
   | { ask: "gallery" } // scenes to choose from
   | { ask: "recording" };
 
@@ -78,8 +78,8 @@ export interface FunctionQuestion {
   name: string; // "rosenbrock", "two_bump", "quadratic", or a formula of x and y
   start: [number, number];
   settings: Record<string, SettingValue>; // keys of [solver]: "method", "definiteness", "line_search.shrink", ...
-  iteration: number; // whose curve along d is wanted
-  samples: number; // of the surface, per axis; at most 101
+  iteration: number; // iteration whose curve along d is returned
+  samples: number; // samples of the surface per axis; at most 101
 }
 
 // ---------------------------------------------------------------- program -> page
@@ -88,19 +88,19 @@ export type ServerMessage =
   | Hello
   | { kind: "role"; steers: boolean }
   | Scene
-  | { kind: "end_compare" } // side b is gone
-  | { kind: "steps"; side: SideName; from: number; steps: StepRow[] } // rows of steps from+1, ...; later ones are void
+  | { kind: "end_compare" } // side b is removed
+  | { kind: "steps"; side: SideName; from: number; steps: StepRow[] } // rows of steps from+1, ...; all later rows are invalid
   | Capture
-  | { kind: "pins"; side: SideName; vertices: number[] } // of the surface
+  | { kind: "pins"; side: SideName; vertices: number[] } // vertices of the surface
   | State
-  | { kind: "busy"; what: string } // "" when done
+  | { kind: "busy"; what: string } // "" when finished
   | { kind: "reply"; id: number; reply: unknown }
   | { kind: "refused"; id: number | null; why: string };
 
 export interface Hello {
   kind: "hello";
   protocol: 1;
-  version: string; // of Aspic
+  version: string; // version of Aspic
   steers: boolean;
   live: boolean; // false: a recorded run
   lessons: Lesson[];
@@ -110,61 +110,61 @@ export interface Lesson {
   id: string;
   pages: string; // "33-34"
   title: string;
-  claim: string; // what the lecture says there
-  look: string; // what to look at, two sentences
-  panel: PanelName; // to be opened
-  function?: FunctionQuestion; // for the functions panel
-  missing?: string; // why it cannot be shown
+  claim: string; // statement of the lecture
+  look: string; // what to look at, in two sentences
+  panel: PanelName; // panel to open
+  function?: FunctionQuestion; // question for the functions panel
+  missing?: string; // reason why it cannot be shown
 }
 export type PanelName = "energy" | "microscope" | "landscape" | "functions";
 
 export interface Scene {
   kind: "scene";
   side: SideName;
-  generation: number; // of the geometry: pictures carry the same
+  generation: number; // generation of the geometry; pictures carry the same number
   name: string;
-  label: string; // of the side in a comparison, else ""
+  label: string; // label of the side in a comparison, otherwise ""
   path: string;
   overrides: string[];
-  loaded_overrides: string[]; // before any setting was changed
+  loaded_overrides: string[]; // overrides before any change of a setting
   notes: string[];
   surface: "skin" | "cage";
-  has_skin: boolean; // a fine skin apart from the cage
+  has_skin: boolean; // whether a fine skin exists apart from the cage
   vertices: number;
   tets: number;
   bodies: string[];
-  body_tets: number[]; // the first tet of each body, by the user's numbers
-  lower: Vec3; // box around the start
+  body_tets: number[]; // first tet of each body, in the user's numbering
+  lower: Vec3; // bounding box of the initial state
   upper: Vec3;
-  up: Vec3; // against gravity
-  h: number; // [s]
-  implicit: boolean; // minimizes
-  solver: string; // methods in words
+  up: Vec3; // direction against gravity
+  h: number; // time step [s]
+  implicit: boolean; // whether the integrator minimizes
+  solver: string; // summary of the methods
   potentials: string[]; // names of the terms of V, as in StepRow.potential
   fields: Field[];
-  field: string; // shown now; "" for none
+  field: string; // field shown; "": none
   settings: Setting[];
-  stiffness: number; // of the mouse's spring [N/m]
+  stiffness: number; // stiffness of the mouse's spring [N/m]
 }
 
 export interface Field {
   name: string; // "von_mises"
   label: string; // "von Mises stress"
   unit: string; // "Pa"
-  diverging: boolean; // about `center`
+  diverging: boolean; // colors diverge from `center`
   center: number;
-  log: boolean; // looked at on a logarithmic scale, unless another is chosen
+  log: boolean; // default scale is logarithmic
 }
 
 export interface Setting {
-  key: string; // "material.young", as in a scene
+  key: string; // key in a scene: "material.young"
   label: string; // "E"
   group: string; // "Material", "Time", "World", "Solver", "Line search"
   unit: string;
   meaning: string;
   kind: "number" | "integer" | "choice" | "switch" | "vector" | "text";
   value: SettingValue;
-  min: number; // of the slider, not of what is allowed
+  min: number; // lower end of the slider; typed values may be smaller
   max: number;
   log: boolean;
   choices: string[];
@@ -172,27 +172,27 @@ export interface Setting {
 
 export interface StepRow extends StepFields {
   iterations: IterationRow[];
-  mouse_work: MaybeNumber; // in this step [J]; pin_work is without it and without probe_work
+  mouse_work: MaybeNumber; // work of the mouse in this step [J]; pin_work excludes it and probe_work
   probe_work: MaybeNumber;
-  reactions?: Record<string, MaybeNumber[]>; // of each pin: its force [N] and moment about the origin [N m], x y z
-  explanation: { cause: string; place: string; remedy: string } | null; // why it did not converge
+  reactions?: Record<string, MaybeNumber[]>; // per pin: force [N] and moment about the origin [N m], x y z
+  explanation: { cause: string; place: string; remedy: string } | null; // explanation of a failed convergence
 }
 
 export interface IterationRow {
-  value: MaybeNumber; // E before it
+  value: MaybeNumber; // E before the iteration
   gradient_norm: MaybeNumber;
   decrement: MaybeNumber;
   alpha: MaybeNumber; // 0: no step found
   projected_elements: number;
   linear_iterations: number;
   seconds: Record<"hessian" | "factorize" | "solve" | "line_search" | "gradient", number>;
-  trials: TrialRow[]; // empty in a recorded run without trace
+  trials: TrialRow[]; // empty in a recorded run without a trace
 }
 
 export interface TrialRow {
   alpha: number;
   value: MaybeNumber;
-  bound: MaybeNumber; // the largest value that the test accepts; null: any
+  bound: MaybeNumber; // largest value that the test accepts; null: any
   accepted: boolean;
 }
 
@@ -200,7 +200,7 @@ export interface State {
   kind: "state";
   playing: boolean;
   speed: number;
-  rate: number; // simulated seconds per second of wall time, measured; 0 when paused
+  rate: number; // measured speed: simulated seconds per second of wall time; 0 when paused
   replaying: boolean;
   a: SideState;
   b: SideState | null;
@@ -209,10 +209,10 @@ export interface State {
 export interface SideState {
   step: number;
   time: number;
-  iteration: number; // of the step under way, shown by the picture; -1 between steps
-  iterations?: IterationRow[]; // of that step, so far
-  timeline: { first: number; last: number }; // steps that rewind can reach; steps in between may be thinned out
-  status: string; // of the last step; "" at the start
+  iteration: number; // iteration of the step under way that the picture shows; -1 between steps
+  iterations?: IterationRow[]; // iterations of that step so far
+  timeline: { first: number; last: number }; // range of steps for rewind; steps inside may be thinned out
+  status: string; // status of the last step; "" in the initial state
   words: { cause: string; place: string; remedy: string } | null;
   grab: { point: Vec3; target: Vec3; force: Vec3 } | null; // force on the body [N]
   probe: ProbeState | null;
@@ -221,15 +221,15 @@ export interface SideState {
 // The virtual bench.
 export interface Capture {
   kind: "capture";
-  radius: number; // that the program would choose for a tip [m]
-  noise: number; // standard deviation, relative to the largest motion and to the force of each case
+  radius: number; // default radius of a tip [m]
+  noise: number; // standard deviation relative to the largest motion and to the force of each case
   seed: number;
-  words: string; // what has just happened
-  notes: string[]; // of the mesh of the fit
-  markers: { triangles: number[]; weights: number[] }; // on the surface of side a; 3 weights each
+  words: string; // message about the last action
+  notes: string[]; // notes on the mesh of the fit
+  markers: { triangles: number[]; weights: number[] }; // points on the surface of side a; 3 weights each
   cases: CaptureCase[];
-  tets: number; // of the mesh of the fit; 0: there is none yet
-  same_mesh: boolean; // it is that of the body: an inverse crime
+  tets: number; // tets in the mesh of the fit; 0: no mesh yet
+  same_mesh: boolean; // whether it is the mesh of the body (an inverse crime)
   fit: CaptureFit | null;
 }
 
@@ -238,49 +238,49 @@ export interface CaptureCase {
   group: string; // "poke 3"
   shape: TipChoice["shape"];
   radius: number;
-  center: Vec3; // of the tip in this case [m]
+  center: Vec3; // center of the tip in this case [m]
   axis: Vec3;
   depth: number; // [m]
-  force: Vec3; // as read, with its noise [N]
-  push: number; // its part along the axis
-  deviation: number; // of each part of the force [N]
+  force: Vec3; // measured force with noise [N]
+  push: number; // component of the force along the axis [N]
+  deviation: number; // standard deviation of each component of the force [N]
 }
 
 export interface CaptureFit {
   running: boolean;
-  stage: string; // what is being done; "" when nothing is
-  words: string; // how it ended
-  failure: string; // "" when it has not failed
-  // chi: root mean square of the residuals, each by its standard deviation; 1 is as good as the noise allows
+  stage: string; // current activity; "": none
+  words: string; // summary of the result
+  failure: string; // "" unless the fit has failed
+  // chi: root mean square of the residuals relative to their standard deviations; 1 is the noise level
   iterations: { index: number; misfit: MaybeNumber; roughness: MaybeNumber; weight: MaybeNumber; chi: MaybeNumber }[];
   residuals: number;
   error: MaybeNumber; // root mean square of log(fitted / true modulus) over the volume
   softest: MaybeNumber; // [Pa]
   stiffest: MaybeNumber;
-  has_material: boolean; // it can be simulated
+  has_material: boolean; // whether side b can simulate it
   warnings: string[];
-  next: { site: Vec3; words: string } | null; // where the next poke would tell most
+  next: { site: Vec3; words: string } | null; // most informative site of the next poke
 }
 
 // The tip that touches the body.
 export interface ProbeState extends TipChoice {
-  stiffness: number; // of the layer between tip and body [Pa/m]
-  begun: Vec3; // its center when it touched [m]: of the sphere, or of the flat end
-  center: Vec3; // now
-  axis: Vec3; // out of the tip, into the body
-  depth: number; // now [m]
-  wanted: number; // by the end of the next step [m]
-  force: Vec3; // of the tip on the body [N]
-  torque: Vec3; // about its center [N m]
-  points: number; // of the surface that it touches
+  stiffness: number; // stiffness of the contact layer [Pa/m]
+  begun: Vec3; // center at first contact [m]: of the sphere, or of the flat end
+  center: Vec3; // present center [m]
+  axis: Vec3; // axis from the tip into the body
+  depth: number; // present depth [m]
+  wanted: number; // depth at the end of the next step [m]
+  force: Vec3; // force of the tip on the body [N]
+  torque: Vec3; // torque about its center [N m]
+  points: number; // number of surface points in contact
 }
 
-// What was done, by step: enough to repeat a session to the same bits.
+// Actions by step; enough to repeat a session bit by bit.
 export interface Recording {
   scene: string;
   overrides: string[];
   compare: { overrides: string[]; label: string } | null;
-  // Carried out before that step of side a and, in a comparison, when side b had taken `b` steps.
+  // Executed before that step of side a and, in a comparison, when side b had completed `b` steps.
   events: { step: number; b?: number; command: Command }[];
   steps: number;
 }
@@ -288,19 +288,19 @@ export interface Recording {
 // ---------------------------------------------------------------- replies
 
 export interface VertexReply {
-  vertex: number; // by the user's numbers; -1 for a point of a fine skin
+  vertex: number; // in the user's numbering; -1 for a point of a fine skin
   first_entry: number; // q[first_entry .. first_entry + 2]
   rest: Vec3;
   position: Vec3; // [m]
   velocity: Vec3; // [m/s]
   mass: number; // [kg]
   pinned: boolean;
-  values: Record<string, MaybeNumber>; // of every field there
+  values: Record<string, MaybeNumber>; // value of every field at the vertex
 }
 
 export interface TetReply {
-  tet: number; // by the user's numbers
-  corners: [number, number, number, number]; // the user's vertices
+  tet: number; // in the user's numbering
+  corners: [number, number, number, number]; // vertices in the user's numbering
   positions: [Vec3, Vec3, Vec3, Vec3];
   F: [Vec3, Vec3, Vec3]; // rows
   J: MaybeNumber;
@@ -309,7 +309,7 @@ export interface TetReply {
   von_mises: MaybeNumber;
   energy_density: MaybeNumber; // [J/m^3]
   energy: MaybeNumber; // [J]
-  volume: number; // at rest [m^3]
+  volume: number; // rest volume [m^3]
   quality: number; // 1 for a regular tet
   young: MaybeNumber;
   poisson: MaybeNumber;
@@ -324,8 +324,8 @@ export interface IterationReply {
   trials: TrialRow[];
   curve: { alpha: number[]; value: MaybeNumber[]; model: MaybeNumber[]; textbook: MaybeNumber[]; slide: MaybeNumber[] };
   slice: { columns: number; rows: number; s: number[]; t: number[]; value: MaybeNumber[]; model: MaybeNumber[] };
-  path: { s: number; t: number; value: MaybeNumber }[]; // the step's iterates, projected onto the plane; at most 1000
-  text: string; // how the step ended, in words
+  path: { s: number; t: number; value: MaybeNumber }[]; // iterates of the step, projected onto the plane; at most 1000
+  text: string; // summary of the step's result
 }
 
 export interface WorstReply {
@@ -339,19 +339,19 @@ export interface FunctionReply {
   remarks: string;
   minimizer: [number, number] | null;
   samples: number;
-  value: MaybeNumber[]; // samples x samples, x fastest
+  value: MaybeNumber[]; // samples x samples values, x fastest
   status: string;
-  text: string; // the status in words
+  text: string; // message about the status
   path: { x: number; y: number; value: MaybeNumber }[]; // iterates
   iterations: IterationRow[];
-  // The quadratic model that iteration `iteration` minimized, about its iterate.
+  // Quadratic model that iteration `iteration` minimized, about its iterate.
   model: { center: [number, number]; value: number; gradient: [number, number]; xx: number; xy: number; yy: number };
   curve: IterationReply["curve"];
   trials: TrialRow[];
 }
 
 export interface TextReply {
-  name: string; // a file name
+  name: string; // file name
   text: string;
 }
 
@@ -361,7 +361,7 @@ export interface FileReply {
   note?: string;
 }
 
-// A scene that needs other files is a ZIP archive.
+// A scene with additional files is a ZIP archive.
 export type SceneReply = (TextReply | FileReply) & { notes?: string[] };
 
 export interface SceneFilesReply {
@@ -387,11 +387,11 @@ export interface Geometry {
   rest: Float32Array; // 3 n
   triangles: Uint32Array; // 3 m
   edges: Uint32Array; // 2 e
-  tet: Uint32Array; // m: the tet behind each triangle, by the user's numbers
-  vertex: Uint32Array; // n: the user's number of each vertex; 0xffffffff for a point of a fine skin
+  tet: Uint32Array; // m: tet of each triangle, in the user's numbering
+  vertex: Uint32Array; // n: user's number of each vertex; 0xffffffff for a point of a fine skin
 }
 
-// Header of 48 bytes: u32 kind = 2, u32 side, u32 generation, u32 vertices n, u32 step, i32 iteration (-1: of a whole
+// Header of 48 bytes: u32 kind = 2, u32 side, u32 generation, u32 vertices n, u32 step, i32 iteration (-1: complete
 // step), f64 time, u32 has values, f32 smallest and f32 largest value, 4 reserved.
 export interface Picture {
   side: SideName;
@@ -400,9 +400,9 @@ export interface Picture {
   iteration: number;
   time: number;
   positions: Float32Array; // 3 n
-  normals: Int8Array; // 4 n: unit vectors times 127, the fourth is 0
-  values: Float32Array | null; // n, of Scene.field
-  min: number; // over the surface; equal for a constant
+  normals: Int8Array; // 4 n: unit vectors times 127; the fourth number is 0
+  values: Float32Array | null; // n values of Scene.field
+  min: number; // smallest value on the surface; equal to max for a constant field
   max: number;
 }
 

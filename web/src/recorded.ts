@@ -1,9 +1,9 @@
-// A recorded run inside the page as a source of messages: it plays, pauses and rewinds; nothing in it can be changed.
+// Source of messages from a recorded run inside the page: it plays, pauses and rewinds, but cannot be changed.
 import type { Command, Picture, Query, State, TextReply, Vec3, VertexReply } from "./protocol";
 import { carried, normalsOf, type RecordedSurface, type Recording, unpack } from "./recording";
 import type { Incoming, Source } from "./source";
 
-// The clock, which calls back once per picture of the screen; tests have their own.
+// Clock that calls back once per frame of the screen. Tests use their own.
 export interface Pulse {
   now(): number; // [ms]
   next(callback: () => void): void;
@@ -11,9 +11,9 @@ export interface Pulse {
 const kScreen: Pulse = { now: () => performance.now(), next: (callback) => requestAnimationFrame(callback) };
 
 const kUnchangeable = "a recorded run cannot be changed; aspic view SCENE runs it live";
-const kNotRecorded = "a recorded run does not hold this; aspic view SCENE computes it live";
+const kNotRecorded = "a recorded run does not contain this; aspic view SCENE computes it";
 
-// The page's recording; null: the page belongs to a program.
+// Text of the page's recording; null if the page belongs to a program.
 export function findRecording(): string | null {
   const element = document.getElementById("recording");
   return element ? (JSON.parse(element.textContent ?? "") as string) : null;
@@ -23,15 +23,15 @@ export class RecordedSource implements Source {
   readonly live = false;
   private receive: (incoming: Incoming) => void = () => {};
   private recording: Recording | null = null;
-  private shown = 0; // of the surfaces
+  private shown = 0; // index of the surface shown
   private field = "";
   private frame = 0;
-  private time = 0; // of the playback, between frames [s]
+  private time = 0; // time of the playback, between frames [s]
   private playing = false;
   private speed = 1;
   private lastPulse = 0; // [ms]
-  private drawing = false; // the picture that was sent last
-  private waiting = false; // a newer one
+  private drawing = false; // the last picture sent is not drawn yet
+  private waiting = false; // a newer picture is waiting
 
   constructor(
     private readonly text: string,
@@ -68,7 +68,7 @@ export class RecordedSource implements Source {
       case "rewind":
         return this.show(recording.nearestFrame(command.step));
       case "speed":
-        if (!(command.value > 0 && command.value < Infinity)) throw new Error("speed: a number above 0 is expected");
+        if (!(command.value > 0 && command.value < Infinity)) throw new Error("speed: expected a number above 0");
         this.speed = command.value;
         return this.tellState();
       case "color":
@@ -91,7 +91,7 @@ export class RecordedSource implements Source {
       return reply as Reply;
     }
     if (query.ask === "vertex") return this.vertex(query.vertex) as Reply;
-    if (query.ask === "tet") throw new Error("a recorded run holds the surface only; aspic view SCENE shows tets live");
+    if (query.ask === "tet") throw new Error("a recorded run contains only the surface; aspic view SCENE shows tets");
     if (query.ask === "mesh") throw new Error("the meshes of a run are the files in its folder frames/");
     throw new Error(kNotRecorded);
   }
@@ -101,18 +101,18 @@ export class RecordedSource implements Source {
     if (this.waiting) this.sendPicture();
   }
 
-  // Of the whole run, for pictures of it.
+  // Steps and times of all frames.
   get frames(): { step: number[]; time: number[] } {
     return this.opened().head.frames;
   }
 
-  // That holds every position of every frame.
+  // Bounding box of all positions of all frames.
   get box(): { lower: Vec3; upper: Vec3 } {
     const { lower, size } = this.opened().head;
     return { lower, upper: [lower[0] + size[0], lower[1] + size[1], lower[2] + size[2]] };
   }
 
-  // The smallest and the largest value of a field on the surface in the whole run.
+  // Smallest and largest value of a field on the surface during the run.
   range(field: string): [number, number] {
     const recording = this.opened();
     const range: [number, number] = [Infinity, -Infinity];
@@ -127,7 +127,7 @@ export class RecordedSource implements Source {
   }
 
   private opened(): Recording {
-    if (!this.recording) throw new Error("the recording is not read yet");
+    if (!this.recording) throw new Error("the recording is still being read");
     return this.recording;
   }
 
@@ -289,7 +289,7 @@ export class RecordedSource implements Source {
     };
   }
 
-  // The mean since the frame before: what backward Euler calls the velocity where every step has a frame.
+  // Mean velocity since the previous frame; equals that of backward Euler if every step has a frame.
   private velocity(at: (x: Float32Array) => Vec3): Vec3 {
     if (this.frame === 0) return [0, 0, 0];
     const recording = this.opened();

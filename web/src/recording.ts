@@ -1,21 +1,21 @@
-// What a recorded run holds: apps/viewer/recording.h writes it. The text of the page's element "recording" is base64 of
-// gzip of a pack of arrays.
+// Reads a recorded run, as apps/viewer/recording.h writes it. The page's element "recording" contains base64 of gzip of
+// a pack of arrays.
 import { Pack } from "./pack";
 import type { Geometry, Hello, Scene, StepRow, Vec3 } from "./protocol";
 
 export interface RecordingHead {
   format: 1;
   hello: Hello;
-  scenes: Scene[]; // one for each surface that can be shown; the first is shown first
-  toml: string; // the whole scene
+  scenes: Scene[]; // one scene per surface; the first is shown initially
+  toml: string; // the complete scene
   steps: StepRow[];
   frames: { step: number[]; time: number[] };
-  lower: Vec3; // box of all positions of all frames
+  lower: Vec3; // bounding box of all positions of all frames
   size: Vec3;
 }
 
-// A surface over the recorded points: each of its vertices is one of them, or a weighted mean of four. Values belong to
-// places, which vertices share.
+// Surface over the recorded points: each vertex is one of them, or a weighted mean of four. Values belong to recorded
+// points, which vertices share.
 export interface RecordedSurface {
   scene: Scene;
   geometry: Geometry;
@@ -30,17 +30,17 @@ export async function unpack(text: string): Promise<Recording> {
   return new Recording(await new Response(stream).arrayBuffer());
 }
 
-// Values of one moment lie between 0 and 254, of a range that belongs to it; 255 is no number.
+// Code of a value that is not a number. Other codes are 0 to 254 within the range of their frame.
 const kNoNumber = 255;
 
 export class Recording extends Pack<RecordingHead> {
   readonly surfaces: RecordedSurface[];
   readonly pointCount: number;
-  private readonly codes: Uint16Array; // 3 per point and frame
+  private readonly codes: Uint16Array; // 3 codes per point and frame
 
   constructor(bytes: ArrayBuffer) {
     super(bytes);
-    if (this.head.format !== 1) throw new Error(`the recording has format ${String(this.head.format)}; this page reads 1`);
+    if (this.head.format !== 1) throw new Error(`the recording has format ${String(this.head.format)}; this page reads format 1`);
     this.pointCount = this.floats("point.rest").length / 3;
     this.codes = unpredicted(this.array("positions") as Uint8Array, 3 * this.pointCount);
     for (const [name, stored] of this.arrays) if (name.startsWith("field.") && stored instanceof Uint8Array) this.add(stored);
@@ -59,7 +59,7 @@ export class Recording extends Pack<RecordingHead> {
     return nearest;
   }
 
-  // 3 per point [m].
+  // Positions, 3 coordinates per point [m].
   positions(frame: number): Float32Array {
     const { lower, size } = this.head;
     const n = 3 * this.pointCount;
@@ -71,7 +71,7 @@ export class Recording extends Pack<RecordingHead> {
     return x;
   }
 
-  // Of a field at the vertices of a surface; NaN where there is none.
+  // Values of a field at the vertices of a surface; NaN where there is none.
   values(field: string, frame: number, surface: RecordedSurface, positions: Float32Array): Float32Array {
     if (field === "displacement") return distances(positions, surface.geometry.rest);
     const stored = this.array(`field.${field}`);
@@ -84,7 +84,7 @@ export class Recording extends Pack<RecordingHead> {
     });
   }
 
-  // Each frame is stored as its difference to the one before, modulo 256.
+  // Adds a frame, stored as its difference to the previous one modulo 256.
   private add(values: Uint8Array): void {
     const n = values.length / this.frameCount;
     for (let i = n; i < values.length; ++i) values[i] += values[i - n];
@@ -112,8 +112,8 @@ export class Recording extends Pack<RecordingHead> {
   }
 }
 
-// The positions' codes. Stored is, frame by frame, by how much each differs from the straight line through the two
-// frames before: the low bytes of all, then the high bytes; small differences of either sign are small numbers.
+// Codes of the positions. Each frame is stored as the difference to the linear extrapolation of the two previous
+// frames: the low bytes of all, then the high bytes. Small differences of either sign are small numbers.
 function unpredicted(bytes: Uint8Array, n: number): Uint16Array {
   const codes = new Uint16Array(bytes.length / 2);
   for (let frame = 0; frame * n < codes.length; ++frame) {
@@ -136,7 +136,7 @@ function distances(a: Float32Array, b: Float32Array): Float32Array {
   return result;
 }
 
-// Every edge of the triangles once.
+// Edges of the triangles, each once.
 export function edgesOf(triangles: Uint32Array): Uint32Array {
   const seen = new Set<number>();
   const edges: number[] = [];
@@ -152,7 +152,8 @@ export function edgesOf(triangles: Uint32Array): Uint32Array {
   return Uint32Array.from(edges);
 }
 
-// The positions of the surface's vertices. Here and below no array is made per vertex: this runs for every picture.
+// Positions of the surface's vertices. This and the functions below run for every picture and allocate no array per
+// vertex.
 export function carried(surface: RecordedSurface, points: Float32Array): Float32Array {
   const { corners, weights, geometry } = surface;
   const positions = new Float32Array(geometry.rest.length);
@@ -168,7 +169,7 @@ export function carried(surface: RecordedSurface, points: Float32Array): Float32
   return positions;
 }
 
-// Unit normals times 127, four numbers per vertex, weighted by the triangles' areas.
+// Unit normals times 127, four numbers per vertex, weighted by the areas of the triangles.
 export function normalsOf(x: Float32Array, triangles: Uint32Array): Int8Array {
   const sums = new Float64Array(x.length);
   for (let t = 0; t < triangles.length; t += 3) {

@@ -1,5 +1,5 @@
-// Pictures of a recorded run for a program: frame after frame is drawn and sent to the server of this page, which makes
-// files of them (apps/viewer/render.h). What is wanted stands in the address.
+// Pictures of a recorded run for a program: draws frame after frame and sends each to the server of this page, which
+// writes the files (apps/viewer/render.h). The page's address contains the request.
 import { Vector3 } from "three";
 import { element } from "./dom";
 import { Page } from "./page";
@@ -14,15 +14,15 @@ import { View } from "./view/view";
 export interface RenderRequest {
   width: number;
   height: number;
-  view: ViewName | [number, number, number]; // or the direction that the camera looks from
-  color: string; // a field; "" for none
+  view: ViewName | [number, number, number]; // canonical view, or direction of the camera
+  color: string; // field; "": none
   wires: boolean;
   dark: boolean;
-  step: number | null; // one picture, of the frame nearest to it
-  every: number; // simulated time from picture to picture [s]; 0: a picture of every frame
+  step: number | null; // draws one picture, of the nearest frame
+  every: number; // simulated time between pictures [s]; 0: a picture of every frame
 }
 
-// Throws for a view that there is not.
+// Throws if the view is unknown.
 export function renderRequest(query: URLSearchParams): RenderRequest {
   const number = (name: string, fallback: number): number => Number(query.get(name) ?? fallback);
   const view = query.get("view") ?? "isometric";
@@ -45,7 +45,7 @@ function named(view: string): ViewName {
   return found;
 }
 
-// The steps to be shown, one per picture: at every multiple of `every` the last frame that is not later.
+// Steps to show, one per picture: the last frame at or before each multiple of `every`.
 export function stepsToShow(frames: { step: number[]; time: number[] }, request: Pick<RenderRequest, "step" | "every">): number[] {
   const { step, time } = frames;
   if (request.step !== null) return [request.step];
@@ -70,7 +70,7 @@ function aim(rig: CameraRig, request: RenderRequest, source: RecordedSource, up:
   rig.center(source.box.lower, source.box.upper);
 }
 
-// Until the store has what the source sends in answer to a request, which it does at once.
+// Resolves when the store has the initial messages of the source.
 function started(store: Store): Promise<void> {
   return new Promise((resolve, reject) => {
     store.on("picture", () => resolve());
@@ -79,7 +79,7 @@ function started(store: Store): Promise<void> {
   });
 }
 
-// In a video the same color stands for the same value throughout.
+// In a video a color has the same value throughout.
 async function color(request: RenderRequest, source: RecordedSource, display: Display, fields: Field[]): Promise<void> {
   const field = fields.find(({ name }) => name === request.color);
   if (!field) throw new Error(`--color: the run has no field '${request.color}'; choose one of ${fields.map(({ name }) => name).join(", ")}`);
@@ -103,14 +103,14 @@ async function draw(request: RenderRequest, source: RecordedSource, tell: Tell):
   view.renderSize(request.width, request.height);
   const scene = store.side("a")?.scene;
   if (!scene) throw new Error("the recording has no scene");
-  if (request.step !== null) await source.request({ do: "rewind", step: request.step }); // whose range colors it
+  if (request.step !== null) await source.request({ do: "rewind", step: request.step }); // the range of that frame colors it
   view.drawNow();
   if (request.color !== "") await color(request, source, display, scene.fields);
   aim(display.camera("a"), request, source, scene.up);
   const steps = stepsToShow(source.frames, request);
   await tell("/count", String(steps.length));
   for (const step of steps) {
-    view.drawNow(); // the source waits until the picture before is drawn
+    view.drawNow(); // the source waits until the previous picture is drawn
     await source.request({ do: "rewind", step });
     await tell("/frame", await view.screenshot());
   }

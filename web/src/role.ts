@@ -1,9 +1,9 @@
-// One page steers, the others watch; any of them may take the steering.
+// One page steers, the others watch. Any page may request to steer.
 import { button, element } from "./dom";
 import type { Store } from "./store";
 
 export function makeRole(store: Store): HTMLElement {
-  const steer = button({ text: "Steer", title: "This page takes the steering from the other one" }, () =>
+  const steer = button({ text: "Steer", title: "Steer from this page instead of the other one" }, () =>
     store.source.send({ do: "take" }),
   );
   const role = element("div", { class: "group role", hidden: true }, element("strong", {}, "Watching"), steer);

@@ -1,4 +1,4 @@
-// Keys anywhere in the page, and the list of them on the screen.
+// Keyboard shortcuts of the page, and their list on the screen.
 import { button, element, openDialog } from "./dom";
 import type { ButtonOptions } from "./dom";
 import type { Page, Shortcut } from "./page";
@@ -8,8 +8,8 @@ export function keyName(key: string): string {
   return /^[a-z]$/.test(key) ? key.toUpperCase() : key.replace("Arrow", "");
 }
 
-// What a key press is called in the registry. Shift is part of the name of letters and of keys without a character:
-// other characters change with it.
+// Name of a key press in the registry. It includes Shift for letters and for keys without a character; other characters
+// already depend on it.
 export function pressedKey(event: Pick<KeyboardEvent, "key" | "shiftKey">): string {
   const { key } = event;
   if (/^[a-z]$/i.test(key)) return event.shiftKey ? `Shift+${key.toUpperCase()}` : key.toLowerCase();
@@ -39,16 +39,16 @@ function press(page: Page, event: KeyboardEvent): void {
   shortcut.run();
 }
 
-// On the way down: lil-gui's rows keep keys to themselves, and a slider that has the focus needs none of these.
+// Listens during capture: lil-gui's rows stop the propagation of keys, and a focused slider needs none of these.
 export function listenToKeys(page: Page): void {
   addEventListener("keydown", (event) => press(page, event), { capture: true });
 }
 
-// A shortcut with its button, whose tooltip shows the key.
+// A shortcut with a button, whose tooltip shows the key.
 export function shortcutButton(page: Page, shortcut: Shortcut, look: ButtonOptions): HTMLButtonElement {
   page.shortcut(shortcut);
   const title = `${shortcut.does} (${keyName(shortcut.key)})`;
-  // A disabled button keeps its shortcut from doing what it would not.
+  // The shortcut of a disabled button has no effect.
   const made = button({ ...look, title }, shortcut.run);
   page.shortcuts.set(shortcut.key, { ...shortcut, run: () => made.disabled || shortcut.run() });
   made.setAttribute("aria-keyshortcuts", keyName(shortcut.key));

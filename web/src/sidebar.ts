@@ -1,12 +1,12 @@
-// The settings' area: its width, and the key that hides it.
+// Area of the settings: its width, and the key that hides it.
 import { makeDivider } from "./divider";
 import { element } from "./dom";
 import { whenNarrow } from "./narrow";
 import type { Page } from "./page";
 import { shortcutButton } from "./shortcuts";
 
-const kNarrowest = 160; // [px]
-const kShare = 0.5; // of the window, at most
+const kNarrowest = 160; // smallest width [px]
+const kShare = 0.5; // largest part of the window's width
 
 export class Sidebar {
   readonly body = element("div", { class: "settings" });

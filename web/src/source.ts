@@ -1,5 +1,5 @@
-// Where messages come from: a program that simulates (live.ts) or a recorded run inside the page (recorded.ts). Panels
-// do not know which.
+// Source of messages: a running program (live.ts) or a recorded run inside the page (recorded.ts). Panels do not depend
+// on which.
 import type { Command, Geometry, Picture, Query, ServerMessage } from "./protocol";
 
 export type Incoming = { message: ServerMessage } | { geometry: Geometry } | { picture: Picture } | { connected: boolean };
@@ -7,8 +7,8 @@ export type Incoming = { message: ServerMessage } | { geometry: Geometry } | { p
 export interface Source {
   readonly live: boolean;
   start(receive: (incoming: Incoming) => void): void;
-  send(command: Command): void; // what the source cannot do is answered by a `refused`
-  request(command: Command): Promise<unknown>; // the same; resolves when it is done, rejects with the reason
+  send(command: Command): void; // answered by `refused` if the source cannot execute it
+  request(command: Command): Promise<unknown>; // resolves on completion, rejects with the reason
   ask<Reply>(query: Query): Promise<Reply>; // rejects with the reason
-  ready(): void; // the last picture is drawn; the next may come
+  ready(): void; // call after drawing the last picture; the next may come
 }

@@ -1,4 +1,5 @@
-// What a browser remembers between visits. A browser that refuses to, as in private windows, forgets; nothing else breaks.
+// Values that the browser keeps between visits. Where storage is refused, as in private windows, they are lost without
+// an error.
 export function recall(key: string): string | null {
   try {
     return localStorage.getItem(`aspic.${key}`);

@@ -1,23 +1,23 @@
-// What the page knows: the last message of each kind. Panels read it and listen to it.
+// State of the page: the last message of each kind. Panels read it and subscribe to changes.
 import { Emitter } from "./emitter";
 import type { Capture, Geometry, Hello, Picture, Scene, SideName, State, StepRow } from "./protocol";
 import type { Incoming, Source } from "./source";
 
-const kMostRows = 20_000; // that the program, too, remembers
-const kRowsTooMany = 1000; // before the first ones are forgotten: not at every step
+const kMostRows = 20_000; // same limit as in the program
+const kRowsTooMany = 1000; // excess before the first rows are dropped, so that this does not happen at every step
 
 export interface Side {
   scene: Scene;
   geometry: Geometry | null;
   picture: Picture | null;
-  steps: StepRow[]; // of consecutive steps, from 1 unless the program has forgotten the first ones
+  steps: StepRow[]; // consecutive steps, from 1 unless the first were dropped
   pins: number[];
 }
 
 interface Events {
   hello: Hello;
-  role: boolean; // may steer
-  scene: SideName; // a side is new, or has new settings
+  role: boolean; // whether the page may steer
+  scene: SideName; // a side has been added, or its settings have changed
   gone: SideName;
   geometry: SideName;
   picture: SideName;
@@ -62,7 +62,7 @@ export class Store extends Emitter<Events> {
     switch (message.kind) {
       case "hello":
         this.hello = message;
-        this.endCompare(); // a side b that is still there follows
+        this.endCompare(); // a side b that still exists follows
         this.emit("hello", message);
         this.steers = message.steers;
         return this.emit("role", message.steers);
@@ -100,7 +100,7 @@ export class Store extends Emitter<Events> {
       case "refused":
         return this.emit("refused", message.why);
       case "reply":
-        return; // the source hands replies to who asked
+        return; // the source passes replies to their callers
     }
   }
 

@@ -1,9 +1,9 @@
-// Light or dark, and the size of the letters: the reader's choice, else the system's.
+// Light or dark, and font size: the reader's choice, otherwise the system's.
 import type { Page } from "./page";
 import { recall, remember } from "./storage";
 
 export type ThemeName = "light" | "dark";
-const kSmallest = 10; // [px]
+const kSmallest = 10; // smallest font size [px]
 const kNormal = 14;
 const kLargest = 28;
 

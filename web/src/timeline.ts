@@ -1,4 +1,4 @@
-// The steps that the program still holds, as a slider: dragging it rewinds.
+// Slider over the steps that the program still holds. Dragging it rewinds.
 import { element, messageOf } from "./dom";
 import { Newest } from "./newest";
 import type { Page } from "./page";
@@ -7,7 +7,7 @@ import type { Store } from "./store";
 
 export function placeText(state: State): string {
   const { step, time, iteration } = state.a;
-  // The step under way is the next one, as the other panels and the picture count it.
+  // The step under way has the next number, as in the other panels and the picture.
   const place = iteration < 0 ? `step ${step}` : `step ${step + 1}, iteration ${iteration}`;
   return `${place}, ${time.toFixed(3)} s`;
 }
@@ -15,8 +15,8 @@ export function placeText(state: State): string {
 export function makeTimeline(store: Store, page: Page): HTMLElement {
   const slider = element("input", {
     type: "range",
-    "aria-label": "Timeline: rewinds to a step",
-    title: "Rewinds to a step (Left and Right while it has the focus)",
+    "aria-label": "Timeline: rewind to a step",
+    title: "Rewind to a step (Left and Right while it has the focus)",
     "data-steers": store.source.live,
     step: "1",
   });

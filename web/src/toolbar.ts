@@ -1,4 +1,4 @@
-// What is always at hand: the simulation's time, and the doors to everything else.
+// Toolbar: time controls, and buttons that open everything else.
 import { button, element, icon, messageOf } from "./dom";
 import { statusName } from "./names";
 import type { Page } from "./page";
@@ -28,7 +28,7 @@ function makeTransport(store: Store, page: Page): HTMLElement {
   const { source } = store;
   const group = "Simulation";
   const steers = source.live;
-  let wanted: boolean | null = null; // while the program has not answered
+  let wanted: boolean | null = null; // requested value until the program answers
   const toggle = (): void => {
     wanted = !(wanted ?? store.state?.playing ?? false);
     source
@@ -66,7 +66,7 @@ function makeTransport(store: Store, page: Page): HTMLElement {
   return element("div", { class: "group" }, reset, play, step, iterate, makeSpeed(store));
 }
 
-// Where nobody paused: an explicit scheme that blew up, for example.
+// Explains a stop that nobody requested, such as an explicit scheme that blew up.
 function tellWhyItStopped(state: State, page: Page): void {
   const words = state.a.words ?? state.b?.words;
   if (!words) return;
@@ -86,7 +86,7 @@ function makeIterate(store: Store, page: Page): HTMLElement {
 function makeSpeed(store: Store): HTMLElement {
   const select = element("select", {
     "aria-label": "Speed",
-    title: "Simulated seconds per second that playing aims at",
+    title: "Target speed: simulated seconds per second",
     "data-steers": store.source.live,
   });
   const offer = (speed: number): void => {
@@ -102,9 +102,9 @@ function makeSpeed(store: Store): HTMLElement {
   return select;
 }
 
-// How the last step ended, in a word, and the rest of it where the mouse or the focus asks.
+// Status of the last step in a word, with its explanation as a tooltip.
 function makeStatus(store: Store): HTMLElement {
-  const rate = element("span", { class: "rate faint", title: "Simulated seconds per second of wall time, measured" });
+  const rate = element("span", { class: "rate faint", title: "Measured speed: simulated seconds per second of wall time" });
   const chips = { a: makeChip(), b: makeChip() };
   store.on("state", (state) => {
     rate.textContent = state.rate > 0 ? `${Number(state.rate.toPrecision(2))}x real time` : "";
@@ -118,7 +118,7 @@ function makeChip(): HTMLButtonElement {
   return element("button", { type: "button", class: "chip", hidden: true });
 }
 
-// Whether the step that is shown did not converge.
+// Whether the displayed step did not converge.
 function failed(store: Store, name: SideName): boolean {
   const rows = store.side(name)?.steps ?? [];
   const row = rows[(store.state?.[name]?.step ?? 0) - (rows[0]?.step ?? 1)];

@@ -1,4 +1,4 @@
-// The files of a ZIP archive, as the program writes them: stored or deflated, without encryption.
+// Reads ZIP archives of the program: files stored or deflated, without encryption.
 export interface ZipFile {
   name: string;
   bytes: Uint8Array<ArrayBuffer>;
@@ -11,9 +11,9 @@ const kEndSize = 22;
 const kLongestComment = 0xffff;
 const kMostFiles = 1000;
 
-const damaged = (): Error => new Error("the ZIP archive is damaged, or of a kind that is not read here");
+const damaged = (): Error => new Error("the ZIP archive is damaged or of an unsupported kind");
 
-// `most`: bytes of all files together, so that a small archive cannot fill the memory.
+// `most`: limit of bytes of all files together, so that a small archive cannot exhaust the memory.
 export async function unzip(archive: ArrayBuffer, most: number): Promise<ZipFile[]> {
   const view = new DataView(archive);
   const files: ZipFile[] = [];
@@ -21,7 +21,7 @@ export async function unzip(archive: ArrayBuffer, most: number): Promise<ZipFile
   try {
     const end = endOf(view);
     const count = view.getUint16(end + 10, true);
-    if (count > kMostFiles) throw new Error(`the ZIP archive holds ${count} files; at most ${kMostFiles} are read`);
+    if (count > kMostFiles) throw new Error(`the ZIP archive contains ${count} files; the limit is ${kMostFiles}`);
     let at = view.getUint32(end + 16, true);
     for (let i = 0; i < count; ++i) {
       if (view.getUint32(at, true) !== kEntry) throw damaged();
@@ -69,7 +69,7 @@ async function contentOf(view: DataView, entry: number, most: number): Promise<U
 
 function within(parts: Uint8Array[], most: number): Uint8Array<ArrayBuffer> {
   const size = parts.reduce((sum, part) => sum + part.length, 0);
-  if (size > most) throw new Error(`the files of the ZIP archive are larger than ${Math.round(most / 1e6)} MB`);
+  if (size > most) throw new Error(`the files in the ZIP archive exceed ${Math.round(most / 1e6)} MB`);
   const bytes = new Uint8Array(size);
   let at = 0;
   for (const part of parts) {

@@ -1,9 +1,9 @@
-// Files of the reader's machine, made ready for the command "load": a scene with its meshes, or a mesh alone.
+// Packs files of the reader's machine for the command "load": a scene with its meshes, or a single mesh.
 import type { UploadedFile } from "./protocol";
 import { unzip } from "./unzip";
 
-const kMostBytes = 200e6; // of all files
-const kMostPacked = 15e6; // characters of a message that the program takes
+const kMostBytes = 200e6; // limit for all files together
+const kMostPacked = 15e6; // longest message that the program accepts, in characters
 const kMeshes = ["msh", "vtu", "mesh", "ele", "node", "obj", "ply", "stl", "off"];
 
 export interface NamedBytes {
@@ -23,7 +23,7 @@ export function isSceneOrMesh(name: string): boolean {
   return ["toml", "zip", ...kMeshes].includes(extensionOf(name));
 }
 
-// The scene among them, the one in the fewest folders; else a mesh. Null: neither.
+// The scene in the fewest folders, or else a mesh. Null: neither.
 export function mainFile(names: readonly string[]): string | null {
   const depth = (name: string): number => name.split("/").length;
   const scenes = names.filter((name) => extensionOf(name) === "toml");
@@ -31,8 +31,8 @@ export function mainFile(names: readonly string[]): string | null {
   return [...(scenes.length > 0 ? scenes : meshes)].sort((x, y) => depth(x) - depth(y))[0] ?? null;
 }
 
-// A browser hands over files without their folders. Those that a scene names go where it looks for them, which may be
-// the folder above its own.
+// Browsers drop the folders of files. Files that a scene names are placed where it expects them, possibly in the parent
+// of its folder.
 export function placed(files: readonly NamedBytes[], scene: string): NamedBytes[] {
   const main = files.find(({ name }) => name === scene);
   if (!main || extensionOf(scene) !== "toml" || scene.includes("/")) return [...files];
@@ -60,7 +60,7 @@ export async function prepareUpload(files: readonly File[]): Promise<Upload> {
     else read.push({ name: file.name, bytes: new Uint8Array(bytes) });
   }
   const main = mainFile(read.map(({ name }) => name));
-  if (!main) throw new Error(`${files.map((file) => file.name).join(", ")}: holds no scene (.toml) and no mesh (.${kMeshes.join(", .")})`);
+  if (!main) throw new Error(`${files.map((file) => file.name).join(", ")}: contains no scene (.toml) and no mesh (.${kMeshes.join(", .")})`);
   const ready = placed(read, main);
   const scene = ready[read.findIndex(({ name }) => name === main)]!.name;
   const packed = await Promise.all(ready.map(async ({ name, bytes }) => ({ name, gzip: await gzipBase64(bytes) })));
@@ -75,7 +75,7 @@ export const isTooLarge = (files: readonly UploadedFile[]): boolean => packedSiz
 
 function tooLarge(bytes: number): Error {
   const size = `${Math.round(bytes / 1e6)} MB`;
-  return new Error(`${size} are too much to be handed over by the page; load it by its path on the machine of the program`);
+  return new Error(`${size} are too large to upload; load the scene by its path on the machine of the program`);
 }
 
 async function gzipBase64(bytes: Uint8Array<ArrayBuffer>): Promise<string> {
@@ -83,7 +83,7 @@ async function gzipBase64(bytes: Uint8Array<ArrayBuffer>): Promise<string> {
   return base64Of(new Uint8Array(await new Response(stream).arrayBuffer()));
 }
 
-const kPortion = 0x6000; // a multiple of 3, and few enough arguments for a call
+const kPortion = 0x6000; // a multiple of 3, and within the argument limit of a call
 
 function base64Of(bytes: Uint8Array): string {
   let text = "";

@@ -1,19 +1,19 @@
-// Pictures and videos of the views, as they are on the screen.
+// Screenshots and videos of the views.
 import { button, element, messageOf, saveFile } from "./dom";
 import type { Page } from "./page";
 import { shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
 
 export interface Layers {
-  canvases: HTMLCanvasElement[]; // of one view, the lowest first
-  label: string; // "" for none
+  canvases: HTMLCanvasElement[]; // canvases of one view, from bottom to top
+  label: string; // "": no label
 }
 export type DrawViews = () => Layers[];
 
 const kFramesPerSecond = 30;
 const kBitsPerSecond = 8_000_000;
-const kChunk = 250; // of a recording [ms]
-const kLongestWait = 30_000; // for the first picture of a slow encoder [ms]
+const kChunk = 250; // length of a chunk [ms]
+const kLongestWait = 30_000; // longest wait for the first picture of a slow encoder [ms]
 const kTypes = ["video/mp4;codecs=avc1", "video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
 
 export function fileName(name: string, extension: string): string {
@@ -23,15 +23,15 @@ export function fileName(name: string, extension: string): string {
 
 const hasPicture = (chunks: Blob[]): boolean => chunks.some(({ size }) => size > 0);
 
-// The views beside each other, over the background of the page.
+// Draws the views side by side over the background of the page.
 function compose(target: HTMLCanvasElement, views: Layers[]): void {
   const widths = views.map(({ canvases }) => Math.max(0, ...canvases.map((canvas) => canvas.width)));
   const heights = views.map(({ canvases }) => Math.max(0, ...canvases.map((canvas) => canvas.height)));
-  // Encoders want even sizes.
+  // Encoders require even sizes.
   const width = widths.reduce((sum, each) => sum + each, 0) & ~1;
   const height = Math.max(0, ...heights) & ~1;
   const context = target.getContext("2d");
-  if (!context || width === 0 || height === 0) throw new Error("there is nothing to be seen");
+  if (!context || width === 0 || height === 0) throw new Error("there is nothing to show");
   if (target.width !== width) target.width = width;
   if (target.height !== height) target.height = height;
   const style = getComputedStyle(document.body);
@@ -49,7 +49,7 @@ function compose(target: HTMLCanvasElement, views: Layers[]): void {
   });
 }
 
-// A picture in the middle of a canvas, as large as fits: a video keeps its size when the page's layout changes.
+// Draws a picture centered in a canvas, as large as fits. A video keeps its size when the layout changes.
 function drawWithin(target: HTMLCanvasElement, picture: HTMLCanvasElement): void {
   const context = target.getContext("2d")!;
   const scale = Math.min(target.width / picture.width, target.height / picture.height);
@@ -70,7 +70,7 @@ export function makeScreenshotButton(store: Store, page: Page, draw: DrawViews):
     const name = `${store.side("a")?.scene.name ?? "aspic"}_${store.state?.a.step ?? 0}`;
     canvas.toBlob((blob) => {
       if (blob) saveFile(fileName(name, "png"), blob);
-      else page.notice("This browser made no picture.", "error");
+      else page.notice("This browser created no picture.", "error");
     }, "image/png");
   };
   return shortcutButton(page, { key: "p", does: "Picture of the view (PNG)", group: "File", run }, { text: "Picture (PNG)" });
@@ -78,11 +78,11 @@ export function makeScreenshotButton(store: Store, page: Page, draw: DrawViews):
 
 export class Video {
   readonly opener: HTMLButtonElement;
-  readonly indicator: HTMLButtonElement; // while it records
+  readonly indicator: HTMLButtonElement; // visible while it records
   private recorder: MediaRecorder | null = null;
   private chunks: Blob[] = [];
   private started = 0;
-  private ended = Infinity; // when the reader ended it; a slow encoder may still have no picture then
+  private ended = Infinity; // time of the reader's stop; a slow encoder may have no picture yet
 
   constructor(
     private readonly store: Store,
@@ -100,7 +100,7 @@ export class Video {
     this.indicator.hidden = true;
   }
 
-  // The views as they are now, composed on the canvas.
+  // Draws the present views on the canvas.
   picture(canvas: HTMLCanvasElement): void {
     compose(canvas, this.draw());
   }
@@ -128,7 +128,7 @@ export class Video {
     recorder.ondataavailable = (event) => chunks.push(event.data);
     recorder.onstop = () => {
       stream.getTracks().forEach((track) => track.stop());
-      if (!hasPicture(chunks)) return this.page.notice("The browser made no picture of the video.", "error");
+      if (!hasPicture(chunks)) return this.page.notice("The browser created no picture of the video.", "error");
       const extension = type.startsWith("video/mp4") ? "mp4" : "webm";
       saveFile(fileName(this.store.side("a")?.scene.name ?? "", extension), new Blob(chunks, { type }));
     };
@@ -149,7 +149,7 @@ export class Video {
       compose(picture, this.draw());
       drawWithin(canvas, picture);
     } catch {
-      return this.finish(); // the views are gone
+      return this.finish(); // the views no longer exist
     }
     const wait = performance.now() - this.ended;
     if (wait >= 0 && (hasPicture(this.chunks) || wait > kLongestWait)) return this.finish();

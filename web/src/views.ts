@@ -1,4 +1,4 @@
-// The views of one or two sides, with what distinguishes them written above.
+// The views of one or two sides, with labels that distinguish them.
 import { element } from "./dom";
 import type { Page } from "./page";
 import type { SideName } from "./protocol";
@@ -28,7 +28,7 @@ export class Views {
 
   all = (): View[] => [...this.shown.values()].map(({ view }) => view);
 
-  // Drawn now: pixels of a canvas are good until the current task ends.
+  // Draws now: the pixels of a canvas are valid until the current task ends.
   draw = (): Layers[] =>
     [...this.shown.values()].map(({ view, label }) => {
       view.drawNow();

@@ -1,4 +1,4 @@
-// A workspace file: the scene with its settings, the comparison, and what the reader chose in the page.
+// Workspace file: the scene with its settings, the comparison, and the reader's choices in the page.
 import { saveFile } from "./dom";
 import type { Page } from "./page";
 import type { Recording, SceneFilesReply, SettingValue, UploadedFile } from "./protocol";
@@ -8,12 +8,12 @@ import { fileName } from "./video";
 
 export interface Workspace {
   aspic_workspace: 1;
-  scene: string; // the name of one of the files; without files a path on the program's machine
-  files?: UploadedFile[]; // the scene with all its values, and its meshes: so it is opened on any machine
+  scene: string; // name of one of the files; without files a path on the program's machine
+  files?: UploadedFile[]; // the complete scene and its meshes, so that it opens on any machine
   overrides: string[];
-  settings: Record<string, SettingValue>; // of side a
+  settings: Record<string, SettingValue>; // settings of side a
   compare: Recording["compare"];
-  page: Record<string, unknown>; // by the names of Page.keepers
+  page: Record<string, unknown>; // by the names in Page.keepers
 }
 
 const isStrings = (value: unknown): value is string[] =>
@@ -31,9 +31,9 @@ function parseJson(text: string, what: string): Record<string, unknown> {
   try {
     read = JSON.parse(text);
   } catch {
-    throw new Error(`The file is no JSON, so it is no ${what}.`);
+    throw new Error(`The file is not JSON, so it is not a ${what}.`);
   }
-  if (!isTable(read)) throw new Error(`The file is no ${what}.`);
+  if (!isTable(read)) throw new Error(`The file is not a ${what}.`);
   return read;
 }
 
@@ -49,14 +49,14 @@ function parseFiles(value: unknown): UploadedFile[] | null {
   return value.map(({ name, gzip }) => ({ name, gzip }));
 }
 
-// What a file says, or an error in words. What is unknown in it is left out.
+// Contents of a file. Throws an error with a message; ignores unknown parts.
 export function parseWorkspace(text: string): Workspace {
   const read = parseJson(text, "workspace");
-  if (!("aspic_workspace" in read)) throw new Error("The file is no workspace of Aspic: it has no aspic_workspace.");
+  if (!("aspic_workspace" in read)) throw new Error("The file is not a workspace of Aspic: it has no aspic_workspace.");
   if (read.aspic_workspace !== 1) {
-    throw new Error(`The workspace is of version ${String(read.aspic_workspace)}; this page reads version 1.`);
+    throw new Error(`The workspace has version ${String(read.aspic_workspace)}; this page reads version 1.`);
   }
-  if (typeof read.scene !== "string") throw new Error("The workspace names no scene.");
+  if (typeof read.scene !== "string") throw new Error("The workspace contains no scene.");
   const settings = isTable(read.settings) ? read.settings : {};
   const files = parseFiles(read.files);
   return {
@@ -70,11 +70,11 @@ export function parseWorkspace(text: string): Workspace {
   };
 }
 
-// Of a session, to be repeated. The program judges the events; the page only recognizes recordings.
+// Recording of a session for replay. Only recognizes recordings; the program validates the events.
 export function parseRecording(text: string): Recording {
   const read = parseJson(text, "recording");
   if (typeof read.scene !== "string" || !Array.isArray(read.events) || typeof read.steps !== "number") {
-    throw new Error("The file is no recording of the mouse: it has no scene, events and steps.");
+    throw new Error("The file is not a mouse recording: it has no scene, events and steps.");
   }
   return read as unknown as Recording;
 }
@@ -119,14 +119,14 @@ export async function openWorkspace(workspace: Workspace, store: Store, page: Pa
   if (refused.length > 0) page.notice(`The program refused these settings of the workspace: ${refused.join(", ")}`, "error");
 }
 
-// A part of the page that cannot use what was saved leaves the others alone.
+// A part of the page that cannot use its saved state does not affect the others.
 function restorePage(workspace: Workspace, page: Page): void {
   for (const [name, keeper] of page.keepers) {
     if (!(name in workspace.page)) continue;
     try {
       keeper.restore(workspace.page[name]);
     } catch {
-      page.notice(`The workspace's "${name}" does not fit this page and was left out.`);
+      page.notice(`The workspace's "${name}" does not fit this page and was ignored.`);
     }
   }
 }

@@ -2,22 +2,22 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { AskedDepths } from "../src/capture/askedDepths";
 
-test("notches continue from what was asked for, however late the program answers", () => {
+test("notches continue from the latest request", () => {
   const asked = new AskedDepths();
   asked.ask(1, 0);
   asked.ask(2, 0);
-  asked.hear(0); // still on its way
+  asked.hear(0); // still under way
   assert.equal(asked.last(0), 2);
   asked.hear(1);
   assert.equal(asked.last(1), 2);
   asked.ask(3, 1);
   asked.hear(1);
   assert.equal(asked.last(1), 3);
-  asked.hear(3); // 2 was passed over
+  asked.hear(3); // 2 was skipped
   assert.equal(asked.last(3), 3);
 });
 
-test("what is reported differs from what was asked for in the last digits", () => {
+test("reported depths may differ in last digits", () => {
   const asked = new AskedDepths();
   asked.ask(0.005007513224813856, 0);
   asked.ask(0.005462741699796928, 0);
@@ -25,10 +25,10 @@ test("what is reported differs from what was asked for in the last digits", () =
   assert.equal(asked.last(0.005007513224813852), 0.005462741699796928);
 });
 
-test("another's depth, and another tip, count", () => {
+test("depths of other pages and tips count", () => {
   const asked = new AskedDepths();
   asked.ask(1, 0);
-  asked.hear(0.3); // by the mouse
+  asked.hear(0.3); // set by the mouse
   assert.equal(asked.last(0.3), 0.3);
   asked.ask(0.5, 0.3);
   asked.hear(null);

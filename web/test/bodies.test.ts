@@ -8,12 +8,12 @@ const geometry = (tet: number[]): Parameters<typeof bodiesOf>[0] => ({
   tet: Uint32Array.from(tet),
 });
 
-test("each vertex belongs to the body of its tet", () => {
+test("each vertex belongs to its tet's body", () => {
   assert.deepEqual([...bodiesOf(geometry([0, 9, 10, 25]), [0, 10, 20])], [0, 0, 0, 0, 0, 0, 1, 1, 1, 2, 2, 2]);
   assert.deepEqual([...bodiesOf(geometry([3]), [])], [0, 0, 0]);
 });
 
-test("two bodies have two colors, the first the reader's own", () => {
+test("two bodies have two colors, first the reader's", () => {
   const colors = bodyColors("#4f8fd0", 8);
   assert.equal(colors[0], "#4f8fd0");
   assert.equal(new Set(colors).size, 8);

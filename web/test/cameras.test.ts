@@ -22,7 +22,7 @@ function nearPoint(actual: Vec3, expected: Vec3, tolerance: number): void {
   assert(length(minus(actual, expected)) <= tolerance, `${actual} is not ${expected}`);
 }
 
-test("a pixel's ray passes through the point that is drawn there, at any scale, up and projection", () => {
+test("a pixel's ray passes through its point", () => {
   for (const size of kScales)
     for (const up of kUps)
       for (const orthographic of [false, true]) {
@@ -38,7 +38,7 @@ test("a pixel's ray passes through the point that is drawn there, at any scale, 
       }
 });
 
-test("the whole box is seen in every canonical view, in wide and in tall windows", () => {
+test("canonical views show the whole box", () => {
   for (const up of kUps)
     for (const name of kViewNames)
       for (const [width, height] of [[1280, 800], [300, 900]]) {
@@ -53,7 +53,7 @@ test("the whole box is seen in every canonical view, in wide and in tall windows
       }
 });
 
-test("canonical views look along the scene's axes, with up upward", () => {
+test("canonical views follow the scene's axes", () => {
   for (const up of kUps) {
     const axes = sceneAxes(up);
     const toward: Record<Exclude<ViewName, "isometric">, Vector3> = {
@@ -71,7 +71,7 @@ test("canonical views look along the scene's axes, with up upward", () => {
   }
 });
 
-test("turning about two axes keeps the horizon level and stops overhead", () => {
+test("a turntable keeps the horizon level", () => {
   for (const up of kUps) {
     const rig = rigFor(1, up);
     for (let k = 0; k < 200; ++k) {
@@ -82,7 +82,7 @@ test("turning about two axes keeps the horizon level and stops overhead", () => 
   }
 });
 
-test("zooming leaves what is under the cursor where it is", () => {
+test("zooming fixes the point under the cursor", () => {
   for (const orthographic of [false, true]) {
     const rig = rigFor(1, [0, 1, 0]);
     rig.setOrthographic(orthographic);
@@ -96,7 +96,7 @@ test("zooming leaves what is under the cursor where it is", () => {
   }
 });
 
-test("panning moves the target's plane with the cursor", () => {
+test("panning follows the cursor", () => {
   const rig = rigFor(1, [0, 0, 1]);
   const point = rig.target.toArray() as Vec3;
   rig.pan(30, -20, 600);
@@ -105,7 +105,7 @@ test("panning moves the target's plane with the cursor", () => {
   near(y, 280, 1e-6);
 });
 
-test("a 2-D camera faces an axis and never turns", () => {
+test("a 2-D camera faces an axis forever", () => {
   const rig = rigFor(1, [0, 0, 1]);
   rig.turn(40, 25);
   rig.setMode("flat");
@@ -115,7 +115,7 @@ test("a 2-D camera faces an axis and never turns", () => {
   assert.deepEqual(rig.lens(100, 100).forward, forward);
 });
 
-test("a camera is restored from what it saved, and stays for the same scene", () => {
+test("a saved camera is restored for its scene", () => {
   const rig = rigFor(1, [0, 1, 0]);
   rig.turn(11, 7);
   rig.pan(3, 4, 100);
@@ -125,7 +125,7 @@ test("a camera is restored from what it saved, and stays for the same scene", ()
   nearPoint(other.lens(100, 100).eye, rig.lens(100, 100).eye, 1e-12);
 });
 
-test("a saved camera that makes no sense is left out", () => {
+test("an invalid saved camera is ignored", () => {
   const rig = rigFor(1, [0, 1, 0]);
   const before = JSON.stringify(rig.save());
   const bad = [null, 3, {}, { mode: "orbit" }, { ...(rig.save() as object), distance: -1 }, { ...(rig.save() as object), target: [0, null, 1] }];

@@ -17,7 +17,7 @@ function probe(change: Partial<ProbeState> = {}): ProbeState {
   return { ...tip, ...place, depth: 0, wanted: 0, force: [0, 0, 0], torque: [0, 0, 0], points: 9, ...change };
 }
 
-test("the way in is that of the inward normal on the screen, and down where it is along the line of sight", () => {
+test("pressing follows the inward normal, or drags down", () => {
   const inward = inwardNormal(kTop.positions, kTop.triangles, 0);
   assert.ok(inward[2] < -0.99);
   const way = wayIn(kFront, [0, 0, 0], inward);
@@ -28,15 +28,15 @@ test("the way in is that of the inward normal on the screen, and down where it i
   assert.ok(depthOf(along, [0, 10]) > 0);
 });
 
-test("markers lie where their weights put them, and show their front", () => {
+test("markers follow their weights and face outward", () => {
   const [dot] = markersOn(kTop, { triangles: [0], weights: [0.5, 0.25, 0.25] });
   assert.deepEqual(dot!.at, [0.5, 0.5, 1]);
   assert.ok(dot!.normal[2] > 0.99);
-  assert.deepEqual(markersOn(kTop, { triangles: [7], weights: [1, 0, 0] }), []); // of a surface that has gone
+  assert.deepEqual(markersOn(kTop, { triangles: [7], weights: [1, 0, 0] }), []); // belongs to a surface that no longer exists
   assert.equal(nearestOn([dot!], [3, 3, 3]).normal, dot!.normal);
 });
 
-test("the curve keeps the latest force of every depth, and begins anew with another touch", () => {
+test("the curve keeps the latest force per depth", () => {
   const curve = new ForceCurve();
   assert.equal(curve.add(null), false);
   assert.ok(curve.add(probe({ depth: 0.002, force: [0, 0, -2] })));
@@ -49,7 +49,7 @@ test("the curve keeps the latest force of every depth, and begins anew with anot
   assert.equal(pushOf({ force: [0, 0, 4], axis: [0, 0, -1] }), -4); // it pulls
 });
 
-test("the dial's scale grows at once and shrinks seldom", () => {
+test("the dial's scale grows at once, shrinks rarely", () => {
   const first = fullScale(0.7, 0);
   assert.equal(first, 1);
   assert.equal(fullScale(0.4, first), 1);
@@ -60,7 +60,7 @@ test("the dial's scale grows at once and shrinks seldom", () => {
   assert.ok(angleOf(99, 1) < 135);
 });
 
-test("a fit in words", () => {
+test("the summary of a fit names its state", () => {
   const fit: CaptureFit = {
     running: true, stage: "a value for every tet", words: "", failure: "", residuals: 10, error: null, softest: null, stiffest: null,
     has_material: false, warnings: [], next: null,

@@ -16,7 +16,7 @@ const kSteps = [
 ];
 const column = (title: string): (typeof kColumns)[number] => kColumns.find((c) => c.title === title)!;
 
-test("the worst rows come first, and ties in the order of time", () => {
+test("worst rows come first, ties by time", () => {
   const order = (title: string): number[] => listed(kSteps, column(title), false).map(({ step }) => step);
   assert.deepEqual(order("residual / wanted"), [2, 1, 3]);
   assert.deepEqual(order("status"), [2, 1, 3]);
@@ -27,11 +27,11 @@ test("the worst rows come first, and ties in the order of time", () => {
   assert.deepEqual(order("decrement [J]"), [1, 2, 3]);
 });
 
-test("only steps that did not converge are listed when asked for", () => {
+test("the filter lists only unconverged steps", () => {
   assert.deepEqual(listed(kSteps, kColumns[0], true).map(({ step }) => step), [2]);
 });
 
-test("totals name the worst steps; what nobody asked for does not count", () => {
+test("totals name the worst steps with thresholds", () => {
   const all = totals(kSteps);
   assert.equal(all.failed, 1);
   assert.equal(all.worstExcess?.step, 2);
@@ -47,33 +47,33 @@ test("totals name the worst steps; what nobody asked for does not count", () => 
   assert.equal(all.state?.state_hash, "0123456789abcdef");
 });
 
-test("the energy bound is reported with its slack", () => {
+test("the energy bound has its slack", () => {
   const reported = (row: StepRow): unknown => column("energy bound [J]").value(row);
   assert.deepEqual(kSteps.map(reported), ["holds by 2", "broken by 1", "–"]);
   assert.equal(reported(row(4, { energy_bound: "not_guaranteed", energy_slack: -3 })), "not guaranteed");
 });
 
-test("a state is reported by its first digits, and whole by its tooltip", () => {
+test("a hash is shortened, its tooltip complete", () => {
   const state = column("state");
   assert.equal(state.value(row(1, {})), "01234567");
   assert.equal(state.whole?.(row(1, {})), "0123456789abcdef");
   assert.equal(state.value(kSteps[2]), null);
 });
 
-test("what is bad is marked as such", () => {
+test("bad values are marked", () => {
   const bad = (row: StepRow): string[] => kColumns.filter((column) => column.isBad?.(row)).map(({ title }) => title);
   assert.deepEqual(bad(kSteps[0]), []);
   assert.deepEqual(bad(kSteps[1]), ["status", "residual / wanted", "energy bound [J]"]);
   assert.deepEqual(bad(row(4, { min_det_F: -0.5 })), ["min det F"]);
 });
 
-test("moments name the pin and its moment", () => {
+test("moments have the name of their pin", () => {
   const moments = column("moments [N m]");
   assert.equal(moments.value(row(1, { reactions: { "beam.wall": [0, 9.5, 0, 1, 2, 3] } })), "beam.wall (1, 2, 3)");
   assert.equal(moments.value(kSteps[0]), null);
 });
 
-test("reactions name the pin and its force", () => {
+test("reactions have the name of their pin", () => {
   const reactions = column("reactions [N]");
   assert.equal(reactions.value(row(1, { reactions: { "beam.wall": [0, 9.5, 0, 1, 2, 3] } })), "beam.wall (0, 9.5, 0)");
   assert.equal(reactions.value(kSteps[0]), null);

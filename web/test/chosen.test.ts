@@ -10,7 +10,7 @@ import { iterationRow, stepRow } from "./rowsOfSteps";
 interface Asked {
   step: number;
   iteration: number;
-  answer: (reply?: string) => void; // a text: the refusal
+  answer: (reply?: string) => void; // a text: the program refuses
 }
 
 class Stub implements Source {
@@ -54,7 +54,7 @@ function opened(): { source: Stub; chosen: Chosen } {
   return { source, chosen };
 }
 
-test("the newest step is chosen until the reader chooses another", () => {
+test("the newest step is chosen by default", () => {
   const { source, chosen } = opened();
   assert.equal(chosen.step, 5);
   chosen.choose("a", 2, 1);
@@ -64,7 +64,7 @@ test("the newest step is chosen until the reader chooses another", () => {
   assert.equal(chosen.step, 8);
 });
 
-test("walking continues into the neighboring steps, and ends at the ends", () => {
+test("walking crosses steps and stops at the ends", () => {
   const { chosen } = opened();
   chosen.choose("a", 2, 2);
   chosen.walk(1);
@@ -76,7 +76,7 @@ test("walking continues into the neighboring steps, and ends at the ends", () =>
   assert.deepEqual([chosen.step, chosen.iteration], [5, 2]);
 });
 
-test("one question is under way, and of those that come meanwhile the newest is asked", async () => {
+test("only the newest question follows an answer", async () => {
   const { source, chosen } = opened();
   for (const step of [1, 2, 3]) {
     chosen.choose("a", step, 0);
@@ -101,7 +101,7 @@ test("one question is under way, and of those that come meanwhile the newest is 
 
 const playing = { kind: "state", playing: true, a: { step: 5, time: 0.05, iteration: -1 }, b: null };
 
-test("while steps fly by, the program is left alone for a while after each answer; a reader's choice is asked at once", async () => {
+test("automatic questions pause, a reader's choice does not", async () => {
   const { source, chosen } = opened();
   source.say(playing as unknown as ServerMessage);
   chosen.look();
@@ -117,7 +117,7 @@ test("while steps fly by, the program is left alone for a while after each answe
   assert.equal(source.asked.length, 2);
 });
 
-test("what was interrupted is asked again", async () => {
+test("an interrupted question is repeated", async () => {
   const { source, chosen } = opened();
   chosen.choose("a", 2, 0);
   chosen.look();
@@ -128,7 +128,7 @@ test("what was interrupted is asked again", async () => {
   assert.equal(source.asked.length, 2);
 });
 
-test("an answer is remembered, but not after a rewind; a refusal is reported", async () => {
+test("answers are cached until a rewind", async () => {
   const { source, chosen } = opened();
   const look = async (step: number, why?: string): Promise<void> => {
     chosen.choose("a", step, 0);
@@ -146,7 +146,7 @@ test("an answer is remembered, but not after a rewind; a refusal is reported", a
   assert.equal(source.asked.length, 3);
 });
 
-test("the step under way stands after the others, with the iterations that were shown", () => {
+test("the step under way is last, with iterations", () => {
   const { source, chosen } = opened();
   const a = { step: 5, time: 0.05, iteration: 1, iterations: [iterationRow(), iterationRow()] };
   source.say({ kind: "state", a, b: null } as unknown as ServerMessage);
@@ -162,7 +162,7 @@ test("the step under way stands after the others, with the iterations that were 
   assert.equal(chosen.row()!.iterations.length, 3);
 });
 
-test("a rewind past the chosen step goes to the newest that is left", () => {
+test("a rewind chooses the newest remaining step", () => {
   const { source, chosen } = opened();
   chosen.choose("a", 5, 1);
   source.say({ kind: "steps", side: "a", from: 2, steps: [] });

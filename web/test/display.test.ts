@@ -16,7 +16,7 @@ test("settings are restored from what was saved", () => {
   assert.deepEqual(other.settings, display.settings);
 });
 
-test("saved settings that make no sense are left out", () => {
+test("invalid saved settings are ignored", () => {
   const display = new Display();
   for (const saved of [null, 7, "x", { clip: "w" }, { bodyColor: "red" }, { wires: "yes" }, { constructor: 1 }, { low: null }]) display.restore(saved);
   assert.deepEqual(display.settings, kDefaults);
@@ -32,14 +32,14 @@ test("another field starts another range", () => {
   assert.deepEqual(display.range(kDet), { low: 0.7, high: 1.3, log: false });
 });
 
-test("a fixed range is what was typed, whichever way round", () => {
+test("a fixed range accepts either order", () => {
   const display = new Display();
   display.feed("a", kStress, 0, 10);
   display.change({ fixedRange: true, low: 5, high: 2 });
   assert.deepEqual(display.range(kStress), { low: 2, high: 5, log: false });
 });
 
-test("a stiffness has a logarithmic scale unless another is chosen", () => {
+test("stiffness has a logarithmic scale by default", () => {
   const display = new Display();
   display.feed("a", kYoung, 1e3, 1e5);
   assert.deepEqual(display.range(kYoung), { low: 1e3, high: 1e5, log: true });
@@ -52,7 +52,7 @@ test("a stiffness has a logarithmic scale unless another is chosen", () => {
   assert.equal(display.range(kStress)?.log, true);
 });
 
-test("cameras of both sides are one until they are unlinked, and then start where they were", () => {
+test("unlinked cameras start at the common view", () => {
   const display = new Display();
   assert.equal(display.camera("b"), display.camera("a"));
   display.cameras.a.turn(30, 10);
@@ -61,7 +61,7 @@ test("cameras of both sides are one until they are unlinked, and then start wher
   assert.deepEqual(display.camera("b").lens(10, 10), display.camera("a").lens(10, 10));
 });
 
-test("the cut keeps the half that was chosen", () => {
+test("the cut keeps the chosen half", () => {
   const display = new Display();
   const scene = { lower: [0, 0, 0], upper: [4, 8, 2] } as unknown as Scene;
   assert.equal(display.clip(scene), null);
@@ -71,7 +71,7 @@ test("the cut keeps the half that was chosen", () => {
   assert.equal(display.clip(scene)?.offset, 2);
 });
 
-test("the box leaves out what is not finite", () => {
+test("the box ignores infinite positions", () => {
   const box = coarseBox(new Float32Array([0, 1, 2, NaN, 5, Infinity, -1, 3, 4]));
   assert.deepEqual(box, { lower: [-1, 1, 2], upper: [0, 5, 4] });
   assert.equal(coarseBox(new Float32Array([NaN, NaN, NaN])), null);

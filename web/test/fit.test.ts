@@ -21,7 +21,7 @@ import {
   type FitHead,
 } from "../src/fit/data";
 
-// A unit cube of n^3 cells, six tets each around the diagonal.
+// Unit cube of n^3 cells, six tets each around the diagonal.
 function cube(n: number): TetMesh {
   const points: number[] = [];
   for (let i = 0; i <= n; ++i) for (let j = 0; j <= n; ++j) for (let k = 0; k <= n; ++k) points.push(i / n, j / n, k / n);
@@ -43,7 +43,7 @@ function cube(n: number): TetMesh {
   return { points: Float32Array.from(points), tets: Uint32Array.from(tets) };
 }
 
-// By the divergence theorem: only right for a closed surface that faces outward.
+// Volume by the divergence theorem; correct only for a closed surface that faces outward.
 function volumeIn({ positions }: Soup): number {
   let six = 0;
   for (let t = 0; t < positions.length; t += 9) {
@@ -53,12 +53,12 @@ function volumeIn({ positions }: Soup): number {
   return six / 6;
 }
 
-test("the boundary of a cube has two triangles for each square", () => {
+test("a cube's boundary has two triangles per square", () => {
   const boundary = boundaryOf(cube(3));
   assert.equal(boundary.tet.length, 6 * 9 * 2);
 });
 
-test("the body below a plane is closed, and as large as it should be", () => {
+test("the cut body is closed with exact volume", () => {
   const mesh = cube(3);
   const boundary = boundaryOf(mesh);
   assert.ok(Math.abs(volumeIn(bodyBelow(mesh, boundary, null)) - 1) < 1e-6);
@@ -79,7 +79,7 @@ test("the body below a plane is closed, and as large as it should be", () => {
   assert.ok(Math.abs(volumeIn(oblique) - 0.5) < 1e-6);
 });
 
-test("a plane cuts a tet in a triangle, a quadrilateral or not at all", () => {
+test("a plane cuts tets in triangles or quadrilaterals", () => {
   const corners: Vec3[] = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
   const cutAt = (z: number): Vec3[] => section(corners, corners.map((c) => c[2] - z), [0, 0, 1]);
   assert.equal(cutAt(0.5).length, 3);
@@ -105,7 +105,7 @@ function poke(name: string, group: string, depth: number, first: number, more: P
   };
 }
 
-// Two pokes at one place, deepest first, and one that was left out.
+// Two pokes at one place, deepest first, and a held-out case.
 function head(): FitHead {
   return {
     format: 1,
@@ -152,7 +152,7 @@ async function fitOf(what: FitHead): Promise<Fit> {
   return unpackFit(gzipSync(bytes).toString("base64"));
 }
 
-test("groups keep the order of their first case, a curve that of its depth", async () => {
+test("groups keep order, curves sort by depth", async () => {
   const fit = await fitOf(head());
   const groups = groupsOf(fit.head.cases);
   assert.deepEqual(groups, [{ name: "a", cases: [0, 1] }, { name: "b", cases: [2] }]);
@@ -166,7 +166,7 @@ test("groups keep the order of their first case, a curve that of its depth", asy
   assert.ok(leftOut.leftOut && leftOut.fitted[0] === null && leftOut.heldOut[0] === 4);
 });
 
-test("without forces a curve shows the motion of the markers", async () => {
+test("a curve without forces shows marker motion", async () => {
   const what = head();
   for (const c of what.cases) c.force = null;
   const fit = await fitOf(what);
@@ -177,7 +177,7 @@ test("without forces a curve shows the motion of the markers", async () => {
   assert.deepEqual(groupCurve(await fitOf(what), { cases: [0] }).x, [300]);
 });
 
-test("residuals leave out what was not fitted", async () => {
+test("residuals exclude held-out readings", async () => {
   const { all, ofCase } = residuals(await fitOf(head()));
   assert.equal(all.length, 12);
   assert.equal(ofCase[2], null);
@@ -192,18 +192,18 @@ test("the worst markers come first", async () => {
   assert.ok(Math.abs(one.sigmas - 1 / Math.sqrt(3)) < 1e-6);
 });
 
-test("a histogram counts what lies outside at its ends", () => {
+test("a histogram counts outliers at its ends", () => {
   const { middle, count } = histogram([-9, -0.9, 0.1, 0.2, 7, NaN], 1, 4);
   assert.deepEqual(count, [2, 0, 2, 1]);
   assert.deepEqual(middle, [-0.75, -0.25, 0.25, 0.75]);
 });
 
-test("a tip that did not move points along its axis", () => {
+test("a resting tip points along its axis", () => {
   assert.deepEqual(travel({ ...kTip, center: kTip.touch }), [0, -1, 0]);
   assert.equal(depthOf({ ...kTip, center: [0, 0.5, 0] }), 0.5);
 });
 
-test("the verdict is the program's, each reason once", () => {
+test("the program's verdict lists each reason once", () => {
   const what = head();
   assert.equal(closeness(6, 12), 1);
   assert.deepEqual(verdict({ ...what, verdict: { good: true, text: "Converged.", reasons: [] } }), { text: "Converged.", kind: "good", reasons: [] });
@@ -212,20 +212,20 @@ test("the verdict is the program's, each reason once", () => {
   assert.deepEqual(verdict({ ...what, verdict: { good: false, text, reasons } }), { text, kind: "bad", reasons: ["'a' is missed"] });
 });
 
-test("without a verdict of the program nothing is called good", () => {
+test("without a verdict nothing is good", () => {
   const what = head();
   assert.equal(verdict(what).kind, "plain");
   assert.equal(verdict({ ...what, fit: { ...what.fit, success: false } }).kind, "bad");
   assert.equal(verdict({ ...what, fit: { ...what.fit, interrupted: true } }).kind, "bad");
 });
 
-test("markers have the names of the data set", () => {
+test("markers have the data set's names", () => {
   assert.equal(markerName({ ...head(), markerNames: ["nose", ""] }, 0), "nose");
   assert.equal(markerName({ ...head(), markerNames: ["nose", ""] }, 1), "2");
   assert.equal(markerName(head(), 1), "2");
 });
 
-// Pressed in a little and turned about the axis, deepest first.
+// Pressed in slightly and turned about the axis, deepest first.
 function twist(name: string, angle: number, more: Partial<Case> = {}): Case {
   const torque = { measured: [0, -0.5 * angle, 0] as Vec3, deviation: [0.1, 0.02, 0.1] as Vec3, predicted: [0, -0.6 * angle, 0] as Vec3, heldOut: null };
   return poke(name, "twist", 0.01, 0, { tip: { ...kTip, center: [0, 0.99, 0], turn: [0, -angle, 0] }, torque, ...more });
@@ -241,13 +241,13 @@ test("a twist is drawn as torque over angle", async () => {
   assert.equal(curve.deviation[0], 0.02);
 });
 
-test("a twist without torques shows the motion of the markers", async () => {
+test("a twist without torques shows marker motion", async () => {
   const fit = await fitOf({ ...head(), cases: [twist("twist", 0.4, { torque: null })] });
   const curve = groupCurve(fit, { cases: [0] });
   assert.deepEqual([curve.xLabel, curve.yLabel, curve.yUnit], ["angle", "mean motion", "m"]);
 });
 
-test("a poke that turns a little stays force over depth", async () => {
+test("a slightly turned poke is no twist", async () => {
   const cases = [poke("a", "a", 0.2, 0, { tip: { ...kTip, center: [0, 0.8, 0], turn: [0, 0.01, 0] } })];
   const curve = groupCurve(await fitOf({ ...head(), cases }), { cases: [0] });
   assert.deepEqual([curve.xLabel, curve.yLabel], ["depth", "force"]);
@@ -261,5 +261,5 @@ test("residuals count torques", async () => {
 
 test("damaged fits are refused", async () => {
   await assert.rejects(unpackFit("AAAA"));
-  await assert.rejects(fitOf({ ...head(), format: 2 }), /reads 1/);
+  await assert.rejects(fitOf({ ...head(), format: 2 }), /reads format 1/);
 });

@@ -24,7 +24,7 @@ const filled = (
   value: square.y.flatMap((y) => square.x.map((x) => f(x, y))),
 });
 
-test("a wall does not flatten the valley, and what is to be seen is not cut off", () => {
+test("a wall flattens no valley, hides no marks", () => {
   const valley = Array.from({ length: 1000 }, (_, i) => i / 1000);
   assert.deepEqual(heightRange(valley), { low: 0, high: 0.999, cut: false });
   const wall = heightRange([...valley, 1e9, 1e12, null]);
@@ -33,13 +33,13 @@ test("a wall does not flatten the valley, and what is to be seen is not cut off"
   assert.ok(heightRange(valley, [-1]).low === -1);
 });
 
-test("a constant, and nothing at all, have heights, too", () => {
+test("constant and empty grids have heights", () => {
   const flat = heightRange([5, 5, 5]);
   assert.ok(flat.high > flat.low);
   assert.deepEqual(heightRange([null, null]), { low: 0, high: 1, cut: false });
 });
 
-test("heights and values are each other's inverse, linear and logarithmic", () => {
+test("heights invert to values on both scales", () => {
   const range = { low: -2, high: 8, cut: false };
   for (const scale of ["linear", "log"] as const)
     for (const height of [0, 0.1, 0.5, 1])
@@ -48,7 +48,7 @@ test("heights and values are each other's inverse, linear and logarithmic", () =
   assert.ok(heightOf(range, "log")(-2 + 0.1) > 0.4);
 });
 
-test("bilinear samples are exact for bilinear functions, and unknown outside and beside holes", () => {
+test("sampling is exact for bilinear functions inside", () => {
   const grid = filled((x, y) => 1 + x + 2 * y + 3 * x * y);
   assert.ok(Math.abs(sample(grid, 0.3, 1.7)! - (1 + 0.3 + 3.4 + 1.53)) < 1e-12);
   assert.equal(sample(grid, 1.01, 1), null);
@@ -58,7 +58,7 @@ test("bilinear samples are exact for bilinear functions, and unknown outside and
   assert.equal(sample(holed, 0.7, 0.9), 0.7);
 });
 
-test("a quadratic is found from its samples, with its minimum", () => {
+test("samples determine a quadratic and its minimum", () => {
   const q: Quadratic = { center: [0.5, -1], value: 3, gradient: [1, -2], xx: 4, xy: 1, yy: 2 };
   const found = quadraticFrom(filled((x, y) => quadraticAt(q, x, y)))!;
   for (const [x, y] of [
@@ -72,7 +72,7 @@ test("a quadratic is found from its samples, with its minimum", () => {
   assert.ok(quadraticAt(q, lowest.x, lowest.y) < quadraticAt(q, lowest.x + 0.01, lowest.y - 0.02));
 });
 
-test("a saddle, a trough and a hill have no minimum", () => {
+test("saddles, troughs and hills have no minimum", () => {
   const q: Quadratic = { center: [0, 0], value: 0, gradient: [1, 1], xx: 1, xy: 0, yy: 1 };
   assert.equal(minimizerOf({ ...q, yy: -1 }), null);
   assert.equal(minimizerOf({ ...q, yy: 0 }), null);
@@ -80,7 +80,7 @@ test("a saddle, a trough and a hill have no minimum", () => {
   assert.equal(quadraticFrom(filled(() => null)), null);
 });
 
-test("segments are cut at the edge of the picture", () => {
+test("segments are clipped at the picture's edge", () => {
   assert.deepEqual(clipped(square, { x: 0, y: 1 }, { x: 4, y: 1 }), [
     { x: 0, y: 1 },
     { x: 1, y: 1 },
@@ -94,7 +94,7 @@ test("segments are cut at the edge of the picture", () => {
   assert.ok(isInside(square, { x: 1, y: 2 }) && !isInside(square, { x: 1, y: 2.1 }));
 });
 
-test("coordinates of a slice may be given per line or per sample", () => {
+test("slices accept coordinates per line or sample", () => {
   const slice = { columns: 2, rows: 3, s: [0, 1], t: [5, 6, 7], value: [], model: [] };
   const spread = { ...slice, s: [0, 1, 0, 1, 0, 1], t: [5, 5, 6, 6, 7, 7] };
   assert.deepEqual(gridOf(slice), { x: [0, 1], y: [5, 6, 7], value: [] });

@@ -11,15 +11,15 @@ const scene = (overrides: string[], loaded: string[] = []): Scene =>
     settings: [setting("material.young", 2e5), setting("time.step", 0.01), setting("gravity", [0, -9.81, 0])],
   }) as unknown as Scene;
 
-test("a first change is undone by dropping its override", () => {
+test("undo of a first change removes its override", () => {
   assert.deepEqual(backTo(scene([]), "material.young"), { key: "material.young", value: null });
 });
 
-test("a second change is undone by the value before it", () => {
+test("undo of a second change restores the first", () => {
   assert.deepEqual(backTo(scene(["material.young=2e+05"]), "material.young", "b"), { key: "material.young", value: 2e5, side: "b" });
 });
 
-test("a reset takes the changes back, the latest first", () => {
+test("a reset undoes the latest change first", () => {
   const changed = scene(["mesh=\"bunny.mesh\"", "time.step=0.02", "material.young=2e+05"], ["mesh=\"bunny.mesh\"", "time.step=5e-4"]);
   assert.deepEqual(toLoaded(changed), [
     { key: "material.young", value: null },
@@ -27,7 +27,7 @@ test("a reset takes the changes back, the latest first", () => {
   ]);
 });
 
-test("a reset reads vectors and texts of loaded overrides", () => {
+test("a reset restores loaded vectors and texts", () => {
   const changed = scene(["gravity=[0, 0, 0]", "material.young=1e6"], ["gravity=[0, 1e+01, 0]", 'material.young="1e5 * X"']);
   assert.deepEqual(toLoaded(changed, "a"), [
     { key: "material.young", value: "1e5 * X", side: "a" },
@@ -35,11 +35,11 @@ test("a reset reads vectors and texts of loaded overrides", () => {
   ]);
 });
 
-test("nothing is reset where nothing was changed", () => {
+test("a reset without changes does nothing", () => {
   assert.deepEqual(toLoaded(scene(["time.step=0.02"], ["time.step=0.02"])), []);
 });
 
-test("a history gives back the newest change first", () => {
+test("history returns the newest change first", () => {
   const history = new History();
   history.add("E", [{ key: "material.young", value: null }]);
   history.add("nothing", []);

@@ -4,7 +4,7 @@ import { apart } from "../src/view/labels";
 
 const box = (x: number, y: number): { x: number; y: number; width: number; height: number } => ({ x, y, width: 100, height: 14 });
 
-test("texts that would cover each other are moved apart, others stay", () => {
+test("only overlapping texts move apart", () => {
   const placed = apart([box(10, 50), box(20, 52), box(15, 55), box(300, 51), box(40, 200)], 7, 393);
   for (const p of placed)
     for (const q of placed) {

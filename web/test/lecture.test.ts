@@ -13,14 +13,14 @@ const lesson = (id: string, more: Partial<Lesson> = {}): Lesson => ({
   ...more,
 });
 
-test("a lesson is found by words of its text, in any order and case", () => {
+test("search ignores order and case of words", () => {
   assert.ok(matches(lesson("a"), "SPRING mouse"));
   assert.ok(matches(lesson("a"), "33"));
   assert.ok(matches(lesson("a"), ""));
   assert.ok(!matches(lesson("a"), "spring hammer"));
 });
 
-test("previous and next skip what cannot be shown", () => {
+test("previous and next skip missing lessons", () => {
   const lessons = [lesson("a"), lesson("b", { missing: "a film" }), lesson("c")];
   assert.equal(neighbor(lessons, lessons[0], 1), lessons[2]);
   assert.equal(neighbor(lessons, lessons[2], -1), lessons[0]);

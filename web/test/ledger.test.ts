@@ -7,7 +7,7 @@ const potentials = ["elasticity", "gravity"];
 const at = (ledger: Ledger, key: string): (number | null)[] =>
   ledger.columns[ledgerColumns(potentials).findIndex((c) => c.key === key)]!;
 
-// Energy comes in by the mouse and goes out by damping and the integrator; nothing is lost from the books.
+// The mouse adds energy; damping and the integrator dissipate it. The ledger balances.
 function steps(count: number): ReturnType<typeof stepRow>[] {
   let energy = 10;
   return Array.from({ length: count }, (_, i) => {
@@ -25,7 +25,7 @@ function steps(count: number): ReturnType<typeof stepRow>[] {
   });
 }
 
-test("works and losses are summed up, and the balance is flat", () => {
+test("works and losses sum to a constant balance", () => {
   const ledger = new Ledger(potentials);
   ledger.update(steps(50), 0);
   assert.equal(at(ledger, "mouse_work").at(-1), 25);
@@ -33,7 +33,7 @@ test("works and losses are summed up, and the balance is flat", () => {
   assert.ok(ledger.drift().drift < 1e-12);
 });
 
-test("rows may come one by one, and a rewind takes back the sums", () => {
+test("single rows and rewinds keep the sums right", () => {
   const rows = steps(30);
   const [whole, grown] = [new Ledger(potentials), new Ledger(potentials)];
   whole.update(rows.slice(0, 21), 0);
@@ -43,7 +43,7 @@ test("rows may come one by one, and a rewind takes back the sums", () => {
   assert.deepEqual(grown.drift(), whole.drift());
 });
 
-test("a step that loses energy from the books shows as a drift", () => {
+test("unexplained energy loss is a drift", () => {
   const rows = steps(10);
   rows[5]!.kinetic = rows[5]!.kinetic! - 1;
   const ledger = new Ledger(potentials);
@@ -53,7 +53,7 @@ test("a step that loses energy from the books shows as a drift", () => {
   assert.match(balanceText(1e-9, 10), /flat to 1 nJ/);
 });
 
-test("what is not known stays unknown, also in sums", () => {
+test("unknown values stay unknown in sums", () => {
   const rows = steps(3);
   rows[1]!.mouse_work = null;
   const ledger = new Ledger(potentials);
@@ -65,7 +65,7 @@ test("what is not known stays unknown, also in sums", () => {
   );
 });
 
-test("a ledger continues when the first rows are forgotten", () => {
+test("a ledger continues without its first rows", () => {
   const rows = steps(40);
   const [whole, late] = [new Ledger(potentials), new Ledger(potentials)];
   whole.update(rows, 0);
@@ -76,7 +76,7 @@ test("a ledger continues when the first rows are forgotten", () => {
   assert.deepEqual(late.columns, whole.columns);
 });
 
-test("of very many steps the older ones are thinned out; the sums stay", () => {
+test("old steps are thinned out, sums stay", () => {
   const ledger = new Ledger(potentials);
   const row = stepRow({ mouse_work: 1, potential: [0, 0] });
   for (let from = 0; from < 300_000; from += 10_000)
@@ -87,7 +87,7 @@ test("of very many steps the older ones are thinned out; the sums stay", () => {
   assert.ok(ledger.step.every((step, i) => i === 0 || step > ledger.step[i - 1]!));
 });
 
-test("a side that blew up does not flatten the other one", () => {
+test("a blown-up side does not flatten the other", () => {
   const [calm, wild, alike] = [new Ledger(potentials), new Ledger(potentials), new Ledger(potentials)];
   calm.update(steps(20), 0);
   alike.update(steps(10), 0);
@@ -99,7 +99,7 @@ test("a side that blew up does not flatten the other one", () => {
   assert.ok(range[0] <= Math.min(...values) && range[1] >= Math.max(...values) && range[1] < 1e3);
 });
 
-test("rows of zeros are not shown, until they are something", () => {
+test("zero columns are hidden until nonzero", () => {
   const ledger = new Ledger(["elasticity", "gravity", "probe"]);
   const still = stepRow({ step: 1, time: 0.1, kinetic: 0, potential: [2, 0, 0] });
   const moving = stepRow({ step: 2, time: 0.2, kinetic: 1, potential: [1, 0, 0], mouse_work: 0.5 });
@@ -113,12 +113,12 @@ test("rows of zeros are not shown, until they are something", () => {
   assert.deepEqual(ledger.used(), ["potential_elasticity", "potential_total", "total", "balance"]);
 });
 
-test("no two rows of the legend have the same color", () => {
+test("legend colors are distinct", () => {
   const columns = ledgerColumns(Array.from({ length: 30 }, (_, i) => `term_${i}`));
   assert.equal(new Set(columns.map(({ color }) => color)).size, columns.length);
 });
 
-test("an explosion is not called a flat balance", () => {
+test("an explosion is no flat balance", () => {
   const [calm, wild] = [new Ledger(potentials), new Ledger(potentials)];
   calm.update(steps(50), 0);
   assert.equal(calm.exploded(), null);
@@ -126,12 +126,12 @@ test("an explosion is not called a flat balance", () => {
   wild.update([...steps(5), stepRow({ step: 6, time: 0.6, kinetic: made, potential: [1, 0], numerical_loss: -made })], 0);
   assert.ok(wild.drift().drift < 1e-9 * made, "the books are balanced: the loss is negative");
   assert.equal(wild.exploded(), made + 1);
-  assert.match(explosionText(made), /exploded: .* 1e60 J out of nothing/);
+  assert.match(explosionText(made), /exploded: .* 1e60 J without work/);
   wild.update(steps(5), 5);
   assert.equal(wild.exploded(), null);
 });
 
-test("a fall, and energy that the mouse puts in, are no explosions", () => {
+test("falls and mouse work are no explosions", () => {
   const fall = new Ledger(potentials);
   const row = (step: number, kinetic: number, more = {}): ReturnType<typeof stepRow> =>
     stepRow({ step, time: 0.1 * step, kinetic, potential: [0, -kinetic + 1e-9], ...more });

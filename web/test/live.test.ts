@@ -5,7 +5,7 @@ import { LiveSource } from "../src/live";
 import type { Socket } from "../src/live";
 import type { Incoming } from "../src/source";
 
-// Node.js 18 takes the list itself, newer versions an object that holds it.
+// Node.js 18 accepts the list itself, newer versions an object that contains it.
 function mockTimeouts(context: TestContext): void {
   const enable = context.mock.timers.enable.bind(context.mock.timers) as (what: unknown) => void;
   const isOld = Number(process.versions.node.split(".")[0]) < 20;
@@ -52,7 +52,7 @@ function connect(): { source: LiveSource; sockets: FakeSocket[]; received: Incom
   return { source, sockets, received };
 }
 
-test("an answer goes to who asked, and to nobody else", async () => {
+test("each answer reaches only its question", async () => {
   const { source, sockets, received } = connect();
   const first = source.ask<string>({ ask: "worst", side: "a" });
   const second = source.request({ do: "reset" });
@@ -63,7 +63,7 @@ test("an answer goes to who asked, and to nobody else", async () => {
   assert.deepEqual(received, [{ connected: true }]);
 });
 
-test("a refusal rejects what was asked, in the program's words", async () => {
+test("a refusal rejects with the program's message", async () => {
   const { source, sockets, received } = connect();
   const asked = source.request({ do: "load", scene: "nowhere.toml" });
   sockets[0].says({ kind: "refused", id: 1, why: "no such file" });
@@ -72,7 +72,7 @@ test("a refusal rejects what was asked, in the program's words", async () => {
   assert.deepEqual(received.at(-1), { message: { kind: "refused", id: null, why: "not now" } });
 });
 
-test("a lost connection rejects what is open and is made anew", async (context) => {
+test("a lost connection rejects open requests and reconnects", async (context) => {
   mockTimeouts(context);
   const { source, sockets, received } = connect();
   const asked = source.ask({ ask: "recording" });
@@ -92,14 +92,14 @@ test("a lost connection rejects what is open and is made anew", async (context) 
   assert.deepEqual(received.at(-1), { connected: true });
 });
 
-test("why the program closed the connection is reported", (context) => {
+test("the reason of a closed connection is reported", (context) => {
   mockTimeouts(context);
   const { sockets, received } = connect();
   sockets[0].closed("too slow");
   assert.match(JSON.stringify(received), /closed the connection: too slow/);
 });
 
-test("a command without a connection is refused in words", () => {
+test("a command without a connection is refused", () => {
   const sockets: FakeSocket[] = [];
   const received: Incoming[] = [];
   const source = new LiveSource("ws://here/session", () => {

@@ -4,7 +4,7 @@ import { Newest } from "../src/newest";
 
 const turn = (): Promise<void> => new Promise((resolve) => setImmediate(resolve));
 
-test("while one value is under way, only the newest of the others is sent", async () => {
+test("sends only the newest value after each answer", async () => {
   const sent: number[] = [];
   let answer: () => void = () => {};
   let rests = 0;
@@ -28,7 +28,7 @@ test("while one value is under way, only the newest of the others is sent", asyn
   assert.equal(rests, 1);
 });
 
-test("a refused value is reported, and the next one is sent", async () => {
+test("a refusal is reported, the next value sent", async () => {
   const failures: unknown[] = [];
   const newest = new Newest<number>(
     (value) => (value < 0 ? Promise.reject(new Error("negative")) : Promise.resolve()),

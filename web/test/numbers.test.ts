@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { csv, plural, prefixOf, short, ticks, withUnit } from "../src/plots/numbers";
 
-test("units take the SI prefix that leaves one to three digits before the point", () => {
+test("SI prefixes leave one to three digits", () => {
   assert.equal(withUnit(0.01234, "J"), "12.34 mJ");
   assert.equal(withUnit(-1500, "J"), "−1.5 kJ");
   assert.equal(withUnit(999.99999, "N", 3), "1000 N");
@@ -13,14 +13,14 @@ test("units take the SI prefix that leaves one to three digits before the point"
   assert.equal(prefixOf(Number.NaN).letter, "");
 });
 
-test("what is not known is a dash", () => {
+test("missing values are dashes", () => {
   assert.equal(withUnit(null, "J"), "–");
   assert.equal(short(undefined), "–");
   assert.equal(short(Number.NaN), "–");
   assert.equal(short(Infinity), "∞");
 });
 
-test("short numbers keep few digits and no zeros at the end", () => {
+test("short numbers have no trailing zeros", () => {
   assert.equal(short(0.001), "0.001");
   assert.equal(short(1.5e-7), "1.5e−7");
   assert.equal(short(123456), "123456");
@@ -39,7 +39,7 @@ test("ticks tell their neighbors apart", () => {
   assert.deepEqual(ticks([]), []);
 });
 
-test("CSV keeps every digit, and quotes names that need it", () => {
+test("CSV keeps digits and quotes names", () => {
   const x = 0.1 + 0.2;
   assert.equal(
     csv(
@@ -54,7 +54,7 @@ test("CSV keeps every digit, and quotes names that need it", () => {
   );
 });
 
-test("numbers beyond all prefixes have powers of ten", () => {
+test("numbers beyond all prefixes use powers", () => {
   assert.deepEqual(prefixOf(2.5e83), { factor: 1, letter: "" });
   assert.deepEqual(ticks([0, 1e83, 2e83]), ["0", "1e83", "2e83"]);
 });

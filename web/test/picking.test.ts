@@ -34,7 +34,7 @@ function frontCamera(orthographic = false): CameraRig {
   return rig;
 }
 
-test("the nearest triangle under a pixel is picked, and its weights give the point", () => {
+test("picks the nearest triangle with its weights", () => {
   for (const orthographic of [false, true]) {
     const lens = frontCamera(orthographic).lens(400, 400);
     const hit = pick(rayThrough(lens, 215, 190), kBall.positions, kBall.triangles, null);
@@ -48,19 +48,19 @@ test("the nearest triangle under a pixel is picked, and its weights give the poi
   }
 });
 
-test("nothing is picked beside the body", () => {
+test("picks nothing beside the body", () => {
   const lens = frontCamera().lens(400, 400);
   assert.equal(pick(rayThrough(lens, 5, 5), kBall.positions, kBall.triangles, null), null);
 });
 
-test("what is cut away is not picked: the far wall is", () => {
+test("picks the far wall behind a cut", () => {
   const lens = frontCamera().lens(400, 400);
   const clip = { normal: [0, 0, -1] as Vec3, offset: 0 }; // keeps z <= 0
   const hit = pick(rayThrough(lens, 200, 200), kBall.positions, kBall.triangles, clip);
   assert(hit && hit.point[2] < -0.9);
 });
 
-test("triangles that are not finite or have no area are passed over", () => {
+test("ignores infinite and degenerate triangles", () => {
   const positions = kBall.positions.slice();
   positions.fill(NaN, 0, 60);
   positions.fill(0, 60, 90);
@@ -69,7 +69,7 @@ test("triangles that are not finite or have no area are passed over", () => {
   assert(hit && hit.point.every(Number.isFinite));
 });
 
-test("micrometers are picked like kilometers", () => {
+test("picking is independent of scale", () => {
   for (const size of [1e-6, 1e3]) {
     const rig = new CameraRig();
     rig.show("ball", [-size, -size, -size], [size, size, size], [0, 0, 1]);
@@ -84,7 +84,7 @@ test("the nearest corner has the largest weight", () => {
   assert.equal(nearestVertex(hit, new Uint32Array([0, 1, 2, 7, 8, 9])), 8);
 });
 
-test("the brush takes the vertices in its disc that face the camera, and none behind them", () => {
+test("the brush covers only visible vertices", () => {
   const lens = frontCamera().lens(400, 400);
   const surface = { ...kBall, clip: null };
   const found = verticesInStroke(lens, surface, [[200, 200]], 60);
@@ -99,7 +99,7 @@ test("the brush takes the vertices in its disc that face the camera, and none be
   }
 });
 
-test("a stroke of the brush covers all of its way, however few its places are", () => {
+test("a stroke covers its path with few points", () => {
   const lens = frontCamera().lens(400, 400);
   const surface = { ...kBall, clip: null };
   const line = (count: number): [number, number][] =>
@@ -119,14 +119,14 @@ test("the brush reaches through a cut", () => {
   for (const v of found) assert(kBall.positions[3 * v + 2] < 0);
 });
 
-test("vertices behind the camera are on no screen", () => {
+test("vertices behind the camera have no pixel", () => {
   const lens = frontCamera().lens(400, 400);
   const screen = screenPositions(lens, new Float32Array([0, 0, 100, 0, 0, 0]), null);
   assert(Number.isNaN(screen[0]));
   assert(Math.abs(screen[3] - 200) < 1e-3 && Math.abs(screen[4] - 200) < 1e-3);
 });
 
-test("numbers are written at visible vertices only, apart from each other", () => {
+test("labels are at visible vertices and apart", () => {
   const n = kBall.positions.length / 3;
   const geometry: Geometry = {
     side: "a", generation: 1, rest: kBall.positions, triangles: kBall.triangles, edges: new Uint32Array(0),

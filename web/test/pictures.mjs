@@ -11,7 +11,7 @@ const [aspic, out] = process.argv.slice(2).map((path) => resolve(path));
 if (!aspic || !out) throw new Error("node test/pictures.mjs ASPIC OUT");
 if (!findChromium()) throw new Error("there is no Chromium (Debian: apt-get install chromium)");
 
-// The address of `aspic view`, which ends with this program at the latest.
+// Address of `aspic view`, which ends with this program at the latest.
 let program = null;
 async function startProgram(scene, more = []) {
   program?.kill("SIGINT");
@@ -39,11 +39,11 @@ async function openPage(browser, address, height) {
   return page;
 }
 
-// At that step, or a later one.
+// Waits for that step or a later one.
 const reached = (page, step) =>
   page.waitForFunction((wanted) => Number(document.querySelector(".place")?.textContent.match(/^step (\d+)/)?.[1]) >= wanted, step);
 
-// Until the page looks the same for a second.
+// Waits until the page looks the same for a second.
 async function settled(page) {
   for (let last = ""; ; ) {
     const now = (await page.screenshot()).toString("base64");
@@ -53,7 +53,7 @@ async function settled(page) {
   }
 }
 
-// The topmost point of the body: the tip of an ear.
+// Topmost point of the body: the tip of an ear.
 async function highestPoint(page) {
   const view = page.locator("#views .view");
   const box = await view.boundingBox();
@@ -67,7 +67,7 @@ async function highestPoint(page) {
   throw new Error("no body under the mouse");
 }
 
-// The bunny, colored by its displacement and dragged by an ear, with the minimization of each step.
+// The bunny, colored by displacement and dragged by an ear, with the minimization of each step.
 async function drawViewer(browser) {
   const address = await startProgram("scenes/bunny.toml", ["--set", "body.0.deform.displacement=[0, 0, 0]"]);
   const page = await openPage(browser, address, 800);
@@ -80,13 +80,13 @@ async function drawViewer(browser) {
     await page.mouse.move(x + 200 * share, y - 40 * share, { steps: 4 });
     await reached(page, 50 * share);
   }
-  await page.keyboard.press(" "); // everything shows one step, the mouse still pulls
+  await page.keyboard.press(" "); // all panels show one step while the mouse still pulls
   await page.getByRole("button", { name: "Play" }).waitFor();
   await settled(page);
   await page.screenshot({ path: join(out, "viewer.png") });
 }
 
-// E over a plane through Newton's direction, on a step that needs the line search.
+// E over a plane through Newton's direction, in a step that needs the line search.
 async function drawLandscape(browser) {
   const address = await startProgram("scenes/lecture/53_hard_step.toml", ["--set", `mesh=${join(root, "assets/bunny.mesh")}`, "--set", "scale=0.1"]);
   const page = await openPage(browser, address, 1200);
@@ -100,7 +100,7 @@ async function drawLandscape(browser) {
   await panel.screenshot({ path: join(out, "landscape.png") });
 }
 
-// The report that a run leaves: its certificate.
+// Report of a run: its certificate.
 async function drawReport(browser, folder) {
   const run = join(folder, "run");
   execFileSync(aspic, ["run", join(root, "scenes/bunny.toml"), "--out", run, "--quiet"], { stdio: "inherit" });

@@ -8,7 +8,7 @@ const luminance = ([r, g, b]: number[]): number => {
   return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
 };
 
-test("a side that says nothing any more leaves the range to the other one", () => {
+test("a removed side leaves the other's range", () => {
   const range = new RunningRange();
   range.feed("a", 0, 5);
   range.feed("b", -1e30, 1e30);
@@ -18,7 +18,7 @@ test("a side that says nothing any more leaves the range to the other one", () =
   assert.deepEqual(range.get(), { low: 0, high: 5 });
 });
 
-test("ticks are round, inside the range, and about as many as asked", () => {
+test("ticks are round, inside, of requested number", () => {
   assert.deepEqual(ticks(0, 10, 5), [0, 2, 4, 6, 8, 10]);
   assert.deepEqual(ticks(-0.13, 0.31, 4), [0, 0.2]);
   for (const [low, high] of [[1e-7, 3e-7], [-5e9, 4e9], [0.999, 1.001]]) {
@@ -28,20 +28,20 @@ test("ticks are round, inside the range, and about as many as asked", () => {
   }
 });
 
-test("a range without width has one tick, and one that is not finite none", () => {
+test("an empty range has one tick", () => {
   assert.deepEqual(ticks(2, 2, 5), [2]);
   assert.deepEqual(ticks(NaN, 1, 5), []);
   assert.deepEqual(ticks(-Infinity, Infinity, 5), []);
 });
 
-test("logarithmic ticks are powers of ten, with 2 and 5 where these are few", () => {
+test("logarithmic ticks are powers of ten", () => {
   assert.deepEqual(logTicks(1, 1000), [1, 10, 100, 1000]);
   assert.deepEqual(logTicks(1, 50), [1, 2, 5, 10, 20, 50]);
   assert.deepEqual(logTicks(20.1, 38.5), [25, 30, 35]);
   assert.deepEqual(logTicks(-1, 10), []);
 });
 
-test("a running range grows at once and shrinks slowly, over both sides", () => {
+test("a running range grows at once, shrinks slowly", () => {
   const range = new RunningRange();
   range.feed("a", 0, 10);
   range.feed("b", 5, 20);
@@ -53,7 +53,7 @@ test("a running range grows at once and shrinks slowly, over both sides", () => 
   assert(Math.abs(range.get()!.high - 12) < 1e-3);
 });
 
-test("what is not finite leaves a running range as it is", () => {
+test("infinite values do not change a range", () => {
   const range = new RunningRange();
   assert.equal(range.get(), null);
   range.feed("a", 1, 2);
@@ -67,14 +67,14 @@ test("a diverging range is centered", () => {
   assert.deepEqual(about(1, 0.9, 1.5), { low: 0.5, high: 1.5 });
 });
 
-test("a logarithmic range needs something positive", () => {
+test("a logarithmic range needs a positive value", () => {
   assert.equal(logRange(-2, 0), null);
   assert.deepEqual(logRange(0, 1), { low: 1e-9, high: 1 });
   assert.equal(fraction({ low: 1, high: 100, log: true }, 10), 0.5);
   assert.equal(fraction({ low: 3, high: 3, log: false }, 3), 0.5);
 });
 
-test("sequential maps get lighter all the way, the diverging one is lightest in the middle", () => {
+test("lightness of color maps is monotone or symmetric", () => {
   for (const map of kMapNames) {
     const light = Array.from({ length: 65 }, (_, i) => luminance(colorAt(map, i / 64)));
     for (let i = 1; i < 65; ++i) {
@@ -84,7 +84,7 @@ test("sequential maps get lighter all the way, the diverging one is lightest in 
   }
 });
 
-test("a map's texels are its colors, and values outside take the ends", () => {
+test("texels are the map's colors, clamped outside", () => {
   const texels = mapTexels("viridis", 256);
   assert.deepEqual([...texels.slice(0, 4)], [0x44, 0x01, 0x54, 255]);
   assert.deepEqual([...texels.slice(-4)], [0xfd, 0xe7, 0x25, 255]);

@@ -1,4 +1,4 @@
-// A recorded run as a source: what is packed here as apps/viewer/recording.h says plays, rewinds and answers.
+// A recorded run as a source: an archive packed as in apps/viewer/recording.h plays, rewinds and answers.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { gzipSync } from "node:zlib";
@@ -7,7 +7,7 @@ import { RecordedSource } from "../src/recorded";
 import { stepsToShow } from "../src/render";
 import type { Incoming } from "../src/source";
 
-// Three corners and one triangle that move along x: frame f is at the codes 100 f^2.
+// Three corners and one triangle that move along x: frame f has the codes 100 f^2.
 const kFrames = 5;
 const kSize = 6.5535; // so that a code is 0.0001
 
@@ -106,7 +106,7 @@ class Reader {
     });
   }
 
-  // The screen shows pictures for so long.
+  // Advances the clock by the duration of some frames.
   pass(milliseconds: number): void {
     for (let elapsed = 0; elapsed < milliseconds; elapsed += 10) {
       this.now += 10;
@@ -139,7 +139,7 @@ async function opened(): Promise<Reader> {
   return reader;
 }
 
-test("a recording greets as a program does, and shows its start", async () => {
+test("a recording sends a greeting and its start", async () => {
   const reader = await opened();
   assert.deepEqual(reader.messages.map(({ kind }) => kind), ["hello", "scene", "pins", "steps", "state"]);
   assert.deepEqual(reader.messages[2], { kind: "pins", side: "a", vertices: [1] });
@@ -148,7 +148,7 @@ test("a recording greets as a program does, and shows its start", async () => {
   assert.equal(reader.picture.values, null);
 });
 
-test("positions are what was packed", async () => {
+test("positions equal the packed ones", async () => {
   const reader = await opened();
   for (const frame of [4, 2, 0, 3]) {
     await reader.source.request({ do: "rewind", step: 10 * frame });
@@ -158,7 +158,7 @@ test("positions are what was packed", async () => {
   }
 });
 
-test("it plays at its speed, ends at the last frame, and begins again", async () => {
+test("plays at its speed, ends, and restarts", async () => {
   const reader = await opened();
   await reader.source.request({ do: "speed", value: 0.5 });
   await reader.source.request({ do: "play" });
@@ -175,7 +175,7 @@ test("it plays at its speed, ends at the last frame, and begins again", async ()
   assert.equal(reader.state.a.step, 0);
 });
 
-test("it steps by frames and rewinds to the nearest one", async () => {
+test("steps by frames, rewinds to the nearest", async () => {
   const reader = await opened();
   await reader.source.request({ do: "step" });
   assert.equal(reader.state.a.step, 10);
@@ -186,7 +186,7 @@ test("it steps by frames and rewinds to the nearest one", async () => {
   assert.equal(reader.state.a.step, 0);
 });
 
-test("a picture waits until the one before is drawn; then the newest comes", async () => {
+test("the newest picture follows a drawn one", async () => {
   const reader = await opened();
   for (const step of [10, 20, 30]) await reader.source.request({ do: "rewind", step });
   assert.deepEqual(reader.pictures.map(({ step }) => step), [0, 10]);
@@ -194,7 +194,7 @@ test("a picture waits until the one before is drawn; then the newest comes", asy
   assert.deepEqual(reader.pictures.map(({ step }) => step), [0, 10, 30]);
 });
 
-test("fields are of places that vertices share; what is no number stays none", async () => {
+test("shared points share values, NaN stays NaN", async () => {
   const reader = await opened();
   await reader.source.request({ do: "color", field: "stress" });
   assert.deepEqual([...reader.picture.values!], [0, 10, 10]);
@@ -205,7 +205,7 @@ test("fields are of places that vertices share; what is no number stays none", a
   await assert.rejects(reader.source.request({ do: "color", field: "color" }), /no field 'color'/);
 });
 
-test("it answers what it knows and refuses the rest in words", async () => {
+test("refuses unknown queries with a message", async () => {
   const reader = await opened();
   await reader.source.request({ do: "rewind", step: 20 });
   const text = await reader.source.ask<TextReply>({ ask: "scene", side: "a" });
@@ -218,12 +218,12 @@ test("it answers what it knows and refuses the rest in words", async () => {
   assert.equal(vertex.values.young, 6);
   assert.equal(vertex.values.stress, null);
   await assert.rejects(reader.source.ask({ ask: "vertex", side: "a", vertex: 3 }), /no vertex 3/);
-  await assert.rejects(reader.source.ask({ ask: "worst", side: "a" }), /does not hold/);
+  await assert.rejects(reader.source.ask({ ask: "worst", side: "a" }), /does not contain/);
   await assert.rejects(reader.source.request({ do: "set", key: "time.step", value: 1 }), /cannot be changed/);
   await assert.rejects(reader.source.request({ do: "surface", which: "skin" }), /no skin/);
 });
 
-test("a damaged recording is reported in words", async () => {
+test("a damaged recording is reported", async () => {
   for (const text of [recordingText().slice(0, 400), "", "no base64 at all!"]) {
     const reader = new Reader(text);
     await reader.start();
@@ -231,7 +231,7 @@ test("a damaged recording is reported in words", async () => {
   }
 });
 
-test("pictures of a video are the frames that are not later", () => {
+test("video pictures use the latest earlier frame", () => {
   const frames = { step: [0, 10, 20, 30, 40], time: [0, 0.1, 0.2, 0.3, 0.4] };
   assert.deepEqual(stepsToShow(frames, { step: null, every: 0 }), frames.step);
   assert.deepEqual(stepsToShow(frames, { step: null, every: 0.05 }), [0, 0, 10, 10, 20, 20, 30, 30, 40]);

@@ -1,4 +1,4 @@
-// Rows for tests, of steps that did only what the test sets.
+// Step rows for tests; fields that a test does not set are zero.
 import type { IterationRow, StepRow } from "../src/protocol";
 import { kUnknownStep } from "../src/stepFields";
 

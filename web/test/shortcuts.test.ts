@@ -3,7 +3,7 @@ import { test } from "node:test";
 import { Page } from "../src/page";
 import { keyName, pressedKey } from "../src/shortcuts";
 
-test("Shift is part of the name of what it does not change into another character", () => {
+test("key names include Shift where the character stays", () => {
   assert.equal(pressedKey({ key: "s", shiftKey: false }), "s");
   assert.equal(pressedKey({ key: "S", shiftKey: true }), "Shift+S");
   assert.equal(pressedKey({ key: "S", shiftKey: false }), "s", "caps lock");
@@ -11,14 +11,14 @@ test("Shift is part of the name of what it does not change into another characte
   assert.equal(pressedKey({ key: "ArrowLeft", shiftKey: true }), "Shift+ArrowLeft");
 });
 
-test("two shortcuts on one key are an error", () => {
+test("two shortcuts on one key throw", () => {
   const page = new Page();
   const shortcut = { key: "s", does: "One thing", group: "File", run: () => {} } as const;
   page.shortcut(shortcut);
   assert.throws(() => page.shortcut(shortcut), /two shortcuts on s/);
 });
 
-test("keys are named as on a keyboard", () => {
+test("keys have their names on a keyboard", () => {
   assert.equal(keyName(" "), "Space");
   assert.equal(keyName("s"), "S");
   assert.equal(keyName("Shift+S"), "Shift+S");

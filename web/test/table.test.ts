@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { lowerBound, magnitude, merged, nearest, thinned } from "../src/plots/table";
 
-test("thinning keeps the extremes of every column and never shows more than two rows per bucket", () => {
+test("thinning keeps extremes in two rows per bucket", () => {
   const x = Array.from({ length: 20000 }, (_, i) => i);
   const spike = x.map((i) => (i === 7777 ? 100 : i === 12345 ? -50 : Math.sin(i)));
   const thin = thinned({ x, columns: [spike, x] }, 0, x.length, 500);
@@ -23,7 +23,7 @@ test("a bucket without values stays empty", () => {
   assert.ok(thin.columns[0]!.every((value) => value === null));
 });
 
-test("two tables merge over the union of their x", () => {
+test("tables merge over the union of x", () => {
   const both = merged({ x: [1, 2, 3], columns: [[10, 20, 30]] }, { x: [1.5, 2], columns: [[1, 2]] });
   assert.deepEqual(both, {
     x: [1, 1.5, 2, 3],
@@ -34,7 +34,7 @@ test("two tables merge over the union of their x", () => {
   });
 });
 
-test("rows are found by their x", () => {
+test("lower bound finds rows by x", () => {
   assert.equal(lowerBound([1, 2, 2, 3], 2), 1);
   assert.equal(lowerBound([], 2), 0);
   assert.equal(nearest([0, 1, 2], 1.6), 2);
@@ -42,7 +42,7 @@ test("rows are found by their x", () => {
   assert.equal(nearest([0, 1, 2], 9), 2);
 });
 
-test("a logarithmic axis has no place for zero", () => {
+test("a logarithmic axis omits zero", () => {
   assert.equal(magnitude(0), null);
   assert.equal(magnitude(-3), 3);
   assert.equal(magnitude(null), null);

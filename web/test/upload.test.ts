@@ -10,21 +10,21 @@ import { unzip } from "../src/unzip";
 const bytes = (text: string) => new TextEncoder().encode(text);
 const file = (name: string, text: string) => new File([text], name) as unknown as globalThis.File;
 
-// What Node.js 18 lacks: its DecompressionStream does not know "deflate-raw".
+// Replaces "deflate-raw", which the DecompressionStream of Node.js 18 lacks.
 globalThis.DecompressionStream = class {
   constructor() {
     return Duplex.toWeb(createInflateRaw());
   }
 } as unknown as typeof DecompressionStream;
 
-test("the scene among several files is the one that is opened", () => {
+test("the scene among several files is opened", () => {
   assert.equal(mainFile(["bunny.msh", "a/b/inner.toml", "a/outer.toml"]), "a/outer.toml");
   assert.equal(mainFile(["readme.txt", "bunny.obj"]), "bunny.obj");
   assert.equal(mainFile(["readme.txt"]), null);
   assert.ok(isSceneOrMesh("A.OBJ") && isSceneOrMesh("b.zip") && !isSceneOrMesh("c.json"));
 });
 
-test("files go where the scene looks for them", () => {
+test("files are placed where the scene expects", () => {
   const files = [
     { name: "beam.toml", bytes: bytes('mesh = "../assets/beam.msh"\nskin = "skin.obj"') },
     { name: "beam.msh", bytes: bytes("") },
@@ -34,7 +34,7 @@ test("files go where the scene looks for them", () => {
   assert.deepEqual(placed(files, "beam.toml").map(({ name }) => name), ["scene/beam.toml", "assets/beam.msh", "scene/skin.obj", "scene/other.csv"]);
 });
 
-test("no name leads out of the upload", () => {
+test("file names stay inside the upload", () => {
   const files = [
     { name: "a.toml", bytes: bytes('mesh = "../../../etc/b.msh"') },
     { name: "b.msh", bytes: bytes("") },
@@ -42,8 +42,8 @@ test("no name leads out of the upload", () => {
   for (const { name } of placed(files, "a.toml")) assert.doesNotMatch(name, /\.\.|^\//);
 });
 
-test("what is neither scene nor mesh is refused in words", async () => {
-  await assert.rejects(prepareUpload([file("a.txt", "hello")]), /a\.txt: holds no scene/);
+test("rejects uploads without scene or mesh", async () => {
+  await assert.rejects(prepareUpload([file("a.txt", "hello")]), /a\.txt: contains no scene/);
 });
 
 test("an upload is packed for the program", async () => {
@@ -89,7 +89,7 @@ test("an archive is unpacked within its limit", async () => {
   const files = await unzip(archive(), 1000);
   assert.deepEqual(files.map(({ name }) => name), ["s/a.toml", "s/b.msh"]);
   assert.equal(new TextDecoder().decode(files[0]!.bytes), "x = 1\n".repeat(100));
-  await assert.rejects(unzip(archive(), 500), /larger than/);
+  await assert.rejects(unzip(archive(), 500), /exceed/);
 });
 
 test("a damaged archive is refused", async () => {
@@ -97,7 +97,7 @@ test("a damaged archive is refused", async () => {
   await assert.rejects(unzip(archive().slice(20), 1000), /damaged/);
 });
 
-test("scenes are offered by their folders", () => {
+test("scenes are grouped by folder", () => {
   const shelves = shelvesOf([
     { name: "bunny.toml", about: "", path: "/s/bunny.toml" },
     { name: "lecture/33_mouse.toml", about: "", path: "/s/lecture/33_mouse.toml" },

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { entryTexts, matrixText, unitText, valueText, vectorText } from "../src/view/values";
 
-test("units that take a prefix get one, others none", () => {
+test("only units with prefixes get one", () => {
   assert.equal(valueText(12345, "Pa", 3), "12.3 kPa");
   assert.equal(valueText(0.0042, "m"), "4.2 mm");
   assert.equal(valueText(15090, "J/m^3", 3), "15.1 kJ/m³");
@@ -12,7 +12,7 @@ test("units that take a prefix get one, others none", () => {
   assert.equal(unitText("m/s^2"), "m/s²");
 });
 
-test("what is not finite is reported in words", () => {
+test("infinite values have a text", () => {
   assert.equal(valueText(null, "Pa"), "not finite");
   assert.equal(valueText(Infinity, ""), "not finite");
 });
@@ -23,7 +23,7 @@ test("round-off beside large entries is 0", () => {
   assert.equal(vectorText([1, 2, 3], "m"), "1  2  3 m");
 });
 
-test("columns of a matrix are equally wide", () => {
+test("matrix columns have equal widths", () => {
   const lines = matrixText([[1, -0.5, 0], [0, 1, 0], [0, 0, 1]], "").split("\n");
   assert.equal(lines.length, 3);
   assert.equal(new Set(lines.map((line) => line.length)).size, 1);

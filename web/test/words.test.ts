@@ -6,24 +6,24 @@ import { iterationRow, stepRow } from "./rowsOfSteps";
 const withNorms = (norms: number[]): ReturnType<typeof stepRow> =>
   stepRow({ iterations: norms.map((gradient_norm) => iterationRow({ gradient_norm })) });
 
-test("squaring is reported from a steady pace", () => {
+test("quadratic convergence differs from a steady pace", () => {
   assert.equal(pace([1, 1e-1, 1e-2, 1e-4, 1e-8]).pace, "squaring");
   assert.equal(pace([1, 0.5, 0.25, 0.125, 0.0625]).pace, "steady");
   assert.ok(Math.abs(pace([1, 0.5, 0.25, 0.125]).factor - 2) < 1e-12);
   assert.equal(pace([1, 0.3, 0.05, 0.003]).pace, "faster");
 });
 
-test("numbers without a meaning have no text", () => {
+test("meaningless norms have no pace", () => {
   assert.equal(pace([1, 0.1]).pace, "none");
   assert.equal(pace([1, 2, 3]).pace, "none");
   assert.equal(pace([null, 0, 1]).pace, "none");
   assert.equal(pace([]).pace, "none");
 });
 
-test("a converged step shows its residual and its pace", () => {
+test("a converged step has residual and pace", () => {
   assert.equal(
     stepText(withNorms([1, 1e-1, 1e-2, 1e-4]), true),
-    "Converged in 4 iterations: the residual, 100 µN, is below the threshold of 1 mN. The gradient fell ever faster, the last time by a factor of 100: close to the minimum each iteration about squares the error.",
+    "Converged in 4 iterations: the residual, 100 µN, is below the threshold of 1 mN. The gradient fell faster in each iteration, the last time by a factor of 100: near the minimum each iteration about squares the error.",
   );
 });
 
@@ -51,10 +51,10 @@ test("a rejected first trial is mentioned", () => {
 });
 
 test("an explicit scheme minimizes nothing", () => {
-  assert.match(stepText(stepRow(), false), /Nothing is minimized/);
+  assert.match(stepText(stepRow(), false), /does not minimize/);
 });
 
-test("the lowest value has no place above the lowest value", () => {
+test("the lowest value is omitted", () => {
   assert.deepEqual(aboveLowest([3, null, 1, 2]), [2, null, null, 1]);
   assert.equal(totalSeconds(iterationRow()), 15);
 });

@@ -3,7 +3,7 @@ import { test } from "node:test";
 import { fileName } from "../src/video";
 import { isWorkspace, parseRecording, parseWorkspace } from "../src/workspace";
 
-test("a workspace reads back what was saved", () => {
+test("a saved workspace reads back equal", () => {
   const saved = {
     aspic_workspace: 1,
     scene: "scenes/bunny.toml",
@@ -24,7 +24,7 @@ test("a workspace keeps the files of its scene", () => {
   assert.equal(read([{ name: 3 }]).files, undefined);
 });
 
-test("what a workspace has wrong or too much is left out", () => {
+test("a workspace ignores wrong and unknown parts", () => {
   const read = parseWorkspace(
     '{"aspic_workspace": 1, "scene": "x.toml", "overrides": [1], "settings": {"a": null, "b": {"c": 1}, "d": 2}, ' +
       '"compare": 7, "page": [], "more": 1}',
@@ -39,20 +39,20 @@ test("what a workspace has wrong or too much is left out", () => {
   });
 });
 
-test("a file that is no workspace is refused in words", () => {
-  assert.throws(() => parseWorkspace("solid cube"), /no JSON/);
-  assert.throws(() => parseWorkspace("[1, 2]"), /no workspace/);
-  assert.throws(() => parseWorkspace("{}"), /no workspace of Aspic/);
+test("rejects files that are no workspace", () => {
+  assert.throws(() => parseWorkspace("solid cube"), /not JSON/);
+  assert.throws(() => parseWorkspace("[1, 2]"), /not a workspace/);
+  assert.throws(() => parseWorkspace("{}"), /not a workspace of Aspic/);
   assert.throws(() => parseWorkspace('{"aspic_workspace": 2, "scene": "x"}'), /version 2/);
   assert.throws(() => parseWorkspace('{"aspic_workspace": 1}'), /no scene/);
 });
 
-test("a file that is no recording is refused in words", () => {
-  assert.throws(() => parseRecording('{"scene": "x", "events": {}}'), /no recording/);
+test("rejects files that are no recording", () => {
+  assert.throws(() => parseRecording('{"scene": "x", "events": {}}'), /not a mouse recording/);
   assert.equal(parseRecording('{"scene": "x", "overrides": [], "compare": null, "events": [], "steps": 3}').steps, 3);
 });
 
-test("the name of a scene becomes the name of a file", () => {
+test("scene names become file names", () => {
   assert.equal(fileName("bunny", "png"), "bunny.png");
   assert.equal(fileName("../a b/c", "webm"), "a_b_c.webm");
   assert.equal(fileName("", "png"), "aspic.png");

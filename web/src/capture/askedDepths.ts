@@ -1,10 +1,10 @@
-// The program computes the depth anew, so that its last digits may differ from the request.
+// The program recomputes each depth, so its last digits may differ from the request.
 const isSame = (a: number, b: number): boolean => Math.abs(a - b) <= 1e-9 * Math.max(Math.abs(a), Math.abs(b));
 
-// The depths that were asked for and that the program has not reported yet: the next notch continues from the last of them, not
-// from the older one that is still on its way.
+// Depths that were requested and are not yet reported. The next notch continues from the latest request, not from an
+// older one that is still under way.
 export class AskedDepths {
-  private before = 0; // what was reported when the first of them was asked for
+  private before = 0; // depth reported when the first of them was requested
   private pending: number[] = [];
 
   ask(depth: number, reported: number): void {
@@ -12,7 +12,8 @@ export class AskedDepths {
     this.pending.push(depth);
   }
 
-  // A depth from the program; null: there is no tip. A depth that nobody asked for here is somebody else's, and counts.
+  // Accepts a reported depth; null means that there is no tip. A depth that this page did not request comes from
+  // another page and counts.
   hear(reported: number | null): void {
     const at = reported === null ? -1 : this.pending.map((depth) => isSame(depth, reported)).lastIndexOf(true);
     if (at >= 0) this.pending = this.pending.slice(at + 1);

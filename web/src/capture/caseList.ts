@@ -1,4 +1,4 @@
-// The recorded cases, and what records more of them.
+// The recorded load cases and the controls that record more.
 import { button, element, messageOf } from "../dom";
 import type { Page } from "../page";
 import { numberField } from "../plots/dom";
@@ -7,25 +7,25 @@ import type { Capture, Command, ProbeState } from "../protocol";
 import type { Store } from "../store";
 import type { Display } from "../view/display";
 
-const kDepths = 3; // of one place
-const kDeep = 0.6; // of the pokes all over, in radii
+const kDepths = 3; // load cases per site
+const kDeep = 0.6; // deepest indentation of a series, in tip radii
 
 export class CaseList {
   readonly element = element("section", { class: "capture-cases", "aria-label": "Recorded cases" });
-  private readonly record = this.make("Record this pose", "Keep force and markers of this pose, with the noise of real instruments (Y)", () => ({ do: "record" }));
-  private readonly recordDepths = this.make(`${kDepths} depths here`, "The pose in three equal parts: how the force grows with the depth", () => ({ do: "record", depths: kDepths }));
-  private readonly sites = numberField("places", "How many pokes, as far from each other as can be", 12, { min: 1, max: 200, step: 1 }, () => {});
-  private readonly all = this.make("Poke all over", "Pokes and records by itself, at places as far from each other as can be", () => this.pokeAll());
-  private readonly noise = numberField("noise [%]", "Of positions and forces: standard deviation, relative to the largest motion and the force", 1, { min: 0, max: 100 }, (value) =>
+  private readonly record = this.make("Record this pose", "Record force and markers of this pose, with measurement noise (Y)", () => ({ do: "record" }));
+  private readonly recordDepths = this.make(`${kDepths} depths here`, "Three load cases at equal steps of depth", () => ({ do: "record", depths: kDepths }));
+  private readonly sites = numberField("places", "Number of pokes, as far apart as possible", 12, { min: 1, max: 200, step: 1 }, () => {});
+  private readonly all = this.make("Poke all over", "Poke and record automatically, at sites as far apart as possible", () => this.pokeAll());
+  private readonly noise = numberField("noise [%]", "Standard deviation of positions and forces, relative to the largest motion and the force", 1, { min: 0, max: 100 }, (value) =>
     this.send({ do: "bench", noise: value / 100 }),
   );
-  private readonly seed = numberField("seed", "Other noise with another number, the same with the same one", 1, { min: 0, step: 1 }, (value) =>
+  private readonly seed = numberField("seed", "Equal numbers give equal noise", 1, { min: 0, step: 1 }, (value) =>
     this.send({ do: "bench", seed: value }),
   );
   private readonly list = element("ol", { class: "capture-list", "aria-label": "Cases" });
   private readonly count = element("span", { class: "faint", role: "status" });
-  private readonly clear = this.make("Forget all", "Forget all recorded cases", () => ({ do: "forget" }));
-  private readonly save = button({ text: "Save data set…", title: "As a folder that aspic fit reads, on the program's machine", steers: true }, () => this.saveAs());
+  private readonly clear = this.make("Forget all", "Delete all recorded cases", () => ({ do: "forget" }));
+  private readonly save = button({ text: "Save data set…", title: "Save a folder for aspic fit on the program's machine", steers: true }, () => this.saveAs());
   private reported = "";
 
   constructor(
@@ -46,7 +46,7 @@ export class CaseList {
     this.follow(null);
   }
 
-  // What the tip allows.
+  // Enables the controls that the tip's state allows.
   follow(probe: ProbeState | null): void {
     const ready = probe !== null && probe.wanted !== 0 && this.store.steers;
     this.record.disabled = this.recordDepths.disabled = !ready;

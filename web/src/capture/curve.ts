@@ -1,15 +1,15 @@
-// The force over the depth at which it was felt, of one touch: the latest force of every depth, the shallowest first.
+// Force over depth during one touch: the latest force at every depth, in order of increasing depth.
 import type { ProbeState } from "../protocol";
 
-const kMost = 400; // depths that are distinguished, over the radius of the tip
+const kMost = 400; // distinct depths per tip radius
 
 export class ForceCurve {
   private touch = "";
   private readonly points = new Map<number, [depth: number, force: number]>();
 
-  // True when the curve is another one.
+  // Returns true if the curve has changed.
   add(probe: ProbeState | null): boolean {
-    if (!probe) return false; // the last touch stays to be looked at
+    if (!probe) return false; // the curve of the last touch remains visible
     const touch = [...probe.begun, ...probe.axis, probe.radius, probe.shape, probe.contact].join();
     if (touch !== this.touch) this.points.clear();
     this.touch = touch;
@@ -26,7 +26,7 @@ export class ForceCurve {
   }
 }
 
-// With what force the tip is pushed in; negative where a bonded tip pulls.
+// Force that pushes the tip in; negative where a bonded tip pulls.
 export function pushOf({ force, axis }: { force: readonly number[]; axis: readonly number[] }): number {
   return force[0]! * axis[0]! + force[1]! * axis[1]! + force[2]! * axis[2]!;
 }

@@ -1,18 +1,18 @@
-// A dial with a needle, as on a spring balance. Its scale grows with the value.
+// A dial with a needle, like a spring balance. Its scale grows with the value.
 import { element } from "../dom";
 import { prefixOf, short } from "../plots/numbers";
 import { roundStep } from "../view/ranges";
 
 const kSvg = "http://www.w3.org/2000/svg";
-const kFrom = -120; // [degrees] from the top, at zero
+const kFrom = -120; // angle of zero, from the top [degrees]
 const kSweep = 240;
-const kParts = 5; // of the scale
+const kParts = 5; // intervals of the scale
 
 export function angleOf(value: number, full: number): number {
   return kFrom + kSweep * Math.min(1.04, Math.max(0, full > 0 ? value / full : 0));
 }
 
-// What the whole dial shows; it never shrinks by less than a factor of four, so that the needle is calm.
+// Full scale of the dial. It shrinks only by factors of four or more, so that the needle stays calm.
 export function fullScale(value: number, before: number): number {
   const wanted = value > 0 ? roundStep(1.15 * value) : before;
   return wanted > before || wanted < before / 4 ? wanted : before;

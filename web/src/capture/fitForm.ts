@@ -1,4 +1,4 @@
-// The fit: begun, watched while it converges, judged against the truth, and simulated.
+// The fit: starts it, shows its convergence, compares it with the truth, and simulates it.
 import { button, element, messageOf } from "../dom";
 import type { Page } from "../page";
 import { checkbox } from "../plots/dom";
@@ -13,30 +13,30 @@ const kFields = [
   ["young_deviation", "uncertainty"],
 ] as const;
 
-// How the fit goes, in a line.
+// One-line summary of the fit.
 export function fitText(fit: CaptureFit | null): string {
   if (!fit) return "";
   if (fit.failure !== "") return `The fit failed: ${fit.failure}`;
   const last = fit.iterations[fit.iterations.length - 1];
-  const where = last ? `iteration ${last.index}, data missed by ${short(last.chi, 2)} standard deviations` : "";
+  const where = last ? `iteration ${last.index}, residuals of ${short(last.chi, 2)} standard deviations` : "";
   if (fit.running) return [fit.stage, where].filter((text) => text !== "").join(": ");
   return last ? `Done: ${where}` : "";
 }
 
-// A factor that people say: 0.1 is "10 %", 0.7 "a factor of 2.0".
+// Error as a readable factor: 0.1 is "10 %", 0.7 "a factor of 2.0".
 export function errorText(log: number): string {
   return log < 0.3 ? `${short(100 * (Math.exp(log) - 1), 2)} %` : `a factor of ${short(Math.exp(log), 2)}`;
 }
 
 export class FitForm {
   readonly element = element("section", { class: "capture-fit", "aria-label": "Fit" });
-  private readonly begin = button({ text: "Fit the stiffness", title: "Finds Young's modulus of every tet from the recorded cases, in the background", steers: true }, () => this.send({ do: "fit" }));
+  private readonly begin = button({ text: "Fit the stiffness", title: "Fit Young's modulus of every tet to the recorded cases, in the background", steers: true }, () => this.send({ do: "fit" }));
   private readonly end = button({ text: "Stop", title: "Stop the fit and keep its result", steers: true }, () => this.send({ do: "stop_fit" }));
-  private readonly simulate = button({ text: "Simulate it", title: "Beside the true body, under the same probe and mouse", steers: true }, () => this.send({ do: "simulate_fit" }));
+  private readonly simulate = button({ text: "Simulate it", title: "Simulate the fitted body beside the true one, with the same probe and mouse", steers: true }, () => this.send({ do: "simulate_fit" }));
   private readonly status = element("p", { class: "capture-status", role: "status" });
   private readonly result = element("p", { class: "capture-result" });
-  private readonly bar = element("progress", { max: "1", value: "0", "aria-label": "How well the data are met" });
-  private readonly sameMesh = checkbox("on the mesh that was measured", "An inverse crime: sharper than any real measurement would be. Without it, what the coarser mesh gets wrong hides much of the stiffness. Forget the recorded cases to change it", true, (on) =>
+  private readonly bar = element("progress", { max: "1", value: "0", "aria-label": "Progress of the fit" });
+  private readonly sameMesh = checkbox("on the mesh that was measured", "Inverse crime: results are sharper than those of a real measurement. Without it, the discretization error of the coarser mesh hides details. Delete the recorded cases to change it", true, (on) =>
     this.send({ do: "bench", same_mesh: on }),
   );
   private readonly colors = element("div", { class: "capture-row", role: "group", "aria-label": "Colors of the body" });
@@ -69,7 +69,7 @@ export class FitForm {
     this.status.classList.toggle("plot-error", (fit?.failure ?? "") !== "");
     const known = fit?.error !== null && fit?.error !== undefined;
     this.result.textContent = known
-      ? `E from ${withUnit(fit.softest, "Pa", 2)} to ${withUnit(fit.stiffest, "Pa", 2)}; it misses the truth by ${errorText(fit.error!)} on average.`
+      ? `E from ${withUnit(fit.softest, "Pa", 2)} to ${withUnit(fit.stiffest, "Pa", 2)}; mean error ${errorText(fit.error!)}.`
       : "";
     this.sameMesh.input.disabled = !steers || (capture?.cases.length ?? 0) > 0;
     if (capture && capture.tets > 0) this.sameMesh.input.checked = capture.same_mesh;
@@ -78,7 +78,7 @@ export class FitForm {
     this.mark();
   }
 
-  // From the first chi to 1, on a scale of logarithms.
+  // Progress from the first chi to 1, on a logarithmic scale.
   private progress({ iterations }: CaptureFit): void {
     const [first, last] = [iterations[0]?.chi, iterations[iterations.length - 1]?.chi];
     if (!first || !last || first <= 1) return this.bar.removeAttribute("value");
@@ -101,6 +101,6 @@ export class FitForm {
 
 function meshNote(capture: Capture | null): string[] {
   if (!capture || capture.tets === 0) return [];
-  if (capture.same_mesh) return ["Inverse crime: the fit has the very mesh that was measured, and looks better than it is. It is simulated on these tets, not on finer ones."];
-  return [`Fitted on a coarser mesh of ${capture.tets} tets than the one measured: on the same one it would look better than it is. It is simulated on these tets, and what they get wrong is taken off.`];
+  if (capture.same_mesh) return ["Inverse crime: the fit uses the mesh that was measured, so its error is too small. Simulate it on these tets, not on finer ones."];
+  return [`Fitted on a coarser mesh of ${capture.tets} tets than the measured one, to avoid an inverse crime. It is simulated on these tets, corrected for their discretization error.`];
 }

@@ -1,4 +1,4 @@
-// The force gauge of the probe: dial, numbers, and the force over the depth.
+// Force gauge of the probe: dial, numbers, and force over depth.
 import { element } from "../dom";
 import { Chart } from "../plots/chart";
 import { oncePerFrame } from "../plots/dom";
@@ -29,8 +29,8 @@ export class Gauge {
       x: { label: "depth", unit: "m" },
       y: { label: "force", unit: "N" },
       curves: [
-        { key: "live", label: "now", meaning: "What the gauge showed at this touch", color: "series2", width: 2, shape: "both" },
-        { key: "recorded", label: "recorded", meaning: "The recorded cases, with their noise", color: "series1", shape: "points" },
+        { key: "live", label: "now", meaning: "Readings during this touch", color: "series2", width: 2, shape: "both" },
+        { key: "recorded", label: "recorded", meaning: "Recorded cases with noise", color: "series1", shape: "points" },
       ],
       legend: "top",
       read: () => [],
@@ -46,7 +46,7 @@ export class Gauge {
       ...row("depth", probe ? withUnit(probe.depth, "m", 3) : "–"),
       ...row("force x, y, z", probe ? `${entryTexts(probe.force).join("  ")} N` : "–"),
       ...row("torque", probe ? withUnit(size(probe.torque), "Nm", 3) : "–"),
-      ...row("touches", probe ? (probe.points > 0 ? `${probe.points} points` : "nothing: in the air") : "–"),
+      ...row("touches", probe ? (probe.points > 0 ? `${probe.points} points` : "no contact") : "–"),
     );
     if (this.curve.add(probe)) this.redraw();
   }

@@ -1,4 +1,4 @@
-// Which tip touches, and how deep it is pressed: by slider, number or keys.
+// Shape and depth of the tip, set by slider, number or keys.
 import { button, element } from "../dom";
 import type { Page } from "../page";
 import { choice, numberField } from "../plots/dom";
@@ -8,15 +8,15 @@ import type { Store } from "../store";
 import type { Display } from "../view/display";
 import { AskedDepths } from "./askedDepths";
 
-const kNotches = 40; // of the slider and the keys, over the radius of the tip
-const kDeepest = 1.5; // of the slider, in radii
+const kNotches = 40; // steps of the slider and the keys per tip radius
+const kDeepest = 1.5; // end of the slider, in tip radii
 
 export class TipForm {
   readonly element = element("section", { class: "capture-tip", "aria-label": "Tip" });
   private readonly slider = element("input", { type: "range", min: "0", max: "1", step: "any", "aria-label": "Depth, slider" });
-  private readonly depth = numberField("Depth [m]", "How far the tip is pressed in from where it touched", 0, {}, (value) => this.press(value));
+  private readonly depth = numberField("Depth [m]", "Indentation since first contact", 0, {}, (value) => this.press(value));
   private readonly radius: ReturnType<typeof numberField>;
-  private readonly lift = button({ text: "Lift", title: "Take the tip away", steers: true }, () => this.store.source.send({ do: "lift" }));
+  private readonly lift = button({ text: "Lift", title: "Remove the tip", steers: true }, () => this.store.source.send({ do: "lift" }));
   private probe: ProbeState | null = null;
   private readonly asked = new AskedDepths();
   private held = false;
@@ -32,12 +32,12 @@ export class TipForm {
     );
     const contact = choice(
       "held",
-      "Bonded: glued to what it touches, so that it can also pull. Sliding: pushes without friction.",
+      "Bonded: the tip sticks to the surface and can also pull. Sliding: it pushes without friction.",
       [["bonded", "glued on"], ["sliding", "sliding"]],
       settings.tipContact,
       (value) => display.change({ tipContact: value as TipChoice["contact"] }),
     );
-    this.radius = numberField("Radius [m]", "Of the next tip; 0: the program chooses", settings.tipRadius, { min: 0 }, (value) =>
+    this.radius = numberField("Radius [m]", "Radius of the next tip; 0: chosen by the program", settings.tipRadius, { min: 0 }, (value) =>
       display.change({ tipRadius: value }),
     );
     display.on("changed", () => {

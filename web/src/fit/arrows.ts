@@ -1,4 +1,4 @@
-// Arrows and balls in a view, lit like the body and hidden by it. Positions in meters.
+// Arrows and balls in a view, lit like the body and hidden behind it. Positions in meters.
 import * as THREE from "three";
 import type { Vec3 } from "../protocol";
 
@@ -8,7 +8,7 @@ export interface Arrow {
 }
 
 const kUp = new THREE.Vector3(0, 1, 0);
-const kHead = 0.35; // of the length, at most
+const kHead = 0.35; // largest length of the head relative to the arrow
 const kSegments = 14;
 
 function instanced(geometry: THREE.BufferGeometry, material: THREE.Material, matrices: THREE.Matrix4[]): THREE.InstancedMesh {
@@ -18,7 +18,7 @@ function instanced(geometry: THREE.BufferGeometry, material: THREE.Material, mat
   return mesh;
 }
 
-// Round shafts with heads, `radius` thick [m].
+// Round shafts of the given `radius` [m], with heads.
 export function makeArrows(arrows: readonly Arrow[], radius: number, color: string): THREE.Group {
   const material = new THREE.MeshLambertMaterial({ color: color });
   const [shafts, heads]: [THREE.Matrix4[], THREE.Matrix4[]] = [[], []];

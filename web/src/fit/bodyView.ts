@@ -1,4 +1,4 @@
-// The body of a fit in 3-D: colored by a quantity of its tets, whole or cut open, with arrows and balls on it. The
+// The fitted body in 3-D: colored by a quantity of its tets, whole or cut open, with arrows and balls on it. The
 // cameras of all views of a page move together.
 import "../view/view.css";
 import * as THREE from "three";
@@ -16,12 +16,12 @@ import { disposeOf } from "./arrows";
 import { bodyBelow, boundaryOf, type Boundary, type Plane, type Soup, type TetMesh } from "./cut";
 
 export interface Shown {
-  label: string; // of the color bar
+  label: string; // label of the color bar
   unit: string;
-  values: Float32Array; // one per tet
+  values: Float32Array; // one value per tet
   map: MapName;
   log: boolean;
-  range?: [number, number]; // else that of the values
+  range?: [number, number]; // range of the colors; default: the range of the values
 }
 
 export interface Note {
@@ -31,14 +31,14 @@ export interface Note {
 
 export interface Cut {
   axis: 0 | 1 | 2;
-  at: number; // 0 to 1 over the box
-  other: boolean; // keeps the other half
+  at: number; // position of the cut, 0 to 1 over the box
+  other: boolean; // keep the other half
 }
 
-const kTurn = 1; // of the camera per pixel
+const kTurn = 1; // rotation of the camera per pixel
 const kWheel = 0.0015;
 
-// What the views of one page share: it is computed once.
+// Data that all views of a page share, computed once.
 export class FittedBody {
   readonly boundary: Boundary;
   readonly lower: Vec3;
@@ -85,7 +85,7 @@ export class BodyView {
   private notes: Note[] = [];
   private wires = true;
   private frame = 0;
-  drawn = 0; // pictures so far
+  drawn = 0; // number of pictures drawn
 
   constructor(
     private readonly fitted: FittedBody,
@@ -98,7 +98,7 @@ export class BodyView {
     this.stage = this.makeStage();
     this.stage?.place({ lower: fitted.lower, upper: fitted.upper, up: fitted.up });
     rig.on("changed", () => this.redraw());
-    new ResizeObserver(() => this.applyDisplay()).observe(this.element); // also once it is in the page, whose colors it takes
+    new ResizeObserver(() => this.applyDisplay()).observe(this.element); // the element's colors come from the page
     this.listen();
     this.rebuild();
   }
@@ -118,7 +118,7 @@ export class BodyView {
     this.applyDisplay();
   }
 
-  // In place of those before.
+  // Replaces the previous marks.
   mark(objects: THREE.Object3D[], notes: Note[]): void {
     for (const object of this.objects) disposeOf(object);
     this.objects = objects;
@@ -140,12 +140,12 @@ export class BodyView {
     try {
       return new Stage(this.canvas);
     } catch {
-      this.element.append(element("div", { class: "view-message" }, "This browser does not draw in 3-D: WebGL 2 is missing or switched off. Plots and numbers work without it."));
+      this.element.append(element("div", { class: "view-message" }, "This browser cannot draw in 3-D: WebGL 2 is missing or disabled. Plots and numbers work without it."));
       return null;
     }
   }
 
-  // A new body for a new cut: triangles of their own corners.
+  // Builds the body for a new cut. No two triangles share corners.
   private rebuild(): void {
     this.soup = bodyBelow(this.fitted.mesh, this.fitted.boundary, this.fitted.plane(this.cut));
     const { positions, normals, tet, edges } = this.soup;
@@ -248,7 +248,7 @@ export class BodyView {
     });
     host.addEventListener("contextmenu", (event) => event.preventDefault());
     host.addEventListener("dblclick", () => this.rig.center(this.fitted.lower, this.fitted.upper));
-    // Only with ctrl: the page scrolls with the wheel alone.
+    // Zooms with Ctrl only: the wheel alone scrolls the page.
     host.addEventListener(
       "wheel",
       (event) => {

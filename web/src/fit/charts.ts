@@ -1,4 +1,4 @@
-// The charts of a fit: force against depth, residuals, the trials of the weight, how it converged.
+// Charts of a fit: force against depth, residuals, trial weights, convergence.
 import type uPlot from "uplot";
 import { Chart, type Curve } from "../plots/chart";
 import { short, withUnit } from "../plots/numbers";
@@ -6,7 +6,7 @@ import type { Palette } from "../plots/palette";
 import type { MaybeNumber } from "../protocol";
 import { closeness, histogram, type FitHead, type GroupCurve } from "./data";
 
-// The value at x, or the last one.
+// Value at x, or the last value if `at` is null.
 function valueAt(x: readonly number[], column: readonly MaybeNumber[], at: number | null): MaybeNumber {
   if (at === null) return column[column.length - 1] ?? null;
   let nearest = 0;
@@ -16,7 +16,7 @@ function valueAt(x: readonly number[], column: readonly MaybeNumber[], at: numbe
   return column[nearest] ?? null;
 }
 
-// Bars of one standard deviation, in device pixels.
+// Error bars of one standard deviation, in device pixels.
 function paintErrorBars(u: uPlot, colors: Palette, curve: GroupCurve): void {
   const { ctx } = u;
   ctx.save();
@@ -54,11 +54,11 @@ export function loadChart(name: string, curve: GroupCurve): Chart {
   const hasFitted = curve.fitted.some((v) => v !== null);
   const shape = curve.x.length > 2 ? "line" : "both";
   const curves: Curve[] = [
-    ...(hasFitted ? [{ key: "fitted", label: "fitted", meaning: "by the fitted material", color: "series1", width: 2, shape } as Curve] : []),
+    ...(hasFitted ? [{ key: "fitted", label: "fitted", meaning: "predicted by the fitted material", color: "series1", width: 2, shape } as Curve] : []),
     ...(hasHeldOut
-      ? [{ key: "heldOut", label: curve.leftOut ? "predicted" : "held out", meaning: "predicted by a material that was fitted without this group", color: "series2", width: 2, dash: [6, 4], shape } as Curve]
+      ? [{ key: "heldOut", label: curve.leftOut ? "predicted" : "held out", meaning: "predicted by a fit without this group", color: "series2", width: 2, dash: [6, 4], shape } as Curve]
       : []),
-    { key: "measured", label: "measured", meaning: "as measured, ± one standard deviation", color: "text", shape: "points" },
+    { key: "measured", label: "measured", meaning: "measured, ± one standard deviation", color: "text", shape: "points" },
   ];
   const columns: Record<string, MaybeNumber[]> = { measured: curve.measured, fitted: curve.fitted, heldOut: curve.heldOut };
   const spread = curve.measured.flatMap((m, i) => (m === null ? [] : [m - curve.deviation[i], m + curve.deviation[i]]));
@@ -77,10 +77,10 @@ export function loadChart(name: string, curve: GroupCurve): Chart {
   return chart;
 }
 
-const kLimit = 4; // of the histogram, in standard deviations
+const kLimit = 4; // range of the histogram in standard deviations
 const kBins = 32;
 
-// Against what normal noise of the given deviations would leave.
+// Histogram of residuals beside the expected counts for normally distributed noise.
 export function histogramChart(values: readonly number[]): Chart {
   const chart = new Chart();
   const { middle, count } = histogram(values, kLimit, kBins);
@@ -92,8 +92,8 @@ export function histogramChart(values: readonly number[]): Chart {
     x: { label: "residual [standard deviations]" },
     y: { label: "readings" },
     curves: [
-      { key: "count", label: "residuals", meaning: "(fitted − measured) / standard deviation; those beyond ±4 stand at the ends", color: "series1", shape: "bars" },
-      { key: "normal", label: "normal", meaning: "what noise of the stated deviations would leave", color: "series2", width: 2 },
+      { key: "count", label: "residuals", meaning: "(fitted − measured) / standard deviation; values beyond ±4 are in the outermost bins", color: "series1", shape: "bars" },
+      { key: "normal", label: "normal", meaning: "expected from noise with the given standard deviations", color: "series2", width: 2 },
     ],
     legend: "top",
     read: (key, x) => (x === null ? [] : [short(valueAt(middle, columns[key], x), 3)]),
@@ -114,7 +114,7 @@ export function caseChart(names: readonly string[], ofCase: readonly MaybeNumber
     y: { label: "rms [standard deviations]" },
     curves: [
       { key: "rms", label: "of a case", color: "series1", shape: "bars" },
-      { key: "one", label: "as expected", meaning: "1: as close as the standard deviations say", color: "series2", dash: [6, 4] },
+      { key: "one", label: "as expected", meaning: "1: consistent with the standard deviations", color: "series2", dash: [6, 4] },
     ],
     legend: "top",
     read: (key, at) => (key === "rms" && at !== null ? [short(valueAt(x, ofCase, at), 3)] : []),
@@ -127,7 +127,7 @@ export function caseChart(names: readonly string[], ofCase: readonly MaybeNumber
 
 const log10 = (value: MaybeNumber): MaybeNumber => (value !== null && value > 0 ? Math.log10(value) : null);
 
-// Misfit against roughness, both as powers of ten; the chosen weight stands out.
+// Misfit against roughness, both as powers of ten. The chosen weight is highlighted.
 export function weightChart(head: FitHead): Chart | null {
   const trials = head.weights
     .map((w) => ({ x: log10(w.roughness), misfit: w.misfit, weight: w.weight }))
@@ -140,12 +140,12 @@ export function weightChart(head: FitHead): Chart | null {
   const log = Math.max(...misfit) > 30 * Math.min(...misfit);
   const target = trials.map(() => 1);
   chart.configure({
-    label: "Misfit against roughness for every weight that was tried",
+    label: "Misfit against roughness for every trial weight",
     x: { label: "roughness R, as a power of ten" },
     y: { label: "|r|² per reading", log },
     curves: [
-      { key: "trials", label: "weights tried", color: "series1", width: 2, shape: "both" },
-      { key: "target", label: "noise", meaning: "1: what the standard deviations leave", color: "series7", dash: [6, 4] },
+      { key: "trials", label: "trial weights", color: "series1", width: 2, shape: "both" },
+      { key: "target", label: "noise", meaning: "1: consistent with the standard deviations", color: "series7", dash: [6, 4] },
     ],
     legend: "top",
     read: (key, at) => (key === "trials" && at !== null ? [`weight ${short(valueAt(x, trials.map((t) => t.weight), at), 3)}`] : []),
@@ -175,7 +175,7 @@ function paintChosen(u: uPlot, colors: Palette, x: MaybeNumber, y: MaybeNumber, 
   ctx.restore();
 }
 
-// In the order in which the iterations were made, over all starts and weights.
+// History of all iterations in order, over all starts and weights.
 export function historyChart(head: FitHead): Chart | null {
   if (head.history.length < 2) return null;
   const chart = new Chart();
@@ -188,8 +188,8 @@ export function historyChart(head: FitHead): Chart | null {
   };
   const curves: Curve[] = [
     { key: "misfit", label: "misfit", meaning: "|r|²/2", color: "series1", width: 2, shape: "both" },
-    { key: "prior", label: "weight · R", meaning: "what the smoothness and the prior cost", color: "series3", width: 2, shape: "both" },
-    { key: "decrement", label: "decrement", meaning: "how far the fit is from its minimum, in standard deviations of what is known", color: "series2", width: 1.5, dash: [6, 4], shape: "both" },
+    { key: "prior", label: "weight · R", meaning: "penalty of smoothness and prior", color: "series3", width: 2, shape: "both" },
+    { key: "decrement", label: "decrement", meaning: "distance from the minimum in posterior standard deviations", color: "series2", width: 1.5, dash: [6, 4], shape: "both" },
   ];
   chart.configure({
     label: "Misfit, prior and decrement over the iterations",

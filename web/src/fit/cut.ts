@@ -1,30 +1,30 @@
-// The body that a map shows: the outside on one side of a plane, and the cut through its tets there. Triangles of their
-// own corners, so that each can have the value of its tet.
+// The body as a map shows it: the surface on one side of a plane, and the cut through its tets. No two triangles share
+// corners, so each has the value of its tet.
 import type { Vec3 } from "../protocol";
 
 export interface TetMesh {
-  points: Float32Array; // 3 per vertex [m]
-  tets: Uint32Array; // 4 per tet
+  points: Float32Array; // 3 coordinates per vertex [m]
+  tets: Uint32Array; // 4 vertices per tet
 }
 
-// What is kept: normal . x <= offset.
+// Half space that is kept: normal . x <= offset.
 export interface Plane {
   normal: Vec3;
   offset: number;
 }
 
 export interface Boundary {
-  triangles: Uint32Array; // 3 per triangle, counter-clockwise from outside
-  tet: Uint32Array; // behind each
-  normals: Float32Array; // 3 per vertex of the mesh: of the boundary, averaged by area
+  triangles: Uint32Array; // 3 vertices per triangle, counter-clockwise from outside
+  tet: Uint32Array; // tet of each triangle
+  normals: Float32Array; // 3 per vertex of the mesh: boundary normal, averaged by area
 }
 
 export interface Soup {
-  positions: Float32Array; // 9 per triangle
-  normals: Float32Array; // 9 per triangle
-  tet: Uint32Array; // per triangle
-  corner: Int32Array; // per corner: its vertex of the mesh; -1 where an edge was cut
-  edges: Uint32Array; // 2 per line: corners of the soup
+  positions: Float32Array; // 9 coordinates per triangle
+  normals: Float32Array; // 9 coordinates per triangle
+  tet: Uint32Array; // tet of each triangle
+  corner: Int32Array; // mesh vertex of each corner; -1 where an edge was cut
+  edges: Uint32Array; // 2 corners per line
 }
 
 const kFaces = [
@@ -34,7 +34,7 @@ const kFaces = [
   [0, 2, 1],
 ];
 
-// Faces that belong to one tet only.
+// Faces that belong to exactly one tet.
 export function boundaryOf({ points, tets }: TetMesh): Boundary {
   const count = points.length / 3;
   const open = new Map<number, number>(); // corner triple -> face
@@ -73,7 +73,7 @@ class SoupMaker {
   private readonly corner: number[] = [];
   private readonly edges: number[] = [];
 
-  // A polygon of one tet as a fan; `isEdge` marks its visible sides.
+  // Adds a polygon of one tet as a fan of triangles. `isEdge` marks its visible sides.
   add(polygon: Corner[], tet: number): void {
     if (polygon.length < 3) return;
     const first = this.corner.length;
@@ -116,11 +116,11 @@ function unit(v: Vec3): Vec3 {
   return [v[0] / size, v[1] / size, v[2] / size];
 }
 
-// Where the faces around a vertex differ that much, there is an edge to be seen rather than a round.
+// Faces around a vertex that differ by more than this form an edge and are not shaded smoothly.
 const kCrease = Math.cos((30 * Math.PI) / 180);
 const isCrease = (n: Vec3, face: Vec3): boolean => n[0] * face[0] + n[1] * face[1] + n[2] * face[2] < kCrease;
 
-// The part of a polygon on the kept side [Sutherland and Hodgman 1974].
+// Part of a polygon on the kept side [Sutherland and Hodgman 1974].
 function clipped(polygon: Corner[], height: (x: Vec3) => number): Corner[] {
   const kept: Corner[] = [];
   polygon.forEach((a, i) => {
@@ -135,8 +135,8 @@ function clipped(polygon: Corner[], height: (x: Vec3) => number): Corner[] {
   return kept;
 }
 
-// The polygon in which a plane cuts a tet, by the heights of its corners above the plane; counter-clockwise seen from
-// above the plane. Empty where the tet touches it only.
+// Intersection of a plane with a tet, from the heights of the tet's corners above the plane. The polygon is
+// counter-clockwise as seen from above the plane, and empty where the tet only touches it.
 export function section(corners: readonly Vec3[], heights: readonly number[], normal: Vec3): Vec3[] {
   const below = [0, 1, 2, 3].filter((k) => heights[k] <= 0);
   const above = [0, 1, 2, 3].filter((k) => heights[k] > 0);
@@ -154,7 +154,7 @@ export function section(corners: readonly Vec3[], heights: readonly number[], no
   return turn < 0 ? polygon.reverse() : polygon;
 }
 
-// The body below a plane, closed by its cut; null: the whole body.
+// Part of the body below a plane, closed by the cut; null: the whole body.
 export function bodyBelow(mesh: TetMesh, boundary: Boundary, plane: Plane | null): Soup {
   const { points, tets } = mesh;
   const point = (v: number): Vec3 => [points[3 * v], points[3 * v + 1], points[3 * v + 2]];

@@ -1,19 +1,19 @@
-// A fit inside the page, as apps/viewer/fit_page.cpp packs it, and what follows from it.
+// A fit inside the page, as apps/viewer/fit_page.cpp packs it, and quantities derived from it.
 import { Pack } from "../pack";
 import type { MaybeNumber, Vec3 } from "../protocol";
 
 export interface ValueRow {
   where: string;
   value: MaybeNumber;
-  lower: MaybeNumber; // of 95 %
+  lower: MaybeNumber; // lower end of the 95 % interval
   upper: MaybeNumber;
 }
 
 export interface Quantity {
   name: string;
   unit: string;
-  isLog: boolean; // looked at on a logarithmic scale
-  varies: boolean; // from tet to tet
+  isLog: boolean; // shown on a logarithmic scale
+  varies: boolean; // differs from tet to tet
   hasDeviation: boolean;
   rows: ValueRow[];
 }
@@ -24,10 +24,10 @@ export interface Tip {
   touch: Vec3;
   center: Vec3;
   axis: Vec3;
-  turn?: Vec3; // rotation since the touch [rad]
+  turn?: Vec3; // rotation since first contact [rad]
 }
 
-// A force or a torque of the tip on the body.
+// Force or torque of the tip on the body.
 export interface Reading {
   measured: Vec3;
   deviation: Vec3;
@@ -38,7 +38,7 @@ export interface Reading {
 export interface Case {
   name: string;
   group: string;
-  first: number; // of its readings
+  first: number; // index of its first reading
   count: number;
   leftOut: boolean;
   ok: boolean;
@@ -82,7 +82,7 @@ export interface FitHead {
   name: string;
   version: string;
   model: string;
-  verdict?: { good: boolean; text: string; reasons: { name: string; text: string }[] }; // by the program
+  verdict?: { good: boolean; text: string; reasons: { name: string; text: string }[] }; // verdict of the program
   counts: {
     vertices: number;
     tets: number;
@@ -114,13 +114,13 @@ export interface FitHead {
   weights: WeightTrial[];
   notes: string[];
   warnings: string[];
-  markerNames?: string[]; // by the data set, in the order of the markers
+  markerNames?: string[]; // names in the data set, in the order of the markers
   nextPoke: { site: Vec3; inward: Vec3; radius: number; depth: number; gain: MaybeNumber; words: string } | null;
 }
 
 export type Fit = Pack<FitHead>;
 
-// The page's fit; null: the page shows something else.
+// Text of the page's fit; null if the page shows something else.
 export function findFit(): string | null {
   const element = document.getElementById("fit");
   return element ? (JSON.parse(element.textContent ?? "") as string) : null;
@@ -130,7 +130,7 @@ export async function unpackFit(text: string): Promise<Fit> {
   const packed = Uint8Array.from(atob(text.trim()), (character) => character.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
   const fit = new Pack<FitHead>(await new Response(stream).arrayBuffer());
-  if (fit.head.format !== 1) throw new Error(`the fit has format ${String(fit.head.format)}; this page reads 1`);
+  if (fit.head.format !== 1) throw new Error(`the fit has format ${String(fit.head.format)}; this page reads format 1`);
   return fit;
 }
 
@@ -142,12 +142,12 @@ export function vectorAt(list: Float32Array, i: number): Vec3 {
   return [list[3 * i], list[3 * i + 1], list[3 * i + 2]];
 }
 
-// |r|^2 per reading: 1 when the fit is as close as the standard deviations say.
+// |r|^2 per reading: 1 when the residuals match the standard deviations.
 export function closeness(misfit: MaybeNumber, residuals: number): MaybeNumber {
   return misfit === null || !(residuals > 0) ? null : (2 * misfit) / residuals;
 }
 
-// The groups in the order of their first case.
+// Groups in the order of their first case.
 export function groupsOf(cases: readonly Case[]): { name: string; cases: number[] }[] {
   const groups: { name: string; cases: number[] }[] = [];
   cases.forEach((c, i) => {
@@ -158,7 +158,7 @@ export function groupsOf(cases: readonly Case[]): { name: string; cases: number[
   return groups;
 }
 
-// The way of a tip since it touched, of length 1; its axis when it has not moved.
+// Unit direction of the tip's travel since first contact; its axis if it has not moved.
 export function travel(tip: Tip): Vec3 {
   const way = minus(tip.center, tip.touch);
   const size = length(way);
@@ -176,7 +176,7 @@ function turnAxis(tip: Tip): Vec3 {
 
 export const depthOf = (tip: Tip): number => length(minus(tip.center, tip.touch));
 
-// What a chart of one group shows: load against answer, with one standard deviation of what was measured.
+// Curve of one group for a chart: load against response, with one standard deviation of the measurements.
 export interface GroupCurve {
   xLabel: string;
   xUnit: string;
@@ -202,7 +202,7 @@ type Answer = "force" | "torque" | "motion";
 
 const turnOf = (tip: Tip): number => length(tip.turn ?? [0, 0, 0]);
 
-// A tip that turns on the spot twists the body: its rim moves by more than its center.
+// Whether the group is a twist: a tip that turns on the spot moves its rim by more than its center.
 function isTwist(cases: readonly Case[]): boolean {
   const largest = (of: (tip: Tip) => number): number => Math.max(0, ...cases.map((c) => (c.tip ? of(c.tip) : 0)));
   return cases.every((c) => c.tip !== null) && largest((tip) => tip.radius * turnOf(tip)) > largest(depthOf);
@@ -252,7 +252,7 @@ function loadAxis(cases: readonly Case[]): LoadAxis {
   return { label: "acceleration of gravity", unit: "m/s²", byTip, twists: false, of: (c, i) => c.gravity || i };
 }
 
-// Along the way of the tip, or about the axis that it turns about: positive where it pushes or twists the body.
+// Response along the tip's travel, or about its axis of rotation; positive where the tip pushes or twists the body.
 function tipSample(c: Case, answer: "force" | "torque"): Omit<Sample, "x"> {
   const reading = c[answer];
   if (!c.tip || !reading) return { measured: null, deviation: 0, fitted: null, heldOut: null };
@@ -285,7 +285,7 @@ function motionSample(fit: Fit, c: Case): Omit<Sample, "x"> {
   };
 }
 
-// Residuals of everything that was fitted, in standard deviations.
+// Residuals of all fitted readings, in standard deviations.
 export interface Residuals {
   all: number[];
   ofCase: MaybeNumber[]; // root mean square of each case; null where nothing was fitted
@@ -308,7 +308,7 @@ export function residuals(fit: Fit): Residuals {
   return { all, ofCase };
 }
 
-// As the data set calls it.
+// Name of a marker in the data set.
 export const markerName = (head: FitHead, marker: number): string => head.markerNames?.[marker] || String(marker + 1);
 
 export interface WorstMarker {
@@ -316,10 +316,10 @@ export interface WorstMarker {
   case: number;
   marker: number;
   error: Vec3; // predicted - measured [m]
-  sigmas: number; // root mean square over its three coordinates
+  sigmas: number; // root mean square over the three coordinates, in standard deviations
 }
 
-// The readings that the fit explains worst.
+// Readings with the largest residuals.
 export function worstMarkers(fit: Fit, count: number, onlyCase: number | null = null): WorstMarker[] {
   const [measured, predicted] = [fit.floats("reading.measured"), fit.floats("reading.predicted")];
   const [deviation, marker] = [fit.floats("reading.deviation"), fit.indices("reading.marker")];
@@ -335,7 +335,7 @@ export function worstMarkers(fit: Fit, count: number, onlyCase: number | null = 
   return found.sort((a, b) => b.sigmas - a.sigmas).slice(0, count);
 }
 
-// Counts of values in equal bins over [-limit, limit]; what lies outside is in the outermost.
+// Counts of values in equal bins over [-limit, limit]. Values outside are in the outermost bins.
 export function histogram(values: readonly number[], limit: number, bins: number): { middle: number[]; count: number[] } {
   const width = (2 * limit) / bins;
   const count = new Array<number>(bins).fill(0);
@@ -347,15 +347,15 @@ export function histogram(values: readonly number[], limit: number, bins: number
 export interface Said {
   text: string;
   kind: "good" | "bad" | "plain";
-  reasons: string[]; // beside the one that the text names
+  reasons: string[]; // reasons other than the one in the text
 }
 
-// The program's verdict. Reports of programs without one have no more than the status of the fit.
+// The program's verdict. Reports of older programs have only the status of the fit.
 export function verdict(head: FitHead): Said {
   const { fit } = head;
   const said = head.verdict?.text ?? "";
   if (head.verdict) return { text: head.verdict.text, kind: head.verdict.good ? "good" : "bad", reasons: head.verdict.reasons.map(({ text }) => text).filter((text) => !said.includes(text)) };
-  if (fit.interrupted) return { text: "Interrupted: this is what was reached. The same command with --resume continues.", kind: "bad", reasons: [] };
+  if (fit.interrupted) return { text: "Interrupted before convergence. Run the same command with --resume to continue.", kind: "bad", reasons: [] };
   if (!fit.success) return { text: `Not converged: ${fit.words}. Do not rely on it.`, kind: "bad", reasons: [] };
   return { text: fit.words, kind: "plain", reasons: [] };
 }

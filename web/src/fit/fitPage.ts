@@ -1,4 +1,4 @@
-// The report of a fit: what was found, how sure it is, and how well it explains what was measured.
+// The report of a fit: fitted values, their uncertainty, and how well they explain the measurements.
 import "./fit.css";
 import { button, element, messageOf, type Child } from "../dom";
 import { Page } from "../page";
@@ -31,11 +31,11 @@ function card(name: string, value: string, meaning: string): HTMLElement {
 function cards({ head }: Fit): HTMLElement {
   const { fit, counts, heldOut } = head;
   const list = element("div", { class: "cards" });
-  list.append(card("misfit per reading", short(closeness(fit.misfit, counts.residuals), 3), "|r|²: 1 is as close as the standard deviations say"));
-  if (fit.uniformMisfit !== null) list.append(card("one value for all", short(closeness(fit.uniformMisfit, counts.residuals), 3), "the same of a body of one material"));
-  if (heldOut && (heldOut.position ?? -1) >= 0) list.append(card("held-out positions", percent(heldOut.position), "error of what was not fitted, of the peak motion"));
-  if (heldOut && (heldOut.force ?? -1) >= 0) list.append(card("held-out forces", percent(heldOut.force), "error of what was not fitted, of the peak force"));
-  if (fit.informed !== null) list.append(card("learned", `${short(fit.informed, 3)} of ${counts.unknowns}`, "directions of the material that the data determine"));
+  list.append(card("misfit per reading", short(closeness(fit.misfit, counts.residuals), 3), "|r|²: 1 is consistent with the standard deviations"));
+  if (fit.uniformMisfit !== null) list.append(card("one value for all", short(closeness(fit.uniformMisfit, counts.residuals), 3), "misfit per reading of a uniform material"));
+  if (heldOut && (heldOut.position ?? -1) >= 0) list.append(card("held-out positions", percent(heldOut.position), "relative to the peak motion"));
+  if (heldOut && (heldOut.force ?? -1) >= 0) list.append(card("held-out forces", percent(heldOut.force), "relative to the peak force"));
+  if (fit.informed !== null) list.append(card("learned", `${short(fit.informed, 3)} of ${counts.unknowns}`, "parameters that the data determine"));
   return list;
 }
 
@@ -91,7 +91,7 @@ function figure(title: string, chart: Chart): HTMLElement {
   return element("figure", {}, element("figcaption", {}, title), chart.element);
 }
 
-// Where up is: away from where the body is held, along an axis.
+// Upward direction: along the axis that leads away from the held part of the body.
 function upward(fit: Fit): Vec3 {
   const [points, fixed] = [fit.floats("points"), fit.indices("fixed")];
   const mean = (k: number, vertices: Iterable<number>): number => {
@@ -119,7 +119,7 @@ class FitReport {
     const body = new FittedBody({ points: fit.floats("points"), tets: fit.indices("tets") }, upward(fit));
     const rig = new CameraRig();
     rig.show(fit.head.name, body.lower, body.upper, body.up);
-    rig.pan(-0.12, 0, 1); // to the left of the color bar, by a part of the view's height
+    rig.pan(-0.12, 0, 1); // moves the body left of the color bar, in parts of the view's height
     const maps = new Maps(fit, body, rig);
     const misfits = new Misfits(fit, body, rig);
     const root = element("main", { class: "fit" }, this.found(), this.maps(maps), this.loads(), this.residuals(misfits), this.made());
@@ -136,16 +136,16 @@ class FitReport {
     const said = verdict(head);
     const next = head.nextPoke ? element("div", { class: "words next" }, element("h3", {}, "Next best poke"), element("p", {}, head.nextPoke.words)) : null;
     return section(
-      "What was found",
+      "Result",
       "",
       element("div", { class: `verdict ${said.kind}` }, element("p", {}, said.text), reasonList(said.reasons)),
       cards(this.fit),
-      element("div", { class: "columns" }, element("div", {}, valueTable(head.quantities)), element("div", {}, words("Warnings", head.warnings, "warnings"), next, words("What was assumed", head.notes, ""))),
+      element("div", { class: "columns" }, element("div", {}, valueTable(head.quantities)), element("div", {}, words("Warnings", head.warnings, "warnings"), next, words("Assumptions", head.notes, ""))),
     );
   }
 
   private maps(maps: Maps): HTMLElement {
-    return section("Stiffness and how sure it is", "", maps.element);
+    return section("Stiffness and its uncertainty", "", maps.element);
   }
 
   private loads(): HTMLElement {
@@ -154,12 +154,12 @@ class FitReport {
     for (const group of groupsOf(fit.head.cases)) {
       const curve = groupCurve(fit, group);
       const chart = this.keep(loadChart(group.name, curve));
-      grid.append(figure(curve.leftOut ? `${group.name} (left out)` : group.name, chart));
+      grid.append(figure(curve.leftOut ? `${group.name} (held out)` : group.name, chart));
     }
     const groups = fit.head.heldOut?.groups ?? [];
     return section(
-      "Measured against fitted",
-      "Readings against what the fitted material predicts, with the correction for the mesh. Bars are one standard deviation of the reading and of that correction. The dashed curve is predicted by a material that was fitted without that group.",
+      "Measured and fitted",
+      "Readings and predictions of the fitted material, corrected for the mesh. Bars are one standard deviation of the reading and of the correction. The dashed curve is predicted by a fit without that group.",
       grid,
       groups.length > 0 ? heldOutTable(groups) : null,
     );
@@ -169,8 +169,8 @@ class FitReport {
     const found = residuals(this.fit);
     const names = this.fit.head.cases.map((c) => c.name);
     return section(
-      "What is not explained",
-      "Residuals by standard deviations: fitted minus measured. A histogram wider than the normal curve, or a case that stands out, indicates a model too simple or a bad reading.",
+      "Residuals",
+      "Fitted minus measured, in standard deviations. A histogram wider than the normal curve, or a case with large residuals, indicates a model too simple or a bad reading.",
       element("div", { class: "charts" }, figure("All readings", this.keep(histogramChart(found.all))), figure("By case", this.keep(caseChart(names, found.ofCase)))),
       misfits.element,
     );
@@ -180,14 +180,14 @@ class FitReport {
     const { head } = this.fit;
     const [weights, history] = [weightChart(head), historyChart(head)];
     const { fit, counts } = head;
-    const facts = `${head.model}, ${fit.method}: ${fit.words} after ${plural(fit.iterations, "iteration")} and ${counts.equilibria} equilibria; ${counts.unknowns} unknowns, ${counts.residuals} readings, weight ${short(fit.weight, 3)}; ${fit.mesh}.`;
+    const facts = `${head.model}, ${fit.method}: ${fit.words} after ${plural(fit.iterations, "iteration")} and ${counts.equilibria} equilibria; ${counts.unknowns} parameters, ${counts.residuals} readings, weight ${short(fit.weight, 3)}; ${fit.mesh}.`;
     return section(
       "How it was fitted",
       facts,
       element(
         "div",
         { class: "charts" },
-        weights ? figure("The weight of the smoothness", this.keep(weights)) : null,
+        weights ? figure("Weight of the smoothness", this.keep(weights)) : null,
         history ? figure("Convergence", this.keep(history)) : null,
       ),
     );
@@ -222,6 +222,6 @@ export async function openFit(text: string): Promise<void> {
     const theme = new Theme(page);
     document.body.replaceChildren(header(fit, theme), new FitReport(fit, page).build());
   } catch (error) {
-    document.body.replaceChildren(element("p", { class: "damaged" }, `This fit cannot be shown: ${messageOf(error)}. Make it again with aspic fit.`));
+    document.body.replaceChildren(element("p", { class: "damaged" }, `Cannot show this fit: ${messageOf(error)}. Create it again with aspic fit.`));
   }
 }

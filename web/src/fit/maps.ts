@@ -1,4 +1,4 @@
-// Two views of the fitted body side by side: a quantity, and how sure it is; both cut alike, seen by the same camera.
+// Two views of the fitted body side by side: a quantity and its uncertainty. Both have the same cut and camera.
 import { element } from "../dom";
 import { checkbox, choice } from "../plots/dom";
 import type { Vec3 } from "../protocol";
@@ -16,7 +16,7 @@ interface Field {
 
 const kNames: Record<string, string> = { young: "Young's modulus", poisson: "Poisson's ratio", density: "density" };
 
-// The factor within which a logarithm of that deviation is known with 95 %.
+// Half width of the 95 % interval of a normal distribution, in standard deviations.
 const kDeviations95 = 1.96;
 
 function fieldsOf(fit: Fit): { values: Field[]; doubts: Field[] } {
@@ -37,9 +37,9 @@ function fieldsOf(fit: Fit): { values: Field[]; doubts: Field[] } {
       const sigma = fit.floats(deviation);
       const numbers = q.isLog ? sigma.map((s) => Math.exp(kDeviations95 * s)) : sigma;
       const label = q.isLog ? "factor" : "deviation";
-      add(doubts, `${q.name}.deviation`, `${name}: ${q.isLog ? "known within a factor" : "deviation, as fitted"}`, label, "", numbers, "cividis", false);
+      add(doubts, `${q.name}.deviation`, `${name}: ${q.isLog ? "known within a factor" : "standard deviation"}`, label, "", numbers, "cividis", false);
     }
-    if (fit.arrays.has(reduction)) add(doubts, `${q.name}.reduction`, `${name}: learned, from 0 nothing to 1 all`, "learned", "", fit.floats(reduction), "blue_orange", false, [0, 1]);
+    if (fit.arrays.has(reduction)) add(doubts, `${q.name}.reduction`, `${name}: learned from the data, 0 to 1`, "learned", "", fit.floats(reduction), "blue_orange", false, [0, 1]);
   }
   return { values, doubts };
 }
@@ -87,30 +87,30 @@ export class Maps {
       position.disabled = !this.isCut;
       for (const view of this.views) view.slice(this.isCut ? this.cut : null);
     };
-    const position = element("input", { type: "range", min: "0", max: "1", step: "0.01", value: "0.5", "aria-label": "Where the cut is" });
+    const position = element("input", { type: "range", min: "0", max: "1", step: "0.01", value: "0.5", "aria-label": "Position of the cut" });
     position.addEventListener("input", () => {
       this.cut = { ...this.cut, at: position.valueAsNumber };
       slice();
     });
-    const axis = choice("cut", "Looks inside the body", [["off", "off"], ["0", "across x"], ["1", "across y"], ["2", "across z"]], String(this.cut.axis), (value) => {
+    const axis = choice("cut", "Cut the body open", [["off", "off"], ["0", "across x"], ["1", "across y"], ["2", "across z"]], String(this.cut.axis), (value) => {
       this.isCut = value !== "off";
       if (this.isCut) this.cut = { ...this.cut, axis: Number(value) as 0 | 1 | 2 };
       slice();
     });
     axis.select.dataset.control = "cut";
-    const other = checkbox("other half", "Shows what the cut hides", this.cut.other, (on) => {
+    const other = checkbox("other half", "Show the hidden half", this.cut.other, (on) => {
       this.cut = { ...this.cut, other: on };
       slice();
     });
-    const markers = checkbox("markers", "Shows the markers at rest", false, (on) => {
+    const markers = checkbox("markers", "Show the markers at rest", false, (on) => {
       this.showsMarkers = on;
       this.mark();
     });
-    const next = this.fit.head.nextPoke ? checkbox("next poke", "Shows where a poke would tell most", true, (on) => {
+    const next = this.fit.head.nextPoke ? checkbox("next poke", "Show the most informative site", true, (on) => {
       this.showsNext = on;
       this.mark();
     }) : null;
-    const wires = checkbox("edges", "Shows the edges of the tets", true, (on) => {
+    const wires = checkbox("edges", "Show the edges of the tets", true, (on) => {
       for (const view of this.views) view.showWires(on);
     });
     return element("div", { class: "map-controls plot-panel" }, axis.element, position, other.element, markers.element, next?.element ?? null, wires.element);
@@ -133,7 +133,7 @@ export class Maps {
   }
 }
 
-// Through the middle, so that the camera looks onto it.
+// Cut through the middle that faces the camera.
 function cutInFront(up: Vec3): Cut {
   const front = sceneAxes(up).front.toArray();
   const axis = [0, 1, 2].reduce((best, k) => (Math.abs(front[k]) > Math.abs(front[best]) ? k : best)) as 0 | 1 | 2;

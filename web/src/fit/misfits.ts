@@ -1,5 +1,4 @@
-// Where the fit errs: the worst markers as arrows from where they were measured to where the fit puts them, many times
-// longer than they are.
+// Shows the largest marker residuals as magnified arrows from the measured to the fitted position.
 import { element } from "../dom";
 import { choice } from "../plots/dom";
 import { roundStep } from "../view/ranges";
@@ -12,7 +11,7 @@ import { length, markerName, vectorAt, worstMarkers, type Fit, type WorstMarker 
 
 const kArrows = 60;
 const kRows = 10;
-const kLongest = 0.25; // of the body's size
+const kLongest = 0.25; // longest arrow relative to the body's size
 
 export class Misfits {
   readonly element: HTMLElement;
@@ -25,10 +24,10 @@ export class Misfits {
     private readonly body: FittedBody,
     rig: CameraRig,
   ) {
-    this.view = new BodyView(body, rig, "The worst markers on the body");
+    this.view = new BodyView(body, rig, "Largest marker residuals on the body");
     this.view.showWires(false);
     const cases: [string, string][] = [["all", "all cases"], ...fit.head.cases.map((c, i): [string, string] => [String(i), c.name])];
-    const pick = choice("worst markers of", "Whose errors are drawn", cases, "all", (value) => this.show(value === "all" ? null : Number(value)));
+    const pick = choice("worst markers of", "Case whose residuals are drawn", cases, "all", (value) => this.show(value === "all" ? null : Number(value)));
     const titles = ["marker", "case", "error", "standard deviations"];
     this.element = element(
       "div",
@@ -60,7 +59,7 @@ export class Misfits {
     const size = this.body.size;
     const notes: Note[] = worst.slice(0, 1).map((w) => ({ at: vectorAt(rest, w.marker), words: `marker ${markerName(this.fit.head, w.marker)}: ${withUnit(length(w.error), "m", 3)}` }));
     this.view.mark([makeArrows(arrows, 0.005 * size, "#d55e00"), makeBalls(arrows.map((a) => a.from), 0.006 * size, "#1b1f27")], notes);
-    this.note.textContent = worst.length > 0 ? `Arrows are drawn ${short(scale, 3)} times as long as the errors, at the markers' places at rest.` : "No positions were read in this case.";
+    this.note.textContent = worst.length > 0 ? `Arrows are ${short(scale, 3)} times as long as the residuals, at the rest positions of the markers.` : "This case has no measured positions.";
     this.table.replaceChildren(...worst.slice(0, kRows).map((w) => this.row(w)));
   }
 
@@ -70,7 +69,7 @@ export class Misfits {
   }
 }
 
-// A round number near the wished one, and not above it.
+// Largest round number that does not exceed the requested one.
 function magnification(wished: number): number {
   const step = roundStep(wished);
   return step > wished * (1 + 1e-9) ? roundStep(wished / 2.5) : step;

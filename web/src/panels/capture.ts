@@ -1,4 +1,4 @@
-// The virtual bench: a probe with its force gauge, the cases that were recorded, and the material that is fitted to them.
+// The virtual bench: a probe with its force gauge, the recorded cases, and the material that is fitted to them.
 import "./capture.css";
 import { CaseList } from "../capture/caseList";
 import { FitForm } from "../capture/fitForm";
@@ -10,8 +10,8 @@ import type { Store } from "../store";
 import type { Display } from "../view/display";
 
 const kHint =
-  "Click the body: a tip touches it there. Drag on to press it in; the gauge shows the force. A stiff place pushes back harder: " +
-  "from many such pokes one can tell what is inside.";
+  "Click the body to touch it with a tip. Drag on to press it in; the gauge shows the force. Stiff places need a larger force: " +
+  "many pokes together reveal the stiffness inside.";
 
 export function makeCapturePanel(store: Store, page: Page, display: Display): Panel {
   return new CapturePanel(store, page, display);
@@ -50,7 +50,7 @@ class CapturePanel implements Panel {
     page.on("layout", () => this.gauge.chart.retheme());
   }
 
-  // The mouse has the probe while the panel is open.
+  // The mouse moves the probe while the panel is open.
   show(visible: boolean): void {
     this.gauge.visible = visible;
     const { tool } = this.display.settings;
@@ -62,7 +62,7 @@ class CapturePanel implements Panel {
     this.setUp();
   }
 
-  // Markers are glued on when the panel is seen.
+  // Places the markers when the panel first becomes visible.
   private setUp(): void {
     if (this.isSetUp || !this.gauge.visible || !this.store.steers || !this.store.capture) return;
     this.isSetUp = true;

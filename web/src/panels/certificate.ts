@@ -1,9 +1,9 @@
-// What a run's steps certify: who converged, how far off the others are, what the worst values are and where.
+// Certificate of a run: convergence of its steps, residuals of the others, and the worst values with their steps.
 import { statusName } from "../names";
 import { short } from "../plots/numbers";
 import type { MaybeNumber, StepRow } from "../protocol";
 
-// Above 1 the step missed what was asked for; null: nothing was asked for.
+// Residual relative to its threshold; above 1 the step missed it. Null if there is no threshold.
 export function excess(row: StepRow): MaybeNumber {
   return row.residual === null || !row.residual_threshold ? null : row.residual / row.residual_threshold;
 }
@@ -11,15 +11,15 @@ export function excess(row: StepRow): MaybeNumber {
 export interface Column {
   title: string;
   meaning: string;
-  value: (row: StepRow) => MaybeNumber | string; // null: there is none
-  worse?: (row: StepRow) => number; // larger is worse; without it the step's number decides
+  value: (row: StepRow) => MaybeNumber | string; // null: no value
+  worse?: (row: StepRow) => number; // larger is worse; without it rows are ordered by step number
   isBad?: (row: StepRow) => boolean;
-  whole?: (row: StepRow) => string; // where the value is shortened
+  whole?: (row: StepRow) => string; // complete value, where the cell is shortened
 }
 
 const kUnknown = -Infinity;
 
-// The energy bound was judged; slack alone is known of steps that have no guarantee, too.
+// Whether the energy bound was checked. Steps without a guarantee have only the slack.
 function isBounded(row: StepRow): boolean {
   return row.energy_bound === "holds" || row.energy_bound === "broken";
 }
@@ -36,7 +36,7 @@ function boundBadness(row: StepRow): number {
   return row.energy_bound === "broken" ? Infinity : Number.MAX_VALUE;
 }
 
-// Of each pin three of its six numbers: the force, or from the fourth on the moment.
+// Three of the six numbers of each pin: the force (from 0) or the moment (from 3).
 function reactionText(row: StepRow, first: 0 | 3): string | null {
   const pins = Object.entries(row.reactions ?? {});
   const vector = (values: MaybeNumber[]): string => values.slice(first, first + 3).map((value) => short(value)).join(", ");
@@ -48,28 +48,28 @@ export const kColumns: Column[] = [
   { title: "time [s]", meaning: "at the end of the step", value: (row) => row.time },
   {
     title: "status",
-    meaning: "how its minimization ended",
+    meaning: "status of its minimization",
     value: (row) => statusName(row.status),
     worse: (row) => (row.converged ? 0 : 1),
     isBad: (row) => !row.converged,
   },
   {
     title: "residual [N]",
-    meaning: "what is left of the forces: |M a + dV/dx + dD/dx|",
+    meaning: "norm of M a + dV/dx + dD/dx over free vertices",
     value: (row) => row.residual,
     worse: (row) => row.residual ?? kUnknown,
   },
-  { title: "wanted [N]", meaning: "the largest residual that counts as converged", value: (row) => row.residual_threshold || null },
+  { title: "wanted [N]", meaning: "largest residual of a converged step", value: (row) => row.residual_threshold || null },
   {
     title: "residual / wanted",
-    meaning: "above 1: more is left than was asked for",
+    meaning: "above 1: the step missed the threshold",
     value: excess,
     worse: (row) => excess(row) ?? kUnknown,
     isBad: (row) => (excess(row) ?? 0) > 1,
   },
   {
     title: "decrement [J]",
-    meaning: "what the direction of the last iteration promised to gain: how far the step was from its minimum",
+    meaning: "decrease of E that the last direction predicts: a measure of the distance from the minimum",
     value: (row) => row.decrement,
     worse: (row) => row.decrement ?? kUnknown,
   },
@@ -81,14 +81,14 @@ export const kColumns: Column[] = [
   },
   {
     title: "min det F",
-    meaning: "the smallest volume of a tet, relative to its rest; below 0: inverted",
+    meaning: "smallest volume of a tet relative to its rest volume; below 0: inverted",
     value: (row) => row.min_det_F,
     worse: (row) => (row.min_det_F === null ? Infinity : -row.min_det_F),
     isBad: (row) => (row.min_det_F ?? 1) <= 0,
   },
   {
     title: "ledger error [J]",
-    meaning: "the part of the energy's change that nothing accounts for",
+    meaning: "imbalance of the energy ledger",
     value: (row) => row.ledger_error,
     worse: (row) => (row.ledger_error === null ? Infinity : Math.abs(row.ledger_error)),
   },
@@ -106,27 +106,27 @@ export const kColumns: Column[] = [
   },
   {
     title: "energy bound [J]",
-    meaning: "what backward Euler guarantees: V + 1/2 |change of velocity|² in the mass is not above the energy before, plus works",
+    meaning: "guarantee of backward Euler: V + 1/2 |change of velocity|² in the mass norm does not exceed the previous energy plus works",
     value: boundText,
     worse: boundBadness,
     isBad: (row) => row.energy_bound === "broken",
   },
   {
     title: "state",
-    meaning: "hash of positions and velocities at its end: the same on two machines as long as they agree in every bit",
+    meaning: "hash of positions and velocities at the end of the step; equal for bit-reproducible runs",
     value: (row) => row.state_hash?.slice(0, 8) ?? null,
     whole: (row) => row.state_hash ?? "",
   },
 ];
 
-// The rows to be listed, the worst by a column first, or in the order of time.
+// Rows to list: the worst by a column first, or in order of time.
 export function listed(steps: readonly StepRow[], column: Column, onlyFailed: boolean): StepRow[] {
   const rows = onlyFailed ? steps.filter((row) => !row.converged) : [...steps];
   const worse = column.worse;
   return worse ? rows.sort((a, b) => compare(worse(b), worse(a)) || a.step - b.step) : rows;
 }
 
-// Infinities are equal to themselves, which their difference would not tell.
+// Compares equal infinities as equal; their difference is NaN.
 function compare(a: number, b: number): number {
   return a < b ? -1 : a > b ? 1 : 0;
 }
@@ -139,10 +139,10 @@ export interface Totals {
   smallestVolume: StepRow | null;
   inverted: number; // steps that end with an inverted tet
   largestError: StepRow | null;
-  bounded: number; // steps whose energy bound was judged
-  held: number; // of these
+  bounded: number; // steps whose energy bound was checked
+  held: number; // steps whose energy bound holds
   smallestSlack: StepRow | null;
-  state: StepRow | null; // the last one with a hash
+  state: StepRow | null; // the last row with a hash
 }
 
 export function totals(steps: readonly StepRow[]): Totals {

@@ -1,4 +1,4 @@
-// The folders "Mouse", "Display" and "Camera" of the settings, and their shortcuts.
+// Folders "Mouse", "Display" and "Camera" of the settings, and their shortcuts.
 import type { Controller, GUI } from "lil-gui";
 import type { Page } from "../page";
 import type { SettingValue } from "../protocol";
@@ -12,7 +12,7 @@ type Switch = { [K in Key]: DisplaySettings[K] extends boolean ? K : never }[Key
 type Amount = { [K in Key]: DisplaySettings[K] extends number ? K : never }[Key];
 type Choices = Record<string, string>;
 
-// A folder whose controls change the display, and follow when something else does.
+// A folder whose controls change the display and follow changes from elsewhere.
 class Folder {
   constructor(
     private readonly gui: GUI,
@@ -39,7 +39,7 @@ class Folder {
     this.display.on("changed", () => row.display(this.display.settings[key] as number));
   }
 
-  // To type a number changes `also`, too.
+  // Adds a number field. Typing a number also applies `also`.
   number(key: Key, label: string, also: Partial<DisplaySettings>): void {
     const controller = this.gui.add({ ...this.display.settings }, key);
     this.follow(controller, key, label);
@@ -54,7 +54,7 @@ class Folder {
     this.gui.add({ press }, "press").name(label);
   }
 
-  // The value lives elsewhere: `read` returns it after each change.
+  // Adds a choice whose value lives elsewhere: `read` returns it after each change.
   choice(label: string, choices: () => Choices, read: () => string, write: (value: string) => void): void {
     const held = { value: read() };
     let listed = JSON.stringify(choices());
@@ -136,7 +136,7 @@ function addLook(folder: Folder): void {
   folder.color("background", "Background");
 }
 
-// The field that colors the body, and the range of its colors.
+// Adds the field that colors the body and the range of its colors.
 function addField(folder: Folder, display: Display, views: () => View[]): void {
   const fields = (): Choices => {
     const known = display.fields.map((field) => [field.label, field.name] as const);

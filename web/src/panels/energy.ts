@@ -1,4 +1,4 @@
-// The energy plot: where the energy is, what brought it in and what took it away.
+// Energy plot: the forms of energy, and what added or removed it.
 import type { Page, Panel } from "../page";
 import type { MaybeNumber, SideName } from "../protocol";
 import type { Store } from "../store";
@@ -44,21 +44,21 @@ class EnergyPanel implements Panel {
   private readonly typed = numberField("", "Length of the window [s]", 1, { min: 1e-6 }, () => this.setWindow());
   private readonly windows = choice(
     "Window",
-    "Which part of the time is shown; drag in the plot to zoom, double-click for all",
+    "Visible range of time; drag in the plot to zoom, double-click for all",
     kWindows,
     "all",
     () => this.setWindow(),
   );
   private readonly logSwitch = checkbox(
     "log",
-    "Logarithmic axis, of absolute values; zeros have no place on it",
+    "Logarithmic axis of absolute values; zeros are omitted",
     false,
     () => this.configure(),
   );
-  private range: [number, number] | null = null; // zoomed by the mouse [s]
+  private range: [number, number] | null = null; // range selected with the mouse [s]
   private visible = false;
-  private byStep = false; // time does not pass: statics
-  private rows = new Set<string>(); // keys of what the legend shows
+  private byStep = false; // x is the step: a static scene has no time
+  private rows = new Set<string>(); // keys of the legend's rows
   private readonly redraw = oncePerFrame(() => this.visible && this.draw());
 
   constructor(
@@ -67,7 +67,7 @@ class EnergyPanel implements Panel {
   ) {
     this.typed.element.hidden = true;
     const bar = element("div", { class: "plot-bar" }, this.windows.element, this.typed.element, this.logSwitch.element);
-    bar.append(button("CSV", "Save every column with all its digits", () => this.saveCsv()));
+    bar.append(button("CSV", "Save all columns as CSV with all digits", () => this.saveCsv()));
     bar.append(
       button("PNG", "Save the plot as a picture", () => this.savePng()),
       this.note,
@@ -97,7 +97,7 @@ class EnergyPanel implements Panel {
     const known = this.ledgers[name];
     if (side && known && known.potentials.join() === side.scene.potentials.join()) {
       known.update(side.steps, side.steps[side.steps.length - 1]?.step ?? 0);
-      return this.configure(); // its label may be another
+      return this.configure(); // its label may have changed
     }
     this.ledgers[name] = side ? new Ledger(side.scene.potentials) : null;
     if (side) this.ledgers[name]!.update(side.steps, 0);
@@ -108,7 +108,7 @@ class EnergyPanel implements Panel {
     return kSides.flatMap((side) => (this.ledgers[side] ? [{ side, ledger: this.ledgers[side] }] : []));
   }
 
-  // Keys of the columns that are not zero all the time, on one of the sides.
+  // Keys of the columns that are nonzero at some time on one of the sides.
   private used(): Set<string> {
     return new Set(this.shown().flatMap(({ ledger }) => ledger.used()));
   }
@@ -166,7 +166,7 @@ class EnergyPanel implements Panel {
     return column[x === null ? this.nowIndex(ledger) : nearest(this.xOf(ledger), x)] ?? null;
   }
 
-  // The last step up to the time that the picture shows.
+  // Index of the last step up to the time of the picture.
   private nowIndex(ledger: Ledger): number {
     const last = ledger.step.length - 1;
     const state = this.store.state?.[ledger === this.ledgers.b ? "b" : "a"];
@@ -241,13 +241,13 @@ class EnergyPanel implements Panel {
       return `${name}${balanceText(drift, scale)}`;
     });
     const dashes = this.ledgers.b ? [`${this.store.side("b")?.scene.label || "b"} is dashed`] : [];
-    const logText = this.logSwitch.input.checked ? ["absolute values; zeros are left out"] : [];
-    const wild = !this.logSwitch.input.checked && this.calmRange() ? ["one side leaves the plot; log shows it"] : [];
+    const logText = this.logSwitch.input.checked ? ["absolute values; zeros are omitted"] : [];
+    const wild = !this.logSwitch.input.checked && this.calmRange() ? ["one side exceeds the plot; use log to see it"] : [];
     const text = [...texts.filter((t) => t !== ""), ...dashes, ...wild, ...logText].join(" · ");
     if (this.note.textContent !== text) this.note.textContent = text;
   }
 
-  // A line where the picture is, when that is not the end.
+  // Draws a line at the time of the picture unless that is the end.
   private paintNow(u: uPlot, colors: Palette): void {
     const state = this.store.state?.a;
     const ledger = this.ledgers.a;

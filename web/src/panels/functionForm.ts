@@ -1,4 +1,4 @@
-// What is asked of the functions panel: which function, from where, by which method.
+// Input of the functions panel: function, start and method.
 import { formulaElements } from "../formulas";
 import { choice, element, numberField } from "../plots/dom";
 import type { FunctionQuestion, SettingValue } from "../protocol";
@@ -40,7 +40,7 @@ export interface Preset {
   start: [number, number];
   settings: Record<string, SettingValue>;
   log: boolean;
-  model: boolean; // shown
+  model: boolean; // whether the quadratic model is visible
   iteration: number;
 }
 
@@ -48,7 +48,7 @@ export const kPresets: Preset[] = [
   {
     title: "Zig-zag",
     shows:
-      "Gradient descent: the negative gradient points across the valley, not along it: the path jumps from wall to wall and creeps. Newton's method takes one iteration here.",
+      "Gradient descent: the negative gradient points across the valley, so the path zigzags and progresses slowly. Newton's method takes one iteration here.",
     name: "quadratic",
     start: [0.3, 1.3],
     settings: { method: "gradient_descent", max_iterations: 200 },
@@ -59,7 +59,7 @@ export const kPresets: Preset[] = [
   {
     title: "Overshoot",
     shows:
-      "Newton's method: iteration 1 goes straight to the model's minimum and lands far up on the other side: the orange model is right only nearby. Nothing stops it without a line search.",
+      "Newton's method: iteration 1 jumps to the model's minimum and lands far up on the other side, because the orange model is accurate only nearby. Without a line search the step is accepted.",
     name: "rosenbrock",
     start: [-0.2, -0.2],
     settings: { method: "newton", "line_search.test": "none", definiteness: "exact" },
@@ -70,7 +70,7 @@ export const kPresets: Preset[] = [
   {
     title: "Backtracking",
     shows:
-      "The same start and the same direction, but trials that do not lower f enough are rejected (crosses) and the step is halved until one does (dot).",
+      "The same start and direction, but trials without sufficient decrease of f are rejected (crosses), and the step is halved until one is accepted (dot).",
     name: "rosenbrock",
     start: [-0.2, -0.2],
     settings: { method: "newton", "line_search.test": "textbook" },
@@ -81,7 +81,7 @@ export const kPresets: Preset[] = [
   {
     title: "Indefinite",
     shows:
-      "Between dip and bump the Hessian is indefinite and the model has no minimum: its negative curvature is taken as positive before Newton's step is made.",
+      "Between dip and bump the Hessian is indefinite and the model has no minimum. Newton's method replaces the negative curvature by its absolute value.",
     name: "two_bump",
     start: [-0.2, 0.6],
     settings: { method: "newton", definiteness: "absolute" },
@@ -91,7 +91,7 @@ export const kPresets: Preset[] = [
   },
 ];
 
-// Defaults of the settings that the form shows.
+// Defaults of the form's settings.
 const kDefaults: Record<string, SettingValue> = {
   method: "newton",
   definiteness: "auto",
@@ -124,7 +124,7 @@ export class FunctionForm {
   private readonly y = numberField("y", "y of the start", 0.6, {}, () => this.changed());
   private readonly choices = new Map<string, HTMLSelectElement>();
   private readonly numbers = new Map<string, HTMLInputElement>();
-  private others: Record<string, SettingValue> = {}; // settings that a question had and the form does not show
+  private others: Record<string, SettingValue> = {}; // settings of a question that the form does not show
 
   constructor(private readonly changed: () => void) {
     this.formula.value = "cosh(x) + (y - x)^2";
@@ -134,17 +134,17 @@ export class FunctionForm {
       changed();
     });
     const method = [
-      this.pick("method", "method", "How the direction is found", kMethods),
-      this.pick("definiteness", "definiteness", "What is done to an indefinite Hessian", kDefiniteness),
+      this.pick("method", "method", "Method that computes the direction", kMethods),
+      this.pick("definiteness", "definiteness", "Modification of an indefinite Hessian", kDefiniteness),
     ];
     const search = [
-      this.pick("line_search.test", "line search", "When a trial is accepted", kTests),
-      this.number("line_search.alpha_max", "α max", "The first trial", { min: 1e-12, max: 1e6 }),
+      this.pick("line_search.test", "line search", "Acceptance test of a trial", kTests),
+      this.number("line_search.alpha_max", "α max", "Step length of the first trial", { min: 1e-12, max: 1e6 }),
       this.number("line_search.c", "c", "Sufficient decrease", { min: 0, max: 1 }),
       this.number("line_search.p", "p", "Factor between trials", { min: 0.001, max: 0.99 }),
     ];
     const ends = [
-      this.number("tolerance", "tolerance", "How small the gradient must become", { min: 0 }),
+      this.number("tolerance", "tolerance", "Tolerance of the gradient's norm", { min: 0 }),
       this.number("max_iterations", "at most", "Iterations", { min: 1, max: 500, step: 1 }),
     ];
     const row = (...children: HTMLElement[]): HTMLElement => element("div", { class: "pair" }, ...children);
@@ -194,7 +194,7 @@ export class FunctionForm {
     for (const [key, input] of this.numbers) input.value = brief(Number(settings[key]));
   }
 
-  // A named function is shown as a formula; any other is typed.
+  // Shows a named function as a formula and any other as a text field.
   private showFormula(): void {
     const name = this.name.select.value;
     this.formula.hidden = name !== "formula";

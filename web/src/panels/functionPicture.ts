@@ -1,4 +1,4 @@
-// What the functions panel draws: the surface, the path on it, and the model of the iteration that is looked at.
+// Picture of the functions panel: the surface, the path on it, and the quadratic model of the chosen iteration.
 import type { FunctionReply } from "../protocol";
 import { isInside, minimizerOf, quadraticAt, uniform, type Grid } from "../plots/grid";
 import type { Sign } from "../plots/legend";
@@ -7,12 +7,12 @@ import type { Mark, SurfaceContent } from "../plots/surfaceBody";
 
 export interface FunctionPicture {
   content: SurfaceContent;
-  signs: Sign[]; // what its marks mean
+  signs: Sign[]; // meaning of its marks
 }
 
 export interface FunctionLook {
   iteration: number;
-  wholePath: boolean; // not only up to that iteration
+  wholePath: boolean; // draw the path beyond that iteration
   start: [number, number];
   model: boolean;
   log: boolean;
@@ -64,7 +64,7 @@ function addTrials(reply: FunctionReply, iteration: number, marks: Mark[], signs
 }
 
 function addModel(reply: FunctionReply, grid: Grid, marks: Mark[], signs: Sign[]): void {
-  signs.push({ sign: "▇", color: "series2", text: "this iteration's quadratic model" });
+  signs.push({ sign: "▇", color: "series2", text: "quadratic model of this iteration" });
   const lowest = minimizerOf(reply.model);
   if (!lowest) return void signs.push({ sign: "◆", color: "series4", text: "the model has no minimum" });
   const value = quadraticAt(reply.model, lowest.x, lowest.y);
@@ -80,7 +80,7 @@ function addMinimum({ minimizer }: FunctionReply, marks: Mark[], signs: Sign[]):
   signs.push({ sign: "✕", color: "series8", text: "the minimum of f" });
 }
 
-// Of the iteration, and the start of them all.
+// Adds the ends of the iteration and the initial point.
 function addEnds(reply: FunctionReply, look: FunctionLook, marks: Mark[], signs: Sign[]): void {
   const from = reply.path[look.iteration];
   const to = reply.path[look.iteration + 1];
@@ -89,6 +89,6 @@ function addEnds(reply: FunctionReply, look: FunctionLook, marks: Mark[], signs:
   const [x, y] = look.start;
   marks.push({ x, y, value: null, shape: "ring", color: "bad", size: 13, label: "start: drag me" });
   signs.push({ sign: "●", color: "accent", text: "this iteration begins here" });
-  signs.push({ sign: "●", color: "good", text: "and ends here" });
+  signs.push({ sign: "●", color: "good", text: "this iteration ends here" });
   signs.push({ sign: "•─", color: "text", text: "iterates so far" });
 }

@@ -1,4 +1,5 @@
-// Functions of two variables, minimized by the simulation's own methods: the lecture's surfaces, from any start.
+// Functions of two variables, minimized by the methods of the simulation: the lecture's surfaces, from any initial
+// point.
 import { Newest } from "../newest";
 import type { Page, Panel } from "../page";
 import type { FunctionQuestion, FunctionReply } from "../protocol";
@@ -43,13 +44,13 @@ class PlanarPanel implements FunctionsPanel {
     "aria-label": "Iteration",
   });
   private readonly where = element("strong");
-  private readonly playButton = button("▶ play", "Goes through the iterations", () => this.togglePlay());
-  private readonly model = checkbox("quadratic model", "Shows the model that this iteration minimized", true, () =>
+  private readonly playButton = button("▶ play", "Play the iterations", () => this.togglePlay());
+  private readonly model = checkbox("quadratic model", "Show the quadratic model that this iteration minimized", true, () =>
     this.draw(),
   );
   private readonly log = checkbox(
     "log height",
-    "Heights by the logarithm of f above its lowest value here",
+    "Logarithmic heights above the lowest value of f here",
     false,
     () => this.draw(),
   );
@@ -59,12 +60,12 @@ class PlanarPanel implements FunctionsPanel {
   private reply: FunctionReply | null = null;
   private shown: FunctionPicture | null = null;
   private iteration = 0;
-  private shows = ""; // of the preset
+  private shows = ""; // name of the preset shown
   private readonly questions = new Newest<FunctionQuestion>(
     (question) => this.send(question),
     (reason) => this.fail(reason instanceof Error ? reason.message : String(reason)),
   );
-  private asked = false; // at least once
+  private asked = false; // whether a question was sent
   private visible = false;
   private timer: ReturnType<typeof setInterval> | null = null;
 

@@ -1,4 +1,4 @@
-// The energy landscape of one iteration: E over the plane through its direction d, and the quadratic model beside it.
+// Energy landscape of one iteration: E over the plane through its direction d, and the quadratic model beside it.
 import type { Page, Panel } from "../page";
 import type { IterationReply, MaybeNumber } from "../protocol";
 import type { Store } from "../store";
@@ -21,13 +21,13 @@ class LandscapePanel implements Panel {
   readonly element = element("div", { class: "plot-panel", role: "group", "aria-label": "Energy landscape" });
   private readonly chosen: Chosen;
   private readonly view = new SurfaceView();
-  private readonly follow = checkbox("follow", "Stay at the newest step", true, (on) => this.chosen.follow(on));
-  private readonly model = checkbox("quadratic model", "Shows what Newton's method takes E for", true, () =>
+  private readonly follow = checkbox("follow", "Follow the newest step", true, (on) => this.chosen.follow(on));
+  private readonly model = checkbox("quadratic model", "Show the quadratic model of E", true, () =>
     this.draw(),
   );
   private readonly log = checkbox(
     "log height",
-    "Heights by the logarithm of E above its lowest value here",
+    "Logarithmic heights above the lowest value of E here",
     false,
     () => this.draw(),
   );
@@ -94,19 +94,19 @@ class LandscapePanel implements Panel {
       return this.settle(
         null,
         implicit
-          ? "There is nothing to see before the first iteration."
-          : "This scheme minimizes nothing: there is no landscape.",
+          ? "No iteration has been computed yet."
+          : "This integrator does not minimize, so there is no landscape.",
       );
     }
     this.chosen.look();
     const seen = this.chosen.seen;
-    if (!seen) return this.settle(null, "The program is asked for E around the iteration ...");
-    if (!seen.reply) return this.settle(null, `Not known here: ${seen.why}`);
+    if (!seen) return this.settle(null, "Computing E around the iteration ...");
+    if (!seen.reply) return this.settle(null, `Not available: ${seen.why}`);
     this.settle(
       seen.reply,
       this.chosen.isSeen()
         ? ""
-        : `Shown: step ${seen.at.step}, iteration ${seen.at.iteration}; the program is asked for this one.`,
+        : `Shown: step ${seen.at.step}, iteration ${seen.at.iteration}; the chosen one is being computed.`,
     );
   }
 
@@ -181,8 +181,8 @@ class LandscapePanel implements Panel {
   private explanation(reply: IterationReply): string {
     const cut = this.view.cutAbove;
     const sentences = [
-      "This is E over the plane x + s d + t v through the iterate x: d is the direction that the solver chose, v is as long and lies across it, towards steepest descent.",
-      "Newton's method goes where the orange model is lowest; where it parts from the surface, the full step misses and the line search shortens it.",
+      "This is E over the plane x + s d + t v through the iterate x: d is the direction of the solver; v is as long, orthogonal to d, and points toward steepest descent.",
+      "Newton's method steps to the minimum of the orange model. Where the model differs from the surface, the line search shortens the step.",
     ];
     if (cut !== null) sentences.push(`Walls above E = ${short(cut, 4)} are cut off.`);
     if (reply.slice.value.some((v: MaybeNumber) => v === null)) sentences.push("Holes: E is infinite there.");

@@ -1,4 +1,4 @@
-// The solver under the microscope: the steps, the iterations of one of them, and the line search of one iteration.
+// The minimization in detail: steps, iterations of one step, and line search of one iteration.
 import { statusName } from "../names";
 import type { Page, Panel } from "../page";
 import type { IterationRow, SideName, StepRow, WorstReply } from "../protocol";
@@ -25,7 +25,7 @@ class MicroscopePanel implements Panel {
   private readonly sides = choice("", "Which side of the comparison", [], "a", (side) =>
     this.chosen.chooseSide(side as SideName),
   );
-  private readonly follow = checkbox("follow", "Stay at the newest step", true, (on) => this.chosen.follow(on));
+  private readonly follow = checkbox("follow", "Follow the newest step", true, (on) => this.chosen.follow(on));
   private readonly words = element("div", { class: "plot-note", role: "status" });
   private readonly worst = element("ol", { class: "worst", hidden: "" });
   private readonly steps = new Rows({
@@ -53,7 +53,7 @@ class MicroscopePanel implements Panel {
     this.chosen = chosenOf(store, page);
     const worst = button(
       "Worst elements",
-      "Lists the tets that are worst off and marks them on the body",
+      "List the tets with the worst values and mark them on the body",
       () => void this.findWorst(),
     );
     const bar = element("div", { class: "plot-bar" }, this.sides.element, this.follow.element, worst, this.words);
@@ -79,7 +79,7 @@ class MicroscopePanel implements Panel {
     return this.chosen.rows();
   }
 
-  // The newest step stands first.
+  // Step in a row of the table, the newest first.
   private stepAt(row: number): StepRow | undefined {
     const rows = this.rows();
     return rows[rows.length - 1 - row];
@@ -103,7 +103,7 @@ class MicroscopePanel implements Panel {
       { title: "step", meaning: "number of the time step; the newest is first", text: of((s) => String(s.step)) },
       {
         title: "status",
-        meaning: "how the minimization ended",
+        meaning: "status of the minimization",
         left: true,
         class: "status",
         text: of((s) => statusText(s)),
@@ -111,7 +111,7 @@ class MicroscopePanel implements Panel {
       { title: "it.", meaning: "iterations of the minimizer", text: of((s) => String(s.iterations.length)) },
       {
         title: "resid.",
-        meaning: "norm of the forces that are left over, in parts of the threshold that it must be below",
+        meaning: "residual relative to its threshold",
         text: of(residualText),
       },
       { title: "took", meaning: "wall time", class: "spare", text: of((s) => withUnit(s.seconds, "s", 3)) },
@@ -129,12 +129,12 @@ class MicroscopePanel implements Panel {
       { title: "|g|", meaning: "norm of its gradient", text: of((it) => short(it.gradient_norm, 3)) },
       {
         title: "decr.",
-        meaning: "−g·d / 2: what the quadratic model promises",
+        meaning: "−g·d / 2: decrease that the quadratic model predicts",
         text: of((it) => short(it.decrement, 3)),
       },
       {
         title: "α",
-        meaning: "accepted step length; 0: none was found",
+        meaning: "accepted step length; 0: no acceptable step",
         text: of((it) => (it.alpha === 0 ? "none" : short(it.alpha, 3))),
       },
       {
@@ -144,7 +144,7 @@ class MicroscopePanel implements Panel {
       },
       {
         title: "proj.",
-        meaning: "elements whose Hessian was made definite",
+        meaning: "elements with a modified Hessian",
         class: "spare",
         text: of((it) => String(it.projected_elements)),
       },
@@ -204,25 +204,25 @@ class MicroscopePanel implements Panel {
     const underWay = this.chosen.isUnderWay();
     if (!row)
       this.words.textContent = implicit
-        ? "No step has been taken yet."
-        : "This scheme minimizes nothing; no step has been taken yet.";
+        ? "No step has been computed yet."
+        : "This integrator does not minimize; no step has been computed yet.";
     else if (underWay)
-      this.words.textContent = `Step ${row.step} is under way; known so far: ${plural(row.iterations.length, "iteration")}.`;
+      this.words.textContent = `Step ${row.step} is under way: ${plural(row.iterations.length, "iteration")}.`;
     else this.words.textContent = `Step ${row.step}. ${stepText(row, implicit)}`;
     this.words.dataset.kind = row && !row.converged ? "bad" : "";
   }
 
-  // E along d at the chosen iteration, asked for when a chart shows it; or why it is not there.
+  // E along d at the chosen iteration, requested when a chart shows it; or the reason why it is missing.
   private searchNow(): Search | string {
     if (!this.charts.some((chart) => chart.name === "search")) return "";
     if (!this.chosen.iterationRow()) {
       const implicit = this.store.side(this.chosen.side)?.scene.implicit ?? true;
-      return implicit ? "No iteration is chosen." : "This scheme minimizes nothing: there is no line search.";
+      return implicit ? "No iteration is chosen." : "This integrator does not minimize, so there is no line search.";
     }
     this.chosen.look();
     const seen = this.chosen.seen;
-    if (!seen) return "The program is asked for E along d ...";
-    if (!seen.reply) return `E along d is not known here: ${seen.why}`;
+    if (!seen) return "Computing E along d ...";
+    if (!seen.reply) return `E along d is not available: ${seen.why}`;
     const settings = this.store.side(seen.at.side)?.scene.settings ?? [];
     const test = settings.find((setting) => setting.key.endsWith("line_search.test"))?.value;
     const about = this.chosen.isSeen() ? "" : `of step ${seen.at.step}, iteration ${seen.at.iteration}`;
@@ -234,7 +234,7 @@ class MicroscopePanel implements Panel {
     };
   }
 
-  // As many charts as there is room for.
+  // Shows as many charts as fit.
   private arrange(): void {
     const font = Number.parseFloat(getComputedStyle(this.grid).fontSize) || 14;
     const across = Math.max(1, Math.min(3, Math.floor(this.grid.clientWidth / (14.5 * font))));

@@ -8,7 +8,7 @@ import type { Store } from "../store";
 import { excess, kColumns, listed, totals } from "./certificate";
 
 const kRowsPerPage = 100;
-const kPause = 500; // between two drawings [ms]: steps may come faster than anybody reads
+const kPause = 500; // time between two drawings [ms]; steps may arrive faster
 
 function text(value: MaybeNumber | string): string {
   return typeof value === "string" ? value : short(value);
@@ -20,7 +20,7 @@ class StepTable {
   private readonly onlyFailed = element("input", { type: "checkbox" });
   private readonly range = element("span", { role: "status" });
   private column = kColumns[0];
-  private first = 0; // row of this page of the table
+  private first = 0; // first row of this page of the table
 
   constructor(private readonly store: Store) {
     this.onlyFailed.addEventListener("change", () => this.turn(-Infinity));
@@ -89,7 +89,7 @@ function drawTotals(list: HTMLElement, steps: readonly StepRow[]): void {
     entry("steps", String(all.steps)),
     entry("converged", `${all.steps - all.failed} of ${all.steps}`, all.failed ? "bad" : "good"),
     entry("iterations", `${all.iterations}, ${all.steps ? (all.iterations / all.steps).toFixed(1) : "0"} per step`),
-    entry("largest residual / wanted", at(all.worstExcess, excess)),
+    entry("largest residual / threshold", at(all.worstExcess, excess)),
     entry("smallest det F", at(all.smallestVolume, (row) => row.min_det_F), all.inverted ? "bad" : ""),
     ...(all.inverted ? [entry("steps with inverted tets", `${all.inverted} of ${all.steps}`, "bad")] : []),
     entry("largest ledger error [J]", at(all.largestError, (row) => row.ledger_error)),
@@ -99,14 +99,14 @@ function drawTotals(list: HTMLElement, steps: readonly StepRow[]): void {
   );
 }
 
-// The complete scene, asked for when it is opened.
+// The complete scene, requested when it is opened.
 function makeScene(store: Store, page: Page): HTMLElement {
   const code = element("pre", { tabindex: "0", "aria-label": "Scene as TOML" });
   let file: TextReply | null = null;
   const save = button({ text: "Save", label: "Save the scene" }, () => {
     if (file) saveFile(file.name, new Blob([file.text], { type: "text/plain" }));
   });
-  const details = element("details", {}, element("summary", {}, "Scene, with every default filled in"), save, code);
+  const details = element("details", {}, element("summary", {}, "Complete scene with all defaults"), save, code);
   const load = async (): Promise<void> => {
     if (!details.open) return;
     try {
@@ -130,7 +130,7 @@ export function makeReportPanel(store: Store, page: Page): Panel {
   const panel = element("div", { class: "report" }, list, aboutScene, makeScene(store, page), table.element);
   let visible = false;
   let due = false;
-  let drawn = -kPause; // when
+  let drawn = -kPause; // time of the last drawing
   const draw = (): void => {
     due = false;
     drawn = performance.now();
@@ -138,7 +138,7 @@ export function makeReportPanel(store: Store, page: Page): Panel {
     drawTotals(list, side?.steps ?? []);
     const reported = side?.scene.notes ?? [];
     aboutScene.hidden = reported.length === 0;
-    notesTitle.textContent = `What was chosen for this scene: ${plural(reported.length, "note")}`;
+    notesTitle.textContent = `Choices of the program for this scene: ${plural(reported.length, "note")}`;
     notes.replaceChildren(...reported.map((note) => element("li", {}, note)));
     table.draw();
   };

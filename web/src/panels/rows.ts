@@ -1,5 +1,5 @@
-// Rows of a lil-gui folder that it has not got: numbers with a slider of any scale whose typed values may lie outside of
-// it, vectors, and formulas. A typed value counts when it is complete: on Enter, or when the field is left.
+// Rows that a lil-gui folder lacks: numbers with a slider of any scale whose typed values may lie outside of its range,
+// vectors, and formulas. A typed value is submitted on Enter or when the field loses the focus.
 import { Controller } from "lil-gui";
 import type { GUI } from "lil-gui";
 import { element } from "../dom";
@@ -18,7 +18,7 @@ export interface Row {
 
 type Model = { value: SettingValue };
 
-// A text field that hands over what was typed once, and takes it back on Escape.
+// Text field that submits each text once; Escape restores the previous value.
 function makeField(label: string, shown: () => string, commit: (text: string) => void): HTMLInputElement {
   const field = element("input", { type: "text", "aria-label": label, spellcheck: "false", autocomplete: "off" });
   field.addEventListener("change", () => commit(field.value));
@@ -35,8 +35,8 @@ function markRow(row: Controller, text: string): void {
 }
 
 abstract class ValueRow extends Controller implements Row {
-  protected held = false; // by the mouse
-  private later: SettingValue | null = null; // from the program, while the reader changes the value
+  protected held = false; // whether the mouse holds the slider
+  private later: SettingValue | null = null; // value from the program while the reader changes the value
 
   constructor(
     gui: GUI,
@@ -107,7 +107,7 @@ export class NumberRow extends ValueRow {
     return this;
   }
 
-  // An arrow key goes to the next integer, however short its way on the slider.
+  // An arrow key moves to the next integer, even where that is a short distance on the slider.
   private slid(position: number): number {
     const value = toValue(position, this.range);
     const before = this.model.value;
@@ -124,7 +124,7 @@ export class NumberRow extends ValueRow {
     return typeof this.model.value === "number" ? numberText(this.model.value) : String(this.model.value);
   }
 
-  // A number that varies over the body is a formula; the program judges what is no number.
+  // A text that is no number is a formula of the position; the program validates it.
   private commit(text: string): void {
     this.setValue(parseNumber(text) ?? text);
   }
@@ -179,7 +179,7 @@ export class VectorRow extends ValueRow {
   }
 }
 
-// lil-gui's own rows for a list and a switch.
+// Rows of lil-gui for a list and a switch.
 class PlainRow implements Row {
   constructor(
     private readonly controller: Controller,
@@ -200,7 +200,7 @@ class PlainRow implements Row {
   }
 }
 
-// Choices by their names for people.
+// Choices by their display names.
 function named({ key, choices }: Setting): Record<string, string> {
   return Object.fromEntries(choices.map((value) => [choiceName(key, value), value]));
 }

@@ -1,4 +1,4 @@
-// Between a setting's value and the position of its slider, 0 to 1.
+// Converts between a setting's value and the position of its slider, 0 to 1.
 import type { Setting } from "../protocol";
 
 export type Range = Pick<Setting, "min" | "max" | "log" | "kind">;
@@ -7,7 +7,7 @@ function isLog(range: Range): boolean {
   return range.log && range.min > 0 && range.max > range.min;
 }
 
-// A value outside of the slider's range, as may be typed, is at the slider's end.
+// A typed value outside of the slider's range is at the slider's end.
 export function toPosition(value: number, range: Range): number {
   if (!(range.max > range.min)) return 0;
   const position = isLog(range)
@@ -16,7 +16,7 @@ export function toPosition(value: number, range: Range): number {
   return Number.isFinite(position) ? Math.max(0, Math.min(1, position)) : 0;
 }
 
-// Three digits: what a hand on a slider means.
+// Rounded to three digits, the precision of a slider.
 export function toValue(position: number, range: Range): number {
   const value = isLog(range)
     ? range.min * (range.max / range.min) ** position
@@ -24,7 +24,7 @@ export function toValue(position: number, range: Range): number {
   return range.kind === "integer" ? Math.round(value) : Number(value.toPrecision(3));
 }
 
-// At most six digits: a field has no room for more.
+// At most six digits, the width of a field.
 export function numberText(exact: number): string {
   const value = Number(exact.toPrecision(6));
   const size = Math.abs(value);
@@ -32,7 +32,7 @@ export function numberText(exact: number): string {
   return text.replace("e+", "e");
 }
 
-// What was typed, or null.
+// The typed number, or null.
 export function parseNumber(text: string): number | null {
   const value = Number(text.trim().replace(",", "."));
   return text.trim() !== "" && Number.isFinite(value) ? value : null;

@@ -1,5 +1,5 @@
-// The settings of the simulation: built from what the program says it has, sent while a slider moves, and put back where
-// the program refuses.
+// Settings of the simulation: built from the program's list, sent while a slider moves, and restored if the program
+// refuses them.
 import { GUI, type Controller } from "lil-gui";
 import { button, element, messageOf } from "../dom";
 import { backTo, History, toLoaded, type SettingChange } from "../history";
@@ -14,10 +14,10 @@ import type { Row } from "./rows";
 
 type Target = SideName | "both";
 
-const kClosed = ["World", "Solver", "Line search"]; // until the reader opens them
-const kOneChange = 1000; // [ms]: values that follow each other faster are one change
+const kClosed = ["World", "Solver", "Line search"]; // closed at first
+const kOneChange = 1000; // [ms]: changes that follow each other faster are one change
 
-// Whether the same rows can show both.
+// Whether the same rows can show both lists.
 function sameShape(a: Setting[], b: Setting[]): boolean {
   const shape = (all: Setting[]): string =>
     JSON.stringify(all.map((s) => [s.key, s.label, s.group, s.unit, s.kind, s.min, s.max, s.choices]));
@@ -42,8 +42,8 @@ export class Settings {
   private readonly history = new History();
   private readonly undoer: HTMLButtonElement;
   private readonly resetter: HTMLButtonElement;
-  private newest = { key: "", at: 0 }; // the change that was made last
-  private loaded = ""; // which scene the history is about
+  private newest = { key: "", at: 0 }; // the latest change
+  private loaded = ""; // scene that the history belongs to
   private material: Controller | null = null;
 
   constructor(
@@ -60,7 +60,7 @@ export class Settings {
       { key: "z", does: "Undo the last change of a setting", group: "Simulation", run: () => void this.undo() },
       { text: "Undo", steers: true },
     );
-    const title = "Every setting as it was when the scene was loaded; the motion continues from here";
+    const title = "Restore the loaded value of every setting; the motion continues";
     this.resetter = button({ text: "Reset settings", title, steers: true }, () => void this.reset());
     const actions = element("div", { class: "setting-actions" }, this.undoer, this.resetter);
     actions.hidden = !store.source.live;
@@ -123,7 +123,7 @@ export class Settings {
       if (group === "Material") this.addMaterials(folder, settings);
       for (const setting of settings) if (setting.group === group) this.addSetting(folder, setting);
     }
-    this.spring.domElement.parentElement?.append(this.spring.domElement); // the last
+    this.spring.domElement.parentElement?.append(this.spring.domElement); // keeps it last
   }
 
   private addMaterials(folder: GUI, settings: Setting[]): void {
@@ -132,12 +132,12 @@ export class Settings {
     const names = Object.fromEntries(kMaterials.map(({ name }) => [name, name]));
     this.material = folder.add({ value: "" }, "value", { "choose ...": "", ...names }).name("Typical values");
     this.material.onChange((name: string) => void this.takeMaterial(name));
-    this.material.$name.title = "Published moduli, with their source, and typical ones.\nmaterial.young, material.poisson, material.density";
+    this.material.$name.title = "Published moduli with their source, and typical values.\nmaterial.young, material.poisson, material.density";
     const options = [...this.material.domElement.querySelectorAll("option")];
     kMaterials.forEach(({ source }, i) => (options[i + 1].title = source));
   }
 
-  // The preset whose values the scene has, if there is one.
+  // Selects the preset whose values the scene has, if any.
   private showMaterial(scene: Scene): void {
     if (!this.material) return;
     const value = (name: string): unknown => scene.settings.find(({ key }) => key === `material.${name}`)?.value;
@@ -161,7 +161,7 @@ export class Settings {
     await this.carryOut(changes);
   }
 
-  // What brings a setting back to how it is now, on each side that a change is about.
+  // Changes that restore the present value of a setting, on each side that a change affects.
   private back(key: string): SettingChange[] {
     const { a, b } = { a: this.store.side("a")?.scene, b: this.store.side("b")?.scene };
     if (!a) return [];
@@ -185,7 +185,7 @@ export class Settings {
       const changes = this.history.pop().filter((change) => this.changes(change));
       if (changes.length > 0) return this.carryOut(changes);
     }
-    this.page.notice("No change of a setting is left to be undone.");
+    this.page.notice("There is no change of a setting to undo.");
   }
 
   private async reset(): Promise<void> {
@@ -194,13 +194,13 @@ export class Settings {
       const scene = this.store.side(side ?? "a")?.scene;
       return scene ? toLoaded(scene, side) : [];
     });
-    if (changes.length === 0) return this.page.notice("Every setting is as it was loaded.");
+    if (changes.length === 0) return this.page.notice("All settings have their loaded values.");
     this.newest = { key: "", at: 0 };
     this.history.add("reset", changes.flatMap(({ key, side }) => backTo(this.store.side(side ?? "a")!.scene, key, side)).reverse());
     await this.carryOut(changes);
   }
 
-  // Whether it would make a difference.
+  // Whether a change would have an effect.
   private changes({ key, value, side }: SettingChange): boolean {
     const scene = this.store.side(side ?? "a")?.scene;
     if (!scene) return false;
@@ -241,7 +241,7 @@ export class Settings {
     const range = { min: 1, max: 1e6, log: true, kind: "number" } as const;
     const row = new NumberRow(folder, "stiffness of the mouse's spring [N/m]", { value: 1000 }, range);
     row.name("stiffness [N/m]");
-    row.$name.title = "Of the spring between the mouse and the point of the body that it drags";
+    row.$name.title = "Stiffness of the spring between the mouse and the dragged point";
     const sender = new Newest<number>(
       (value) => this.store.source.request({ do: "stiffness", value }),
       (reason) => this.page.notice(messageOf(reason), "error"),
@@ -254,7 +254,7 @@ export class Settings {
   private makeSurface(): HTMLSelectElement {
     const select = element(
       "select",
-      { "data-steers": true, title: "What is shown: the fine skin that the tets carry, or the boundary of the tets" },
+      { "data-steers": true, title: "Visible surface: the fine skin embedded in the tets, or the boundary of the tets" },
       element("option", { value: "skin" }, "fine skin"),
       element("option", { value: "cage" }, "cage of tets"),
     );
@@ -266,7 +266,7 @@ export class Settings {
 
   private showSides(): void {
     const two = this.store.side("b") !== null;
-    if (two === this.top.hasChildNodes()) return; // the choice that has the focus keeps it
+    if (two === this.top.hasChildNodes()) return; // keeps the focus in the list
     this.top.replaceChildren();
     if (!two) return;
     const names: Record<Target, string> = { a: "A", b: "B", both: "both" };

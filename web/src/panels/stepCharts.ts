@@ -1,4 +1,4 @@
-// The microscope's charts: over the iterations of one step, and over the steps.
+// Charts of the microscope: over the iterations of one step, and over the steps.
 import type { Chosen } from "../plots/chosen";
 import { Chart, type ChartOptions, type Curve } from "../plots/chart";
 import { choice, element } from "../plots/dom";
@@ -59,10 +59,10 @@ function convergence(rows: readonly IterationRow[]): Plan {
         curve(
           "energy",
           "E − lowest E",
-          "the objective before the iteration, above its lowest value in this step",
+          "objective before the iteration, above its lowest value in this step",
           "series2",
         ),
-        curve("decrement", "decrement", "−g·d / 2: what the quadratic model promises", "series3"),
+        curve("decrement", "decrement", "−g·d / 2: decrease that the quadratic model predicts", "series3"),
       ],
     },
     x: rows.map((_, i) => i),
@@ -92,7 +92,7 @@ function counted(
   };
 }
 
-// Bars upon each other: a later one is drawn over the sum with the stages below it.
+// Stacked bars: a later bar is drawn over the sum with the stages below it.
 function stages(rows: readonly IterationRow[]): Plan {
   const order = [...kStages].reverse();
   const columns = order.map((_, i) =>
@@ -147,7 +147,7 @@ function planOf(name: Exclude<ChartName, "search">, chosen: Chosen, steps: reado
     case "convergence":
       return convergence(rows);
     case "alpha":
-      return counted(rows, "α", "accepted step length; 0: none was found", (r) => r.alpha, "both");
+      return counted(rows, "α", "accepted step length; 0: no acceptable step", (r) => r.alpha, "both");
     case "time":
       return stages(rows);
     case "inner":
@@ -156,7 +156,7 @@ function planOf(name: Exclude<ChartName, "search">, chosen: Chosen, steps: reado
       return counted(
         rows,
         "projected elements",
-        "elements whose Hessian was made definite",
+        "elements with a modified Hessian",
         (r) => r.projected_elements,
         "bars",
       );
@@ -165,7 +165,7 @@ function planOf(name: Exclude<ChartName, "search">, chosen: Chosen, steps: reado
   }
 }
 
-// A chart with a choice of what it shows.
+// A chart with a selection of its content.
 export class StepChart {
   readonly element = element("div", { class: "microscope-cell" });
   private readonly fill = element("div", { class: "plot-fill" });
@@ -182,7 +182,7 @@ export class StepChart {
     private readonly steps: () => readonly StepRow[],
     changed: () => void,
   ) {
-    this.select = choice("", "What this chart shows", kCharts, name, changed);
+    this.select = choice("", "Content of this chart", kCharts, name, changed);
     this.element.append(this.select.element, this.empty, this.fill);
   }
 
@@ -199,7 +199,7 @@ export class StepChart {
     this.search.chart.retheme();
   }
 
-  // `search`: the line search of the chosen iteration, or why there is none.
+  // `search`: the line search of the chosen iteration, or the reason why it is missing.
   show(search: Search | string): void {
     const shown = this.name === "search" ? this.search.element : this.chart.element;
     if (this.fill.firstChild !== shown) this.fill.replaceChildren(shown);
@@ -213,7 +213,7 @@ export class StepChart {
     const name = this.name as Exclude<ChartName, "search">;
     const plan = planOf(name, this.chosen, this.steps(), this.chart.width);
     this.plan = plan;
-    this.empty.textContent = plan.x.length === 0 ? "No iteration of a minimizer is known here." : "";
+    this.empty.textContent = plan.x.length === 0 ? "No iteration of a minimizer is available." : "";
     this.chart.element.hidden = plan.x.length === 0;
     if (this.configured !== name) {
       this.configured = name;
@@ -250,7 +250,7 @@ export class StepChart {
     } else if (index >= 0 && index < (this.chosen.row()?.iterations.length ?? 0)) this.chosen.choose(side, step, index);
   }
 
-  // A line at the chosen iteration, or step.
+  // Draws a line at the chosen iteration or step.
   private paintChosen(u: uPlot, colors: Palette): void {
     paintVerticalLine(u, this.name === "steps" ? this.chosen.step : this.chosen.iteration, colors.accent, 0.6);
   }

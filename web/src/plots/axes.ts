@@ -1,11 +1,11 @@
-// The axes of a chart: units with SI prefixes, powers of ten, and how much of the numbers is shown.
+// Axes of a chart: units with SI prefixes, powers of ten, and shortened numbers.
 import type uPlot from "uplot";
 import { prefixOf, ticks } from "./numbers";
 import type { Palette } from "./palette";
 
 export interface Axis {
   label: string;
-  unit?: string; // with an SI prefix that fits
+  unit?: string; // shown with a suitable SI prefix
   integer?: boolean;
 }
 
@@ -43,7 +43,7 @@ export function axis(options: Axis & { log?: boolean }, colors: Palette, vertica
   };
 }
 
-// As many as have room for their texts.
+// Powers of ten, as many as have room for their texts.
 function powersOfTen(u: uPlot, fontSize: number): number[] {
   const { min, max } = u.scales.y!;
   if (!(min! > 0) || !(max! > 0)) return [];

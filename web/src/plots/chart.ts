@@ -1,5 +1,5 @@
 // A 2-D chart in the page's colors: curves over x, a legend whose entries show the values under the cursor and hide
-// their curves, and a picture of the whole.
+// their curves, and a picture of both.
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import "./plots.css";
@@ -9,7 +9,7 @@ import { element, oncePerFrame } from "./dom";
 import { cssOf, inkOf, palette, sameLook, type Color, type Palette } from "./palette";
 
 export interface Curve {
-  key: string; // curves of the same key share an entry of the legend
+  key: string; // curves with the same key share an entry of the legend
   label: string;
   meaning?: string;
   color: Color;
@@ -19,17 +19,17 @@ export interface Curve {
 }
 
 export interface ChartOptions {
-  label: string; // for a reader that does not see it
+  label: string; // name for screen readers
   x: Axis;
   y: Axis & { log?: boolean };
   curves: Curve[];
   legend: "side" | "top";
-  read: (key: string, x: number | null) => string[]; // values for the legend at x, or at the end
-  caption?: (x: number | null) => string; // above them
+  read: (key: string, x: number | null) => string[]; // values for the legend at x, or at the end if x is null
+  caption?: (x: number | null) => string; // text above the values
   xRange?: () => [number, number] | null;
-  yRange?: () => [number, number] | null; // null: what is shown decides
-  paint?: (u: uPlot, colors: Palette) => void; // over the curves
-  zoomed?: (range: [number, number] | null) => void; // chosen with the mouse; null: all again
+  yRange?: () => [number, number] | null; // null: the range of the visible curves
+  paint?: (u: uPlot, colors: Palette) => void; // draws over the curves
+  zoomed?: (range: [number, number] | null) => void; // range selected with the mouse; null: all of it
   clicked?: (x: number) => void;
 }
 
@@ -67,7 +67,7 @@ export class Chart {
     this.rebuild();
   }
 
-  // Columns in the order of the curves.
+  // Shows the columns, in the order of the curves.
   show(x: number[], columns: MaybeNumber[][]): void {
     this.data = { x, columns };
     if (!this.chart) return this.rebuild();
@@ -75,7 +75,7 @@ export class Chart {
     this.readLegend();
   }
 
-  // Colors or the font may be others now.
+  // Applies changed colors and fonts.
   retheme(): void {
     if (!sameLook(this.look, palette(this.element))) this.rebuild();
   }
@@ -103,7 +103,7 @@ export class Chart {
     return this.plot.clientWidth;
   }
 
-  // The chart under a title and above its legend.
+  // The chart with its title above and its legend below.
   picture(title: string): HTMLCanvasElement | null {
     if (!this.chart || !this.options) return null;
     const source = this.chart.ctx.canvas;
@@ -287,7 +287,7 @@ export class Chart {
   }
 }
 
-// Dots on a line only where they stand apart.
+// Whether a line has dots: only where they are apart.
 function showsPoints(shape: Curve["shape"], count: number, width: number): boolean {
   return shape === "points" || (shape === "both" && count * 9 <= width);
 }

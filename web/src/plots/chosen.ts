@@ -1,4 +1,4 @@
-// Which iteration of which step the microscope and the landscape look at: the newest, or what the reader chose.
+// The iteration that the microscope and the landscape show: the newest, or the reader's choice.
 import { Newest } from "../newest";
 import type { ChosenIteration, Page } from "../page";
 import type { IterationReply, IterationRow, SideName, StepRow } from "../protocol";
@@ -8,19 +8,19 @@ import { messageOf } from "../dom";
 import { Emitter } from "../emitter";
 
 const kFollowEvery = 500; // [ms]
-const kRest = 4; // times as long as an answer took, the program continues undisturbed before it is asked about the next
+const kRest = 4; // after each answer the program continues this many times the answer's duration before the next question
 const kRemembered = 12;
 
 interface Events {
-  changed: void; // another iteration is chosen
-  rows: void; // there are other steps
-  looked: void; // the program answered about an iteration
+  changed: void; // another iteration was chosen
+  rows: void; // the list of steps has changed
+  looked: void; // the program has answered about an iteration
 }
 
 export interface Seen {
   at: ChosenIteration;
   reply: IterationReply | null;
-  why: string; // there is no reply
+  why: string; // reason for a missing reply
 }
 
 function keyOf({ side, step, iteration }: ChosenIteration): string {
@@ -29,13 +29,13 @@ function keyOf({ side, step, iteration }: ChosenIteration): string {
 
 export class Chosen extends Emitter<Events> {
   side: SideName = "a";
-  step = 0; // 0: none yet
+  step = 0; // 0: no step yet
   iteration = 0;
   following = true;
   private timer: ReturnType<typeof setTimeout> | null = null;
-  seen: Seen | null = null; // the newest answer
+  seen: Seen | null = null; // newest answer
   private asked = "";
-  private restsUntil = 0; // by performance.now() [ms]
+  private restsUntil = 0; // performance.now() of the next allowed question [ms]
   private underWay: StepRow | null = null;
   private withUnderWay: StepRow[] = [];
   private readonly replies = new Map<string, IterationReply>();
@@ -72,7 +72,7 @@ export class Chosen extends Emitter<Events> {
     return this.rowOf(this.step);
   }
 
-  // The steps of the side, and the one under way as far as it is known.
+  // Steps of the side, and the known part of the step under way.
   rows(): readonly StepRow[] {
     const steps = this.store.side(this.side)?.steps ?? [];
     const state = this.store.state?.[this.side];
@@ -96,13 +96,13 @@ export class Chosen extends Emitter<Events> {
     return this.row()?.iterations[this.iteration] ?? null;
   }
 
-  // Of the reader: stays there.
+  // Chooses an iteration for the reader; it remains chosen.
   choose(side: SideName, step: number, iteration: number): void {
     this.following = false;
     this.announce(side, step, iteration);
   }
 
-  // The same step of the other side, or its newest.
+  // Chooses the same step of the other side, or its newest.
   chooseSide(side: SideName): void {
     const row = this.following
       ? this.newest(side)
@@ -110,7 +110,7 @@ export class Chosen extends Emitter<Events> {
     this.announce(side, row?.step ?? 0, 0);
   }
 
-  // To the iteration before or after, across steps.
+  // Moves to the previous or next iteration, across steps.
   walk(by: 1 | -1): void {
     const row = this.row();
     if (!row) return;
@@ -126,8 +126,8 @@ export class Chosen extends Emitter<Events> {
     this.emit("changed", undefined);
   }
 
-  // Asks the program about the chosen iteration, once; `looked` is called with the answer. While steps fly by, the
-  // answer may be about one that was chosen before: for each question the program leaves its steps.
+  // Asks the program about the chosen iteration once and emits `looked` with the answer. While steps arrive fast the
+  // answer may be about an earlier choice: the program interrupts its steps for each question.
   look(): void {
     const at = { side: this.side, step: this.step, iteration: this.iteration };
     const key = keyOf(at);
@@ -138,7 +138,7 @@ export class Chosen extends Emitter<Events> {
     else this.questions.push(at);
   }
 
-  // Whether `seen` is about the chosen iteration.
+  // Whether `seen` belongs to the chosen iteration.
   isSeen(): boolean {
     return this.seen !== null && keyOf(this.seen.at) === keyOf(this);
   }
@@ -166,7 +166,7 @@ export class Chosen extends Emitter<Events> {
     }
   }
 
-  // What was interrupted is asked again when the program has reported what it did instead.
+  // A question that was interrupted is repeated after the next report of the program.
   private failed(at: ChosenIteration, why: string): void {
     if (!why.startsWith("interrupted")) this.take({ at, reply: null, why });
     else if (this.asked === keyOf(at)) this.asked = "";
@@ -188,7 +188,7 @@ export class Chosen extends Emitter<Events> {
     return steps[steps.length - 1] ?? null;
   }
 
-  // Steps after a rewind are others.
+  // Forgets the steps after a rewind.
   private forget(side: SideName, from: number): void {
     const isVoid = (key: string): boolean => key.split(" ")[0] === side && Number(key.split(" ")[1]) > from;
     for (const key of this.replies.keys()) if (isVoid(key)) this.replies.delete(key);
@@ -228,7 +228,7 @@ export class Chosen extends Emitter<Events> {
   }
 }
 
-// What a step has while it is under way.
+// Row of a step that is under way.
 function unfinished(step: number, time: number, iterations: IterationRow[]): StepRow {
   const work = { mouse_work: null, probe_work: null, explanation: null };
   return { ...kUnknownStep, step, time, status: "under way", converged: true, iterations, ...work };
@@ -236,7 +236,7 @@ function unfinished(step: number, time: number, iterations: IterationRow[]): Ste
 
 const known = new WeakMap<Page, Chosen>();
 
-// The one of this page.
+// The instance of this page.
 export function chosenOf(store: Store, page: Page): Chosen {
   const chosen = known.get(page) ?? new Chosen(store, page);
   known.set(page, chosen);

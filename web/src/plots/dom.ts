@@ -1,4 +1,4 @@
-// Small builders of the plots' controls.
+// Builders of the plots' controls.
 import { element, saveFile } from "../dom";
 
 export { element, saveFile as download };
@@ -45,7 +45,7 @@ export interface NumberField {
   input: HTMLInputElement;
 }
 
-// `change` hears finite numbers only.
+// `change` receives only finite numbers.
 export function numberField(
   text: string,
   title: string,
@@ -68,12 +68,12 @@ export function downloadCanvas(name: string, canvas: HTMLCanvasElement): void {
   canvas.toBlob((blob) => blob && saveFile(name, blob), "image/png");
 }
 
-// A letter at most of each kind that any file system takes.
+// File name from letters, digits and characters that every file system accepts.
 export function fileName(...parts: (string | number)[]): string {
   return parts.join("_").replace(/[^A-Za-z0-9._-]+/g, "_");
 }
 
-// Calls `draw` at most once per frame, however often it is asked to.
+// Returns a function that calls `draw` at most once per frame.
 export function oncePerFrame(draw: () => void): () => void {
   let asked = false;
   return () => {

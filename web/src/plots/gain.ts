@@ -1,15 +1,15 @@
-// Whether a motion has blown up: judged by its energy. The integrator and what the solver left over have added more than
-// half of the kinetic energy; no body in free fall or in flight does that, however far it goes.
+// Detects from the energy that a motion has blown up: the integrator and the solver's residuals have added more than
+// half of the kinetic energy. A body in free fall does not do that, however far it moves.
 import type { StepRow } from "../protocol";
 
-const kShare = 0.5; // of the kinetic energy
+const kShare = 0.5; // threshold relative to the kinetic energy
 
 export function hasBlownUp(rows: readonly StepRow[], step: number): boolean {
   let gained = 0;
   let last: StepRow | null = null;
   for (const row of rows) {
     if (row.step > step) break;
-    if (row.step === 0) continue; // the start
+    if (row.step === 0) continue; // initial state
     last = row;
     gained += (row.residual_work ?? NaN) - (row.numerical_loss ?? NaN);
   }

@@ -1,10 +1,10 @@
-// Values over a plane: their heights in a picture, and the quadratic that a set of samples came from.
+// Values on a plane grid: the heights of their picture, and the quadratic function through samples.
 import type { IterationReply, MaybeNumber } from "../protocol";
 
 export interface Grid {
   x: number[]; // ascending
   y: number[];
-  value: MaybeNumber[]; // x.length times y.length, x fastest; null: not finite there
+  value: MaybeNumber[]; // x.length times y.length values, x fastest; null: not finite
 }
 
 export interface Point {
@@ -16,7 +16,7 @@ export function uniform(from: number, to: number, samples: number): number[] {
   return Array.from({ length: samples }, (_, i) => from + ((to - from) * i) / (samples - 1));
 }
 
-// The grid of a slice, whose coordinates may be given per line or per sample.
+// Grid of a slice, whose coordinates are given per line or per sample.
 export function gridOf(slice: IterationReply["slice"]): Grid {
   const { columns, rows, s, t, value } = slice;
   const x = s.length === columns ? s : s.slice(0, columns);
@@ -27,10 +27,10 @@ export function gridOf(slice: IterationReply["slice"]): Grid {
 export interface Range {
   low: number;
   high: number;
-  cut: boolean; // there is more above `high`
+  cut: boolean; // some values are above `high`
 }
 
-// Heights worth showing: everything, unless a wall would flatten the valley. What `keep` names stays in the picture.
+// Range of heights to show: all of them, unless a wall would flatten the valley. Includes the values in `keep`.
 export function heightRange(values: readonly MaybeNumber[], keep: readonly MaybeNumber[] = []): Range {
   const known = values.filter((v): v is number => v !== null && Number.isFinite(v)).sort((p, q) => p - q);
   const kept = keep.filter((v): v is number => v !== null && Number.isFinite(v));
@@ -46,9 +46,9 @@ export function heightRange(values: readonly MaybeNumber[], keep: readonly Maybe
 }
 
 export type Scale = "linear" | "log";
-const kLogFloor = 1e-4; // of the range: differences below it look flat
+const kLogFloor = 1e-4; // relative to the range; smaller differences look flat
 
-// From a value to its height, `low` to 0 and `high` to 1; and back.
+// Maps values to heights, `low` to 0 and `high` to 1, and the inverse.
 export function heightOf({ low, high }: Range, scale: Scale): (value: number) => number {
   if (scale === "linear") return (value) => (value - low) / (high - low);
   const floor = kLogFloor * (high - low);
@@ -61,7 +61,7 @@ export function valueAtHeight({ low, high }: Range, scale: Scale): (height: numb
   return (height) => low + kLogFloor * (high - low) * Math.expm1(height * Math.log1p(1 / kLogFloor));
 }
 
-// Bilinear; null outside and beside holes.
+// Bilinear interpolation; null outside of the grid and beside holes.
 export function sample(grid: Grid, x: number, y: number): MaybeNumber {
   const [i, fx] = cell(grid.x, x);
   const [j, fy] = cell(grid.y, y);
@@ -102,7 +102,7 @@ export function quadraticAt(q: Quadratic, x: number, y: number): number {
   );
 }
 
-// Where the quadratic is smallest; null if it has no minimum.
+// Minimizer of the quadratic; null if it has no minimum.
 export function minimizerOf(q: Quadratic): Point | null {
   const determinant = q.xx * q.yy - q.xy * q.xy;
   if (!(q.xx > 0) || !(determinant > 1e-14 * q.xx * q.yy)) return null;
@@ -113,7 +113,7 @@ export function minimizerOf(q: Quadratic): Point | null {
   };
 }
 
-// The quadratic through samples on a uniform grid, about its middle, by differences over half of the grid.
+// Quadratic through samples of a uniform grid, about its middle, by differences over half of the grid.
 export function quadraticFrom(grid: Grid): Quadratic | null {
   const [n, m] = [grid.x.length, grid.y.length];
   const [i, j] = [(n - 1) >> 1, (m - 1) >> 1];
@@ -134,7 +134,7 @@ export function quadraticFrom(grid: Grid): Quadratic | null {
     : null;
 }
 
-// The part of a segment inside the grid's rectangle; null if there is none. [Liang, Barsky 1984]
+// Part of a segment inside the grid's rectangle; null if there is none. [Liang, Barsky 1984]
 export function clipped(grid: Grid, p: Point, q: Point): [Point, Point] | null {
   let [from, to] = [0, 1];
   const [dx, dy] = [q.x - p.x, q.y - p.y];

@@ -1,4 +1,4 @@
-// Where the energy of one side is and where it went, step by step: states as they are, works and losses summed up.
+// Energy of one side step by step: states as they are, works and losses summed up.
 import type { MaybeNumber, StepRow } from "../protocol";
 import { lowerBound } from "./table";
 import { short, withUnit } from "./numbers";
@@ -9,11 +9,11 @@ export interface LedgerColumn {
   label: string;
   meaning: string;
   color: Color;
-  width: number; // of the line [CSS px]
-  dotted: boolean; // sums over the steps
+  width: number; // width of the line [CSS px]
+  dotted: boolean; // used for sums over the steps
 }
 
-// No two curves of a legend have the same color.
+// All curves of a legend have different colors.
 const kTermColors: Color[] = ["series6", "series4", "series5", "series12", "series13", "series14", "series11"];
 
 export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
@@ -46,40 +46,40 @@ export function ledgerColumns(potentials: readonly string[]): LedgerColumn[] {
     ...terms,
     line("potential_total", "V", "potential energy, the sum of its terms", "series1", 2),
     line("total", "T + V", "kinetic plus potential energy", "text", 2.5),
-    line("mouse_work", "work of the mouse", "by the mouse's spring, summed over the steps", "series8", 1.5, true),
-    line("probe_work", "work of the probe", "by the tip that is pressed in, summed over the steps", "series10", 1.5, true),
-    line("pin_work", "work of pins", "by moving pins and targets, summed over the steps", "series9", 1.5, true),
+    line("mouse_work", "work of the mouse", "work of the mouse's spring, summed over the steps", "series8", 1.5, true),
+    line("probe_work", "work of the probe", "work of the tip, summed over the steps", "series10", 1.5, true),
+    line("pin_work", "work of pins", "work of moving pins and spring targets, summed over the steps", "series9", 1.5, true),
     line("damping_loss", "damping loss", "dissipated by damping, summed over the steps", "series7", 1.5, true),
     line("numerical_loss", "numerical loss", "dissipated by the integrator, summed over the steps", "bad", 1.5, true),
-    line("balance", "balance", "T + V − works + losses: flat where every step was solved accurately", "good", 2.5),
+    line("balance", "balance", "T + V − works + losses: constant if every step is solved accurately", "good", 2.5),
   ];
 }
 
 const kAlways = ["total", "balance"];
-const kExplosion = 1e3; // times the energy that was there or was put in
+const kExplosion = 1e3; // relative to the initial energy and the works
 
-// All steps since the start; where they are very many, every other one of the older half goes.
+// Limit of stored steps. Beyond it every other step of the older half is dropped.
 const kMostSteps = 100_000;
 
 export class Ledger {
   readonly step: number[] = [];
   readonly time: number[] = [];
   readonly columns: MaybeNumber[][];
-  readonly residualWork: MaybeNumber[] = []; // in each step
+  readonly residualWork: MaybeNumber[] = []; // work of the residual in each step
   readonly ledgerError: MaybeNumber[] = [];
-  private readonly lowest: number[] = []; // of the balance so far
+  private readonly lowest: number[] = []; // smallest balance so far
   private readonly highest: number[] = [];
-  private readonly largest: number[] = []; // magnitude of any column so far
-  private readonly peak: number[] = []; // of T + V so far
-  private readonly given: number[] = []; // energy that was there at first, or was put in or taken out since
-  private readonly first: (number | undefined)[]; // where each column is not zero for the first time
+  private readonly largest: number[] = []; // largest magnitude of each column so far
+  private readonly peak: number[] = []; // largest T + V so far
+  private readonly given: number[] = []; // largest of the initial energy and the works so far
+  private readonly first: (number | undefined)[]; // first step at which each column is nonzero
 
   constructor(readonly potentials: readonly string[]) {
     this.columns = ledgerColumns(potentials).map(() => []);
     this.first = this.columns.map(() => undefined);
   }
 
-  // Steps after number `from` are as in `rows`, of consecutive steps; earlier ones are known.
+  // Updates the steps after number `from` from `rows`, which are consecutive; earlier steps do not change.
   update(rows: readonly StepRow[], from: number): void {
     const keep = lowerBound(this.step, from + 0.5);
     for (const column of this.all()) column.length = keep;
@@ -107,13 +107,14 @@ export class Ledger {
     });
   }
 
-  // Which columns to show: those that were ever other than zero, or are not known, and the sums T + V and balance.
+  // Columns to show: those that were ever nonzero or are unknown, and the sums T + V and balance.
   used(): string[] {
     const columns = ledgerColumns(this.potentials);
     return columns.filter(({ key }, i) => kAlways.includes(key) || this.first[i] !== undefined).map(({ key }) => key);
   }
 
-  // The largest T + V, when it is far above the energy at the start and all works: the scheme has made it out of nothing.
+  // Largest T + V if it is far above the initial energy and all works, so that the integrator has created it; otherwise
+  // null.
   exploded(): number | null {
     const last = this.step.length - 1;
     if (last < 0) return null;
@@ -126,7 +127,7 @@ export class Ledger {
     return this.potentials.length + 2;
   }
 
-  // The range that the balance has covered since the first step, and the largest energy so far.
+  // Range of the balance since the first step, and the largest energy so far.
   drift(): { drift: number; scale: number } {
     const last = this.step.length - 1;
     return last < 0
@@ -162,9 +163,9 @@ export class Ledger {
   }
 }
 
-const kDwarfs = 1e3; // times as much: the other cannot be distinguished from zero
+const kDwarfs = 1e3; // factor beyond which the other curve is indistinguishable from zero
 
-// The energies to be shown of two sides of which one has blown up: about those of the calmer one. Null: both can be shown.
+// Range for two sides of which one has blown up: about the energies of the calmer one. Null: both fit.
 export function calmRange(one: Ledger, other: Ledger): [number, number] | null {
   const [calm, wild] = one.drift().scale <= other.drift().scale ? [one, other] : [other, one];
   const scale = calm.drift().scale;
@@ -178,7 +179,7 @@ export function calmRange(one: Ledger, other: Ledger): [number, number] | null {
   return [2 * low, 2 * high];
 }
 
-// Unknown if a part is unknown.
+// Sum of the parts; null if a part is null.
 function sum(parts: readonly MaybeNumber[]): MaybeNumber {
   let total = 0;
   for (const part of parts) {
@@ -193,7 +194,7 @@ function negated(value: MaybeNumber): MaybeNumber {
 }
 
 export function explosionText(peak: number): string {
-  return Number.isFinite(peak) ? `exploded: T + V rose to ${withUnit(peak, "J", 3)} out of nothing` : "exploded: T + V is no number any more";
+  return Number.isFinite(peak) ? `exploded: T + V rose to ${withUnit(peak, "J", 3)} without work` : "exploded: T + V is not finite";
 }
 
 export function balanceText(drift: number, scale: number): string {

@@ -1,4 +1,4 @@
-// What the signs in a picture of a surface mean.
+// Legend of the signs in a picture of a surface.
 import { element } from "./dom";
 import { cssOf, inkOf, type Color, type Palette } from "./palette";
 
@@ -18,7 +18,7 @@ export function legendOf(signs: readonly Sign[]): HTMLDListElement {
   return list;
 }
 
-// The same on a canvas, in columns.
+// The same legend on a canvas, in columns.
 export function paintLegend(
   pen: CanvasRenderingContext2D,
   signs: readonly Sign[],

@@ -1,4 +1,4 @@
-// Numbers as a reader likes them: few digits, SI prefixes, and a dash for what is not there.
+// Formats numbers: few digits, SI prefixes, a dash for missing values.
 import type { MaybeNumber } from "../protocol";
 
 const kPrefixes: [factor: number, letter: string][] = [
@@ -19,9 +19,9 @@ export interface Prefix {
   letter: string;
 }
 
-const kTooLarge = 1e15; // for a prefix: powers of ten tell more
+const kTooLarge = 1e15; // largest value with a prefix; beyond it powers of ten are clearer
 
-// The prefix with which a number of this size has one to three digits before its point.
+// SI prefix that leaves one to three digits before the point.
 export function prefixOf(size: number): Prefix {
   const magnitude = Math.abs(size);
   if (!(magnitude > 0) || !(magnitude < kTooLarge)) return { factor: 1, letter: "" };
@@ -29,7 +29,7 @@ export function prefixOf(size: number): Prefix {
   return { factor: fits[0], letter: fits[1] };
 }
 
-// "0.0012", "1.2e-7", "34 500": at most `digits` significant ones, without zeros at the end.
+// "0.0012", "1.2e-7", "34 500": at most `digits` significant digits, without trailing zeros.
 export function short(value: MaybeNumber | undefined, digits = 4): string {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   if (value === 0) return "0";
@@ -55,7 +55,7 @@ export function withUnit(value: MaybeNumber | undefined, unit: string, digits = 
   return `${short(value / factor, digits)} ${letter}${unit}`;
 }
 
-// As many as show a gap whole: 0 of 5, 1 of 2.5, 3 of 0.025. A gap of many digits gets three of them.
+// Decimals that show a gap exactly: 0 for 5, 1 for 2.5, 3 for 0.025. A gap of many digits gets three.
 function decimalsOf(gap: number): number {
   const first = Math.max(0, -Math.floor(Math.log10(gap) + 1e-9));
   const isWhole = (decimals: number): boolean => Math.abs(gap * 10 ** decimals - Math.round(gap * 10 ** decimals)) < 1e-6 * gap * 10 ** decimals;
@@ -63,7 +63,7 @@ function decimalsOf(gap: number): number {
   return Math.min(12, enough);
 }
 
-// Texts of an axis' ticks, with as many decimals as tell neighbors apart.
+// Texts of an axis' ticks, with enough decimals to distinguish neighbors.
 export function ticks(values: readonly (number | null)[], factor = 1): string[] {
   const known = values.filter((v): v is number => v !== null).map((v) => v / factor);
   const gap = known.length > 1 ? Math.abs(known[1]! - known[0]!) : 1;
@@ -83,7 +83,7 @@ export function plural(count: number, noun: string): string {
   return `${count} ${noun}${count === 1 ? "" : "s"}`;
 }
 
-// As CSV keeps it: the shortest text that reads back to the same bits; nothing for what is not finite.
+// CSV text: shortest decimals that read back to the same bits; empty for values that are not finite.
 export function csv(header: readonly string[], columns: readonly (readonly MaybeNumber[])[], rows: number): string {
   const lines = [header.map(csvCell).join(",")];
   for (let row = 0; row < rows; ++row)

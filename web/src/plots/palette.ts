@@ -1,4 +1,4 @@
-// The page's colors, as the style sheet has them now.
+// Colors of the page, read from the style sheet.
 const kNames = {
   text: "--text",
   faint: "--faint",
@@ -25,25 +25,25 @@ const kNames = {
 } as const;
 
 type Name = keyof typeof kNames;
-export type Color = Name | `hsl(${string}`; // of the style sheet, or one that is made
+export type Color = Name | `hsl(${string}`; // name in the style sheet, or a computed color
 
-// Colors without end, hues far from each other.
+// Unlimited sequence of colors with distant hues.
 export function furtherColor(i: number): Color {
   return `hsl(${((137.508 * i) % 360).toFixed(1)} ${i % 2 === 0 ? 60 : 35}% 50%)`;
 }
 
-// As a canvas takes it.
+// Color as a canvas expects it.
 export function inkOf(colors: Palette, color: Color): string {
   return color in kNames ? colors[color as Name] : color;
 }
 
-// As a style takes it.
+// Color as a style sheet expects it.
 export function cssOf(color: Color): string {
   return color in kNames ? `var(${kNames[color as Name]})` : color;
 }
 
 export interface Palette extends Record<Name, string> {
-  font: string; // of a canvas
+  font: string; // in the syntax of a canvas
   fontSize: number; // [CSS px]
 }
 

@@ -1,4 +1,4 @@
-// A table of any length: only the rows in sight are elements.
+// A table of any length: only visible rows are elements.
 import { element, oncePerFrame } from "./dom";
 
 export interface RowColumn {
@@ -37,7 +37,7 @@ export class Rows {
     new ResizeObserver(this.redraw).observe(this.element);
   }
 
-  // `follow`: scrolls so that the chosen row is in sight.
+  // `follow`: scrolls the chosen row into view.
   show(count: number, chosen: number, follow: boolean): void {
     const moved = chosen !== this.chosen || count !== this.count;
     this.count = count;
@@ -56,7 +56,7 @@ export class Rows {
     const top = this.chosen * height;
     const room = this.element.clientHeight - 2 * height;
     if (top < this.element.scrollTop || top > this.element.scrollTop + room) {
-      this.padTo(); // so that there is room to scroll to
+      this.padTo(); // makes room to scroll
       this.element.scrollTop = Math.max(0, top - room / 2);
     }
   }

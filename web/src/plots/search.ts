@@ -1,4 +1,4 @@
-// E along the direction d: the curve, its quadratic model, what the line search asked for, and what it tried.
+// E along the direction d: the curve, its quadratic model, the acceptance test of the line search, and its trials.
 import type uPlot from "uplot";
 import type { IterationReply, MaybeNumber, TrialRow } from "../protocol";
 import { Chart, type Curve } from "./chart";
@@ -9,11 +9,11 @@ import { nearest } from "./table";
 export interface Search {
   curve: IterationReply["curve"];
   trials: TrialRow[];
-  test: string; // of the line search: "textbook", "slide" or "none"
-  about?: string; // which iteration, where that is not clear
+  test: string; // acceptance test: "textbook", "slide" or "none"
+  about?: string; // the iteration, where it is not clear from the context
 }
 
-// What the axis shows: the valley, and trials as long as they do not dwarf it. Values are differences from E at alpha 0.
+// Range of the axis: the valley, and trials unless they dwarf it. Values are differences from E at alpha 0.
 export function searchRange(
   values: readonly MaybeNumber[],
   model: readonly MaybeNumber[],
@@ -24,14 +24,15 @@ export function searchRange(
   const lowest = Math.min(0, ...known(values), ...known(trials));
   const promised = Math.min(0, ...known(model));
   const depth = -lowest || -promised || Math.max(...known(values).map(Math.abs), 1e-300);
-  const low = Math.max(Math.min(lowest, promised), -2 * depth); // a model without a minimum has no end
+  const low = Math.max(Math.min(lowest, promised), -2 * depth); // a model without a minimum has no lower bound
   const high = [...known(values), ...known(trials)].filter((v) => v > 0 && v <= 4 * depth);
   const top = Math.min(4 * depth, Math.max(0.25 * depth, ...high));
   const margin = 0.07 * (top - low);
   return [low - margin, top + margin];
 }
 
-// Of alpha: all trials, or where the accepted one is much shorter and the curve is known there, its surroundings.
+// Range of alpha: all trials; or the surroundings of the accepted one if it is much shorter and the curve is known
+// there.
 export function alphaRange(alpha: readonly number[], trials: readonly TrialRow[]): [number, number] {
   const [first, last] = [alpha[0] ?? 0, alpha[alpha.length - 1] ?? 1];
   const accepted = trials.find((trial) => trial.accepted)?.alpha ?? 0;
@@ -81,7 +82,7 @@ export class SearchChart {
     const { curve, test } = this.search!;
     const origin = this.origin();
     const [low, high] = this.range();
-    const far = 20 * (high - low); // canvases take ages to dash lines that are a million times as long
+    const far = 20 * (high - low); // canvases take very long to dash extremely long lines
     const near = (v: number): number => Math.min(high + far, Math.max(low - far, v));
     const shifted = (values: MaybeNumber[]): MaybeNumber[] => values.map((v) => (v === null ? null : near(v - origin)));
     const ahead = (values: MaybeNumber[]): MaybeNumber[] =>
@@ -109,7 +110,7 @@ export class SearchChart {
     return [short(this.columns()[column]?.[nearest(this.search.curve.alpha, alpha)], 4)];
   }
 
-  // Rejected trials are crosses, the accepted one a dot; what lies off the axis stands at its edge.
+  // Draws rejected trials as crosses and the accepted one as a dot. Values outside of the axis are drawn at its edge.
   private paintTrials(u: uPlot, colors: Palette): void {
     const { trials } = this.search!;
     const pen = u.ctx;
@@ -117,7 +118,7 @@ export class SearchChart {
     const origin = this.origin();
     pen.save();
     pen.font = `${colors.fontSize * 0.82 * scale}px sans-serif`;
-    let right = -Infinity; // where the last text ends: texts do not overlap
+    let right = -Infinity; // right end of the last text, to avoid overlaps
     for (const trial of [...trials].sort((p, q) => p.alpha - q.alpha)) {
       const x = u.valToPos(trial.alpha, "x", true);
       if (x > u.bbox.left + u.bbox.width + 1) continue;
@@ -177,7 +178,7 @@ function curvesOf(search: Search, symbol: string): Curve[] {
     curves.push({
       key: "textbook",
       label: search.test === "slide" ? "Armijo line (textbook)" : "Armijo line: accepted below it",
-      meaning: "E + c α g·d, which the textbook's test asks for",
+      meaning: "E + c α g·d, the bound of the textbook's test",
       color: "series3",
       dash: [2, 3],
     });
@@ -185,7 +186,7 @@ function curvesOf(search: Search, symbol: string): Curve[] {
     curves.push({
       key: "slide",
       label: "slide's line: accepted below it",
-      meaning: "E + c g·d, as printed in the lecture",
+      meaning: "E + c g·d, the bound as printed in the lecture",
       color: "series4",
       dash: [2, 3],
     });

@@ -1,4 +1,4 @@
-// A surface to be looked at from all sides: values over a plane, the quadratic model beside them, a path and marks.
+// 3-D picture of a surface that the reader can turn: values over a plane, the quadratic model, a path and marks.
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { element, oncePerFrame } from "./dom";
@@ -9,17 +9,17 @@ import { SurfaceBody, type SurfaceContent } from "./surfaceBody";
 import { axisLabels, placed, type Placed } from "./surfaceLabels";
 import "./plots.css";
 
-const kAzimuth = -0.55; // of the usual view
+const kAzimuth = -0.55; // default view
 
-// Flat pictures look more from the side, so that the surface fills them.
+// Default polar angle: a flat picture is seen more from the side, so that the surface fills it.
 function usualPolar(aspect: number): number {
   return Math.min(1.2, Math.max(1.02, 0.8 + 0.14 * aspect));
 }
 
 export class SurfaceView {
   readonly element = element("div", { class: "surface" });
-  dragged: ((at: Point, done: boolean) => void) | null = null; // the mark "ring" is dragged
-  nudged: ((dx: number, dy: number) => void) | null = null; // Shift and an arrow, in hundredths of the axes
+  dragged: ((at: Point, done: boolean) => void) | null = null; // called while the mark "ring" is dragged
+  nudged: ((dx: number, dy: number) => void) | null = null; // called for Shift and an arrow key, in hundredths of the axes
   private readonly scene = new THREE.Scene();
   private readonly camera = new THREE.PerspectiveCamera(28, 1, 0.1, 50);
   private readonly lamp = new THREE.DirectionalLight(0xffffff, 2.2);
@@ -28,11 +28,11 @@ export class SurfaceView {
   private controls: OrbitControls | null = null;
   private shown: SurfaceContent | null = null;
   private body: SurfaceBody | null = null;
-  private readonly left: SurfaceBody[] = []; // until the next one is drawn, which then finds its shaders compiled
+  private readonly left: SurfaceBody[] = []; // kept until the next surface is drawn, so that its shaders are already compiled
   private colors: Palette | null = null;
   private visible = false;
-  private stretch = 1; // of the width: flat panels show flat boxes
-  private fitted = 0; // distance of the camera that shows all
+  private stretch = 1; // factor of the width: flat panels show flat boxes
+  private fitted = 0; // distance at which the camera shows all
   readonly redraw = oncePerFrame(() => this.draw());
 
   constructor() {
@@ -42,7 +42,7 @@ export class SurfaceView {
     new ResizeObserver(() => this.fit()).observe(this.element);
   }
 
-  // What is cut off at the top; null: nothing.
+  // Value above which the surface is cut off; null: not cut.
   get cutAbove(): number | null {
     return this.body?.frame.range.cut ? this.body.frame.range.high : null;
   }
@@ -59,7 +59,7 @@ export class SurfaceView {
     this.build();
   }
 
-  // Colors or the font may be others now.
+  // Applies changed colors and fonts.
   retheme(): void {
     if (!sameLook(this.colors, palette(this.element))) this.build();
   }
@@ -80,7 +80,7 @@ export class SurfaceView {
     this.redraw();
   }
 
-  // The view with its labels on it, a title above and what the signs mean below.
+  // The view with its labels, a title above and the legend below.
   picture(title: string, legend: readonly Sign[]): HTMLCanvasElement | null {
     if (!this.renderer || !this.colors) return null;
     this.draw();
@@ -114,7 +114,7 @@ export class SurfaceView {
     try {
       this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true });
     } catch {
-      this.element.textContent = "This browser draws no 3-D pictures (WebGL is off).";
+      this.element.textContent = "This browser cannot draw in 3-D: WebGL is disabled.";
       return;
     }
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
@@ -168,7 +168,7 @@ export class SurfaceView {
     this.redraw();
   }
 
-  // From the usual direction, with room for the numbers at the axes.
+  // Distance for the default direction, with room for the numbers at the axes.
   private distanceThatShowsAll(): number {
     const probe = this.camera.clone();
     const [w, d, h] = [1.15 * (this.body?.frame.width ?? 2) * 0.5, 1.15 * (this.body?.frame.depth ?? 2) * 0.5, 0.95];
@@ -249,7 +249,7 @@ export class SurfaceView {
     this.redraw();
   }
 
-  // Takes the ring, if the pointer is on it, and moves it over the surface.
+  // Drags the ring over the surface if the pointer is on it.
   private grab(event: PointerEvent): void {
     const ring = this.shown?.marks.find((mark) => mark.shape === "ring");
     if (!this.dragged || !ring || !this.body || event.button !== 0) return;

@@ -1,4 +1,4 @@
-// What stands in the picture of a surface: the surface with its lines, the quadratic model, the path and the marks.
+// Objects in the picture of a surface: the surface with its lines, the quadratic model, the path and the marks.
 import * as THREE from "three";
 import { Line2 } from "three/addons/lines/Line2.js";
 import { LineGeometry } from "three/addons/lines/LineGeometry.js";
@@ -9,26 +9,26 @@ import { inkOf, type Color, type Palette } from "./palette";
 import type { Label } from "./surfaceLabels";
 import { Frame, gridLines, levelLines, markTexture, surfaceGeometry, type MarkShape } from "./surfaceParts";
 
-const kNumbered = 40; // iterates, and the last one
+const kNumbered = 40; // iterates with numbers, besides the last one
 
 export interface Mark extends Point {
   value: MaybeNumber; // null: on the surface
   shape: MarkShape;
   color: Color;
-  size: number; // [CSS px]
+  size: number; // size [CSS px]
   label?: string;
 }
 
 export interface SurfaceContent {
-  label: string; // for a reader that does not see it
+  label: string; // name for screen readers
   grid: Grid;
   axes: { x: string; y: string; value: string };
   model: MaybeNumber[] | null; // on the same grid
   path: (Point & { value: MaybeNumber })[];
-  draped: boolean; // the path runs on the surface; else straight from point to point
+  draped: boolean; // the path follows the surface; otherwise it is straight from point to point
   direction: { from: Point; to: Point } | null;
   marks: Mark[];
-  keep: MaybeNumber[]; // values that are not cut off
+  keep: MaybeNumber[]; // values that must not be cut off
   log: boolean;
 }
 
@@ -41,7 +41,7 @@ export class SurfaceBody {
   constructor(
     private readonly content: SurfaceContent,
     private readonly colors: Palette,
-    stretch: number, // of the width
+    stretch: number, // factor of the width
   ) {
     this.frame = new Frame(
       content.grid,
@@ -149,7 +149,7 @@ export class SurfaceBody {
     }
   }
 
-  // Along the surface between two points of the plane.
+  // Curve on the surface between two points of the plane.
   private drape(p: Point, q: Point): THREE.Vector3[] {
     const ends = clipped(this.content.grid, p, q);
     if (!ends) return [];
@@ -182,7 +182,7 @@ export class SurfaceBody {
       const [p, q] = [this.content.path[i]!, this.content.path[i + 1]!];
       pieces.push(this.content.draped ? this.drape(p, q) : this.straight(p, q));
     }
-    // Pieces that touch are one line.
+    // Segments that touch form one line.
     let line: THREE.Vector3[] = [];
     for (const piece of pieces) {
       const joins = line.length > 0 && piece.length > 0 && line[line.length - 1]!.distanceTo(piece[0]!) < 1e-6;

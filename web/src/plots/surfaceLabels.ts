@@ -1,4 +1,4 @@
-// The texts in a picture of a surface: numbers at its axes, and names of marks. They are elements over the canvas.
+// Texts in the picture of a surface: numbers at its axes and names of marks, as elements over the canvas.
 import * as THREE from "three";
 import { roundTicks, valueAtHeight } from "./grid";
 import { short, ticks } from "./numbers";
@@ -9,7 +9,7 @@ export interface Label {
   text: string;
   place: THREE.Vector3;
   color: Color;
-  important: boolean; // placed first: others that would cover it are left out
+  important: boolean; // placed first; others that would overlap it are omitted
 }
 
 export interface Placed {
@@ -18,7 +18,7 @@ export interface Placed {
   y: number;
 }
 
-// Where they are on the screen; one that would cover another is left out.
+// Positions of the texts on the screen. A text that would overlap another is omitted.
 export function placed(
   labels: readonly Label[],
   axes: readonly Label[],
@@ -45,7 +45,7 @@ export function placed(
   return out;
 }
 
-// Along the edges of the base that are nearest to the reader, and up the post that is furthest to the left.
+// Labels along the base's edges nearest to the reader, and along the leftmost post.
 export function axisLabels(
   frame: Frame,
   names: { x: string; y: string; value: string },
@@ -68,7 +68,7 @@ export function axisLabels(
   const toValue = valueAtHeight(frame.range, frame.scale);
   const { low, high } = frame.range;
   const even = frame.scale === "linear";
-  const linear = even && high - low > 1e-3 * Math.max(Math.abs(low), Math.abs(high)); // else numbers of many digits
+  const linear = even && high - low > 1e-3 * Math.max(Math.abs(low), Math.abs(high)); // avoids numbers of many digits
   const heights = linear
     ? roundTicks(low, high, 4)
     : even

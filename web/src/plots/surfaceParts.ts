@@ -1,10 +1,10 @@
-// Geometry for the picture of a surface: triangles, grid lines and lines of equal height, in the box of `Frame`.
+// Geometry of the picture of a surface: triangles, grid lines and contour lines in the box of `Frame`.
 import * as THREE from "three";
 import type { MaybeNumber } from "../protocol";
 import { colorAt } from "../view/colorMaps";
 import { heightOf, type Grid, type Range, type Scale } from "./grid";
 
-// x to the right, y away from the reader, values up; the longer side of the plane is 2 long, before it is stretched.
+// x to the right, y away from the reader, values up. The longer side of the plane has length 2 before stretching.
 export class Frame {
   readonly width: number;
   readonly depth: number;
@@ -16,10 +16,10 @@ export class Frame {
     readonly grid: Grid,
     readonly range: Range,
     readonly scale: Scale,
-    stretch: number, // of the width
+    stretch: number, // factor of the width
   ) {
     const [dx, dy] = [span(grid.x), span(grid.y)];
-    const ratio = Math.min(1.6, Math.max(1 / 1.6, dx / dy)); // a narrow strip would not show
+    const ratio = Math.min(1.6, Math.max(1 / 1.6, dx / dy)); // a narrow strip would be invisible
     this.width = (ratio >= 1 ? 2 : 2 * ratio) * stretch;
     this.depth = ratio >= 1 ? 2 / ratio : 2;
     this.height = heightOf(range, scale);
@@ -39,7 +39,7 @@ export class Frame {
     return -((y - this.grid.y[0]!) / span(this.grid.y) - 0.5) * this.depth;
   }
 
-  // Back from a place in the picture.
+  // Inverse: from a place in the picture to the plane.
   at(place: THREE.Vector3): { x: number; y: number } {
     return {
       x: this.grid.x[0]! + (place.x / this.width + 0.5) * span(this.grid.x),
@@ -52,7 +52,7 @@ function span(axis: readonly number[]): number {
   return axis[axis.length - 1]! - axis[0]! || 1;
 }
 
-// Cells with a corner that is not finite are holes.
+// Surface of the grid. Cells with a corner that is not finite are holes.
 export function surfaceGeometry(frame: Frame, values: readonly MaybeNumber[], colored: boolean): THREE.BufferGeometry {
   const { x, y } = frame.grid;
   const positions = new Float32Array(3 * x.length * y.length);
@@ -82,7 +82,7 @@ export function surfaceGeometry(frame: Frame, values: readonly MaybeNumber[], co
   return geometry;
 }
 
-// About `lines` of them in each direction.
+// Grid lines, about `lines` in each direction.
 export function gridLines(frame: Frame, values: readonly MaybeNumber[], lines: number): THREE.BufferGeometry {
   const { x, y } = frame.grid;
   const points: number[] = [];
@@ -108,7 +108,7 @@ export function gridLines(frame: Frame, values: readonly MaybeNumber[], lines: n
   return lineGeometry(points);
 }
 
-// Lines of equal height on the surface, and in the plane below it: each triangle of a cell cut at every level.
+// Contour lines on the surface and in the plane below it: each triangle of a cell is cut at every level.
 export function levelLines(
   frame: Frame,
   values: readonly MaybeNumber[],
@@ -158,7 +158,7 @@ export type MarkShape = "dot" | "ring" | "diamond" | "cross";
 
 const marks = new Map<string, THREE.Texture>();
 
-// A small picture of the mark, light on the outside so that it stands off from any surface.
+// Small picture of a mark with a light rim, visible on any surface.
 export function markTexture(shape: MarkShape, color: string, halo: string): THREE.Texture {
   const key = `${shape} ${color} ${halo}`;
   const known = marks.get(key);

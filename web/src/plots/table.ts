@@ -1,4 +1,4 @@
-// Columns over a common x: merged, cut to a window, and thinned to what a screen can show. Every curve keeps its extremes.
+// Columns over a common x: merged, clipped to a window, and thinned for the screen. Every curve keeps its extremes.
 import type { MaybeNumber } from "../protocol";
 
 export interface Table {
@@ -6,7 +6,7 @@ export interface Table {
   columns: MaybeNumber[][];
 }
 
-// The first index whose x is not below `value`.
+// First index whose x is at least `value`.
 export function lowerBound(x: readonly number[], value: number): number {
   let [low, high] = [0, x.length];
   while (low < high) {
@@ -24,8 +24,8 @@ export function nearest(x: readonly number[], value: number): number {
   return value - x[above - 1]! <= x[above]! - value ? above - 1 : above;
 }
 
-// Rows from `from` to before `to`, at most two per bucket: there every column has its smallest and its largest value,
-// in the order in which they came.
+// Rows in [from, to), at most two per bucket, which hold the smallest and the largest value of every column there, in
+// their original order.
 export function thinned(table: Table, from: number, to: number, buckets: number): Table {
   const { x, columns } = table;
   if (to - from <= 2 * buckets) return { x: x.slice(from, to), columns: columns.map((c) => c.slice(from, to)) };
@@ -75,7 +75,7 @@ export function merged(a: Table, b: Table): Table {
   return out;
 }
 
-// For a logarithmic axis: what is zero has no place there.
+// Magnitude for a logarithmic axis; null for zero, which such an axis cannot show.
 export function magnitude(value: MaybeNumber): MaybeNumber {
   return value === null || value === 0 ? null : Math.abs(value);
 }

@@ -1,4 +1,4 @@
-// A line from the bottom of a chart to its top: "here".
+// Vertical line through a chart that marks a position.
 import type uPlot from "uplot";
 
 export function paintVerticalLine(u: uPlot, at: number, color: string, opacity = 1): void {

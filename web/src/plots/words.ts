@@ -1,18 +1,18 @@
-// How a minimization went, in sentences that say no more than its numbers do.
+// Sentences about a minimization that say no more than its numbers.
 import type { IterationRow, MaybeNumber, StepRow } from "../protocol";
 import { statusName } from "../names";
 import { plural, short, withUnit } from "./numbers";
 
 export type Pace = "squaring" | "faster" | "steady" | "none";
 
-// How the gradient's norm fell from iteration to iteration.
+// Rate at which the gradient's norm fell.
 export function pace(norms: readonly MaybeNumber[]): { pace: Pace; factor: number } {
   const known = norms.filter((n): n is number => n !== null && n > 0);
   const falls = known.slice(1).map((norm, i) => Math.log(known[i]! / norm));
   const none = { pace: "none" as const, factor: 1 };
   if (falls.length < 2 || known[known.length - 1]! >= known[0]!) return none;
   const [before, last] = falls.slice(-2) as [number, number];
-  // |g| -> C |g|^p: two falls in a row tell p. Below a factor of 3 they tell nothing.
+  // |g| -> C |g|^p: two consecutive reductions determine p. Below a factor of 3 they do not.
   if (before > Math.log(3) && last / before >= 1.7) return { pace: "squaring", factor: Math.exp(last) };
   if (before > 0 && last > 1.2 * before) return { pace: "faster", factor: Math.exp(last) };
   const late = falls.slice(-Math.max(2, Math.ceil(falls.length / 2)));
@@ -26,7 +26,7 @@ function paceText(rows: readonly IterationRow[]): string {
   const factor = short(Number(found.factor.toPrecision(found.factor < 2 ? 3 : 2)));
   switch (found.pace) {
     case "squaring":
-      return ` The gradient fell ever faster, the last time by a factor of ${factor}: close to the minimum each iteration about squares the error.`;
+      return ` The gradient fell faster in each iteration, the last time by a factor of ${factor}: near the minimum each iteration about squares the error.`;
     case "faster":
       return ` The gradient fell faster from one iteration to the next, the last time by a factor of ${factor}.`;
     case "steady":
@@ -43,24 +43,24 @@ function residualText(row: StepRow): string {
 
 function shortened(rows: readonly IterationRow[]): string {
   const less = rows.filter((row) => row.trials.filter((trial) => !trial.accepted).length > 0).length;
-  return less > 0 ? ` In ${plural(less, "iteration")} the line search rejected the first trial and went less far.` : "";
+  return less > 0 ? ` In ${plural(less, "iteration")} the line search rejected the first trial and accepted a shorter step.` : "";
 }
 
 export function stepText(row: StepRow, implicit: boolean): string {
   if (row.explanation)
     return `${sentence(row.explanation.cause)}${row.explanation.place ? ` ${sentence(row.explanation.place)}` : ""}${row.explanation.remedy ? ` ${sentence(row.explanation.remedy)}` : ""}`;
-  if (!implicit) return "Nothing is minimized: this scheme computes the next positions from the forces at hand.";
+  if (!implicit) return "This integrator does not minimize: it computes the next positions from the present forces.";
   const count = plural(row.iterations.length, "iteration");
   if (!row.converged)
     return `Not converged (${statusName(row.status)}) after ${count}${residualText(row) ? `: ${residualText(row)}` : ""}.`;
   if (row.iterations.length === 0)
-    return `Converged: ${residualText(row) || "the criterion is met"}. It needed no iteration, or they are no longer kept.`;
+    return `Converged: ${residualText(row) || "the criterion is met"}. It needed no iteration, or its iterations are no longer stored.`;
   if (row.status === "round_off")
-    return `As good as double precision allows, after ${count}: the energy no longer changes by more than round-off.`;
+    return `Converged to round-off after ${count}: the energy no longer changes by more than round-off.`;
   return `Converged in ${count}: ${residualText(row) || "the criterion is met"}.${paceText(row.iterations)}${shortened(row.iterations)}`;
 }
 
-// With a capital, unless a key of a scene stands first, and a full stop.
+// Starts with a capital, unless the text starts with a key of a scene, and ends with a period.
 export function sentence(text: string): string {
   const trimmed = text.trim();
   if (trimmed === "") return "";
@@ -72,7 +72,7 @@ export function totalSeconds(row: IterationRow): number {
   return Object.values(row.seconds).reduce((sum, seconds) => sum + seconds, 0);
 }
 
-// E of the iterates above the lowest of them, which has no place on a logarithmic axis.
+// E of the iterates above the lowest one; null for that one, which a logarithmic axis cannot show.
 export function aboveLowest(values: readonly MaybeNumber[]): MaybeNumber[] {
   const known = values.filter((v): v is number => v !== null);
   const lowest = known.reduce((low, v) => Math.min(low, v), Infinity);

@@ -1,7 +1,8 @@
-// Which body each vertex of a surface belongs to, and the colors of bodies.
+// Body of each vertex of a surface, and the colors of bodies.
 import type { Geometry } from "../protocol";
 
-// After the reader's own color for the first one; distinguished with any kind of color vision, and not that of the inside.
+// Colors after the reader's color of the first body; distinguishable with any kind of color vision, and not the color
+// of the inside.
 const kFurther = ["#56a35a", "#c9699f", "#d8c23f", "#7a68c4", "#3fb0b5", "#b5543f", "#8a929e"];
 
 export function bodyOfTet(tet: number, bodyTets: readonly number[]): number {
@@ -10,7 +11,7 @@ export function bodyOfTet(tet: number, bodyTets: readonly number[]): number {
   return Math.max(0, body);
 }
 
-// The number of the body of each vertex. Surfaces of bodies share no vertex; tets of bodies are consecutive.
+// Body index of each vertex. Bodies share no surface vertex, and the tets of a body are consecutive.
 export function bodiesOf(geometry: Pick<Geometry, "rest" | "triangles" | "tet">, bodyTets: readonly number[]): Float32Array {
   const bodies = new Float32Array(geometry.rest.length / 3);
   geometry.tet.forEach((tet, t) => {
@@ -24,7 +25,7 @@ export function bodyColors(own: string, count: number): string[] {
   return Array.from({ length: count }, (_, i) => (i === 0 ? own : kFurther[(i - 1) % kFurther.length]));
 }
 
-// Texels of a map that has one color for each body, RGBA.
+// Texels of a map with one color per body, RGBA.
 export function bodyTexels(colors: readonly string[]): Uint8Array {
   const texels = new Uint8Array(4 * colors.length);
   colors.forEach((color, i) => {

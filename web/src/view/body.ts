@@ -1,4 +1,4 @@
-// One body on the GPU. A picture's arrays go there as they came; nothing is computed from them but a coarse box.
+// One body on the GPU. The arrays of a picture are uploaded unchanged; only a coarse box is computed from them.
 import * as THREE from "three";
 import type { ColorRange } from "./ranges";
 import type { Geometry, Picture, Vec3 } from "../protocol";
@@ -15,7 +15,7 @@ export interface Box {
 
 const kBoxSamples = 2000;
 
-// A subset of the vertices at regular intervals, without those that are not finite; null if none is left.
+// Bounding box of a regular subset of the vertices, without those that are not finite; null if none remains.
 export function coarseBox(positions: Float32Array): Box | null {
   const count = positions.length / 3;
   const stride = 3 * Math.max(1, Math.floor(count / kBoxSamples));
@@ -43,9 +43,9 @@ function meanEdge(geometry: Geometry): number {
 }
 
 export class Body {
-  readonly root = new THREE.Group(); // meters inside, unit lengths outside
-  readonly edge: number; // mean length at rest [m]
-  readonly numbered: boolean; // some vertex has a number of the user's
+  readonly root = new THREE.Group(); // meters inside, units of the stage outside
+  readonly edge: number; // mean edge length at rest [m]
+  readonly numbered: boolean; // whether some vertex has a user's number
   box: Box | null;
   private readonly positions: THREE.BufferAttribute;
   private readonly normals: THREE.BufferAttribute;
@@ -58,11 +58,11 @@ export class Body {
   private readonly pinMaterial = makePinMaterial(this.lift);
   private readonly mesh: THREE.Mesh;
   private readonly bodyCount: number;
-  private readonly bodies: Float32Array | null; // of each vertex, where there are several
+  private readonly bodies: Float32Array | null; // body index of each vertex if there are several bodies
   private readonly wires: THREE.LineSegments;
   private readonly pins: THREE.Points;
   private gloss = 0;
-  private mapShown: string | null = null; // name of the map, or the colors of bodies
+  private mapShown: string | null = null; // name of the current map, or the colors of the bodies
 
   constructor(
     readonly geometry: Geometry,
@@ -87,7 +87,7 @@ export class Body {
     this.pins.renderOrder = 2;
     for (const object of [this.mesh, this.wires, this.pins]) object.frustumCulled = false;
     this.root.add(this.mesh, this.wires, this.pins);
-    this.root.visible = false; // until the first picture, which brings the normals
+    this.root.visible = false; // the first picture brings the normals
     this.root.matrixAutoUpdate = false;
   }
 
@@ -131,20 +131,20 @@ export class Body {
     this.lines.depthTest = !settings.wiresOnTop;
   }
 
-  // Values take the colors of a range; null: the body has its own color.
+  // Colors the values by a range; null: the body's own color.
   color(range: ColorRange | null, map: MapName): void {
     this.uniforms.fieldShown.value = range !== null;
     this.surface.specular.setScalar(range ? 0.3 * this.gloss : this.gloss); // glare hides colors
     if (!range) return;
     this.showMap(map, () => mapTexels(map, 256));
     const [low, high] = range.log ? [Math.log(range.low), Math.log(range.high)] : [range.low, range.high];
-    // A constant field has the color in the middle.
+    // A constant field has the middle color.
     this.uniforms.fieldLow.value = high > low ? low : low - 0.5;
     this.uniforms.fieldScale.value = high > low ? 1 / (high - low) : 1;
     this.uniforms.fieldLog.value = range.log;
   }
 
-  // Several bodies have a color each, the first the reader's own; one has that alone.
+  // Gives each of several bodies a color, the first the reader's choice.
   colorBodies(own: string): void {
     this.uniforms.fieldShown.value = this.bodies !== null;
     this.surface.specular.setScalar(this.gloss);
@@ -180,8 +180,8 @@ export class Body {
     this.pins.geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(vertices.filter((v) => v < n)), 1));
   }
 
-  // What is this many pixels long would be an edge; a device pixel is 1 / ratio of them. Wires of a dense mesh fade
-  // before they paint it black, and its pins shrink before they hide it.
+  // Adapts to the view: `edgePixels` is an edge's length [px], `ratio` the device pixels per pixel. Wires of a dense
+  // mesh fade before they hide the surface, and pins shrink.
   adapt(edgePixels: number, ratio: number, liftPerPixel: number, pinColor: string): void {
     const density = Math.min(1, Math.max(0, (edgePixels * ratio - 2) / 10));
     this.lines.opacity = this.mesh.visible ? 0.12 + 0.5 * density : 0.35 + 0.6 * density;
@@ -202,7 +202,7 @@ export class Body {
     shape.setAttribute("position", this.positions);
     if (shaded) shape.setAttribute("normal", this.normals).setAttribute("fieldValue", this.values);
     shape.setIndex(new THREE.BufferAttribute(index, 1));
-    shape.boundingSphere = new THREE.Sphere(new THREE.Vector3(), 1); // never computed: nothing is culled by it
+    shape.boundingSphere = new THREE.Sphere(new THREE.Vector3(), 1); // placeholder, so that three.js computes none
     this.shapes.push(shape);
     return shape;
   }

@@ -1,20 +1,21 @@
-// The camera that one or both views look through: where it stands, how it turns, pans and zooms. Knows no canvas.
+// Camera of one or both views: position, rotation, panning and zoom. Independent of any canvas.
 import { Matrix4, Quaternion, Vector3 } from "three";
 import { Emitter } from "../emitter";
 import type { Vec3 } from "../protocol";
 import type { Keeper } from "../page";
 import type { Lens } from "./lens";
 
-// orbit: turns about any axis; turntable: about `up` and the horizontal, so the horizon stays level; flat: never turns.
+// orbit: turns about any axis; turntable: turns about `up` and the horizontal, so that the horizon stays level; flat:
+// never turns.
 export const kCameraModes = ["turntable", "orbit", "flat"] as const;
 export type CameraMode = (typeof kCameraModes)[number];
 export const kViewNames = ["front", "back", "left", "right", "top", "bottom", "isometric"] as const;
 export type ViewName = (typeof kViewNames)[number];
 
-const kSlope = Math.tan((15 * Math.PI) / 180); // of half the field of view
+const kSlope = Math.tan((15 * Math.PI) / 180); // tangent of half the field of view
 const kTurn = 0.008; // [rad / px]
 
-// Right-handed directions of a scene whose `up` may be any: right, towards the reader in the front view, up.
+// Right-handed axes of a scene with any `up`: right, toward the reader in the front view, up.
 export function sceneAxes(up: Vec3): { right: Vector3; front: Vector3; up: Vector3 } {
   const upward = new Vector3(...up);
   if (!(upward.length() > 0)) upward.set(0, 0, 1);
@@ -24,7 +25,7 @@ export function sceneAxes(up: Vec3): { right: Vector3; front: Vector3; up: Vecto
   return { right, front: new Vector3().crossVectors(right, upward), up: upward };
 }
 
-// The orientation of a camera that looks from a direction, with `up` upward on the screen as far as that is possible.
+// Orientation of a camera that looks from a direction, with `up` as far upward on the screen as possible.
 export function lookingFrom(from: Vector3, up: Vector3, right: Vector3): Quaternion {
   const across = new Vector3().crossVectors(up, from);
   if (across.length() < 1e-6) across.copy(right);
@@ -37,13 +38,13 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
   mode: CameraMode = "turntable";
   orthographic = false;
   readonly target = new Vector3(); // [m]
-  readonly orientation = new Quaternion(); // of the camera in the scene
-  distance = 3; // from the target [m]
+  readonly orientation = new Quaternion(); // rotation from the camera to the scene
+  distance = 3; // distance from the target [m]
   private up: Vec3 = [0, 0, 1];
-  private size = 1; // radius of what is shown [m]
-  private shown = ""; // which scene the camera was placed for
+  private size = 1; // radius of the scene [m]
+  private shown = ""; // scene for which the camera was placed
 
-  // A scene is shown: the camera goes to its place unless it is there for the same scene already.
+  // Places the camera for a scene unless it was placed for that scene before.
   show(name: string, lower: Vec3, upper: Vec3, up: Vec3): void {
     const key = JSON.stringify([name, lower, upper, up]);
     this.up = up;
@@ -55,7 +56,7 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
     this.center(lower, upper);
   }
 
-  // The box fills the view.
+  // Fits the box to the view.
   center(lower: Vec3, upper: Vec3): void {
     const radius = new Vector3(...upper).sub(new Vector3(...lower)).length() / 2;
     if (!Number.isFinite(radius)) return;
@@ -84,7 +85,7 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
     this.emit("changed", undefined);
   }
 
-  // By pixels; the scene follows the cursor.
+  // Turns by pixels; the scene follows the cursor.
   turn(dx: number, dy: number): void {
     if (this.mode === "flat") return;
     const sideways = new Vector3(1, 0, 0);
@@ -94,7 +95,7 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
     } else {
       const upward = sceneAxes(this.up).up;
       this.orientation.premultiply(new Quaternion().setFromAxisAngle(upward, -kTurn * dx));
-      const tilt = Math.atan2(this.axis(2).dot(upward), this.axis(1).dot(upward)); // above the horizon
+      const tilt = Math.atan2(this.axis(2).dot(upward), this.axis(1).dot(upward)); // angle above the horizon
       const turned = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, tilt + kTurn * dy));
       this.orientation.multiply(new Quaternion().setFromAxisAngle(sideways, tilt - turned));
     }
@@ -108,7 +109,7 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
     this.emit("changed", undefined);
   }
 
-  // What is under the cursor at the target's depth stays there. x and y in pixels from the middle, y upward.
+  // Zooms about the point under the cursor at the target's depth. x and y in pixels from the middle, y upward.
   zoom(factor: number, x: number, y: number, height: number): void {
     const distance = Math.min(1e4 * this.size, Math.max(1e-4 * this.size, this.distance * factor));
     const scale = (2 * kSlope * (this.distance - distance)) / Math.max(1, height);
@@ -119,7 +120,7 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
 
   lens(width: number, height: number): Lens {
     const back = this.axis(2);
-    const slope = kSlope * Math.max(1, height / Math.max(1, width)); // a tall view shows as much across
+    const slope = kSlope * Math.max(1, height / Math.max(1, width)); // a tall view shows an equal extent across
     return {
       eye: this.target.clone().addScaledVector(back, this.distance).toArray(),
       right: this.axis(0).toArray(),
@@ -132,7 +133,7 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
     };
   }
 
-  // Stands where another does.
+  // Copies another camera.
   join(other: CameraRig): void {
     [this.mode, this.orthographic, this.distance] = [other.mode, other.orthographic, other.distance];
     this.target.copy(other.target);
@@ -185,7 +186,7 @@ export class CameraRig extends Emitter<{ changed: void }> implements Keeper {
     this.orientation.copy(lookingFrom(this.axis(2), up, this.axis(0)));
   }
 
-  // The canonical view nearest to where the camera looks from.
+  // Turns to the canonical view nearest to the present direction.
   private faceAxis(): void {
     const views = kViewNames.filter((name) => name !== "isometric").map((name) => this.viewOrientation(name));
     const angles = views.map((view) => new Vector3(0, 0, 1).applyQuaternion(view).angleTo(this.axis(2)));

@@ -1,4 +1,4 @@
-// A card with the numbers behind a clicked point: its vertex and its tet. Follows the body while it moves.
+// Card with the values at a clicked point: its vertex and its tet. It follows the moving body.
 import { element, messageOf } from "../dom";
 import type { Highlight } from "../page";
 import type { Scene, SideName, TetReply, Vec3, VertexReply } from "../protocol";
@@ -10,11 +10,11 @@ import { matrixText, valueText, vectorText } from "./values";
 
 type Row = [label: string, value: string];
 
-const kPause = 200; // between two questions [ms]
+const kPause = 200; // pause between two questions [ms]
 
 export class Card {
   readonly element = element("section", { class: "view-card", "data-card": true, "aria-label": "Values at the point" });
-  marks: Highlight[] = []; // what the numbers belong to
+  marks: Highlight[] = []; // the vertex and the tet that the values belong to
   private readonly vertex = new Section(true);
   private readonly fields = new Section(false);
   private readonly tet = new Section(true);
@@ -48,7 +48,7 @@ export class Card {
     this.changed();
   }
 
-  // The body has moved: asks again, after a pause.
+  // Asks again after a pause, because the body has moved.
   refresh(): void {
     if (!this.chosen) return;
     this.stale = true;
@@ -102,7 +102,7 @@ export class Card {
   }
 }
 
-// Rows under a title that folds them. Its elements stay when the values change, for the reader may be about to press one.
+// Rows under a title that folds them. The elements persist when values change, so that the reader can press them.
 class Section {
   readonly element = document.createElement("details");
   private readonly title = document.createElement("summary");

@@ -1,5 +1,5 @@
-// Color maps as a few stops; colors in between are mixed in sRGB. Viridis and cividis (Nuñez, Anderton, Renslow 2018)
-// are even in lightness and distinguished with any kind of color vision, as blue and orange are.
+// Color maps from a few stops, interpolated in sRGB. Viridis and cividis (Nuñez, Anderton, Renslow 2018) have uniform
+// lightness; they and blue-orange are distinguishable with any kind of color vision.
 export const kMapNames = ["viridis", "cividis", "blue_orange"] as const;
 export type MapName = (typeof kMapNames)[number];
 

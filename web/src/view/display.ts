@@ -1,4 +1,4 @@
-// How bodies are drawn: the settings that the views of both sides share.
+// Display settings that the views of both sides share.
 import { Emitter } from "../emitter";
 import type { Keeper } from "../page";
 import type { Field, Scene, SideName, TipChoice, Vec3 } from "../protocol";
@@ -19,21 +19,21 @@ export const kDefaults = {
   lineColor: "#0d1726",
   inside: "own" as "own" | "same" | "hidden",
   insideColor: "#d9a05b",
-  invert: false, // what counts as outside is the inside
+  invert: false, // swap outside and inside
   shininess: 40,
-  ownBackground: false, // else that of the theme
+  ownBackground: false, // otherwise the background of the theme
   background: "#ffffff",
   ground: true,
   shadows: true,
   axes: true,
   pins: true,
   clip: "off" as "off" | "x" | "y" | "z",
-  clipAt: 0.5, // in the box of the scene
-  clipOther: false, // keeps the other half
+  clipAt: 0.5, // position in the box of the scene, 0 to 1
+  clipOther: false, // keep the other half
   vertexLabels: false,
   faceLabels: false,
   map: "auto" as "auto" | MapName,
-  scale: "auto" as "auto" | "linear" | "log", // auto: that of the field
+  scale: "auto" as "auto" | "linear" | "log", // auto: the default of the field
   fixedRange: false,
   low: 0,
   high: 1,
@@ -41,8 +41,8 @@ export const kDefaults = {
   brush: 24, // radius [px]
   tipShape: "sphere" as TipChoice["shape"],
   tipContact: "bonded" as TipChoice["contact"],
-  tipRadius: 0, // [m]; 0: as the program chooses
-  unpin: false, // what the brush does
+  tipRadius: 0, // [m]; 0: chosen by the program
+  unpin: false, // the brush unpins
   linked: true, // one camera for both sides
 };
 export type DisplaySettings = typeof kDefaults;
@@ -67,18 +67,18 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
   readonly settings: DisplaySettings = { ...kDefaults };
   readonly cameras: { a: CameraRig; b: CameraRig } = { a: new CameraRig(), b: new CameraRig() };
   fields: Field[] = []; // of side a
-  field = ""; // shown; "" for none
-  bodies = 1; // of side a
-  showsBench = false; // its markers
+  field = ""; // field shown; "": none
+  bodies = 1; // number of bodies of side a
+  showsBench = false; // whether the markers of the bench are visible
   private readonly running = new RunningRange();
-  private measured = ""; // field whose range is running
+  private measured = ""; // field of the running range
 
   constructor() {
     super();
     for (const rig of Object.values(this.cameras)) rig.on("changed", () => this.emit("camera", undefined));
   }
 
-  // The camera of a side: that of side a for both while they are linked.
+  // Camera of a side: that of side a while the cameras are linked.
   camera(side: SideName): CameraRig {
     return this.cameras[this.settings.linked ? "a" : side];
   }
@@ -97,7 +97,7 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
     this.emit("changed", undefined);
   }
 
-  // The colors keep the range that they have now.
+  // Fixes the colors to the present range.
   fixRange(): void {
     const field = this.fields.find((candidate) => candidate.name === this.field);
     const range = field && this.range(field);
@@ -119,7 +119,7 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
     },
   };
 
-  // Smallest and largest value of a picture.
+  // Adds the smallest and the largest value of a picture.
   feed(side: SideName, field: Field, min: number, max: number): void {
     if (field.name !== this.measured) this.running.reset();
     this.measured = field.name;
@@ -144,7 +144,7 @@ export class Display extends Emitter<{ changed: void; camera: void; range: void 
     return { ...(field.diverging && !fixedRange ? about(field.center, chosen.low, chosen.high) : chosen), log: false };
   }
 
-  // What the plane leaves of a scene.
+  // Half space of a scene that the plane keeps.
   clip(scene: Scene): Clip | null {
     const { clip, clipAt, clipOther } = this.settings;
     if (clip === "off") return null;

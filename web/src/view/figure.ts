@@ -1,4 +1,4 @@
-// The body of one side on the stage, as its scene, its newest picture and the display want it.
+// The body of one side on the stage, according to its scene, its newest picture and the display.
 import type { Field, SideName } from "../protocol";
 import type { Side, Store } from "../store";
 import { bodyColors } from "./bodies";
@@ -10,8 +10,8 @@ import type { ColorRange } from "./ranges";
 import type { Stage } from "./stage";
 
 export class Figure {
-  body: Body | null = null; // none without a stage
-  private valuesOf = ""; // field of the values that the body has
+  body: Body | null = null; // null without a stage
+  private valuesOf = ""; // field of the body's values
   private lost = false;
 
   constructor(
@@ -25,7 +25,7 @@ export class Figure {
     return this.store.side(this.name);
   }
 
-  // True when the body is another one.
+  // Returns true if the body is new.
   takeScene(): boolean {
     const scene = this.side?.scene;
     if (!scene) return false;
@@ -58,7 +58,7 @@ export class Figure {
     this.stage?.moved();
   }
 
-  // What a side is like after it blew up says nothing about the other one: the colors are the other one's.
+  // A side that has blown up does not contribute to the range of the colors.
   takeState(): void {
     const wasLost = this.lost;
     this.lost = this.isLost();
@@ -82,7 +82,7 @@ export class Figure {
     else this.body?.colorBodies(this.display.settings.bodyColor);
   }
 
-  // Names and colors of several bodies.
+  // Names and colors of the bodies if there are several.
   bodies(): { name: string; color: string }[] {
     const names = this.side?.scene.bodies ?? [];
     if (names.length < 2 || !this.body) return [];
@@ -90,7 +90,7 @@ export class Figure {
     return names.map((name, i) => ({ name, color: colors[i]! }));
   }
 
-  // What the body's colors mean.
+  // Field and range of the body's colors.
   colored(): { field: Field; range: ColorRange } | null {
     const field = this.field();
     const range = field && this.display.range(field);

@@ -1,4 +1,4 @@
-// Which vertices and tets get their numbers written beside them: visible ones, spread so that no two texts overlap.
+// Selects the vertices and tets that get number labels: visible ones, spread so that no two texts overlap.
 import type { Geometry } from "../protocol";
 import { pixelsPerMeter, type Lens } from "./lens";
 import { DepthGrid, kSteepest, screenPositions, type Surface } from "./picking";
@@ -10,15 +10,15 @@ export interface Label {
 }
 
 const kMost = 300;
-export const kSkinPoint = 0xffffffff; // has no number
-const kCell = 6; // of the grid for hidden vertices [px]
+export const kSkinPoint = 0xffffffff; // vertex number of a point of a fine skin
+const kCell = 6; // cell size of the grid for hidden vertices [px]
 
 export interface LabelKinds {
   vertices: boolean;
   tets: boolean;
 }
 
-// `em`: height of text [px]. Labels near the cursor come first where there are too many.
+// `em`: height of text [px]. If there are too many labels, those near the cursor come first.
 export function chooseLabels(
   lens: Lens,
   surface: Surface,
@@ -44,7 +44,7 @@ export function chooseLabels(
   return chosen.labels(cursor ?? [lens.width / 2, lens.height / 2]);
 }
 
-// A text: x is its left end, y the middle of its height.
+// A text; x is its left end, y the middle of its height.
 export interface Box {
   x: number;
   y: number;
@@ -52,7 +52,7 @@ export interface Box {
   height: number;
 }
 
-// Those that would cover an earlier one move down as far as they must, or up where there is no room below.
+// Moves texts that overlap an earlier one down as far as necessary, or up if there is no room below.
 export function apart<Text extends Box>(boxes: readonly Text[], top: number, bottom: number): Text[] {
   const placed: Text[] = [];
   for (const box of [...boxes].sort((p, q) => p.y - q.y)) {
@@ -85,7 +85,7 @@ interface Candidate {
   text: () => string;
 }
 
-// Keeps one candidate per cell as large as a label, the nearest to the eye; then drops those that would overlap.
+// Keeps one candidate per label-sized cell, the nearest to the eye, then removes overlaps.
 class Spread {
   private readonly cells = new Map<number, Candidate>();
   private readonly width: number;

@@ -1,22 +1,22 @@
-// Where a camera puts a point on the screen, and the ray behind a pixel. In meters and CSS pixels, in double precision,
-// apart from what draws.
+// Projection of points to the screen, and the ray behind a pixel. In meters and CSS pixels, in double precision,
+// independent of the renderer.
 import type { Vec3 } from "../protocol";
 
 export interface Lens {
   eye: Vec3;
-  right: Vec3; // these three are orthonormal
+  right: Vec3; // right and the next two are orthonormal
   up: Vec3;
   forward: Vec3;
-  slope: number; // half the height of what is seen, per distance; 0 when orthographic
-  extent: number; // half the height of what is seen when orthographic
-  width: number; // of the screen [px]
+  slope: number; // half the visible height per distance; 0 when orthographic
+  extent: number; // half the visible height when orthographic
+  width: number; // width of the screen [px]
   height: number;
 }
 
 export interface Ray {
   origin: Vec3;
   direction: Vec3; // a unit vector
-  from: number; // points before it are behind the camera; an orthographic camera has no behind
+  from: number; // points before it are behind the camera; -inf for an orthographic camera
 }
 
 export const dot = (a: Vec3, b: Vec3): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -40,7 +40,7 @@ export function pixelsPerMeter(lens: Lens, depth: number): number {
   return lens.height / 2 / half;
 }
 
-// Pixel and depth of a point; a depth <= 0 of a perspective camera is behind it.
+// Pixel and depth of a point; a point at depth <= 0 is behind a perspective camera.
 export function project(lens: Lens, p: Vec3): Vec3 {
   const d = minus(p, lens.eye);
   const depth = dot(d, lens.forward);
@@ -61,7 +61,7 @@ export function rayThrough(lens: Lens, x: number, y: number): Ray {
   return { origin: lens.eye, direction: unit(along(along(lens.forward, u, lens.right), v, lens.up)), from: 0 };
 }
 
-// Where the ray meets the plane through a point that faces the camera; null when it never does.
+// Intersection of the ray with the camera-facing plane through a point; null if there is none.
 export function onFacingPlane(lens: Lens, ray: Ray, point: Vec3): Vec3 | null {
   const slant = dot(ray.direction, lens.forward);
   if (!(Math.abs(slant) > 1e-9)) return null;

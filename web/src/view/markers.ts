@@ -1,4 +1,4 @@
-// Markers on the surface as it is now.
+// Positions of the markers on the present surface.
 import type { Capture, Vec3 } from "../protocol";
 import { along, length, minus } from "./lens";
 import type { Dot } from "./overlay";
@@ -8,7 +8,7 @@ import { inwardNormal } from "./pressing";
 export function markersOn(surface: Pick<Surface, "positions" | "triangles">, { triangles, weights }: Capture["markers"]): Dot[] {
   const { positions, triangles: corners } = surface;
   return triangles.flatMap((triangle, i) => {
-      if (3 * triangle + 2 >= corners.length) return []; // of another surface, which is about to come
+      if (3 * triangle + 2 >= corners.length) return []; // the markers belong to another surface, which is about to arrive
       let at: Vec3 = [0, 0, 0];
       for (let c = 0; c < 3; ++c) {
         const v = 3 * corners[3 * triangle + c];
@@ -19,7 +19,7 @@ export function markersOn(surface: Pick<Surface, "positions" | "triangles">, { t
   });
 }
 
-// At that place, with the normal of the marker nearest to it.
+// A dot at the given place, with the normal of the nearest marker.
 export function nearestOn(dots: Dot[], at: Vec3): Dot {
   let best: Dot | null = null;
   for (const dot of dots) if (!best || length(minus(dot.at, at)) < length(minus(best.at, at))) best = dot;

@@ -1,4 +1,4 @@
-// What is drawn over a view with a 2-D canvas: text and thin shapes that stay readable over anything.
+// Text and thin shapes over a view, drawn with a 2-D canvas and readable over any background.
 import { short, ticks as tickTexts } from "../plots/numbers";
 import type { Highlight } from "../page";
 import type { Field, Vec3 } from "../protocol";
@@ -10,7 +10,7 @@ import { unitText, valueText } from "./values";
 
 export interface Ink {
   context: CanvasRenderingContext2D;
-  text: string; // colors
+  text: string; // color of texts
   halo: string;
   accent: string;
   em: number; // height of text [px]
@@ -37,7 +37,7 @@ export function text(ink: Ink, words: string, x: number, y: number, align: Canva
   context.fillText(words, x, y);
 }
 
-// A number above a dot.
+// Draws a number above a dot.
 export function label(ink: Ink, words: string, x: number, y: number): void {
   ink.context.fillStyle = ink.accent;
   ink.context.fillRect(x - 1.5, y - 1.5, 3, 3);
@@ -72,7 +72,7 @@ function onScreen(lens: Lens, p: Vec3): Point | null {
   return isBehind(lens, depth) || !Number.isFinite(x + y) ? null : [x, y];
 }
 
-// The mouse's spring, from the body to the cursor, with its force.
+// Draws the mouse's spring from the body to the cursor, with its force.
 export function spring(ink: Ink, lens: Lens, point: Vec3, target: Vec3, force: Vec3 | null): void {
   const [from, to] = [onScreen(lens, point), onScreen(lens, target)];
   if (!from || !to) return;
@@ -88,7 +88,7 @@ export function spring(ink: Ink, lens: Lens, point: Vec3, target: Vec3, force: V
   if (Number.isFinite(newtons)) text(ink, valueText(newtons, "N", 3), to[0] + ink.em, to[1] - ink.em);
 }
 
-// Something glued to the surface; nothing of it is seen from behind.
+// Draws a dot on the surface; invisible from behind.
 export function surfaceDot(ink: Ink, lens: Lens, at: Vec3, normal: Vec3, words?: string): void {
   const sight = lens.extent > 0 ? lens.forward : minus(at, lens.eye);
   const point = onScreen(lens, at);
@@ -109,7 +109,7 @@ export function ring(ink: Ink, [x, y]: Point, radius: number, words: string): vo
   text(ink, words, x + radius + 0.4 * ink.em, y - radius);
 }
 
-// Vertices, and edges of tets, with labels that do not cover each other and end left of `right`.
+// Draws vertices and edges of tets, with labels that do not overlap and end left of `right`.
 export function highlights(ink: Ink, lens: Lens, marked: readonly Highlight[], right: number): void {
   const { em } = ink;
   const labels: (Box & { words: string; top: Point })[] = [];
@@ -127,7 +127,7 @@ export function highlights(ink: Ink, lens: Lens, marked: readonly Highlight[], r
   }
 }
 
-// Draws it; its highest corner.
+// Draws the edges and returns the highest corner.
 function outline(ink: Ink, lens: Lens, positions: Vec3[]): Point | null {
   const points = positions.map((p) => onScreen(lens, p));
   if (points.length === 0 || points.some((p) => p === null)) return null;
@@ -138,7 +138,7 @@ function outline(ink: Ink, lens: Lens, positions: Vec3[]): Point | null {
   return corners.reduce((best, p) => (p[1] < best[1] ? p : best));
 }
 
-// Directions of the scene's axes, in the lower left corner.
+// Draws the directions of the scene's axes in the lower left corner.
 export function axes(ink: Ink, lens: Lens): void {
   const size = 2.2 * ink.em;
   const [x0, y0] = [1.6 * ink.em + size, lens.height - 1.6 * ink.em - size];
@@ -150,7 +150,7 @@ export function axes(ink: Ink, lens: Lens): void {
   }
 }
 
-// Names of bodies beside samples of their colors, in the upper left corner, as many as there is room for.
+// Draws names of bodies beside samples of their colors in the upper left corner, as many as fit.
 export function bodyLegend(ink: Ink, lens: Lens, bodies: readonly { name: string; color: string }[]): void {
   const { em } = ink;
   const room = Math.max(1, Math.floor(lens.height / (3 * em)));
@@ -162,9 +162,9 @@ export function bodyLegend(ink: Ink, lens: Lens, bodies: readonly { name: string
   });
 }
 
-export const kBarWidth = 8.5; // of the strip beside the view that belongs to the color bar [em]
+export const kBarWidth = 8.5; // width of the strip beside the view for the color bar [em]
 
-// As few lines as the words need at this width.
+// Breaks a text into the fewest lines of this width.
 function wrapped(ink: Ink, words: string, width: number): string[] {
   const lines: string[] = [];
   for (const word of words.split(" ")) {
@@ -175,13 +175,13 @@ function wrapped(ink: Ink, words: string, width: number): string[] {
   return lines;
 }
 
-// Text in lines that end left of the right edge.
+// Draws text in lines that end left of the right edge.
 export function paragraph(ink: Ink, lens: Lens, words: string, x: number, y: number): void {
   const lines = wrapped(ink, words, Math.max(8 * ink.em, lens.width - x - ink.em));
   lines.forEach((line, i) => text(ink, line, x, y + 1.25 * i * ink.em));
 }
 
-// The colors of a field with ticks, in a strip right of the view: nothing of the body is behind it.
+// Draws the colors of a field with ticks in a strip right of the view, which the body does not reach.
 export function colorBar(ink: Ink, lens: Lens, field: Field, range: ColorRange, map: MapName): void {
   const { em } = ink;
   ink.context.fillStyle = ink.halo;

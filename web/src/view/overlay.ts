@@ -1,4 +1,4 @@
-// The 2-D canvas over a view: axes, color bar, numbers, highlights, the mouse's spring and brush.
+// The 2-D canvas over a view: axes, color bar, numbers, highlights, the mouse's spring and the brush.
 import type { Highlight } from "../page";
 import type { Field, Vec3 } from "../protocol";
 import type { MapName } from "./colorMaps";
@@ -12,7 +12,7 @@ export interface Marks {
   axes: boolean;
   gridStep: number; // [m]; 0: no grid
   bar: { field: Field; range: ColorRange; map: MapName } | null;
-  bodies: { name: string; color: string }[]; // of the legend; empty: none
+  bodies: { name: string; color: string }[]; // entries of the legend; empty: no legend
   labels: Label[];
   highlights: Highlight[];
   spring: { point: Vec3; target: Vec3; force: Vec3 | null } | null;
@@ -21,23 +21,23 @@ export interface Marks {
   tip: { at: [number, number]; words: string } | null;
 }
 
-// A marker on the surface, or a place to be looked at.
+// A marker on the surface, or a proposed site.
 export interface Dot {
   at: Vec3;
-  normal: Vec3; // of the surface there: its back is not seen
-  ring?: string; // words beside a ring
+  normal: Vec3; // normal of the surface; the dot is invisible from behind
+  ring?: string; // text beside a ring
 }
 
 export interface Style {
-  text: string; // colors
+  text: string; // color of texts
   background: string;
   accent: string;
   grid: string;
-  font: string; // family
+  font: string; // font family
   em: number; // height of text [px]
 }
 
-// Of the page's theme, unless the reader chose a background.
+// Colors of the page's theme, unless the reader chose a background.
 export function readStyle(host: HTMLElement, settings: DisplaySettings, size: [number, number] | null): Style {
   const style = getComputedStyle(host);
   const color = (variable: string): string => style.getPropertyValue(variable).trim() || "#808080";
@@ -59,7 +59,7 @@ function isLight(color: string): boolean {
 
 export function png(canvas: HTMLCanvasElement): Promise<Blob> {
   return new Promise((resolve, reject) =>
-    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the view has no pixels"))), "image/png"),
+    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the view has no size"))), "image/png"),
   );
 }
 
@@ -69,7 +69,7 @@ export class Overlay {
 
   draw(lens: Lens, style: Style, what: Marks): void {
     const { context } = this;
-    const ratio = this.canvas.height / lens.height; // it is wider than what the lens sees, where there is a color bar
+    const ratio = this.canvas.height / lens.height; // the canvas is wider than the lens if there is a color bar
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, this.canvas.width / ratio, lens.height);
     context.font = `${style.em}px ${style.font}`;
@@ -86,7 +86,7 @@ export class Overlay {
     if (what.tip) marks.paragraph(ink, lens, what.tip.words, what.tip.at[0] + style.em, what.tip.at[1] - style.em);
   }
 
-  // Both canvases in one, of the same size.
+  // Draws both canvases, which have the same size, into one.
   paint(canvas: HTMLCanvasElement, below: HTMLCanvasElement): void {
     const { width, height } = this.canvas;
     if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];

@@ -1,10 +1,10 @@
-// Notifies the source that its pictures are drawn, once for each; a page that nobody sees draws nothing and takes its time.
+// Notifies the source once for each drawn picture. A hidden page draws nothing and delays the notification.
 import type { Source } from "../source";
 
 const kHiddenPause = 500; // [ms]
 
 export class Pace {
-  private waiting = 0; // pictures that have come and are not drawn
+  private waiting = 0; // received pictures that are not drawn yet
   private timer = 0;
 
   constructor(
@@ -17,7 +17,7 @@ export class Pace {
     this.go();
   }
 
-  // Also when the page has been hidden or shown: hidden pages have no frames.
+  // Also called when the page becomes hidden or visible: hidden pages have no frames.
   go(): void {
     if (!document.hidden) this.redraw();
     else if (this.waiting > 0 && this.timer === 0) this.timer = window.setTimeout(() => this.drawn(), kHiddenPause);

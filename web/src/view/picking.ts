@@ -1,8 +1,9 @@
-// What is under a pixel, computed on demand from the positions shown; no tree is kept, as positions change all the time.
+// Objects under a pixel, computed on demand from the present positions. There is no search tree because positions
+// change constantly.
 import type { Vec3 } from "../protocol";
 import { isBehind, pixelsPerMeter, type Lens, type Ray } from "./lens";
 
-// Half space that is shown: normal . x >= offset.
+// Visible half space: normal . x >= offset.
 export interface Clip {
   normal: Vec3;
   offset: number;
@@ -10,7 +11,7 @@ export interface Clip {
 
 export interface Hit {
   triangle: number;
-  weights: Vec3; // of the triangle's corners
+  weights: Vec3; // weights of the triangle's corners
   point: Vec3;
   distance: number;
 }
@@ -18,7 +19,7 @@ export interface Hit {
 export const isClipped = (clip: Clip | null, x: number, y: number, z: number): boolean =>
   clip !== null && clip.normal[0] * x + clip.normal[1] * y + clip.normal[2] * z < clip.offset;
 
-// The first triangle that the ray meets (Möller and Trumbore 1997), seen from either side.
+// First triangle that the ray hits from either side [Möller and Trumbore 1997].
 export function pick(ray: Ray, positions: Float32Array, triangles: Uint32Array, clip: Clip | null): Hit | null {
   const [ox, oy, oz] = ray.origin;
   const [dx, dy, dz] = ray.direction;
@@ -48,31 +49,31 @@ export function pick(ray: Ray, positions: Float32Array, triangles: Uint32Array, 
   return { triangle: found, weights: [1 - u0 - v0, u0, v0], point, distance: best };
 }
 
-// The corner of the triangle that the hit is nearest to.
+// Corner of the triangle nearest to the hit.
 export function nearestVertex(hit: Hit, triangles: Uint32Array): number {
   return triangles[3 * hit.triangle + hit.weights.indexOf(Math.max(...hit.weights))];
 }
 
-// A value between those of the corners.
+// Value at the hit, interpolated from the corners.
 export function interpolated(hit: Hit, triangles: Uint32Array, values: Float32Array): number {
   return hit.weights.reduce((sum, weight, k) => sum + weight * values[triangles[3 * hit.triangle + k]], 0);
 }
 
-// The depth of what is seen in a rectangle of the screen, coarsely, to find hidden vertices.
+// Coarse depth map of a rectangle of the screen, to find hidden vertices.
 export class DepthGrid {
   private readonly depth: Float32Array;
 
   constructor(
     private readonly left: number,
     private readonly top: number,
-    private readonly cell: number, // [px]
+    private readonly cell: number, // cell size [px]
     private readonly columns: number,
     private readonly rows: number,
   ) {
     this.depth = new Float32Array(columns * rows).fill(Infinity);
   }
 
-  // `screen`: pixel and depth of every vertex.
+  // Adds triangles. `screen`: pixel and depth of every vertex.
   add(screen: Float32Array, triangles: Uint32Array): void {
     const right = this.left + this.cell * this.columns;
     const bottom = this.top + this.cell * this.rows;
@@ -88,7 +89,7 @@ export class DepthGrid {
     }
   }
 
-  // Whether a point at a pixel and depth lies in front of everything by more than `slack` less.
+  // Whether a point at a pixel and depth is visible: at most `slack` behind the nearest surface.
   sees(x: number, y: number, depth: number, slack: number): boolean {
     const i = Math.floor((x - this.left) / this.cell);
     const j = Math.floor((y - this.top) / this.cell);
@@ -96,7 +97,7 @@ export class DepthGrid {
     return depth <= this.depth[j * this.columns + i] + slack;
   }
 
-  // The depth at the middle of each cell that the triangle covers.
+  // Stores the depth at the middle of each cell that the triangle covers.
   private fill(screen: Float32Array, a: number, b: number, c: number, area: number): void {
     const ax = screen[a], ay = screen[a + 1], bx = screen[b], by = screen[b + 1], cx = screen[c], cy = screen[c + 1];
     const first = (low: number, origin: number): number => Math.max(0, Math.ceil((low - origin) / this.cell - 0.5));
@@ -118,8 +119,8 @@ export class DepthGrid {
   }
 }
 
-// Pixel and depth of every vertex; not a number for those behind the camera or clipped away. The same as project() in
-// lens.ts, without its garbage.
+// Pixel and depth of every vertex; NaN for vertices behind the camera or clipped away. Equals project() in lens.ts
+// without its allocations.
 export function screenPositions(lens: Lens, positions: Float32Array, clip: Clip | null): Float32Array {
   const screen = new Float32Array(positions.length);
   const { eye, right, up, forward } = lens;
@@ -142,9 +143,9 @@ export interface Surface {
   clip: Clip | null;
 }
 
-export const kSteepest = 8; // slope of a surface whose own vertices do not count as hidden by it
+export const kSteepest = 8; // steepest slope at which a surface does not hide its own vertices
 
-// From a way across the screen, of straight pieces.
+// Distance from a polyline on the screen.
 function distanceToWay(way: readonly [number, number][], x: number, y: number): number {
   let least = Math.hypot(x - way[0][0], y - way[0][1]);
   for (let i = 1; i < way.length; ++i) {
@@ -156,13 +157,13 @@ function distanceToWay(way: readonly [number, number][], x: number, y: number): 
   return least;
 }
 
-// Vertices that a disc covers on its way across the screen, and that nothing hides.
+// Visible vertices that a disc covers on its way across the screen.
 export function verticesInStroke(lens: Lens, surface: Surface, way: readonly [number, number][], radius: number): number[] {
   const screen = screenPositions(lens, surface.positions, surface.clip);
   const [lower, upper] = [Math.min, Math.max].map((end) => [0, 1].map((c) => end(...way.map((place) => place[c]))));
   const longest = Math.max(upper[0] - lower[0], upper[1] - lower[1]) + 2 * radius;
   const cell = Math.max((2 * radius) / 64, longest / 1024);
-  // Cells of the screen: whether a vertex is seen does not depend on where the way begins.
+  // The cells of the screen are aligned, so that visibility does not depend on the start of the stroke.
   const [left, top] = lower.map((least) => Math.floor((least - radius) / cell));
   const [right, bottom] = upper.map((most) => Math.ceil((most + radius) / cell));
   const grid = new DepthGrid(left * cell, top * cell, cell, right - left, bottom - top);

@@ -1,13 +1,13 @@
-// How the mouse presses a tip in: which way on the screen leads into the body, and how far a pixel is.
+// How the mouse presses a tip in: the direction on the screen that leads into the body, and the depth per pixel.
 import type { Vec3 } from "../protocol";
 import { along, cross, minus, pixelsPerMeter, project, unit, type Lens } from "./lens";
 
 export interface Way {
   direction: [number, number]; // on the screen
-  meters: number; // per pixel
+  meters: number; // depth per pixel
 }
 
-const kSlant = 0.3; // sine of the angle between the way in and the line of sight, below which down on the screen is in
+const kSlant = 0.3; // sine of the angle between the tip's axis and the line of sight below which dragging down presses in
 
 export function inwardNormal(positions: ArrayLike<number>, triangles: ArrayLike<number>, triangle: number): Vec3 {
   const corner = (c: number): Vec3 => {
@@ -21,7 +21,7 @@ export function inwardNormal(positions: ArrayLike<number>, triangles: ArrayLike<
 export function wayIn(lens: Lens, point: Vec3, axis: Vec3): Way {
   const [x, y, depth] = project(lens, point);
   const pixels = pixelsPerMeter(lens, depth);
-  const step = 1 / pixels; // one pixel, where nothing is foreshortened
+  const step = 1 / pixels; // one pixel without foreshortening
   const [u, v] = project(lens, along(point, step, axis));
   const seen = Math.hypot(u - x, v - y);
   if (!(seen > kSlant)) return { direction: [0, 1], meters: step };

@@ -1,4 +1,4 @@
-// The range of values that a color map spans, and the ticks of its bar.
+// Range of a color map's values, and the ticks of its bar.
 
 export interface ColorRange {
   low: number;
@@ -6,11 +6,11 @@ export interface ColorRange {
   log: boolean;
 }
 
-const kShrink = 0.03; // of the gap, per picture
+const kShrink = 0.03; // fraction of the gap per picture
 
-// Grows at once and shrinks slowly, so that colors do not flicker while the body moves.
+// Grows immediately and shrinks slowly, so that the colors of a moving body do not flicker.
 export class RunningRange {
-  private readonly latest = new Map<string, { min: number; max: number }>(); // by side
+  private readonly latest = new Map<string, { min: number; max: number }>(); // key: side
   private low = Infinity;
   private high = -Infinity;
 
@@ -19,7 +19,7 @@ export class RunningRange {
     [this.low, this.high] = [Infinity, -Infinity];
   }
 
-  // A side is gone, or its values mean nothing any more: the range is that of the other one, if there is one.
+  // Removes a side, or its values that are no longer meaningful. The range becomes that of the other side, if any.
   forget(side: string): void {
     const others = [...this.latest].filter(([name]) => name !== side);
     if (!this.latest.has(side) || others.length === 0) return;
@@ -41,13 +41,13 @@ export class RunningRange {
   }
 }
 
-// As wide on both sides of the center.
+// Symmetric range around the center.
 export function about(center: number, low: number, high: number): { low: number; high: number } {
   const half = Math.max(Math.abs(high - center), Math.abs(center - low));
   return { low: center - half, high: center + half };
 }
 
-// A logarithmic range needs positive values: at most nine decades below the largest.
+// Range for a logarithmic scale: positive values, at most nine decades below the largest. Null if there are none.
 export function logRange(low: number, high: number): { low: number; high: number } | null {
   if (!(high > 0)) return null;
   return { low: low > high * 1e-9 ? low : high * 1e-9, high };
@@ -60,7 +60,7 @@ export function fraction(range: ColorRange, value: number): number {
   return width > 0 ? (f(value) - f(range.low)) / width : 0.5;
 }
 
-// Round values inside [low, high], about `count` of them: 1, 2 or 5 times a power of ten apart.
+// Round values inside [low, high], about `count` of them; steps are 1, 2 or 5 times a power of ten.
 export function ticks(low: number, high: number, count: number): number[] {
   if (!(high > low) || !Number.isFinite(high - low)) return Number.isFinite(low) ? [low] : [];
   const step = roundStep((high - low) / Math.max(1, count));
@@ -69,7 +69,8 @@ export function ticks(low: number, high: number, count: number): number[] {
   return Array.from({ length: Math.max(0, Math.min(50, last - first + 1)) }, (_, i) => (first + i) * step);
 }
 
-// Powers of ten inside [low, high]; with 2 and 5 between them when these are few, and evenly apart where none are left.
+// Powers of ten inside [low, high]; with 2 and 5 between them when there are few; evenly spaced values where there is
+// none.
 export function logTicks(low: number, high: number): number[] {
   if (!(low > 0) || !(high > low)) return [];
   const decades = Math.log10(high / low);
@@ -84,7 +85,7 @@ export function logTicks(low: number, high: number): number[] {
   return found.length < 2 ? ticks(low, high, 4) : found;
 }
 
-// The least of 1, 2, 5 times a power of ten that is not below x.
+// Smallest of 1, 2, 5 times a power of ten that is at least x.
 export function roundStep(x: number): number {
   const power = 10 ** Math.floor(Math.log10(x));
   const factor = [1, 2, 5, 10].find((f) => f * power >= x * (1 - 1e-9)) ?? 10;

@@ -1,9 +1,9 @@
-// Materials of a body: three.js's own, with a few lines added to their shaders.
+// Materials of a body: those of three.js with a few additional lines in their shaders.
 import * as THREE from "three";
 
 export interface FieldUniforms {
   fieldMap: { value: THREE.Texture | null };
-  fieldLow: { value: number }; // logarithms when fieldLog
+  fieldLow: { value: number }; // logarithm of the value if fieldLog is set
   fieldScale: { value: number };
   fieldLog: { value: boolean };
   fieldShown: { value: boolean };
@@ -25,7 +25,7 @@ export function makeFieldUniforms(): FieldUniforms {
   };
 }
 
-export const kGroundRadius = 7; // in radii of the scene
+export const kGroundRadius = 7; // relative to the radius of the scene
 
 const kFieldPars = /* glsl */ `
   uniform sampler2D fieldMap;
@@ -48,7 +48,7 @@ const kFieldColor = /* glsl */ `
 
 export function makeSurfaceMaterial(uniforms: FieldUniforms): THREE.MeshPhongMaterial {
   const material = new THREE.MeshPhongMaterial({ side: THREE.DoubleSide, clipShadows: true });
-  material.polygonOffset = true; // behind the wires
+  material.polygonOffset = true; // keeps it behind the wires
   material.polygonOffsetFactor = 1;
   material.polygonOffsetUnits = 2;
   material.onBeforeCompile = (shader) => {
@@ -63,11 +63,11 @@ export function makeSurfaceMaterial(uniforms: FieldUniforms): THREE.MeshPhongMat
   return material;
 }
 
-// Round markers of constant size on the screen, in front of the surface by as much as they are wide.
+// Round markers of constant size on the screen, lifted in front of the surface by their width.
 export function makePinMaterial(lift: { value: number }): THREE.PointsMaterial {
   const material = new THREE.PointsMaterial({ sizeAttenuation: false, transparent: true });
   material.onBeforeCompile = (shader) => {
-    shader.uniforms.lift = lift; // per distance, or [unit length] when orthographic
+    shader.uniforms.lift = lift; // per distance, or in units of the stage when orthographic
     shader.vertexShader = shader.vertexShader
       .replace("#include <common>", "#include <common>\nuniform float lift;")
       .replace("#include <project_vertex>", kPinPosition);
@@ -96,7 +96,7 @@ export interface GroundUniforms {
   gridColor: { value: THREE.Color };
 }
 
-// Catches shadows, carries a grid, and fades towards its rim.
+// Ground that receives shadows, carries a grid, and fades toward its rim.
 export function makeGroundMaterial(uniforms: GroundUniforms): THREE.ShadowMaterial {
   const material = new THREE.ShadowMaterial({ opacity: 0.3, side: THREE.DoubleSide, depthWrite: false });
   material.onBeforeCompile = (shader) => {

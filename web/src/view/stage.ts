@@ -1,5 +1,5 @@
-// The three.js scene around a body: lights, ground, camera and renderer. Lengths are in radii of the scene's box, so
-// that bodies of micrometers and of kilometers are the same to the GPU's single precision.
+// The three.js scene around a body: lights, ground, camera and renderer. The unit of length is the radius of the
+// scene's box, so that bodies of micrometers and of kilometers suit the GPU's single precision.
 import * as THREE from "three";
 import type { ProbeState, Scene, Vec3 } from "../protocol";
 import type { Body, Box } from "./body";
@@ -11,17 +11,17 @@ import { roundStep } from "./ranges";
 import { kGroundRadius, makeGroundMaterial } from "./shading";
 import { TipBody } from "./tipBody";
 
-const kFarthest = 1e4; // of a body that bursts, else depths lose their digits
-const kFar = 30; // radii of the scene, and heights of the view
-const kGap = 0.12; // between the box and the ground below it
+const kFarthest = 1e4; // limit for a body that bursts; beyond it depths lose their digits
+const kFar = 30; // far plane in radii of the scene, and in heights of the view
+const kGap = 0.12; // gap between the box and the ground below it
 
 export class Stage {
-  readonly renderer: THREE.WebGLRenderer; // the constructor throws when there is no WebGL
-  gridStep = 0; // [m]
-  isFar = false; // the body, so far that it is not drawn
-  hasLeft = false; // the middle of a body that is not larger than the view
-  radius = 1; // of the scene's box [m]
-  readonly extras = new THREE.Group(); // what stands beside the body [m]
+  readonly renderer: THREE.WebGLRenderer; // the constructor throws without WebGL
+  gridStep = 0; // spacing of the grid [m]
+  isFar = false; // the body is too far away to be drawn
+  hasLeft = false; // the body fits the view, but its middle is outside
+  radius = 1; // radius of the scene's box [m]
+  readonly extras = new THREE.Group(); // objects beside the body [m]
   private center: Vec3 = [0, 0, 0];
   private up: Vec3 = [0, 0, 1];
   private body: Body | null = null;
@@ -31,7 +31,7 @@ export class Stage {
   private readonly orthographic = new THREE.OrthographicCamera();
   private readonly sky = new THREE.HemisphereLight("#ffffff", "#c4bfb8", 1.9);
   private readonly sun = new THREE.DirectionalLight("#fffaf0", 1.9);
-  private readonly lamp = new THREE.DirectionalLight("#ffffff", 0.55); // at the camera
+  private readonly lamp = new THREE.DirectionalLight("#ffffff", 0.55); // light at the camera
   private readonly ground: THREE.Mesh<THREE.CircleGeometry, THREE.ShadowMaterial>;
   private readonly grid = {
     gridStep: { value: 1 },
@@ -39,7 +39,7 @@ export class Stage {
     gridColor: { value: new THREE.Color() },
   };
   private readonly tip = new TipBody();
-  private readonly lit = new THREE.Sphere(new THREE.Vector3(), 0); // what the shadow map covers
+  private readonly lit = new THREE.Sphere(new THREE.Vector3(), 0); // region that the shadow map covers
 
   constructor(canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
@@ -57,7 +57,7 @@ export class Stage {
     this.scene.add(this.extras, this.sky, this.sun, this.sun.target, this.lamp, this.lamp.target, this.ground, this.tip.root);
   }
 
-  // Places ground and lights around the box of a scene.
+  // Places ground and lights around the bounding box of a scene.
   place(scene: Pick<Scene, "lower" | "upper" | "up">): void {
     this.center = [0, 1, 2].map((c) => (scene.lower[c] + scene.upper[c]) / 2) as Vec3;
     this.radius = Math.max(length(minus(scene.upper, scene.lower)) / 2, 1e-12);
@@ -66,7 +66,7 @@ export class Stage {
     this.floor = lowest({ lower: scene.lower, upper: scene.upper }, this.up) - kGap * this.radius;
     this.gridStep = roundStep(this.radius / 4);
     this.grid.gridStep.value = this.gridStep / this.radius;
-    // Lines pass through the origin of the scene.
+    // Grid lines pass through the origin of the scene.
     const away = (axis: THREE.Vector3): number => -dot(axis.toArray(), this.center) / this.radius;
     this.grid.gridOrigin.value.set(away(right), away(front.clone().negate()));
     this.ground.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(right, front.clone().negate(), up));
@@ -96,7 +96,7 @@ export class Stage {
     this.body = null;
   }
 
-  // The body moved: its shadow does, too, and the ground stays below it.
+  // Updates the shadow of a moved body, and keeps the ground below it.
   moved(): void {
     const box = this.body?.box;
     if (!box) return;
@@ -117,7 +117,7 @@ export class Stage {
   clip(clip: Clip | null): void {
     const planes: THREE.Plane[] = [];
     if (clip) {
-      const inside = (dot(clip.normal, this.center) - clip.offset) / this.radius; // of the middle of the scene
+      const inside = (dot(clip.normal, this.center) - clip.offset) / this.radius; // depth of the scene's middle [radii]
       planes.push(new THREE.Plane(new THREE.Vector3(...clip.normal), inside));
     }
     this.body?.clip(planes);
@@ -170,7 +170,7 @@ export class Stage {
     return this.perspective;
   }
 
-  // How far from the middle of the scene the body goes.
+  // Largest distance of the body from the middle of the scene.
   private reach(): number {
     const box = this.body?.box;
     return box ? Math.min(kFarthest, Math.max(1, this.toUnits(box.lower).length(), this.toUnits(box.upper).length())) : 1;
@@ -180,9 +180,9 @@ export class Stage {
     const middle = body.box ? ([0, 1, 2].map((c) => (body.box!.lower[c] + body.box!.upper[c]) / 2) as Vec3) : this.center;
     const depth = Math.max(dot(minus(middle, lens.eye), lens.forward), 1e-3 * this.radius);
     const half = lens.extent > 0 ? lens.extent : lens.slope * depth;
-    const pixels = lens.height / 2 / half; // per meter
+    const pixels = lens.height / 2 / half; // pixels per meter
     const lift = (lens.extent > 0 ? lens.extent / this.radius : lens.slope) / (lens.height / 2);
-    // Each triangle would fill the view: nothing to be seen in it, and minutes for a renderer without a GPU.
+    // Beyond this each triangle would fill the view, which takes minutes without a GPU and shows nothing.
     const height = lens.extent > 0 ? lens.extent : lens.slope * length(minus(this.center, lens.eye));
     this.isFar = this.reach() > kFar && this.reach() * this.radius > kFar * height;
     body.root.visible = !this.isFar;
@@ -190,7 +190,7 @@ export class Stage {
     body.adapt(body.edge * pixels, this.renderer.getPixelRatio(), lift, pinColor);
   }
 
-  // The shadow map covers the body, and changes only when it has to: else shadows would crawl.
+  // The shadow map covers the body and changes only when necessary, because changes make shadows crawl.
   private lightUp(box: Box): void {
     const ball = new THREE.Box3(this.toUnits(box.lower), this.toUnits(box.upper)).getBoundingSphere(new THREE.Sphere());
     const covered = ball.center.distanceTo(this.lit.center) + ball.radius <= this.lit.radius;
@@ -209,7 +209,7 @@ export class Stage {
   }
 }
 
-// The smallest height of a box along `up`.
+// Smallest height of a box along `up`.
 function lowest(box: Box, up: Vec3): number {
   return [0, 1, 2].reduce((sum, c) => sum + up[c] * (up[c] > 0 ? box.lower[c] : box.upper[c]), 0);
 }

@@ -1,9 +1,9 @@
-// The probe in 3-D: its tip and the rod that holds it. In radii of the scene, as the stage is.
+// The probe in 3-D: its tip and the rod that holds it. In units of the stage.
 import * as THREE from "three";
 import type { ProbeState, Vec3 } from "../protocol";
 
-const kRod = 0.22; // radius of the rod / of the tip
-const kLength = 1.1; // of the rod, in radii of the scene
+const kRod = 0.22; // radius of the rod relative to the tip
+const kLength = 1.1; // length of the rod in units of the stage
 const kUp = new THREE.Vector3(0, 1, 0);
 
 export class TipBody {
@@ -20,7 +20,7 @@ export class TipBody {
     this.root.add(this.sphere, this.disc, this.rod);
   }
 
-  // True when something has changed.
+  // Returns true if something has changed.
   show(tip: ProbeState | null, color: string, toUnits: (point: Vec3) => THREE.Vector3, radius: number): boolean {
     const was = this.root.visible;
     this.root.visible = tip !== null;

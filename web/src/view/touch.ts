@@ -1,4 +1,4 @@
-// What the pointer does in a view: turns the camera, drags the body by a spring, pins it with a brush, reads values.
+// Pointer actions in a view: turn the camera, drag the body by a spring, pin it with a brush, read values.
 import type { Page } from "../page";
 import type { SideName, Vec3 } from "../protocol";
 import type { Store } from "../store";
@@ -18,26 +18,26 @@ export interface Touched {
   lens(): Lens;
   surface(): Surface | null;
   redraw(): void;
-  read(hit: Hit | null): void; // a click that asks for values
+  read(hit: Hit | null): void; // a click that requests values
   showPins(vertices: number[]): void;
 }
 
 type Gesture =
   | { kind: "turn" | "pan"; moved: number; hit: Hit | null; reads: boolean }
   | { kind: "grab"; anchor: Vec3; target: Vec3 }
-  | { kind: "brush"; pinned: boolean; known: Set<number>; path: [number, number][] } // since the last frame, and where it then was
+  | { kind: "brush"; pinned: boolean; known: Set<number>; path: [number, number][] } // path since the last frame
   | { kind: "pinch"; distance: number }
   | { kind: "press"; way: Way; from: number; moved: [number, number]; depth: number };
 
-const kClick = 4; // moves of fewer pixels are clicks
+const kClick = 4; // shorter movements are clicks [px]
 
 export class Touch {
-  cursor: [number, number] | null = null; // in the view [px]
+  cursor: [number, number] | null = null; // position in the view [px]
   hover: Hit | null = null;
   private alt = false;
   private gesture: Gesture | null = null;
   private readonly pointers = new Map<number, [number, number]>();
-  private waiting = false; // for the next frame, to send what moved
+  private waiting = false; // waiting for the next frame to send the movement
   private readonly listeners = new AbortController();
   private readonly stop: (() => void)[] = [];
 
@@ -59,12 +59,12 @@ export class Touch {
     this.stop.push(view.store.on("geometry", (side) => side === view.side && this.end()));
   }
 
-  // What the brush does; Alt turns it over.
+  // Whether the brush pins; Alt inverts it.
   get pins(): boolean {
     return this.view.display.settings.unpin === this.alt;
   }
 
-  // Where the spring is held, while the mouse holds it.
+  // Target of the spring while the mouse holds it.
   get target(): Vec3 | null {
     return this.gesture?.kind === "grab" ? this.gesture.target : null;
   }
@@ -107,7 +107,7 @@ export class Touch {
     return { kind: "grab", anchor: hit.point, target: hit.point };
   }
 
-  // A new tip at that place; it is pressed in as the mouse continues.
+  // Starts a new tip at that place; further movement presses it in.
   private touchWithTip(hit: Hit): Gesture {
     const { store, side, display } = this.view;
     const surface = this.view.surface()!;
@@ -119,7 +119,7 @@ export class Touch {
     return { kind: "press", way, from: 0, moved: [0, 0], depth: 0 };
   }
 
-  // The tip that is there already, where the mouse is on it.
+  // Holds the present tip if the mouse is on it.
   private heldTip(at: [number, number]): Gesture | null {
     const { store, side, display } = this.view;
     const tip = store.state?.[side]?.probe;
@@ -195,14 +195,14 @@ export class Touch {
     this.view.rig.zoom(factor, x - width / 2, height / 2 - y, height);
   }
 
-  // Ends what is under way; the spring lets go.
+  // Ends the gesture and releases the spring.
   private end(): void {
     if (this.gesture?.kind === "grab" && this.view.store.steers) this.view.store.source.send({ do: "release" });
     this.gesture = null;
     this.schedule();
   }
 
-  // At most once per frame: notifies the program, and looks up what is under the cursor.
+  // Notifies the program and updates the object under the cursor, at most once per frame.
   private schedule(): void {
     if (this.waiting || this.listeners.signal.aborted) return;
     this.waiting = true;
@@ -224,7 +224,7 @@ export class Touch {
     if (this.gesture?.kind !== "brush" || !surface) return;
     const { pinned, known, path } = this.gesture;
     const { brush } = this.view.display.settings;
-    const covered = verticesInStroke(this.view.lens(), surface, path, brush); // however few the frames are
+    const covered = verticesInStroke(this.view.lens(), surface, path, brush); // independent of the frame rate
     path.splice(0, path.length - 1);
     const vertices = covered.filter((vertex) => known.has(vertex) !== pinned);
     if (vertices.length === 0) return;
@@ -248,8 +248,8 @@ export class Touch {
   private tellWhyNot(): void {
     const { store, page } = this.view;
     if (this.mayTouch() || this.view.display.settings.tool === "read") return;
-    if (!store.source.live) page.notice("This run is recorded: it can be looked at, not touched.");
-    else page.notice("This page only watches, so dragging turns the camera. Take the controls to touch the body.");
+    if (!store.source.live) page.notice("This run is recorded; the body cannot be dragged.");
+    else page.notice("This page only watches, so dragging turns the camera. Press Steer to drag the body.");
   }
 
   private pick(at: [number, number]): Hit | null {

@@ -1,4 +1,4 @@
-// One side in 3-D: draws its newest picture, and only when something has changed.
+// 3-D view of one side: draws its newest picture, and only after a change.
 import "./view.css";
 import type { Highlight, Page } from "../page";
 import { hasBlownUp } from "../plots/gain";
@@ -19,7 +19,7 @@ import { Stage } from "./stage";
 import { Touch, type Touched } from "./touch";
 import { valueText } from "./values";
 
-const kLargest = 8192; // side of a screenshot [px]
+const kLargest = 8192; // largest side of a screenshot [px]
 
 export class View implements Touched {
   private readonly glCanvas = document.createElement("canvas");
@@ -33,9 +33,9 @@ export class View implements Touched {
   private toldUnnumbered = false;
   private highlights: Highlight[] = [];
   private readonly pace: Pace;
-  private frame = 0; // requested
+  private frame = 0; // id of the requested frame
   private fixedSize: [number, number] | null = null;
-  private sharpness = 1; // of a screenshot
+  private sharpness = 1; // scale of a screenshot
   private rigStop = (): void => {};
   private readonly stop: (() => void)[] = [];
   private readonly listeners = new AbortController();
@@ -74,7 +74,7 @@ export class View implements Touched {
     return this.figure.surface();
   }
 
-  // A PNG of the view; `scale` times as many pixels as the view has on the screen.
+  // PNG of the view with `scale` times as many pixels as on the screen.
   async screenshot(scale = 1): Promise<Blob> {
     const [width, height] = this.size();
     this.sharpness = Math.min(scale, kLargest / (Math.max(width, height, 1) * this.pixelRatio()));
@@ -86,14 +86,14 @@ export class View implements Touched {
     return png(canvas);
   }
 
-  // From now on the view has this many pixels, whatever the page's layout: for pictures without a screen.
+  // Fixes the size in pixels, independent of the page's layout, for pictures without a screen.
   renderSize(width: number, height: number): void {
     this.fixedSize = [width, height];
     this.restyle();
     this.drawNow();
   }
 
-  // The body as it is now fills the view.
+  // Fits the present body to the view.
   center(): void {
     if (this.figure.body?.box) this.rig.center(this.figure.body.box.lower, this.figure.body.box.upper);
   }
@@ -108,7 +108,7 @@ export class View implements Touched {
     this.redraw();
   }
 
-  // Once, in the next frame.
+  // Draws once in the next frame.
   redraw(): void {
     if (this.frame === 0) this.frame = requestAnimationFrame(() => this.drawNow());
   }
@@ -140,14 +140,14 @@ export class View implements Touched {
 
   private makeStage(): Stage | null {
     const { signal } = this.listeners;
-    const lost = (): void => this.say("The graphics card is busy; the picture comes back by itself.");
+    const lost = (): void => this.say("The graphics card is busy; the picture will return.");
     this.glCanvas.addEventListener("webglcontextlost", lost, { signal });
     this.glCanvas.addEventListener("webglcontextrestored", () => this.restored(), { signal });
     try {
       return new Stage(this.glCanvas);
     } catch {
       this.say(
-        "This browser does not draw in 3-D: WebGL 2 is missing or switched off. Switch on hardware acceleration in its " +
+        "This browser cannot draw in 3-D: WebGL 2 is missing or disabled. Enable hardware acceleration in its " +
           "settings, or use a current Firefox, Chromium or Safari. Plots and numbers work without it.",
       );
       return null;
@@ -159,7 +159,7 @@ export class View implements Touched {
     this.message.hidden = words === "";
   }
 
-  // After three.js, which listens, too, has its state again.
+  // Runs after three.js, which listens, too, has restored its state.
   private restored(): void {
     setTimeout(() => {
       if (this.listeners.signal.aborted) return;
@@ -202,7 +202,7 @@ export class View implements Touched {
   private takeScene(): void {
     if (this.figure.takeScene()) this.card.close();
     const scene = this.figure.side?.scene;
-    // Side a sends the fields to the display, which then changes for all.
+    // Side a sends the fields to the display, which then notifies all views.
     if (scene && this.side === "a") this.display.setFields(scene.fields, scene.field, scene.bodies.length);
     else this.applyDisplay();
   }
@@ -228,11 +228,11 @@ export class View implements Touched {
     this.redraw();
   }
 
-  // Once, when numbers are asked for that the fine skin does not have.
+  // Reports once that the fine skin has no numbers for the requested labels.
   private tellUnnumbered(): void {
     const missing = this.display.settings.vertexLabels && this.figure.body?.numbered === false;
     if (missing && !this.toldUnnumbered)
-      this.page.notice("The points of the fine skin have no numbers; the cage's vertices have.");
+      this.page.notice("Points of the fine skin have no numbers; choose the cage of tets to see numbers.");
     this.toldUnnumbered = missing;
   }
 
@@ -249,7 +249,7 @@ export class View implements Touched {
     return this.fixedSize ?? [this.host.clientWidth, this.host.clientHeight];
   }
 
-  // Beside the body, for the color bar.
+  // Width of the strip beside the body for the color bar.
   private strip(): number {
     return this.figure.colored() ? kBarWidth * this.style.em : 0;
   }
@@ -290,7 +290,7 @@ export class View implements Touched {
     };
   }
 
-  // The markers of the bench, and where its next poke would tell most.
+  // Markers of the bench, and the most informative site of the next poke.
   private dots(): Dot[] {
     const { capture } = this.store;
     const surface = this.surface();
@@ -309,7 +309,7 @@ export class View implements Touched {
     return chooseLabels(lens, surface, this.figure.body.geometry, kinds, this.style.em, this.touch.cursor);
   }
 
-  // The value under the cursor, while it reads.
+  // Value under the cursor in reading mode.
   private tip(): Marks["tip"] {
     if (this.stage?.isFar || this.stage?.hasLeft) return { at: [0, this.size()[1] / 2], words: this.whereItIs() };
     const { hover, cursor } = this.touch;
@@ -321,7 +321,7 @@ export class View implements Touched {
     return { at: cursor, words: valueText(interpolated(hover, triangles, values), shown.field.unit) };
   }
 
-  // Describes where a body is that cannot be seen.
+  // Describes where the body is if it is out of sight.
   private whereItIs(): string {
     const step = this.store.state?.[this.side]?.step ?? 0;
     const blewUp = hasBlownUp(this.figure.side?.steps ?? [], step);

@@ -1,4 +1,4 @@
-// The virtual bench: a probe that is pressed in, its gauge, recorded cases, and a fit that shows on the body.
+// Virtual bench: pressing the probe in, its gauge, recorded cases, and a fit that appears on the body.
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -31,7 +31,7 @@ async function openBench() {
   return opened;
 }
 
-// Touches the body and presses the tip in by keys, as far as that.
+// Touches the body and presses the tip to a depth by keys.
 async function pressIn(opened, notches) {
   const { page, heard, until } = opened;
   const [x, y] = await findBody(opened);
@@ -46,7 +46,7 @@ async function pressIn(opened, notches) {
 const press = (opened, name, what, isIt) =>
   answered(opened, what, isIt, () => opened.page.getByRole("button", { name, exact: true }).click());
 
-test("a tip is pressed in, pushes back more the deeper it is, and is lifted", async () => {
+test("a tip's force grows with its depth", async () => {
   const opened = await openBench();
   const { page, heard, until, close } = opened;
   await pressIn(opened, 8);
@@ -63,7 +63,7 @@ test("a tip is pressed in, pushes back more the deeper it is, and is lifted", as
   await close();
 });
 
-test("cases are recorded, listed and forgotten", async () => {
+test("cases are recorded, listed and deleted", async () => {
   const opened = await openBench();
   const { page, heard, until, close } = opened;
   await pressIn(opened, 12);
@@ -80,7 +80,7 @@ test("cases are recorded, listed and forgotten", async () => {
   await close();
 });
 
-test("pokes all over are fitted in the background; the stiffness shows on the body, and is simulated beside the true one", async () => {
+test("pokes are fitted and the result simulated", async () => {
   const opened = await openBench();
   const { page, heard, until, close } = opened;
   await page.getByLabel("places").fill("6");

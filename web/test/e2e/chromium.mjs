@@ -1,4 +1,4 @@
-// The browser of the tests: Debian's, which draws without a graphics card.
+// Browser of the tests: Debian's Chromium, which renders without a graphics card.
 import { existsSync } from "node:fs";
 
 const kArguments = [

@@ -1,4 +1,4 @@
-// A/B: two simulations side by side under one mouse.
+// Comparison of two simulations side by side under one mouse.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { boxOf, findBody, keepPicture, openSession, pageModule, pressAndWait, settingOf, settled, shownBy, startProgram, toTheStart } from "./harness.mjs";
@@ -21,7 +21,7 @@ async function endCompare({ page, until }) {
   await page.waitForFunction(() => document.querySelectorAll(".side").length === 1);
 }
 
-test("each offered comparison opens two sides, which advance together", async () => {
+test("each preset comparison advances two sides together", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   const all = presets(heard.scenes.a);
@@ -36,7 +36,7 @@ test("each offered comparison opens two sides, which advance together", async ()
     for (let i = 0; i < 3; ++i) {
       const { a, b } = heard.state;
       await page.keyboard.press("s");
-      // An explicit side that blew up has ended, and says so.
+      // An explicit side that blows up ends and reports it.
       const ended = () => [heard.state.a, heard.state.b].find(({ status }) => status === "undefined");
       await until(`both sides of '${title}' step`, () => ended() || (heard.state.a.step > a.step && heard.state.b.step > b.step));
       if (ended()) {
@@ -53,7 +53,7 @@ test("each offered comparison opens two sides, which advance together", async ()
   await close();
 });
 
-test("the cameras are one, and so is the mouse; the legend and the note name both sides", async () => {
+test("both sides share camera, mouse and legend", async () => {
   const opened = await openSession(program, { keepsPixels: true });
   const { page, heard, until, close } = opened;
   await compare(opened, "Ten times as stiff");
@@ -91,7 +91,7 @@ test("the cameras are one, and so is the mouse; the legend and the note name bot
   await close();
 });
 
-test("settings of the sides are set apart or together", async () => {
+test("settings change per side or for both", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   await compare(opened, "Half the time step");
@@ -107,14 +107,14 @@ test("settings of the sides are set apart or together", async () => {
   await close();
 });
 
-test("what cannot be compared is reported in the dialog", async () => {
+test("impossible comparisons are reported in the dialog", async () => {
   const opened = await openSession(program);
   const { page, heard, close } = opened;
   await page.keyboard.press("c");
   const dialog = page.getByRole("dialog");
   await dialog.getByLabel("Name of side B").fill("wrong");
   for (const typed of ["nonsense", "material.yuong=1e5", "material.young=-3", ""]) {
-    await dialog.getByRole("textbox", { name: /What differs/ }).fill(typed);
+    await dialog.getByRole("textbox", { name: /Overrides of side B/ }).fill(typed);
     await dialog.getByRole("button", { name: "Compare", exact: true }).click();
     await dialog.getByRole("alert").filter({ hasText: /\w{4}/ }).waitFor();
   }

@@ -1,4 +1,4 @@
-// What can be saved and loaded: workspaces, meshes, pictures, videos, recordings.
+// Saving and loading: workspaces, meshes, pictures, videos, recordings.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
@@ -14,7 +14,7 @@ async function loadFile({ page, until, choosers }, name, buffer) {
   await choosers.at(-1).setFiles({ name, mimeType: "application/json", buffer });
 }
 
-test("a workspace brings back settings, comparison, camera and panels", async () => {
+test("a workspace restores settings, comparison, camera, panels", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   const nu = page.getByLabel(/^Poisson's ratio.ν$/);
@@ -27,7 +27,7 @@ test("a workspace brings back settings, comparison, camera and panels", async ()
   await until("side b", ({ scenes }) => scenes.b);
   await page.getByRole("dialog").waitFor({ state: "detached" });
   await page.keyboard.press("m");
-  await page.keyboard.press("5"); // from the top
+  await page.keyboard.press("5"); // view from the top
   const file = await downloaded(page, () => page.keyboard.press("Shift+S"));
   assert.match(file.suggestedFilename(), /\.json$/);
   const saved = await read(file);
@@ -50,7 +50,7 @@ test("a workspace brings back settings, comparison, camera and panels", async ()
   await close();
 });
 
-test("files that are none of Aspic's are distinguished from those that are", async () => {
+test("foreign files are refused", async () => {
   const opened = await openSession(program);
   const { page, heard, close } = opened;
   const files = ["not json", "[]", "{}", '{"aspic_workspace": 7}', '{"aspic_workspace": 1}', '{"aspic_workspace": 1, "scene": "/none.toml"}', '{"scene": "x", "events": [], "steps": 3}'];
@@ -86,7 +86,7 @@ test("the deformed mesh is saved in each format", async () => {
   await close();
 });
 
-test("the scene is saved with all its values", async () => {
+test("the saved scene has all values", async () => {
   const { page, close } = await openSession(program);
   const text = String(await read(await downloaded(page, () => page.keyboard.press("Shift+T"))));
   assert.match(text, /poisson = /);
@@ -94,7 +94,7 @@ test("the scene is saved with all its values", async () => {
   await close();
 });
 
-test("a picture of the view is a PNG that shows something", async () => {
+test("a screenshot is a PNG of the body", async () => {
   const opened = await openSession(program);
   const { page, close } = opened;
   await findBody(opened);
@@ -104,7 +104,7 @@ test("a picture of the view is a PNG that shows something", async () => {
   await close();
 });
 
-// What the encoder has delivered.
+// Bytes that the encoder has delivered.
 function countVideo() {
   window.videoBytes = 0;
   const { start } = MediaRecorder.prototype;
@@ -133,7 +133,7 @@ test("a video of the view is recorded", async () => {
   await close();
 });
 
-test("a recorded session is repeated to the bit, from memory and from its file", async () => {
+test("a recorded session repeats bit by bit", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   const atStep = async (step) => pressAndWait(opened, "s", `step ${step}`, ({ state, pictures }) => state.a.step === step && pictures.a.step === step);

@@ -1,5 +1,5 @@
-// What a reader sees first: bodies in their own colors, numbers that mean something, names instead of keys, and a page
-// that fits its window.
+// First impression: bodies in their own colors, meaningful numbers, names instead of keys, and a page that fits its
+// window.
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { join, relative } from "node:path";
@@ -22,7 +22,7 @@ const young = (heard) => settingOf(heard, "material.young").value;
 const fieldOf = (page, key) => page.locator("#right .lil-controller").filter({ has: page.locator(`.lil-name[title$="\\a ${key}"]`) });
 const selectOf = (page, words) => page.locator("#right .lil-controller").filter({ hasText: words }).locator("select").first();
 
-// How many pixels of the picture in 3-D are mostly blue, and mostly green.
+// Number of mostly blue and of mostly green pixels in the 3-D picture.
 const hues = (page) =>
   page.locator("#views canvas").first().evaluate((canvas) => {
     const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
@@ -50,7 +50,7 @@ test("two bodies have two colors", async () => {
   await close();
 });
 
-test("the color bar stands beside the view, not on it", async () => {
+test("the color bar is beside the view", async () => {
   const opened = await openSession(two);
   const { page, until, close } = opened;
   const canvas = page.locator("#views canvas").first();
@@ -64,7 +64,7 @@ test("the color bar stands beside the view, not on it", async () => {
   await close();
 });
 
-test("the legend hides what is zero, and no color is used twice", async () => {
+test("the legend hides zeros, colors are distinct", async () => {
   const opened = await openSession(two);
   const { page, close } = opened;
   await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === 1);
@@ -78,7 +78,7 @@ test("the legend hides what is zero, and no color is used twice", async () => {
   await close();
 });
 
-test("settings have names for people, and keys in their tooltips", async () => {
+test("settings have display names, tooltips their keys", async () => {
   const opened = await openSession(two);
   const { page, heard, close } = opened;
   for (const { key, choices } of heard.scenes.a.settings) {
@@ -98,7 +98,7 @@ test("settings have names for people, and keys in their tooltips", async () => {
   await close();
 });
 
-test("changes are undone one by one, and a reset brings all back", async () => {
+test("changes are undone singly or by reset", async () => {
   const opened = await openSession(two);
   const { page, heard, until, close } = opened;
   const before = young(heard);
@@ -127,7 +127,7 @@ test("changes are undone one by one, and a reset brings all back", async () => {
   await close();
 });
 
-test("a phone shows the view first, and drawers below it", async () => {
+test("a phone shows the view above drawers", async () => {
   const opened = await openSession(two, { size: [360, 640] });
   const { page, close } = opened;
   await frames(page);

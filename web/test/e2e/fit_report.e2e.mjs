@@ -24,9 +24,9 @@ async function open() {
   return opened;
 }
 
-test("it says what the terminal said", async () => {
+test("the report repeats the terminal's summary", async () => {
   const { page, close } = await open();
-  const found = page.getByRole("region", { name: "What was found" });
+  const found = page.getByRole("region", { name: "Result" });
   await found.locator(".verdict").waitFor();
   const interval = said.match(/softest tet +[\d.]+ kPa +95 %: ([\d.]+) kPa to/);
   assert.ok(interval, said);
@@ -37,9 +37,9 @@ test("it says what the terminal said", async () => {
   await close();
 });
 
-test("every group has its curve, measured and fitted and held out", async () => {
+test("every group has measured, fitted, held-out curves", async () => {
   const { page, until, close } = await open();
-  const charts = page.getByRole("region", { name: "Measured against fitted" }).locator("figure");
+  const charts = page.getByRole("region", { name: "Measured and fitted" }).locator("figure");
   assert.equal(await charts.count(), 2);
   for (const name of ["measured", "fitted", "held out"]) assert.equal(await charts.getByRole("button", { name }).count(), 2);
   const canvas = charts.first().locator("canvas").first();
@@ -49,7 +49,7 @@ test("every group has its curve, measured and fitted and held out", async () => 
   await close();
 });
 
-test("the maps show the body, whole and cut, and another quantity", async () => {
+test("maps show whole and cut bodies", async () => {
   const { page, until, close } = await open();
   const view = page.locator(".maps .fit-view").first();
   const canvas = view.locator("canvas").first();
@@ -67,7 +67,7 @@ test("the maps show the body, whole and cut, and another quantity", async () => 
   await changes("the whole body", () => page.locator("[data-control=cut]").selectOption("off"));
   await changes("a cut across x", () => page.locator("[data-control=cut]").selectOption("0"));
   await changes("the other half", () => page.getByLabel("other half").click());
-  await changes("the cut moved", () => page.getByLabel("Where the cut is").fill("0.8"));
+  await changes("the cut moved", () => page.getByLabel("Position of the cut").fill("0.8"));
   await changes("the markers", () => page.getByLabel("markers", { exact: true }).click());
   await changes("no edges", () => page.getByLabel("edges").click());
   await changes("another quantity", () => page.locator(".map select").first().selectOption("poisson"));
@@ -75,9 +75,9 @@ test("the maps show the body, whole and cut, and another quantity", async () => 
   await close();
 });
 
-test("the worst markers are those of the chosen case", async () => {
+test("the worst markers belong to the chosen case", async () => {
   const { page, close } = await open();
-  const part = page.getByRole("region", { name: "What is not explained" });
+  const part = page.getByRole("region", { name: "Residuals" });
   const cases = part.locator("select");
   const names = await cases.locator("option").allTextContents();
   assert.equal(names.length, 1 + 6);

@@ -1,4 +1,4 @@
-// Programs, browsers and pages for the tests. Everything waits for facts, with patience; no time decides a test.
+// Programs, browsers and pages for the tests. Tests wait for events, not for times.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";
@@ -11,9 +11,9 @@ import { launchChromium } from "./chromium.mjs";
 
 export const aspic = process.env.ASPIC;
 export const root = join(dirname(fileURLToPath(import.meta.url)), "../../..");
-export const kPatience = 180_000; // [ms]: two weak cores that draw without a graphics card are slow, not broken
+export const kPatience = 180_000; // [ms]; two weak cores that render without a graphics card are slow, not broken
 
-// A module of the page itself.
+// Imports a module of the page.
 export async function pageModule(name) {
   const entry = join(root, "web/src", name);
   const { outputFiles } = await build({ entryPoints: [entry], bundle: true, format: "esm", write: false });
@@ -22,7 +22,7 @@ export async function pageModule(name) {
 const { decode } = await pageModule("protocol.ts");
 const kSize = [1024, 640]; // [px]
 
-// Ends with the test file, the newest first.
+// Runs at the end of the test file, latest first.
 const endings = [];
 after(async () => {
   for (const end of endings.reverse()) await end();
@@ -48,9 +48,9 @@ export async function until(what, condition, reported = () => "") {
 let stateFolder = "";
 const stateHome = () => (stateFolder ||= temporaryFolder());
 
-// `aspic view`, with its address and what it said.
+// Starts `aspic view`; returns its address and output.
 export async function startProgram(scene, more = []) {
-  const env = { ...process.env, XDG_STATE_HOME: stateHome() }; // not the list of what this user opened
+  const env = { ...process.env, XDG_STATE_HOME: stateHome() }; // isolated from this user's list of recent scenes
   const child = spawn(aspic, ["view", resolve(root, scene), "--no-browser", ...more], { env });
   const program = { child, address: "", said: "", complained: "", ended: null };
   child.stdout.on("data", (chunk) => (program.said += chunk));
@@ -69,7 +69,7 @@ export async function startProgram(scene, more = []) {
   return program;
 }
 
-const contexts = new Set(); // of the test under way
+const contexts = new Set(); // contexts of the test under way
 afterEach(async () => {
   for (const context of contexts) await context.close();
   contexts.clear();
@@ -78,12 +78,12 @@ afterEach(async () => {
 let browser = null;
 export async function theBrowser() {
   if (browser) return browser;
-  browser = await launchChromium(["--disable-gpu-compositing"]); // a third of the work, without a graphics card
+  browser = await launchChromium(["--disable-gpu-compositing"]); // saves a third of the work without a graphics card
   atTheEnd(() => browser.close());
   return browser;
 }
 
-// What the program reported the page, as far as a test wants to know.
+// Messages from the program to the page, as far as the tests use them.
 function listener() {
   const heard = { messages: [], sent: [], state: null, states: 0, scenes: {}, geometries: {}, pictures: {}, counted: 0, bytes: 0 };
   const forget = { end_compare: () => ["scenes", "geometries", "pictures"].forEach((kind) => delete heard[kind].b) };
@@ -107,8 +107,8 @@ function listener() {
   return heard;
 }
 
-// What an image shows: how much its brightness varies (its standard deviation; 0: a single color), and a number that
-// differs where images do.
+// Statistics of an image: the standard deviation of its brightness (0: a single color), and a checksum that differs
+// where images do.
 function lookAtImages() {
   window.lookAt = (image) => {
     if (!(image.width > 0 && image.height > 0)) return { contrast: 0, print: 0 };
@@ -128,7 +128,7 @@ function lookAtImages() {
   };
 }
 
-// Without smooth edges, a third of the work; and where asked for, a canvas can be read long after it was drawn.
+// Without antialiasing, which saves a third of the work; optionally with canvases that stay readable.
 function drawSimply(preserveDrawingBuffer) {
   const { getContext } = HTMLCanvasElement.prototype;
   HTMLCanvasElement.prototype.getContext = function (kind, attributes) {
@@ -137,7 +137,7 @@ function drawSimply(preserveDrawingBuffer) {
   };
 }
 
-// Notes what canvases write, since no element holds it.
+// Records the texts that canvases draw, since no element holds them.
 function noteDrawnTexts() {
   window.drawnTexts = [];
   const { fillText } = CanvasRenderingContext2D.prototype;
@@ -148,14 +148,14 @@ function noteDrawnTexts() {
   };
 }
 
-// The last that was said, for a test that fails.
+// The latest messages, for a failed test.
 function story({ state, sent, messages, pictures }) {
   const reported = messages.slice(-8).map(({ kind, why, a }) => [kind, why ?? a?.step].join(" "));
   return `${JSON.stringify(state)}; sent: ${sent.slice(-5).join(" ").slice(-800)}; reported: ${reported.join(", ")}; picture of step ${pictures.a?.step}`;
 }
 
-// A page of its own. `close` fails on every error of its scripts, refusal of its content policy and foreign request,
-// but for errors that are `expected`.
+// Opens a new page. `close` fails on errors of its scripts, violations of its content policy and foreign requests,
+// except `expected` errors.
 export async function openPage(address, { size = kSize, watchRequests = true, keepsPixels = false, expected = /^$/, prepare, ...context } = {}) {
   const inside = await (await theBrowser()).newContext({ viewport: { width: size[0], height: size[1] }, ...context });
   contexts.add(inside);
@@ -184,7 +184,7 @@ export async function openPage(address, { size = kSize, watchRequests = true, ke
     page,
     heard,
     errors,
-    choosers, // of files that the page asked for
+    choosers, // file choosers that the page opened
     until: (what, condition) => until(what, () => condition(heard), () => story(heard)),
     close: async () => {
       assert.deepEqual(errors.filter((error) => !expected.test(error)), []);
@@ -195,7 +195,7 @@ export async function openPage(address, { size = kSize, watchRequests = true, ke
   return opened;
 }
 
-// A page that steers, at the start; or one that `watches`.
+// Opens a page that steers, at the start; or one that only `watches`.
 export async function openSession(program, { watches = false, ...options } = {}) {
   const opened = await openPage(program.address, options);
   await opened.until("a picture", ({ state, pictures }) => state && pictures.a);
@@ -206,11 +206,11 @@ export async function openSession(program, { watches = false, ...options } = {})
   return opened;
 }
 
-// The program may not know yet that the page which steered has gone.
+// The program may not have noticed yet that the previous page has closed.
 export const steering = ({ until }) =>
   until("the steering", ({ messages }) => messages.findLast(({ kind }) => kind === "hello" || kind === "role")?.steers);
 
-// What an earlier test left: a comparison, a simulation that plays, steps.
+// Removes what an earlier test left: a comparison, a running simulation, steps.
 async function tidy(opened) {
   await setPlaying(opened, false);
   if (opened.heard.state.b) await pressAndWait(opened, "c", "one side", ({ state, scenes }) => !state.b && !scenes.b);
@@ -223,7 +223,7 @@ const isAtStart = ({ playing, replaying, a }) => !playing && !replaying && a.ste
 
 export const settingOf = (heard, key, side = "a") => heard.scenes[side].settings.find((setting) => setting.key === key);
 
-// Acts, and waits for the program's answer to the first message that this sends and that `isIt`.
+// Acts, then waits for the answer to the first message that satisfies `isIt`.
 export async function answered({ heard, until }, what, isIt, act) {
   const [asked, reported] = [heard.sent.length, heard.messages.length];
   await act();
@@ -232,25 +232,25 @@ export async function answered({ heard, until }, what, isIt, act) {
   return until(`an answer about ${what}`, () => heard.messages.slice(reported).find((message) => message.id === id));
 }
 
-// Until the program has answered whatever the page asked, and the page has drawn that.
+// Resolves when the program has answered all requests of the page and the page has drawn the result.
 export async function settled({ page, heard, until }) {
   const answers = () => new Set(heard.messages.filter(({ kind }) => kind === "reply" || kind === "refused").map(({ id }) => id));
   for (let asked = -1; asked !== heard.sent.length; await frames(page)) {
     asked = heard.sent.length;
-    await frames(page); // panels ask once per frame
+    await frames(page); // panels send requests once per frame
     const ids = heard.sent.map((text) => JSON.parse(text).id).filter((id) => id !== undefined);
     await until("all answers", () => ids.every((id) => answers().has(id)));
   }
 }
 
-// What a shortcut leads to: a state that the program sends after the key was pressed.
+// Presses a key and waits for a state of the program with the expected property.
 export async function pressAndWait({ page, heard, until }, key, what, condition) {
   const reported = heard.states;
   await page.keyboard.press(key);
   await until(what, () => heard.states > reported && condition(heard));
 }
 
-// The key that plays and pauses, until that is so: what plays may end by itself before the key is pressed.
+// Presses the play key until the expected state is reached: a run may end by itself before the key is pressed.
 export const setPlaying = (opened, wanted) =>
   opened.until(wanted ? "play" : "a pause", async () => {
     const { page, heard } = opened;
@@ -260,13 +260,13 @@ export const setPlaying = (opened, wanted) =>
     return heard.messages.slice(reported).some(({ kind, playing }) => kind === "state" && playing === wanted);
   });
 
-// What the page does once per frame is done, also what that asks of the next frame.
+// Waits for the work of one frame and of the next one that it may request.
 export const frames = (page, count = 2) =>
   page.evaluate(async (n) => {
     for (let i = 0; i < n; ++i) await new Promise((done) => requestAnimationFrame(done));
   }, count);
 
-// Where an element is, once it stays there: while it is redrawn it is nowhere.
+// Position of an element once it is stable: during a redraw it has none.
 export async function boxOf(locator) {
   let last = null;
   return until(`a place of ${locator}`, async () => {
@@ -277,7 +277,7 @@ export async function boxOf(locator) {
   });
 }
 
-// The middle of what of the body the mouse can hold.
+// Middle of the part of the body that the mouse can hold.
 export async function findBody({ page }, view = 0) {
   const host = page.locator("#views .view").nth(view);
   return until("a body under the mouse", async () => {
@@ -285,28 +285,28 @@ export async function findBody({ page }, view = 0) {
     for (const [u, v] of [[0.5, 0.5], [0.5, 0.6], [0.5, 0.4], [0.6, 0.5], [0.4, 0.5], [0.5, 0.7], [0.5, 0.3], [0.7, 0.6]]) {
       const [x, y] = [box.x + u * box.width, box.y + v * box.height];
       await page.mouse.move(x, y);
-      await frames(page); // the first looks what is under the mouse
+      await frames(page); // the first frame determines what is under the mouse
       if (await host.evaluate((element) => ["grab", "crosshair", "help"].includes(element.style.cursor))) return [x, y];
     }
   });
 }
 
-// What a canvas shows, read by the page itself: a picture of the screen would have to wait for a screen that is still.
-// Of a WebGL canvas in a page that `keepsPixels`.
+// Image of a canvas, read by the page itself, because a screenshot would wait for a still screen. WebGL canvases
+// require a page that `keepsPixels`.
 export const shownBy = (canvas) => canvas.evaluate((element) => (element.checkVisibility() ? window.lookAt(element) : { contrast: 0, print: 0 }));
 
-// Anything but one color.
+// Whether the canvas has more than one color.
 export const isDrawn = async (canvas) => (await shownBy(canvas)).contrast > 3;
 
-// What stands on the screen, of an element of a page that is still.
+// Screenshot of an element of a page that is still.
 export const screenOf = (locator) => locator.screenshot({ animations: "disabled", caret: "initial" });
 
-// For a developer who asks for it; no test needs it.
+// For developers; no test depends on it.
 export async function keepPicture(page, name) {
   if (process.env.ASPIC_PICTURES) await page.screenshot({ path: join(process.env.ASPIC_PICTURES, `${name}.png`) });
 }
 
-// How much the brightness of a PNG varies: 0 for one of a single color.
+// Standard deviation of a PNG's brightness; 0 for a single color.
 export const contrast = (page, png) =>
   page.evaluate(async (base64) => {
     const image = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))]));
@@ -315,6 +315,6 @@ export const contrast = (page, png) =>
 
 export const downloaded = async (page, act) => (await Promise.all([page.waitForEvent("download"), act()]))[0];
 
-// Positions and pictures are too long to be printed where they differ.
+// Shortens positions and pictures in the output of a failed comparison.
 export const sameBits = (a, b) => Buffer.compare(Buffer.from(a.buffer, a.byteOffset, a.byteLength), Buffer.from(b.buffer, b.byteOffset, b.byteLength)) === 0;
 export const assertSameBits = (a, b, what = "the same bits") => assert.ok(sameBits(a, b), what);

@@ -1,4 +1,4 @@
-// The lecture's pages: each opens what it shows, the recorded mouse plays, and the reader takes over.
+// Lecture pages: each opens its demonstration, the recorded mouse plays, and the reader takes over.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { answered, findBody, frames, keepPicture, openSession, setPlaying, startProgram, until as eventually } from "./harness.mjs";
@@ -12,7 +12,7 @@ async function openList(opened) {
   await opened.page.locator("#left ol.lessons li").first().waitFor();
 }
 
-test("each page of the lecture opens its scene and its panel, and says what to look at", async () => {
+test("each lecture page opens scene and panel", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   await openList(opened);
@@ -39,11 +39,11 @@ test("each page of the lecture opens its scene and its panel, and says what to l
   await close();
 });
 
-test("the recorded mouse plays until the reader takes over", async (t) => {
+test("the recorded mouse plays until a grab", async (t) => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   await openList(opened);
-  await page.locator("#toolbar select").first().selectOption({ index: 0 }); // slow: it must not be over before the reader comes
+  await page.locator("#toolbar select").first().selectOption({ index: 0 }); // slow, so that the replay lasts
   const { lessons } = heard.messages.find(({ kind }) => kind === "hello");
   let found = null;
   for (const [i, lesson] of lessons.entries()) {
@@ -59,7 +59,7 @@ test("the recorded mouse plays until the reader takes over", async (t) => {
   await until("steps of the recorded mouse", ({ state, pictures }) => state.replaying && state.a.step > 1 && pictures.a.step > 1);
   await setPlaying(opened, false);
   assert.ok(heard.state.replaying, "a pause does not end the recorded mouse");
-  // A body that pauses is found however slow the page is; it is taken while it plays, and may be missed.
+  // The body is found while it pauses, and grabbed while it plays; a grab may miss.
   await eventually("the reader's grab", async () => {
     const [x, y] = await findBody(opened);
     await setPlaying(opened, true);
@@ -76,7 +76,7 @@ test("the recorded mouse plays until the reader takes over", async (t) => {
   await close();
 });
 
-test("the list is searched, and turned page by page", async () => {
+test("the lecture is searched and paged", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   await openList(opened);

@@ -1,4 +1,4 @@
-// Scenes come and go: from the gallery, dropped onto the page, saved with their meshes, exported as animations.
+// Opening scenes: from the gallery, by drag and drop, saved with their meshes, exported as animations.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
@@ -13,14 +13,14 @@ const atStep = (opened, step) =>
   pressAndWait(opened, "s", `step ${step}`, ({ state, pictures }) => state.a.step === step && pictures.a.step === step);
 const lastHash = ({ heard }) => heard.messages.findLast(({ kind, steps }) => kind === "steps" && steps.length > 0).steps.at(-1).state_hash;
 
-// The state after `steps` of a run on the command line.
+// State after `steps` of a run on the command line.
 function hashOfRun(scene, steps) {
   const out = join(temporaryFolder(), "out");
   const said = execFileSync(aspic, ["run", scene, "--steps", String(steps), "--out", out], { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
   return said.match(/state +(\w+) after/)[1];
 }
 
-// What a reader drags from a folder.
+// Files that a reader drags from a folder.
 async function drop(page, files) {
   const transfer = await page.evaluateHandle((list) => {
     const made = new DataTransfer();
@@ -37,7 +37,7 @@ async function savedMesh(page, format) {
   return read(await downloaded(page, () => dialog.getByRole("button", { name: "Save" }).click()));
 }
 
-test("a drag while paused says how to play, and the saved scene repeats it", async () => {
+test("a paused drag is saved with the scene", async () => {
   const opened = await openSession(program);
   const { page, until, close } = opened;
   await atStep(opened, 1);
@@ -89,7 +89,7 @@ test("the motion is exported for other programs", async () => {
   const [gifName, gif] = await exported("gif");
   assert.equal(gifName, "cantilever.gif");
   if (process.env.ASPIC_PICTURES) writeFileSync(join(process.env.ASPIC_PICTURES, "exported.gif"), gif);
-  // Read by the browser.
+  // The browser reads it.
   const seen = await page.evaluate(async (base64) => {
     const data = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
     const decoder = new ImageDecoder({ data, type: "image/gif" });
@@ -104,7 +104,7 @@ test("the motion is exported for other programs", async () => {
   await close();
 });
 
-test("the gallery opens a scene and remembers it", async () => {
+test("the gallery opens and remembers a scene", async () => {
   const opened = await openSession(program);
   const { page, until, close } = opened;
   await page.keyboard.press("Shift+O");
@@ -122,7 +122,7 @@ test("the gallery opens a scene and remembers it", async () => {
   await close();
 });
 
-test("a mesh dropped onto the page is simulated, saved with its mesh, and travels", async () => {
+test("a dropped mesh is simulated and saved", async () => {
   const opened = await openSession(program);
   const { page, until, heard, close } = opened;
   await drop(page, [["notes.txt", "hello"]]);
@@ -144,7 +144,7 @@ test("a mesh dropped onto the page is simulated, saved with its mesh, and travel
   const { scene, files, ...rest } = JSON.parse(workspace);
   assert.deepEqual([scene, files.map(({ name }) => name)], ["dropped.toml", ["dropped.toml", "inputs/dropped.msh"]]);
   assert.deepEqual(JSON.stringify(rest).match(/.{0,80}\/tmp\/.{0,80}/), null, "no path of this machine");
-  // As on another machine, where only the files are.
+  // Simulates another machine that has only these files.
   const fresh = async (what, files) => {
     const { generation } = heard.geometries.a;
     await drop(page, files);
@@ -159,7 +159,7 @@ test("a mesh dropped onto the page is simulated, saved with its mesh, and travel
   await close();
 });
 
-test("a body in free fall has left the view and not blown up", async () => {
+test("a falling body leaves without a blow-up", async () => {
   const falling = await startProgram("scenes/free_fall.toml", ["--set", "time.step=0.05"]);
   const opened = await openSession(falling);
   const { page, until, heard, close } = opened;

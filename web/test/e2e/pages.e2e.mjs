@@ -1,14 +1,14 @@
-// Several pages, lost connections, strangers and nonsense.
+// Several pages, lost connections, foreign sites and malformed messages.
 import assert from "node:assert/strict";
 import { connect } from "node:net";
 import { test } from "node:test";
 import { assertSameBits, kPatience, openPage, openSession, pressAndWait, startProgram, steering, theBrowser, until } from "./harness.mjs";
 
 const program = await startProgram("scenes/cantilever.toml");
-// What the browser says of a connection that breaks, also in the moment in which the page sends.
+// Messages of the browser about a broken connection, also during sending.
 const kLostSocket = /WebSocket connection to .* failed|WebSocket is already in CLOSING or CLOSED state/;
 
-test("a second page watches, takes the steering, and hands it over when it closes", async () => {
+test("steering passes between two pages", async () => {
   const one = await openSession(program);
   const two = await openSession(program, { watches: true });
   await two.page.getByText("Watching").waitFor();
@@ -16,7 +16,7 @@ test("a second page watches, takes the steering, and hands it over when it close
   const before = two.heard.state.a.step;
   await pressAndWait(one, "s", "a step", () => two.heard.state.a.step === before + 1 && two.heard.pictures.a.step === before + 1 && one.heard.pictures.a.step === before + 1);
   assertSameBits(two.heard.pictures.a.positions, one.heard.pictures.a.positions);
-  await two.page.keyboard.press("s"); // does nothing: it watches
+  await two.page.keyboard.press("s"); // has no effect: the page only watches
   await two.page.getByRole("button", { name: "Steer" }).click();
   await one.page.getByText("Watching").waitFor();
   await two.page.getByText("Watching").waitFor({ state: "hidden" });
@@ -28,7 +28,7 @@ test("a second page watches, takes the steering, and hands it over when it close
   await one.close();
 });
 
-test("a steering page that is closed lets go of the body", async () => {
+test("closing a steering page releases the body", async () => {
   const one = await openSession(program);
   const two = await openSession(program, { watches: true });
   const grab = { do: "grab", side: "a", triangle: 0, weights: [1, 0, 0], target: [0.5, 0.5, 0.5] };
@@ -55,7 +55,7 @@ test("a steering page that is closed lets go of the body", async () => {
   await one.close();
 });
 
-test("without the token, or with a wrong one, there is no page and no session", async () => {
+test("a wrong token is refused", async () => {
   const page = await (await theBrowser()).newPage();
   page.setDefaultTimeout(kPatience);
   const { origin } = new URL(program.address);
@@ -78,7 +78,7 @@ test("without the token, or with a wrong one, there is no page and no session", 
   await page.context().close();
 });
 
-test("nonsense is refused, and the pages continue", async () => {
+test("malformed messages are refused, pages continue", async () => {
   const one = await openSession(program);
   const two = await openPage(program.address, { prepare: (page) => page.addInitScript(() => {
     const Native = WebSocket;
@@ -120,7 +120,7 @@ test("nonsense is refused, and the pages continue", async () => {
   await one.close();
 });
 
-test("what is no request is answered, and the server continues", async () => {
+test("malformed HTTP requests do not stop the server", async () => {
   const { hostname, port, search } = new URL(program.address);
   const say = (text) => new Promise((resolve) => {
     let heard = "";
@@ -137,7 +137,7 @@ test("what is no request is answered, and the server continues", async () => {
   await one.close();
 });
 
-test("a dropped connection is reported and made anew, with all that was known", async () => {
+test("a dropped connection is restored with its state", async () => {
   let isCut = false;
   const links = [];
   const opened = await openPage(program.address, { expected: kLostSocket, prepare: (page) =>
@@ -168,7 +168,7 @@ test("a dropped connection is reported and made anew, with all that was known", 
   await close();
 });
 
-test("a program that ends says so to its page, and ends well", async () => {
+test("the end of the program is reported", async () => {
   const another = await startProgram("scenes/cantilever.toml");
   const opened = await openSession(another, { expected: /ERR_CONNECTION_REFUSED|WebSocket connection/ });
   assert.equal(await another.end(), 0, another.complained);

@@ -1,10 +1,10 @@
-// For every reader: keys, names for screen readers, light and dark, large letters on a small screen.
+// Accessibility: keys, names for screen readers, light and dark, large fonts on a small screen.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { findBody, frames, keepPicture, openSession, pressAndWait, setPlaying, settled, startProgram } from "./harness.mjs";
 
 const program = await startProgram("scenes/cantilever.toml");
-// What a panel says when it has all that it shows after kSteps steps.
+// Text of each panel that is complete after kSteps steps.
 const kSteps = 4;
 const kPanels = {
   Energy: /\w/,
@@ -28,7 +28,7 @@ async function withSteps(options) {
   return opened;
 }
 
-test("every shortcut of the list does something that goes well", async () => {
+test("every listed shortcut works without errors", async () => {
   const opened = await withSteps();
   const { page, errors, until, close } = opened;
   await page.keyboard.press("?");
@@ -43,8 +43,8 @@ test("every shortcut of the list does something that goes well", async () => {
   for (const key of keys.filter((key) => !["Shift+L"].includes(key))) {
     await page.keyboard.press(pressed(key));
     await frames(page, 2);
-    if (key === "Shift+V") await page.keyboard.press(key); // a video would make all that follows slow
-    await page.keyboard.press("Escape"); // of a dialog that it opened
+    if (key === "Shift+V") await page.keyboard.press(key); // a video would slow down the rest
+    await page.keyboard.press("Escape"); // closes a dialog that it opened
     await page.waitForFunction(() => !document.querySelector("dialog[open]"));
     assert.deepEqual(errors, [], `after ${key}`);
   }
@@ -54,7 +54,7 @@ test("every shortcut of the list does something that goes well", async () => {
   await close();
 });
 
-// Which controls have no name, by the browser's own rules.
+// Controls without a name, by the browser's own rules.
 async function nameless(page, context) {
   const session = await page.context().newCDPSession(page);
   await session.send("Accessibility.enable");
@@ -70,7 +70,7 @@ async function nameless(page, context) {
   return reported;
 }
 
-test("every control has a name, in every panel and dialog", async () => {
+test("every control has an accessible name", async () => {
   const opened = await withSteps();
   const { page, close } = opened;
   await openFolders(page);
@@ -90,7 +90,7 @@ test("every control has a name, in every panel and dialog", async () => {
   await close();
 });
 
-test("the Tab key reaches every control that is shown", async () => {
+test("Tab reaches every visible control", async () => {
   const opened = await withSteps();
   const { page, close } = opened;
   await page.evaluate(() => document.body.focus());
@@ -112,7 +112,7 @@ test("the Tab key reaches every control that is shown", async () => {
   await close();
 });
 
-test("every control of the view's display can be used, and nothing breaks", async () => {
+test("every display control works without errors", async () => {
   const opened = await withSteps();
   const { page, errors, until, close } = opened;
   await openFolders(page);
@@ -152,7 +152,7 @@ test("every control of the view's display can be used, and nothing breaks", asyn
   await close();
 });
 
-// Parts of the page that cover each other, and panels that scroll sideways.
+// Parts of the page that overlap, and panels that scroll sideways.
 async function layoutFaults(page) {
   return page.evaluate(() => {
     const faults = [];

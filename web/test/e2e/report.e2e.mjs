@@ -1,4 +1,4 @@
-// A run as one file, opened from disk without a network: it plays, and holds its numbers.
+// A run as one file, opened from disk without a network: it plays and contains the numbers of the run.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { readFileSync, statSync } from "node:fs";
@@ -14,7 +14,7 @@ const make = (...words) => {
   const made = spawnSync(aspic, words, { encoding: "utf8" });
   assert.equal(made.status, 0, made.stdout + made.stderr);
 };
-// With one iteration per step some do not converge: the certificate has something to find.
+// With one iteration per step some steps do not converge, which the certificate reports.
 const kOverrides = [`time.duration=${kSteps / 100}`, "solver.max_iterations=1"].flatMap((override) => ["--set", override]);
 make("run", join(root, "scenes/cantilever.toml"), "--out", run, "--allow-unconverged", ...kOverrides);
 const report = join(run, "report.html");
@@ -28,7 +28,7 @@ async function open() {
   return opened;
 }
 
-test("a run writes its report, and `aspic report` writes it again", () => {
+test("`aspic report` rewrites the report of a run", () => {
   assert.ok(statSync(report).size < 10e6);
   const again = join(folder, "again.html");
   make("report", run, "-o", again);
@@ -36,7 +36,7 @@ test("a run writes its report, and `aspic report` writes it again", () => {
   assert.doesNotMatch(readFileSync(again, "utf8").replace(/http:\/\/www\.w3\.org\/\S*/g, ""), /(src|href)="https?:/);
 });
 
-test("it plays, pauses and rewinds, without a request", async () => {
+test("a report plays and rewinds without requests", async () => {
   const { page, until, close } = await open();
   const view = page.locator("#views canvas").first();
   await until("a picture", () => isDrawn(view));
@@ -47,7 +47,7 @@ test("it plays, pauses and rewinds, without a request", async () => {
   const first = await shownBy(view);
   await page.keyboard.press(" ");
   await page.waitForFunction(() => !document.querySelector(".place").textContent.startsWith("step 0,"));
-  await page.getByLabel("Timeline: rewinds to a step").press("End");
+  await page.getByLabel("Timeline: rewind to a step").press("End");
   await page.locator(".place").filter({ hasText: new RegExp(`^step ${kSteps},`) }).waitFor();
   await until("another picture", async () => (await shownBy(view)).print !== first.print);
   await page.locator(".chip.bad").filter({ hasText: "iteration limit" }).waitFor();
@@ -56,7 +56,7 @@ test("it plays, pauses and rewinds, without a request", async () => {
   await close();
 });
 
-test("it has the certificate of every step, the energies and the scene", async () => {
+test("a report has certificate, energies and scene", async () => {
   const { page, close } = await open();
   await page.getByRole("tab", { name: "Certificate" }).click();
   const panel = page.getByRole("tabpanel", { name: "Certificate" });
@@ -68,7 +68,7 @@ test("it has the certificate of every step, the energies and the scene", async (
   assert.ok(failed > 0 && failed <= kSteps, `${failed} rows`);
   await panel.getByText(`${kSteps - failed} of ${kSteps}`, { exact: true }).waitFor();
   await page.getByLabel("only steps that did not converge").uncheck();
-  await panel.locator("summary").filter({ hasText: "Scene, with every default" }).click();
+  await panel.locator("summary").filter({ hasText: "Complete scene with all defaults" }).click();
   await panel.locator("pre").filter({ hasText: /\[solver\]/ }).waitFor();
   await panel.locator("tbody tr").nth(4).getByRole("button").click();
   await page.locator(".place").filter({ hasText: /^step 5,/ }).waitFor();
@@ -82,18 +82,18 @@ test("it has the certificate of every step, the energies and the scene", async (
   await close();
 });
 
-test("it says that a recorded body cannot be touched", async () => {
+test("a report explains that bodies are fixed", async () => {
   const { page, until, close } = await open();
   await until("a picture", () => isDrawn(page.locator("#views canvas").first()));
   const box = await boxOf(page.locator("#views"));
-  // The notice goes after a while.
+  // The notice disappears after a while.
   await until("a notice", async () => {
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     await page.mouse.down();
     await page.mouse.move(box.x + box.width / 2 + 60, box.y + box.height / 2, { steps: 5 });
     await page.mouse.up();
     if (await page.getByText("This run is recorded").isVisible()) return true;
-    await page.keyboard.press("0"); // the dragging turned the camera
+    await page.keyboard.press("0"); // undoes the rotation by the drag
     await frames(page);
   });
   await close();

@@ -1,5 +1,5 @@
-// node test/e2e/run.mjs ASPIC [THEME ...]: the page with its program, in Chromium, as a reader uses it. Every theme is a
-// file THEME.e2e.mjs. ASPIC_PICTURES=FOLDER keeps pictures of the panels there. Ends with 77 where there is no Chromium.
+// node test/e2e/run.mjs ASPIC [THEME ...]: tests the page with its program in Chromium. Each theme is a file
+// THEME.e2e.mjs. ASPIC_PICTURES=FOLDER saves pictures of the panels. Exits with 77 without Chromium.
 import { spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readdirSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";

@@ -1,4 +1,4 @@
-// Every control of the settings: a valid value is taken, any other refused in words and put back; nothing breaks.
+// Every control of the settings: a valid value is accepted, any other is refused with a message and restored.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { answered, openSession, pressAndWait, setPlaying, settingOf, startProgram, toTheStart } from "./harness.mjs";
@@ -6,7 +6,7 @@ import { answered, openSession, pressAndWait, setPlaying, settingOf, startProgra
 const program = await startProgram("scenes/cantilever.toml");
 const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 
-// The row of a setting: labels may repeat, keys do not.
+// Row of a setting. Labels may repeat, keys do not.
 const rowOf = (page, key) => page.locator("#right .lil-controller").filter({ has: page.locator(`.lil-name[title$="\\a ${key}"]`) });
 
 async function backToTheScene({ page, heard, until }) {
@@ -17,7 +17,7 @@ async function backToTheScene({ page, heard, until }) {
   await until("the scene", () => heard.messages.slice(from).some(({ kind }) => kind === "scene"));
 }
 
-// With every folder open, as a reader leaves them who changes what is folded away.
+// Opens every folder.
 async function openSettings() {
   const opened = await openSession(program);
   const closed = opened.page.locator("#right .lil-closed > .lil-title");
@@ -29,7 +29,7 @@ async function openSettings() {
 const isAbout = (key) => (message) => message.do === "set" && message.key === key;
 const set = (opened, key, act) => answered(opened, key, isAbout(key), act);
 
-// Another value of the middle of the slider's range.
+// Another value from the middle of the slider's range.
 function otherNumber({ kind, value, min, max, log }) {
   const between = (t) => (log && min > 0 ? min * (max / min) ** t : min + t * (max - min));
   const shown = (t) => (kind === "integer" ? Math.round(between(t)) : Number(between(t).toPrecision(3)));
@@ -43,14 +43,14 @@ async function typeInto(field, text) {
   await field.press("Enter");
 }
 
-test("every setting has a row, and takes another value", async () => {
+test("every setting accepts another value", async () => {
   const opened = await openSettings();
   const { page, heard, close } = opened;
   const settings = heard.scenes.a.settings;
   assert.ok(settings.length > 20, `${settings.length} settings`);
   for (const { key } of settings) {
     const setting = settingOf(heard, key);
-    if (!setting) continue; // belongs to a choice made on the way
+    if (!setting) continue; // belongs to a choice made before
     const row = rowOf(page, key);
     const tell = `${key} (${setting.kind})`;
     assert.equal(await row.count(), 1, tell);
@@ -86,7 +86,7 @@ test("every setting has a row, and takes another value", async () => {
   await close();
 });
 
-test("every slider moves its value by the keyboard", async () => {
+test("every slider follows the keyboard", async () => {
   const opened = await openSettings();
   const { page, heard, close } = opened;
   for (const { key, kind } of heard.scenes.a.settings.filter((setting) => setting.kind === "number" || setting.kind === "integer")) {
@@ -103,7 +103,7 @@ test("every slider moves its value by the keyboard", async () => {
   await close();
 });
 
-test("every choice of every setting is taken or refused in words, and a step can be taken with it", async () => {
+test("every choice is accepted or refused", async () => {
   const opened = await openSettings();
   const { page, heard, until, close } = opened;
   for (const { key, choices, value: first } of heard.scenes.a.settings.filter(({ kind }) => kind === "choice")) {
@@ -124,7 +124,7 @@ test("every choice of every setting is taken or refused in words, and a step can
   await close();
 });
 
-test("what is typed wrongly is refused in words, put back, and the simulation continues", async () => {
+test("wrong input is refused and restored", async () => {
   const opened = await openSettings();
   const { page, heard, until, close } = opened;
   for (const { key } of heard.scenes.a.settings.filter(({ kind }) => ["number", "integer", "vector"].includes(kind))) {
@@ -136,7 +136,7 @@ test("what is typed wrongly is refused in words, put back, and the simulation co
       const from = heard.messages.length;
       const sent = () => heard.sent.slice(asked).map((text) => JSON.parse(text)).find(isAbout(key));
       await typeInto(field, typed);
-      // A field that keeps what it cannot be sends nothing.
+      // A field that restores an invalid value sends nothing.
       await until(`${key} = '${typed}'`, async () => sent() || (await field.inputValue()) === before);
       if (!sent()) continue;
       const answer = await until(`an answer to ${key} = '${typed}'`, () => heard.messages.slice(from).find(({ id }) => id === sent().id));
@@ -148,7 +148,7 @@ test("what is typed wrongly is refused in words, put back, and the simulation co
         );
         assert.ok(same(settingOf(heard, key).value, setting.value));
       } else {
-        // A value that is allowed though extreme: back to the one before.
+        // Undoes an extreme but valid value.
         await typeInto(field, before);
         await until(`${key} is back`, () => same(settingOf(heard, key).value, setting.value));
       }
@@ -159,7 +159,7 @@ test("what is typed wrongly is refused in words, put back, and the simulation co
   await close();
 });
 
-test("extremes while it plays: it continues, and says what failed", async () => {
+test("extreme values never stop the program", async () => {
   const opened = await openSettings();
   const { page, heard, until, close } = opened;
   await setPlaying(opened, true);

@@ -1,11 +1,11 @@
-// The minimization under the microscope: iterations one by one, their tables, curves and landscapes; plane functions.
+// Minimization in detail: single iterations, their tables, curves and landscapes; functions of two variables.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { answered, assertSameBits, boxOf, contrast, downloaded, frames, isDrawn, keepPicture, openSession, pageModule, pressAndWait, settled, shownBy, startProgram, toTheStart, until as eventually } from "./harness.mjs";
 
 const { kPresets } = await pageModule("panels/functionForm.ts");
-const program = await startProgram("scenes/cantilever.toml", ["--set", "time.step=0.05"]); // several iterations
+const program = await startProgram("scenes/cantilever.toml", ["--set", "time.step=0.05"]); // needs several iterations
 
 async function open(panel) {
   const opened = await openSession(program, { keepsPixels: true });
@@ -24,7 +24,7 @@ async function iterate(opened) {
   return opened.heard.state.a;
 }
 
-test("iterations are taken one by one, and each has its row", async () => {
+test("single iterations have a row each", async () => {
   const opened = await open("Microscope");
   const { page, heard, until, close } = opened;
   let rows = 0;
@@ -48,7 +48,7 @@ test("iterations are taken one by one, and each has its row", async () => {
   await close();
 });
 
-test("a step by iterations ends where a whole step ends, to the bit", async () => {
+test("a step by iterations is bit-identical", async () => {
   const opened = await open("Microscope");
   const { heard, until, close } = opened;
   await pressAndWait(opened, "s", "a step", ({ state, pictures }) => state.a.step === 1 && pictures.a.step === 1);
@@ -60,7 +60,7 @@ test("a step by iterations ends where a whole step ends, to the bit", async () =
   await close();
 });
 
-test("the chosen iteration has its line search, and the keys choose another", async () => {
+test("keys choose iterations and their line search", async () => {
   const opened = await open("Microscope");
   const { page, heard, until, close } = opened;
   await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === 1);
@@ -86,7 +86,7 @@ test("the chosen iteration has its line search, and the keys choose another", as
   await close();
 });
 
-test("the worst elements are listed and marked on the body", async () => {
+test("the worst tets are listed and marked", async () => {
   const opened = await open("Microscope");
   const { page, heard, until, close } = opened;
   await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === 1);
@@ -97,10 +97,10 @@ test("the worst elements are listed and marked on the body", async () => {
   await close();
 });
 
-test("the landscape shows E, its model and the path", async () => {
+test("the landscape shows E, model and path", async () => {
   const opened = await open("Landscape");
   const { page, heard, until, close } = opened;
-  await page.getByText("nothing to see before the first iteration").waitFor();
+  await page.getByText("No iteration has been computed yet").waitFor();
   await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === 1);
   const slice = await until("the slice", () => heard.messages.find(({ kind, reply }) => kind === "reply" && reply?.slice)?.reply.slice);
   assert.equal(slice.value.length, slice.columns * slice.rows);
@@ -117,7 +117,7 @@ test("the landscape shows E, its model and the path", async () => {
   await close();
 });
 
-test("each example of the functions is minimized, from any start", async () => {
+test("each example function is minimized from anywhere", async () => {
   const opened = await open("Functions");
   const { page, heard, until, close } = opened;
   const panel = page.getByRole("tabpanel", { name: "Functions" });
@@ -141,7 +141,7 @@ test("each example of the functions is minimized, from any start", async () => {
   await close();
 });
 
-test("the start of a function is moved by keys and by the mouse", async () => {
+test("keys and mouse move the initial point", async () => {
   const opened = await open("Functions");
   const { page, heard, until, close } = opened;
   const panel = page.getByRole("tabpanel", { name: "Functions" });
@@ -160,7 +160,7 @@ test("the start of a function is moved by keys and by the mouse", async () => {
   await eventually("a start that the mouse took", async () => {
     await settled(opened);
     const [mark, box] = [await boxOf(ring), await boxOf(view)];
-    // The label stands beside its ring. A mouse that misses it turns the picture.
+    // The label is beside its ring. A mouse that misses the ring turns the picture.
     const sides = [[-9, 9], [-10, 0], [-8, -8], [mark.width + 10, 0]];
     const [dx, dy] = sides[tries++ % sides.length];
     await page.mouse.move(mark.x + dx, mark.y + mark.height / 2 + dy);
@@ -174,7 +174,7 @@ test("the start of a function is moved by keys and by the mouse", async () => {
   await close();
 });
 
-test("impossible functions are refused in words", async () => {
+test("impossible functions are refused", async () => {
   const opened = await open("Functions");
   const { page, heard, until, close } = opened;
   const panel = page.getByRole("tabpanel", { name: "Functions" });
@@ -194,7 +194,7 @@ test("impossible functions are refused in words", async () => {
   await close();
 });
 
-test("energies are reported as they are, and saved with a row for each step", async () => {
+test("energies are plotted and saved per step", async () => {
   const opened = await open("Energy");
   const { page, heard, close } = opened;
   for (let step = 1; step <= 12; ++step) await pressAndWait(opened, "s", `step ${step}`, ({ state }) => state.a.step === step);

@@ -8,8 +8,8 @@ const program = await startProgram("scenes/cantilever.toml");
 const length = (v) => Math.hypot(...v);
 const minus = (a, b) => a.map((x, i) => x - b[i]);
 
-test("the first picture shows the body, and the token leaves the address", async () => {
-  // A reload asks without the token; the answer finds it where the tab keeps it.
+test("the first picture appears without a token", async () => {
+  // A reload requests the page without the token, which the tab has kept.
   const opened = await openSession(program, { expected: /status of 403/ });
   const { page, heard, until, close } = opened;
   await findBody(opened);
@@ -22,7 +22,7 @@ test("the first picture shows the body, and the token leaves the address", async
   await close();
 });
 
-test("it plays and pauses, steps, and goes back to the start", async () => {
+test("plays, pauses, steps and resets", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   await page.getByRole("button", { name: "Play", exact: true }).click();
@@ -38,7 +38,7 @@ test("it plays and pauses, steps, and goes back to the start", async () => {
   await close();
 });
 
-test("the timeline rewinds, by mouse and by keys, to what was shown before", async () => {
+test("the timeline rewinds by mouse and keys", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   const seen = [];
@@ -46,7 +46,7 @@ test("the timeline rewinds, by mouse and by keys, to what was shown before", asy
     await pressAndWait(opened, "s", `step ${step}`, () => heard.state.a.step === step && heard.pictures.a.step === step);
     seen[step] = heard.pictures.a.positions;
   }
-  const timeline = page.getByLabel("Timeline: rewinds to a step");
+  const timeline = page.getByLabel("Timeline: rewind to a step");
   await timeline.press("ArrowLeft");
   await until("step 5", () => heard.state.a.step === 5 && heard.pictures.a.step === 5);
   assertSameBits(heard.pictures.a.positions, seen[5]);
@@ -57,7 +57,7 @@ test("the timeline rewinds, by mouse and by keys, to what was shown before", asy
   await close();
 });
 
-test("a dragged body follows the mouse, the force is written beside it, and the mouse lets go", async () => {
+test("a dragged body follows the mouse with force", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   const [x, y] = await findBody(opened);
@@ -92,7 +92,7 @@ test("a dragged body follows the mouse, the force is written beside it, and the 
   await close();
 });
 
-test("Escape, and leaving the window, let go, too", async () => {
+test("Escape and leaving the window release bodies", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   for (const leave of [() => page.keyboard.press("Escape"), () => page.evaluate(() => dispatchEvent(new Event("blur")))]) {
@@ -107,7 +107,7 @@ test("Escape, and leaving the window, let go, too", async () => {
   await close();
 });
 
-test("who watches turns the camera only", async () => {
+test("a watching page only turns the camera", async () => {
   const one = await openSession(program);
   const two = await openSession(program, { watches: true, keepsPixels: true });
   await two.page.getByText("Watching").waitFor();
@@ -159,7 +159,7 @@ test("the brush pins and unpins what it covers", async () => {
   await close();
 });
 
-test("a click of the reading tool shows the numbers of a vertex and its tet", async () => {
+test("the reading tool shows vertex and tet", async () => {
   const opened = await openSession(program);
   const { page, close } = opened;
   const [x, y] = await findBody(opened);
