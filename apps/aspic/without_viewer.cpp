@@ -1,5 +1,5 @@
-// Replacements of the viewer's functions in a build without it. The commands throw InvalidInput with the remedy; runs and
-// fits print that there is no report.
+// Replacements of the viewer's functions in a build without it. The commands throw InvalidInput with the remedy; runs
+// and fits print that there is no report.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
