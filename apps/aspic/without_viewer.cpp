@@ -1,4 +1,5 @@
-// A program that was built without the viewer says so when its commands are asked for.
+// Replacements of the viewer's functions in a build without it. The commands throw InvalidInput with the remedy; runs
+// and fits print that there is no report.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -34,8 +35,8 @@ void write_fit_report(const std::filesystem::path&, const DataSet&, const FitOut
   if (stream) fmt::print(stream, "no report.html: this aspic was built without its viewer\n");
 }
 
-bool draw(const std::vector<MeshDrawing>&, const std::function<bool()>&) {
-  throw InvalidInput("this aspic was built without its viewer, which draws them");
+bool draw(const std::vector<MeshDrawing>&, const StopToken&) {
+  throw InvalidInput("pictures of meshes need the viewer, and this aspic was built without it (ASPIC_VIEWER=OFF)");
 }
 
 }  // namespace aspic::cli
