@@ -47,7 +47,7 @@ TEST_P(Parallel, ChunksCoverTheRangeWithoutOverlap) {
   }
 }
 
-double term(int i) { return std::sin(i) * std::exp(i % 50); }  // rounds differently in another order
+double term(int i) { return std::sin(i) * std::exp(i % 50); }  // rounding depends on the order
 
 double sum_of_terms(int count) {
   return parallel_sum(count, [](int first, int last) {

@@ -34,7 +34,7 @@ TEST(Dual, FollowsTheRulesOfArithmeticAndTheChainRule) {
 }
 
 TEST(Dual, NestedGivesMixedSecondDerivatives) {
-  const DD y(D(a, 1.0), D(1.0, 0.0));  // both directions are x itself
+  const DD y(D(a, 1.0), D(1.0, 0.0));  // both directions are the variable x
   EXPECT_NEAR((y * y * y).rate.rate, 6 * a, 1e-14);
   EXPECT_NEAR(log(y).rate.rate, -1 / (a * a), 1e-14);
   EXPECT_NEAR(sqrt(y).rate.rate, -0.25 * std::pow(a, -1.5), 1e-14);

@@ -11,7 +11,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kRoundOff = 4e-15;  // some 20 roundings
+constexpr double kRoundOff = 4e-15;  // about 20 roundings
 
 double largest(const Mat3d& A) {
   double most = 0;
@@ -108,7 +108,7 @@ TEST(Polar3, RotationGradientIsTheDerivativeOfTheRotation) {
     for (int r = 0; r < 9; ++r) {
       double GD = 0;
       for (int c = 0; c < 9; ++c) GD += G(r, c) * D.a[c];
-      EXPECT_NEAR(GD, dR.a[r], 1e-8);  // h^2 times third derivatives of order 10
+      EXPECT_NEAR(GD, dR.a[r], 1e-8);  // error: h^2 times third derivatives of order 10
     }
   }
 }

@@ -89,7 +89,7 @@ void examine_shapes(const TetMesh& mesh, Findings& findings) {
                 shapes.slivers, false});
 }
 
-// Faces shared by more than two tets, and by two that lie on the same side of it.
+// Finds faces shared by more than two tets, or by two tets on the same side.
 void examine_faces(const TetMesh& mesh, Findings& findings) {
   constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
   const auto face = [&](int place) {
@@ -97,7 +97,7 @@ void examine_faces(const TetMesh& mesh, Findings& findings) {
     const Tet& tet = mesh.tets[place / 4];
     return Triangle{tet[i], tet[j], tet[k]};
   };
-  // The outward face is an even permutation of the sorted one.
+  // An outward face is an even permutation of the sorted face.
   const auto is_even = [&](int place) {
     const auto [a, b, c] = face(place);
     return ((a < b) + (b < c) + (c < a) == 2) == (volume(mesh, place / 4) > 0);
@@ -128,10 +128,10 @@ void examine_faces(const TetMesh& mesh, Findings& findings) {
                 "mesh the shape anew", folded, false});
 }
 
-// Tets whose centroid lies inside another one: not every overlap shows in this way, but a doubled part does.
+// Finds tets whose centroid is inside another tet. Not every overlap is found, but duplicated parts are.
 std::vector<int> overlapping_tets(const TetMesh& mesh) {
   constexpr double kInside = 1e-6;    // smallest barycentric weight that counts
-  constexpr size_t kMostNear = 4096;  // of a few tets: a pile of them would be compared in all pairs
+  constexpr size_t kMostNear = 4096;  // limit for a few tets, because a pile of them would need all pairs
   std::vector<Box> boxes(mesh.tets.size());
   const std::vector<Vec3d> centers = centroids(mesh);
   for (size_t t = 0; t < boxes.size(); ++t)
@@ -139,12 +139,12 @@ std::vector<int> overlapping_tets(const TetMesh& mesh) {
   const BoxTree tree(boxes);
   const auto holds = [&](int tet, const Vec3d& x) {
     const TetCorners X = corners(mesh, tet);
-    const std::array<double, 4> w = barycentric(X, x);  // of a flat tet: anything
+    const std::array<double, 4> w = barycentric(X, x);  // undefined for a flat tet
     const bool is_inside = std::all_of(w.begin(), w.end(), [](double wi) { return wi >= kInside; });
     return is_inside && std::abs(signed_volume(X)) > flat_volume(X);
   };
   std::vector<char> is_held(mesh.tets.size(), 0);
-  // False where too many are near all of these, and each must be examined alone.
+  // Returns false if too many tets are near, so that each must be examined alone.
   const auto examine = [&](std::span<const int> tets, std::vector<int>& near) {
     Box here;
     for (const int t : tets) here.add(centers[t]);
@@ -161,7 +161,7 @@ std::vector<int> overlapping_tets(const TetMesh& mesh) {
     return true;
   };
   parallel_chunks(mesh.tet_count(), [&](int first, int last) {
-    constexpr int kTogether = 16;  // neighbors share the way through the tree
+    constexpr int kTogether = 16;  // neighbors share the path through the tree
     std::vector<int> near;
     for (int i = first; i < last; i += kTogether) {
       const auto tets = tree.items().subspan(i, std::min(kTogether, last - i));

@@ -160,7 +160,7 @@ TEST(DoctorOfTets, AdviceToRepairHelps) {
   std::swap(mesh.tets[3][0], mesh.tets[3][1]);                                // inverted
   mesh.tets.push_back(clean[0]);                                              // repeated
   mesh.tets.push_back({clean[0][0], clean[0][1], clean[0][2], clean[0][2]});  // lists a vertex twice
-  mesh.rest.insert(mesh.rest.end(), {mesh.rest[clean[5][0]], {{9, 9, 9}}});   // a duplicate, an unreferenced one
+  mesh.rest.insert(mesh.rest.end(), {mesh.rest[clean[5][0]], {{9, 9, 9}}});   // a duplicate and an unreferenced vertex
   mesh.tets[5][0] = mesh.vertex_count() - 2;
   std::vector<std::string> promised;
   for (const Finding& finding : diagnose(mesh))

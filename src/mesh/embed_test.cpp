@@ -51,7 +51,7 @@ TEST(Embedding, WeightsSumToOne) {
 }
 
 TEST(Embedding, FindsTheNearestTetRatherThanTheNearestCentroid) {
-  // A long tet lies close to p with its side, a small one farther away has the nearer centroid.
+  // One face of a long tet is close to p; a small tet farther away has the nearer centroid.
   TetMesh cage;
   cage.rest = {{{-10, 0, 0}}, {{10, 0, 0}},  {{10, -1, 0}}, {{10, 0, -1}},
                {{0, 1, 0}},   {{0.2, 1, 0}}, {{0, 1.2, 0}}, {{0, 1, 0.2}}};

@@ -10,9 +10,9 @@
 namespace aspic {
 namespace {
 
-// Equal but for round-off: a point outside is often nearest to an edge or a corner that several tets share.
+// Tolerance of equal distances: an outside point is often nearest to an edge or corner that several tets share.
 constexpr double kTie = 1e-9;
-// A weight this far below zero is still on the face rather than outside.
+// Weights down to -kOnFace count as on the face.
 constexpr double kOnFace = 1e-9;
 
 std::vector<int> usable_tets(const TetMesh& mesh) {

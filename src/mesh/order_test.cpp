@@ -52,7 +52,7 @@ TEST(HilbertOrder, StepsFromCellToNeighboringCell) {
   for (int i = 0; i < 8; ++i)
     for (int j = 0; j < 8; ++j)
       for (int k = 0; k < 8; ++k) grid.push_back({{double(i), double(j), double(k)}});
-  grid.push_back({{8, 8, 8}});  // so that the cells of the curve are those of the grid
+  grid.push_back({{8, 8, 8}});  // aligns the cells of the curve with the grid
   const std::vector<int> order = hilbert_order(grid);
   for (size_t i = 1; i < order.size(); ++i) {
     if (order[i] == 512 || order[i - 1] == 512) continue;

@@ -1,4 +1,4 @@
-// The doctor of triangle meshes.
+// Examination and repair of triangle meshes.
 #include <algorithm>
 
 #include "mesh/doctor.h"
@@ -33,7 +33,7 @@ void examine_triangles(const TriMesh& mesh, Findings& findings) {
                 "remove them with --repair", repeated, true});
 }
 
-// A one-sided sheet (a Moebius strip) cannot be turned.
+// A one-sided sheet (Moebius strip) cannot be oriented.
 bool can_be_oriented(TriMesh mesh) {
   orient(mesh);
   return topology(mesh.triangles, mesh.vertex_count()).disagreeing.empty();

@@ -57,7 +57,7 @@ TEST(DoctorOfSurfaces, FindsTurnedTrianglesAndTurnsThemBack) {
 }
 
 TEST(DoctorOfSurfaces, DoesNotAdviseTurningAOneSidedSheet) {
-  TriMesh strip;  // of Moebius: five quads, the last joined to the first upside down
+  TriMesh strip;  // Moebius strip: five quads, the last joined to the first with a half twist
   for (int i = 0; i < 5; ++i) {
     const double angle = 2 * std::numbers::pi * i / 5;
     for (const double side : {-0.2, 0.2}) {
@@ -79,7 +79,7 @@ TEST(DoctorOfSurfaces, RefusesCoordinatesWhosePowersOverflow) {
 }
 
 TEST(DoctorOfSurfaces, CancelsBackToBackPairs) {
-  TriMesh surface = ball();  // with a fin of two triangles on an edge
+  TriMesh surface = ball();  // a fin of two triangles is added on an edge
   const auto [a, b, c] = surface.triangles[5];
   const int tip = surface.vertex_count();
   surface.vertices.push_back(1.5 * surface.vertices[a]);
@@ -224,7 +224,7 @@ TEST(SelfIntersection, OfOneTriangleGivenAMillionTimesIsNone) {
   pile.vertices = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}};
   for (int i = 0; i < 333'333; ++i)
     pile.triangles.insert(pile.triangles.end(), {Triangle{0, 1, 2}, Triangle{1, 2, 0}, Triangle{2, 1, 0}});
-  const SelfIntersections found = self_intersections(pile);  // all pairs of them would take an hour
+  const SelfIntersections found = self_intersections(pile);  // all pairs would take an hour
   EXPECT_THAT(found.pairs, IsEmpty());
   EXPECT_TRUE(found.is_complete);
 }
