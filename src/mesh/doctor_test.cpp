@@ -30,7 +30,7 @@ TEST(DoctorOfTets, FindsAnInvertedTetAndTurnsIt) {
   std::swap(mesh.tets[7][0], mesh.tets[7][1]);
   EXPECT_THAT(found(mesh, "inverted_tets").indices, ElementsAre(7));
   EXPECT_TRUE(has_errors(diagnose(mesh)));
-  EXPECT_THAT(repair(mesh), ElementsAre("turned 1 inverted tets"));
+  EXPECT_THAT(repair(mesh), ElementsAre("flipped 1 inverted tets"));
   EXPECT_THAT(diagnose(mesh), IsEmpty());
 }
 

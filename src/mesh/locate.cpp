@@ -37,7 +37,7 @@ double Located::least_weight() const { return *std::min_element(weights.begin(),
 bool Located::is_outside() const { return least_weight() < -kOnFace; }
 
 TetLocator::TetLocator(const TetMesh& mesh) : mesh_(mesh), usable_(usable_tets(mesh)), tree_(boxes(mesh, usable_)) {
-  if (usable_.empty()) throw InvalidInput("the mesh has no tets with a volume, in which points could lie");
+  if (usable_.empty()) throw InvalidInput("the mesh has no tets with a volume; repair or remesh it");
   for (int tet : usable_) inverse_.push_back(inverse(edge_matrix(mesh, tet)));
 }
 

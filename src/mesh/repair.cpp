@@ -147,7 +147,7 @@ std::vector<std::string> repair(TetMesh& mesh) {
   say(actions, "dropped", drop_unreferenced(mesh.rest, mesh.tets), "unreferenced vertices");
   say(actions, "merged", merge_duplicates(mesh.rest, mesh.tets), "duplicate vertices into those at the same place");
   say(actions, "removed", remove_tets(mesh, [&](int t) { return has_volume(mesh, t); }), "tets of zero volume");
-  say(actions, "turned", turn_inverted(mesh), "inverted tets");
+  say(actions, "flipped", turn_inverted(mesh), "inverted tets");
   const std::vector<bool> repeated = is_repeated(mesh.tets);
   say(actions, "removed", remove_tets(mesh, [&](int t) { return !repeated[t]; }), "repeated tets");
   say(actions, "dropped", drop_unreferenced(mesh.rest, mesh.tets), "vertices that only removed tets used");
@@ -163,9 +163,9 @@ std::vector<std::string> repair(TriMesh& mesh) {
   std::vector<bool> twice(mesh.triangles.size());
   for (size_t t = 0; t < mesh.triangles.size(); ++t) twice[t] = lists_vertex_twice(mesh.triangles[t]);
   say(actions, "removed", remove_triangles(mesh, twice), "triangles that list a vertex twice");
-  say(actions, "removed", cancel_pairs(mesh), "triangles that lie back to back in pairs");
+  say(actions, "removed", cancel_pairs(mesh), "triangles in back-to-back pairs");
   say(actions, "removed", remove_triangles(mesh, is_repeated(mesh.triangles)), "repeated triangles");
-  say(actions, "turned", orient(mesh), "triangles that faced the wrong way");
+  say(actions, "flipped", orient(mesh), "triangles with the wrong orientation");
   say(actions, "dropped", drop_unreferenced(mesh.vertices, mesh.triangles),
       "vertices that only removed triangles used");
   return actions;

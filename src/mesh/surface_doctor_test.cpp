@@ -43,7 +43,7 @@ TEST(DoctorOfSurfaces, FindsAHole) {
   surface.triangles.erase(surface.triangles.begin() + 4);
   const Finding finding = found(surface, "open_surface");
   EXPECT_EQ(finding.indices.size(), 3u);
-  EXPECT_THAT(finding.message, HasSubstr("3 edges round 1 hole "));
+  EXPECT_THAT(finding.message, HasSubstr("3 edges around 1 hole "));
   EXPECT_TRUE(has_errors(diagnose(surface)));
 }
 
@@ -52,7 +52,7 @@ TEST(DoctorOfSurfaces, FindsTurnedTrianglesAndTurnsThemBack) {
   TriMesh surface = clean;
   std::swap(surface.triangles[9][1], surface.triangles[9][2]);
   EXPECT_THAT(found(surface, "inconsistent_orientation").indices, testing::Contains(9));
-  EXPECT_THAT(repair(surface), ElementsAre("turned 1 triangles that faced the wrong way"));
+  EXPECT_THAT(repair(surface), ElementsAre("flipped 1 triangles with the wrong orientation"));
   EXPECT_EQ(surface.triangles, clean.triangles);
 }
 
@@ -85,7 +85,7 @@ TEST(DoctorOfSurfaces, CancelsBackToBackPairs) {
   surface.vertices.push_back(1.5 * surface.vertices[a]);
   surface.triangles.push_back({a, b, tip});
   surface.triangles.push_back({b, a, tip});
-  EXPECT_THAT(repair(surface), ElementsAre("removed 2 triangles that lie back to back in pairs",
+  EXPECT_THAT(repair(surface), ElementsAre("removed 2 triangles in back-to-back pairs",
                                            "dropped 1 vertices that only removed triangles used"));
   EXPECT_THAT(diagnose(surface), IsEmpty());
 }
