@@ -178,7 +178,7 @@ class Fit(FitCommand):
                 (("--known", "poisson=0.5"), "poisson = 0.5; must be"),
                 (("--known", "poisson"), "QUANTITY=VALUE is expected"),
                 (("--unknown", "young=regions"), "no region labels"),
-                (("-o", "material.obj"), "a material is a .vtu file"),
+                (("-o", "material.obj"), "a material file is a .vtu"),
                 (("--resume",), "no such fit to resume")):
             self.assertIn(message, self.fit(*arguments, code=2).stderr, arguments)
         self.assertIn("nothing", self.aspic("fit", "nothing", code=2).stderr)

@@ -240,7 +240,7 @@ class Lecture(CommandLine):
 
     def test_a_bad_page_is_named(self):
         for page in ("0", "63", "5x", "first"):
-            self.assertIn(f"'{page}' is no page", self.aspic("lecture", page, code=2).stderr)
+            self.assertIn(f"'{page}' is not a page", self.aspic("lecture", page, code=2).stderr)
         self.aspic("lecture", "5", "--mesh", "missing.mesh", code=2)
 
     def test_judges_numbers_without_browser_and_gnuplot(self):

@@ -39,7 +39,7 @@ class MeshPictures : public FolderTest {
 
 TriMesh beam() { return boundary_surface(make_box({}, {{2, 0.5, 0.5}}, {16, 4, 4})).surface; }
 
-// Seen from the front: x goes to the right, z upward.
+// View from the front: x to the right, z upward.
 MeshPicture from_the_front(std::vector<ShadedSurface> panels) {
   MeshPicture picture{.title = "", .panels = std::move(panels), .eye = {{0, -1, 0}}, .wires = Wires::none};
   picture.size = {400, 300};
@@ -48,7 +48,7 @@ MeshPicture from_the_front(std::vector<ShadedSurface> panels) {
 
 bool is_white(const Pixel& p) { return p == Pixel{255, 255, 255}; }
 
-// Of the rectangle, how much is not white.
+// Fraction of the rectangle that is not white.
 double covered(const Image& image, double left, double right, double top, double bottom) {
   size_t found = 0, count = 0;
   for (auto y = static_cast<unsigned>(top * image.height); y < static_cast<unsigned>(bottom * image.height); ++y)
@@ -73,7 +73,7 @@ TEST_F(MeshPictures, PanelsStandSideBySideWithTitleAndCaptions) {
   EXPECT_GT(covered(image, 0.5, 1, 0.2, 0.8), 0.2);
   EXPECT_GT(covered(image, 0.3, 0.7, 0, 56.0 / image.height), 0.01);           // the title
   EXPECT_GT(covered(image, 0.2, 0.3, 1 - 56.0 / image.height, 1), 0.01);       // a caption
-  EXPECT_GT(std::set(image.pixels.begin(), image.pixels.end()).size(), 100u);  // lit, not filled
+  EXPECT_GT(std::set(image.pixels.begin(), image.pixels.end()).size(), 100u);  // shading, not a flat fill
 }
 
 TEST_F(MeshPictures, PanelsHaveOneScale) {
@@ -132,7 +132,7 @@ TEST_F(MeshPictures, DrawingStopsWhenAsked) {
 }
 
 TEST_F(MeshPictures, SurfacesWithoutSizeAreRefusedAndNothingIsLeft) {
-  const TemporaryFolder temporary;  // of a short name: the browser puts a socket there
+  const TemporaryFolder temporary;  // short path, because the browser creates a socket there
   ::setenv("TMPDIR", temporary.path().c_str(), 1);
   const TriMesh point{{{}, {}, {}}, {{0, 1, 2}}};
   const std::string message = message_of([&] { draw({{folder / "none.png", from_the_front({{"", point}})}}); });

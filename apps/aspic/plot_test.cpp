@@ -21,7 +21,7 @@ using testing::HasSubstr;
 
 using Pictures = FolderTest;
 
-// The size that the header of a PNG states; {0, 0} when the file is none.
+// Size in the header of a PNG; {0, 0} if the file is no PNG.
 std::pair<unsigned, unsigned> png_size(const fs::path& path) {
   const std::string bytes = read_file(path);
   if (!bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.substr(12, 4) != "IHDR") return {0, 0};
@@ -123,7 +123,7 @@ TEST_F(Pictures, ValuesThatAreNotFiniteAreGaps) {
   draw(folder / "gap.svg", chart);
   chart.series[0].y[2] = 1;
   draw(folder / "whole.svg", chart);
-  const auto pieces = [](const std::string& svg) {  // how often the pen is put down for the curve
+  const auto pieces = [](const std::string& svg) {  // number of pen-down moves of the curve
     const size_t begin = svg.find("id=\"gnuplot_plot_1\""), end = svg.find("'/></g>", begin);
     return count(svg.substr(begin, end - begin), "M");
   };

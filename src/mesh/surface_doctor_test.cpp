@@ -69,7 +69,7 @@ TEST(DoctorOfSurfaces, DoesNotAdviseTurningAOneSidedSheet) {
   }
   const Finding finding = found(strip, "inconsistent_orientation");
   EXPECT_FALSE(finding.repairable);
-  EXPECT_THAT(finding.remedy, HasSubstr("one side only"));
+  EXPECT_THAT(finding.remedy, HasSubstr("one-sided"));
 }
 
 TEST(DoctorOfSurfaces, RefusesCoordinatesWhosePowersOverflow) {
