@@ -117,7 +117,7 @@ class Explain(Explanations):
     def test_finds_lengths_in_millimeters(self):
         scene = BODY.format(**USUAL).replace("[0.4, 0.1, 0.1]", "[400, 100, 100]")
         self.write("scene.toml", scene)
-        self.assertNotIn("crushes", self.assert_cured(self.run_scene(), "400 m were meant in mm", change="body.beam.scale="))
+        self.assertNotIn("crushes", self.assert_cured(self.run_scene(), "400 m are millimeters", change="body.beam.scale="))
 
     def test_pins_that_flatten_an_element(self):
         # One cell, all of whose vertices are pinned: no step is short enough.

@@ -140,7 +140,7 @@ class Fit(FitCommand):
             writer.writerows(rows)
         options = (*self.options("mesh_errors = false", "cross_validation = false"), "--known", "poisson=0.4")
         run = self.fit(*options, code=3)
-        self.assertIn("not to be relied on (field_rejected): one value replaces the field", run.stderr)
+        self.assertIn("not reliable (field_rejected): one value replaces the field", run.stderr)
         self.assertNotIn("verdict    good", run.stdout)
         figures = json.loads((self.folder / "material.fit/figures.json").read_text())
         self.assertFalse(figures["verdict"]["good"])

@@ -57,7 +57,7 @@ class Minimize(CommandLine):
 
     def test_overflow_is_printed_without_sign(self):
         text = self.aspic("minimize", "--expression", "-exp(x^2+y^2)", "--start", "1,2", code=3).stdout
-        self.assertIn("|g| = nan; nan was reached", text)
+        self.assertIn("|g| = nan; residual nan", text)
         self.assertNotIn("-nan", text)
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "needs a device that is always full")
@@ -196,7 +196,7 @@ class Verify(CommandLine):
         self.assertIsNone(self.results()[0]["rows"][-1]["measured"])
 
     def test_bad_input_is_named(self):
-        self.assertIn("no check is about 'nonsense'", self.aspic("verify", "--only", "nonsense", code=2).stderr)
+        self.assertIn("no check matches 'nonsense'", self.aspic("verify", "--only", "nonsense", code=2).stderr)
         self.assertIn("--instead bdf2=stvk", self.aspic("verify", "--instead", "bdf2=stvk", code=2).stderr)
 
 

@@ -234,7 +234,7 @@ class Report(CommandLine):
     def test_bad_input_is_named(self):
         self.assertIn("not the directory of a run", self.aspic("report", self.beam(), code=2).stderr)
         (self.folder / "empty").mkdir()
-        self.assertIn("holds no run", self.aspic("report", "empty", code=2).stderr)
+        self.assertIn("contains no run", self.aspic("report", "empty", code=2).stderr)
         self.aspic("run", "beam.toml")
         (self.folder / "out/beam/frames/body_000003.vtu").write_text("<VTKFile")
         self.assertIn("body_000003.vtu", self.aspic("report", "out/beam", code=2).stderr)

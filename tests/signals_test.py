@@ -122,7 +122,7 @@ class Certificate(Crash):
             self.assertLessEqual(line["residual"], line["residual_threshold"])
             self.assertGreater(line["decrement"], 0)
             self.assertGreater(line["energy_slack"], 0)
-        self.assertIn("the bound of backward Euler held in 10 of 10 steps", done.stderr)
+        self.assertIn("the bound of backward Euler holds in 10 of 10 steps", done.stderr)
         self.assertRegex(done.stderr, r"status     10 converged; worst: step \d+, converged, residual .* N \(wanted .* N\)")
 
     def test_the_worst_step_is_named(self):

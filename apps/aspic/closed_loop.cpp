@@ -109,7 +109,7 @@ int run(const Request& request) {
   fmt::print("A cube of {} m, {} loops of {} increments per side, stretched by {}:\n", kSide, request.loops,
              request.increments, request.stretch);
   fmt::print("  {:<34} {:>16} {:>16} {:>18} {:>16}\n", "", "first loop [J]", "all loops [J]", "maximum [J]",
-             "residual stress [Pa]");
+             "stress left [Pa]");
   const auto row = [&](const char* what, const Course& c) {
     fmt::print("  {:<34} {:>16.5f} {:>16.5f} {:>18.5f} {:>16.4g}\n", what, c.after_first, c.work.back(), peak(c),
                c.stress);

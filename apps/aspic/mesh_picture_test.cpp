@@ -59,7 +59,7 @@ double covered(const Image& image, double left, double right, double top, double
 
 bool is_gray(const Pixel& p) { return std::max({p[0], p[1], p[2]}) - std::min({p[0], p[1], p[2]}) < 12; }
 
-TEST_F(MeshPictures, PanelsStandSideBySideWithTitleAndCaptions) {
+TEST_F(MeshPictures, PanelsAreInOneRowWithCaptions) {
   MeshPicture picture{.title = "A beam & its <b>shape</b>", .panels = {{"at rest", beam()}, {"bent", beam()}}};
   for (Vec3d& x : picture.panels[1].surface.vertices) x[2] -= 0.15 * x[0] * x[0];
   MeshPicture bare = picture;
@@ -84,7 +84,7 @@ TEST_F(MeshPictures, PanelsHaveOneScale) {
   EXPECT_NEAR(covered(image, 0, 0.5, 0, 1) / covered(image, 0.5, 1, 0, 1), 4, 0.1);
 }
 
-TEST_F(MeshPictures, ColorsRunFromTheSmallestToTheLargestValue) {
+TEST_F(MeshPictures, ColorsSpanSmallestToLargestValue) {
   ShadedSurface per_vertex{"", beam()}, per_triangle{"", beam()};
   for (const Vec3d& x : per_vertex.surface.vertices) per_vertex.values.push_back(x[0]);
   for (const Triangle& t : per_triangle.surface.triangles)
@@ -107,7 +107,7 @@ TEST_F(MeshPictures, ColorsRunFromTheSmallestToTheLargestValue) {
   EXPECT_GT(covered(image, 0.85, 1, 0, 1), 0.03) << "the color bar";
 }
 
-TEST_F(MeshPictures, WhatHasNoValueIsGrayAndWhatIsNotFiniteIsLeftOut) {
+TEST_F(MeshPictures, MissingValuesAreGrayNonFiniteTrianglesOmitted) {
   ShadedSurface panel{"", beam()};
   for (const Vec3d& x : panel.surface.vertices) panel.values.push_back(x[0] < 1 ? NAN : 1.0);
   panel.values.back() = 2;
@@ -131,7 +131,7 @@ TEST_F(MeshPictures, DrawingStopsWhenAsked) {
   EXPECT_FALSE(std::filesystem::exists(folder / "none.png"));
 }
 
-TEST_F(MeshPictures, SurfacesWithoutSizeAreRefusedAndNothingIsLeft) {
+TEST_F(MeshPictures, SurfacesWithoutSizeAreRefusedWithoutFiles) {
   const TemporaryFolder temporary;  // short path, because the browser creates a socket there
   ::setenv("TMPDIR", temporary.path().c_str(), 1);
   const TriMesh point{{{}, {}, {}}, {{0, 1, 2}}};

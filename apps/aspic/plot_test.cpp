@@ -131,7 +131,7 @@ TEST_F(Pictures, ValuesThatAreNotFiniteAreGaps) {
   EXPECT_EQ(pieces(read_file(folder / "gap.svg")), 2u);
 }
 
-TEST_F(Pictures, AChartWithoutAnyNumberIsAnEmptyFrame) {
+TEST_F(Pictures, ChartWithoutNumbersIsAnEmptyFrame) {
   for (const AxisScale scale : {AxisScale::linear, AxisScale::logarithmic}) {
     Chart chart{.title = "nothing",
                 .x = {"x", scale},
@@ -145,7 +145,7 @@ TEST_F(Pictures, AChartWithoutAnyNumberIsAnEmptyFrame) {
   }
 }
 
-TEST_F(Pictures, AContourMapShowsThePathAndTheRejectedTrials) {
+TEST_F(Pictures, ContourMapShowsPathAndRejectedTrials) {
   ContourMap map{.title = "Gradient descent on Rosenbrock's function",
                  .function = sampled(-1.5, 1.5, 151, rosenbrock),
                  .paths = {{"gradient descent", {}, {{0.3, 0.9}, {0.1, -0.4}}},

@@ -17,7 +17,7 @@ TEST(Printable, LeavesTextOfAnyLanguageAsItIs) {
   }
 }
 
-TEST(Printable, ShowsWhatATerminalWouldObeyByItsBytes) {
+TEST(Printable, ShowsTerminalControlCharactersByTheirBytes) {
   EXPECT_EQ(printable("\x1b[31mred"), "\\x1B[31mred");
   EXPECT_EQ(printable("two\r\nlines\t"), "two\\x0D\\x0Alines\\x09");
   EXPECT_EQ(printable("\x7f"), "\\x7F");
@@ -27,7 +27,7 @@ TEST(Printable, ShowsWhatATerminalWouldObeyByItsBytes) {
             "\\xC2\\x9B31m");  // U+009B begins an escape sequence, too
 }
 
-TEST(Printable, ShowsWhatIsNotUtf8ByItsBytes) {
+TEST(Printable, ShowsInvalidUtf8ByItsBytes) {
   EXPECT_EQ(printable("stra\xdf"
                       "e"),
             "stra\\xDFe");                                           // Latin-1
@@ -39,7 +39,7 @@ TEST(Printable, ShowsWhatIsNotUtf8ByItsBytes) {
   EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xF4\\x90\\x80\\x80");  // above U+10FFFF
 }
 
-TEST(Printable, ShowsWhatTurnsOrBreaksALineByItsBytes) {
+TEST(Printable, ShowsDirectionAndLineSeparatorsByTheirBytes) {
   EXPECT_EQ(printable("a\xe2\x80\xae"
                       "b"),
             "a\\xE2\\x80\\xAE"

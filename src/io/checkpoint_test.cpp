@@ -75,7 +75,7 @@ TEST_F(CheckpointFile, NamesAnotherVersionOrByteOrder) {
   EXPECT_THAT(message(path("c.bin")), HasSubstr("c.bin: is no checkpoint"));
 }
 
-TEST_F(CheckpointFile, ADamagedNewestFallsBackToThePreviousWithANote) {
+TEST_F(CheckpointFile, DamagedNewestFallsBackToPreviousWithNote) {
   write_checkpoint(path("c.bin"), sample(1));
   write_checkpoint(path("c.bin"), sample(2));
   NewestCheckpoint newest = read_newest_checkpoint(path("c.bin"));

@@ -68,7 +68,7 @@ bool CsvReader::read_text(std::string& line) {
     }
     line += static_cast<char>(c);
     if (line.size() > kLongestLine)
-      throw InvalidInput(path_.string() + ":" + std::to_string(line_ + 1) + ": is no line of a table: it is too long");
+      throw InvalidInput(path_.string() + ":" + std::to_string(line_ + 1) + ": is too long for a line of a table");
   }
   if (origin_ == CsvOrigin::aspic || line.empty()) return false;
   ++line_;

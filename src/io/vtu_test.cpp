@@ -86,7 +86,7 @@ void expect_two_tets(const Vtu& vtu) {
   EXPECT_EQ(vtu.mesh.region, (std::vector<int>{7, -2}));
 }
 
-TEST_F(VtuFile, WhatIsWrittenReadsBackToTheSameBits) {
+TEST_F(VtuFile, WrittenGridsReadBackExactly) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
   constexpr int kPoints = 30000;  // several compressed blocks
@@ -124,7 +124,7 @@ TEST_F(VtuFile, WhatIsWrittenReadsBackToTheSameBits) {
   EXPECT_EQ(read_file(path("a.vtu")), read_file(path("b.vtu")));
 }
 
-TEST_F(VtuFile, FieldsOfTheWholeFileHaveLengthsOfTheirOwn) {
+TEST_F(VtuFile, FileFieldsHaveIndependentLengths) {
   const std::vector<double> points = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   write_vtu(path("a.vtu"), points, {{0, 1, 2, 3}}, {}, {{"young", 1, {1e5}}},
             {{"model <neo>", 1, {1}, FieldType::int32}, {"lines", 2, {1, 2, 3, 4, 5, 6}}});
@@ -166,7 +166,7 @@ TEST_F(VtuFile, EmptyGridsAreWrittenAndRead) {
 
 TEST_F(VtuFile, ReadsAscii) { expect_two_tets(read_text(grid("version=\"0.1\"", ascii))); }
 
-TEST_F(VtuFile, ReadsInlineBase64WithEitherHeaderByteOrderAndPadding) {
+TEST_F(VtuFile, ReadsInlineBase64InAllVariants) {
   for (const bool wide : {false, true}) {
     for (const bool swapped : {false, true}) {
       for (const bool apart : {false, true}) {
@@ -231,7 +231,7 @@ TEST_F(VtuFile, JoinsPieces) {
   EXPECT_EQ(vtu.mesh.region, (std::vector<int>{7, -2, 7, -2}));
 }
 
-TEST_F(VtuFile, GivesTrianglesAndSplitQuadsWhenThereAreNoTets) {
+TEST_F(VtuFile, GivesTrianglesAndSplitQuadsWithoutTets) {
   std::string text = grid("", ascii);
   text.replace(text.find("10\n 10"), 6, "9\n 5");
   text.replace(text.find("4\n 8\n"), 5, "4\n 7\n");

@@ -110,7 +110,7 @@ TEST(MakeDefinite, ClampsOrReflectsTheNegativeEigenvaluesOnly) {
   }
 }
 
-TEST(MakeDefinite, FiltersTheFailingLanesAndLeavesTheOthersBitwiseAlone) {
+TEST(MakeDefinite, FiltersFailingLanesAndKeepsOthersBitwise) {
   std::mt19937 random(8);
   Mat9<Pack> before;
   Mat9d alone[kPackWidth];

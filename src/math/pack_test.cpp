@@ -42,7 +42,7 @@ TEST(Pack, CbrtIsWithinTwoUlps) {
       2, [](Pack x) { return cbrt(x); }, [](long double x) { return std::cbrt(x); });
 }
 
-TEST(Pack, LogAndCbrtTreatSpecialLanesLikeTheStandardLibrary) {
+TEST(Pack, LogAndCbrtMatchLibraryForSpecialValues) {
   const double inf = std::numeric_limits<double>::infinity(), tiny = std::numeric_limits<double>::denorm_min();
   for (const double special : {0.0, -0.0, tiny, -1.0, inf, -inf, std::nan("")}) {
     Pack x = 2.0;
@@ -118,7 +118,7 @@ void expect_rows_to_be_added(Scatter scatter) {
   EXPECT_EQ(rows.number, expected.number);
 }
 
-TEST(Pack, AddsOneRowPerLaneAlsoWhereLanesShareARowAndTouchesNothingElse) {
+TEST(Pack, AddsRowPerLaneWithSharedRows) {
   expect_rows_to_be_added<3>([](const auto& a, const auto& row) { scatter3(a, row); });
   expect_rows_to_be_added<9>([](const auto& a, const auto& row) { scatter9(a, row); });
 }

@@ -60,7 +60,7 @@ TEST(Svd3, RestoresTheMatrixFromProperRotations) {
   for (const Mat3d& F : difficult_matrices()) expect_decomposition(F);
 }
 
-TEST(Svd3, GivesTheLastSingularValueTheSignOfTheDeterminant) {
+TEST(Svd3, LastSingularValueHasSignOfDeterminant) {
   for (const Mat3d& F : difficult_matrices())
     if (std::abs(determinant(F)) > 1e-12 * std::pow(largest(F), 3)) {
       EXPECT_EQ(std::signbit(svd3(F).s[2]), std::signbit(determinant(F)));
@@ -75,7 +75,7 @@ TEST(Svd3, KeepsTheRelativeAccuracyOfScaledColumns) {
   EXPECT_NEAR(f.s[0] * f.s[1] * f.s[2] / (1e-24 * determinant(A)), 1, 1e-13);
 }
 
-TEST(Svd3, OverPackGivesInEachLaneWhatDoubleGives) {
+TEST(Svd3, OverPackAgreesWithDoubleInEachLane) {
   std::mt19937 random(6);
   Mat3d alone[kPackWidth];
   Mat3<Pack> together;

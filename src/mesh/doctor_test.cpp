@@ -34,7 +34,7 @@ TEST(DoctorOfTets, FindsAnInvertedTetAndTurnsIt) {
   EXPECT_THAT(diagnose(mesh), IsEmpty());
 }
 
-TEST(DoctorOfTets, FindsAZeroVolumeTetAndRemovesItWithItsRegion) {
+TEST(DoctorOfTets, FindsZeroVolumeTetAndRemovesIt) {
   TetMesh mesh = box();
   mesh.region.assign(mesh.tets.size(), 1);
   const int first = mesh.vertex_count();
@@ -98,7 +98,7 @@ TEST(DoctorOfTets, FindsRepeatedTets) {
   EXPECT_EQ(mesh.tets, box().tets);
 }
 
-TEST(DoctorOfTets, FindsADoubledTetBesideAPileOfOthers) {
+TEST(DoctorOfTets, FindsDoubledTetBesideManyOthers) {
   TetMesh mesh;
   for (const double x : {0.0, 100.0})
     for (const Vec3d& X : {Vec3d{{0, 0, 0}}, Vec3d{{1, 0, 0}}, Vec3d{{0, 1, 0}}, Vec3d{{0, 0, 1}}})
@@ -118,7 +118,7 @@ TEST(DoctorOfTets, FindsTetsFoldedOntoTheirNeighbor) {
   EXPECT_THAT(names(diagnose(mesh)), IsEmpty());
 }
 
-TEST(DoctorOfTets, FindsPartsThatHangByAnEdgeOrACorner) {
+TEST(DoctorOfTets, FindsPartsConnectedByEdgeOrCorner) {
   TetMesh hinge;
   hinge.rest = {{{0, 0, 0}}, {{0, 0, 1}}, {{1, 0, 0}}, {{1, 1, 0}}, {{-1, 0, 0}}, {{-1, -1, 0}}};
   hinge.tets = {{0, 2, 3, 1}, {0, 4, 5, 1}};

@@ -50,7 +50,7 @@ TEST(Embedding, WeightsSumToOne) {
   for (const auto& w : embedding.weights) EXPECT_NEAR(w[0] + w[1] + w[2] + w[3], 1, 1e-13);
 }
 
-TEST(Embedding, FindsTheNearestTetRatherThanTheNearestCentroid) {
+TEST(Embedding, FindsNearestTetNotNearestCentroid) {
   // One face of a long tet is close to p; a small tet farther away has the nearer centroid.
   TetMesh cage;
   cage.rest = {{{-10, 0, 0}}, {{10, 0, 0}},  {{10, -1, 0}}, {{10, 0, -1}},

@@ -125,7 +125,7 @@ TEST(Sphere, IsSoundAtAnySize) {
   }
 }
 
-TEST(Sphere, ApproachesTheBallWithTheSquareOfTheSize) {
+TEST(Sphere, ConvergesQuadraticallyToTheBall) {
   const double ball = 4 * std::numbers::pi / 3;
   const double coarse = ball - total_volume(make_sphere(1, 0.2)), fine = ball - total_volume(make_sphere(1, 0.1));
   EXPECT_GT(fine, 0);
@@ -145,7 +145,7 @@ TEST(Torus, IsSoundAndHasOneHole) {
   expect_sound(make_torus(1, 0.01, 0.1), 0);
 }
 
-TEST(Torus, ApproachesItsVolumeWithTheSquareOfTheSize) {
+TEST(Torus, ConvergesQuadraticallyToItsVolume) {
   const double solid = 2 * std::numbers::pi * std::numbers::pi * 0.4 * 0.4;
   const double coarse = solid - total_volume(make_torus(1, 0.4, 0.1));
   const double fine = solid - total_volume(make_torus(1, 0.4, 0.05));

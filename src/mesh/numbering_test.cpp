@@ -62,7 +62,7 @@ TEST(Numbering, BringsNeighborsTogetherAndIsUndone) {
   for (int t = 0; t < mesh.tet_count(); ++t) EXPECT_EQ(volume(stored, numbering.tet.from_user(t)), volume(mesh, t));
 }
 
-TEST(Numbering, DoesNotDependOnTheOrderOfTheFile) {
+TEST(Numbering, IsIndependentOfTheFileOrder) {
   const TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1.1, 1.2}}, {3, 3, 3});
   std::vector<int> vertices(mesh.rest.size()), tets(mesh.tets.size());
   for (size_t i = 0; i < vertices.size(); ++i) vertices[i] = static_cast<int>(i * 5 % vertices.size());

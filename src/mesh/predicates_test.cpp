@@ -9,7 +9,7 @@
 namespace aspic {
 namespace {
 
-TEST(Orientation, IsPositiveForCounterClockwiseTurnsAndPositiveDeterminants) {
+TEST(Orientation, IsPositiveForCounterClockwiseAndPositiveDeterminants) {
   EXPECT_EQ(orientation(Vec2d{0, 0}, Vec2d{1, 0}, Vec2d{0, 1}), 1);
   EXPECT_EQ(orientation(Vec2d{0, 0}, Vec2d{0, 1}, Vec2d{1, 0}), -1);
   EXPECT_EQ(orientation(Vec3d{{1, 0, 0}}, Vec3d{{0, 1, 0}}, Vec3d{{0, 0, 1}}, Vec3d{{0, 0, 0}}), 1);
@@ -24,7 +24,7 @@ TEST(Orientation, SeesOneUnitInTheLastPlace) {
   EXPECT_EQ(orientation(Vec2d{std::nextafter(0.5, 1), 0.5}, b, c), -1);
 }
 
-TEST(Orientation, OfFourPointsInAPlaneIsZeroHoweverTheyAreOrdered) {
+TEST(Orientation, OfCoplanarPointsIsZeroInAnyOrder) {
   // Integer points of the plane through p spanned by u and v, far from the origin: coordinates are exact, products of
   // the determinant are not.
   std::mt19937 random(5);

@@ -152,7 +152,7 @@ TEST(DoctorOfSurfaces, FindsADegenerateTriangle) {
   EXPECT_THAT(found(surface, "degenerate_triangles").indices, ElementsAre(0));
 }
 
-TEST(SelfIntersection, OfTwoBallsIsFoundExactlyWhereTheyMeet) {
+TEST(SelfIntersection, OfTwoBallsIsFoundAtTheirIntersection) {
   const TriMesh apart = joined(ball(), ball(), {{2.01, 0, 0}});
   EXPECT_THAT(self_intersections(apart).pairs, IsEmpty());
   const TriMesh meeting = joined(ball(), ball(), {{1.5, 0, 0}});
@@ -162,7 +162,7 @@ TEST(SelfIntersection, OfTwoBallsIsFoundExactlyWhereTheyMeet) {
     for (int v : meeting.triangles[t]) EXPECT_NEAR(meeting.vertices[v][0], 0.75, 0.45);
 }
 
-TEST(SelfIntersection, OfAlignedBoxesIsFoundThoughEdgesMeetEdges) {
+TEST(SelfIntersection, OfAlignedBoxesIsFoundDespiteEdgeContacts) {
   const TriMesh cube = boundary_surface(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1})).surface;
   for (const Vec3d& offset : {Vec3d{{0.5, 0.5, 0.5}}, Vec3d{{0.5, 0, 0}}, Vec3d{{1, 0.5, 0.5}}})
     EXPECT_THAT(self_intersections(joined(cube, cube, offset)).pairs, testing::Not(IsEmpty()));
@@ -219,7 +219,7 @@ TEST(SelfIntersection, SurvivesManyTrianglesInOnePlace) {
   EXPECT_EQ(self_intersections(pile, 1000).pairs.size(), 1000u);
 }
 
-TEST(SelfIntersection, OfOneTriangleGivenAMillionTimesIsNone) {
+TEST(SelfIntersection, OfMillionCopiesOfOneTriangleIsNone) {
   TriMesh pile;
   pile.vertices = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}};
   for (int i = 0; i < 333'333; ++i)

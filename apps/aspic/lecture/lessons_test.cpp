@@ -170,7 +170,7 @@ TEST(Lessons, ExplicitAndImplicitAgreeWithShortSteps) {
   EXPECT_NEAR(opened.largest_energy("b") / opened.largest_energy("a"), 1, 0.05);
 }
 
-TEST(Lessons, ClassicalForwardEulerExplodesWhereThePrintedOneDoesNot) {
+TEST(Lessons, ClassicalForwardEulerExplodesUnlikePrintedOne) {
   Opened opened("23_printed_forward_euler");
   opened.play(2000);
   const double first = [&] {
@@ -182,7 +182,7 @@ TEST(Lessons, ClassicalForwardEulerExplodesWhereThePrintedOneDoesNot) {
   EXPECT_GT(opened.largest_energy("b"), 1e3 * first);
 }
 
-TEST(Lessons, BackwardEulerSurvivesTheStepThatTheExplicitSchemeDoesNot) {
+TEST(Lessons, BackwardEulerSurvivesStepOfExplodingExplicitScheme) {
   Opened opened("24_backward_euler");
   opened.play(80);
   EXPECT_TRUE(opened.converged("a"));
@@ -213,7 +213,7 @@ TEST(Lessons, TissueShowsItsStiffnessAndStiffens) {
   EXPECT_GT(energy(10), 1.05 * 4 * energy(5));  // at twice the depth
 }
 
-TEST(Lessons, TenTimesTheStepEndsTheExplicitSchemeAlone) {
+TEST(Lessons, TenfoldStepEndsOnlyTheExplicitScheme) {
   Opened opened("19-22_explicit_or_implicit");
   opened.command({{"do", "set"}, {"key", "time.step"}, {"value", 5e-3}});
   opened.play(60);
@@ -231,7 +231,7 @@ TEST(Lessons, HardStepWithoutLineSearchLeavesTheNumbers) {
 
 class Explosion : public testing::TestWithParam<std::string> {};
 
-TEST_P(Explosion, IsThatOfTheOtherSchemeUnderTheSameMouse) {
+TEST_P(Explosion, OccursWithOtherSchemeUnderSameMouse) {
   Opened opened("33-34_explosion_" + GetParam());
   opened.play(18);
   EXPECT_TRUE(opened.converged("a"));
@@ -250,7 +250,7 @@ TEST(Lessons, GradientDescentTakesMoreIterations) {
   EXPECT_GT(opened.rows("b")[2]["iterations"].size(), 10 * opened.rows("a")[2]["iterations"].size());
 }
 
-TEST(Lessons, NewtonConvergesOnTheHardStepOnlyWithALineSearch) {
+TEST(Lessons, NewtonNeedsLineSearchOnTheHardStep) {
   Opened opened("53+62_pure_newton");
   opened.step();
   EXPECT_TRUE(opened.converged("a"));
