@@ -145,12 +145,12 @@ TEST_F(Refusals, OfMeshesWithoutAnythingToDraw) {
   const auto refused = [&](const MeshPicture& picture, const char* name = "none.png") {
     return message_of([&] { draw({{folder / name, picture}}); });
   };
-  EXPECT_THAT(refused({}), HasSubstr("there is no surface"));
+  EXPECT_THAT(refused({}), HasSubstr("no surface"));
   EXPECT_THAT(refused(from_the_front({{"empty", {}}})), HasSubstr("'empty' has no triangle"));
   TriMesh burst = beam();
   for (Vec3d& x : burst.vertices) x[0] = NAN;
-  EXPECT_THAT(refused(from_the_front({{"burst", burst}})), HasSubstr("'burst' has no triangle that is finite"));
-  EXPECT_THAT(refused(from_the_front({{"", beam()}}), "beam.svg"), HasSubstr("is .png, not '.svg'"));
+  EXPECT_THAT(refused(from_the_front({{"burst", burst}})), HasSubstr("'burst' has no finite triangle"));
+  EXPECT_THAT(refused(from_the_front({{"", beam()}}), "beam.svg"), HasSubstr("must be .png, not '.svg'"));
 }
 
 TEST_F(Refusals, NameThePackageOfTheMissingBrowser) {

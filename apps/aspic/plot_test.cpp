@@ -204,7 +204,7 @@ TEST_F(Pictures, ASurfaceHasItsModelOverIt) {
 
 TEST_F(Pictures, AnotherExtensionIsRefusedByName) {
   EXPECT_THAT(message_of([&] { draw(folder / "chart.jpeg", convergence()); }),
-              HasSubstr("a picture is .svg or .png, not '.jpeg'"));
+              HasSubstr("a picture must be .svg or .png, not '.jpeg'"));
 }
 
 TEST_F(Pictures, WithoutGnuplotTheMessageNamesItsPackage) {
