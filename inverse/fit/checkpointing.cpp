@@ -7,8 +7,8 @@
 namespace aspic {
 namespace {
 
-// beta(s, r) = (s + r)! / (s! r!): how long a chain s slots can reverse when no step is taken forward more than r
-// times; 0 for r < 0.
+// beta(s, r) = (s + r)! / (s! r!): longest chain that s slots can reverse with at most r forward repetitions per step;
+// 0 for r < 0.
 int64_t reach(int slots, int repeats) {
   constexpr int64_t kEnough = int64_t{1} << 32;  // longer than any chain
   if (repeats < 0) return 0;
@@ -24,7 +24,7 @@ int repeats_for(int steps, int slots) {
   return r;
 }
 
-// How far the walker goes before it stores its next state, so that both parts are reversed with the fewest repeats.
+// Number of steps to the next stored state that minimizes the repetitions of both parts.
 int next_store(int steps, int slots) {
   const int r = repeats_for(steps, slots);
   const int64_t behind = std::min(reach(slots - 1, r), steps - reach(slots, r - 2));
@@ -37,8 +37,8 @@ bool advance(int steps, const ChainWalk& walk) {
   return true;
 }
 
-// Points begin ... end - 1 in reverse. The walker stands at `begin`, which is stored in `slot`; it and the slots behind
-// it are `slots`.
+// Reverses points begin ... end - 1 from point `begin`, which is stored in `slot`. There are `slots` slots from there
+// on.
 bool reverse(int begin, int end, int slot, int slots, const ChainWalk& walk) {
   const int steps = end - begin;
   if (steps == 1) return walk.reverse(begin);

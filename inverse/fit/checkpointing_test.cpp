@@ -9,7 +9,7 @@
 namespace aspic {
 namespace {
 
-// Walks a chain whose states are their own numbers, and checks every call.
+// Runs through a chain whose states are their own numbers, and checks every call.
 struct Walker {
   int at = 0, next_reverse;
   int64_t advances = 0;
@@ -35,7 +35,7 @@ struct Walker {
   }
 };
 
-// The least number of advances, by trying every place for the next state.
+// Minimum number of advances by exhaustive search for the next stored state.
 int64_t least_advances(int steps, int slots) {
   static std::map<std::pair<int, int>, int64_t> known;
   if (steps == 1) return 0;
@@ -48,7 +48,7 @@ int64_t least_advances(int steps, int slots) {
   return known[{steps, slots}] = least;
 }
 
-TEST(Checkpointing, TakesAsFewStepsAsAnyScheduleWithSoManyStates) {
+TEST(Checkpointing, NeedsMinimumStepsForItsStates) {
   for (int slots = 1; slots <= 9; ++slots)
     for (int steps = 1; steps <= 120; ++steps) {
       Walker walker(steps);

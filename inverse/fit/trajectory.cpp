@@ -23,8 +23,8 @@ constexpr double kUsable = 1e-9;  // residual of a solve that stagnates in round
 
 void require_gradient(const Model& model, const TrajectoryOptions& options) {
   if (options.integrator != kIntegrator)
-    throw InvalidInput("the gradient of a trajectory is there for integrator = 'backward_euler', not for '" +
-                       options.integrator + "'");
+    throw InvalidInput("gradients of trajectories need integrator = 'backward_euler', not '" + options.integrator +
+                       "'");
   if (!(options.h > 0) || !std::isfinite(options.h))
     throw InvalidInput("the time step is " + std::to_string(options.h) + " s; it must be positive");
   if (options.steps < 0) throw InvalidInput("the number of steps is negative");
@@ -35,8 +35,8 @@ void require_gradient(const Model& model, const TrajectoryOptions& options) {
                          "has no gradient");
 }
 
-// The acceleration [m/s^2] whose weight the load 'gravity' is; zero where there is no such load. Empty: it is not that
-// of the densities.
+// Acceleration [m/s^2] of the load 'gravity'; zero without such a load. Empty: the load is not the weight of the
+// densities.
 std::optional<Vec3d> acceleration_of_weight(const Model& model, std::span<const double> q) {
   const Energy* load = nullptr;
   for (const auto& V : model.loads)
@@ -104,7 +104,7 @@ struct Trajectory::Impl {
     return false;
   }
 
-  // From `now` to `end`, which may be the same.
+  // Steps from `now` to `end`, which may alias.
   bool step(State& end) {
     Stopwatch stopwatch;
     const SolveTools solve{model, pins, E, minimizer, newton, minimize, observe, InitialGuess::best};
@@ -164,7 +164,7 @@ struct Trajectory::Impl {
     if (options.steps == 0) report.value += objective(0, now, qbar, vbar);
     report.ok = walk_backwards(options.steps, static_cast<int>(slots.size()), walk);
     pins.set_zero(qbar);
-    pins.set_zero(vbar);  // their velocities are those of the pins
+    pins.set_zero(vbar);  // their velocities are prescribed
     gradient.q.assign(qbar.begin(), qbar.end());
     gradient.qdot.assign(vbar.begin(), vbar.end());
     return report;
@@ -181,12 +181,12 @@ struct Trajectory::Impl {
 
   const Damping& damping(size_t k) const { return static_cast<const Damping&>(*model.damping[k]); }
 
-  // From the cotangents at `after` to those at `now`.
+  // Propagates cotangents from `after` to `now`.
   bool reverse_step(TrajectoryGradient& gradient) {
     Stopwatch stopwatch;
     const double h = options.h, f = h * h;
     tell_step();
-    pins.set_zero(qbar);  // pinned vertices are where they are
+    pins.set_zero(qbar);  // their positions are prescribed
     for (size_t i = 0; i < rhs.size(); ++i) rhs[i] = qbar[i] + vbar[i] / h;
     pins.set_zero(rhs);
     if (!solve()) return false;
@@ -202,7 +202,7 @@ struct Trajectory::Impl {
     return true;
   }
 
-  // As the integrator does.
+  // Like the integrator.
   void tell_step() {
     const StepContext context{now.q, options.h, time_of(point + 1), now.q};
     E.set_potential_step(context);
@@ -233,7 +233,7 @@ struct Trajectory::Impl {
                       {.start = qbar, .coefficients = coefficients, .elastic = elastic});
   }
 
-  // mu' dg/drho: of the inertia, the weight, and damping proportional to mass.
+  // mu' dg/drho of inertia, weight, and mass-proportional damping.
   void add_density(double f, std::span<double> density) {
     const TetMesh& mesh = model.mesh;
     for (size_t i = 0; i < moved.size(); ++i) moved[i] = after.q[i] - moved[i];  // q1 - q0 - h v0
@@ -261,7 +261,7 @@ struct Trajectory::Impl {
   Pins pins;
   IncrementalPotential E;
   Newton newton;
-  SequenceSolver solver;  // of H, backwards
+  SequenceSolver solver;  // for H, backward in time
   std::unique_ptr<Integrator> integrator;
   ElasticParameters theta;
   Minimizer minimizer;
@@ -269,7 +269,7 @@ struct Trajectory::Impl {
   IterationObserver observe;
   std::optional<Vec3d> weight;  // acceleration of the load 'gravity'
   TrajectoryReport report;
-  State now, after;  // where the walker stands; what follows it, backwards
+  State now, after;  // current state; next state during the reversal
   int point = 0;
   std::vector<Stored> slots;
   std::vector<double> qbar, vbar;

@@ -24,8 +24,8 @@ TrajectoryOptions exact() {
   return options;
 }
 
-// Everything that a gradient can be asked for. A beam of unlike tets with a wall, a crank that turns, a spring whose
-// target moves, weight and three kinds of damping.
+// All supported parameters: a beam of different tets with a wall, a rotating crank, a spring with moving target, weight
+// and three kinds of damping.
 struct Swinging {
   std::string material = "mooney_rivlin";
   std::vector<MaterialParameters> elastic;
@@ -33,7 +33,7 @@ struct Swinging {
   double mass_factor = 2, stiffness_factor = 4e-3;
   State start;
   MassKind mass = MassKind::consistent;
-  bool slides = false;  // the wall and the crank hold some directions only
+  bool slides = false;  // the wall and the crank constrain only some directions
   TetMesh mesh = make_box({{0, 0, 0}}, {{1.2, 0.4, 0.3}}, {5, 2, 1});
 
   explicit Swinging(const std::string& name = "mooney_rivlin") : material(name) {
@@ -114,7 +114,7 @@ TrajectoryGradient gradient_of(const Swinging& body, const TrajectoryOptions& op
   return gradient;
 }
 
-// A change of everything of one kind by eps, and what the gradient says of its rate.
+// A perturbation of one kind of parameter by eps, and the derivative from the gradient.
 struct Kind {
   std::string name;
   std::function<void(Swinging&, double eps)> change;
@@ -206,7 +206,7 @@ void expect_slopes_2(const Swinging& body) {
   }
 }
 
-TEST(Trajectory, GradientHasTaylorSlope2ForEveryKindOfParameter) {
+TEST(Trajectory, GradientHasTaylorSlope2ForEveryParameter) {
   expect_slopes_2(Swinging("mooney_rivlin"));
   expect_slopes_2(Swinging("fung"));
   expect_slopes_2(Swinging("corotated"));
@@ -221,7 +221,7 @@ TEST(Trajectory, GradientWithRollersHasTaylorSlope2) {
   expect_slopes_2(body);
 }
 
-TEST(Trajectory, GradientWithLumpedMassHasTaylorSlope2InTheDensity) {
+TEST(Trajectory, LumpedMassGradientHasTaylorSlope2) {
   Swinging body;
   body.mass = MassKind::lumped;
   const TrajectoryGradient gradient = gradient_of(body, exact());
@@ -236,7 +236,7 @@ TEST(Trajectory, GradientWithLumpedMassHasTaylorSlope2InTheDensity) {
           {kind.slope(gradient)}, kind.largest, kind.name);
 }
 
-TEST(Trajectory, GradientHasTheSameBitsHoweverFewStatesAreStored) {
+TEST(Trajectory, GradientIsBitwiseIndependentOfStoredStates) {
   const Swinging body;
   TrajectoryOptions options = exact();
   options.steps = 13;
@@ -277,7 +277,7 @@ TEST(Trajectory, IsThatOfTheSimulation) {
   EXPECT_EQ(report.value, options.steps + 1);
 }
 
-TEST(Trajectory, AStepBackwardsTakesOneSolveWithAKeptFactorWhereAStepForwardTakesSeveral) {
+TEST(Trajectory, BackwardStepNeedsOneSolveWithKeptFactor) {
   const Swinging body;
   TrajectoryOptions options;
   options.h = 0.02;
@@ -322,7 +322,7 @@ TEST(Trajectory, RefusesWhatHasNoGradient) {
   refused({}, std::move(strange), "'wind' has no derivatives");
 }
 
-TEST(Trajectory, ALoadThatIsNotTheWeightLeavesTheDensityOpen) {
+TEST(Trajectory, LoadOtherThanWeightGivesNoDensityGradient) {
   const Swinging body;
   Model model = body.model();
   std::vector<double> force(body.start.q.size());
