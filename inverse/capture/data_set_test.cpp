@@ -128,8 +128,7 @@ TEST_F(DataSetFile, WhatIsLeftOutIsChosenAndTold) {
   EXPECT_EQ(deep.positions[0].deviation[1], 1e-4);
   EXPECT_GT(e.cases[0].positions[0].deviation[1], 0);
   EXPECT_NEAR(data.marker_gap[0], 1e-4, 1e-15);
-  EXPECT_NEAR(deep.positions[0].position[2], 0.0559,
-              1e-15);  // displacement of the marker, applied to its surface point
+  EXPECT_NEAR(deep.positions[0].position[2], 0.0559, 1e-15);  // displacement from the surface point
   EXPECT_EQ(e.fixed.size(), 30u);
   EXPECT_THAT(data.notes, testing::Contains(HasSubstr("standard deviation of positions")));
   EXPECT_THAT(data.notes, testing::Contains(HasSubstr("layer of the tip")));

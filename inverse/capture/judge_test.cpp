@@ -68,8 +68,7 @@ TEST(Judge, CountsTetsWhoseIntervalHoldsTheTruth) {
 }
 
 TEST(Judge, SharedTetHasMeanLogarithmOfPhases) {
-  const Judgment found =
-      judge(layers(3, 1, 2e4), layers(8, 4))[0];  // both phases share the middle of three layers of cells
+  const Judgment found = judge(layers(3, 1, 2e4), layers(8, 4))[0];  // both phases share the middle layer of cells
   EXPECT_NEAR(found.level, 0, 0.02);
   EXPECT_NEAR(found.error, std::log(2.0) * std::sqrt(2.0 / 3 + 1.0 / 3 * 0.4), 0.1);
   EXPECT_NEAR(found.phases[0].fitted, 2e4, 1e-6);

@@ -34,8 +34,7 @@ std::optional<double> balanced_weight(FitRun& run, const FitPoint& at) {
   return weight;
 }
 
-// Far above the number of residuals one step determines |r|^2 well enough; near it, accuracy within its scatter is
-// needed.
+// Far above the number of residuals one step suffices for |r|^2; near it, accuracy must be within its scatter.
 constexpr double kFar = 0.5;  // of log (|r|^2 / number)
 
 double log_ratio(const FitRun& run, double misfit) { return std::log(std::max(2 * misfit / run.residuals(), 1e-300)); }

@@ -1,6 +1,5 @@
 // Gauss-Newton for fields: inexact conjugate gradients for (J'J + weight R'') d = -g [Nash 2000]. With the
-// preconditioner weight R'' the number of iterations is about the number of directions that the data determine better
-// than the prior.
+// preconditioner weight R'' they need about one iteration per direction that the data determine better than the prior.
 #include <algorithm>
 #include <cmath>
 

@@ -56,8 +56,7 @@ std::vector<int> free_vertices(const TetMesh& mesh, const std::vector<Triangle>&
   std::vector<char> is_fixed(mesh.rest.size(), 0), is_on_surface(mesh.rest.size(), 0), is_beside(mesh.rest.size(), 0);
   for (const int v : fixed) is_fixed[v] = 1;
   for (const Triangle& t : surface) {
-    const bool is_held =
-        std::ranges::any_of(t, [&](int v) { return is_fixed[v] != 0; });  // an indenter would press on it
+    const bool is_held = std::ranges::any_of(t, [&](int v) { return is_fixed[v] != 0; });  // would carry the indenter
     for (const int v : t) is_on_surface[v] = 1, is_beside[v] |= is_held ? 1 : 0;
   }
   std::vector<int> result;
@@ -81,8 +80,7 @@ std::vector<PokeSite> poke_sites(const TetMesh& mesh, std::span<const int> fixed
   std::vector<double> distance(all.size(), std::numeric_limits<double>::infinity());
   Vec3d mean{};
   for (const PokeSite& s : all) mean = mean + (1.0 / static_cast<double>(all.size())) * mesh.rest[s.vertex];
-  for (size_t i = 0; i < all.size(); ++i)
-    distance[i] = length(mesh.rest[all[i].vertex] - mean);  // initially far outside
+  for (size_t i = 0; i < all.size(); ++i) distance[i] = length(mesh.rest[all[i].vertex] - mean);  // starts far out
   while (static_cast<int>(chosen.size()) < count && !all.empty()) {
     const size_t next = std::ranges::max_element(distance) - distance.begin();
     if (!chosen.empty() && !(distance[next] > 0)) break;
