@@ -1,27 +1,26 @@
-// A chain of steps in reverse with few of its states stored: binomial checkpointing [Griewank and Walther 2000].
+// Reversal of a chain of steps with few stored states: binomial checkpointing [Griewank and Walther 2000].
 #pragma once
 #include <cstdint>
 #include <functional>
 
 namespace aspic {
 
-// What the walk asks of a walker, who stands at a point of the chain. Points are 0 ... steps; step i leads from point i
-// to i + 1.
+// Callbacks of a reversal. The chain has points 0 ... steps; step i leads from point i to i + 1.
 struct ChainWalk {
-  std::function<bool()> advance;          // one step forward; false: it failed, which ends the walk
-  std::function<void(int slot)> store;    // the state where the walker stands
-  std::function<void(int slot)> restore;  // it again
-  // The walker stands at point `step`, and everything from step + 1 on was reversed. The first one, steps - 1, takes
-  // the last step of the chain forward before. False: ends the walk.
+  std::function<bool()> advance;          // one step forward; false: failure, which ends the reversal
+  std::function<void(int slot)> store;    // stores the current state
+  std::function<void(int slot)> restore;  // restores a stored state
+  // Reverses step `step`; the state is that of point `step`, and all later steps are reversed. The first call, for
+  // steps - 1, also makes the last forward step. False: ends the reversal.
   std::function<bool(int step)> reverse;
 };
 
-// From point 0, where the walker stands: reverse(steps - 1), reverse(steps - 2) ... reverse(0). At most `slots` (at
-// least 1) states are stored at a time, in slots 0 ... slots - 1, and advance() is called as rarely as is possible
-// then. False: a call failed.
+// Starts at point 0 and calls reverse(steps - 1), reverse(steps - 2) ... reverse(0). Stores at most `slots` (>= 1)
+// states at a time, in slots 0 ... slots - 1, with the minimum number of advance() calls. Returns false if a callback
+// failed.
 bool walk_backwards(int steps, int slots, const ChainWalk& walk);
 
-// How often advance() is called.
+// Number of advance() calls.
 int64_t checkpointing_advances(int steps, int slots);
 
 }  // namespace aspic
