@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/vectors.h"
 #include "mesh/generators.h"
 #include "verification/families.h"
 #include "verification/statics.h"
@@ -38,7 +39,7 @@ Patch patch_error(const TetMesh& mesh, const std::string& material, double poiss
     for (size_t t = r; t < cauchy.size(); t += 6) least = std::min(least, cauchy[t]), most = std::max(most, cauchy[t]);
     spread = std::max(spread, most - least);
   }
-  return {position, spread / largest(cauchy)};
+  return {position, spread / max_abs(cauchy)};
 }
 
 void check_patch(const Subject& subject, Findings& found) {

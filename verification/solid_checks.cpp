@@ -21,7 +21,7 @@ TriMesh octahedral_sphere(int cuts) {
     const auto middle = [&](int a, int b) {
       const auto [place, is_new] = middles.emplace(std::minmax(a, b), sphere.vertex_count());
       const Vec3d sum = sphere.vertices[a] + sphere.vertices[b];
-      if (is_new) sphere.vertices.push_back((1 / std::sqrt(dot(sum, sum))) * sum);
+      if (is_new) sphere.vertices.push_back((1 / norm(sum)) * sum);
       return place->second;
     };
     std::vector<Triangle> finer;
@@ -40,8 +40,7 @@ TetMesh hollow_sphere(const TriMesh& surface, int layers, double a, double b) {
   TetMesh mesh;
   const int n = surface.vertex_count();
   for (int k = 0; k <= layers; ++k)
-    for (const Vec3d& X : surface.vertices)
-      mesh.rest.push_back(((a + (b - a) * k / layers) / std::sqrt(dot(X, X))) * X);
+    for (const Vec3d& X : surface.vertices) mesh.rest.push_back(((a + (b - a) * k / layers) / norm(X)) * X);
   for (int k = 0; k < layers; ++k)
     for (Triangle t : surface.triangles) {
       std::sort(t.begin(), t.end());
@@ -62,7 +61,7 @@ Inflation blown_up(int level, const std::string& material, double poisson, doubl
   const int layers = 3 << (level - 1);
   const TetMesh mesh = hollow_sphere(surface, layers, 1, 2);
   const auto at_radius = [&](double R) {
-    return vertices_where(mesh, [R](const Vec3d& X) { return std::abs(std::sqrt(dot(X, X)) - R) < 1e-9; });
+    return vertices_where(mesh, [R](const Vec3d& X) { return std::abs(norm(X) - R) < 1e-9; });
   };
   const std::vector<int> inside = at_radius(1), outside = at_radius(2);
   Model model = make_model(mesh, {.material = material, .young = 1, .poisson = poisson, .gravity = {}});

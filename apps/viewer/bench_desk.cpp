@@ -124,7 +124,7 @@ void BenchDesk::record(Arguments& arguments) {
   const Indenter& indenter = stage_.a().side.tools().indenter;
   const Touch* touch = indenter.touch();
   if (!touch) throw InvalidInput("record: there is no tip; let it touch the body first");
-  if (length(indenter.wanted().center - touch->begun.center) == 0)
+  if (norm(indenter.wanted().center - touch->begun.center) == 0)
     throw InvalidInput("record: the tip only touches; press it in first");
   require_room(depths);
   Busy busy(options_);

@@ -20,7 +20,7 @@ Vec3d target_of(Arguments& arguments, const Side& side) {
   Box box;
   for (const Vec3d& X : side.model().mesh.rest) box.add(X);
   const Vec3d extent = box.upper - box.lower, away = target - 0.5 * (box.lower + box.upper);
-  const double reach = kFarthestTarget * std::sqrt(dot(extent, extent));
+  const double reach = kFarthestTarget * norm(extent);
   if (!(dot(away, away) <= reach * reach))
     throw InvalidInput(fmt::format("target: further than {:g} m from the body; choose a nearer one", reach));
   return target;

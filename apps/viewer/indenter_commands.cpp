@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "mesh/box.h"
 #include "mesh/tet_shape.h"
 #include "viewer/commands.h"
 #include "viewer/scene_json.h"
@@ -17,10 +18,8 @@ namespace {
 constexpr double kDeepestTip = 10;  // relative to the size of the body
 
 double size_of(const Surface& surface) {
-  Vec3d lower = surface.rest.front(), upper = lower;
-  for (const Vec3d& X : surface.rest)
-    for (int r = 0; r < 3; ++r) lower[r] = std::min(lower[r], X[r]), upper[r] = std::max(upper[r], X[r]);
-  return length(upper - lower);
+  const Box box = bounding_box(surface.rest);
+  return norm(box.upper - box.lower);
 }
 
 double positive(Arguments& arguments, const char* key, double most) {
@@ -65,7 +64,7 @@ void press(Stage& stage, Arguments& arguments) {
   if (!stage.a().side.tools().indenter.touch())
     throw InvalidInput("press: there is no tip; let it touch the body first");
   const double most = kDeepestTip * size_of(stage.a().surface);
-  if (!(std::abs(depth) <= most && length(shift) <= most))
+  if (!(std::abs(depth) <= most && norm(shift) <= most))
     throw InvalidInput(fmt::format("press: further than {:g} m; choose less", most));
   Json done = {{"do", "press"}, {"depth", depth}};
   if (dot(shift, shift) > 0) done["shift"] = json_of(shift);

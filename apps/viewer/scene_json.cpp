@@ -27,7 +27,7 @@ Json fields_json(const std::vector<Field>& fields) {
 
 Vec3d up_of(const Table& document) {
   const Vec3d gravity = document.find("gravity")->vector();
-  const double size = std::sqrt(dot(gravity, gravity));
+  const double size = norm(gravity);
   return size > 0 ? (-1 / size) * gravity : Vec3d{{0, 1, 0}};
 }
 

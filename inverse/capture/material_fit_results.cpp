@@ -4,7 +4,7 @@
 #include "capture/fit_troubles.h"
 #include "capture/fitted_values.h"
 #include "capture/material_fit.h"
-#include "fit/columns.h"
+#include "math/vectors.h"
 
 namespace aspic {
 namespace {

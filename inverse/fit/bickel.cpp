@@ -57,8 +57,7 @@ double apart(const LoadCase& a, const LoadCase& b) {
   const Vec3d touch = a.touch.center - b.touch.center;
   const Vec3d way = (a.pose.center - a.touch.center) - (b.pose.center - b.touch.center);
   const Vec3d gravity = a.gravity - b.gravity;
-  return std::sqrt(dot(touch, touch) + dot(way, way)) + std::sqrt(dot(gravity, gravity)) +
-         std::abs(a.pressure - b.pressure);
+  return std::sqrt(dot(touch, touch) + dot(way, way)) + norm(gravity) + std::abs(a.pressure - b.pressure);
 }
 
 std::vector<MaterialParameters> parameters_of(const StrainExample& example) {

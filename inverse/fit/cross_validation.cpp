@@ -15,25 +15,22 @@ std::vector<std::string> groups_of(const Experiment& experiment) {
   return groups;
 }
 
-double squared_length(const Vec3d& v) { return dot(v, v); }
-
 // Sums of squares first, see finish().
 void add_case(const Experiment& experiment, const LoadCase& measured, const CasePrediction& predicted, HeldOut& h) {
   for (size_t i = 0; i < measured.positions.size(); ++i) {
     const MarkerReading& reading = measured.positions[i];
-    const double error = squared_length(predicted.markers[i] - reading.position);
+    const double error = squared_norm(predicted.markers[i] - reading.position);
     h.peak_motion =
-        std::max(h.peak_motion,
-                 std::sqrt(squared_length(reading.position - at_rest(experiment, experiment.markers[reading.marker]))));
+        std::max(h.peak_motion, norm(reading.position - at_rest(experiment, experiment.markers[reading.marker])));
     h.largest_error = std::max(h.largest_error, std::sqrt(error));
     h.position_error += error;
-    h.position_noise += squared_length(reading.deviation);
+    h.position_noise += squared_norm(reading.deviation);
     ++h.readings;
   }
   if (!measured.force) return;
-  h.peak_force = std::max(h.peak_force, std::sqrt(squared_length(*measured.force)));
-  h.force_error += squared_length(predicted.wrench.force - *measured.force);
-  h.force_noise += squared_length(measured.force_deviation);
+  h.peak_force = std::max(h.peak_force, norm(*measured.force));
+  h.force_error += squared_norm(predicted.wrench.force - *measured.force);
+  h.force_noise += squared_norm(measured.force_deviation);
   ++h.forces;
 }
 

@@ -9,18 +9,12 @@
 #include "fit/common_errors.h"
 #include "fit/cross_validation.h"
 #include "fit/field_words.h"
+#include "math/vectors.h"
 #include "mesh/surface.h"
 #include "mesh/tet_shape.h"
 
 namespace aspic {
 namespace {
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 // What is read at every poke, and how well: as on the average of the experiment.
 struct Instruments {
@@ -33,12 +27,12 @@ Instruments instruments(const Experiment& experiment, const NextPokeOptions& opt
   Instruments result;
   std::optional<Tip> tip = options.tip;
   for (const LoadCase& c : experiment.cases) {
-    for (const MarkerReading& r : c.positions) position.push_back(length(r.deviation) / std::sqrt(3.0));
-    if (c.force) force.push_back(length(c.force_deviation) / std::sqrt(3.0));
-    if (c.torque) torque.push_back(length(c.torque_deviation) / std::sqrt(3.0));
+    for (const MarkerReading& r : c.positions) position.push_back(norm(r.deviation) / std::sqrt(3.0));
+    if (c.force) force.push_back(norm(c.force_deviation) / std::sqrt(3.0));
+    if (c.torque) torque.push_back(norm(c.torque_deviation) / std::sqrt(3.0));
     if (!c.tip) continue;
     if (!tip) tip = c.tip;
-    result.depth = std::max(result.depth, length(c.pose.center - c.touch.center));
+    result.depth = std::max(result.depth, norm(c.pose.center - c.touch.center));
   }
   if (!tip) throw InvalidInput("no case has a tip, so there is no next poke (give the tip to poke with)");
   result.tip = *tip;
@@ -57,7 +51,7 @@ LoadCase load_at(const Experiment& experiment, const Instruments& with, const Ve
   load.pose = load.touch;
   load.pose.center = load.touch.center + with.depth * inward;
   for (size_t m = 0; m < experiment.markers.size() && with.position > 0; ++m)
-    if (length(at_rest(experiment, experiment.markers[m]) - site) > with.tip.radius)  // the tip hides the others
+    if (norm(at_rest(experiment, experiment.markers[m]) - site) > with.tip.radius)  // the tip hides the others
       load.positions.push_back({static_cast<int>(m), {}, {{with.position, with.position, with.position}}});
   if (with.force > 0) load.force = Vec3d{}, load.force_deviation = {{with.force, with.force, with.force}};
   if (with.torque > 0) load.torque = Vec3d{}, load.torque_deviation = {{with.torque, with.torque, with.torque}};

@@ -34,7 +34,7 @@ std::vector<std::vector<Neighbor>> neighbors_of(const TetMesh& mesh) {
   for_each_group(faces, [&](const GroupedElement<3>* begin, const GroupedElement<3>* end) {
     if (end != begin + 2) return;
     const auto& v = begin[0].vertices;
-    const double area = length(cross(mesh.rest[v[1]] - mesh.rest[v[0]], mesh.rest[v[2]] - mesh.rest[v[0]])) / 2;
+    const double area = norm(cross(mesh.rest[v[1]] - mesh.rest[v[0]], mesh.rest[v[2]] - mesh.rest[v[0]])) / 2;
     sum += area, ++count;
     all[begin[0].place].push_back({begin[1].place, area});
     all[begin[1].place].push_back({begin[0].place, area});
