@@ -17,7 +17,7 @@ struct Walker {
   std::map<int, int> slots;
 
   explicit Walker(int steps) : next_reverse(steps - 1) {}
-  ChainWalk walk(int slot_count) {
+  ChainOperations walk(int slot_count) {
     return {.advance = [this] { return ++at, ++advances, true; },
             .store =
                 [this, slot_count](int slot) {
@@ -52,7 +52,7 @@ TEST(Checkpointing, TakesAsFewStepsAsAnyScheduleWithSoManyStates) {
   for (int slots = 1; slots <= 9; ++slots)
     for (int steps = 1; steps <= 120; ++steps) {
       Walker walker(steps);
-      EXPECT_TRUE(walk_backwards(steps, slots, walker.walk(slots)));
+      EXPECT_TRUE(reverse_chain(steps, slots, walker.walk(slots)));
       EXPECT_EQ(walker.next_reverse, -1);
       EXPECT_LE(walker.most_stored, static_cast<size_t>(slots));
       EXPECT_EQ(walker.advances, least_advances(steps, slots)) << steps << " steps, " << slots << " states";
@@ -63,7 +63,7 @@ TEST(Checkpointing, TakesAsFewStepsAsAnyScheduleWithSoManyStates) {
 TEST(Checkpointing, ReversesLongChainsWithFewRepeats) {
   for (const auto& [steps, slots] : {std::pair{10'000, 10}, {1'000, 1'000}, {50'000, 40}}) {
     Walker walker(steps);
-    EXPECT_TRUE(walk_backwards(steps, slots, walker.walk(slots)));
+    EXPECT_TRUE(reverse_chain(steps, slots, walker.walk(slots)));
     EXPECT_EQ(walker.advances, checkpointing_advances(steps, slots));
   }
   EXPECT_EQ(checkpointing_advances(1'000, 1'000), 999);  // everything is stored
@@ -73,11 +73,11 @@ TEST(Checkpointing, ReversesLongChainsWithFewRepeats) {
 TEST(Checkpointing, EndsWhereAStepFails) {
   for (const int steps : {0, 1, 7}) {
     Walker walker(steps);
-    ChainWalk walk = walker.walk(3);
+    ChainOperations walk = walker.walk(3);
     walk.reverse = [](int step) { return step != 0; };
-    EXPECT_EQ(walk_backwards(steps, 3, walk), steps == 0);
+    EXPECT_EQ(reverse_chain(steps, 3, walk), steps == 0);
     walk.advance = [] { return false; };
-    EXPECT_EQ(walk_backwards(steps, 3, walk), steps == 0);
+    EXPECT_EQ(reverse_chain(steps, 3, walk), steps == 0);
   }
 }
 

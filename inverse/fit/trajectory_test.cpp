@@ -100,7 +100,7 @@ TrajectoryObjective distance_from_rest(const TetMesh& mesh, int steps) {
 double value_of(const Swinging& body, const TrajectoryOptions& options) {
   Trajectory trajectory(body.model(), body.start, options);
   const TrajectoryReport report = trajectory.simulate(distance_from_rest(body.mesh, options.steps));
-  EXPECT_TRUE(report.ok) << report.failure;
+  EXPECT_TRUE(report.ok) << report.message;
   return report.value;
 }
 
@@ -109,7 +109,7 @@ TrajectoryGradient gradient_of(const Swinging& body, const TrajectoryOptions& op
   Trajectory trajectory(body.model(), body.start, options);
   TrajectoryGradient gradient;
   const TrajectoryReport report = trajectory.differentiate(distance_from_rest(body.mesh, options.steps), gradient);
-  EXPECT_TRUE(report.ok) << report.failure;
+  EXPECT_TRUE(report.ok) << report.message;
   if (out) *out = report;
   return gradient;
 }
@@ -300,7 +300,7 @@ TEST(Trajectory, AStepThatDoesNotConvergeIsReported) {
   TrajectoryGradient gradient;
   const TrajectoryReport report = trajectory.differentiate(distance_from_rest(body.mesh, options.steps), gradient);
   EXPECT_FALSE(report.ok);
-  EXPECT_NE(report.failure.find("step 0): Newton's method did not converge"), std::string::npos) << report.failure;
+  EXPECT_NE(report.message.find("step 0): Newton's method did not converge"), std::string::npos) << report.message;
 }
 
 TEST(Trajectory, RefusesWhatHasNoGradient) {
@@ -333,7 +333,7 @@ TEST(Trajectory, ALoadThatIsNotTheWeightLeavesTheDensityOpen) {
   TrajectoryGradient gradient;
   EXPECT_TRUE(trajectory.differentiate(distance_from_rest(body.mesh, options.steps), gradient).ok);
   EXPECT_TRUE(gradient.density.empty());
-  EXPECT_NE(gradient.density_words, "");
+  EXPECT_NE(gradient.density_message, "");
 }
 
 }  // namespace
