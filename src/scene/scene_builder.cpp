@@ -91,8 +91,13 @@ class SceneBuilder {
     const SimulationOptions options = options_of(source_.document, source_.notes);
     put_in_order(source_.document);
     for (std::string& note : source_.notes) note = printable(note);
-    return {printable(source_.name), std::move(source_.document), std::move(source_.notes),
-            std::move(model_),       std::move(state),            options};
+    return {printable(source_.name),
+            std::move(source_.document),
+            std::move(source_.notes),
+            std::move(model_),
+            std::move(state),
+            options,
+            std::move(files_.kept_files)};
   }
 
   Scene build() {
@@ -107,7 +112,7 @@ class SceneBuilder {
               std::move(skins_),
               steps,
               output,
-              std::move(files_.kept_files),
+              std::move(scene.input_files),
               std::move(files_.kept_meshes)};
     } catch (const InvertedStart& e) {
       throw InvalidInput(

@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dynamics/simulation.h"
@@ -17,6 +18,7 @@ struct SceneModel {
   Model model;
   State start;
   SimulationOptions options;
+  std::vector<std::pair<std::string, std::filesystem::path>> input_files;  // see Scene
 };
 
 // Reads the same files as load_scene() and throws the same errors, except those of the initial state.
