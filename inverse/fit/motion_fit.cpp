@@ -10,14 +10,19 @@
 namespace aspic {
 namespace {
 
-constexpr int kRounds = 8;               // maximum number of preconditioners
-constexpr int kIterationsPerRound = 12;  // of L-BFGS
-// Largest predicted decrease at the solution, relative to the value without any motion and to the value itself.
-constexpr double kDecrease = 1e-18, kDecreaseInNoise = 1e-10;
-constexpr double kRoundOff = 1e-12, kRoundOffInNoise = 1e-7;  // the same if the line search found no step
+constexpr int kIterations = 4;  // minimum number per preconditioner
+// Largest predicted decrease at the solution, relative to the value without any motion and, for noisy data, to the value
+// per degree of freedom: a twentieth of a standard deviation.
+constexpr double kDecrease = 1e-18, kDecreaseInNoise = 1e-3;
+constexpr double kRoundOff = 1e-12, kRoundOffInNoise = 1e-2;  // the same if the line search found no step
 constexpr double kHessianDifference = 1e-3;                   // of p
 constexpr double kWeakest = 1e-5;     // eigenvalue of the scaled Hessian below which a direction is not determined
 constexpr double kLargestDeviation = 1;  // of p: a factor of e
+constexpr double kVanished = -5;         // p of a damping coefficient that has fallen to less than 1 % of its guess
+
+double redundancy(const MotionObjective& f) {  // degrees of freedom
+  return 3.0 * static_cast<double>(f.data().samples.size()) - f.parameters().size();
+}
 
 class MotionMinimizer {
  public:
@@ -26,16 +31,14 @@ class MotionMinimizer {
 
   // Rounds of L-BFGS, each with a new preconditioner, until a round finds the iterate minimal without leaving it.
   void run() {
-    for (int round = 0; round < kRounds && report_.status != Status::converged; ++round) {
-      const bool has_changed = f_.linearize(f_.iterate());
+    while (report_.iterations < options_.max_iterations) {
+      f_.linearize(f_.iterate());
       if (is_stopped()) return;
-      const Status status = minimize();
+      report_.status = minimize();
       if (is_stopped()) return;
-      const bool is_last = iterations_of_round_ <= 1 && !(has_changed && round > 0);
-      report_.status = status == Status::converged && !is_last ? Status::iteration_limit : status;
-      if (report_.iterations >= options_.max_iterations) return;
-      if (is_last && status != Status::iteration_limit) return;
+      if (iterations_of_round_ <= 1 && report_.status != Status::iteration_limit) return;
     }
+    report_.status = Status::iteration_limit;
   }
 
  private:
@@ -46,7 +49,7 @@ class MotionMinimizer {
   }
 
   double tolerance(double relative, double in_noise) const {
-    return std::max(relative * f_.resting_value(), in_noise * f_.iterate().value);
+    return std::max(relative * f_.resting_value(), in_noise * f_.iterate().value / std::max(redundancy(f_), 1.0));
   }
 
   Status minimize() {
@@ -56,15 +59,14 @@ class MotionMinimizer {
     std::copy(f_.iterate().p.begin(), f_.iterate().p.end(), x.begin());
     bool is_done = false;
     iterations_of_round_ = 0;
-    double decrement = 0;
     const auto observe = [&](const LiveIteration& iteration) {
       ++iterations_of_round_;
       ++report_.iterations;
-      decrement = iteration.decrement;
-      is_done = decrement <= tolerance(kDecrease, kDecreaseInNoise);
+      // The prediction is good in the first iteration of a round. Later ones may be small by chance.
+      is_done = iteration.decrement <= (iterations_of_round_ == 1 ? 1 : 0.01) * tolerance(kDecrease, kDecreaseInNoise);
       if (options_.observe) options_.observe({report_.iterations, f_.iterate().rms, f_.simulations()});
     };
-    const int left = std::min(kIterationsPerRound, options_.max_iterations - report_.iterations);
+    const int left = std::min(std::max(kIterations, f_.parameters().size()), options_.max_iterations - report_.iterations);
     const MinimizeOptions options{.max_iterations = left,
                                   .tolerance = 0,
                                   .criterion = Criterion::first_gradient,
@@ -105,24 +107,17 @@ std::vector<double> hessian(MotionObjective& f, const MotionPoint& at) {
 // Standard deviation of the noise in units of sigma; infinite without redundant data.
 double noise(const MotionObjective& f, const MotionPoint& at) {
   if (f.data().has_sigma) return 1;
-  const double redundant = 3.0 * static_cast<double>(f.data().samples.size()) - f.parameters().size();
-  return redundant > 0 ? std::sqrt(2 * at.value / redundant) : INFINITY;
+  return redundancy(f) > 0 ? std::sqrt(2 * at.value / redundancy(f)) : INFINITY;
 }
 
 void find_deviations(MotionObjective& f, MotionFitReport& report) {
   const int n = f.parameters().size();
   std::vector<double> H = hessian(f, report.after);
-  const double samples = static_cast<double>(f.data().samples.size());
-  const double least = std::pow(MotionObjective::kInsensitive * f.travel(), 2) * samples;  // of H, with sigma = 1
-  for (int i = 0; i < n; ++i) {
-    const double smallest_sigma =
-        std::min_element(f.data().samples.begin(), f.data().samples.end(),
-                         [](const MotionSample& a, const MotionSample& b) { return a.sigma < b.sigma; })
-            ->sigma;
-    if (H[static_cast<size_t>(n) * i + i] * smallest_sigma * smallest_sigma > least && !f.is_held(i)) continue;
-    for (int j = 0; j < n; ++j) H[static_cast<size_t>(n) * i + j] = H[static_cast<size_t>(n) * j + i] = 0;
-  }
-  const ScaledInverse covariance = scaled_inverse(n, H, kWeakest);
+  const double least = std::pow(MotionObjective::kInsensitive, 2) * 2 * f.resting_value();
+  for (int i = 0; i < n; ++i)
+    if (f.is_held(i) || !(H[static_cast<size_t>(n) * i + i] > least))
+      for (int j = 0; j < n; ++j) H[static_cast<size_t>(n) * i + j] = H[static_cast<size_t>(n) * j + i] = 0;
+  const ScaledInverse covariance = scaled_inverse(n, H, kWeakest, Weak::raised);
   const double s = noise(f, report.after);
   for (int i = 0; i < n; ++i) {
     FittedMotionValue& value = report.values[i];
@@ -157,14 +152,17 @@ MotionFitReport fit_motion(MotionObjective& objective, const MotionFitOptions& o
   }
   for (int i = 0; i < parameters.size(); ++i)
     report.values.push_back({parameters.parameters()[i], parameters.value(i, report.p[i]), INFINITY, {}});
-  if (report.before.ok && !report.stopped) {
+  if (is_success(report.status)) {
     find_deviations(objective, report);
     report.stopped = objective.stop().stopped();
   }
-  if (report.stopped)
-    for (FittedMotionValue& value : report.values) value.deviation = INFINITY, value.message = "stopped";
-  const double redundant = 3.0 * static_cast<double>(objective.data().samples.size()) - parameters.size();
-  report.chi_squared = redundant > 0 ? 2 * report.after.value / redundant : 0;
+  if (!is_success(report.status) || report.stopped)
+    for (FittedMotionValue& value : report.values)
+      value.deviation = INFINITY, value.message = "the fit has not converged";
+  for (int i = 0; i < parameters.size(); ++i)
+    if (report.values[i].parameter.can_vanish && report.p[i] < kVanished && std::isinf(report.values[i].deviation))
+      report.values[i].message = "it tends to 0; fit without it";
+  report.chi_squared = redundancy(objective) > 0 ? 2 * report.after.value / redundancy(objective) : 0;
   report.simulations = objective.simulations();
   report.gradients = objective.gradients();
   return report;

@@ -12,7 +12,7 @@ namespace aspic {
 namespace {
 
 constexpr double kDifference = 1e-4;    // of p, for J
-constexpr double kFloor = 1e-6;         // smallest eigenvalue of the scaled J'J
+constexpr double kFloor = 1e-7;         // eigenvalue of the scaled J'J: weaker combinations of parameters are held
 constexpr double kLargestMove = 1;      // of p in one iteration
 constexpr double kAtStep = 1e-6;        // of a time step: samples this close to a step are at the step
 constexpr double kSteps = 1e6;          // maximum number
@@ -170,7 +170,7 @@ bool MotionObjective::linearize(const MotionPoint& at) {
     held_[i] = std::sqrt(square / static_cast<double>(data_.samples.size())) <= kInsensitive * travel_;
     if (held_[i]) std::fill(J[i].begin(), J[i].end(), 0.0);
   }
-  inverse_ = scaled_inverse(n, product_transposed(J, J), kFloor).inverse;
+  inverse_ = scaled_inverse(n, product_transposed(J, J), kFloor, Weak::dropped).inverse;
   return held_ != before;
 }
 

@@ -104,6 +104,8 @@ void MotionParameters::add(const std::string& name, const MotionScales& scales) 
 void MotionParameters::add_positive(Kind kind, const MotionParameter& parameter) {
   entries_.push_back({kind});
   parameters_.push_back(parameter);
+  parameters_.back().can_vanish =
+      kind == Kind::mass_damping || kind == Kind::stiffness_damping || kind == Kind::viscosity;
 }
 
 void MotionParameters::add_vector(Kind kind, const MotionParameter& parameter, const Vec3d& guess, double unit) {

@@ -37,6 +37,7 @@ struct MotionParameter {
   std::string unit;       // "Pa"
   double guess = 0;
   std::string note = {};  // the reason for a guess that is not the value of the model
+  bool can_vanish = false;  // a damping coefficient
 };
 
 // Parameters p, one number each, 0 at the guess. Positive quantities are guess * exp(p); a field of values per tet is

@@ -7,7 +7,7 @@
 
 namespace aspic {
 
-ScaledInverse scaled_inverse(int n, std::span<const double> A, double floor) {
+ScaledInverse scaled_inverse(int n, std::span<const double> A, double floor, Weak weak) {
   constexpr double kTakesPart = 0.1;  // smallest absolute entry of a unit eigenvector
   std::vector<int> kept;
   std::vector<double> scale(n, 0.0);
@@ -25,13 +25,14 @@ ScaledInverse scaled_inverse(int n, std::span<const double> A, double floor) {
   for (int i = 0; i < m; ++i) result.weakest[kept[i]] = 1;
   for (int k = 0; k < m; ++k) {
     const double* v = eigen.vectors.data() + static_cast<size_t>(m) * k;
-    const double value = std::max(eigen.values[k], floor);
+    const bool is_weak = !(eigen.values[k] > floor);
+    const double inverse = is_weak ? (weak == Weak::dropped ? 0 : 1 / floor) : 1 / eigen.values[k];
     for (int i = 0; i < m; ++i) {
       if (std::abs(v[i]) > kTakesPart)
         result.weakest[kept[i]] = std::min(result.weakest[kept[i]], eigen.values[k]);
       for (int j = 0; j < m; ++j)
         result.inverse[static_cast<size_t>(n) * kept[i] + kept[j]] +=
-            v[i] * v[j] / (value * scale[kept[i]] * scale[kept[j]]);
+            v[i] * v[j] * inverse / (scale[kept[i]] * scale[kept[j]]);
     }
   }
   return result;
