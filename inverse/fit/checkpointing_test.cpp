@@ -48,7 +48,7 @@ int64_t least_advances(int steps, int slots) {
   return known[{steps, slots}] = least;
 }
 
-TEST(Checkpointing, TakesAsFewStepsAsAnyScheduleWithSoManyStates) {
+TEST(Checkpointing, TakesMinimumNumberOfSteps) {
   for (int slots = 1; slots <= 9; ++slots)
     for (int steps = 1; steps <= 120; ++steps) {
       Walker walker(steps);
@@ -70,7 +70,7 @@ TEST(Checkpointing, ReversesLongChainsWithFewRepeats) {
   EXPECT_LT(checkpointing_advances(50'000, 40), 4 * 50'000);
 }
 
-TEST(Checkpointing, EndsWhereAStepFails) {
+TEST(Checkpointing, EndsAtFailedStep) {
   for (const int steps : {0, 1, 7}) {
     Walker walker(steps);
     ChainOperations walk = walker.walk(3);

@@ -221,7 +221,7 @@ TEST(Trajectory, GradientWithRollersHasTaylorSlope2) {
   expect_slopes_2(body);
 }
 
-TEST(Trajectory, GradientWithLumpedMassHasTaylorSlope2InTheDensity) {
+TEST(Trajectory, DensityGradientWithLumpedMassHasTaylorSlope2) {
   Swinging body;
   body.mass = MassKind::lumped;
   const TrajectoryGradient gradient = gradient_of(body, exact());
@@ -236,7 +236,7 @@ TEST(Trajectory, GradientWithLumpedMassHasTaylorSlope2InTheDensity) {
           {kind.slope(gradient)}, kind.largest, kind.name);
 }
 
-TEST(Trajectory, GradientHasTheSameBitsHoweverFewStatesAreStored) {
+TEST(Trajectory, GradientIsBitReproducibleForAnyStoredStates) {
   const Swinging body;
   TrajectoryOptions options = exact();
   options.steps = 13;
@@ -256,7 +256,7 @@ TEST(Trajectory, GradientHasTheSameBitsHoweverFewStatesAreStored) {
   }
 }
 
-TEST(Trajectory, IsThatOfTheSimulation) {
+TEST(Trajectory, AgreesWithSimulation) {
   const Swinging body;
   const TrajectoryOptions options = exact();
   SimulationOptions same{.h = options.h, .solver = {}};
@@ -277,7 +277,7 @@ TEST(Trajectory, IsThatOfTheSimulation) {
   EXPECT_EQ(report.value, options.steps + 1);
 }
 
-TEST(Trajectory, AStepBackwardsTakesOneSolveWithAKeptFactorWhereAStepForwardTakesSeveral) {
+TEST(Trajectory, AdjointStepTakesOneSolveWithKeptFactor) {
   const Swinging body;
   TrajectoryOptions options;
   options.h = 0.02;
@@ -292,7 +292,7 @@ TEST(Trajectory, AStepBackwardsTakesOneSolveWithAKeptFactorWhereAStepForwardTake
   EXPECT_EQ(report.steps, options.steps);
 }
 
-TEST(Trajectory, AStepThatDoesNotConvergeIsReported) {
+TEST(Trajectory, UnconvergedStepIsReported) {
   const Swinging body;
   TrajectoryOptions options;
   options.max_iterations = 1;
@@ -303,7 +303,7 @@ TEST(Trajectory, AStepThatDoesNotConvergeIsReported) {
   EXPECT_NE(report.message.find("step 0): Newton's method did not converge"), std::string::npos) << report.message;
 }
 
-TEST(Trajectory, RefusesWhatHasNoGradient) {
+TEST(Trajectory, RefusesModelsWithoutGradient) {
   const Swinging body;
   const auto refused = [&](TrajectoryOptions options, Model model, const std::string& expected) {
     try {
@@ -322,7 +322,7 @@ TEST(Trajectory, RefusesWhatHasNoGradient) {
   refused({}, std::move(strange), "'wind' has no derivatives");
 }
 
-TEST(Trajectory, ALoadThatIsNotTheWeightLeavesTheDensityOpen) {
+TEST(Trajectory, LoadOtherThanWeightHasNoDensityGradient) {
   const Swinging body;
   Model model = body.model();
   std::vector<double> force(body.start.q.size());
