@@ -40,8 +40,9 @@ fs::path created_folder(const FitMotionArguments& arguments, const std::string& 
   if (fs::exists(folder, error) && !fs::is_directory(folder, error))
     throw InvalidInput(folder.string() + ": is not a folder; choose another one with --out");
   if (!arguments.force && fs::is_directory(folder, error) && !fs::is_empty(folder, error))
-    throw InvalidInput(folder.string() + ": is not empty; choose another folder with --out, or replace its files with "
-                                         "--force");
+    throw InvalidInput(folder.string() +
+                       ": is not empty; choose another folder with --out, or replace its files with "
+                       "--force");
   fs::create_directories(folder, error);
   if (error) throw InvalidInput(folder.string() + ": cannot be created: " + error.message());
   return folder;
@@ -67,10 +68,8 @@ void print_table(const MotionFitReport& report) {
 nlohmann::ordered_json to_json(const MotionFitReport& report, const MotionObjective& objective) {
   nlohmann::ordered_json values = nlohmann::json::array();
   for (const FittedMotionValue& v : report.values) {
-    nlohmann::ordered_json value = {{"name", v.parameter.name},
-                                    {"unit", v.parameter.unit},
-                                    {"guess", v.parameter.guess},
-                                    {"value", v.value}};
+    nlohmann::ordered_json value = {
+        {"name", v.parameter.name}, {"unit", v.parameter.unit}, {"guess", v.parameter.guess}, {"value", v.value}};
     value["deviation"] = std::isfinite(v.deviation) ? nlohmann::ordered_json(v.deviation) : nullptr;
     value["determined"] = std::isfinite(v.deviation);
     if (!v.message.empty()) value["message"] = v.message;
@@ -131,12 +130,11 @@ void draw_distances(const fs::path& path, const MotionData& data, const MotionFi
 
 MotionFitReport fit(const FitMotionArguments& arguments, MotionObjective& objective) {
   FitProgress progress(stderr, false);
-  MotionFitReport report = fit_motion(
-      objective,
-      {.max_iterations = arguments.max_iterations, .observe = [&](const MotionFitProgress& at) {
-         progress.show(fmt::format("iteration {:>3}  distance {:.4g} m  {} simulations", at.iteration, at.rms,
-                                   at.simulations));
-       }});
+  MotionFitReport report =
+      fit_motion(objective, {.max_iterations = arguments.max_iterations, .observe = [&](const MotionFitProgress& at) {
+                               progress.show(fmt::format("iteration {:>3}  distance {:.4g} m  {} simulations",
+                                                         at.iteration, at.rms, at.simulations));
+                             }});
   progress.finish();
   return report;
 }
@@ -217,8 +215,7 @@ Exit codes: 0 done, 2 bad input, 3 not converged, 4 --time-limit came first, 130
 the best values so far are written.)");
   command->add_option("SCENE", arguments->scene, "Scene (.toml) or mesh")->required();
   command->add_option("POSITIONS", arguments->positions, "Table of marker positions (.csv)")->required();
-  command
-      ->add_option("--fit", arguments->names, "Parameters to fit, separated by commas")
+  command->add_option("--fit", arguments->names, "Parameters to fit, separated by commas")
       ->required()
       ->delimiter(',')
       ->allow_extra_args(false);

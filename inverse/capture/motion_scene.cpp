@@ -34,8 +34,9 @@ void require_motion(const SceneModel& scene, const std::vector<std::string>& nam
   const Value& velocity = scene.document.find("body")->array()[0]["velocity"];
   for (const Value& component : velocity.array())
     if (component.is_text() && has(names, "velocity"))
-      throw error_at(velocity.place, "velocity is a formula; 'velocity' is fitted as three numbers (try --set "
-                                     "velocity=[0,0,0])");
+      throw error_at(velocity.place,
+                     "velocity is a formula; 'velocity' is fitted as three numbers (try --set "
+                     "velocity=[0,0,0])");
 }
 
 std::vector<double> viscosity_of(const SceneModel& scene, const Value& body) {
@@ -105,8 +106,9 @@ class Overrides {
     material.values.emplace_back("density", tet.to_user(parameters_.density(p_)));
 
     const bool is_elastic = has(scene_.names, "young") || has(scene_.names, "poisson");
-    const bool is_uniform = (!is_elastic || (are_equal(*material.find("young")) && are_equal(*material.find("poisson")))) &&
-                            (!has(scene_.names, "density") || are_equal(*material.find("density")));
+    const bool is_uniform =
+        (!is_elastic || (are_equal(*material.find("young")) && are_equal(*material.find("poisson")))) &&
+        (!has(scene_.names, "density") || are_equal(*material.find("density")));
     if (!is_uniform || scene_.body["material"].find("file")) {
       const fs::path path = file("material.vtu");
       write_material(path, material);

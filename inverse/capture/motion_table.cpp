@@ -39,7 +39,7 @@ void require_columns(const CsvReader& csv, const std::string& file) {
 class TableReader {
  public:
   explicit TableReader(const std::filesystem::path& path) : csv_(path, CsvOrigin::foreign) {
-    table_.file = printable(path.filename().string());
+    table_.file = printable(path.string());
     require_columns(csv_, table_.file);
     table_.has_sigma = csv_.has("sigma");
   }
@@ -148,17 +148,19 @@ class Attachment {
   std::string where(const MotionRow& row) const { return table_.file + ":" + std::to_string(row.line); }
 
   void refuse_time(const MotionRow& row, bool is_early) {
-    errors_.add(where(row) + ": time = " + number_text(row.time) +
-                (is_early ? " is before the start of the scene, " + number_text(time_) + "; subtract a constant from all times"
-                          : " is more than 1e6 time steps after the start; times are in seconds"));
+    errors_.add(
+        where(row) + ": time = " + number_text(row.time) +
+        (is_early ? " is before the start of the scene, " + number_text(time_) + "; subtract a constant from all times"
+                  : " is more than 1e6 time steps after the start; times are in seconds"));
   }
 
   void place(const MotionRow& row, MotionData& data, std::vector<std::string>& notes) {
     const ProjectedPoint projected = surface_.nearest(row.position);
     data.markers[row.marker] = projected.point;
     data.offset[row.marker] = row.position - projected.position;
-    const std::string off = "marker '" + table_.markers[row.marker] + "' lies " + formatted("%.3g", projected.distance) +
-                            " m off the surface of the body, whose size is " + formatted("%.3g", size_) + " m";
+    const std::string off = "marker '" + table_.markers[row.marker] + "' lies " +
+                            formatted("%.3g", projected.distance) + " m off the surface of the body, whose size is " +
+                            formatted("%.3g", size_) + " m";
     if (projected.distance > kFarOff * size_)
       errors_.add(where(row) + ": " + off + "; " + remedy(row.position));
     else if (projected.distance > kOff * size_)

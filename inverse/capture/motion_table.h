@@ -26,9 +26,9 @@ struct MotionTable {
 // Throws InvalidInput with file, line, value and remedy.
 MotionTable read_motion_table(const std::filesystem::path& path);
 
-// Attaches each marker to the surface point that is nearest to its position at the start. `h`: time step [s]. Adds notes
-// about markers off the surface. Throws InvalidInput for a marker without a row at the start or far off the surface, and
-// for rows before the start.
+// Attaches each marker to the surface point that is nearest to its position at the start. `h`: time step [s]. Adds
+// notes about markers off the surface. Throws InvalidInput for a marker without a row at the start or far off the
+// surface, and for rows before the start.
 MotionData attach_markers(const MotionTable& table, const TetMesh& mesh, const State& start, double h,
                           std::vector<std::string>& notes);
 

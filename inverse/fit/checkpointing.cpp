@@ -37,8 +37,8 @@ bool advance(int steps, const ChainOperations& chain) {
   return true;
 }
 
-// Reverses the steps begin ... end - 1. The current state is at point `begin` and stored in `slot`, the first of `slots`
-// slots.
+// Reverses the steps begin ... end - 1. The current state is at point `begin` and stored in `slot`, the first of
+// `slots` slots.
 bool reverse(int begin, int end, int slot, int slots, const ChainOperations& chain) {
   const int steps = end - begin;
   if (steps == 1) return chain.reverse(begin);

@@ -11,12 +11,12 @@ namespace aspic {
 namespace {
 
 constexpr int kIterations = 4;  // minimum number per preconditioner
-// Largest predicted decrease at the solution, relative to the value without any motion and, for noisy data, to the value
-// per degree of freedom: a twentieth of a standard deviation.
+// Largest predicted decrease at the solution, relative to the value without any motion and, for noisy data, to the
+// value per degree of freedom: a twentieth of a standard deviation.
 constexpr double kDecrease = 1e-18, kDecreaseInNoise = 1e-3;
 constexpr double kRoundOff = 1e-12, kRoundOffInNoise = 1e-2;  // the same if the line search found no step
 constexpr double kHessianDifference = 1e-3;                   // of p
-constexpr double kWeakest = 1e-5;     // eigenvalue of the scaled Hessian below which a direction is not determined
+constexpr double kWeakest = 1e-5;        // eigenvalue of the scaled Hessian below which a direction is not determined
 constexpr double kLargestDeviation = 1;  // of p: a factor of e
 constexpr double kVanished = -5;         // p of a damping coefficient that has fallen to less than 1 % of its guess
 
@@ -66,7 +66,8 @@ class MotionMinimizer {
       is_done = iteration.decrement <= (iterations_of_round_ == 1 ? 1 : 0.01) * tolerance(kDecrease, kDecreaseInNoise);
       if (options_.observe) options_.observe({report_.iterations, f_.iterate().rms, f_.simulations()});
     };
-    const int left = std::min(std::max(kIterations, f_.parameters().size()), options_.max_iterations - report_.iterations);
+    const int left =
+        std::min(std::max(kIterations, f_.parameters().size()), options_.max_iterations - report_.iterations);
     const MinimizeOptions options{.max_iterations = left,
                                   .tolerance = 0,
                                   .criterion = Criterion::first_gradient,

@@ -13,8 +13,8 @@ namespace aspic {
 
 struct MotionFitProgress {
   int iteration = 0;
-  double rms = 0;        // root mean square distance [m]
-  int simulations = 0;   // so far
+  double rms = 0;       // root mean square distance [m]
+  int simulations = 0;  // so far
 };
 
 struct MotionFitOptions {
@@ -31,12 +31,12 @@ struct FittedMotionValue {
 
 struct MotionFitReport {
   Status status = Status::undefined;
-  bool stopped = false;      // by the stop token; there are no standard deviations
-  std::string message;       // the reason for a failure
-  std::vector<double> p;     // of MotionParameters
+  bool stopped = false;   // by the stop token; there are no standard deviations
+  std::string message;    // the reason for a failure
+  std::vector<double> p;  // of MotionParameters
   std::vector<FittedMotionValue> values;
   MotionPoint before, after;
-  double chi_squared = 0;    // sum of squared residuals / sigma^2 per degree of freedom
+  double chi_squared = 0;  // sum of squared residuals / sigma^2 per degree of freedom
   int iterations = 0, simulations = 0, gradients = 0;
 };
 

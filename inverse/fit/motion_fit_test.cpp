@@ -39,15 +39,14 @@ MotionModel beam(bool is_held = true, const Vec3d& gravity = {{1, -9.81, 0}}) {
   return model;
 }
 
-TrajectoryOptions steps_of(double h) {
-  return {.h = h, .tolerance = 1e-13, .adjoint_tolerance = 1e-13};
-}
+TrajectoryOptions steps_of(double h) { return {.h = h, .tolerance = 1e-13, .adjoint_tolerance = 1e-13}; }
 
 // Three markers that follow an arbitrary path, partly between time steps of 0.02 s.
 MotionData some_data(const MotionModel& model) {
   MotionData data;
   const int last = model.model.mesh.vertex_count() - 1;
-  data.markers = {{{last, last - 1, last - 2}, {0.2, 0.3, 0.5}}, {{last - 3, last - 1, last}, {1, 0, 0}},
+  data.markers = {{{last, last - 1, last - 2}, {0.2, 0.3, 0.5}},
+                  {{last - 3, last - 1, last}, {1, 0, 0}},
                   {{last - 2, last - 3, last - 4}, {0.5, 0, 0.5}}};
   data.offset = {{{0, 0, 0.01}}, {}, {}};
   for (int k = 1; k <= 9; ++k)

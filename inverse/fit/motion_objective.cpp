@@ -11,11 +11,11 @@
 namespace aspic {
 namespace {
 
-constexpr double kDifference = 1e-4;    // of p, for J
-constexpr double kFloor = 1e-7;         // eigenvalue of the scaled J'J: weaker combinations of parameters are held
-constexpr double kLargestMove = 1;      // of p in one iteration
-constexpr double kAtStep = 1e-6;        // of a time step: samples this close to a step are at the step
-constexpr double kSteps = 1e6;          // maximum number
+constexpr double kDifference = 1e-4;  // of p, for J
+constexpr double kFloor = 1e-7;       // eigenvalue of the scaled J'J: weaker combinations of parameters are held
+constexpr double kLargestMove = 1;    // of p in one iteration
+constexpr double kAtStep = 1e-6;      // of a time step: samples this close to a step are at the step
+constexpr double kSteps = 1e6;        // maximum number
 
 double squared_length(const Vec3d& v) { return dot(v, v); }
 
@@ -32,8 +32,8 @@ MotionScales scales_of(const MotionModel& model, const MotionData& data, double 
   for (const MotionSample& sample : data.samples) {
     const double time = sample.time - model.start.time;
     if (!(time > 0)) throw InvalidInput("time = " + std::to_string(sample.time) + " s is not after the start");
-    const Vec3d path = sample.position - data.offset[sample.marker] -
-                       point_at(data.markers[sample.marker], model.start);
+    const Vec3d path =
+        sample.position - data.offset[sample.marker] - point_at(data.markers[sample.marker], model.start);
     scales.duration = std::max(scales.duration, time);
     scales.speed = std::max(scales.speed, std::sqrt(dot(path, path)) / time);
   }
@@ -74,8 +74,7 @@ MotionObjective::MotionObjective(MotionModel model, MotionData data, const std::
                          " time steps after the start; it must be between 0 and 1e6 (choose another time.step)");
     const double whole = std::abs(steps - std::round(steps)) < kAtStep ? std::round(steps) : std::floor(steps);
     places_.push_back({static_cast<int>(whole), std::max(0.0, steps - whole) < kAtStep ? 0 : steps - whole});
-    const Vec3d path =
-        sample.position - data_.offset[sample.marker] - point_at(data_.markers[sample.marker], start);
+    const Vec3d path = sample.position - data_.offset[sample.marker] - point_at(data_.markers[sample.marker], start);
     square += squared_length(path);
     resting_ += squared_length(path) / (2 * sample.sigma * sample.sigma);
   }
@@ -178,9 +177,7 @@ bool MotionObjective::is(std::span<const double> x, const MotionPoint& point) co
   return std::equal(point.p.begin(), point.p.end(), x.begin());
 }
 
-Evaluation MotionObjective::at_iterate() const {
-  return {at_.value, 1e-12 * at_.value + 1e-20 * resting_};
-}
+Evaluation MotionObjective::at_iterate() const { return {at_.value, 1e-12 * at_.value + 1e-20 * resting_}; }
 
 Evaluation MotionObjective::evaluate(std::span<const double> x) {
   if (is(x, at_)) return at_iterate();

@@ -28,7 +28,7 @@ struct MotionData {
 // The objective at one p.
 struct MotionPoint {
   bool ok = false;
-  std::string message;           // of a simulation that failed
+  std::string message;  // of a simulation that failed
   std::vector<double> p;
   double value = 0;              // sum of |simulated - measured|^2 / (2 sigma^2)
   std::vector<double> gradient;  // with respect to p
@@ -52,9 +52,9 @@ class MotionObjective : public Objective, public HasPreconditioner {
 
   MotionPoint simulate(std::span<const double> p);       // without gradient
   MotionPoint differentiate(std::span<const double> p);  // value and gradient
-  // Computes the preconditioner at a point: J'J, J by differences of simulations. Parameters that move no marker by more
-  // than kInsensitive of the travel per unit of p are held until the next call. Returns whether the set of held ones
-  // changed.
+  // Computes the preconditioner at a point: J'J, J by differences of simulations. Parameters that move no marker by
+  // more than kInsensitive of the travel per unit of p are held until the next call. Returns whether the set of held
+  // ones changed.
   bool linearize(const MotionPoint& at);
   bool is_held(int i) const { return held_[i]; }
   void set_iterate(const MotionPoint& at) { at_ = trial_ = at; }

@@ -27,9 +27,7 @@ bool are_equal(const std::vector<double>& values) {
   return *largest - *least <= 1e-9 * std::abs(*largest);
 }
 
-Vec3d node(std::span<const double> x, size_t vertex) {
-  return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}};
-}
+Vec3d node(std::span<const double> x, size_t vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }
 
 double speed_of(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
@@ -77,13 +75,13 @@ void MotionParameters::add(const std::string& name, const MotionScales& scales) 
     if (!gravity_) throw InvalidInput("'density' cannot be fitted: the load 'gravity' is not the weight of the body");
     add_positive(Kind::density, {name, "kg/m^3", guess.density});
   } else if (name == "mass_damping") {
-    add_positive(Kind::mass_damping, guess.mass_damping > 0
-                                         ? MotionParameter{name, "1/s", guess.mass_damping}
-                                         : MotionParameter{name, "1/s", 1 / scales.duration, "1 / duration of the data"});
+    add_positive(Kind::mass_damping, guess.mass_damping > 0 ? MotionParameter{name, "1/s", guess.mass_damping}
+                                                            : MotionParameter{name, "1/s", 1 / scales.duration,
+                                                                              "1 / duration of the data"});
   } else if (name == "stiffness_damping") {
-    add_positive(Kind::stiffness_damping,
-                 guess.stiffness_damping > 0 ? MotionParameter{name, "s", guess.stiffness_damping}
-                                             : MotionParameter{name, "s", scales.time_step, "the time step"});
+    add_positive(Kind::stiffness_damping, guess.stiffness_damping > 0
+                                              ? MotionParameter{name, "s", guess.stiffness_damping}
+                                              : MotionParameter{name, "s", scales.time_step, "the time step"});
   } else if (name == "viscosity") {
     if (guess.viscosity > 0) return add_positive(Kind::viscosity, {name, "Pa s", guess.viscosity});
     const double viscosity = scales.time_step * std::max(guess.young, guess.density * scales.speed * scales.speed);

@@ -1,4 +1,5 @@
-// The parameters of a motion: Young's modulus, Poisson's ratio, density, damping and rigid initial velocity of one body.
+// The parameters of a motion: Young's modulus, Poisson's ratio, density, damping and rigid initial velocity of one
+// body.
 #pragma once
 #include <optional>
 #include <span>
@@ -10,17 +11,17 @@
 namespace aspic {
 
 struct MotionValues {
-  double young = 0, poisson = 0;        // mean over the volume [Pa], [1]
-  double density = 0;                   // mean over the volume [kg/m^3]
-  double mass_damping = 0;              // Rayleigh a of C = a M + b K [1/s]
-  double stiffness_damping = 0;         // Rayleigh b [s]
-  double viscosity = 0;                 // of strain-rate damping, mean over the volume [Pa s]
+  double young = 0, poisson = 0;         // mean over the volume [Pa], [1]
+  double density = 0;                    // mean over the volume [kg/m^3]
+  double mass_damping = 0;               // Rayleigh a of C = a M + b K [1/s]
+  double stiffness_damping = 0;          // Rayleigh b [s]
+  double viscosity = 0;                  // of strain-rate damping, mean over the volume [Pa s]
   Vec3d velocity{}, angular_velocity{};  // [m/s], [rad/s] about the center of mass
 };
 
 struct MotionModel {
-  Model model;                         // of one body; its damping is replaced by that of the members below
-  State start;                         // with the velocities below
+  Model model;  // of one body; its damping is replaced by that of the members below
+  State start;  // with the velocities below
   double mass_damping = 0, stiffness_damping = 0;
   std::vector<double> viscosity = {};  // one per tet [Pa s]; empty: none
   Vec3d velocity{}, angular_velocity{};
@@ -33,10 +34,10 @@ struct MotionScales {
 };
 
 struct MotionParameter {
-  std::string name;       // "young", "velocity_x"
-  std::string unit;       // "Pa"
+  std::string name;  // "young", "velocity_x"
+  std::string unit;  // "Pa"
   double guess = 0;
-  std::string note = {};  // the reason for a guess that is not the value of the model
+  std::string note = {};    // the reason for a guess that is not the value of the model
   bool can_vanish = false;  // a damping coefficient
 };
 
@@ -70,8 +71,8 @@ class MotionParameters {
   enum class Kind { young, poisson, density, mass_damping, stiffness_damping, viscosity, velocity, angular_velocity };
   struct Entry {
     Kind kind;
-    int axis = 0;       // of a velocity
-    double unit = 1;    // of p, for a velocity
+    int axis = 0;     // of a velocity
+    double unit = 1;  // of p, for a velocity
   };
   void add(const std::string& name, const MotionScales& scales);
   void add_positive(Kind kind, const MotionParameter& parameter);

@@ -28,8 +28,7 @@ ScaledInverse scaled_inverse(int n, std::span<const double> A, double floor, Wea
     const bool is_weak = !(eigen.values[k] > floor);
     const double inverse = is_weak ? (weak == Weak::dropped ? 0 : 1 / floor) : 1 / eigen.values[k];
     for (int i = 0; i < m; ++i) {
-      if (std::abs(v[i]) > kTakesPart)
-        result.weakest[kept[i]] = std::min(result.weakest[kept[i]], eigen.values[k]);
+      if (std::abs(v[i]) > kTakesPart) result.weakest[kept[i]] = std::min(result.weakest[kept[i]], eigen.values[k]);
       for (int j = 0; j < m; ++j)
         result.inverse[static_cast<size_t>(n) * kept[i] + kept[j]] +=
             v[i] * v[j] * inverse / (scale[kept[i]] * scale[kept[j]]);

@@ -23,7 +23,8 @@ constexpr double kUsable = 1e-9;  // relative residual at which a solve may stag
 
 void require_gradient(const Model& model, const TrajectoryOptions& options) {
   if (options.integrator != kIntegrator)
-    throw InvalidInput("a trajectory has a gradient for integrator = 'backward_euler', not for '" + options.integrator + "'");
+    throw InvalidInput("a trajectory has a gradient for integrator = 'backward_euler', not for '" + options.integrator +
+                       "'");
   if (!(options.h > 0) || !std::isfinite(options.h))
     throw InvalidInput("the time step is " + std::to_string(options.h) + " s; it must be positive");
   if (options.steps < 0) throw InvalidInput("the number of steps is negative");
@@ -127,11 +128,13 @@ struct Trajectory::Impl {
     for (auto* v : {&qbar, &vbar}) std::fill(v->begin(), v->end(), 0.0);
     visit(0, now);
     if (options.steps == 0) function(0, now, qbar, vbar);
-    const ChainOperations chain{
-        .advance = [this] { return advance(); },
-        .store = [this](int slot) { slots[slot] = {now, point}; },
-        .restore = [this](int slot) { now = slots[slot].state, point = slots[slot].point; },
-        .reverse = [&](int step_number) { return reverse(step_number, gradient); }};
+    const ChainOperations chain{.advance = [this] { return advance(); },
+                                .store =
+                                    [this](int slot) {
+                                      slots[slot] = {now, point};
+                                    },
+                                .restore = [this](int slot) { now = slots[slot].state, point = slots[slot].point; },
+                                .reverse = [&](int step_number) { return reverse(step_number, gradient); }};
     report.ok = reverse_chain(options.steps, static_cast<int>(slots.size()), chain);
     pins.set_zero(qbar);
     pins.set_zero(vbar);  // the pins prescribe these velocities
