@@ -70,6 +70,14 @@ class FitMotion(CommandLine):
         with open(self.folder / "fit/residuals.csv", newline="") as file:
             self.assertEqual(len(list(csv.DictReader(file))), len(rows) - len(CORNERS))
 
+    def test_other_elastic_constants_are_kept_or_replaced(self):
+        self.write("cube.toml", BALL)
+        self.write("flight.csv", table(rows_of_flight(damping=0, steps=3)))
+        lame = ("--set", "material.lambda=1e5", "material.mu=5e4")
+        for name, expected in (("density", "lambda = 1e+05, mu = 50000.0"), ("young", "poisson = 0.3333")):
+            self.fit("cube.toml", "flight.csv", name + ",velocity", "-o", name, *lame)
+            self.assertIn(expected, (self.folder / name / "fitted.toml").read_text())
+
     def run_of_beam(self, scene="beam.toml", *overrides):
         """Marker rows of a run with other values, from its point cache."""
         self.aspic("run", scene, "--out", "truth", "--force", "--quiet", "--set", *overrides)

@@ -176,11 +176,11 @@ int run(const FitMotionArguments& arguments) {
     return exit_code(report);
   }
   const std::string json = to_json(report, objective).dump(2) + "\n";
-  write_fitted_scene({arguments.scene, folder, arguments.overrides, arguments.names, scene.body},
-                     objective.parameters(), report.p);
   write_file(folder / "fit.json", json);
   write_residuals(folder / "residuals.csv", table, objective.data(), report);
   draw_distances(folder / "fit.svg", objective.data(), report);
+  write_fitted_scene({arguments.scene, folder, arguments.overrides, arguments.names, scene.body},
+                     objective.parameters(), report.p);
   if (arguments.json) {
     fmt::print("{}", json);
   } else {

@@ -87,38 +87,47 @@ class Overrides {
     return files_.back();
   }
 
-  // A uniform material is written as numbers, any other one as a file.
+  // Writes the fitted keys if that is possible, otherwise a table of all of them, or a file.
   void add_material() {
-    FittedMaterial material{.mesh = to_user(parameters_.model().numbering, parameters_.model().mesh),
+    const FittedMaterial material = fitted_material();
+    const Value& table = scene_.body["material"];
+    const bool is_elastic = has(scene_.names, "young") || has(scene_.names, "poisson");
+    const auto is_uniform = [&](const char* name) { return are_equal(*material.find(name)); };
+    const bool has_keys = !table.find("file") && (!is_elastic || table.find("young"));
+    if (has_keys && (!is_elastic || (is_uniform("young") && is_uniform("poisson"))) &&
+        (!has(scene_.names, "density") || is_uniform("density"))) {
+      if (has(scene_.names, "young")) add("material.young", number_text(values_.young));
+      if (has(scene_.names, "poisson")) add("material.poisson", number_text(values_.poisson));
+      if (has(scene_.names, "density")) add("material.density", number_text(values_.density));
+    } else if (std::all_of(material.values.begin(), material.values.end(),
+                           [](const auto& field) { return are_equal(field.second); })) {
+      std::string text = "{ model = " + toml_string(material.model);
+      for (const auto& [name, values] : material.values) text += ", " + name + " = " + number_text(values[0]);
+      add("material", text + " }");
+    } else {
+      const fs::path path = file("material.vtu");
+      write_material(path, material);
+      add("material", "{ file = " + toml_string(path.string()) + ", frame = \"placed\" }");
+    }
+  }
+
+  FittedMaterial fitted_material() const {
+    const Numbering& numbering = parameters_.model().numbering;
+    FittedMaterial material{.mesh = to_user(numbering, parameters_.model().mesh),
                             .model = scene_.body["material"]["model"].text()};
     const std::vector<MaterialParameters> parameters = parameters_.material(p_);
-    const Renumbering& tet = parameters_.model().numbering.tet;
-    const auto add_field = [&](const std::string& name, auto&& of) {
+    const auto add_field = [&](const std::string& name, auto&& quantity) {
       std::vector<double> values;
-      for (const MaterialParameters& m : parameters) values.push_back(of(m));
-      material.values.emplace_back(name, tet.to_user(values));
+      for (const MaterialParameters& m : parameters) values.push_back(quantity(m));
+      material.values.emplace_back(name, numbering.tet.to_user(values));
     };
     add_field("young", [](const MaterialParameters& m) { return m.lame.mu > 0 ? young_modulus(m.lame) : 0; });
     add_field("poisson", [](const MaterialParameters& m) { return m.lame.mu > 0 ? poisson_ratio(m.lame) : 0; });
     const MaterialInfo& info = material_info(material.model);
     for (size_t e = 0; e < info.extra.size(); ++e)
       add_field(info.extra[e].name, [e](const MaterialParameters& m) { return m.extra[e]; });
-    material.values.emplace_back("density", tet.to_user(parameters_.density(p_)));
-
-    const bool is_elastic = has(scene_.names, "young") || has(scene_.names, "poisson");
-    const bool is_uniform =
-        (!is_elastic || (are_equal(*material.find("young")) && are_equal(*material.find("poisson")))) &&
-        (!has(scene_.names, "density") || are_equal(*material.find("density")));
-    if (!is_uniform || scene_.body["material"].find("file")) {
-      const fs::path path = file("material.vtu");
-      write_material(path, material);
-      return add("material", "{ file = " + toml_string(path.string()) + ", frame = \"placed\" }");
-    }
-    if (is_elastic) {
-      add("material.young", number_text(values_.young));
-      add("material.poisson", number_text(values_.poisson));
-    }
-    if (has(scene_.names, "density")) add("material.density", number_text(values_.density));
+    material.values.emplace_back("density", numbering.tet.to_user(parameters_.density(p_)));
+    return material;
   }
 
   void add_viscosity() {

@@ -16,15 +16,16 @@ namespace {
 const char* const kAxes[] = {"_x", "_y", "_z"};
 const QuantityScale kPoisson = QuantityScale::bounded(-1, 0.5);
 
-double mean(const std::vector<double>& values, const std::vector<double>& volume) {
-  double sum = 0, total = 0;
-  for (size_t t = 0; t < values.size(); ++t) sum += volume[t] * values[t], total += volume[t];
-  return sum / total;
-}
-
 bool are_equal(const std::vector<double>& values) {
   const auto [least, largest] = std::minmax_element(values.begin(), values.end());
   return *largest - *least <= 1e-9 * std::abs(*largest);
+}
+
+double mean(const std::vector<double>& values, const std::vector<double>& volume) {
+  if (are_equal(values)) return values[0];
+  double sum = 0, total = 0;
+  for (size_t t = 0; t < values.size(); ++t) sum += volume[t] * values[t], total += volume[t];
+  return sum / total;
 }
 
 Vec3d node(std::span<const double> x, size_t vertex) { return {{x[3 * vertex], x[3 * vertex + 1], x[3 * vertex + 2]}}; }

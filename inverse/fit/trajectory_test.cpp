@@ -24,8 +24,8 @@ TrajectoryOptions exact() {
   return options;
 }
 
-// Everything that a gradient can be asked for. A beam of unlike tets with a wall, a crank that turns, a spring whose
-// target moves, weight and three kinds of damping.
+// A model with every kind of parameter: a beam of unlike tets with a wall, a crank that turns, a spring whose target
+// moves, weight and three kinds of damping.
 struct Swinging {
   std::string material = "mooney_rivlin";
   std::vector<MaterialParameters> elastic;
@@ -114,7 +114,7 @@ TrajectoryGradient gradient_of(const Swinging& body, const TrajectoryOptions& op
   return gradient;
 }
 
-// A change of everything of one kind by eps, and what the gradient says of its rate.
+// A change of all parameters of one kind by eps, and its rate by the gradient.
 struct Kind {
   std::string name;
   std::function<void(Swinging&, double eps)> change;
@@ -144,7 +144,7 @@ Kind elastic_kind(const std::string& name, const Swinging& body, int k) {
           }};
 }
 
-// One of the vectors of the body.
+// The same for one of the vectors of the body.
 Kind vector_kind(const std::string& name, const std::vector<double>& rate,
                  const std::function<std::vector<double>&(Swinging&)>& vector,
                  const std::function<const std::vector<double>&(const TrajectoryGradient&)>& gradient,
