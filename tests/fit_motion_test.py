@@ -1,6 +1,6 @@
 """`aspic fit-motion` against motions from closed recurrences and from runs of the program.
 
-usage: ASPIC=path/to/aspic fit_motion_test.py"""
+usage: ASPIC=path/to/aspic fit_motion_test.py [CLASS]"""
 import csv
 import json
 import signal
@@ -58,6 +58,9 @@ class FitMotion(CommandLine):
     def test_recovers_damped_flight(self):
         self.write("cube.toml", BALL)
         rows = rows_of_flight()
+        middles = [(a[0] + STEP / 2, a[1], *((x + y) / 2 for x, y in zip(a[2:], b[2:])))
+                   for a, b in zip(rows[3:], rows[6:])]  # positions are linear between two time steps
+        rows += middles
         self.write("flight.csv", table(rows[::-1]))
         report, found = self.fit("cube.toml", "flight.csv", "velocity,mass_damping", "-o", "fit")
         expected = {"velocity_x": 1.2, "velocity_y": 3.4, "velocity_z": -0.7, "mass_damping": 1.7}

@@ -88,7 +88,7 @@ TEST(MotionFit, GradientHasTaylorSlope2ForEveryParameter) {
           p[i] += eps;
           return std::vector<double>{f.simulate(p).value};
         },
-        {point.gradient[i]}, name == "young" || name == "density" ? 0.01 : 0.1, name);
+        {point.gradient[i]}, name == "young" || name == "density" ? 0.01 : 0.1, name, 3);
   }
 }
 
