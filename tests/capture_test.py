@@ -186,7 +186,7 @@ class BadData(Captured):
         self.change_cells("positions", ["z"], lambda z: str(float(z) + 0.02))
         self.write("quick.toml", Fit.QUICK_OPTIONS)
         done = self.aspic("fit", "data", *Fit.QUICK, "--unknown", "young=uniform", code=3)
-        self.assertIn("not to be relied on (unexplained)", done.stderr)
+        self.assertIn("not reliable (unexplained)", done.stderr)
         self.assertRegex(done.stdout + done.stderr, r"warning: cases\.csv:\d \('poke \d, depth \d'\) is explained worst: .* \d+ standard")
 
 

@@ -76,7 +76,7 @@ class Explain(Explanations):
     def test_explicit_step_too_long_for_damping(self):
         for integrator, damping in (("symplectic_euler", "stiffness = 0.05"), ("rk4", "viscosity = 5000")):
             self.scene(integrator=integrator, step=0.0005, duration=0.3, body=f"damping = {{ {damping} }}")
-            self.assert_cured(self.run_scene(code=3), "longer than", "damped most strongly", change="time.step=")
+            self.assert_cured(self.run_scene(code=3), "longer than", "strongest damping", change="time.step=")
 
     def test_poissons_ratio_too_close_to_one_half(self):
         self.scene(poisson="0.5")
@@ -117,7 +117,7 @@ class Explain(Explanations):
     def test_finds_lengths_in_millimeters(self):
         scene = BODY.format(**USUAL).replace("[0.4, 0.1, 0.1]", "[400, 100, 100]")
         self.write("scene.toml", scene)
-        self.assertNotIn("crushes", self.assert_cured(self.run_scene(), "400 m were meant in mm", change="body.beam.scale="))
+        self.assertNotIn("crushes", self.assert_cured(self.run_scene(), "400 m are millimeters", change="body.beam.scale="))
 
     def test_pins_that_flatten_an_element(self):
         # One cell, all of whose vertices are pinned: no step is short enough.

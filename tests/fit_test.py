@@ -140,7 +140,7 @@ class Fit(FitCommand):
             writer.writerows(rows)
         options = (*self.options("mesh_errors = false", "cross_validation = false"), "--known", "poisson=0.4")
         run = self.fit(*options, code=3)
-        self.assertIn("not to be relied on (field_rejected): one value replaces the field", run.stderr)
+        self.assertIn("not reliable (field_rejected): one value replaces the field", run.stderr)
         self.assertNotIn("verdict    good", run.stdout)
         figures = json.loads((self.folder / "material.fit/figures.json").read_text())
         self.assertFalse(figures["verdict"]["good"])
@@ -178,7 +178,7 @@ class Fit(FitCommand):
                 (("--known", "poisson=0.5"), "poisson = 0.5; must be"),
                 (("--known", "poisson"), "QUANTITY=VALUE is expected"),
                 (("--unknown", "young=regions"), "no region labels"),
-                (("-o", "material.obj"), "a material is a .vtu file"),
+                (("-o", "material.obj"), "a material file is a .vtu"),
                 (("--resume",), "no such fit to resume")):
             self.assertIn(message, self.fit(*arguments, code=2).stderr, arguments)
         self.assertIn("nothing", self.aspic("fit", "nothing", code=2).stderr)

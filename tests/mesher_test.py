@@ -177,7 +177,7 @@ class Mesher(unittest.TestCase):
     def test_bad_input_is_refused_with_its_remedy(self):
         lines = write_ball(self.folder / "meeting.obj")
         write_ball(self.folder / "meeting.obj", center=(1.5, 0, 0), append_to=lines)
-        self.expect_error(2, ["runs into itself", "triangles", "unite"], self.folder / "meeting.obj")
+        self.expect_error(2, ["intersects itself", "triangles", "unite"], self.folder / "meeting.obj")
         self.expect_error(2, ["missing.obj"], self.folder / "missing.obj")
         self.expect_error(2, ["missing.inr"], self.folder / "missing.inr")
         (self.folder / "broken.inr").write_bytes(b"#INRIMAGE-4#{\nXDIM=9\n")

@@ -57,7 +57,7 @@ class Minimize(CommandLine):
 
     def test_overflow_is_printed_without_sign(self):
         text = self.aspic("minimize", "--expression", "-exp(x^2+y^2)", "--start", "1,2", code=3).stdout
-        self.assertIn("|g| = nan; nan was reached", text)
+        self.assertIn("|g| = nan; residual nan", text)
         self.assertNotIn("-nan", text)
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "needs a device that is always full")
@@ -196,7 +196,7 @@ class Verify(CommandLine):
         self.assertIsNone(self.results()[0]["rows"][-1]["measured"])
 
     def test_bad_input_is_named(self):
-        self.assertIn("no check is about 'nonsense'", self.aspic("verify", "--only", "nonsense", code=2).stderr)
+        self.assertIn("no check matches 'nonsense'", self.aspic("verify", "--only", "nonsense", code=2).stderr)
         self.assertIn("--instead bdf2=stvk", self.aspic("verify", "--instead", "bdf2=stvk", code=2).stderr)
 
 
@@ -240,7 +240,7 @@ class Lecture(CommandLine):
 
     def test_a_bad_page_is_named(self):
         for page in ("0", "63", "5x", "first"):
-            self.assertIn(f"'{page}' is no page", self.aspic("lecture", page, code=2).stderr)
+            self.assertIn(f"'{page}' is not a page", self.aspic("lecture", page, code=2).stderr)
         self.aspic("lecture", "5", "--mesh", "missing.mesh", code=2)
 
     def test_judges_numbers_without_browser_and_gnuplot(self):

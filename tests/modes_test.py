@@ -89,7 +89,7 @@ class Modes(CommandLine):
             rows = list(csv.DictReader(file))
         self.assertEqual([row["mode"] for row in rows], ["1", "2", "3"])
         self.assertEqual(len(list((self.folder / "out/beam_modes/frames").iterdir())), 4)
-        self.assertIn("holds a run already", self.aspic("modes", "beam.toml", code=2).stderr)
+        self.assertIn("already contains a run", self.aspic("modes", "beam.toml", code=2).stderr)
         self.aspic("report", "out/beam_modes", "-o", "modes.html")
         self.assertIn("Steps are modes",
                       self.aspic("run", "beam.toml", "--out", "out/beam_modes", "--resume", code=2).stderr)

@@ -185,7 +185,7 @@ TEST_F(BadMesh, DuplicateAndUnreferencedVerticesAreRepaired) {
   torn.tets[0][0] = 27;
   std::string notes;
   for (const std::string& note : load_scene(scene(torn)).notes) notes += note;
-  EXPECT_THAT(notes, HasSubstr("lie exactly where an earlier one does"));
+  EXPECT_THAT(notes, HasSubstr("coincide with an earlier vertex"));
   expect_runs(torn);
   repair(torn);
   EXPECT_EQ(torn.vertex_count(), 27);

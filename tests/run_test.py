@@ -177,7 +177,7 @@ motion = { keyframes = [{ time = 0, displacement = [0, 0, 0] }, { time = 0.2, di
         self.assertEqual([line["rejected"] for line in lines], [int(step["rejected"]) for step in steps])
         taken, rejected = sum(line["substeps"] for line in lines), sum(line["rejected"] for line in lines)
         self.assertGreater(taken, 2 * len(steps))
-        self.assertIn(f"parts      {taken} taken, {rejected} rejected", done.stderr)
+        self.assertIn(f"substeps   {taken} accepted, {rejected} rejected", done.stderr)
 
     def test_adaptive_steps_require_a_capable_integrator(self):
         done = self.aspic("run", self.beam(), "--set", "time.adaptive.tolerance=1e-5", "--set",
@@ -232,9 +232,9 @@ class Report(CommandLine):
         self.assertIn("output.vtu = true", self.aspic("report", "out/beam", code=2).stderr)
 
     def test_bad_input_is_named(self):
-        self.assertIn("no directory of a run", self.aspic("report", self.beam(), code=2).stderr)
+        self.assertIn("not the directory of a run", self.aspic("report", self.beam(), code=2).stderr)
         (self.folder / "empty").mkdir()
-        self.assertIn("holds no run", self.aspic("report", "empty", code=2).stderr)
+        self.assertIn("contains no run", self.aspic("report", "empty", code=2).stderr)
         self.aspic("run", "beam.toml")
         (self.folder / "out/beam/frames/body_000003.vtu").write_text("<VTKFile")
         self.assertIn("body_000003.vtu", self.aspic("report", "out/beam", code=2).stderr)
@@ -266,7 +266,7 @@ class Render(CommandLine):
         render = lambda *arguments: self.aspic("render", "out/beam", *arguments, code=2, timeout=200).stderr
         self.assertIn("--size 9x: write WIDTHxHEIGHT", render("-o", "a.png", "--step", "1", "--size", "9x"))
         self.assertIn("one picture needs --step", render("-o", "a.png"))
-        self.assertIn("a video needs even numbers", render("-o", "a.mp4", "--size", "101x100"))
+        self.assertIn("a video needs even width and height", render("-o", "a.mp4", "--size", "101x100"))
         self.assertIn("a.bmp: pictures become", render("-o", "a.bmp"))
         self.assertIn("choose one of displacement", render("-o", "a.png", "--step", "1", "--color", "stress"))
         self.assertIn("choose one of front", render("-o", "a.png", "--step", "1", "--view", "above"))
@@ -333,7 +333,7 @@ class Interruption(CommandLine):
         self.resume_and_compare("stopped")
 
     def test_resume_needs_a_run(self):
-        self.assertIn("no such run", self.aspic("run", self.scene, "--resume", code=2).stderr)
+        self.assertIn("no run to resume", self.aspic("run", self.scene, "--resume", code=2).stderr)
 
     def test_a_complete_run_has_nothing_to_resume(self):
         scene = self.beam("short.toml")

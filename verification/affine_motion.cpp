@@ -39,7 +39,7 @@ class AffineLoad : public Energy {
 
  private:
   struct Force : Context {
-    std::vector<double> f;  // at the time [N]; empty before the first step
+    std::vector<double> f;  // forces at the current time [N]; empty before the first step
   };
 
   const MassMatrix& mass_;

@@ -10,17 +10,17 @@
 namespace aspic::verify {
 namespace {
 
-// P L^2 / (E I) and the drop of the tip over L.
+// P L^2 / (E I), and the tip deflection over L.
 struct TipLoad {
   double load, drop;
 };
 const std::vector<TipLoad> kElastica = {{.25, .08274592}, {.5, .16214358}, {1, .30172077},
                                         {2, .49345748},   {4, .66996418},  {10, .81060902}};
 
-// What the load passes on its way; one step each.
+// Load steps.
 const std::vector<double> kLoads = {.25, .5, 1, 1.5, 2, 3, 4, 5.5, 7.5, 10};
 
-// The drops of a strip of length 1 and height 1/40 with n cells through it.
+// Tip deflections of a strip of length 1 and height 1/40 with n cells through the height.
 std::vector<double> drops(int n, const std::string& material, const std::vector<TipLoad>& loads) {
   const double height = 1.0 / 40, width = height / n;
   Model model = model_of(make_layer(40 * n, n, width,
@@ -30,7 +30,7 @@ std::vector<double> drops(int n, const std::string& material, const std::vector<
                          {.material = material, .young = 1, .poisson = 0, .gravity = {}})
                     .pin("wall", [](const Vec3d& X) { return X[0] < 1e-9; })
                     .build();
-  model.loads.push_back(make_plane_hold(model.mesh, 1e3 * width));  // so narrow a strip would buckle sideways
+  model.loads.push_back(make_plane_hold(model.mesh, 1e3 * width));  // prevents lateral buckling of the narrow strip
   const double area = height * width, inertia = width * height * height * height / 12;
   model.loads.push_back(make_growing_load(
       traction_on(model.mesh, [](const Vec3d& X) { return X[0] > 1 - 1e-9; }, {{0, -inertia / area, 0}}),
@@ -41,7 +41,7 @@ std::vector<double> drops(int n, const std::string& material, const std::vector<
   const int tip =
       vertices_where(model.mesh, [](const Vec3d& X) { return X[0] > 1 - 1e-9 && std::abs(X[1]) < 1e-9; }).at(0);
   SimulationOptions options{.h = 1, .integrator = "quasi_static", .solver = {}};
-  options.solver.minimize.tolerance = 1e-13;  // bending is soft beside the moduli that forces are judged by
+  options.solver.minimize.tolerance = 1e-13;  // bending is soft compared with the moduli that scale the forces
   Simulation simulation = simulate(std::move(model), options);
   std::vector<double> found;
   for (const TipLoad& row : loads) {
@@ -65,7 +65,7 @@ void check_elastica(const Subject& subject, Findings& found) {
     plot.curves.push_back(curve);
   }
   Curve exact{"elastica", {0}, {0}, CurveStyle::dashed};
-  Findings orders;  // after the limits
+  Findings orders;  // appended after the limits
   for (size_t k = 0; k < loads.size(); ++k) {
     const std::string name = "load " + std::to_string(loads[k].load).substr(0, 5);
     std::vector<double> values;

@@ -1,4 +1,4 @@
-// A problem with a known answer, and what was found of it.
+// Checks: problems with known answers, and the findings for them.
 #pragma once
 #include <functional>
 #include <map>
@@ -8,23 +8,23 @@
 
 namespace aspic::verify {
 
-// What is verified, and how closely.
+// Subject of the verification: thoroughness and replacements.
 struct Subject {
-  bool quick = false;                          // fewer and coarser cases: seconds in place of minutes
-  std::map<std::string, std::string> instead;  // materials, integrators, cuts: to see checks fail
-  double stiffness = 1;  // multiplies the moduli where all materials are alike, at small strains: for the same purpose
+  bool quick = false;                          // fewer and coarser cases: seconds instead of minutes
+  std::map<std::string, std::string> instead;  // replaced materials, integrators, cuts, to see checks fail
+  double stiffness = 1;  // factor of the moduli where all materials agree (small strains), to see checks fail
 
-  std::string taken_for(const std::string& name) const;  // the name itself, unless it is replaced
+  std::string taken_for(const std::string& name) const;  // the replacement of `name`, or `name`
 };
 
-// One number that is judged.
+// One judged value.
 struct Row {
   std::string quantity;
   double measured, reference, tolerance;
-  std::string unit;    // of all three; empty: none
-  std::string reason;  // why the tolerance is what it is
+  std::string unit;    // unit of all three; empty: none
+  std::string reason;  // reason of the tolerance
 
-  bool passes() const;  // |measured - reference| <= tolerance; false for what is not a finite number
+  bool passes() const;  // |measured - reference| <= tolerance; false if not finite
 };
 
 enum class CurveStyle { line, dashed, points, line_and_points };
@@ -33,7 +33,7 @@ struct Curve {
   std::string label;
   std::vector<double> x, y;
   CurveStyle style = CurveStyle::line_and_points;
-  int color = -1;  // of the palette; -1: the next one
+  int color = -1;  // index into the palette; -1: the next one
 };
 
 enum class Scales { linear, logarithmic };
@@ -48,27 +48,27 @@ struct Findings {
   std::vector<Row> rows;
   std::vector<Plot> plots;
 
-  bool passes() const;  // at least one row, and all of them pass
+  bool passes() const;  // at least one row, and all rows pass
   void expect(std::string quantity, double measured, double reference, double tolerance, std::string reason,
               std::string unit = "");
-  // expect() for a number that should be zero.
+  // Expects a value of zero.
   void expect_small(std::string quantity, double measured, double bound, std::string reason, std::string unit = "");
 };
 
 struct Check {
-  std::string family, name;  // "integrators", "free_fall"; the command line knows it as family/name
+  std::string family, name;  // "integrators", "free_fall"; on the command line family/name
   std::string title;
-  std::string problem;              // what is computed, in a sentence or two
-  std::string reference;            // where the reference values come from
+  std::string problem;              // computed quantity, in a sentence or two
+  std::string reference;            // source of the reference values
   std::vector<std::string> source;  // keys of docs/references.bib; empty: derived in `reference`
   std::function<void(const Subject&, Findings&)> run;
 
   std::string key() const { return family + "/" + name; }
 };
 
-const std::vector<Check>& checks();  // all of them, family by family
+const std::vector<Check>& checks();  // all checks, by family
 
-// What the check finds. What it throws becomes a failed row, and so does finding nothing.
+// Runs a check. An exception becomes a failed row, as does a check without rows.
 Findings run_check(const Check& check, const Subject& subject);
 
 }  // namespace aspic::verify

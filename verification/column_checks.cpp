@@ -1,4 +1,4 @@
-// A square column that twists: its frequency, and large turns.
+// Torsion of a square column: its frequency, and large rotations.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 constexpr double kLength = 6;                             // of a column of side 1 [m]
 constexpr double kTorsion = 0.1405770, kPolar = 1.0 / 6;  // Saint-Venant's constant, polar moment of area [m^4]
 
-// n x n x 6n cells about the z axis; when n is even, quarter turns and mirrors map the mesh to itself.
+// n x n x 6n cells about the z axis. For even n, quarter turns and reflections map the mesh to itself.
 TetMesh column_mesh(int n, BoxCut cut = BoxCut::five) {
   return make_box({{-0.5, -0.5, 0}}, {{0.5, 0.5, kLength}}, {n, n, static_cast<int>(kLength) * n}, cut);
 }
@@ -26,7 +26,7 @@ std::vector<int> at_foot(const TetMesh& mesh) {
   return vertices_where(mesh, [](const Vec3d& X) { return X[2] == 0; });
 }
 
-// sum of x (y component) - y (x component): how much a field turns about z.
+// sum of x (y component) - y (x component): rotation of a field about z.
 double turning(const TetMesh& mesh, const std::vector<double>& field) {
   double sum = 0;
   for (size_t v = 0; v < mesh.rest.size(); ++v)
@@ -34,7 +34,7 @@ double turning(const TetMesh& mesh, const std::vector<double>& field) {
   return sum;
 }
 
-// The lowest mode that turns about z; the foot, n even, may warp but not turn. G = 1, rho = 1.
+// Lowest torsional mode; n is even, and the foot can warp but not rotate. G = 1, rho = 1.
 double torsional_frequency(int n, const std::string& material, double stiffness) {
   const double poisson = 0.3, young = stiffness * 2 * (1 + poisson);
   Model model = make_model(column_mesh(n),
@@ -43,7 +43,7 @@ double torsional_frequency(int n, const std::string& material, double stiffness)
     model.loads.push_back(make_plane_hold(model.mesh, 1e3 * young, axis, at_foot(model.mesh)));
   const auto has_no_warp = [](const Vec3d& X) { return X[2] == 0 && std::abs(X[0] * X[1]) < 1e-9; };
   model.pins.push_back({"middle lines", vertices_where(model.mesh, has_no_warp), {}});
-  const std::vector<Mode> found = lowest_modes(model, 6);  // four of bending come before torsion or beside it
+  const std::vector<Mode> found = lowest_modes(model, 6);  // four bending modes precede or accompany torsion
   const auto turns_less = [&](const Mode& a, const Mode& b) {
     return std::abs(turning(model.mesh, a.shape)) < std::abs(turning(model.mesh, b.shape));
   };
@@ -62,10 +62,10 @@ void check_frequency(const Subject& subject, Findings& found) {
       "Hz");
 }
 
-// [Gil2014]: 17 MPa, nu = 0.45, 1100 kg/m^3, clamped at the foot, set going at Omega sin(pi Z / 2 L) about its axis.
+// [Gil2014]: 17 MPa, nu = 0.45, 1100 kg/m^3, clamped at the foot, initial spin Omega sin(pi Z / 2 L).
 struct Column {
   int n;
-  double h, spin, stiffness;  // steps [s], Omega [1/s], a factor of the moduli
+  double h, spin, stiffness;  // steps [s], Omega [1/s], factor of the moduli
   std::string material, integrator;
   BoxCut cut;
 };
@@ -90,8 +90,8 @@ Simulation column(const Column& c) {
 }
 
 struct Twist {
-  double impulse_error = 0;  // |dL - h moment of the foot| / |L0|, largest over steps
-  double energy_error = 0;   // |E - E0| / E0, largest over steps
+  double impulse_error = 0;  // maximum over steps of |dL - h moment of the foot| / |L0|
+  double energy_error = 0;   // maximum over steps of |E - E0| / E0
   double least_det_F = 1;
   std::vector<double> time, angle;  // of the top [s], [rad]
   std::vector<double> q;            // at the end
@@ -121,7 +121,7 @@ Twist twisted(const Column& c) {
     take_steps(simulation, 1, c.integrator);
     for (size_t i = 0; i < middle.size(); ++i) middle[i] = (middle[i] + simulation.state().q[i]) / 2;
     simulation.model().elasticity[0]->add_gradient(middle, 1, force);
-    double moment = 0;  // of the foot on the column about z
+    double moment = 0;  // moment of the foot on the column about z
     for (const int v : foot) moment += middle[3 * v] * force[3 * v + 1] - middle[3 * v + 1] * force[3 * v];
     const double change = momenta(simulation).angular[2] - L;
     twist.impulse_error = std::fmax(twist.impulse_error, std::abs(change - c.h * moment) / std::abs(first_L));
@@ -136,7 +136,7 @@ Twist twisted(const Column& c) {
   return twist;
 }
 
-// The largest difference of a coordinate between `other` and what `motion`, which maps the mesh to itself, makes of q.
+// Largest difference between `other` and the image of q under `motion`, which maps the mesh to itself.
 double asymmetry(const TetMesh& mesh, const std::vector<double>& q, const std::vector<double>& other,
                  const Mat3d& motion) {
   std::map<std::array<long, 3>, size_t> numbers;
@@ -153,7 +153,7 @@ double asymmetry(const TetMesh& mesh, const std::vector<double>& q, const std::v
   return most;
 }
 
-// w of the swing of small turns [1/s].
+// Angular frequency of small rotations [1/s].
 double swing_rate() {
   const double speed = std::sqrt(kColumnYoung / (2 * (1 + kColumnPoisson)) * kTorsion / (kDensity * kPolar));
   return std::numbers::pi * speed / (2 * kLength);

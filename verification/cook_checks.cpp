@@ -1,4 +1,4 @@
-// Cook's membrane: bending and shear in the plane beside a singular corner.
+// Cook's membrane: bending and shear in the plane with a singular corner.
 #include <cmath>
 #include <string>
 
@@ -11,7 +11,7 @@
 namespace aspic::verify {
 namespace {
 
-// A problem of plane strain: E and nu, the traction up the right edge.
+// Plane strain problem: E and nu, and the upward traction on the right edge.
 struct Cook {
   std::string material;
   double young, poisson, traction;
@@ -36,12 +36,12 @@ double tip(int n, const Cook& cook, const std::string& taken) {
   return sum / static_cast<double>(middle.size());
 }
 
-// Errors of two orders, 2 of the smooth part and 1.29 of the corner: the limit of the last three meshes.
+// Limit of the last three meshes for errors of two orders: 2 of the smooth part and 1.29 of the corner.
 double limit_of(const std::vector<double>& values) {
   const double* v = values.data() + values.size() - 3;
   const double a = std::exp2(2.0), b = std::exp2(1.29);
-  const double first = (a * v[1] - v[0]) / (a - 1), second = (a * v[2] - v[1]) / (a - 1);  // without the one
-  return (b * second - first) / (b - 1);                                                   // nor the other
+  const double first = (a * v[1] - v[0]) / (a - 1), second = (a * v[2] - v[1]) / (a - 1);  // eliminates the first order
+  return (b * second - first) / (b - 1);  // eliminates the second order
 }
 
 void check_cook(const Subject& subject, Findings& found, const Cook& cook, double reference) {

@@ -1,4 +1,4 @@
-// A round cylinder that is twisted far: torque, axial force, radius.
+// Large torsion of a round cylinder: torque, axial force, radius.
 #include <cmath>
 
 #include "mesh/generators.h"
@@ -9,10 +9,10 @@
 namespace aspic::verify {
 namespace {
 
-constexpr double kCylinderPoisson = 0.3, kTwist = 1, kHeight = 0.5;  // of a cylinder of radius 1 [1], [rad/m], [m]
+constexpr double kCylinderPoisson = 0.3, kTwist = 1, kHeight = 0.5;  // cylinder of radius 1 [1], [rad/m], [m]
 
 struct Twisted {
-  double torque, force, outer;  // of the ends on the cylinder; radius of the side at half its height
+  double torque, force, outer;  // by the ends on the cylinder; outer radius at half height
 };
 
 Twisted twisted(int rings, const std::string& material, const Torsion& exact) {

@@ -1,4 +1,4 @@
-// Derivatives: every material's energy on tets against differences.
+// Derivatives: energies of all materials on tets compared with differences.
 #include <cmath>
 #include <random>
 
@@ -24,7 +24,7 @@ void check_differences(const Subject& subject, Findings& found) {
     return moved;
   });
   Plot plot = error_plot();
-  Findings orders;  // after the errors
+  Findings orders;  // appended after the errors
   for (const MaterialInfo& info : materials()) {
     const std::string taken = subject.taken_for(info.name);
     auto V = make_tet_elasticity(
@@ -38,7 +38,7 @@ void check_differences(const Subject& subject, Findings& found) {
     for (const auto& [name, check] : {std::pair("gradient", &report.gradient), {"Hessian", &report.hessian}}) {
       found.expect_small(info.name + ": smallest error of the " + name, check->smallest_error, 1e-6,
                          "where the error h^2 of the difference meets its round-off 1e-16 / h");
-      if (!std::isnan(check->order))  // a quadratic energy has no error but round-off
+      if (!std::isnan(check->order))  // quadratic energies have only round-off error
         orders.expect(info.name + ": order of the error of the " + name, check->order, 2, 0.2,
                       "a line fitted over the decades before round-off");
     }

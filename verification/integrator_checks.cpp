@@ -1,4 +1,4 @@
-// Integrators on problems with closed solutions: an oscillator, and free fall.
+// Integrators on problems with closed-form solutions: oscillator and free fall.
 #include <algorithm>
 #include <cmath>
 
@@ -39,7 +39,7 @@ void check_symplectic_euler(const Subject& subject, Findings& found, Plot& plot)
   const std::string name = "symplectic_euler";
   Simulation simulation = oscillator({.h = 0.01, .integrator = subject.taken_for(name), .solver = {}});
   const double E = oscillator_energy(simulation);
-  // q moves with the new velocity, so the shadow energy has - h/2 w^2 x v.
+  // q moves with the new velocity, so the shadow energy contains - h/2 w^2 x v.
   const auto shadow = [&] {
     return oscillator_energy(simulation) -
            0.5 * 0.01 * 100 * oscillator_position(simulation) * oscillator_velocity(simulation);

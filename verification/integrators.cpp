@@ -54,7 +54,7 @@ double free_fall_error(const std::string& integrator, double expected) {
   const double h = 0.01, g = 9.81;
   SimulationOptions options{.h = h, .integrator = integrator, .solver = {}};
   options.solver.minimize.tolerance = 1e-14;
-  // Soft enough for the explicit schemes to be stable.
+  // The box is soft enough for stability of the explicit schemes.
   Simulation simulation = simulate(make_model(make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2}), {.young = 1e3}), options);
   take_steps(simulation, kFallSteps, integrator);
   const double fall = g * h * h * expected;

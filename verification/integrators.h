@@ -1,4 +1,4 @@
-// What theory says of each integrator, and what it does.
+// Theoretical and measured properties of each integrator.
 #pragma once
 #include <complex>
 #include <map>
@@ -9,29 +9,29 @@
 
 namespace aspic::verify {
 
-std::vector<std::string> integrators_in_time();  // all but the static one
+std::vector<std::string> integrators_in_time();  // all integrators except the static one
 
-// Of a harmonic oscillator with w h = 0.1.
+// Properties for a harmonic oscillator with w h = 0.1.
 struct Oscillation {
-  double energy_left;      // after one period, relative to that before
-  double frequency_ratio;  // to the exact one
+  double energy_left;      // energy after one period, relative to its start
+  double frequency_ratio;  // ratio to the exact frequency
 };
 const std::map<std::string, Oscillation>& expected_oscillations();  // by integrator
-// After its first steps: those of a scheme that begins otherwise have died away.
+// Measures after the first steps, when the effects of a different first step have decayed.
 Oscillation measured_oscillation(const std::string& integrator);
 
-// The fall of a free body after n steps, over g h^2.
+// Fall of a free body after n steps, over g h^2.
 double expected_fall(const std::string& integrator, int n);
 inline constexpr int kFallSteps = 10;
-// The largest difference to it of any vertex of a soft box after kFallSteps steps of 0.01 s [m].
+// Largest deviation of a vertex of a soft box from this fall after kFallSteps steps of 0.01 s [m].
 double free_fall_error(const std::string& integrator, double expected);
 
-// The affine motion x = X + s(t) B X, which linear tets represent exactly, kept going by the nodal forces
-// M x'' + dV/dx(x): consistent mass and exact load, so all error is that of time.
+// Affine motion x = X + s(t) B X, which linear tets represent exactly, driven by the nodal forces M x'' + dV/dx(x).
+// Consistent mass and exact loads make the error purely temporal.
 enum class Held { nowhere, on_one_face, on_the_boundary };
-double affine_motion_error(const std::string& integrator, double h, Held held);  // largest, after 0.4 s [m]
+double affine_motion_error(const std::string& integrator, double h, Held held);  // maximum until 0.4 s [m]
 
-// A damped oscillator that is driven such that x = cos 3t: the error of position and velocity after 1 s.
+// Error of position and velocity after 1 s of a damped oscillator with forcing such that x = cos 3t.
 double driven_oscillator_error(const std::string& integrator, double h);
 
 }  // namespace aspic::verify

@@ -1,4 +1,4 @@
-// What may not change: forces that sum to zero, rigid motions, numberings, mirror images, units.
+// Invariants: zero resultants, rigid motions, numberings, reflections, units.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -12,7 +12,7 @@ namespace {
 
 TetMesh small_box() { return make_box({{0, 0, 0}}, {{1, 0.8, 0.6}}, {3, 2, 2}); }
 
-// Stretched, sheared and crumpled.
+// Stretched, sheared and randomly perturbed positions.
 std::vector<double> deformed(const TetMesh& mesh) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-0.03, 0.03);
@@ -23,7 +23,7 @@ std::vector<double> deformed(const TetMesh& mesh) {
   });
 }
 
-// Young's modulus and Poisson's ratio differ from tet to tet.
+// Young's modulus and Poisson's ratio vary from tet to tet.
 std::unique_ptr<TetElasticity> heterogeneous(const std::string& material, const TetMesh& mesh) {
   std::vector<MaterialParameters> parameters;
   for (int t = 0; t < mesh.tet_count(); ++t)
@@ -47,7 +47,7 @@ void check_forces(const Subject& subject, Findings& found) {
     const double size = largest(g);
     found.expect_small(info.name + ": |sum of forces| / largest force", std::sqrt(dot(sum, sum)) / size, 1e-13,
                        "round-off of sums over 36 vertices");
-    if (info.name == "linear") continue;  // is not invariant under rotation
+    if (info.name == "linear") continue;  // not invariant under rotation
     found.expect_small(info.name + ": |sum of moments| / largest force", std::sqrt(dot(moment, moment)) / size, 1e-12,
                        "round-off of sums over 36 vertices");
   }
@@ -73,11 +73,11 @@ void check_rigid_motions(const Subject& subject, Findings& found) {
 
 struct Numbered {
   TetMesh mesh;
-  std::vector<int> place;  // of the vertices of the other mesh
+  std::vector<int> place;  // positions of vertices in the other mesh
 };
 
 Numbered renumbered(const TetMesh& mesh, int factor) {
-  const int n = mesh.vertex_count();  // `factor` may not divide it
+  const int n = mesh.vertex_count();  // `factor` must not divide it
   Numbered other{mesh, std::vector<int>(n)};
   for (int v = 0; v < n; ++v) {
     other.place[v] = static_cast<int>((static_cast<int64_t>(factor) * v + 3) % n);
@@ -89,7 +89,7 @@ Numbered renumbered(const TetMesh& mesh, int factor) {
   return other;
 }
 
-// A cantilever that falls for ten steps; z is its third direction, into which nothing acts but noise of the mesh.
+// A cantilever that falls for ten steps. Nothing acts in its third direction z, except noise of the mesh.
 std::vector<double> falling_beam(TetMesh mesh, const Vec3d& gravity, double h, const ModelOptions& options) {
   ModelOptions all = options;
   all.gravity = gravity;
@@ -117,7 +117,7 @@ void check_numbering(const Subject& subject, Findings& found) {
   found.expect_small("largest change by another numbering", most, 1e-10,
                      "the solves are converged to 1e-12 of the forces", "m");
 
-  TetMesh mirrored = mesh;  // z to -z, two corners of each tet exchanged to keep the volumes positive
+  TetMesh mirrored = mesh;  // reflects z, and exchanges two corners of each tet to keep volumes positive
   for (Vec3d& X : mirrored.rest) X[2] = -X[2];
   for (Tet& tet : mirrored.tets) std::swap(tet[0], tet[1]);
   const std::vector<double> m = falling_beam(mirrored, {{gravity[0], gravity[1], -gravity[2]}}, 0.02, options);

@@ -1,4 +1,4 @@
-// Bodies of one layer of cells: problems in the plane.
+// Bodies of one layer of cells, for plane problems.
 #pragma once
 #include <functional>
 
@@ -6,16 +6,16 @@
 
 namespace aspic::verify {
 
-// V = k/2 sum (z - Z)^2 over all vertices, or those named: keeps them in their planes z = const, or those of another
-// axis. With k far above the stiffness of the cells, plane strain.
+// V = k/2 sum (z - Z)^2 over all or the given vertices holds them in their planes z = const, or those of another axis.
+// With k far above the stiffness of the cells this gives plane strain.
 std::unique_ptr<Energy> make_plane_hold(const TetMesh& mesh, double stiffness, int axis = 2,
                                         std::vector<int> vertices = {});
 
-// length x height cells of equal size, one across, mapped from [0, 1]^2 by `place`; the layer is `thickness` thick.
+// length x height cells of equal size, one cell thick, mapped from [0, 1]^2 by `place`; thickness `thickness`.
 TetMesh make_layer(int length, int height, double thickness,
                    const std::function<std::array<double, 2>(double, double)>& place);
 
-// Plane stress with E and nu is plane strain with these.
+// Moduli for which plane strain equals plane stress with E and nu.
 struct PlaneModuli {
   double young, poisson;
 };

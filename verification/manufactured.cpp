@@ -17,7 +17,7 @@ const Vec3d kWave[3] = {{{2.1, 1.3, -0.8}}, {{-1.1, 1.9, 1.4}}, {{1.2, -0.9, 2.2
 struct Exact {
   Vec3d x;
   Mat3d F;
-  double second[3];  // of u_k: d2 u_k / dX_J dX_L = second[k] w_k[J] w_k[L]
+  double second[3];  // second derivatives: d2 u_k / dX_J dX_L = second[k] w_k[J] w_k[L]
 
   explicit Exact(const Vec3d& X) : x(X), F(identity3<double>()) {
     for (int k = 0; k < 3; ++k) {
@@ -42,11 +42,11 @@ Vec3d body_force(const Exact& exact, const typename M::template Params<double>& 
 }
 
 struct Point {
-  double weight;    // of the tet's volume
+  double weight;    // fraction of the tet's volume
   double share[4];  // barycentric coordinates
 };
 
-// A product of Gauss's three-point rule, collapsed to the tet: exact for cubics.
+// Product of Gauss's three-point rule, collapsed to the tet; exact for cubics.
 std::vector<Point> quadrature() {
   const double g = std::sqrt(0.6) / 2, node[3] = {0.5 - g, 0.5, 0.5 + g}, weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
   std::vector<Point> points;

@@ -11,21 +11,21 @@ namespace {
 
 using Vector = std::vector<double>;
 using Vec2 = std::array<double, 2>;
-using Mat2 = std::array<double, 4>;  // row by row
+using Mat2 = std::array<double, 4>;  // row-major
 
 double inner(const Mat2& A, const Mat2& B) { return A[0] * B[0] + A[1] * B[1] + A[2] * B[2] + A[3] * B[3]; }
 Mat2 cofactor(const Mat2& F) { return {F[3], -F[2], -F[1], F[0]}; }
 
-// A symmetric matrix whose entries further than `band` from the diagonal are zero.
+// Symmetric matrix whose entries are zero farther than `band` from the diagonal.
 class BandMatrix {
  public:
   BandMatrix(int size, int band) : size_(size), band_(band), a_(static_cast<size_t>(size) * (band + 1)) {}
   double& at(int i, int j) { return a_[static_cast<size_t>(i) * (band_ + 1) + (i - j)]; }  // j <= i
 
-  Vector solve(Vector b) {  // by L D L' in its place: once
+  Vector solve(Vector b) {  // in-place L D L' solution; call once
     for (int i = 0; i < size_; ++i) {
       const int first = first_in(i);
-      for (int j = first; j < i; ++j)  // the row of L D
+      for (int j = first; j < i; ++j)  // row of L D
         for (int k = std::max(first, first_in(j)); k < j; ++k) at(i, j) -= at(i, k) * at(j, k);
       for (int j = first; j < i; ++j) {
         const double l = at(i, j) / at(j, j);
@@ -47,15 +47,15 @@ class BandMatrix {
   Vector a_;
 };
 
-// The three shape functions of a line from -1 to 1 and their slopes.
+// The three shape functions on a line from -1 to 1, and their slopes.
 struct Line {
   std::array<double, 3> value, slope;
   explicit Line(double t) : value{t * (t - 1) / 2, 1 - t * t, t * (t + 1) / 2}, slope{t - 0.5, -2 * t, t + 0.5} {}
 };
 
 struct GaussPoint {
-  double weight;                  // volume [per unit of thickness]
-  std::array<Vec2, 9> gradients;  // of the shape functions
+  double weight;                  // volume per thickness
+  std::array<Vec2, 9> gradients;  // gradients of the shape functions
 };
 
 class Membrane {
@@ -79,7 +79,7 @@ class Membrane {
   }
 
  private:
-  // The middle node of an element lies in its middle.
+  // The middle node is at the center of the element.
   template <class Grading>
   double graded(int k, Grading grading) const {
     const auto end = [&](int e) { return grading(static_cast<double>(e) / cells_); };
@@ -117,7 +117,7 @@ class Membrane {
     points_.push_back(points);
   }
 
-  // Adds the forces to r and the stiffness to K; unknowns begin after the clamped nodes.
+  // Adds forces to r and stiffness to K; degrees of freedom begin after the clamped nodes.
   void assemble(Vector& r, BandMatrix& K) const {
     for (size_t e = 0; e < points_.size(); ++e) {
       const std::array<int, 9> nodes = nodes_of(e);
@@ -135,7 +135,7 @@ class Membrane {
       for (int k = 0; k < 2; ++k) {
         const int row = unknown(nodes[a], k);
         if (row < 0) continue;
-        Mat2 D{};  // of F, with the displacement of this node
+        Mat2 D{};  // derivative of F with respect to the displacement of this node
         D[2 * k] = point.gradients[a][0], D[2 * k + 1] = point.gradients[a][1];
         const double dI = 2 * inner(F, D), dJ = inner(cof, D);
         r[row] += point.weight * (f.by_I * dI + f.by_J * dJ);
@@ -174,7 +174,7 @@ class Membrane {
   }
 
   const InvariantLaw& law_;
-  int cells_, side_;  // nodes along an edge
+  int cells_, side_;  // nodes per edge
   std::vector<Vec2> rest_;
   std::vector<std::array<GaussPoint, 9>> points_;
   Vector u_;

@@ -1,4 +1,4 @@
-// Small models that several checks and tests share, and steps that must succeed.
+// Small models shared by checks and tests, and steps that must converge.
 #pragma once
 #include <span>
 #include <string>
@@ -18,24 +18,24 @@ struct ModelOptions {
   Vec3d gravity{{0, -9.81, 0}};  // [m/s^2]
 };
 
-// Returns the builder of one body of all the tets, with its weight as the first load; nothing is held yet.
+// Returns a builder with one body of all tets and its weight as the first load, without pins.
 ModelBuilder model_of(TetMesh mesh, const ModelOptions& options = {});
 inline Model make_model(TetMesh mesh, const ModelOptions& options) {
   return model_of(std::move(mesh), options).build();
 }
 
-inline Simulation simulate(Model model, SimulationOptions options = {}) {  // from rest
+inline Simulation simulate(Model model, SimulationOptions options = {}) {  // starts from rest
   return Simulation(std::move(model), std::move(options));
 }
 
-// Throws std::runtime_error, naming `what`, when one of the steps does not converge.
+// Takes steps. Throws std::runtime_error with `what` if one of them does not converge.
 void take_steps(Simulation& simulation, int count, const std::string& what);
 
-// The `count` lowest vibrations about rest. Throws std::runtime_error when they cannot be computed.
+// Returns the `count` lowest vibration modes about rest. Throws std::runtime_error if they cannot be computed.
 std::vector<Mode> lowest_modes(const Model& model, int count);
-std::vector<double> frequencies(const Model& model, int count);  // of lowest_modes() [Hz]
+std::vector<double> frequencies(const Model& model, int count);  // frequencies of lowest_modes() [Hz]
 
-double largest(std::span<const double> values);  // absolute value; NaN when there is one
-double largest_difference(std::span<const double> a, std::span<const double> b);  // of entries; same sizes
+double largest(std::span<const double> values);  // largest absolute value; NaN if one is NaN
+double largest_difference(std::span<const double> a, std::span<const double> b);  // of entries; equal sizes
 
 }  // namespace aspic::verify

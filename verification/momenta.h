@@ -1,4 +1,4 @@
-// A box that spins, vibrates and may fall, and its momenta.
+// A box that spins, vibrates and optionally falls, and its momenta.
 #pragma once
 #include <string>
 
@@ -11,7 +11,7 @@ struct Momenta {
 };
 Momenta momenta(const Simulation& simulation);
 
-// One cubic meter of 1000 kg/m^3, stretched by 1.2 along z, turning by 6 rad/s about it and moving by 2 m/s along x.
+// One cubic meter of 1000 kg/m^3, stretched by 1.2 along z, rotating at 6 rad/s about z and moving at 2 m/s along x.
 Simulation spinning_box(const std::string& integrator, double h, const Vec3d& gravity, double young);
 
 }  // namespace aspic::verify

@@ -68,7 +68,7 @@ void check_angular(const Subject& subject, Findings& found) {
                      "each solve leaves 1e-13 of the forces that balance");
 }
 
-// L = sum q x M v changes by h sum v_new x (M v_old): backward Euler does not conserve it.
+// L = sum q x M v changes by h sum v_new x (M v_old), so backward Euler does not conserve it.
 void check_angular_euler(const Subject& subject, Findings& found) {
   const double h = 0.01;
   Simulation simulation = spinning_box(subject.taken_for("backward_euler"), h, {}, 1e4);

@@ -1,4 +1,4 @@
-// Orders of convergence: in time by motions that linear tets represent exactly.
+// Orders of convergence in time, with motions that linear tets represent exactly.
 #include <cmath>
 
 #include "dynamics/integrator.h"
@@ -55,8 +55,8 @@ void check_driven_order(const Subject& subject, Findings& found) {
   }
 }
 
-// What is left of errors C1 h^p + C2 h^(p+1) + ..., h halved from each to the next, without all but the last of as many
-// terms as there are errors.
+// Returns the last of the errors C1 h^p + C2 h^(p+1) + ..., with h halved each time, after eliminating as many terms as
+// possible.
 double without_terms(std::vector<double> errors, int order) {
   for (; errors.size() > 1; ++order) {
     for (size_t i = 0; i + 1 < errors.size(); ++i)

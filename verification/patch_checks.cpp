@@ -1,4 +1,4 @@
-// Patch tests: linear tets hold affine states exactly, on any mesh.
+// Patch tests: linear tets represent affine states exactly on any mesh.
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +20,7 @@ TetMesh irregular_box(BoxCut cut) {
 }
 
 struct Patch {
-  double position, stress;  // largest errors, relative to the body and to the largest stress
+  double position, stress;  // largest errors, relative to the body size and the largest stress
 };
 
 Patch patch_error(const TetMesh& mesh, const std::string& material, double poisson) {
@@ -62,14 +62,14 @@ void check_patch(const Subject& subject, Findings& found) {
     }
 }
 
-constexpr double kHalfDigit = 5.1e-9;  // of the table
+constexpr double kHalfDigit = 5.1e-9;  // half a digit of the table
 
 struct Pulled {
-  double lateral, stress;  // as in Uniaxial, the stress from the reaction of the pulled face
-  double balance;          // of the reactions, over the force of the pull
+  double lateral, stress;  // as in Uniaxial; stress from the reaction of the pulled face
+  double balance;          // sum of the reactions over the pulling force
 };
 
-// A unit cube, turned by R, between three symmetry planes through its corner; the opposite face is moved to a stretch.
+// Unit cube, rotated by R, between three symmetry planes through its corner; the opposite face moves to a stretch.
 Pulled pull_between_planes(const UniaxialReference& row, const std::string& material, const Mat3d& R) {
   TetMesh mesh = irregular_box(BoxCut::kuhn);
   std::vector<Pin> pins;
@@ -95,7 +95,7 @@ void check_planes(const Subject& subject, Findings& found) {
   const Mat3d turn =
       from_columns<double>({{2. / 3, 2. / 3, 1. / 3}}, {{-2. / 3, 1. / 3, 2. / 3}}, {{1. / 3, -2. / 3, 2. / 3}});
   for (const UniaxialReference& row : uniaxial_table()) {
-    const bool is_steep = row.material == std::string("stvk") && row.stretch < 1;  // its bar buckles inside
+    const bool is_steep = row.material == std::string("stvk") && row.stretch < 1;  // this bar buckles inside
     if (is_steep || (subject.quick && row.stretch != 1.5)) continue;
     for (const bool is_turned : {false, true}) {
       const Pulled pulled =

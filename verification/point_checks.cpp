@@ -1,4 +1,4 @@
-// Derivatives at one point: every material at ordinary and at extreme deformation gradients.
+// Derivatives at one point: all materials at ordinary and extreme deformation gradients.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 std::string kind_of(const NamedState& state) { return state.name.substr(0, state.name.find(',')); }
 
-// The states of the kinds in their first order.
+// States by kind, in order of first appearance.
 std::vector<std::pair<std::string, std::vector<Mat3d>>> by_kind(const std::vector<NamedState>& states) {
   std::vector<std::pair<std::string, std::vector<Mat3d>>> kinds;
   for (const NamedState& state : states) {
@@ -26,7 +26,7 @@ std::vector<std::pair<std::string, std::vector<Mat3d>>> by_kind(const std::vecto
   return kinds;
 }
 
-// Where psi need not have derivatives: unless it is a smooth state of the material, it is refused, or all is finite.
+// States where psi need not be differentiable: unless smooth for a material, refused or with finite values.
 struct Edge {
   const char* name;
   Mat3d F;
@@ -36,7 +36,7 @@ const std::array<Edge, 4> kEdges = {{{"F = 0", {}},
                                      {"J = 1e-8, flat", {{1, 0, 0, 0, 1, 0, 0, 0, 1e-8}}},
                                      {"|F| = 1e6", {{1e6, 0, 0, 0, 1, 0, 0, 0, 1}}}}};
 
-// Of psi, P and H, relative to the stiffness and to |F|; NaN when one is.
+// Errors of psi, P and H, relative to the stiffness and |F|; NaN if one is.
 double automatic_error(const Law& own, const Law& taken, const Mat3d& F) {
   const Jet<double> expected = own.differentiated(F);
   const Mat9d H = hessian(expected);
@@ -61,7 +61,7 @@ void check_automatic(const Subject& subject, Findings& found) {
   }
 }
 
-// The documented answers where there is no derivative to compare.
+// Documented values where there is no derivative to compare.
 void check_edges(const Subject& subject, Findings& found) {
   for (const MaterialInfo& info : materials()) {
     const Law &own = law(info.name), &taken = law(subject.taken_for(info.name));
@@ -80,8 +80,8 @@ void check_edges(const Subject& subject, Findings& found) {
   }
 }
 
-// psi(F + F S) as a function of S, so that a step is small beside every stretch; psi(S) where F = 0. The derivatives
-// are those of `taken`.
+// psi(F + F S) as a function of S, so that steps are small compared with every stretch; psi(S) at F = 0. The
+// derivatives are those of `taken`.
 Differentiable around(const Law& own, const Law& taken, const Mat3d& F) {
   const Mat3d A = squared_norm(F) > 0 ? F : identity3<double>();
   const auto matrix = [](std::span<const double> s) {
@@ -108,11 +108,11 @@ Differentiable around(const Law& own, const Law& taken, const Mat3d& F) {
 
 void check_slopes(const Subject& subject, Findings& found) {
   const std::vector<double> here(9, 0.0);
-  Findings orders;  // after the errors
+  Findings orders;  // appended after the errors
   for (const MaterialInfo& info : materials()) {
     const Law &own = law(info.name), &taken = law(subject.taken_for(info.name));
     for (const auto& [kind, states] : by_kind(own.states)) {
-      double order = NAN, smallest = 0;  // the lowest order, the largest of the smallest errors
+      double order = NAN, smallest = 0;  // lowest order; largest of the smallest errors
       for (const Mat3d& F : states) {
         const DerivativeReport report = check_derivatives(around(own, taken, F), here, {.length = 0.1});
         for (const DerivativeCheck* check : {&report.gradient, &report.hessian}) {

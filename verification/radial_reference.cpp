@@ -12,8 +12,8 @@ namespace aspic::verify {
 namespace {
 
 using Real = long double;
-constexpr Real kH = 1e-5L;   // of differences
-constexpr int kSteps = 400;  // of the Runge-Kutta method; even
+constexpr Real kH = 1e-5L;   // step of differences
+constexpr int kSteps = 400;  // even number of Runge-Kutta steps
 
 // Minimizes the integral of R^m W(R, r, r') over R from a to b.
 class Radial {
@@ -42,7 +42,7 @@ class Radial {
   }
   Real stress(const Point& p) const { return (W_(p.R, p.r, p.s + kH) - W_(p.R, p.r, p.s - kH)) / (2 * kH); }
 
-  // The path from start(slope) whose end is free of stress, by the secant method from two slopes.
+  // Returns the path from start(slope) with a stress-free end, by the secant method from two slopes.
   std::vector<Point> with_free_end(const std::function<std::vector<Point>(Real slope)>& start, Real before,
                                    Real slope) const {
     Real f_before = stress(start(before).back());
@@ -62,7 +62,7 @@ class Radial {
     const auto [R, r, s] = p;
     const Real W_r = (W_(R, r + kH, s) - W_(R, r - kH, s)) / (2 * kH);
     const Real W_ss = (W_(R, r, s + kH) - 2 * W_(R, r, s) + W_(R, r, s - kH)) / (kH * kH);
-    // d(dW/ds)/dR along the path, but for the part of r''.
+    // d(dW/ds)/dR along the path without the r'' term.
     const Real ahead = stress({R + kH, r + kH * s, s}), behind = stress({R - kH, r - kH * s, s});
     return (W_r - m_ / R * stress(p) - (ahead - behind) / (2 * kH)) / W_ss;
   }
@@ -72,9 +72,9 @@ class Radial {
   Density W_;
 };
 
-// psi of a cylinder of unit radius; the stretch of its length varies only to be differentiated by.
+// psi of a cylinder of unit radius; the axial stretch varies only for differentiation.
 Real twisted_density(const std::string& material, double poisson, Real twist, Real length, const Radial::Point& p) {
-  // Across the radius F is [r / R, twist r; 0, length]: the product and the sum of squares of its stretches.
+  // Across the radius F is [r / R, twist r; 0, length], which gives product and sum of squares of its stretches.
   const Real hoop = p.r / p.R, shear = twist * p.r;
   const Real product = hoop * length, squares = hoop * hoop + shear * shear + length * length;
   const Real sum = std::sqrt(squares + 2 * product), gap = std::sqrt(std::max(squares - 2 * product, Real(0)));
@@ -87,7 +87,7 @@ Inflation inflated_sphere(const std::string& material, double poisson, double a,
   const Radial shell(2, a, b, [&](Real R, Real r, Real s) {
     return principal_energy(material, {s, r / R, r / R}, 1, poisson);
   });
-  // Without change of volume the slope inside is (a / inner)^2.
+  // Incompressible estimate: the inner slope is (a / inner)^2.
   const Real guess = (a / inner) * (a / inner);
   const auto path = shell.with_free_end([&](Real slope) { return shell.path(inner, slope); }, 1, guess);
   return {static_cast<double>(path.back().r), -static_cast<double>(shell.stress(path.front()))};
@@ -107,11 +107,11 @@ Torsion twisted_cylinder(const std::string& material, double poisson, double twi
       return twisted_density(material, poisson, t, length, {R, r, s});
     };
   };
-  // Near the axis r = slope R; what is left out there is of order a^2 and lies in the slope that is sought.
+  // Near the axis r = slope R. The neglected terms are of order a^2 and are absorbed by the unknown slope.
   const Real a = 0.01L;
   const Radial cylinder(1, a, 1, density(twist, 1));
   const auto path = cylinder.with_free_end([&](Real slope) { return cylinder.path(slope * a, slope); }, 1, 0.98L);
-  // Simpson's rule; the core within a has 1e-8 of the torque, and its share of the force is that at a.
+  // Simpson's rule. The core within a contributes 1e-8 of the torque; its axial stress equals that at a.
   const auto integral = [&](const Radial::Density& f) {
     Real sum = 0;
     for (int i = 0; i <= kSteps; ++i) {

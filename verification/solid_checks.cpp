@@ -1,4 +1,4 @@
-// Solids with closed solutions: a hollow sphere, a point load on a half-space, torsion.
+// Solids with closed-form solutions: hollow sphere, point load on a half-space, torsion.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,7 +12,7 @@
 namespace aspic::verify {
 namespace {
 
-// The unit sphere: an octahedron, each of whose triangles is cut into four `cuts` times.
+// Unit sphere: an octahedron whose triangles are subdivided into four, `cuts` times.
 TriMesh octahedral_sphere(int cuts) {
   TriMesh sphere{{{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}, {{-1, 0, 0}}, {{0, -1, 0}}, {{0, 0, -1}}},
                  {{0, 1, 2}, {1, 3, 2}, {3, 4, 2}, {4, 0, 2}, {1, 0, 5}, {3, 1, 5}, {4, 3, 5}, {0, 4, 5}}};
@@ -34,8 +34,8 @@ TriMesh octahedral_sphere(int cuts) {
   return sphere;
 }
 
-// Layers of prisms over a triangulated unit sphere, from radius a to b; each prism is cut into three tets by the order
-// of the numbers of its corners, so neighbors agree.
+// Layers of prisms over a triangulated unit sphere, from radius a to b. Each prism is cut into three tets by the order
+// of its corner indices, so that neighbors match.
 TetMesh hollow_sphere(const TriMesh& surface, int layers, double a, double b) {
   TetMesh mesh;
   const int n = surface.vertex_count();
@@ -56,7 +56,7 @@ TetMesh hollow_sphere(const TriMesh& surface, int layers, double a, double b) {
   return mesh;
 }
 
-// The inner radius goes from 1 to `inner`, the outer one is 2 at rest.
+// The inner radius changes from 1 to `inner`; the outer rest radius is 2.
 Inflation blown_up(int level, const std::string& material, double poisson, double inner) {
   const TriMesh surface = octahedral_sphere(level + 1);
   const int layers = 3 << (level - 1);
@@ -100,7 +100,7 @@ void check_sphere(const Subject& subject, Findings& found) {
   }
 }
 
-// A force P into the half-space z >= 0 at the origin, G = 1 / (2 (1 + nu)).
+// Displacement by a force P into the half-space z >= 0 at the origin, G = 1 / (2 (1 + nu)).
 Vec3d boussinesq(const Vec3d& X, double poisson, double P) {
   const double r = std::hypot(X[0], X[1]), z = X[2], rho = std::hypot(r, z);
   const double factor = P * (1 + poisson) / (2 * std::numbers::pi);
@@ -151,7 +151,7 @@ void check_half_space(const Subject& subject, Findings& found) {
   }
 }
 
-// The torque of a square column of side 1 and G = `shear` over the twist per length in its middle.
+// Torque over twist per length in the middle of a square column of side 1 with G = `shear`.
 double torsional_stiffness(int n, const std::string& material, double shear) {
   const double angle = 1e-4, length = 6;
   const TetMesh mesh = make_box({{-0.5, -0.5, 0}}, {{0.5, 0.5, length}}, {n, n, static_cast<int>(length) * n});

@@ -12,7 +12,7 @@ namespace {
 
 using Real = long double;
 
-// Two cells along each edge of the unit cube; the vertex in the middle is moved away from it.
+// Unit cube with two cells per edge; the center vertex is displaced.
 TetMesh distorted_box() {
   TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1, 1}}, {2, 2, 2});
   mesh.rest[13] = mesh.rest[13] + Vec3d{{0.11, -0.07, 0.05}};
@@ -21,7 +21,7 @@ TetMesh distorted_box() {
 
 struct Forces {
   double along, across;  // on the faces x = 1 and y = 1
-  double inner;          // on the vertex inside
+  double inner;          // force on the inner vertex
 };
 
 Forces forces_of(const TetMesh& mesh, const TetElasticity& elasticity, double l, double t) {
@@ -39,7 +39,7 @@ Forces forces_of(const TetMesh& mesh, const TetElasticity& elasticity, double l,
   return forces;
 }
 
-// The secant method from t and nearby, as far as round-off lets it go.
+// Secant method from t and a nearby point, down to round-off.
 double root_near(double t, const std::function<double(double)>& f, const std::string& what) {
   double before = t * 1.001, f_before = f(before);
   for (int i = 0; i < 60; ++i) {
@@ -68,14 +68,14 @@ StretchedBox stretched_box(const std::string& material, const MaterialParameters
 
 Uniaxial uniaxial_of_energy(const std::string& material, double young, double poisson, double l) {
   const auto psi = [&](Real a, Real b) { return principal_energy(material, {a, b, b}, young, poisson); };
-  const Real h = 1e-3L;  // sixth-order differences: their error is h^6, round-off 1e-19 / h
+  const Real h = 1e-3L;  // sixth-order differences: error h^6, round-off 1e-19 / h
   const auto slope = [h](const auto& f) {
     return (45 * (f(h) - f(-h)) - 9 * (f(2 * h) - f(-2 * h)) + (f(3 * h) - f(-3 * h))) / (60 * h);
   };
   const Real x = l;
   const auto across = [&](Real t) { return slope([&](Real d) { return psi(x, t + d); }); };
   const Real guess = std::pow(x, -static_cast<Real>(poisson));
-  // Round-off of the differences is met before that of t.
+  // Round-off of the differences dominates that of t.
   Real t = guess;
   for (int i = 0; i < 50; ++i) {
     const Real step = across(t) / slope([&](Real d) { return across(t + d); });

@@ -1,4 +1,4 @@
-// Every check passes, and fails where it must.
+// All checks pass, and fail with defective subjects.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,7 +49,7 @@ TEST(Checks, HaveNamesOfTheirOwn) {
 
 struct Wrong {
   std::string check, name, instead;
-  std::vector<std::string> rows = {""};  // for each, a quantity with this part must fail
+  std::vector<std::string> rows = {""};  // each must be part of a failing quantity
 };
 void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.check << " with " << wrong.instead; }
 class WrongSubject : public testing::TestWithParam<Wrong> {};
@@ -74,7 +74,7 @@ std::string wrong_name(const testing::TestParamInfo<Wrong>& info) {
       name.begin(), name.end(), [](char c) { return c == '/' || c == '.'; }, '_');
   return name;
 }
-// One of each kind of reference.
+// One case per kind of reference.
 INSTANTIATE_TEST_SUITE_P(
     Every, WrongSubject,
     testing::Values(
@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"vibration/pendulum", "midpoint", "backward_euler"}),
     wrong_name);
 
-// [Pelteret2016]; Abaqus, with 36864 elements of its own, has 14.727.
+// [Pelteret2016]; Abaqus gives 14.727 with 36864 of its elements.
 TEST(MembraneReference, GivesThePublishedDisplacement) {
   const double mu = 422.5, bulk = 2 * mu * 1.3 / (3 * 0.4);
   const InvariantLaw law = split_law(mu, [bulk](double J) {
@@ -123,7 +123,7 @@ TEST(MembraneReference, GivesTheDisplacementOfTheLogarithmicLaw) {
   EXPECT_NEAR(membrane_reference(logarithmic_law(mu, lambda), 100.0 / 16, 16), 7.638, 0.001);
 }
 
-// A nearly incompressible cylinder: Rivlin's torque pi/2 mu t b^4 and force -pi/4 mu t^2 b^4, mu = E / 2.998.
+// Nearly incompressible cylinder: Rivlin's torque pi/2 mu t b^4 and force -pi/4 mu t^2 b^4, mu = E / 2.998.
 TEST(TwistedCylinder, TendsToRivlinsSolution) {
   const double mu = 1 / 2.998, pi = std::numbers::pi;
   const Torsion torsion = twisted_cylinder("neo_hookean_log", 0.499, 1);
@@ -132,7 +132,7 @@ TEST(TwistedCylinder, TendsToRivlinsSolution) {
   EXPECT_NEAR(torsion.radius(1), 1, 5e-3);
 }
 
-// Far too much is asked for.
+// A deformation far beyond the solvable range.
 TEST(RadialReference, ThrowsWhereItDoesNotConverge) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(inflated_sphere("neo_hookean_log", 0.3, 1, 2, nan), std::runtime_error);

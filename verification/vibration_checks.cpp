@@ -1,4 +1,4 @@
-// Natural frequencies, and a pendulum.
+// Natural frequencies and a pendulum.
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -11,7 +11,7 @@
 namespace aspic::verify {
 namespace {
 
-constexpr double kLayerYoung = 1e7;  // [Pa], with 1000 kg/m^3: waves of 100 m/s
+constexpr double kLayerYoung = 1e7;  // [Pa], with 1000 kg/m^3: wave speed 100 m/s
 
 Model clamped_layer(const TetMesh& mesh, const std::string& material, double young, double poisson, double density) {
   return model_of(mesh, {.material = material, .young = young, .poisson = poisson, .density = density, .gravity = {}})
@@ -20,7 +20,7 @@ Model clamped_layer(const TetMesh& mesh, const std::string& material, double you
       .build();
 }
 
-// A strip 1 m long and 0.05 m high of n cells through its height.
+// Strip of 1 m x 0.05 m with n cells through the height.
 Model strip(int n, const std::string& material, double young) {
   return clamped_layer(make_layer(20 * n, n, 0.05 / n,
                                   [](double x, double y) {
@@ -29,11 +29,11 @@ Model strip(int n, const std::string& material, double young) {
                        material, young, 0, 1000);
 }
 
-// One row per mode: the values tend to the reference as h^2, which the last two extrapolate.
+// Adds one row per mode: values converge to the reference as h^2, so the last two are extrapolated.
 void expect_limits(Findings& found, const std::vector<std::string>& names, const std::vector<double>& reference,
                    const std::vector<double>& tolerance, const std::vector<std::vector<double>>& by_mesh,
                    const std::string& reason) {
-  Findings orders;  // after the limits
+  Findings orders;  // appended after the limits
   for (size_t k = 0; k < names.size(); ++k) {
     std::vector<double> values;
     for (const auto& mesh : by_mesh) values.push_back(mesh[k]);
@@ -53,7 +53,7 @@ void check_bar(const Subject& subject, Findings& found) {
     const Model model =
         model_of(mesh, {.material = material, .young = subject.stiffness * kLayerYoung, .poisson = 0, .gravity = {}})
             .pin("wall", [](const Vec3d& X) { return X[0] < 1e-9; })
-            .load(make_plane_hold(mesh, 1e3 * kLayerYoung))  // held sideways: this bar does not bend
+            .load(make_plane_hold(mesh, 1e3 * kLayerYoung))  // no bending: the sides are held
             .load(make_plane_hold(mesh, 1e3 * kLayerYoung, 1))
             .build();
     by_mesh.push_back(frequencies(model, 2));
@@ -108,7 +108,7 @@ void check_tapered_membrane(const Subject& subject, Findings& found) {
                 "the extrapolation to h = 0 beside the corners of the clamped edge, and the reference's own mesh");
 }
 
-// A stiff bar that hangs from one edge of its end, released when level: the time between two rests.
+// Stiff bar hanging from one edge of its end, released horizontally: time between two rests.
 double swing_period(const std::string& integrator, double h) {
   const double length = 1, width = 0.1;
   Model model = make_model(make_box({{0, 0, 0}}, {{length, width, width}}, {4, 1, 1}),
@@ -117,7 +117,7 @@ double swing_period(const std::string& integrator, double h) {
       {"hinge", vertices_where(model.mesh, [](const Vec3d& X) { return X[0] == 0 && X[1] == 0; }), {}});
   const std::vector<double> weights(model.mass->vertex_mass().begin(), model.mass->vertex_mass().end());
   Simulation simulation = simulate(std::move(model), {.h = h, .integrator = integrator, .solver = {}});
-  // The center of mass turns back where its angular velocity about z changes its sign.
+  // The center of mass reverses where its angular velocity about z changes sign.
   const auto turning = [&] {
     double rate = 0;
     for (size_t v = 0; v < weights.size(); ++v) {
@@ -142,9 +142,9 @@ double swing_period(const std::string& integrator, double h) {
 }
 
 void check_pendulum(const Subject& subject, Findings& found) {
-  // About the edge: I / m = (l^2 + w^2) / 3, the center at the distance d and at the angle of its diagonal.
+  // About the edge: I / m = (l^2 + w^2) / 3; the center is at distance d, at the angle of the diagonal.
   const double l = 1, w = 0.1, d = std::hypot(l, w) / 2, inertia = (l * l + w * w) / 3;
-  const double angle = std::numbers::pi / 2 + std::atan2(w, l);  // from hanging
+  const double angle = std::numbers::pi / 2 + std::atan2(w, l);  // angle from the vertical
   const double reference = 4 * std::comp_ellint_1(std::sin(angle / 2)) * std::sqrt(inertia / (9.81 * d));
   for (const std::string integrator : {"midpoint", "tr_bdf2"}) {
     const double coarse = swing_period(subject.taken_for(integrator), 0.01);

@@ -23,7 +23,7 @@ bool is_assignment(const std::string& text) {
 
 std::vector<std::string> spread_assignments(const std::vector<std::string>& arguments) {
   std::vector<std::string> result;
-  bool follows_one = false;  // --set KEY=VALUE
+  bool follows_one = false;  // follows --set KEY=VALUE
   for (size_t i = 0; i < arguments.size(); ++i) {
     if (follows_one && is_assignment(arguments[i])) result.emplace_back("--set");
     const bool is_value = i > 0 && arguments[i - 1] == "--set";

@@ -1,10 +1,10 @@
-// Shows an address in the reader's browser.
+// Opens an address in the user's browser.
 #pragma once
 #include <string>
 
 namespace aspic::cli {
 
-// False: there is no display, or nothing that opens it there.
+// Returns false if there is no display, or no program to open the address.
 bool open_browser(const std::string& address);
 
 }  // namespace aspic::cli

@@ -1,4 +1,4 @@
-// `aspic capture`: measurements of a scene's body, made by simulating them.
+// `aspic capture`: synthetic measurements of a body by simulation.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -29,26 +29,26 @@ struct CaptureArguments {
   bool force = false, no_force = false, quiet = false;
 };
 
-// "sphere", "disc:0.01"
+// Parses "sphere" or "disc:0.01".
 void read_tip(const std::string& text, SynthesisOptions& bench) {
   const size_t colon = text.find(':');
   const std::string shape = text.substr(0, colon);
   if (shape != "sphere" && shape != "disc")
-    throw InvalidInput(fmt::format("--tip {}: the shape is sphere or disc, as in sphere:0.01", text));
+    throw InvalidInput(fmt::format("--tip {}: the shape must be sphere or disc, such as sphere:0.01", text));
   bench.shape = shape == "disc" ? TipShape::disc : TipShape::sphere;
   if (colon == std::string::npos) return;
   const Value radius = read_toml_value(text.substr(colon + 1), "--tip " + text);
   if (!radius.is_number() || !(radius.number() > 0) || !std::isfinite(radius.number()))
-    throw InvalidInput(fmt::format("--tip {}: the radius in meters must be > 0, as in sphere:0.01", text));
+    throw InvalidInput(fmt::format("--tip {}: the radius in meters must be > 0, such as sphere:0.01", text));
   bench.tip_radius = radius.number();
 }
 
-// "0,0,-1"
+// Parses "0,0,-1".
 Vec3d direction(const std::string& text) {
   const Value list = read_toml_value("[" + text + "]", "--gravity " + text);
   if (list.array().size() != 3 ||
       !std::all_of(list.array().begin(), list.array().end(), [](const Value& v) { return v.is_number(); }))
-    throw InvalidInput(fmt::format("--gravity {}: three numbers with commas are needed, as in 0,0,-1", text));
+    throw InvalidInput(fmt::format("--gravity {}: give three numbers separated by commas, such as 0,0,-1", text));
   return list.vector();
 }
 
@@ -56,7 +56,7 @@ SynthesisOptions bench_options(const CaptureArguments& arguments) {
   SynthesisOptions bench = arguments.bench;
   read_tip(arguments.tip, bench);
   if (arguments.contact != "bonded" && arguments.contact != "sliding")
-    throw InvalidInput(fmt::format("--contact {}: bonded or sliding", arguments.contact));
+    throw InvalidInput(fmt::format("--contact {}: must be bonded or sliding", arguments.contact));
   bench.contact = arguments.contact == "sliding" ? TipContact::sliding : TipContact::bonded;
   for (const std::string& text : arguments.gravity) bench.gravity.push_back(direction(text));
   bench.forces = !arguments.no_force;
@@ -70,7 +70,7 @@ fs::path folder_of(const CaptureArguments& arguments, const std::string& name) {
   std::error_code error;
   if (!arguments.force && fs::exists(folder / "capture.toml", error))
     throw InvalidInput(
-        fmt::format("{}: holds a data set already; choose another folder, or give --force", folder.string()));
+        fmt::format("{}: already contains a data set; choose another folder, or give --force", folder.string()));
   return folder;
 }
 
@@ -87,27 +87,27 @@ int capture(const CaptureArguments& arguments) {
   SynthesisOptions bench = bench_options(arguments);
   const Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides});
   const fs::path folder = folder_of(arguments, scene.name);
-  catch_interrupts();  // not before there is something to keep
+  catch_interrupts();  // from here on there are results to keep
   bench.stop = StopToken([] { return interrupt_signal() != 0; });
   const Synthesis made = synthesize(scene, bench, [&](const SynthesisStep& step) {
     if (!arguments.quiet) show(step);
   });
   for (const std::string& note : made.notes) fmt::print("note: {}\n", note);
   if (made.interrupted && made.data.experiment.cases.empty()) {
-    fmt::print(stderr, "interrupted before the first case was done: nothing was written\n");
+    fmt::print(stderr, "interrupted before the first case: nothing was written\n");
     return exit_signal + interrupt_signal();
   }
   if (made.data.experiment.cases.empty()) {
-    fmt::print(stderr, "error: no case has an equilibrium; poke less deep (--depth) or with a larger tip (--tip)\n");
+    fmt::print(stderr, "error: no case has an equilibrium; reduce --depth or use a larger --tip\n");
     return exit_unconverged;
   }
   write_data_set(folder, made.data, [&](const fs::path& place) { write_material(place / "truth.vtu", made.truth); });
   const Experiment& e = made.data.experiment;
-  fmt::print("{}: {} cases, {} markers, mesh of {} tets (truth: {}); {} holds what is true\n", folder.string(),
+  fmt::print("{}: {} cases, {} markers, mesh of {} tets (truth: {}); {} contains the truth\n", folder.string(),
              e.cases.size(), e.markers.size(), e.mesh.tet_count(), made.truth.mesh.tet_count(),
              (folder / "truth.vtu").string());
   if (made.interrupted) {
-    fmt::print(stderr, "interrupted: the data set holds the cases that were done; --force makes it anew\n");
+    fmt::print(stderr, "interrupted: the data set contains the finished cases; --force replaces it\n");
     return exit_signal + interrupt_signal();
   }
   return made.failed > 0 ? exit_unconverged : exit_done;
@@ -116,8 +116,7 @@ int capture(const CaptureArguments& arguments) {
 }  // namespace
 
 void add_capture(CLI::App& app, Action& action) {
-  auto* command =
-      app.add_subcommand("capture", "Synthetic measurements of a scene's body, for fits whose truth is known");
+  auto* command = app.add_subcommand("capture", "Makes synthetic measurements of a body, for fits with known truth");
   command->footer(R"(
 Examples:
   aspic capture scenes/capture/pillow.toml                     into out/pillow_data
@@ -125,34 +124,35 @@ Examples:
   aspic capture scenes/capture/pillow.toml -o hung --pokes 0 --gravity 0,0,-1 --gravity 1,0,0
 then: aspic fit out/pillow_data --check, and without --check
 
-Exit codes: 0 done, 2 bad input, 3 some case has no equilibrium and was left out, 130 interrupted by ctrl-C,
-143 by kill: the cases that were done are written.)");
+Exit codes: 0 done, 2 bad input, 3 some case has no equilibrium and was omitted, 130 interrupted by Ctrl-C,
+143 by kill: finished cases are written.)");
   auto a = std::make_shared<CaptureArguments>();
   SynthesisOptions& b = a->bench;
-  command->add_option("scene", a->input, "The scene or mesh to measure")->required();
-  command->add_option("-o,--out", a->out, "The folder of the data set; default: out/NAME_data");
-  command->add_option("--set", a->overrides, "KEY=VALUE: changes the scene, as for run")->allow_extra_args(false);
-  command->add_option("--pokes", b.pokes, "Sites that are poked")->capture_default_str();
-  command->add_option("--depths", b.depths, "Depths at each site")->capture_default_str();
-  command->add_option("--depth", b.deepest, "The deepest, relative to the body's size")->capture_default_str();
-  command->add_option("--tip", a->tip, "sphere[:RADIUS] or disc[:RADIUS] in m; default: 8 % of the body's size");
-  command->add_option("--contact", a->contact, "bonded or sliding")->capture_default_str();
-  command->add_option("--markers", b.markers, "Markers on the surface")->capture_default_str();
-  command->add_option("--noise", b.noise, "Of positions, relative to the largest motion")->capture_default_str();
-  command->add_option("--force-noise", b.force_noise, "Of forces, relative to the largest")->capture_default_str();
-  command->add_flag("--no-force", a->no_force, "Leaves forces out");
-  command->add_flag("--torque", b.torques, "Measures torques, too");
+  command->add_option("scene", a->input, "Scene or mesh to measure")->required();
+  command->add_option("-o,--out", a->out, "Folder of the data set; default: out/NAME_data");
+  command->add_option("--set", a->overrides, "KEY=VALUE: override a value of the scene")->allow_extra_args(false);
+  command->add_option("--pokes", b.pokes, "Number of poke sites")->capture_default_str();
+  command->add_option("--depths", b.depths, "Number of depths per site")->capture_default_str();
+  command->add_option("--depth", b.deepest, "Largest depth, relative to the size of the body")->capture_default_str();
+  command->add_option("--tip", a->tip,
+                      "Indenter: sphere[:RADIUS] or disc[:RADIUS] in m; default: 8 % of the body size");
+  command->add_option("--contact", a->contact, "Contact: bonded or sliding")->capture_default_str();
+  command->add_option("--markers", b.markers, "Number of markers on the surface")->capture_default_str();
+  command->add_option("--noise", b.noise, "Noise of positions, relative to the largest motion")->capture_default_str();
+  command->add_option("--force-noise", b.force_noise, "Relative noise of forces")->capture_default_str();
+  command->add_flag("--no-force", a->no_force, "Omit forces");
+  command->add_flag("--torque", b.torques, "Also measure torques");
   command->add_flag("--regions", b.regions,
-                    "Labels the tets by where the truth has one stiffness, for --unknown young=regions");
-  command->add_option("--gravity", a->gravity, "X,Y,Z: a case that hangs in this direction of gravity")
+                    "Label the tets by parts of constant stiffness, for --unknown young=regions");
+  command->add_option("--gravity", a->gravity, "X,Y,Z: add a load case with gravity in this direction")
       ->allow_extra_args(false);
-  command->add_option("--mesh", a->mesh, "The mesh of the data set; default: a coarser one of the same body");
-  command->add_option("--seed", b.seed, "Of the noise and the markers")
+  command->add_option("--mesh", a->mesh, "Mesh of the data set; default: a coarser one of the same body");
+  command->add_option("--seed", b.seed, "Seed of the noise and the markers")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--threads", a->threads, "How many; default: all")->check(CLI::Range(1, 1024));
-  command->add_flag("--force", a->force, "Overwrites a data set");
-  command->add_flag("-q,--quiet", a->quiet, "No progress");
+  command->add_option("--threads", a->threads, "Number of threads; default: all cores")->check(CLI::Range(1, 1024));
+  command->add_flag("--force", a->force, "Replace an earlier data set");
+  command->add_flag("-q,--quiet", a->quiet, "Print no progress");
   command->callback([a, &action] { action = [a] { return capture(*a); }; });
 }
 

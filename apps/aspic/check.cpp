@@ -1,4 +1,4 @@
-// `aspic check`: what the doctor says of a mesh or of every mesh of a scene.
+// `aspic check`: examines a mesh, or every mesh of a scene.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 struct CheckArguments {
   fs::path input, output, plot;
   std::vector<std::string> overrides;
-  double tolerance = 1e-6;  // of derivatives
+  double tolerance = 1e-6;  // tolerance of derivatives
   bool repair = false, derivatives = false, json = false;
 };
 
@@ -69,14 +69,14 @@ void print_quality(const TetMesh& mesh) {
                bins[i], std::string(width, '#'));
   }
 }
-void print_quality(const TriMesh&) {}  // a surface is judged by its findings alone
+void print_quality(const TriMesh&) {}  // findings alone describe a surface
 
 template <class Mesh>
 std::vector<Finding> examine(const Mesh& mesh) {
   print_quality(mesh);
   std::vector<Finding> findings = diagnose(mesh);
   for (const Finding& finding : findings) print(finding);
-  if (findings.empty()) fmt::print("nothing is wrong with it\n");
+  if (findings.empty()) fmt::print("no errors found\n");
   return findings;
 }
 
@@ -94,7 +94,7 @@ int check_mesh(const CheckArguments& arguments, Mesh mesh) {
   if (arguments.repair) {
     const std::vector<std::string> actions = repair(mesh);
     fmt::print("\nrepair: {}\n",
-               actions.empty() ? "nothing could be done" : fmt::format("{}", fmt::join(actions, "\n  ")));
+               actions.empty() ? "no repair was possible" : fmt::format("{}", fmt::join(actions, "\n  ")));
     write_mesh(arguments.output, mesh);
     fmt::print("{}: {}\n", printable(arguments.output.string()), counts(mesh));
     findings = examine(mesh);
@@ -102,7 +102,7 @@ int check_mesh(const CheckArguments& arguments, Mesh mesh) {
   return has_errors(findings) ? exit_bad_input : exit_done;
 }
 
-// One body as a mesh of its own. `all` is the whole mesh by the user's numbers.
+// Returns one body as a separate mesh. `all` is the whole mesh in the user's numbering.
 TetMesh body_mesh(const TetMesh& all, const BodyRange& body) {
   TetMesh mesh;
   mesh.rest.assign(all.rest.begin() + body.first_vertex, all.rest.begin() + body.first_vertex + body.vertex_count);
@@ -116,7 +116,7 @@ TetMesh body_mesh(const TetMesh& all, const BodyRange& body) {
 int check_scene(const CheckArguments& arguments) {
   if (arguments.repair) {
     throw InvalidInput(
-        fmt::format("{}: --repair works on a mesh file; name the mesh of the scene instead", arguments.input.string()));
+        fmt::format("{}: --repair needs a mesh file; give the mesh of the scene", arguments.input.string()));
   }
   const Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides, .mesher = {}});
   const Model& model = scene.simulation.model();
@@ -135,13 +135,13 @@ int check_scene(const CheckArguments& arguments) {
 
 int check(const CheckArguments& arguments) {
   if (arguments.derivatives) {
-    if (arguments.repair) throw InvalidInput("--repair and --derivatives exclude each other");
+    if (arguments.repair) throw InvalidInput("--repair and --derivatives cannot be combined");
     const Scene scene = load_scene(arguments.input, {.overrides = arguments.overrides, .mesher = {}});
     return check_derivatives(scene, {.plot = arguments.plot, .tolerance = arguments.tolerance, .json = arguments.json});
   }
-  if (!arguments.plot.empty() || arguments.json) throw InvalidInput("--plot and --json belong to --derivatives");
+  if (!arguments.plot.empty() || arguments.json) throw InvalidInput("--plot and --json require --derivatives");
   if (arguments.input.extension() == ".toml") return check_scene(arguments);
-  if (!arguments.overrides.empty()) throw InvalidInput("--set changes a scene; a mesh has no values to override");
+  if (!arguments.overrides.empty()) throw InvalidInput("--set needs a scene; a mesh has no values to override");
   return std::visit([&](auto mesh) { return check_mesh(arguments, std::move(mesh)); }, read_mesh(arguments.input));
 }
 
@@ -149,29 +149,29 @@ int check(const CheckArguments& arguments) {
 
 void add_check(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* command = app.add_subcommand("check", "Says what is wrong or suspicious about a scene or a mesh");
+  CLI::App* command = app.add_subcommand("check", "Reports errors and suspicious values of a scene or a mesh");
   command->footer(
       "\nExamples:\n  aspic check bunny.mesh\n  aspic check scenes/bunny.toml\n"
       "  aspic check broken.mesh --repair -o mended.mesh\n"
       "  aspic check scenes/bunny.toml --derivatives --plot errors.svg\n"
-      "Exit code 2 when there are errors (after the repair, when one was asked for), 3 when a derivative is wrong.");
+      "Exit code 2 if there are errors (after a repair, if requested), 3 if a derivative is wrong.");
   command->add_option("INPUT", arguments->input, "Scene (.toml) or mesh")->required();
   command
       ->add_option("--set", arguments->overrides,
                    "Override values of the scene: material.young=2e5; several may follow")
       ->allow_extra_args(false);
-  CLI::Option* output = command->add_option("-o,--output", arguments->output, "Where the repaired mesh goes");
+  CLI::Option* output = command->add_option("-o,--output", arguments->output, "Repaired mesh to write");
   CLI::Option* repair = command->add_flag("--repair", arguments->repair,
                                           "Flip inverted tets, remove zero-volume ones, merge duplicate vertices, "
-                                          "drop unreferenced ones");
+                                          "remove unreferenced ones");
   repair->needs(output);
   output->needs(repair);
   command->add_flag("--derivatives", arguments->derivatives,
-                    "Central differences of every term of the next step against its gradient and Hessian");
-  command->add_option("--tolerance", arguments->tolerance, "With --derivatives: of the smallest error; 1e-6 by default")
+                    "Compare gradient and Hessian of every term of the next step with central differences");
+  command->add_option("--tolerance", arguments->tolerance, "With --derivatives: relative tolerance; 1e-6 by default")
       ->check(CLI::PositiveNumber);
-  command->add_option("--plot", arguments->plot, "With --derivatives: error over step (.svg or .png)");
-  command->add_flag("--json", arguments->json, "With --derivatives: one line of JSON per term and state");
+  command->add_option("--plot", arguments->plot, "With --derivatives: plot error over step (.svg or .png)");
+  command->add_flag("--json", arguments->json, "With --derivatives: print one line of JSON per term and state");
   command->callback([arguments, &action] { action = [arguments] { return check(*arguments); }; });
 }
 

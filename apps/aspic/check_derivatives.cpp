@@ -1,4 +1,4 @@
-// `aspic check --derivatives`: is every gradient the gradient of its energy, every Hessian the Hessian?
+// `aspic check --derivatives`: compares gradients and Hessians of all terms with differences.
 #include "aspic/check_derivatives.h"
 
 #include <fmt/format.h>
@@ -19,7 +19,7 @@ std::string order_text(const DerivativeCheck& check) {
   return std::isfinite(check.order) ? fmt::format("{:.2f}", check.order) : "-";
 }
 
-// "vertex 12, y", or of a Hessian "vertex 12, y; vertex 3, x (tet 57)", by the user's numbers.
+// "vertex 12, y", or for a Hessian "vertex 12, y; vertex 3, x (tet 57)", in the user's numbering.
 std::string place(const DerivativeCheck& check, const Model& model) {
   if (check.row < 0) return "";
   const Renumbering &vertex = model.numbering.vertex, &tet = model.numbering.tet;
@@ -35,14 +35,14 @@ void print_failure(const char* what, const DerivativeCheck& check, const TermDer
   if (check.row < 0)
     fmt::print("{} of {} ({}): not finite at any step\n", what, of.term, of.state);
   else
-    fmt::print("{} of {} ({}) differs most at {}: it says {:.12g}, differences say {:.12g}\n", what, of.term, of.state,
+    fmt::print("{} of {} ({}) differs most at {}: formula {:.12g}, differences {:.12g}\n", what, of.term, of.state,
                place(check, model), check.found, check.expected);
 }
 
 nlohmann::ordered_json to_json(const DerivativeCheck& check, const Model& model) {
   return {{"passed", check.passed},
           {"smallest_error", check.smallest_error},
-          {"order", check.order},  // null: no error but round-off
+          {"order", check.order},  // null: only round-off error
           {"step", check.step},
           {"error", check.error},
           {"worst", {{"place", place(check, model)}, {"found", check.found}, {"expected", check.expected}}}};
@@ -70,8 +70,8 @@ void print_table(const std::vector<TermDerivatives>& results, const Model& model
                g.smallest_error, order_text(H), H.smallest_error, of.report.passed() ? "passed" : "WRONG");
   }
   fmt::print(
-      "\norder: how the error of central differences falls with their step; 2 is right, - is round-off alone\n"
-      "error: the smallest over steps of 1e-1 to 1e-9 edges, relative to the derivative; {:g} is asked for\n",
+      "\norder: convergence order of central differences; 2 is correct, - means only round-off\n"
+      "error: smallest error for steps of 1e-1 to 1e-9 edges, relative to the derivative; tolerance {:g}\n",
       tolerance);
   for (const TermDerivatives& of : results) {
     print_failure("the gradient", of.report.gradient, of, model);
@@ -79,9 +79,9 @@ void print_table(const std::vector<TermDerivatives>& results, const Model& model
   }
 }
 
-// The largest error over the states, for each term and derivative.
+// Largest error over the states for each term and derivative.
 Chart chart_of(const std::vector<TermDerivatives>& results, const std::string& scene) {
-  Chart chart{.title = fmt::format("Derivatives of {}: differences against formulas", scene),
+  Chart chart{.title = fmt::format("Derivatives of {}: differences and formulas", scene),
               .x = {"step / mean edge length", AxisScale::logarithmic},
               .y = {"relative error", AxisScale::logarithmic},
               .size = {780, 520}};

@@ -6,12 +6,12 @@
 namespace aspic::cli {
 
 struct CheckDerivativesOptions {
-  std::filesystem::path plot;  // empty: none
+  std::filesystem::path plot;  // empty: no plot
   double tolerance = 1e-6;
   bool json = false;
 };
 
-// Prints how the derivatives of every term of the scene's next step compare with differences. Returns the exit code.
+// Compares derivatives of every term of the scene's next step with differences. Prints, and returns the exit code.
 int check_derivatives(const Scene& scene, const CheckDerivativesOptions& options);
 
 }  // namespace aspic::cli

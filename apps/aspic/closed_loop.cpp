@@ -1,5 +1,5 @@
-// `aspic closed-loop`: a cube is stretched along x, then along y, let go along x, then along y, again and again. What
-// work does that take? With an energy none; with moduli that are interpolated in strain space some, each time.
+// `aspic closed-loop`: work of repeatedly stretching a cube along x, then y, and releasing it along x, then y. It is
+// zero with an energy, and nonzero per loop with moduli that are interpolated in strain space.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -17,22 +17,22 @@
 namespace aspic::cli {
 namespace {
 
-constexpr double kSide = 0.1;                              // of the cube [m]
-constexpr std::array<double, 3> kYoung = {1e5, 4e5, 2e5};  // of the examples: along x, along y, both [Pa]
+constexpr double kSide = 0.1;                              // edge length [m]
+constexpr std::array<double, 3> kYoung = {1e5, 4e5, 2e5};  // moduli of the examples: along x, along y, both [Pa]
 constexpr double kPoisson = 0.3;
 
 struct Request {
-  double stretch = 0.2;  // by which the cube is stretched
+  double stretch = 0.2;  // stretch of the cube
   int loops = 4, increments = 100;
   bool reversed = false;
   std::filesystem::path picture;
 };
 
-// Along the loop, by the part of it that is done.
+// Values along the loop.
 struct Course {
   std::vector<double> loops, work;  // [1], [J]
   double after_first = 0;           // work of the first loop [J]
-  double stress = 0;                // left in the cube at rest after the last [Pa]
+  double stress = 0;                // residual stress at rest after the last loop [Pa]
 };
 
 std::vector<double> stretched(const TetMesh& mesh, double x, double y) {
@@ -108,7 +108,7 @@ int run(const Request& request) {
   const auto peak = [](const Course& c) { return *std::max_element(c.work.begin(), c.work.end()); };
   fmt::print("A cube of {} m, {} loops of {} increments per side, stretched by {}:\n", kSide, request.loops,
              request.increments, request.stretch);
-  fmt::print("  {:<34} {:>16} {:>16} {:>18} {:>16}\n", "", "first loop [J]", "all loops [J]", "largest ever [J]",
+  fmt::print("  {:<34} {:>16} {:>16} {:>18} {:>16}\n", "", "first loop [J]", "all loops [J]", "maximum [J]",
              "stress left [Pa]");
   const auto row = [&](const char* what, const Course& c) {
     fmt::print("  {:<34} {:>16.5f} {:>16.5f} {:>18.5f} {:>16.4g}\n", what, c.after_first, c.work.back(), peak(c),
@@ -136,15 +136,15 @@ int run(const Request& request) {
 void add_closed_loop(CLI::App& app, Action& action) {
   const auto request = std::make_shared<Request>();
   CLI::App* command = app.add_subcommand(
-      "closed-loop", "The work of closed loops of strain: with an energy none, with interpolated moduli some");
+      "closed-loop", "Computes the work of closed strain loops: zero with an energy, nonzero with interpolated moduli");
   command->footer("\nExamples:\n  aspic closed-loop\n  aspic closed-loop --increments 1000 --plot loops.svg");
-  command->add_option("--stretch", request->stretch, "By which the cube is stretched")->capture_default_str();
-  command->add_option("--loops", request->loops, "How many")->check(CLI::Range(1, 1000))->capture_default_str();
-  command->add_option("--increments", request->increments, "Along each side of the loop")
+  command->add_option("--stretch", request->stretch, "Stretch of the cube")->capture_default_str();
+  command->add_option("--loops", request->loops, "Number of loops")->check(CLI::Range(1, 1000))->capture_default_str();
+  command->add_option("--increments", request->increments, "Number of increments per side of the loop")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  command->add_flag("--reversed", request->reversed, "The other way round");
-  command->add_option("--plot", request->picture, "Draws the work against the loops: FILE.svg or FILE.png");
+  command->add_flag("--reversed", request->reversed, "Reverse the direction of the loop");
+  command->add_option("--plot", request->picture, "Plot the work over the loops: FILE.svg or FILE.png");
   command->callback([request, &action] { action = [request] { return run(*request); }; });
 }
 

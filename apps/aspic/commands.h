@@ -1,4 +1,4 @@
-// The commands of the program. Each adds itself to the command line and, when it is the chosen one, sets `action`.
+// Commands of the program. Each adds itself to the command line and, if selected, sets `action`.
 #pragma once
 #include <functional>
 #include <string>
@@ -13,9 +13,9 @@ enum ExitCode {
   exit_done = 0,
   exit_internal_error = 1,
   exit_bad_input = 2,
-  exit_unconverged = 3,  // a step, a minimization; of a check of derivatives: one is wrong; of verify: a row fails
-  exit_time_limit = 4,   // of `aspic run`: its --time-limit came first
-  exit_signal = 128,     // plus the number of the signal: 130 after ctrl-C, 143 after a plain kill
+  exit_unconverged = 3,  // a step or minimization; check --derivatives: one is wrong; verify: a row fails
+  exit_time_limit = 4,   // --time-limit reached
+  exit_signal = 128,     // plus the number of the signal: 130 after Ctrl-C, 143 after a plain kill
 };
 
 using Action = std::function<int()>;  // returns the exit code

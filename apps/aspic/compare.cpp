@@ -1,4 +1,4 @@
-// `aspic compare`: several methods on the same step of a scene.
+// `aspic compare`: compares several methods on the same step of a scene.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -41,7 +41,7 @@ void print_table(const Comparison& comparison) {
   }
 }
 
-// Before the work, which may take long.
+// Called before the work, which may take long.
 void create(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -66,10 +66,10 @@ int compare(const CompareArguments& arguments) {
                                          .begun = begun,
                                          .stop = StopToken([] { return interrupt_signal() != 0; })});
   if (!comparison.has_reference) {
-    fmt::print(stderr, "interrupted before there was anything to compare with: nothing was written\n");
+    fmt::print(stderr, "interrupted before the reference was computed: nothing was written\n");
     return exit_signal + interrupt_signal();
   }
-  fmt::print("E* = {:.10g} by Newton's method to round-off, {} iterations, |g| = {:.1e}\n\n",
+  fmt::print("E* = {:.10g} by Newton's method at round-off, {} iterations, |g| = {:.1e}\n\n",
              comparison.reference.objective, comparison.reference.iterations, comparison.reference.objective_gradient);
   print_table(comparison);
 
@@ -98,18 +98,18 @@ Examples:
   aspic compare scenes/bunny.toml --methods newton,gradient_descent
   aspic compare beam.toml --methods newton:exact,newton:clamped --step 20 --set solver.tolerance=1e-8
 
-Exit codes: 0 every method reached the same minimizer, 2 bad input, 3 some did not;
-130 interrupted by ctrl-C, 143 by kill: the methods that came to their end are written.)");
+Exit codes: 0 every method reached the same minimizer, 2 bad input, 3 some did not,
+130 interrupted by Ctrl-C, 143 by kill: finished methods are written.)");
   command->add_option("SCENE", arguments->input, "Scene (.toml) or mesh")->required();
   command->add_option("--methods", arguments->methods, "Methods, separated by commas")->required()->delimiter(',');
-  command->add_option("--step", arguments->step, "Which step; those before are taken by the scene's own method")
+  command->add_option("--step", arguments->step, "Number of the step; earlier steps use the method of the scene")
       ->check(CLI::Range(1, 1000000000));
   command->add_option("--set", arguments->overrides, "Override values: solver.tolerance=1e-8; several may follow")
       ->allow_extra_args(false);
-  command->add_option("--max-seconds", arguments->max_seconds, "A method that takes longer is cut off")
+  command->add_option("--max-seconds", arguments->max_seconds, "Time limit per method [s]")
       ->check(CLI::Range(1e-3, 1e9));
   command->add_option("--threads", arguments->threads, "Threads; all cores by default")->check(CLI::Range(1, 1024));
-  command->add_option("--out", arguments->out, "Folder of the tables and pictures; out/compare_NAME by default");
+  command->add_option("--out", arguments->out, "Folder for tables and pictures; out/compare_NAME by default");
   command->callback([arguments, &action] { action = [arguments] { return compare(*arguments); }; });
 }
 

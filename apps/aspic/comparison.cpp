@@ -12,11 +12,11 @@
 namespace aspic::cli {
 namespace {
 
-constexpr int kMostIterations = 1'000'000;  // the clock limits them
+constexpr int kMostIterations = 1'000'000;  // practically unlimited; the time limit applies
 constexpr int kRepetitions = 3;
-constexpr double kWorthRepeating = 0.5;  // [s]; what takes longer is not disturbed by a single hiccup
+constexpr double kWorthRepeating = 0.5;  // [s]; longer runs are hardly disturbed by other load
 
-// Linear tets: the smallest eigenvalue of the consistent mass matrix is at least a fifth of the smallest lumped mass.
+// Linear tets: the smallest eigenvalue of the consistent mass matrix is at least 1/5 of the smallest lumped mass.
 double smallest_mass_eigenvalue(const MassMatrix& mass) {
   double least = INFINITY;
   for (const double m : mass.vertex_mass())
@@ -49,8 +49,8 @@ class Comparer {
   }
 
  private:
-  // Where a step is one minimization, all methods have the same minimizer to find. A later stage begins with what an
-  // earlier one left, and one iteration looks for none.
+  // If a step is one minimization, all methods have the same minimizer. Later stages depend on earlier ones, and a
+  // single iteration need not reach a minimizer.
   void require_one_minimization() const {
     const std::string& integrator = simulation_.options().integrator;
     const auto require = [&](bool holds, const char* reason) {
@@ -60,12 +60,12 @@ class Comparer {
                            "backward_euler");
     };
     require(simulation_.integrator().is_implicit, "minimizes nothing");
-    require(integrator != "linearly_implicit_euler", "takes one iteration, wherever it leads");
-    require(integrator != "tr_bdf2", "minimizes twice per step, the second time from what the first one left");
+    require(integrator != "linearly_implicit_euler", "always takes one iteration");
+    require(integrator != "tr_bdf2", "minimizes twice per step, the second time from the first result");
     require(integrator != "bdf2" || options_.step > 1, "minimizes twice in its first step (try --step 2)");
     if (simulation_.options().adaptive.tolerance > 0)
       throw InvalidInput(
-          "time.adaptive divides a step into parts, each from what the one before left; compare methods with "
+          "time.adaptive divides a step into substeps; compare methods with "
           "--set time.adaptive.tolerance=0");
   }
 
@@ -87,7 +87,7 @@ class Comparer {
     SolverOptions exact;
     exact.minimize = base_.minimize;
     exact.minimize.criterion = Criterion::scale;
-    exact.minimize.tolerance = 0;  // as far as double precision goes
+    exact.minimize.tolerance = 0;  // limit of double precision
     exact.minimize.max_iterations = 1000;
     exact.minimize.line_search = {};
     simulation_.set_solver(exact);
@@ -126,7 +126,7 @@ class Comparer {
         [&](const LiveIteration& iteration) {
           seconds += stopwatch.lap();
           if (result.work.empty()) result.work.push_back({.gradients = 1});
-          // What an iteration begins with is what the one before ended with.
+          // The result of an iteration is the initial point of the next.
           result.work.back().value = iteration.value;
           result.work.back().gradient_norm = iteration.gradient_norm;
           gradients += iteration.gradients;
@@ -146,8 +146,8 @@ class Comparer {
     return result;
   }
 
-  // E lies above its quadratic form M wherever V is convex, so |x - x*|_M <= |g(x)| / sqrt(smallest eigenvalue of M):
-  // a method that is further away than its own gradient and that of the reference allow found another minimizer.
+  // E lies above its quadratic form M wherever V is convex, so |x - x*|_M <= |g(x)| / sqrt(smallest eigenvalue of M). A
+  // method whose distance exceeds the bound from its own gradient and that of the reference found another minimizer.
   void judge(const StepReport& reference, MethodResult& result) const {
     const std::vector<double>& x = simulation_.state().q;
     std::vector<double> dx(x.size()), Mdx(x.size());

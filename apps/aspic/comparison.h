@@ -1,4 +1,4 @@
-// Several methods on one time step, each from the same state: how much work each needs for how much precision.
+// Compares the work and the accuracy of several methods on one time step, each from the same state.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,41 +8,41 @@
 namespace aspic::cli {
 
 struct WorkPoint {
-  int iteration = 0, gradients = 0, hessians = 0;  // done so far
+  int iteration = 0, gradients = 0, hessians = 0;  // totals so far
   double seconds = 0;
-  double value = 0, gradient_norm = 0;  // E and |g| there
+  double value = 0, gradient_norm = 0;  // E and |g| at this point
 };
 
 struct MethodResult {
-  std::string method;       // as it was asked for
-  std::string description;  // with what it decided
+  std::string method;       // as given by the user
+  std::string description;  // including automatic choices
   StepReport report;
-  std::vector<WorkPoint> work;  // the start, and the end of each iteration
-  double seconds = 0;           // of the fastest run
+  std::vector<WorkPoint> work;  // initial guess, and the end of each iteration
+  double seconds = 0;           // time of the fastest run
   double excess = 0;            // (E - E*) / (E at the start - E*), where E* is that of the reference
-  double distance = 0;          // of the vertex that is furthest from where the reference has it [m]
-  double allowed_distance = 0;  // in the norm of the mass [m sqrt(kg)], see same_minimizer(); infinite in statics
-  double mass_distance = 0;     // in that norm
+  double distance = 0;          // largest distance of a vertex from the reference [m]
+  double allowed_distance = 0;  // in the mass norm [m sqrt(kg)], see same_minimizer(); infinite in statics
+  double mass_distance = 0;     // distance in the mass norm
   bool same_minimizer = false;
 };
 
 struct Comparison {
-  int step = 1;                                     // which was solved
-  StepReport reference;                             // Newton's method as far as double precision goes
-  std::vector<MethodResult> results;                // in the order asked for
-  bool has_reference = false, interrupted = false;  // then the methods that are missing were not tried to their end
+  int step = 1;                                     // number of the solved step
+  StepReport reference;                             // Newton's method at the limit of double precision
+  std::vector<MethodResult> results;                // in the given order
+  bool has_reference = false, interrupted = false;  // if interrupted, unfinished methods are missing
 };
 
 struct ComparisonOptions {
   std::vector<std::string> methods;  // see method_named()
   int step = 1;
-  double max_seconds = 60;  // of one method; what takes longer is cut off, and says so
+  double max_seconds = 60;                                    // time limit of one method
   std::function<void(const std::string& method)> begun = {};  // called before each method
   StopToken stop = {};                                        // polled in every iteration
 };
 
-// Brings the simulation to the start of the step by its own method and solves it by each of them. Throws InvalidInput
-// for an unknown method and for a step that is not one minimization.
+// Advances the simulation to the step by its own method and solves the step by each method. Throws InvalidInput for an
+// unknown method, or if the step is not one minimization.
 Comparison compare_methods(Simulation& simulation, const ComparisonOptions& options);
 
 }  // namespace aspic::cli

@@ -77,11 +77,11 @@ void write_json(const fs::path& path, const std::string& scene, const Comparison
 
 enum class Work { iterations, seconds };
 
-// How far E is above its minimum; below the noise of E nothing can be said.
+// Distance of E from its minimum, down to the round-off floor of E.
 Chart precision_chart(const Comparison& comparison, Work work) {
   const bool is_time = work == Work::seconds;
   Chart chart;
-  chart.title = is_time ? "Precision against time" : "Precision against iterations";
+  chart.title = is_time ? "Accuracy over time" : "Accuracy over iterations";
   chart.x = {.label = is_time ? "time [s]" : "iteration (from 1)", .scale = AxisScale::logarithmic};
   chart.y = {.label = "E - E* [relative to the start]", .scale = AxisScale::logarithmic};
   const double end = comparison.reference.objective;
@@ -91,7 +91,7 @@ Chart precision_chart(const Comparison& comparison, Work work) {
     const double noise = std::numeric_limits<double>::epsilon() * std::abs(end);
     Series series{.label = result.method, .style = SeriesStyle::line_and_points};
     for (const WorkPoint& point : result.work) {
-      if (point.iteration == 0) continue;  // at no time: not on a logarithmic axis
+      if (point.iteration == 0) continue;  // zero has no place on a logarithmic axis
       series.x.push_back(is_time ? point.seconds : point.iteration);
       series.y.push_back(std::max(point.value - end, noise) / start);
     }
@@ -118,17 +118,17 @@ std::vector<Cell> row_of(const MethodResult& result) {
 void write_page(const fs::path& folder, const std::string& scene, const Comparison& comparison, bool has_pictures) {
   ReportPage page("Methods compared", fmt::format("{}, step {}", scene, comparison.step));
   page.paragraph(
-      "Every method solves the same time step from the same state. The reference is Newton's method as far as double "
-      "precision goes, E* its objective. The excess of E is E - E*, relative to that at the start.");
+      "Every method solves the same time step from the same state. The reference is Newton's method at the limit of "
+      "double precision, E* its objective. The excess of E is E - E*, relative to the start.");
   std::vector<std::vector<Cell>> rows;
   for (const MethodResult& result : comparison.results) rows.push_back(row_of(result));
   page.table(
       {"method", "reached", "iterations", "gradients", "Hessians", "time [ms]", "excess of E", "|g|", "distance [m]"},
       rows);
   if (has_pictures)
-    page.figures({{folder / "time.svg", "How far E is above its minimum, against the time spent."},
-                  {folder / "iterations.svg", "The same against the iterations."}});
-  page.heading("What was chosen");
+    page.figures({{folder / "time.svg", "Distance of E from its minimum over time."},
+                  {folder / "iterations.svg", "The same over iterations."}});
+  page.heading("Settings");
   for (const MethodResult& result : comparison.results) page.paragraph(result.method + ": " + result.description);
   page.write(folder / "index.html");
 }

@@ -1,4 +1,4 @@
-// What `aspic compare` leaves in its folder: tables, pictures and a page that shows them.
+// Output of `aspic compare`: tables, pictures and a page.
 #pragma once
 #include <filesystem>
 
@@ -6,8 +6,8 @@
 
 namespace aspic::cli {
 
-// methods.csv, work.csv, comparison.json, iterations.svg, time.svg, index.html. Without gnuplot the pictures are left
-// out; returns why, or an empty text. The folder exists. Throws InvalidInput when it cannot be written.
+// Writes methods.csv, work.csv, comparison.json, iterations.svg, time.svg, index.html to an existing folder. Without
+// gnuplot it omits pictures and returns the reason, else an empty text. Throws InvalidInput if writing fails.
 std::string write_comparison(const std::filesystem::path& folder, const std::string& scene,
                              const Comparison& comparison);
 

@@ -1,4 +1,4 @@
-// `aspic completion`: completion scripts and the man page, from the options that the commands define.
+// `aspic completion`: prints completion scripts and the man page from the defined options.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -12,7 +12,7 @@ namespace aspic::cli {
 namespace {
 
 struct OptionHelp {
-  std::vector<std::string> names;  // "-o", "--output"; the name itself of a positional argument
+  std::vector<std::string> names;  // "-o", "--output"; for a positional argument its name
   std::string text;
   bool takes_value, is_positional;
 };
@@ -147,7 +147,7 @@ std::string man_page(const CLI::App& app, const std::vector<CommandHelp>& comman
       page += std::string(option.takes_value && !option.is_positional ? " \\fIVALUE\\fR" : "") + "\n";
       page += roff(option.text) + "\n";
     }
-    if (command.footer != app.get_footer()) page += verbatim(command.footer);  // a command without one inherits it
+    if (command.footer != app.get_footer()) page += verbatim(command.footer);  // a command without footer inherits it
   }
   return page + ".SH EXAMPLES AND EXIT CODES\n" + verbatim(app.get_footer());
 }
@@ -169,8 +169,8 @@ void add_completion(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("completion", "Prints the completion script of a shell, or the man page");
   command->footer(
       "\nExamples:\n  aspic completion bash > ~/.local/share/bash-completion/completions/aspic\n"
-      "  aspic completion man | man -l -\n'cmake --install' puts all of them in their places.");
-  command->add_option("KIND", *kind, "bash, zsh, fish, or man")
+      "  aspic completion man | man -l -\n'cmake --install' installs all of them.");
+  command->add_option("KIND", *kind, "Output: bash, zsh, fish, or man")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish", "man"}));
   command->callback([kind, &app, &action] { action = [kind, &app] { return print_completion(app, *kind); }; });

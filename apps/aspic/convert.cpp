@@ -1,4 +1,4 @@
-// `aspic convert`: from one mesh format to another.
+// `aspic convert`: converts between mesh formats.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -56,7 +56,7 @@ int convert(const ConvertArguments& arguments) {
   } else {
     if (format.writes_triangles) return write(arguments, std::get<TriMesh>(mesh), "");
     if (format.writes_tets) {
-      throw InvalidInput(fmt::format("{} is a surface and {} holds tets; fill it first: aspic mesh {} -o {}",
+      throw InvalidInput(fmt::format("{} is a surface but {} stores tets; fill it first: aspic mesh {} -o {}",
                                      arguments.in.string(), format.extension, arguments.in.string(),
                                      arguments.out.string()));
     }
@@ -79,15 +79,15 @@ std::string format_table() {
 
 void add_convert(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<ConvertArguments>();
-  CLI::App* command = app.add_subcommand("convert", "Writes a mesh in another format, chosen by the file name");
+  CLI::App* command = app.add_subcommand("convert", "Converts a mesh to another format, selected by the file name");
   command->footer([] {
     return "\nExamples:\n  aspic convert bunny.msh bunny.vtu\n  aspic convert bunny.mesh bunny.obj    the boundary\n" +
            format_table();
   });
   command->add_option("IN", arguments->in, "Mesh to read")->required();
-  command->add_option("OUT", arguments->out, "Mesh to write; replaced when it exists")->required();
-  command->add_flag("--surface", arguments->surface, "The boundary of a tet mesh rather than its tets");
-  command->add_flag("--binary", arguments->binary, "Binary where the format has both encodings");
+  command->add_option("OUT", arguments->out, "Mesh to write; an existing file is replaced")->required();
+  command->add_flag("--surface", arguments->surface, "Write the boundary of a tet mesh instead of its tets");
+  command->add_flag("--binary", arguments->binary, "Write the binary encoding if the format has both");
   command->callback([arguments, &action] { action = [arguments] { return convert(*arguments); }; });
 }
 

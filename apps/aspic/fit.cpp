@@ -1,4 +1,4 @@
-// `aspic fit`: measurements to a material, with progress, that continues where it was killed.
+// `aspic fit`: fits a material to measurements, with progress, and resumes interrupted fits.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -71,7 +71,7 @@ void heed_findings(const DataSet& data, const fs::path& path) {
     fmt::print(stderr, "warning: and {} more: aspic fit --check {}\n", count - kMostTold, printable(path.string()));
 }
 
-// One fit, and everyone who listens to it.
+// Runs one fit and notifies its observers.
 class Fitter {
  public:
   Fitter(const FitArguments& arguments, const DataSet& data, const FitPlan& plan, FitFolder& folder)
@@ -111,7 +111,7 @@ class Fitter {
 
   bool is_interrupted() {
     if (!interrupt_signal()) return false;
-    if (progress_ && !announced_) progress_->message("stopping; ctrl-C again ends at once");
+    if (progress_ && !announced_) progress_->message("stopping; Ctrl-C again ends immediately");
     return announced_ = true;
   }
 
@@ -133,7 +133,7 @@ void print_start(const FitArguments& arguments, const DataSet& data, const FitPl
              thread_count(), arguments.out.string());
   std::string unknowns;
   for (const Unknown& u : plan.unknowns) unknowns += (unknowns.empty() ? "" : ", ") + text_of(u);
-  fmt::print("{}: {}\n", plan.model, unknowns.empty() ? "nothing is unknown" : unknowns);
+  fmt::print("{}: {}\n", plan.model, unknowns.empty() ? "no parameters to fit" : unknowns);
   if (plan.refine > 0)
     fmt::print("simulated on {:.0f} tets, each of the mesh in {:.0f} (refine = {})\n",
                e.mesh.tet_count() * std::pow(8, plan.refine), std::pow(8, plan.refine), plan.refine);
@@ -141,13 +141,12 @@ void print_start(const FitArguments& arguments, const DataSet& data, const FitPl
   std::fflush(stdout);
 }
 
-// The way back into a scene.
+// Prints how to use the material in a scene.
 void print_use(const FitArguments& arguments, bool is_whole) {
   if (arguments.quiet) return;
   fmt::print("material   {0}; in a scene: material = {{ file = {1} }}\n", arguments.out.string(),
              toml_string(arguments.out.string()));
-  if (!is_whole)
-    fmt::print("           it is what was reached; the same command with --resume continues, to the same bits\n");
+  if (!is_whole) fmt::print("           current estimate; the same command with --resume continues bit-reproducibly\n");
 }
 
 int exit_code(const FitArguments& arguments, bool is_good) {
@@ -161,30 +160,30 @@ void print_verdict(const FitVerdict& verdict, bool is_quiet) {
     return;
   }
   for (const FitReason& reason : verdict.reasons)
-    fmt::print(stderr, "warning: not to be relied on ({}): {}\n", reason.name, reason.text);
+    fmt::print(stderr, "warning: not reliable ({}): {}\n", reason.name, reason.text);
 }
 
-// Synthetic data come with what is true.
+// Synthetic data include the truth.
 fs::path truth_beside(const fs::path& data) {
   return (fs::is_directory(data) ? data : data.parent_path()) / "truth.vtu";
 }
 
 int run(const FitArguments& arguments) {
   if (arguments.data.extension() == ".csv")
-    throw InvalidInput(arguments.data.string() + ": a data set is a folder; curves are fitted by: aspic fit-curves " +
+    throw InvalidInput(arguments.data.string() + ": a data set is a folder; to fit curves: aspic fit-curves " +
                        arguments.data.string());
   if (arguments.check) return check_data(arguments.data);
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   FitPlan plan = plan_of(arguments);
   const bool has_baselines = read_fit_options(arguments.options, plan);
   if (arguments.out.extension() != ".vtu")
-    throw InvalidInput(arguments.out.string() + ": a material is a .vtu file; choose such a name with -o");
+    throw InvalidInput(arguments.out.string() + ": a material file is a .vtu; choose such a name with -o");
   const DataSet data = read_data_set(arguments.data);
   heed_findings(data, arguments.data);
   plan = completed(std::move(plan), data.experiment);
   const std::string options = "# aspic fit\ndata = \"" + fingerprint_of(data.experiment) + "\"\n" + text_of(plan);
   FitFolder folder = FitFolder::open(arguments.out, options, existing(arguments));
-  catch_interrupts();  // not before there is something to keep
+  catch_interrupts();  // from here on there are results to keep
 
   if (!arguments.quiet) print_start(arguments, data, plan, folder);
   Fitter fitter(arguments, data, plan, folder);
@@ -250,9 +249,7 @@ void add_fit(CLI::App& app, Action& action) {
   command->add_option("--known", arguments->known, "QUANTITY=NUMBER to keep, such as poisson=0.45; can be repeated")
       ->allow_extra_args(false);
   command->add_option("--options", arguments->options, "TOML file of further options, listed below");
-  command
-      ->add_option("--threads", arguments->threads,
-                   "Number of threads; all cores by default; results do not depend on it")
+  command->add_option("--threads", arguments->threads, "Threads; all cores by default; results do not depend on it")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--force", arguments->force, "Replace an earlier fit");
   command->add_flag("--resume", arguments->resume, "Continue an interrupted fit")->excludes("--force");

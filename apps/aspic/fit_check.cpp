@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMostSeries = 12;  // in one chart
+constexpr size_t kMostSeries = 12;  // limit per chart
 
 std::string_view word(Severity severity) {
   return severity == Severity::error ? "error" : severity == Severity::warning ? "warning" : "note";
@@ -26,7 +26,7 @@ std::string_view word(Severity severity) {
 
 double length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
-// The cases of each group, in the order of the data.
+// Returns the cases of each group in the order of the data.
 std::vector<std::vector<const LoadCase*>> cases_by_group(const Experiment& experiment) {
   std::vector<std::vector<const LoadCase*>> groups;
   for (const LoadCase& load : experiment.cases) {
@@ -37,7 +37,7 @@ std::vector<std::vector<const LoadCase*>> cases_by_group(const Experiment& exper
 }
 
 Chart force_against_depth(const Experiment& experiment) {
-  Chart chart{"Force against depth", {"depth [mm]"}, {"force [N]"}, {}};
+  Chart chart{"Force over depth", {"depth [mm]"}, {"force [N]"}, {}};
   for (const auto& group : cases_by_group(experiment)) {
     Series series{group.front()->group, {0}, {0}, SeriesStyle::line_and_points};
     for (const LoadCase* load : group) {
@@ -50,7 +50,7 @@ Chart force_against_depth(const Experiment& experiment) {
   return chart;
 }
 
-// Of the case with the largest load of each group.
+// Uses the case with the largest load of each group.
 Chart motion_against_distance(const Experiment& experiment) {
   Chart chart{"Motion of the markers", {"distance from the touch at rest [mm]"}, {"motion [mm]"}, {}};
   for (const auto& group : cases_by_group(experiment)) {
@@ -67,11 +67,11 @@ Chart motion_against_distance(const Experiment& experiment) {
   return chart;
 }
 
-// Charts are a help, not the purpose: without gnuplot the check continues.
+// Charts are optional: without gnuplot the check continues.
 void draw_charts(const DataSet& data, const fs::path& folder, std::FILE* human) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw InvalidInput(fmt::format("{}: cannot be made ({})", folder.string(), error.message()));
+  if (error) throw InvalidInput(fmt::format("{}: cannot be created ({})", folder.string(), error.message()));
   const std::pair<const char*, Chart> charts[] = {{"force_depth.svg", force_against_depth(data.experiment)},
                                                   {"motion.svg", motion_against_distance(data.experiment)}};
   for (const auto& [name, chart] : charts) {
@@ -99,7 +99,7 @@ void print_content(const DataSet& data) {
 void print(const std::vector<DataFinding>& findings) {
   for (const DataFinding& f : findings)
     fmt::print("{}: {}: {}\n  remedy: {}\n", word(f.severity), f.where, f.what, f.remedy);
-  if (findings.empty()) fmt::print("nothing is odd about it\n");
+  if (findings.empty()) fmt::print("no suspicious values\n");
 }
 
 void print_json(const DataSet& data, const std::vector<DataFinding>& findings) {

@@ -21,7 +21,7 @@
 namespace aspic::cli {
 namespace {
 
-constexpr int kDrawnPoints = 200;  // of each fitted curve
+constexpr int kDrawnPoints = 200;  // points per fitted curve
 
 struct Fitted {
   std::string data;  // name of the table
@@ -62,7 +62,7 @@ void print(const Fitted& fitted) {
   const auto best = *std::min_element(fit.starts.begin(), fit.starts.end());
   const auto same =
       std::count_if(fit.starts.begin(), fit.starts.end(), [&](double s) { return s <= best * (1 + 1e-6) + 1e-300; });
-  if (fit.starts.size() > 1) fmt::print("  {} of {} starts end here\n", same, fit.starts.size());
+  if (fit.starts.size() > 1) fmt::print("  {} of {} initial guesses end here\n", same, fit.starts.size());
   if (!fit.is_converged) fmt::print("  did not converge in {} iterations\n", fit.iterations);
   fmt::print("  {}\n\n", scene_line(fit));
 }
@@ -148,7 +148,7 @@ void draw_fits(const CurveFitRequest& request, const std::vector<Fitted>& all) {
   draw(request.picture, chart);
 }
 
-// Leaves the points of these stretches; `largest`: of each curve, in their order, or none for all.
+// Removes points outside the range; `largest` has one value per curve in order, or is empty.
 void cut(std::vector<TestCurve>& curves, double least, const std::vector<double>& largest) {
   for (size_t k = 0; k < curves.size(); ++k) {
     TestCurve& curve = curves[k];
@@ -173,7 +173,7 @@ std::vector<double> numbers(const CsvReader& csv, size_t column) {
   for (const std::string& word : words(csv.text(column))) {
     const std::optional<double> number = parse_number(word);
     if (!number)
-      throw InvalidInput(csv.where() + ": '" + word + "' is no stretch; give one number for each test, or nothing");
+      throw InvalidInput(csv.where() + ": '" + word + "' is no stretch; give one number per test, or leave it empty");
     numbers.push_back(*number);
   }
   return numbers;
@@ -189,7 +189,7 @@ double rms(const CurveFit& fit) {
   return std::sqrt(sum / count);
 }
 
-// As a Markdown table: the error that others state, and that of our fit to the same points.
+// Prints a Markdown table of the published error and the error of our fit to the same points.
 int compare_with_published(const CurveFitRequest& request) {
   CsvReader csv(request.published);
   const size_t data = csv.column("data"), tests = csv.column("tests"), least = csv.column("least_stretch"),
@@ -230,7 +230,7 @@ int fit_curves(const CurveFitRequest& request) {
   }
   for (const std::filesystem::path& file : request.files)
     if (std::error_code error; std::filesystem::is_directory(file, error))
-      throw InvalidInput(file.string() + ": is a folder; a data set is fitted by: aspic fit " + file.string());
+      throw InvalidInput(file.string() + ": is a folder; to fit a data set: aspic fit " + file.string());
   std::vector<Fitted> all;
   for (const std::filesystem::path& file : request.files)
     for (const std::string& material : request.materials) {
@@ -259,38 +259,37 @@ void add_fit_curves(CLI::App& app, Action& action) {
   const auto compressible = std::make_shared<bool>(false);
   request->materials = {"spline"};
   CLI::App* command =
-      app.add_subcommand("fit-curves", "Fits materials to measured curves of pull, biaxial pull and shear");
+      app.add_subcommand("fit-curves", "Fits materials to curves of uniaxial, equibiaxial, planar and shear tests");
   command->footer(
       "\nA table has the columns test (uniaxial, equibiaxial, planar, simple_shear), stretch (or amount of shear)\n"
-      "and stress_Pa, stress_kPa or stress_MPa: force over the area at rest.\n\n"
+      "and stress_Pa, stress_kPa or stress_MPa: force per area at rest.\n\n"
       "Examples:\n"
       "  aspic fit-curves data/rubber/treloar_1944.csv\n"
       "  aspic fit-curves data/rubber/treloar_1944.csv --material fung spline --plot treloar.svg\n"
       "  aspic fit-curves data/rubber/*.csv --material mooney_rivlin spline --table");
-  command->add_option("FILE", request->files, "Tables of curves");
-  command->add_option("--material", request->materials, "Which materials, each fitted for itself")
-      ->capture_default_str();
-  command->add_option("--test", request->tests, "Only these tests of the tables");
-  command->add_option("--hold", request->options.held, "Parameters of the material that keep their default");
+  command->add_option("FILE", request->files, "Tables of curves to fit");
+  command->add_option("--material", request->materials, "Materials to fit, each separately")->capture_default_str();
+  command->add_option("--test", request->tests, "Tests of the tables to use; all by default");
+  command->add_option("--hold", request->options.held, "Material parameters to keep at their defaults");
   const std::map<std::string, Weighting> weightings = {
       {"absolute", Weighting::absolute}, {"balanced", Weighting::balanced}, {"relative", Weighting::relative}};
   command
       ->add_option("--weighting", request->options.weighting,
-                   "What counts alike: absolute (each stress), balanced (each curve), relative (each per cent)")
+                   "Equal weight for each stress (absolute), curve (balanced) or relative error (relative)")
       ->transform(CLI::CheckedTransformer(weightings).description("{absolute,balanced,relative}"))
       ->default_str("balanced");
-  command->add_option("--poisson", request->options.poisson, "Poisson's ratio of the scene's material")
+  command->add_option("--poisson", request->options.poisson, "Poisson's ratio of the material for scenes")
       ->capture_default_str();
   command->add_flag("--compressible", *compressible,
-                    "The curves are of a body with this Poisson's ratio (else of an incompressible one)");
-  command->add_option("--starts", request->options.starts, "From how many guesses")
+                    "Assume a body with this Poisson's ratio instead of an incompressible one");
+  command->add_option("--starts", request->options.starts, "Number of initial guesses")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--plot", request->picture, "Draws measured against fitted curves: FILE.svg or FILE.png");
-  command->add_flag("--table", request->table, "A Markdown table of relative errors");
+  command->add_option("--plot", request->picture, "Plot measured and fitted curves: FILE.svg or FILE.png");
+  command->add_flag("--table", request->table, "Print a Markdown table of relative errors");
   command->add_option("--published", request->published,
-                      "Compares with the errors that this table lists, of the tables beside it");
-  command->add_flag("--json", request->json, "As JSON");
+                      "Compare with the published errors in this table, for the tables beside it");
+  command->add_flag("--json", request->json, "Print JSON");
   command->callback([request, compressible, &action] {
     request->options.volume = *compressible ? Volume::compressible : Volume::incompressible;
     action = [request] { return fit_curves(*request); };

@@ -1,4 +1,4 @@
-// Fits materials to curves of homogeneous deformation, from a table of them, for people.
+// Fits materials to tables of homogeneous deformation curves and prints the results.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -10,16 +10,16 @@ namespace aspic::cli {
 
 struct CurveFitRequest {
   std::vector<std::filesystem::path> files;  // tables, see capture/test_curves.h
-  std::vector<std::string> materials;        // each is fitted to each table
-  std::vector<std::string> tests;            // of each table, those that are fitted; empty: all
+  std::vector<std::string> materials;        // materials to fit to each table
+  std::vector<std::string> tests;            // tests to fit in each table; empty: all
   CurveFitOptions options;
-  std::filesystem::path picture;  // measured against fitted; empty: none
+  std::filesystem::path picture;  // plot of measured and fitted curves; empty: none
   bool table = false;             // Markdown instead of a report per fit
   bool json = false;
-  std::filesystem::path published;  // a table of errors that others published, to be compared with; empty: none
+  std::filesystem::path published;  // table of published errors to compare with; empty: none
 };
 
-// The exit code. Throws InvalidInput.
+// Returns the exit code. Throws InvalidInput.
 int fit_curves(const CurveFitRequest& request);
 
 }  // namespace aspic::cli

@@ -29,7 +29,7 @@ HeldOut held_out_by_fit(const DataSet& data, const FitOutcome& outcome, const Ex
     prediction.wrench = c.wrench;
   }
   if (predictions.size() != left_out.cases.size() || outcome.cases.size() != data.experiment.cases.size())
-    return {.failure = "nothing was predicted"};
+    return {.failure = "no group was predicted"};
   return compare(left_out, predictions);
 }
 
@@ -72,7 +72,7 @@ void print_judgment(std::FILE* stream, const Judgment& j) {
                    ? ""
                    : fmt::format(", overlap of the smaller part {} (intersection over union)", percent(j.overlap)));
   if (j.coverage >= 0)
-    fmt::print(stream, "           in {} of the tets the 95 % interval holds the truth\n", percent(j.coverage));
+    fmt::print(stream, "           in {} of the tets the 95 % interval contains the truth\n", percent(j.coverage));
 }
 
 void print_prediction(std::FILE* stream, const Prediction& prediction) {

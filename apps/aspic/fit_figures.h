@@ -1,4 +1,4 @@
-// How good a fit is, in numbers: against the truth of synthetic data, and on groups that were left out.
+// Accuracy of a fit: errors relative to the truth of synthetic data, and predictions of held-out groups.
 #pragma once
 #include <cstdio>
 #include <filesystem>
@@ -13,15 +13,15 @@ namespace aspic::cli {
 
 struct Prediction {
   std::string method;  // "fit", "one modulus", "per-example linear", "bickel"
-  HeldOut held_out;    // all groups that were left out, together
+  HeldOut held_out;    // all held-out groups together
 };
 
 struct FitFigures {
   std::vector<Judgment> judgments;      // empty: the data have no truth
-  std::vector<Prediction> predictions;  // empty: nothing was left out
+  std::vector<Prediction> predictions;  // empty: no held-out groups
 };
 
-// `truth`: a file; when there is none, nothing is judged. Baselines are fitted to the same data.
+// `truth` is a file; without it there are no judgments. Baselines are fitted to the same data.
 FitFigures figures_of(const DataSet& data, const FitOutcome& outcome, const std::filesystem::path& truth,
                       bool with_baselines);
 void print_figures(std::FILE* stream, const FitFigures& figures);

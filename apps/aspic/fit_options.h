@@ -1,4 +1,4 @@
-// The options of `aspic fit` beyond the command line: a TOML file.
+// Options of `aspic fit` in a TOML file.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace aspic::cli {
 
-// Reads the file into the plan; the defaults if there is no file. Returns whether baselines predict the groups that are
-// left out. Throws InvalidInput with file, line, value and remedy.
+// Reads the file into the plan; without a file, the defaults. Returns whether baselines predict the held-out groups.
+// Throws InvalidInput with file, line, value and remedy.
 bool read_fit_options(const std::filesystem::path& file, FitPlan& plan);
 
 // Returns all keys with their defaults and meanings, as a TOML file.

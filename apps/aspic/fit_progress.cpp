@@ -44,7 +44,7 @@ void FitProgress::begin(FitStage stage, const std::string& what) {
   shown_at_ = seconds();
 }
 
-// Readings agree with the measurements as well as their deviations allow when |r|^2 is their number.
+// A fit agrees with the measurements within their standard deviations if |r|^2 equals the number of readings.
 void FitProgress::show(FitStage stage, const FitIteration& i, int residuals) {
   const std::string line =
       fmt::format("{:<10} iteration {:>3}  |r|^2 {:.4g} per reading  weight {:.3g}  step {:.2g}  {}", stage_text(stage),

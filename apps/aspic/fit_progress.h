@@ -1,4 +1,4 @@
-// How far a fit is: one line that redraws itself on a terminal, plain lines now and then in a pipe.
+// Progress of a fit: one line that is redrawn on a terminal, occasional lines in a pipe.
 #pragma once
 #include <chrono>
 #include <cstdio>
@@ -14,7 +14,7 @@ class FitProgress {
   void begin(FitStage stage, const std::string& what);
   void show(FitStage stage, const FitIteration& iteration, int residuals);
   void show(const std::string& line);     // if enough time has passed since the last one
-  void message(const std::string& line);  // a line of its own, above
+  void message(const std::string& line);  // separate line above the progress
   void finish();
 
  private:
@@ -26,7 +26,7 @@ class FitProgress {
   std::FILE* stream_;
   bool terminal_, every_iteration_;
   Clock::time_point start_ = Clock::now();
-  double shown_at_ = -1e9;  // [s] since the start
+  double shown_at_ = -1e9;  // time since the start [s]
   bool drawn_ = false;
 };
 

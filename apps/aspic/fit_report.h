@@ -1,4 +1,4 @@
-// The page that a fit leaves beside its material; written by what the program was built with.
+// HTML report of a fit, written by the viewer if the program includes it.
 #pragma once
 #include <cstdio>
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace aspic::cli {
 
-// Says on `stream`, unless that is null, where it is or why there is none.
+// Prints its path, or the reason of its absence, to `stream` (null: nothing).
 void write_fit_report(const std::filesystem::path& file, const DataSet& data, const FitOutcome& outcome,
                       const std::vector<FitIteration>& history, std::FILE* stream);
 

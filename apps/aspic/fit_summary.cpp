@@ -30,11 +30,11 @@ void print_values(std::FILE* stream, const FitOutcome& outcome) {
     fmt::print(stream, "{:<10} {:<13} {} (given)\n", quantity, "everywhere", value_text(value, ""));
 }
 
-// |r|^2 by the number of readings: 1 is as close as the standard deviations say.
+// |r|^2 per reading; 1 is expected from the standard deviations.
 std::string closeness(double misfit, int residuals) { return fmt::format("{:.3g}", 2 * misfit / residuals); }
 
 void print_misfit(std::FILE* stream, const FitOutcome& outcome) {
-  fmt::print(stream, "misfit     |r|^2 = {} per reading (1: as close as the standard deviations say)",
+  fmt::print(stream, "misfit     |r|^2 = {} per reading (1: as expected from the standard deviations)",
              closeness(outcome.report.misfit, outcome.residuals));
   if (outcome.uniform)
     fmt::print(stream, "; {} with one value for all", closeness(outcome.uniform->misfit, outcome.residuals));
@@ -45,7 +45,7 @@ void print_parts(std::FILE* stream, const FitOutcome& outcome) {
   if (!outcome.parts) return;
   const FoundParts& found = *outcome.parts;
   if (!found.are_kept) {
-    fmt::print(stream, "parts      none: they do not explain the data as well as the field ({} per reading)\n",
+    fmt::print(stream, "parts      none: they fit the data worse than the field ({} per reading)\n",
                closeness(found.squares / 2, outcome.residuals));
     return;
   }

@@ -1,4 +1,4 @@
-// What a fit found, in words.
+// Prints the results of a fit as text.
 #pragma once
 #include <cstdio>
 #include <filesystem>

@@ -41,7 +41,7 @@ std::vector<viewer::OfferedScene> scenes_below(const fs::path& folder) {
   return scenes;
 }
 
-// The lecture distinguishes this folder from other folders named scenes.
+// The folder "lecture" distinguishes it from other folders named scenes.
 fs::path shipped_scenes() { return shipped_file("scenes/lecture").parent_path(); }
 
 RecentScenes::RecentScenes(fs::path file) : file_(std::move(file)) {}
@@ -67,7 +67,7 @@ void RecentScenes::note(const fs::path& scene) const {
   fs::create_directories(file_.parent_path(), error);
   try {
     if (!error) write_file(file_, text);
-  } catch (const InvalidInput&) {  // a full disk, or a folder that is not the user's
+  } catch (const InvalidInput&) {  // a full disk, or missing permissions
   }
 }
 

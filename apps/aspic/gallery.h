@@ -1,4 +1,4 @@
-// The scenes that the viewer offers: those that come with the program, and those that were opened before.
+// Scenes that the viewer offers: shipped scenes and recently opened ones.
 #pragma once
 #include <filesystem>
 #include <vector>
@@ -7,23 +7,23 @@
 
 namespace aspic::cli {
 
-// All scenes below `folder`, by name; the first comment line of each is what it is about.
+// Returns all scenes below `folder` by name. The first comment line of each is its description.
 std::vector<viewer::OfferedScene> scenes_below(const std::filesystem::path& folder);
 
-// The folder of the scenes that come with the program; empty where there is none.
+// Returns the folder of the shipped scenes; empty if missing.
 std::filesystem::path shipped_scenes();
 
-// What was opened, newest first, in a small file below the user's folder for the state of programs. A list that cannot
-// be read or written is an empty one: nobody's work depends on it.
+// Opened scenes, newest first, in a small file in the user's state folder. If it cannot be read or written, the list is
+// empty.
 class RecentScenes {
  public:
   static constexpr size_t kMost = 12;
 
   explicit RecentScenes(std::filesystem::path file);
-  static std::filesystem::path usual_file();  // empty where the user has no such folder
+  static std::filesystem::path usual_file();  // empty if the user has no such folder
 
   void note(const std::filesystem::path& scene) const;
-  std::vector<std::filesystem::path> read() const;  // those that still exist
+  std::vector<std::filesystem::path> read() const;  // existing files only
 
  private:
   std::filesystem::path file_;

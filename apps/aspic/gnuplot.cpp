@@ -21,7 +21,7 @@ std::string terminal(const fs::path& picture, const PictureSize& size) {
     return fmt::format("set terminal pngcairo size {},{} enhanced font 'Sans,11' fontscale 2 linewidth 2 pointscale 2",
                        2 * size.width, 2 * size.height);
   throw InvalidInput(
-      fmt::format("{}: a picture is .svg or .png, not '{}'", picture.string(), picture.extension().string()));
+      fmt::format("{}: a picture must be .svg or .png, not '{}'", picture.string(), picture.extension().string()));
 }
 
 fs::path find_gnuplot() {
@@ -71,8 +71,8 @@ void Gnuplot::draw() {
 }
 
 std::string literal(std::string_view text) {
-  // Between apostrophes only the apostrophe has a meaning. Doubled it stands for itself, but not in the first place nor
-  // beside another one: there a variable joins in.
+  // Within single quotes only the quote is special. Doubled it represents itself, except at the beginning or next to
+  // another one; there a variable is concatenated.
   std::string result = "'";
   for (size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];

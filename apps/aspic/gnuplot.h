@@ -1,4 +1,4 @@
-// One run of gnuplot: data files and a script in a temporary folder, the picture moved to its place.
+// One run of gnuplot: data files and script in a temporary folder; the picture is moved to its destination.
 #pragma once
 #include <filesystem>
 #include <span>
@@ -12,11 +12,11 @@ namespace aspic::cli {
 
 class Gnuplot {
  public:
-  // Throws InvalidInput for a file name that is neither .svg nor .png, and when gnuplot is not installed.
+  // Throws InvalidInput if the file name is neither .svg nor .png, or gnuplot is not installed.
   Gnuplot(const std::filesystem::path& picture, const PictureSize& size);
 
   void add(std::string_view commands) { script_ += commands, script_ += '\n'; }
-  std::string data_file(const std::string& contents);  // its name, quoted
+  std::string data_file(const std::string& contents);  // returns the quoted name
   void draw();                                         // runs the script; writes the picture
 
  private:
@@ -26,14 +26,14 @@ class Gnuplot {
   int files_ = 0;
 };
 
-std::string literal(std::string_view text);  // as a string of gnuplot in which nothing has a meaning
-// "'text' noenhanced": the same, for titles and labels.
+std::string literal(std::string_view text);  // string literal of gnuplot without special characters
+// Returns "'text' noenhanced" for titles and labels.
 std::string label(std::string_view text);
-std::string number(double value);  // "NaN" where not finite, which gnuplot takes as a gap
+std::string number(double value);  // "NaN" if not finite, which gnuplot draws as a gap
 std::string range(const std::optional<double>& min, const std::optional<double>& max);  // "[0:*]"
 void append_row(std::string& text, std::initializer_list<double> values);
 
-std::string color(int index);  // '#rrggbb': colors for all kinds of color vision [Okabe and Ito 2008]
+std::string color(int index);  // '#rrggbb', distinguishable for all kinds of color vision [Okabe and Ito 2008]
 inline constexpr const char* kInk = "#3a3a3a";
 inline constexpr const char* kGrid = "#e2e2e2";
 

@@ -12,7 +12,7 @@ std::string title(const Landscape& landscape) {
   return fmt::format("step {}, iteration {}", landscape.at.step, landscape.at.iteration);
 }
 
-// From a little below the lowest of model and accepted trial to a little above the start and the lowest rejected trial.
+// Range from just below the minimum of model and accepted trial to just above the start and lowest rejected trial.
 Axis value_axis(const Landscape& landscape) {
   double lowest = landscape.value, highest = landscape.value, rejected = INFINITY;
   for (const CurvePoint& point : landscape.curve) {
@@ -53,7 +53,7 @@ SurfacePlot slice_surface(const Landscape& landscape) {
   for (int i = 0; i < slice.columns; ++i) value.x.push_back(slice.point[i].s);
   for (int j = 0; j < slice.rows; ++j) value.y.push_back(slice.point[static_cast<size_t>(j) * slice.columns].t);
   SampledFunction model = value;
-  double lowest = 0, highest = 0;  // of the model: E may rise without bound
+  double lowest = 0, highest = 0;  // range of the model, because E may be unbounded
   for (const SlicePoint& point : slice.point) {
     value.z.push_back(point.value - landscape.value);
     model.z.push_back(point.model - landscape.value);

@@ -1,4 +1,4 @@
-// `aspic lecture`: the pages of the lecture as demonstrations that are judged by numbers.
+// `aspic lecture`: demonstrations of the lecture's pages with measured checks.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -40,11 +40,11 @@ int parse_page(const std::string& text) {
   int page = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), page);
   if (error != std::errc() || end != text.data() + text.size() || page < 1 || page > kPages)
-    throw InvalidInput(fmt::format("'{}' is no page of the lecture; there are 1 to {}, and 'all'", text, kPages));
+    throw InvalidInput(fmt::format("'{}' is not a page of the lecture; give 1 to {}, or 'all'", text, kPages));
   return page;
 }
 
-// The exit code where they are not drawn because of ctrl-C.
+// Returns the exit code if Ctrl-C interrupted the drawing.
 std::optional<int> draw_meshes(std::vector<Result>& results) {
   std::vector<Sheet*> sheets;
   for (Result& result : results) sheets.push_back(&result.sheet);
@@ -120,21 +120,21 @@ int run(const LectureArguments& arguments) {
 
 void add_lecture(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<lecture::LectureArguments>();
-  CLI::App* command = app.add_subcommand("lecture", "The lecture's pages as demonstrations judged by numbers");
+  CLI::App* command = app.add_subcommand("lecture", "Demonstrates the pages of the lecture with measured checks");
   command->footer(R"(
 Examples:
-  aspic lecture                       lists the 62 pages
-  aspic lecture 53                    what page 53 claims, what was measured, pass or fail
-  aspic lecture all                   all of them; out/lecture/index.html shows them
+  aspic lecture                       list of the 62 pages
+  aspic lecture 53                    claim of page 53, measurement, pass or fail
+  aspic lecture all                   all pages; results in out/lecture/index.html
   aspic lecture 33 --mesh bunny.mesh  on another mesh of tets or closed surface
 
-Exit codes: 0 everything that was judged holds (a page without anything to judge says so), 2 no such page, one that
-is not available, or bad input, 3 something does not hold.)");
-  command->add_option("PAGE", arguments->page, "1 to 62, or 'all'; without it, the list of pages");
-  command->add_option("--mesh", arguments->mesh, "Tets or a closed surface for the demonstrations on a real mesh")
+Exit codes: 0 all checks pass or a page has none, 2 no such page, one that
+is not available, or bad input, 3 a check fails.)");
+  command->add_option("PAGE", arguments->page, "Page, 1 to 62, or 'all'; without it, the list of pages");
+  command->add_option("--mesh", arguments->mesh, "Tet mesh or closed surface for the demonstrations on a real mesh")
       ->check(CLI::ExistingFile);
-  command->add_option("--out", arguments->out, "Folder of data, pictures and summary")->capture_default_str();
-  command->add_option("--threads", arguments->threads, "Threads; all cores by default; the result is the same")
+  command->add_option("--out", arguments->out, "Folder for data, pictures and summary")->capture_default_str();
+  command->add_option("--threads", arguments->threads, "Threads; all cores by default; results do not depend on it")
       ->check(CLI::Range(1, 1024));
   command->callback([arguments, &action] { action = [arguments] { return lecture::run(*arguments); }; });
 }

@@ -1,5 +1,4 @@
-// The program `aspic`: parses the command line, runs one command, turns what went wrong into a message and an exit
-// code.
+// The program `aspic`: parses the command line, runs one command, and converts errors to messages and exit codes.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -26,17 +25,17 @@ namespace {
 
 constexpr char kFooter[] = R"(
 Examples:
-  aspic run bunny.obj                       any closed surface or tet mesh, with sensible defaults
-  aspic run scenes/bunny.toml --steps 50    a described scene, its first 50 steps
-  aspic view scenes/bunny.toml              the same in the browser, to be touched
-  aspic check bunny.mesh                    what is wrong with a mesh
-  aspic materials                           the materials and their formulas
+  aspic run bunny.obj                       a closed surface or tet mesh, with defaults
+  aspic run scenes/bunny.toml --steps 50    the first 50 steps of a scene
+  aspic view scenes/bunny.toml              the same in the browser, interactively
+  aspic check bunny.mesh                    errors of a mesh
+  aspic materials                           materials and their formulas
 'aspic COMMAND --help' describes a command.
 
 Exit codes: 0 done, 1 internal error, 2 bad input, 3 not converged, a wrong derivative, a failed check,
-4 time limit, 130 interrupted by ctrl-C, 143 by kill, 141 when the reader of a pipe has gone. Standard output that
-cannot be written is bad input, too; a run continues to its end all the same. Messages that standard error cannot take
-are dropped.)";
+4 time limit, 130 interrupted by Ctrl-C, 143 by kill, 141 if the reader of a pipe ended. Standard output that
+cannot be written is bad input, too, but a run continues to its end. Messages that standard error cannot accept
+are discarded.)";
 
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
@@ -52,27 +51,27 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-// What the writer of the command line may have meant; empty when nothing is near.
+// Returns a correction for the command line; empty if no name is close.
 std::string hint(const CLI::App& app, const std::vector<std::string>& arguments) {
   const std::vector<std::string> commands = command_names(app);
   const std::string& first = arguments.front();
   const bool is_command = std::find(commands.begin(), commands.end(), first) != commands.end();
   if (!is_command && first[0] != '-') {
     if (std::filesystem::exists(first)) return fmt::format("'{0}' is a file: aspic run {0}", first);
-    return fmt::format("there is no command '{}'{}", first, suggestion(first, commands));
+    return fmt::format("unknown command '{}'{}", first, suggestion(first, commands));
   }
   const CLI::App& command = is_command ? *app.get_subcommand(first) : app;
   const std::vector<std::string> known = option_names(command);
   for (const std::string& argument : arguments) {
     const std::string name = argument.substr(0, argument.find('='));
     if (name.starts_with("--") && std::find(known.begin(), known.end(), name) == known.end()) {
-      return fmt::format("there is no option '{}'{}", name, suggestion(name, known));
+      return fmt::format("unknown option '{}'{}", name, suggestion(name, known));
     }
   }
   return "";
 }
 
-// Comparisons with NaN are false, so no range refuses it.
+// Comparisons with NaN are false, so range checks would accept it.
 void require_finite_numbers(CLI::App& app) {
   const auto complaint = [](const std::string& text) -> std::string {
     return parse_number(text) ? "" : "'" + text + "' is not a finite number";
@@ -100,7 +99,7 @@ int run_program(int argc, char** argv) {
   CLI::App app("Aspic animates soft bodies; every time step is one minimization.", "aspic");
   app.footer(kFooter);
   app.require_subcommand(1);
-  app.set_version_flag("--version", version_text, "Version, and how this program was built");
+  app.set_version_flag("--version", version_text, "Print version and build information");
   app.get_formatter()->column_width(32);
 
   Action action;
@@ -129,7 +128,7 @@ int run_program(int argc, char** argv) {
   }
   try {
     std::vector<std::string> spread = spread_assignments({argv + 1, argv + argc});
-    std::reverse(spread.begin(), spread.end());  // as CLI11 takes them
+    std::reverse(spread.begin(), spread.end());  // the order that CLI11 expects
     app.parse(std::move(spread));
   } catch (const CLI::ParseError& error) {
     return report_parse_error(app, error, {argv + 1, argv + argc});
@@ -170,9 +169,9 @@ int main(int argc, char** argv) {
   using namespace aspic::cli;
   guard_standard_streams();
   const int code = run_guarded(argc, argv);
-  const std::string lost = lost_output();  // tables and JSON that did not arrive are no success
+  const std::string lost = lost_output();  // lost tables or JSON are an error
   if (lost.empty()) return code;
-  if (interrupt_signal() == SIGPIPE) return exit_signal + SIGPIPE;  // the reader has seen what it wanted
+  if (interrupt_signal() == SIGPIPE) return exit_signal + SIGPIPE;  // the reader closed the pipe deliberately
   fmt::print(stderr, "error: standard output: cannot be written: {}; free some space or choose another disk\n", lost);
   return code == exit_done || code == exit_unconverged ? exit_bad_input : code;
 }

@@ -1,4 +1,4 @@
-// `aspic materials`: the registry as text or JSON.
+// `aspic materials`: prints the material registry as text or JSON.
 #include "material/registry.h"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ void print(const MaterialInfo& material) {
     fmt::print("  {} [{}]: {}; {} to {}, default {}\n", extra.name, extra.unit, extra.meaning, extra.min, extra.max,
                extra.fallback);
   }
-  if (material.barrier) fmt::print("  infinite for det F <= 0: elements never invert\n");
+  if (material.barrier) fmt::print("  infinite for det F <= 0, so elements never invert\n");
   fmt::print("  {}\n\n", material.remarks);
 }
 
@@ -48,7 +48,7 @@ int list_materials(const std::string& name, bool json) {
     return exit_done;
   }
   fmt::print(
-      "Every material takes its small-strain constants, young [Pa] and poisson (or lame or shear and bulk moduli),\n"
+      "Every material has small-strain constants, young [Pa] and poisson (or lame or shear and bulk moduli),\n"
       "and density [kg/m^3]. I1 = tr(F'F), J = det F, mu and lambda are the Lame constants.\n\n");
   for (const MaterialInfo& material : listed) print(material);
   return exit_done;
@@ -62,10 +62,10 @@ void add_materials(CLI::App& app, Action& action) {
     bool json = false;
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("materials", "Lists the materials, each with its formula and parameters");
+  CLI::App* command = app.add_subcommand("materials", "Lists the materials with formulas and parameters");
   command->footer("\nExamples:\n  aspic materials\n  aspic materials neo_hookean\n  aspic materials --json");
-  command->add_option("NAME", arguments->name, "Only this one");
-  command->add_flag("--json", arguments->json, "As JSON");
+  command->add_option("NAME", arguments->name, "Material to list; all by default");
+  command->add_flag("--json", arguments->json, "Print JSON");
   command->callback(
       [arguments, &action] { action = [arguments] { return list_materials(arguments->name, arguments->json); }; });
 }

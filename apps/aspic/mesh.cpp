@@ -1,4 +1,4 @@
-// `aspic mesh`: becomes the separate program aspic-mesh, which is not linked for its license (CGAL's GPL).
+// `aspic mesh`: replaces itself by the separate program aspic-mesh, which is not linked because of CGAL's GPL.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -34,7 +34,7 @@ int become_mesher(std::vector<std::string> arguments) {
 
 void add_mesh(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("mesh", "Fills a closed surface with tets: SURFACE -o TETS (aspic-mesh)");
-  command->set_help_flag();  // everything, --help too, is for aspic-mesh
+  command->set_help_flag();  // passes all options to aspic-mesh, including --help
   command->prefix_command();
   command->callback([command, &action] {
     std::vector<std::string> arguments = command->remaining();

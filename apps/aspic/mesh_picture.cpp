@@ -18,8 +18,8 @@ namespace {
 
 using viewer::Json;
 
-constexpr int kPixels = 2;      // per unit of PictureSize, for sharp print
-constexpr double kLetter = 14;  // height of text
+constexpr int kPixels = 2;      // pixels per unit of PictureSize, for sharp print
+constexpr double kLetter = 14;  // text height
 
 bool is_finite(const Vec3d& x) {
   return std::all_of(std::begin(x.a), std::end(x.a), [](double c) { return std::isfinite(static_cast<float>(c)); });
@@ -29,7 +29,7 @@ bool is_per_triangle(const ShadedSurface& panel) { return panel.values.size() ==
 
 std::vector<float> to_floats(const std::vector<double>& numbers) { return {numbers.begin(), numbers.end()}; }
 
-// The triangles that can be drawn, and their vertices alone.
+// Returns the finite triangles and their vertices.
 ShadedSurface drawable(const ShadedSurface& panel) {
   ShadedSurface result{panel.caption, {}, {}};
   std::vector<int> kept(panel.surface.vertices.size(), -1);
@@ -55,16 +55,16 @@ void check(const MeshDrawing& drawing) {
   const std::string path = drawing.path.string();
   if (drawing.path.extension() != ".png")
     throw InvalidInput(
-        fmt::format("{}: a picture of meshes is .png, not '{}'", path, drawing.path.extension().string()));
-  if (drawing.picture.panels.empty()) throw InvalidInput(path + ": there is no surface to draw");
+        fmt::format("{}: a picture of meshes must be .png, not '{}'", path, drawing.path.extension().string()));
+  if (drawing.picture.panels.empty()) throw InvalidInput(path + ": no surface to draw");
   for (const ShadedSurface& panel : drawing.picture.panels) {
     ASPIC_CHECK(panel.values.empty() || is_per_triangle(panel) || panel.values.size() == panel.surface.vertices.size());
     if (drawable(panel).surface.triangles.empty())
-      throw InvalidInput(fmt::format("{}: the surface '{}' has no triangle that is finite", path, panel.caption));
+      throw InvalidInput(fmt::format("{}: the surface '{}' has no finite triangle", path, panel.caption));
   }
 }
 
-// Smallest and largest value; null where nothing has one.
+// Smallest and largest value; null if there are none.
 Json value_range(const MeshPicture& picture) {
   double min = std::numeric_limits<double>::infinity(), max = -min;
   for (const ShadedSurface& panel : picture.panels)
@@ -74,7 +74,7 @@ Json value_range(const MeshPicture& picture) {
   return {picture.value_min.value_or(min), picture.value_max.value_or(max)};
 }
 
-// What web/src/meshPicture.ts reads.
+// Format of web/src/meshPicture.ts.
 std::string packed(const MeshPicture& picture) {
   viewer::ArrayPack pack;
   Json panels = Json::array();

@@ -39,7 +39,7 @@ class MeshPictures : public FolderTest {
 
 TriMesh beam() { return boundary_surface(make_box({}, {{2, 0.5, 0.5}}, {16, 4, 4})).surface; }
 
-// Seen from the front: x goes to the right, z upward.
+// View from the front: x to the right, z upward.
 MeshPicture from_the_front(std::vector<ShadedSurface> panels) {
   MeshPicture picture{.title = "", .panels = std::move(panels), .eye = {{0, -1, 0}}, .wires = Wires::none};
   picture.size = {400, 300};
@@ -48,7 +48,7 @@ MeshPicture from_the_front(std::vector<ShadedSurface> panels) {
 
 bool is_white(const Pixel& p) { return p == Pixel{255, 255, 255}; }
 
-// Of the rectangle, how much is not white.
+// Fraction of the rectangle that is not white.
 double covered(const Image& image, double left, double right, double top, double bottom) {
   size_t found = 0, count = 0;
   for (auto y = static_cast<unsigned>(top * image.height); y < static_cast<unsigned>(bottom * image.height); ++y)
@@ -59,7 +59,7 @@ double covered(const Image& image, double left, double right, double top, double
 
 bool is_gray(const Pixel& p) { return std::max({p[0], p[1], p[2]}) - std::min({p[0], p[1], p[2]}) < 12; }
 
-TEST_F(MeshPictures, PanelsStandSideBySideWithTitleAndCaptions) {
+TEST_F(MeshPictures, PanelsAreInOneRowWithCaptions) {
   MeshPicture picture{.title = "A beam & its <b>shape</b>", .panels = {{"at rest", beam()}, {"bent", beam()}}};
   for (Vec3d& x : picture.panels[1].surface.vertices) x[2] -= 0.15 * x[0] * x[0];
   MeshPicture bare = picture;
@@ -73,7 +73,7 @@ TEST_F(MeshPictures, PanelsStandSideBySideWithTitleAndCaptions) {
   EXPECT_GT(covered(image, 0.5, 1, 0.2, 0.8), 0.2);
   EXPECT_GT(covered(image, 0.3, 0.7, 0, 56.0 / image.height), 0.01);           // the title
   EXPECT_GT(covered(image, 0.2, 0.3, 1 - 56.0 / image.height, 1), 0.01);       // a caption
-  EXPECT_GT(std::set(image.pixels.begin(), image.pixels.end()).size(), 100u);  // lit, not filled
+  EXPECT_GT(std::set(image.pixels.begin(), image.pixels.end()).size(), 100u);  // shading, not a flat fill
 }
 
 TEST_F(MeshPictures, PanelsHaveOneScale) {
@@ -84,7 +84,7 @@ TEST_F(MeshPictures, PanelsHaveOneScale) {
   EXPECT_NEAR(covered(image, 0, 0.5, 0, 1) / covered(image, 0.5, 1, 0, 1), 4, 0.1);
 }
 
-TEST_F(MeshPictures, ColorsRunFromTheSmallestToTheLargestValue) {
+TEST_F(MeshPictures, ColorsSpanSmallestToLargestValue) {
   ShadedSurface per_vertex{"", beam()}, per_triangle{"", beam()};
   for (const Vec3d& x : per_vertex.surface.vertices) per_vertex.values.push_back(x[0]);
   for (const Triangle& t : per_triangle.surface.triangles)
@@ -107,7 +107,7 @@ TEST_F(MeshPictures, ColorsRunFromTheSmallestToTheLargestValue) {
   EXPECT_GT(covered(image, 0.85, 1, 0, 1), 0.03) << "the color bar";
 }
 
-TEST_F(MeshPictures, WhatHasNoValueIsGrayAndWhatIsNotFiniteIsLeftOut) {
+TEST_F(MeshPictures, MissingValuesAreGrayNonFiniteTrianglesOmitted) {
   ShadedSurface panel{"", beam()};
   for (const Vec3d& x : panel.surface.vertices) panel.values.push_back(x[0] < 1 ? NAN : 1.0);
   panel.values.back() = 2;
@@ -131,8 +131,8 @@ TEST_F(MeshPictures, DrawingStopsWhenAsked) {
   EXPECT_FALSE(std::filesystem::exists(folder / "none.png"));
 }
 
-TEST_F(MeshPictures, SurfacesWithoutSizeAreRefusedAndNothingIsLeft) {
-  const TemporaryFolder temporary;  // of a short name: the browser puts a socket there
+TEST_F(MeshPictures, SurfacesWithoutSizeAreRefusedWithoutFiles) {
+  const TemporaryFolder temporary;  // short path, because the browser creates a socket there
   ::setenv("TMPDIR", temporary.path().c_str(), 1);
   const TriMesh point{{{}, {}, {}}, {{0, 1, 2}}};
   const std::string message = message_of([&] { draw({{folder / "none.png", from_the_front({{"", point}})}}); });
@@ -145,12 +145,12 @@ TEST_F(Refusals, OfMeshesWithoutAnythingToDraw) {
   const auto refused = [&](const MeshPicture& picture, const char* name = "none.png") {
     return message_of([&] { draw({{folder / name, picture}}); });
   };
-  EXPECT_THAT(refused({}), HasSubstr("there is no surface"));
+  EXPECT_THAT(refused({}), HasSubstr("no surface"));
   EXPECT_THAT(refused(from_the_front({{"empty", {}}})), HasSubstr("'empty' has no triangle"));
   TriMesh burst = beam();
   for (Vec3d& x : burst.vertices) x[0] = NAN;
-  EXPECT_THAT(refused(from_the_front({{"burst", burst}})), HasSubstr("'burst' has no triangle that is finite"));
-  EXPECT_THAT(refused(from_the_front({{"", beam()}}), "beam.svg"), HasSubstr("is .png, not '.svg'"));
+  EXPECT_THAT(refused(from_the_front({{"burst", burst}})), HasSubstr("'burst' has no finite triangle"));
+  EXPECT_THAT(refused(from_the_front({{"", beam()}}), "beam.svg"), HasSubstr("must be .png, not '.svg'"));
 }
 
 TEST_F(Refusals, NameThePackageOfTheMissingBrowser) {

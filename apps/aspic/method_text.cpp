@@ -40,7 +40,7 @@ SolverOptions method_named(const std::string& text, const SolverOptions& base) {
   if (!contains(minimizer_names(), solver.method))
     throw InvalidInput("method '" + solver.method + "' is unknown" + suggestion(solver.method, minimizer_names()));
   for (std::string option; std::getline(words, option, ':');) set_option(option, solver);
-  make_search_direction(solver);  // throws when they do not go together
+  make_search_direction(solver);  // throws if they are incompatible
   return solver;
 }
 

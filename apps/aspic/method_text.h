@@ -1,4 +1,4 @@
-// A method of minimization as one word: NAME[:OPTION...], such as newton:clamped or lbfgs:diagonal.
+// Minimization methods as text: NAME[:OPTION...], such as newton:clamped or lbfgs:diagonal.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace aspic::cli {
 
-// The method with the options of `base` that are not about the method. Throws InvalidInput for an unknown name.
+// Returns `base` with the method replaced. Throws InvalidInput for an unknown name.
 SolverOptions method_named(const std::string& text, const SolverOptions& base);
 
 bool contains(const std::vector<std::string>& names, const std::string& name);

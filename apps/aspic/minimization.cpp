@@ -13,7 +13,7 @@ namespace {
 
 void check(const SolverOptions& solver) {
   const auto require = [](bool holds, const char* option, double value, const char* range) {
-    if (!holds) throw InvalidInput(fmt::format("{} {}: it must be {}", option, value, range));
+    if (!holds) throw InvalidInput(fmt::format("{} {}: must be {}", option, value, range));
   };
   const LineSearchOptions& search = solver.minimize.line_search;
   require(solver.minimize.tolerance >= 0, "--tolerance", solver.minimize.tolerance, "0 or more");

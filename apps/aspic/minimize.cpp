@@ -1,4 +1,4 @@
-// `aspic minimize`: the minimizers of the simulation on functions of two variables.
+// `aspic minimize`: applies the minimizers of the simulation to functions of two variables.
 #include "aspic/minimize.h"
 
 #include <fmt/format.h>
@@ -40,7 +40,7 @@ Planar parse_start(const std::string& text) {
     const auto [rest, error] = std::from_chars(at, end, p[i]);
     const bool closed = i == 0 ? rest != end && *rest == ',' : rest == end;
     if (error != std::errc() || !closed || !std::isfinite(p[i]))
-      throw InvalidInput(fmt::format("--start {}: two finite numbers x,y are expected, such as -0.8,0.6", text));
+      throw InvalidInput(fmt::format("--start {}: give two finite numbers x,y, such as -0.8,0.6", text));
     at = rest + (i == 0 ? 1 : 0);
   }
   return p;
@@ -48,7 +48,7 @@ Planar parse_start(const std::string& text) {
 
 Problem problem_of(const MinimizeArguments& arguments) {
   if (arguments.function.empty() == arguments.expression.empty())
-    throw InvalidInput("name one function (see aspic minimize --list), or give --expression \"...\"");
+    throw InvalidInput("give one function (see aspic minimize --list) or --expression \"...\"");
   Problem problem;
   if (!arguments.expression.empty()) {
     problem = {.name = "expression",
@@ -119,23 +119,23 @@ Minimization minimize(const Problem& problem, const MinimizeArguments& arguments
 
 double distance(const Planar& a, const Planar& b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
 
-// What the status means here, and what usually helps.
+// Explains the status, with a remedy.
 std::string in_words(const Minimization& done) {
   const MinimizeReport& report = done.report;
   switch (report.status) {
     case Status::converged:
       return fmt::format("converged after {} iterations", report.iterations);
     case Status::round_off:
-      return fmt::format("as good as double precision allows, after {} iterations", report.iterations);
-    case Status::budget:  // of time steps only
+      return fmt::format("at the limit of precision after {} iterations", report.iterations);
+    case Status::budget:  // only for time steps
     case Status::iteration_limit:
       return fmt::format(
-          "not converged: the limit of {} iterations was reached; raise --max-iterations, or the "
-          "function has no minimum this way",
+          "not converged within {} iterations; increase --max-iterations, or the "
+          "function has no minimum in this direction",
           report.iterations);
     case Status::stuck:
       return fmt::format(
-          "stuck after {} iterations: no trial along the direction decreases f enough; lower --decrease "
+          "stuck after {} iterations: no trial along the direction decreases f enough; reduce --decrease "
           "or --alpha-min",
           report.iterations);
     case Status::no_descent:
@@ -143,27 +143,27 @@ std::string in_words(const Minimization& done) {
           "no descent direction after {} iterations: {}", report.iterations,
           done.definiteness == "exact"
               ? "the Hessian is not positive definite; try --definiteness on_demand"
-              : "the quadratic model has no minimum here, so f may have none this way; try --method gradient_descent");
+              : "the quadratic model has no minimum here, and f may have none; try --method gradient_descent");
     case Status::undefined:
       return fmt::format(
-          "after {} iterations f or its gradient is not finite: f has no lower bound this way, or is not "
+          "f or its gradient is not finite after {} iterations: f has no lower bound, or is not "
           "defined there",
           report.iterations);
     case Status::interrupted:
-    case Status::unstable:  // of time steps only
+    case Status::unstable:  // only for time steps
     case Status::inaccurate:
       break;
   }
   return fmt::format("interrupted after {} iterations", report.iterations);
 }
 
-// Norms go through abs, which takes the sign from what is not a number.
+// abs removes the sign of NaN.
 void print_minimum(const Problem& problem, const Minimization& done) {
   const MinimizeReport& report = done.report;
   fmt::print("{:>4} {:>13.6g} {:>13.6g} {:>15.8g} {:>10.3g}\n\n", report.iterations, done.end[0], done.end[1],
              report.value, std::abs(report.gradient_norm));
   fmt::print("{}\n", in_words(done));
-  fmt::print("f = {:.12g} at ({:.10g}, {:.10g}); |g| = {:.3g}; {:.3g} was reached, {:.3g} asked for\n", report.value,
+  fmt::print("f = {:.12g} at ({:.10g}, {:.10g}); |g| = {:.3g}; residual {:.3g}, tolerance {:.3g}\n", report.value,
              done.end[0], done.end[1], std::abs(report.gradient_norm), std::abs(report.reached), report.threshold);
   fmt::print("evaluations: {} of f, {} of its gradient, {} of its Hessian ({} projected)\n", report.values,
              report.gradients, report.hessians, report.projected_hessians);
@@ -172,7 +172,7 @@ void print_minimum(const Problem& problem, const Minimization& done) {
   fmt::print("distance to the minimum at ({:.10g}, {:.10g}), where f = {:.12g}: {:.3g}\n", (*problem.minimizer)[0],
              (*problem.minimizer)[1], *problem.minimum, error);
   if (is_success(report.status) && error > 0.1)
-    fmt::print("note: |g| is small here as well, but this is not the minimum; try another --start or --tolerance\n");
+    fmt::print("note: |g| is also small here, but this is not the minimum; try another --start or --tolerance\n");
 }
 
 void print_json_summary(const Problem& problem, const Minimization& done) {
@@ -228,20 +228,21 @@ void add_solver_options(CLI::App* command, MinimizeArguments& arguments) {
   SolverOptions& solver = arguments.solver;
   MinimizeOptions& minimize = solver.minimize;
   minimize.max_iterations = 200;
-  command->add_option("--method", solver.method, "newton by default; --list names all");
+  command->add_option("--method", solver.method, "Method, newton by default; --list prints all");
   command->add_option("--definiteness", solver.definiteness,
-                      fmt::format("Of Newton's Hessian: {}", fmt::join(definiteness_names(), ", ")));
+                      fmt::format("Definiteness of Newton's Hessian: {}", fmt::join(definiteness_names(), ", ")));
   command->add_option("--criterion", arguments.criterion,
-                      fmt::format("What must be small: {}", fmt::join(criterion_names(), ", ")));
-  command->add_option("--tolerance", minimize.tolerance, "How small; 1e-6 by default");
-  command->add_option("--max-iterations", minimize.max_iterations, "200 by default")->check(CLI::Range(0, 1000000000));
+                      fmt::format("Convergence test: {}", fmt::join(criterion_names(), ", ")));
+  command->add_option("--tolerance", minimize.tolerance, "Tolerance of the test, 1e-6 by default");
+  command->add_option("--max-iterations", minimize.max_iterations, "Maximum iterations, 200 by default")
+      ->check(CLI::Range(0, 1000000000));
   LineSearchOptions& search = minimize.line_search;
   command->add_option("--test", arguments.test,
-                      fmt::format("Of the line search: {}", fmt::join(decrease_test_names(), ", ")));
-  command->add_option("--alpha-max", search.alpha_max, "The first trial; 1 by default");
-  command->add_option("--decrease", search.sufficient_decrease, "c, the sufficient decrease; 1e-4 by default");
-  command->add_option("--shrink", search.shrink, "p, the factor between trials; 0.5 by default");
-  command->add_option("--alpha-min", search.tolerance, "tol: smaller trials are given up; 1e-10 by default");
+                      fmt::format("Condition of the line search: {}", fmt::join(decrease_test_names(), ", ")));
+  command->add_option("--alpha-max", search.alpha_max, "First trial of the line search, 1 by default");
+  command->add_option("--decrease", search.sufficient_decrease, "Sufficient decrease c, 1e-4 by default");
+  command->add_option("--shrink", search.shrink, "Factor p between trials, 0.5 by default");
+  command->add_option("--alpha-min", search.tolerance, "Smallest trial tol, 1e-10 by default");
 }
 
 }  // namespace
@@ -249,7 +250,7 @@ void add_solver_options(CLI::App* command, MinimizeArguments& arguments) {
 void add_minimize(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<MinimizeArguments>();
   CLI::App* command =
-      app.add_subcommand("minimize", "Minimizes a function of two variables with the simulation's own methods");
+      app.add_subcommand("minimize", "Minimizes a function of two variables with the methods of the simulation");
   command->footer(R"(
 Examples:
   aspic minimize rosenbrock
@@ -259,18 +260,18 @@ Examples:
   aspic minimize --expression "cosh(x) + (y - x)^2" --start 2,-1
   aspic minimize --list
 
-Exit codes: 0 done, 2 bad input, 3 not converged, 130 interrupted by ctrl-C, 143 by kill.)");
-  command->add_option("FUNCTION", arguments->function, "One of --list");
-  command->add_option("--expression", arguments->expression, "A formula of x and y instead");
-  command->add_option("--start", arguments->start, "x,y where it begins");
+Exit codes: 0 done, 2 bad input, 3 not converged, 130 interrupted by Ctrl-C, 143 by kill.)");
+  command->add_option("FUNCTION", arguments->function, "Function from --list");
+  command->add_option("--expression", arguments->expression, "Formula of x and y, instead of a function");
+  command->add_option("--start", arguments->start, "Initial guess x,y");
   add_solver_options(command, *arguments);
-  command->add_option("--trace", arguments->trace, "Directory for every trial of every iteration");
-  command->add_option("--plot", arguments->plot, "Contour map with the path and the rejected trials (.svg or .png)");
-  command->add_option("--plot-model", arguments->model, "The surface and the quadratic model of --iteration (.png)");
-  command->add_option("--iteration", arguments->iteration, "Whose model is drawn; 0 by default")
+  command->add_option("--trace", arguments->trace, "Directory for a trace of every trial of every iteration");
+  command->add_option("--plot", arguments->plot, "Draw a contour map with path and rejected trials (.svg or .png)");
+  command->add_option("--plot-model", arguments->model, "Draw surface and quadratic model of --iteration (.png)");
+  command->add_option("--iteration", arguments->iteration, "Iteration of the model to draw, 0 by default")
       ->check(CLI::NonNegativeNumber);
-  command->add_flag("--list", arguments->list, "The functions and the methods");
-  command->add_flag("--json", arguments->json, "One line of JSON per iteration, and one for the end");
+  command->add_flag("--list", arguments->list, "List functions and methods");
+  command->add_flag("--json", arguments->json, "Print a line of JSON per iteration, and one at the end");
   command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }
 

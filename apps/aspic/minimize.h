@@ -1,4 +1,4 @@
-// A minimization of a function of two variables, step by step: for the table and pictures of `aspic minimize`, and for
+// Minimizes a function of two variables and records the iterations, for tables and pictures of `aspic minimize` and for
 // comparisons of methods.
 #pragma once
 #include <filesystem>
@@ -13,16 +13,16 @@
 
 namespace aspic::cli {
 
-// The function that is minimized and what is known of it.
+// Function to minimize, and its known properties.
 struct Problem {
   std::string name, formula;
   std::unique_ptr<PlanarFunction> function;
   Planar start{};
   std::optional<Planar> minimizer = {};
   std::optional<double> minimum = {};
-  std::optional<std::pair<Planar, Planar>> region = {};  // worth looking at: lower and upper corner
+  std::optional<std::pair<Planar, Planar>> region = {};  // region to draw: lower and upper corner
 };
-Problem known_problem(const std::string& name);  // one of test_functions(). Throws InvalidInput.
+Problem known_problem(const std::string& name);  // a function of test_functions(); throws InvalidInput
 
 struct IterationRecord {
   Iteration iteration;
@@ -31,21 +31,21 @@ struct IterationRecord {
 };
 
 struct Minimization {
-  std::string method;        // in words
-  std::string definiteness;  // as it was asked for
+  std::string method;        // description
+  std::string definiteness;  // as given by the user
   std::vector<IterationRecord> iterations;
   MinimizeReport report;
   Planar end{};
 };
 
-// From problem.start. Each iteration is shown as it is recorded. Throws InvalidInput for options that make no sense.
+// Minimizes from problem.start and calls ShowIteration after each iteration. Throws InvalidInput for invalid options.
 using ShowIteration = std::function<void(const IterationRecord&, const LiveIteration&)>;
 Minimization minimize(const Problem& problem, const SolverOptions& options, const ShowIteration& show = {});
 
-// A contour map with the paths and the rejected trials of several methods. Throws InvalidInput.
+// Draws a contour map with the paths and rejected trials of several methods. Throws InvalidInput.
 void draw_paths(const std::filesystem::path& path, const std::string& title, const Problem& problem,
                 const std::vector<Minimization>& methods);
-// The surface, and over it the quadratic model that an iteration minimized. Throws InvalidInput.
+// Draws the surface with the quadratic model of an iteration. Throws InvalidInput.
 void draw_model(const std::filesystem::path& path, const Problem& problem, const Minimization& done, int iteration);
 
 }  // namespace aspic::cli

@@ -12,7 +12,7 @@
 namespace aspic::cli {
 namespace {
 
-constexpr size_t kRejectedShown = 100;  // of the first iterations: thousands would hide the path
+constexpr size_t kRejectedShown = 100;  // limit per path; thousands would hide the path
 
 struct Region {
   Planar lower, upper;
@@ -21,7 +21,7 @@ struct Region {
   }
 };
 
-// The region that is known to be worth looking at, or around the path; wider where the path leaves it, within reason.
+// Region of the problem, or around the path; extended within limits if the path leaves it.
 Region region(const Problem& problem, std::span<const Minimization> methods) {
   Region all{problem.start, problem.start};
   if (problem.region) all = {problem.region->first, problem.region->second};
@@ -66,7 +66,7 @@ Definiteness projection(const Minimization& done, const IterationRecord& record)
   return clamped ? Definiteness::clamped : Definiteness::exact;
 }
 
-// A square about x and x + d, so that both and the way between them can be seen.
+// Square around x and x + d that shows both and the segment between them.
 Region neighborhood(const IterationRecord& record, const Region& whole) {
   const double size = std::max(whole.upper[0] - whole.lower[0], whole.upper[1] - whole.lower[1]);
   const double reach = std::hypot(record.direction[0], record.direction[1]);
@@ -101,7 +101,7 @@ void draw_model(const std::filesystem::path& path, const Problem& problem, const
   const PlanarFunction& f = *problem.function;
   const auto count = static_cast<int>(done.iterations.size());
   if (iteration >= count)
-    throw InvalidInput(fmt::format("--iteration {}: there were {} (counted from 0)", iteration, count));
+    throw InvalidInput(fmt::format("--iteration {}: only {} iterations (counted from 0)", iteration, count));
   const IterationRecord& record = done.iterations[static_cast<size_t>(iteration)];
   const QuadraticModel model = f.model(record.x, projection(done, record));
   const Planar target = along(record, 1);
@@ -120,7 +120,7 @@ void draw_model(const std::filesystem::path& path, const Problem& problem, const
                  {"x + d on the model", target[0], target[1], model.at(target)},
                  {"f(x + d)", target[0], target[1], f.at(target)},
                  {"accepted", record.next[0], record.next[1], f.at(record.next)}};
-  std::erase_if(plot.points, [&](const MarkedPoint& p) {  // far away, on a plateau perhaps
+  std::erase_if(plot.points, [&](const MarkedPoint& p) {  // far away, possibly on a plateau
     return p.x < box.lower[0] || p.x > box.upper[0] || p.y < box.lower[1] || p.y > box.upper[1];
   });
   draw(path, plot);

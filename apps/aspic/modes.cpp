@@ -1,4 +1,4 @@
-// `aspic modes`: natural frequencies and mode shapes of a scene.
+// `aspic modes`: computes natural frequencies and mode shapes of a scene.
 #include "dynamics/modes.h"
 
 #include <fmt/format.h>
@@ -34,7 +34,7 @@ struct ModesArguments {
   bool force = false, json = false;
 };
 
-constexpr double kAmplitude = 0.1;  // largest displacement of a frame over the size of the model
+constexpr double kAmplitude = 0.1;  // largest displacement of a frame, relative to the size of the model
 
 struct Frame {
   double amplitude = 0;  // largest displacement [m]
@@ -84,7 +84,7 @@ Frame show_mode(Simulation& simulation, const State& start, const Mode& mode, in
 
 void write_frames(const ModesArguments& arguments, Scene& scene, const Modes& found) {
   const fs::path out = arguments.out.empty() ? fs::path("out") / (scene.name + "_modes") : arguments.out;
-  scene.resolved += "# Steps are modes: this run cannot be continued.\n";  // another scene, so --resume refuses
+  scene.resolved += "# Steps are modes: this run cannot be continued.\n";  // a different scene, so --resume refuses it
   scene.output.every = 0;
   scene.output.vtu = true;
   State start = scene.simulation.state();
@@ -163,7 +163,7 @@ such as each of the six rigid motions of a free body, has the frequency 0.
 Files: modes.csv (mode, frequency [Hz], rigid, amplitude [m]) and a directory like that of a run, in which step k is
 mode k, scaled to displacements of at most a tenth of the model's size. ParaView opens run.pvd.
 
-Exit codes: 0 done, 2 bad input, 3 not converged, 4 --time-limit came first.)");
+Exit codes: 0 done, 2 bad input, 3 not converged, 4 time limit.)");
   command->add_option("INPUT", arguments->input, "Scene (.toml) or mesh")->required();
   command->add_option("--count", arguments->count, "Number of modes, 10 by default")->check(CLI::Range(1, 10000));
   command->add_option("--about", arguments->about, "Positions about which to vibrate: rest (default) or start")
@@ -172,7 +172,7 @@ Exit codes: 0 done, 2 bad input, 3 not converged, 4 --time-limit came first.)");
       ->allow_extra_args(false);
   command->add_option("--out", arguments->out, "Directory of the results; out/NAME_modes by default");
   command->add_flag("--force", arguments->force, "Replace the results of an earlier run");
-  command->add_option("--threads", arguments->threads, "Threads; all cores by default; the result is the same")
+  command->add_option("--threads", arguments->threads, "Threads; all cores by default; results do not depend on it")
       ->check(CLI::Range(1, 1024));
   command->add_option("--time-limit", arguments->time_limit, "Maximum wall time [s]")->check(CLI::Range(1e-3, 1e9));
   command->add_flag("--json", arguments->json, "Print JSON instead of a table");

@@ -1,10 +1,8 @@
-// Pictures: curves, contour maps, surfaces over the plane; for meshes see mesh_picture.h. The program gnuplot draws
-// them. The file name decides: .svg for what is read in a page, .png for what has thousands of faces. The file appears
-// whole or not at all. Every function throws InvalidInput: when gnuplot is missing (naming its package), for another
-// extension, when the file cannot be written.
-//
-// Any text may stand in titles and labels: nothing in it is taken as a command or as markup. Values that are not
-// finite, or not positive on a logarithmic axis, are gaps.
+// Pictures of curves, contour maps and surfaces, drawn by gnuplot; for meshes see mesh_picture.h. The extension selects
+// the format: .svg for pages, .png for pictures with thousands of faces. Files are written atomically. All functions
+// throw InvalidInput for other extensions, if gnuplot is missing (with the name of its package), or if the file cannot
+// be written. Titles and labels may contain any text; it is never interpreted as commands or markup. Values that are
+// not finite, or not positive on a logarithmic axis, are gaps.
 #pragma once
 #include <array>
 #include <filesystem>
@@ -14,11 +12,11 @@
 
 namespace aspic::cli {
 
-// Throws what a function below would throw for this file name: to be asked before work whose picture is wanted.
+// Throws InvalidInput if this picture cannot be drawn. Call it before long work.
 void require_drawable(const std::filesystem::path& picture);
 
 struct PictureSize {
-  int width = 720, height = 440;  // [px] of an SVG; a PNG has twice as many, for sharp print
+  int width = 720, height = 440;  // size of an SVG [px]; a PNG has twice as many pixels, for sharp print
 };
 
 enum class AxisScale { linear, logarithmic };
@@ -26,7 +24,7 @@ enum class AxisScale { linear, logarithmic };
 struct Axis {
   std::string label;  // with the unit: "time [s]"
   AxisScale scale = AxisScale::linear;
-  std::optional<double> min = {}, max = {};  // found from the data where not given
+  std::optional<double> min = {}, max = {};  // default: range of the data
 };
 
 enum class SeriesStyle { line, dashed, points, line_and_points };
@@ -48,7 +46,7 @@ void draw(const std::filesystem::path& path, const Chart& chart);
 
 using Point2 = std::array<double, 2>;
 
-// z at the corners of a regular grid: z[j * nx + i] belongs to (x[i], y[j]).
+// Values z at the points of a regular grid: z[j * nx + i] belongs to (x[i], y[j]).
 struct SampledFunction {
   std::vector<double> x, y, z;
 };
@@ -56,7 +54,7 @@ struct SampledFunction {
 struct PlanarPath {
   std::string label;
   std::vector<Point2> points;         // iterates, joined by lines
-  std::vector<Point2> rejected = {};  // trials that were not taken, as crosses
+  std::vector<Point2> rejected = {};  // rejected trials, drawn as crosses
 };
 
 struct ContourMap {
@@ -76,11 +74,11 @@ struct MarkedPoint {
 struct SurfacePlot {
   std::string title, x_label = "x", y_label = "y", z_label = "z";
   SampledFunction function;
-  std::optional<SampledFunction> model = {};  // a second surface over it, translucent
+  std::optional<SampledFunction> model = {};  // second surface above it, translucent
   std::string model_label = {};
   std::vector<MarkedPoint> points = {};
-  double azimuth = 40, elevation = 35;           // of the eye [degrees]
-  std::optional<double> z_min = {}, z_max = {};  // what lies outside is cut off
+  double azimuth = 40, elevation = 35;           // view direction [degrees]
+  std::optional<double> z_min = {}, z_max = {};  // values outside are clipped
   PictureSize size = {700, 560};
 };
 void draw(const std::filesystem::path& path, const SurfacePlot& plot);

@@ -18,7 +18,7 @@ struct Range {
   double min = INFINITY, max = -INFINITY;
 };
 
-// Of the points that can be drawn.
+// Range of the points that can be drawn.
 std::array<Range, 2> data_ranges(const Chart& chart) {
   std::array<Range, 2> ranges;
   for (const Series& series : chart.series)
@@ -32,10 +32,10 @@ std::array<Range, 2> data_ranges(const Chart& chart) {
 
 void add_axis(Gnuplot& plot, char name, Axis axis, const Range& data) {
   const bool logarithmic = axis.scale == AxisScale::logarithmic, empty = !(data.min <= data.max);
-  if (empty) {  // gnuplot finds no range by itself
+  if (empty) {  // gnuplot computes no range without data
     if (!axis.min) axis.min = logarithmic ? 0.1 : 0.0;
     if (!axis.max) axis.max = std::max(1.0, 2 * *axis.min);
-  } else if (logarithmic) {  // not out to whole decades
+  } else if (logarithmic) {  // avoids rounding to whole decades
     if (!axis.min) axis.min = data.min / 1.6;
     if (!axis.max) axis.max = data.max * 1.6;
   }
@@ -46,7 +46,7 @@ void add_axis(Gnuplot& plot, char name, Axis axis, const Range& data) {
 
 std::string style(const Series& series, int color_index) {
   const std::string with_color = fmt::format("lc rgb {}", color(color_index));
-  // Round, square, triangle, diamond, inverted triangle: filled.
+  // Filled circle, square, triangle, diamond, inverted triangle.
   static constexpr int kMarks[] = {7, 5, 9, 13, 11};
   const int mark = kMarks[static_cast<size_t>(color_index) % std::size(kMarks)];
   switch (series.style) {

@@ -1,4 +1,4 @@
-// Functions of two variables: contour maps with paths, surfaces with a model over them.
+// Pictures of functions of two variables: contour maps with paths, surfaces with a model.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace aspic::cli {
 namespace {
 
-// Rows of equal y, with an empty line between them.
+// Rows of equal y, separated by empty lines.
 std::string grid_table(const SampledFunction& f) {
   ASPIC_CHECK(f.z.size() == f.x.size() * f.y.size());
   std::string text;
@@ -39,10 +39,10 @@ std::vector<double> finite_sorted(const std::vector<double>& z) {
 
 constexpr int kLevels = 22;
 
-// Levels that leave about equal areas between them, with more near the minimum: valleys show, whatever the values.
+// Levels with about equal areas between them and more near the minimum, so that valleys are visible for any values.
 std::vector<double> levels(const SampledFunction& f) {
   const std::vector<double> values = finite_sorted(f.z);
-  if (values.empty()) throw InvalidInput("the function is nowhere finite in the region that was asked for");
+  if (values.empty()) throw InvalidInput("the function is nowhere finite in the requested region");
   std::vector<double> result;
   for (int k = 1; k <= kLevels; ++k) {
     const double t = std::pow(static_cast<double>(k) / (kLevels + 1), 1.6);
@@ -58,7 +58,7 @@ std::string joined(const std::vector<double>& values) {
   return text;
 }
 
-// The curves of gnuplot's contours lie in a table; each is drawn with the color of its rank among the levels.
+// gnuplot's contour table contains all curves; the rank among the levels selects the color.
 void add_contours(Gnuplot& plot, const SampledFunction& f) {
   const std::vector<double> at = levels(f);
   plot.add("set contour base\nset cntrparam linear\nunset surface\nset cntrparam levels discrete " + joined(at));
@@ -82,7 +82,7 @@ void draw(const std::filesystem::path& path, const ContourMap& map) {
   add_contours(plot, f);
   plot.add(fmt::format("set xrange {}\nset yrange {}", range(f.x.front(), f.x.back()), range(f.y.front(), f.y.back())));
   std::string layers = "plot $contours using 1:2:(rank($3)) with lines lw 1 lc palette notitle";
-  int next = 1;  // blue is the contours' color
+  int next = 1;  // blue is reserved for contours
   for (const PlanarPath& line : map.paths) {
     const std::string ink = color(next);
     next = next % 6 + 1;
@@ -91,7 +91,7 @@ void draw(const std::filesystem::path& path, const ContourMap& map) {
                             plot.data_file(point_table(line.rejected)), ink, label("rejected trials"));
     layers += fmt::format(", {} using 1:2 with linespoints pt 7 ps 0.45 lw 1.6 lc rgb {} title {}",
                           plot.data_file(point_table(line.points)), ink, label(line.label));
-    if (!line.points.empty())  // where it starts
+    if (!line.points.empty())  // initial guess
       layers += fmt::format(", {} using 1:2 with points pt 6 ps 1.1 lw 1.6 lc rgb {} notitle",
                             plot.data_file(point_table({line.points.front()})), ink);
   }
@@ -128,7 +128,7 @@ void draw(const std::filesystem::path& path, const SurfacePlot& surface) {
         "lc rgb '#e69f00' title {}",
         plot.data_file(grid_table(*surface.model)), label(surface.model_label));
   int next = 1;
-  for (const MarkedPoint& point : surface.points) {  // labels, since the surfaces would be drawn over points
+  for (const MarkedPoint& point : surface.points) {  // labels, because surfaces could hide points
     const std::string mark = fmt::format("pt 7 ps 1.1 lc rgb {}", color(next++));
     plot.add(fmt::format("set label '' at {}, {}, {} front point {}", number(point.x), number(point.y), number(point.z),
                          mark));

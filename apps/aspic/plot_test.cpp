@@ -21,7 +21,7 @@ using testing::HasSubstr;
 
 using Pictures = FolderTest;
 
-// The size that the header of a PNG states; {0, 0} when the file is none.
+// Size in the header of a PNG; {0, 0} if the file is no PNG.
 std::pair<unsigned, unsigned> png_size(const fs::path& path) {
   const std::string bytes = read_file(path);
   if (!bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.substr(12, 4) != "IHDR") return {0, 0};
@@ -123,7 +123,7 @@ TEST_F(Pictures, ValuesThatAreNotFiniteAreGaps) {
   draw(folder / "gap.svg", chart);
   chart.series[0].y[2] = 1;
   draw(folder / "whole.svg", chart);
-  const auto pieces = [](const std::string& svg) {  // how often the pen is put down for the curve
+  const auto pieces = [](const std::string& svg) {  // number of pen-down moves of the curve
     const size_t begin = svg.find("id=\"gnuplot_plot_1\""), end = svg.find("'/></g>", begin);
     return count(svg.substr(begin, end - begin), "M");
   };
@@ -131,7 +131,7 @@ TEST_F(Pictures, ValuesThatAreNotFiniteAreGaps) {
   EXPECT_EQ(pieces(read_file(folder / "gap.svg")), 2u);
 }
 
-TEST_F(Pictures, AChartWithoutAnyNumberIsAnEmptyFrame) {
+TEST_F(Pictures, ChartWithoutNumbersIsAnEmptyFrame) {
   for (const AxisScale scale : {AxisScale::linear, AxisScale::logarithmic}) {
     Chart chart{.title = "nothing",
                 .x = {"x", scale},
@@ -145,7 +145,7 @@ TEST_F(Pictures, AChartWithoutAnyNumberIsAnEmptyFrame) {
   }
 }
 
-TEST_F(Pictures, AContourMapShowsThePathAndTheRejectedTrials) {
+TEST_F(Pictures, ContourMapShowsPathAndRejectedTrials) {
   ContourMap map{.title = "Gradient descent on Rosenbrock's function",
                  .function = sampled(-1.5, 1.5, 151, rosenbrock),
                  .paths = {{"gradient descent", {}, {{0.3, 0.9}, {0.1, -0.4}}},
@@ -204,7 +204,7 @@ TEST_F(Pictures, ASurfaceHasItsModelOverIt) {
 
 TEST_F(Pictures, AnotherExtensionIsRefusedByName) {
   EXPECT_THAT(message_of([&] { draw(folder / "chart.jpeg", convergence()); }),
-              HasSubstr("a picture is .svg or .png, not '.jpeg'"));
+              HasSubstr("a picture must be .svg or .png, not '.jpeg'"));
 }
 
 TEST_F(Pictures, WithoutGnuplotTheMessageNamesItsPackage) {

@@ -1,4 +1,4 @@
-// The pixels of a PNG file, for tests: 8 bits per channel, RGB or RGBA, not interlaced, as browsers write them.
+// Reads the pixels of PNG files in tests: 8 bits per channel, RGB or RGBA, not interlaced, as written by browsers.
 #pragma once
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -16,7 +16,7 @@ namespace aspic::cli {
 using Pixel = std::array<int, 3>;
 
 struct Image {
-  unsigned width = 0, height = 0;  // 0: no PNG of this kind
+  unsigned width = 0, height = 0;  // 0: not a PNG of this kind
   std::vector<Pixel> pixels;       // rows from top to bottom
 
   const Pixel& at(unsigned x, unsigned y) const { return pixels[size_t{y} * width + x]; }
@@ -28,7 +28,7 @@ inline unsigned big_endian(const std::string& bytes, size_t at) {
   return value;
 }
 
-// Each byte was stored as its difference to what its neighbors predict [PNG, 9.2].
+// PNG stores each byte as the difference from the prediction by its neighbors [PNG, 9.2].
 inline int predicted(int filter, int left, int above, int corner) {
   const int p = left + above - corner, a = std::abs(p - left), b = std::abs(p - above), c = std::abs(p - corner);
   const int paeth = a <= b && a <= c ? left : b <= c ? above : corner;

@@ -13,8 +13,8 @@ namespace aspic::cli {
 namespace {
 
 constexpr double kRedrawInterval = 0.1;  // on a terminal [s]
-constexpr double kLongStep = 1;          // before its iterations are shown on a terminal [s]
-constexpr double kLineFraction = 0.05;   // of the whole run: lines in a pipe
+constexpr double kLongStep = 1;          // time of a step after which its iterations are shown on a terminal [s]
+constexpr double kLineFraction = 0.05;   // fraction of the run between lines in a pipe
 constexpr int kBarWidth = 20;
 
 std::string step_text(const StepReport& report, int last) {
@@ -78,7 +78,7 @@ void Progress::print(std::string line, double done) {
     const int filled = static_cast<int>(done * kBarWidth);
     line = fmt::format("[{:#<{}}{:.<{}}] {}", "", filled, "", kBarWidth - filled, line);
     line.resize(std::min(line.size(), terminal_width(stream_) - 1));
-    fmt::print(stream_, "\r{}\x1b[K", line);  // erases what a longer line left
+    fmt::print(stream_, "\r{}\x1b[K", line);  // erases the rest of a longer line
     drawn_ = true;
   } else {
     fmt::print(stream_, "{}\n", line);

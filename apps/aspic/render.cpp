@@ -1,4 +1,4 @@
-// `aspic render`: pictures and videos of a run, without a display.
+// `aspic render`: draws pictures and videos of a run without a display.
 #include "viewer/render.h"
 
 #include <fmt/format.h>
@@ -31,11 +31,11 @@ struct RenderArguments {
   bool wires = true, dark = false, every_frame = false;
 };
 
-constexpr size_t kMostBytes = 100'000'000;  // of the page: what a browser bears
+constexpr size_t kMostBytes = 100'000'000;  // limit of the page, for browsers
 
 viewer::RenderOptions render_options(const RenderArguments& arguments) {
   if (!std::isfinite(arguments.fps) || !std::isfinite(arguments.speed))
-    throw InvalidInput("--fps and --speed: finite numbers are needed");
+    throw InvalidInput("--fps and --speed must be finite numbers");
   viewer::RenderOptions options{.view = arguments.view,
                                 .color = arguments.color,
                                 .wires = arguments.wires,
@@ -51,7 +51,7 @@ viewer::RenderOptions render_options(const RenderArguments& arguments) {
   return options;
 }
 
-// Where the pictures go.
+// Destination of the pictures.
 class Output {
  public:
   virtual ~Output() = default;
@@ -87,7 +87,7 @@ class Folder : public Output {
     if (error) throw InvalidInput(fmt::format("{}: cannot be created: {}", path_.string(), error.message()));
   }
   void add(int index, std::string_view png) override { write_file(file(index), png); }
-  // Of an earlier, longer rendering nothing is left that would look like part of this one.
+  // Removes frames of an earlier, longer rendering.
   void finish(int count) override {
     std::error_code none;
     while (fs::remove(file(count), none)) ++count;
@@ -105,12 +105,11 @@ std::unique_ptr<Output> open_output(const RenderArguments& arguments, const view
   if (is_picture(out)) return std::make_unique<OnePicture>(out);
   if (viewer::VideoFile::is_video(out)) {
     if (options.width % 2 || options.height % 2)
-      throw InvalidInput(fmt::format("--size {}: a video needs even numbers", arguments.size));
+      throw InvalidInput(fmt::format("--size {}: a video needs even width and height", arguments.size));
     return std::make_unique<Video>(out, arguments.fps);
   }
   if (out.has_extension() && !fs::is_directory(out))
-    throw InvalidInput(
-        fmt::format("{}: pictures become .png, .mp4, .webm, .gif, or a folder such as frames/", out.string()));
+    throw InvalidInput(fmt::format("{}: must be .png, .mp4, .webm, .gif, or a folder such as frames/", out.string()));
   return std::make_unique<Folder>(out);
 }
 
@@ -118,11 +117,11 @@ int render(const RenderArguments& arguments) {
   viewer::RenderOptions options = render_options(arguments);
   if (is_picture(arguments.out) && options.step < 0)
     throw InvalidInput(
-        fmt::format("{}: one picture needs --step; of the whole run: -o frames/", arguments.out.string()));
+        fmt::format("{}: one picture needs --step; for the whole run: -o frames/", arguments.out.string()));
   const bool is_video = viewer::VideoFile::is_video(arguments.out);
   options.every = arguments.every_frame || !is_video ? 0 : arguments.speed / arguments.fps;
   if (!fs::is_directory(arguments.run))
-    throw InvalidInput(fmt::format("{}: is no directory of a run", arguments.run.string()));
+    throw InvalidInput(fmt::format("{}: is not the directory of a run", arguments.run.string()));
 
   const Scene scene = load_scene(scene_of_run(arguments.run));
   const viewer::Report report = viewer::make_report(arguments.run, scene, {.max_bytes = kMostBytes});
@@ -150,30 +149,31 @@ int render(const RenderArguments& arguments) {
 
 void add_render(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<RenderArguments>();
-  CLI::App* command = app.add_subcommand("render", "Draws a run as pictures or a video; needs no display");
+  CLI::App* command = app.add_subcommand("render", "Draws a run as pictures or a video, without a display");
   command->footer(R"(
 Examples:
-  aspic render out/bunny -o bunny.mp4                          as fast as it happened; needs ffmpeg
+  aspic render out/bunny -o bunny.mp4                          in real time; needs ffmpeg
   aspic render out/bunny -o slow.webm --speed 0.25 --color von_mises
   aspic render out/bunny -o frames/ --size 1920x1080           frame_000001.png, ... of every frame of the run
   aspic render out/bunny -o bunny.png --step 40 --view front --dark
 
-Chromium draws them with the page of aspic view and aspic report, on the processor where there is no graphics card.)");
+Chromium draws them with the page of aspic view and aspic report, on the CPU if there is no graphics card.)");
   command->add_option("RUN", arguments->run, "Directory of a run")->required();
   command->add_option("-o,--out", arguments->out, "Folder, .mp4, .webm, .gif, or with --step .png")->required();
   command->add_option("--size", arguments->size, "Width and height in pixels, 1280x720 by default");
-  command->add_option("--view", arguments->view,
-                      "front, back, left, right, top, bottom, isometric, or the direction to look from: \"1,2,0.5\"");
-  command->add_option("--color,--colour", arguments->color, "Field, such as von_mises or displacement");
+  command->add_option(
+      "--view", arguments->view,
+      "View: front, back, left, right, top, bottom, isometric, or a direction from the scene, \"1,2,0.5\"");
+  command->add_option("--color,--colour", arguments->color, "Field for colors, such as von_mises or displacement");
   command->add_option("--fps", arguments->fps, "Pictures per second of a video, 30 by default")
       ->check(CLI::Range(1.0, 240.0));
   command->add_option("--speed", arguments->speed, "Simulated seconds per second of a video, 1 by default")
       ->check(CLI::Range(1e-9, 1e9));
-  command->add_flag("--every-frame", arguments->every_frame, "A video with one picture of each frame of the run");
-  command->add_option("--step", arguments->step, "One picture, of the frame nearest to this step")
+  command->add_flag("--every-frame", arguments->every_frame, "Video with one picture per frame of the run");
+  command->add_option("--step", arguments->step, "Draw one picture, of the frame nearest to this step")
       ->check(CLI::Range(0, 1000000000));
-  command->add_flag("--wires,!--no-wires", arguments->wires, "Edges of the mesh; on by default");
-  command->add_flag("--dark", arguments->dark, "Dark background");
+  command->add_flag("--wires,!--no-wires", arguments->wires, "Draw edges of the mesh, on by default");
+  command->add_flag("--dark", arguments->dark, "Use a dark background");
   command->callback([arguments, &action] { action = [arguments] { return render(*arguments); }; });
 }
 

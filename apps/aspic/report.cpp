@@ -1,4 +1,4 @@
-// `aspic report`: a run as one HTML file to be sent and opened anywhere. Runs write the same at their end.
+// `aspic report`: writes a run as one self-contained HTML file, as runs do at their end.
 #include "viewer/report.h"
 
 #include <fmt/format.h>
@@ -36,8 +36,8 @@ std::string written(const fs::path& file, const viewer::Report& report) {
 int report(const ReportArguments& arguments) {
   if (!fs::is_directory(arguments.run))
     throw InvalidInput(
-        fmt::format("{}: is no directory of a run; aspic run writes one, out/NAME by default", arguments.run.string()));
-  if (!std::isfinite(arguments.max_size)) throw InvalidInput("--max-size: a finite number of megabytes is needed");
+        fmt::format("{}: is not the directory of a run; aspic run writes out/NAME by default", arguments.run.string()));
+  if (!std::isfinite(arguments.max_size)) throw InvalidInput("--max-size: give a finite number of megabytes");
   const Scene scene = load_scene(scene_of_run(arguments.run));
   const auto max_bytes = static_cast<size_t>(arguments.max_size * kMegabyte);
   const viewer::Report report = viewer::make_report(arguments.run, scene, {.max_bytes = max_bytes});
@@ -66,17 +66,17 @@ void write_run_report(const fs::path& run, const Scene& scene, std::FILE* stream
 
 void add_report(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<ReportArguments>();
-  CLI::App* command = app.add_subcommand("report", "Makes one HTML file of a run: playback, plots, certificate, scene");
+  CLI::App* command = app.add_subcommand("report", "Writes an HTML page of a run: playback, plots, certificate, scene");
   command->footer(R"(
 Examples:
-  aspic report out/bunny                      writes out/bunny/report.html, as the run itself does at its end
-  aspic report out/bunny -o bunny.html        elsewhere, to be sent by mail: it needs no server and no network
-  aspic report out/long --max-size 40         more of the frames of a long run; the page says what was left out
+  aspic report out/bunny                      write out/bunny/report.html, as the run does at its end
+  aspic report out/bunny -o bunny.html        another file; it needs no server and no network
+  aspic report out/long --max-size 40         more frames of a long run
 
-A run that is still under way, or was killed, is shown up to its latest checkpoint.)");
+A run that is in progress or was killed is shown up to its latest checkpoint.)");
   command->add_option("RUN", arguments->run, "Directory of a run")->required();
   command->add_option("-o,--out", arguments->out, "File to write; RUN/report.html by default");
-  command->add_option("--max-size", arguments->max_size, "Largest size of the file [MB]; frames are left out, evenly")
+  command->add_option("--max-size", arguments->max_size, "Maximum size of the file [MB]; omits frames evenly")
       ->check(CLI::Range(1.0, 500.0));
   command->callback([arguments, &action] { action = [arguments] { return report(*arguments); }; });
 }

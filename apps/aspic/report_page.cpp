@@ -83,7 +83,7 @@ std::string escaped(std::string_view text) {
         result += "&quot;";
         break;
       default:
-        // Other control characters may not stand in a page at all.
+        // HTML forbids other control characters.
         result += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? ' ' : c;
     }
   }
@@ -111,7 +111,7 @@ bool is_number(const std::string& text) {
          text.find_first_not_of("0123456789+-.eE% ") == std::string::npos;
 }
 
-// Numbers stand to the right; what is short, such as "<= 1e-6", is not broken into lines.
+// Numbers are right-aligned; short cells such as "<= 1e-6" are not wrapped.
 std::string_view cell_class(const std::string& text) {
   if (is_number(text)) return " class=\"number\"";
   return text.size() <= 14 ? " class=\"short\"" : "";
@@ -122,7 +122,7 @@ void replace_all(std::string& text, std::string_view from, const std::string& to
     text.replace(at, from.size(), to);
 }
 
-// The names inside a picture are made its own: pictures of one page may not share them.
+// Makes identifiers in a picture unique, because pictures of one page share a namespace.
 std::string inline_svg(std::string svg, int index) {
   const size_t begin = svg.find("<svg");
   if (begin == std::string::npos) return "";
@@ -144,7 +144,7 @@ std::string picture(const Figure& figure, int index) {
     return svg;
   }
   if (figure.picture.extension() != ".png")
-    throw InvalidInput(figure.picture.string() + ": a page takes pictures that are .svg or .png");
+    throw InvalidInput(figure.picture.string() + ": a picture of a page must be .svg or .png");
   std::string coded;
   append_base64(bytes, coded);
   return fmt::format("<img alt=\"{}\" src=\"data:image/png;base64,{}\">", escaped(figure.caption), coded);
@@ -179,7 +179,7 @@ void ReportPage::table(const std::vector<std::string>& header, const std::vector
     body_ += fmt::format("<th{}>{}</th>", numbers ? " class=\"number\"" : "", escaped(header[column]));
   }
   body_ += "</tr></thead>\n<tbody>\n";
-  // In a narrow window the head of the table makes way for names beside the cells.
+  // In a narrow window, names beside the cells replace the table header.
   const auto label = [&header](size_t column) {
     const bool has = column < header.size() && !header[column].empty();
     return has ? fmt::format(" data-label=\"{}\"", escaped(header[column])) : "";

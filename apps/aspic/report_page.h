@@ -1,4 +1,4 @@
-// A report as one HTML file that needs nothing else: pictures are inside, nothing is fetched. Text is escaped.
+// A report as a self-contained HTML file with embedded pictures. Escapes text.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -12,7 +12,7 @@ enum class Verdict { pass, fail, neutral };
 
 struct Cell {
   std::string text;
-  std::optional<Verdict> verdict = {};  // as a badge around the text
+  std::optional<Verdict> verdict = {};  // badge around the text
 };
 
 struct Figure {
@@ -24,13 +24,13 @@ class ReportPage {
  public:
   explicit ReportPage(std::string_view title, std::string_view subtitle = "");
 
-  void heading(std::string_view text);  // entry of the table of contents
+  void heading(std::string_view text);  // also an entry of the table of contents
   void paragraph(std::string_view text);
-  void formula(std::string_view mathml);  // as it is
-  void code(std::string_view text);       // a command or a formula, as it is
+  void formula(std::string_view mathml);  // inserted unchanged
+  void code(std::string_view text);       // a command or a formula, inserted unchanged
   void verdict(Verdict verdict, std::string_view label, std::string_view text);
   void table(const std::vector<std::string>& header, const std::vector<std::vector<Cell>>& rows);
-  void figures(const std::vector<Figure>& row);  // side by side where there is room; throws InvalidInput
+  void figures(const std::vector<Figure>& row);  // side by side if the width allows; throws InvalidInput
 
   std::string html() const;
   void write(const std::filesystem::path& path) const;  // throws InvalidInput

@@ -1,4 +1,4 @@
-// `aspic run`: loads a scene or a mesh, takes the steps, records them.
+// `aspic run`: loads a scene or a mesh, simulates the steps and records them.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -51,7 +51,7 @@ std::vector<LandscapeAt> landscapes(const RunArguments& arguments) {
   return places;
 }
 
-// The directory to continue: the one named, or the one where a run of the input would have gone.
+// Directory to continue: the given one, or the default directory of the input.
 fs::path directory_to_resume(const RunArguments& arguments) {
   if (!arguments.out.empty()) return arguments.out;
   if (fs::is_directory(arguments.input)) return arguments.input;
@@ -67,17 +67,17 @@ void announce(const RunArguments& arguments, const std::string& what) {
   std::fflush(human_stream(arguments));
 }
 
-constexpr int kManyTets = 300'000;  // whose frame takes a second to write
+constexpr int kManyTets = 300'000;  // a frame of this size takes a second to write
 
 Scene load(const RunArguments& arguments) {
   const Announce tell = [&](const std::string& what) { announce(arguments, what); };
   if (arguments.resume) {
     if (!arguments.overrides.empty()) {
-      throw InvalidInput("--set and --resume exclude each other: a run is continued as it was begun");
+      throw InvalidInput("--set and --resume cannot be combined: a run continues with its own scene");
     }
     const fs::path directory = directory_to_resume(arguments);
     if (!fs::is_directory(directory)) {
-      throw InvalidInput(fmt::format("{}: no such run to resume; start it without --resume", directory.string()));
+      throw InvalidInput(fmt::format("{}: no run to resume; start it without --resume", directory.string()));
     }
     return load_scene(scene_of_run(directory), {.announce = tell, .mesher_seconds = arguments.time_limit});
   }
@@ -96,7 +96,7 @@ RunDirectory open_directory(const RunArguments& arguments, Scene& scene) {
   return RunDirectory::create(path, scene, arguments.force ? ExistingRun::overwrite : ExistingRun::refuse);
 }
 
-// How many of the steps that a resumed run keeps did not converge: the exit code is that of the whole run.
+// Number of unconverged steps before the resumption; the exit code covers the whole run.
 int unconverged_before(const fs::path& directory, int steps) {
   std::ifstream file = open_input(directory / "steps.csv");
   std::string line;
@@ -112,7 +112,7 @@ int unconverged_before(const fs::path& directory, int steps) {
   return count;
 }
 
-// Takes the steps of one run and notifies the observers.
+// Simulates the steps of one run and notifies the observers.
 class Runner {
  public:
   Runner(const RunArguments& arguments, Scene& scene, RunDirectory& directory, const StopToken& stop)
@@ -127,7 +127,7 @@ class Runner {
     if (arguments.trace || !arguments.landscapes.empty()) start_trace();
   }
 
-  // Stops early after a signal or at the time limit. An unfinished step is dropped, so the output ends with a whole
+  // Stops early after a signal or at the time limit. Discards an unfinished step, so the output ends with a complete
   // step.
   void run() {
     Simulation& simulation = scene_.simulation;
@@ -146,7 +146,7 @@ class Runner {
         break;
       }
       record(report);
-      // The body stays where it was, and an explicit scheme, which has nothing else to try, would fail again.
+      // The state is unchanged, so an explicit scheme, which has no fallback, would fail again.
       has_blown_up_ = report.status == Status::undefined && !simulation.integrator().is_implicit;
       if (has_blown_up_) break;
     }
@@ -154,8 +154,7 @@ class Runner {
     if (progress_) progress_->finish();
     if (trace_) finish_trace();
     if (has_blown_up_)
-      fmt::print(stderr,
-                 "stopped after step {} of {}: the explicit scheme blew up, and there is no state to continue from\n",
+      fmt::print(stderr, "stopped after step {} of {}: the explicit scheme blew up and left no finite state\n",
                  simulation.steps_taken(), last_step_);
   }
 
@@ -215,11 +214,11 @@ class Runner {
     if (count > kWarningsShown) return;
     std::string line = fmt::format("warning: step {} did not converge: {}", report.step, to_string(report.status));
     if (report.residual_threshold > 0)
-      line += fmt::format(" after {} iterations; residual {:.3g} N, wanted {:.3g} N", report.iterations,
+      line += fmt::format(" after {} iterations; residual {:.3g} N, tolerance {:.3g} N", report.iterations,
                           report.residual, report.residual_threshold);
     if (why.cause != last_cause_) line += explanation_text(why);
     last_cause_ = why.cause;
-    if (count == kWarningsShown) line += " (further ones are only counted)";
+    if (count == kWarningsShown) line += " (further failures are only counted)";
     say(line);
   }
 
@@ -240,9 +239,9 @@ class Runner {
   bool has_blown_up_ = false, has_run_out_ = false, has_warned_of_round_off_ = false;
   std::optional<Progress> progress_;
   std::optional<Trace> trace_;
-  std::vector<Iteration> iterations_;  // of the step under way; recorded once it is whole
+  std::vector<Iteration> iterations_;  // iterations of the step in progress; recorded at its end
   RunTotals totals_;
-  std::string last_cause_;  // explained already
+  std::string last_cause_;  // last explained cause
 };
 
 void print_start(std::FILE* stream, const RunArguments& arguments, const Scene& scene, const fs::path& directory) {
@@ -273,10 +272,10 @@ int run(const RunArguments& arguments) {
   StopToken stop([] { return interrupt_signal() != 0; });
   if (arguments.time_limit > 0) stop = stop.with_deadline(clock, arguments.time_limit);
   if (arguments.threads > 0) set_thread_count(arguments.threads);
-  landscapes(arguments);  // bad input is reported before anything is written
+  landscapes(arguments);  // throws for bad input before anything is written
   Scene scene = load(arguments);
   RunDirectory directory = open_directory(arguments, scene);
-  catch_interrupts();  // not before there is something to keep
+  catch_interrupts();  // from here on there are results to keep
 
   const int earlier = unconverged_before(directory.path(), scene.simulation.steps_taken());
 
@@ -298,7 +297,7 @@ int run(const RunArguments& arguments) {
                    .directory = directory.path()});
   }
   write_run_report(directory.path(), scene, arguments.quiet ? nullptr : runner.human());
-  if (runner.has_blown_up()) return exit_unconverged;  // an unfinished run is not a matter of allowing
+  if (runner.has_blown_up()) return exit_unconverged;  // --allow-unconverged does not apply to an unfinished run
   return exit_code(arguments, runner.has_run_out(), earlier + runner.totals().unconverged);
 }
 
@@ -306,45 +305,44 @@ int run(const RunArguments& arguments) {
 
 void add_run(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<RunArguments>();
-  CLI::App* command = app.add_subcommand("run", "Simulates a scene, or a mesh with sensible defaults");
+  CLI::App* command = app.add_subcommand("run", "Simulates a scene, or a mesh with defaults");
   command->footer(R"(
 Examples:
-  aspic run bunny.obj                             fills the surface with tets and lets it fall and hang
+  aspic run bunny.obj                             fill the surface with tets; it falls and hangs
   aspic run scenes/bunny.toml                     results in out/bunny
   aspic run beam.toml --set material.young=2e5 time.step=0.005 --out out/soft
-  aspic run beam.toml --resume                    continues an interrupted run, to the same bits
+  aspic run beam.toml --resume                    continue an interrupted run, bit-reproducibly
   aspic run beam.toml --time-limit 3600           at most an hour; --resume continues
   aspic run beam.toml --json | jq .iterations     one line of JSON per step
-  aspic run beam.toml --landscape 12:0            why is step 12 slow? its first iteration, looked at closely
+  aspic run beam.toml --landscape 12:0            the first iteration of step 12 in detail
 
 Exit codes: 0 done, 2 bad input, 3 some step did not converge (unless --allow-unconverged, or because its
-solver.time_budget was spent) or an explicit scheme blew up, which ends the run;
-4 --time-limit came first; 130 interrupted by ctrl-C, 143 by kill: everything up to the last whole step is written.)");
+solver.time_budget ended it) or an explicit scheme blew up, which ends the run;
+4 time limit; 130 interrupted by Ctrl-C, 143 by kill: all complete steps are written.)");
   command->add_option("INPUT", arguments->input, "Scene (.toml), mesh, or with --resume a run directory")->required();
   command->add_option("--set", arguments->overrides, "Override values: material.young=2e5; several may follow")
       ->allow_extra_args(false);
-  command->add_option("--threads", arguments->threads, "Threads; all cores by default; the result is the same")
+  command->add_option("--threads", arguments->threads, "Threads; all cores by default; results do not depend on it")
       ->check(CLI::Range(1, 1024));
   command->add_option("--steps", arguments->steps, "Stop after this many steps of the run")
       ->check(CLI::Range(1, 1000000000));
   command
       ->add_option("--time-limit", arguments->time_limit,
-                   "Stop after this wall time [s], dropping the step in progress; --resume continues")
+                   "Stop after this wall time [s] and discard the step in progress; --resume continues")
       ->check(CLI::Range(1e-3, 1e9));
-  command->add_option("--out", arguments->out, "Directory of the results; out/NAME by default");
+  command->add_option("--out", arguments->out, "Directory for the results; out/NAME by default");
   command->add_flag("--force", arguments->force, "Replace the results of an earlier run");
   command->add_flag("--resume", arguments->resume, "Continue the run in the directory")->excludes("--force");
   command->add_flag("--trace", arguments->trace,
-                    "Write what every iteration did, trial by trial, into DIRECTORY/trace; changes no result");
+                    "Write every trial of every iteration to DIRECTORY/trace; changes no result");
   command
       ->add_option("--landscape", arguments->landscapes,
-                   "STEP or STEP:ITERATION: with the trace, E along that iteration's direction and over a plane "
+                   "STEP or STEP:ITERATION: with the trace, E along the direction of that iteration and over a plane "
                    "through it; can be repeated")
       ->allow_extra_args(false);
-  command->add_flag("--quiet", arguments->quiet, "Only warnings and errors");
-  command->add_flag("--json", arguments->json, "One line of JSON per step on stdout, all else on stderr");
-  command->add_flag("--allow-unconverged", arguments->allow_unconverged,
-                    "Exit code 0 even when a step did not converge");
+  command->add_flag("--quiet", arguments->quiet, "Print only warnings and errors");
+  command->add_flag("--json", arguments->json, "Print one line of JSON per step on stdout, all else on stderr");
+  command->add_flag("--allow-unconverged", arguments->allow_unconverged, "Exit with 0 even if a step did not converge");
   command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }
 

@@ -1,4 +1,4 @@
-// The report that a run leaves in its directory.
+// Report of a run in its directory.
 #pragma once
 #include <cstdio>
 #include <filesystem>

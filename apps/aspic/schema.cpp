@@ -1,4 +1,4 @@
-// `aspic schema`: the keys of scenes as JSON Schema.
+// `aspic schema`: prints the keys of scenes as JSON Schema.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -9,13 +9,12 @@
 namespace aspic::cli {
 
 void add_schema(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("schema", "Prints the JSON Schema of scenes, with which editors complete them");
+  CLI::App* command = app.add_subcommand("schema", "Prints the JSON Schema of scenes, for completion in editors");
   command->footer(R"(
 Examples:
   aspic schema > aspic.schema.json
 
-With '#:schema ./aspic.schema.json' as its first line a scene is completed and checked while it is written, in every
+If a scene begins with the line '#:schema ./aspic.schema.json', it is completed and checked in every
 editor that uses Taplo, such as VS Code with the extension Even Better TOML.)");
   command->callback([&action] {
     action = [] {

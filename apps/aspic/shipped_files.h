@@ -1,11 +1,11 @@
-// Files that come with the program.
+// Files that are shipped with the program.
 #pragma once
 #include <filesystem>
 
 namespace aspic::cli {
 
-// `name` below the current folder, the program's folder, or one above these, or in the share folder of an installation
-// there; empty where there is none.
+// Searches `name` below the current folder, the program's folder, their parent folders, and the share folder of an
+// installation. Returns an empty path if not found.
 std::filesystem::path shipped_file(const std::filesystem::path& name);
 
 }  // namespace aspic::cli

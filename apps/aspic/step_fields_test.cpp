@@ -1,4 +1,4 @@
-// A field of step reports is described once and appears in every output.
+// A field of step reports is defined once and appears in every output.
 #include "dynamics/step_fields.h"
 
 #include <gmock/gmock.h>
@@ -32,7 +32,7 @@ shape = { box = { upper = [1, 1, 1], cells = [1, 1, 1] } }
 material = { model = "neo_hookean", young = 1e5, poisson = 0.4, density = 1000 }
 )";
 
-// Stands for a new member of StepReport; the table holds 10 times the number of the step.
+// Represents a new member of StepReport; its value is 10 times the step number.
 double last_read = 0;
 StepField new_field() {
   return {.name = "new_number",
@@ -48,7 +48,7 @@ StepField new_field() {
 class StepFields : public FolderTest {
  protected:
   void SetUp() override { put(path("cube.toml"), kScene); }
-  // Returns the line of JSON of the last step.
+  // Returns the JSON line of the last step.
   std::string run() {
     Scene scene = load_scene(path("cube.toml"));
     RunDirectory directory = RunDirectory::create(path("run"), scene, ExistingRun::overwrite);

@@ -6,7 +6,7 @@
 
 namespace aspic::cli {
 
-// One line of JSON; numbers that are not finite are null.
+// Returns one line of JSON; numbers that are not finite are null.
 std::string step_json(const StepReport& report, const Explanation& why, const Simulation& simulation);
 
 }  // namespace aspic::cli

@@ -35,7 +35,7 @@ bool write_all(int descriptor, const char* bytes, size_t size) {
   return true;
 }
 
-// Reports success in any case: the C library would keep what it could not write and fail again and again.
+// Always reports success, because the C library would buffer the data and fail repeatedly.
 ssize_t write_or_note(void* cookie, const char* bytes, size_t size) {
   Stream& stream = *static_cast<Stream*>(cookie);
   if (stream.error == 0 && !write_all(stream.descriptor, bytes, size)) stream.error = errno;
@@ -49,7 +49,7 @@ std::FILE* guarded(Stream& stream, int buffering) {
   return file;
 }
 
-// Writing to a reserved descriptor fails as writing to a closed one does.
+// Writing to a reserved descriptor fails like writing to a closed one.
 void reserve_closed_descriptors() {
   for (int i = STDIN_FILENO; i <= STDERR_FILENO; ++i) {
     if (::fcntl(i, F_GETFD) >= 0 || errno != EBADF) continue;

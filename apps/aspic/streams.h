@@ -1,18 +1,18 @@
-// Standard streams on which printing never fails: a full disk, a closed descriptor or a reader that has gone ends no
-// computation. What was lost is known at the end.
+// Standard streams on which printing never fails: a full disk, a closed descriptor or a closed pipe ends no
+// computation. Losses are reported at the end.
 #pragma once
 #include <cstdio>
 #include <string>
 
 namespace aspic::cli {
 
-// Replaces stdout and stderr. Reserves descriptors 0, 1 and 2 where they are closed, so that no file of results gets
-// one of these numbers. To be called once, before anything is printed.
+// Replaces stdout and stderr. Reserves descriptors 0, 1 and 2 if they are closed, so that no result file gets one of
+// these numbers. Call once, before anything is printed.
 void guard_standard_streams();
 
-int descriptor(std::FILE* stream);  // of stdout or stderr
+int descriptor(std::FILE* stream);  // descriptor of stdout or stderr
 
-// Why something printed to standard output was lost; empty when all of it arrived.
+// Returns why output to stdout was lost; empty if all was written.
 std::string lost_output();
 
 }  // namespace aspic::cli

@@ -33,9 +33,9 @@ double peak_megabytes() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-// Files of a folder with the extension, in the order of their names.
+// Returns the files of a folder with the extension, sorted by name.
 std::set<std::filesystem::path> files(const std::filesystem::path& folder, const std::string& extension) {
-  std::error_code error;  // a folder that was not written holds no files
+  std::error_code error;  // error if the folder does not exist
   std::set<std::filesystem::path> found;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
     if (entry.path().extension() == extension) found.insert(entry.path());
@@ -56,7 +56,7 @@ void print_results(std::FILE* stream, const std::filesystem::path& directory) {
   }
 }
 
-// Larger is worse: no success before a budget before a success, then by how far the residual missed its threshold.
+// Larger is worse: failures before budgets before successes, then the residual over its threshold.
 std::pair<int, double> badness(const StepReport& report) {
   const int kind = is_success(report.status) ? 0 : report.status == Status::budget ? 1 : 2;
   return {kind, report.residual_threshold > 0 ? report.residual / report.residual_threshold : report.residual};
@@ -70,7 +70,7 @@ std::string status_text(const RunTotals& totals) {
   return text;
 }
 
-// A loss below this part of the energies is round-off.
+// Smaller relative losses are round-off.
 constexpr double kRoundOff = 1e-9;
 
 double largest_energy(const StepReport& report) {
@@ -83,13 +83,13 @@ void print_certificate(std::FILE* stream, const RunTotals& totals) {
   const StepReport& worst = *totals.worst;
   fmt::print(stream, "status     {}; worst: step {}, {}, residual {:.3g} N", status_text(totals), worst.step,
              to_string(worst.status), worst.residual);
-  if (worst.residual_threshold > 0) fmt::print(stream, " (wanted {:.3g} N)", worst.residual_threshold);
+  if (worst.residual_threshold > 0) fmt::print(stream, " (tolerance {:.3g} N)", worst.residual_threshold);
   fmt::print(stream, "\n");
   if (totals.bounds_held + totals.bounds_broken > 0)
-    fmt::print(stream, "energy     the bound of backward Euler held in {} of {} steps that have it\n",
+    fmt::print(stream, "energy     the bound of backward Euler holds in {} of {} steps that have it\n",
                totals.bounds_held, totals.bounds_held + totals.bounds_broken);
   if (totals.grew > 0)
-    fmt::print(stream, "           kinetic + potential grew by more than forces worked in {}, at most by {:.3g} J\n",
+    fmt::print(stream, "           kinetic + potential grew by more than the work in {}, at most by {:.3g} J\n",
                totals.grew, totals.most_grown);
 }
 
@@ -171,7 +171,7 @@ InvertedTets inverted_tets(const Simulation& simulation) {
 
 void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end) {
   if (totals.steps == 0 && !end.interrupted && end.time_limit == 0) {
-    fmt::print(stream, "nothing to do: step {} is taken already\n", end.steps_taken);
+    fmt::print(stream, "nothing to do: step {} is already complete\n", end.steps_taken);
   } else {
     fmt::print(stream, "{}  {} of {} steps, to t = {:g} s\n",
                end.interrupted || end.blown_up || end.time_limit > 0 ? "stopped  " : "done     ", end.steps_taken,
@@ -179,7 +179,7 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
     if (end.time_limit > 0) fmt::print(stream, "limit      --time-limit of {:g} s\n", end.time_limit);
   }
   if (totals.steps > 0) {
-    fmt::print(stream, "converged  {} of {}; iterations per step: mean {:.1f}, most {}\n",
+    fmt::print(stream, "converged  {} of {}; iterations per step: mean {:.1f}, maximum {}\n",
                totals.steps - totals.unconverged - totals.out_of_time, totals.steps,
                static_cast<double>(totals.iterations) / totals.steps, totals.most_iterations);
     if (totals.out_of_time > 0)
@@ -198,9 +198,9 @@ void print_summary(std::FILE* stream, const RunTotals& totals, const RunEnd& end
     fmt::print(stream, "\n");
     if (!end.solver.empty()) fmt::print(stream, "solver     {}\n", end.solver);
     if (totals.substeps + totals.rejected != totals.steps)
-      fmt::print(stream, "parts      {} taken, {} rejected as too long; {:.1f} per step\n", totals.substeps,
-                 totals.rejected, static_cast<double>(totals.substeps) / totals.steps);
-    fmt::print(stream, "took       {} in steps, {} each; peak memory {:.0f} MB\n", duration_text(totals.seconds),
+      fmt::print(stream, "substeps   {} accepted, {} rejected; {:.1f} per step\n", totals.substeps, totals.rejected,
+                 static_cast<double>(totals.substeps) / totals.steps);
+    fmt::print(stream, "time       {} in steps, {} each; peak memory {:.0f} MB\n", duration_text(totals.seconds),
                step_duration_text(totals.seconds / totals.steps), peak_megabytes());
   }
   fmt::print(stream, "state      {} after step {}\n", hex_digits(end.state_hash), end.steps_taken);

@@ -1,4 +1,4 @@
-// What a run amounted to, and how to look at its results.
+// Summary of a run, and hints to view its results.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -15,41 +15,41 @@ namespace aspic::cli {
 
 struct RunTotals {
   int steps = 0, unconverged = 0;
-  int out_of_time = 0;  // ended by solver.time_budget, which was asked for: not among the unconverged
+  int out_of_time = 0;  // ended by solver.time_budget as requested; not counted as unconverged
   std::array<int, kStatusCount> by_status = {};
-  int bounds_held = 0, bounds_broken = 0;  // of energy, where backward Euler guarantees one
-  int grew = 0;           // steps of those in which kinetic + potential energy grew by more than forces worked
-  double most_grown = 0;  // [J]
-  std::optional<StepReport> worst;  // least of a success, then furthest from its threshold
+  int bounds_held = 0, bounds_broken = 0;  // energy bounds, where backward Euler guarantees one
+  int grew = 0;                     // those of them in which kinetic + potential grew by more than the work of forces
+  double most_grown = 0;            // [J]
+  std::optional<StepReport> worst;  // least successful, then largest residual over threshold
   long iterations = 0;
   long values = 0, gradients = 0, hessians = 0, factorizations = 0, products = 0, cycles = 0;
   int most_iterations = 0;
-  long substeps = 0, rejected = 0;                 // of adaptive steps
-  double seconds = 0;                              // in steps
-  double time = 0;                                 // of the last step [s]
-  int with_inverted_tets = 0, first_inverted = 0;  // steps that end with an inverted tet, and the first of them
-  double least_det_F = 1;                          // of all tets at the ends of steps
-  std::vector<Resultant> reactions;                // of the last step, of each pin
+  long substeps = 0, rejected = 0;                 // substeps of adaptive steps
+  double seconds = 0;                              // total of the steps
+  double time = 0;                                 // end of the last step [s]
+  int with_inverted_tets = 0, first_inverted = 0;  // steps that end with an inverted tet: number, first
+  double least_det_F = 1;                          // over all tets at the ends of steps
+  std::vector<Resultant> reactions;                // of each pin in the last step
 
   void add(const StepReport& report);
 };
 
 struct InvertedTets {
-  int count = 0;         // of those with det F <= 0
+  int count = 0;         // number of tets with det F <= 0
   double least_det = 1;  // smallest det F of all tets
-  std::string worst;     // which tet has it, and where: "tet 12 at (0, 0.1, 0.2) m"
+  std::string worst;     // tet with this value, and its position: "tet 12 at (0, 0.1, 0.2) m"
 };
 InvertedTets inverted_tets(const Simulation& simulation);
 
 struct RunEnd {
   int last_step = 0, steps_taken = 0;
   bool interrupted = false;
-  double time_limit = 0;  // that ended the run [s]; 0: it did not
+  double time_limit = 0;  // limit that ended the run [s]; 0: none
   bool blown_up = false;
-  std::string solver;             // the methods and what they chose, and why; empty: none was needed
-  InvertedTets inverted;          // of the last state
-  std::uint64_t state_hash = 0;   // of the last state
-  std::vector<std::string> pins;  // the names of RunTotals::reactions
+  std::string solver;             // methods, their choices and the reasons; empty: no solver
+  InvertedTets inverted;          // in the last state
+  std::uint64_t state_hash = 0;   // hash of the last state
+  std::vector<std::string> pins;  // names of RunTotals::reactions
   std::filesystem::path directory;
 };
 

@@ -1,4 +1,4 @@
-// `aspic verify`: problems whose answers are known.
+// `aspic verify`: solves problems with known answers.
 #include "aspic/verify.h"
 #include "aspic/method_text.h"
 
@@ -29,7 +29,7 @@ struct VerifyArguments {
   int threads = 0;
 };
 
-// A word that is the whole name of a check means that one alone.
+// The full name of a check selects only that check.
 bool is_meant(const verify::Check& check, const std::string& word) {
   const auto& all = verify::checks();
   if (std::any_of(all.begin(), all.end(), [&](const verify::Check& c) { return c.key() == word; }))
@@ -42,11 +42,11 @@ std::vector<const verify::Check*> chosen(const std::vector<std::string>& words) 
   for (const verify::Check& check : verify::checks())
     if (words.empty() || std::any_of(words.begin(), words.end(), [&](const auto& w) { return is_meant(check, w); }))
       found.push_back(&check);
-  if (found.empty()) throw InvalidInput(fmt::format("no check is about '{}'; --list shows them", words.front()));
+  if (found.empty()) throw InvalidInput(fmt::format("no check matches '{}'; see --list", words.front()));
   return found;
 }
 
-// A material may stand for a material, an integrator for an integrator.
+// Replaces a material by a material, or an integrator by an integrator.
 void add_replacement(const std::string& text, verify::Subject& subject) {
   const size_t at = text.find('=');
   const std::string name = text.substr(0, at), other = at == std::string::npos ? "" : text.substr(at + 1);
@@ -99,28 +99,27 @@ int verify_all(const std::vector<const verify::Check*>& checks, const verify::Su
 
 void add_verify(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<VerifyArguments>();
-  CLI::App* command = app.add_subcommand("verify", "Problems whose answers are known, each judged by numbers");
+  CLI::App* command = app.add_subcommand("verify", "Solves problems with known answers and checks the errors");
   command->footer(R"(
 Examples:
-  aspic verify                                everything: some minutes; out/verify/index.html shows it
+  aspic verify                                all checks: minutes; results in out/verify/index.html
   aspic verify --quick                        fewer and coarser cases: seconds
-  aspic verify --list                         what there is
-  aspic verify --only orders --only cook      checks whose name or title holds one of these words
-  aspic verify --quick --instead bdf2=backward_euler   see it fail
+  aspic verify --list                         the checks
+  aspic verify --only orders --only cook      checks with one of these words in name or title
+  aspic verify --quick --instead bdf2=backward_euler   fails
 
-Exit codes: 0 every row passes, 2 bad input, 3 a row fails; one that could not be computed fails.)");
+Exit codes: 0 all rows pass, 2 bad input, 3 a row fails or cannot be computed.)");
   command
       ->add_option("--only", arguments->only,
-                   "Checks whose name or title holds this word, or the check of this name; may be repeated")
+                   "Check of this name, or checks with this word in name or title; can be repeated")
       ->type_name("WORD");
-  command->add_flag("--list", arguments->list, "List the checks and run nothing");
-  command->add_flag("--quick", arguments->quick, "Fewer and coarser cases: seconds in place of minutes");
+  command->add_flag("--list", arguments->list, "List the checks without running them");
+  command->add_flag("--quick", arguments->quick, "Run fewer and coarser cases: seconds instead of minutes");
   command
-      ->add_option("--instead", arguments->instead,
-                   "Use another material or integrator in place of a named one: what must fail then, fails")
+      ->add_option("--instead", arguments->instead, "Replace a material or integrator by another, to see checks fail")
       ->type_name("NAME=OTHER");
-  command->add_option("--out", arguments->out, "Folder of the page and the JSON file")->capture_default_str();
-  command->add_option("--threads", arguments->threads, "Threads; all cores by default; the result is the same")
+  command->add_option("--out", arguments->out, "Folder for the page and the JSON file")->capture_default_str();
+  command->add_option("--threads", arguments->threads, "Threads; all cores by default; results do not depend on it")
       ->check(CLI::Range(1, 1024));
   command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }

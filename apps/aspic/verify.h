@@ -1,4 +1,4 @@
-// Runs checks of the library `verify`: a table on the terminal, a page, and JSON.
+// Runs checks of the library `verify` and writes a table, a page and JSON.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -14,12 +14,12 @@ struct Verification {
   double seconds = 0;
 };
 
-// index.html with the plots inside, and verify.json. Says on stderr when there can be no plots.
+// Writes index.html with embedded plots, and verify.json. Prints to stderr if plots are not possible.
 void write_verification(const std::filesystem::path& folder, const std::vector<Verification>& results,
                         const std::string& how);
 std::string count_text(const std::vector<Verification>& results);  // "12 checks, 120 rows: all pass"
 
-// Prints, writes into `folder` and returns the exit code: 0 when all rows pass, 3 otherwise.
+// Prints results, writes them to `folder` and returns the exit code: 0 if all rows pass, 3 otherwise.
 int verify_all(const std::vector<const verify::Check*>& checks, const verify::Subject& subject,
                const std::filesystem::path& folder);
 

@@ -1,4 +1,4 @@
-// The findings of checks as a page and as JSON.
+// Results of checks as a page and as JSON.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -40,7 +40,7 @@ Chart chart_of(const verify::Plot& plot) {
   return chart;
 }
 
-// JSON has no NaN: what could not be computed is null.
+// Values that could not be computed are null, because JSON has no NaN.
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 Json to_json(const Verification& result) {
@@ -87,7 +87,7 @@ void add_judged(ReportPage& page, const Verification& result, const std::vector<
   page.paragraph(sources_text(*result.check));
   page.code("aspic verify --only " + result.check->key());
   std::vector<std::vector<Cell>> rows;
-  std::string reason;  // stands once for the rows that share it
+  std::string reason;  // printed once for consecutive rows with the same reason
   for (const verify::Row& row : result.findings.rows) {
     rows.push_back({verdict_cell(row.passes()),
                     {row.quantity},
@@ -97,7 +97,7 @@ void add_judged(ReportPage& page, const Verification& result, const std::vector<
                     {row.reason == reason ? "" : row.reason}});
     reason = row.reason;
   }
-  page.table({"", "quantity", "measured", "reference", "tolerance", "why this tolerance"}, rows);
+  page.table({"", "quantity", "measured", "reference", "tolerance", "reason of the tolerance"}, rows);
   if (!figures.empty()) page.figures(figures);
 }
 

@@ -30,7 +30,7 @@ std::string tolerance_text(const verify::Row& row) {
   return fmt::format("{} {:.2g}{}{}", "+-", row.tolerance, row.unit.empty() ? "" : " ", row.unit);
 }
 
-// The reason stands above the rows that it holds for.
+// Prints the reason above the rows that share it.
 void print_rows(const Verification& result) {
   size_t width = 0;
   for (const verify::Row& row : result.findings.rows) width = std::max(width, row.quantity.size());
@@ -46,7 +46,7 @@ void print_rows(const Verification& result) {
 }
 
 std::string how_text(const verify::Subject& subject, bool all, double seconds) {
-  std::string text = all ? "All checks" : "A choice of the checks";
+  std::string text = all ? "All checks" : "Selected checks";
   text += subject.quick ? ", the coarse cases (--quick)" : "";
   for (const auto& [name, other] : subject.instead) text += fmt::format(", {} in place of {}", other, name);
   return text + fmt::format(", in {}.", duration_text(seconds));

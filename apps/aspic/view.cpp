@@ -1,4 +1,4 @@
-// `aspic view`: a session in the browser.
+// `aspic view`: interactive session in the browser.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -35,9 +35,9 @@ struct ViewArguments {
   bool no_browser = false, play = false;
 };
 
-constexpr size_t kLargestRun = size_t{200} << 20;  // as a page [bytes]; frames of a larger one are left out
+constexpr size_t kLargestRun = size_t{200} << 20;  // size limit of the page [bytes]; larger runs omit frames
 constexpr std::chrono::milliseconds kSignalPeriod(20);
-constexpr std::chrono::seconds kPatience(2);  // with a step under way, at the end
+constexpr std::chrono::seconds kPatience(2);  // wait for a step in progress at the end
 
 void print_scene(const Session& session) {
   for (const viewer::Message& message : session.greeting(Role::watches)) {
@@ -53,13 +53,13 @@ void print_scene(const Session& session) {
 void print_address(const Server& server, bool no_browser) {
   fmt::print("{}\n", server.address());
   const bool is_opened = !no_browser && open_browser(server.address());
-  fmt::print("{}; ctrl-C ends it\n", is_opened ? "opened in your browser" : "open this address in a browser");
+  fmt::print("{}; Ctrl-C ends it\n", is_opened ? "opened in your browser" : "open this address in a browser");
   std::fflush(stdout);
 }
 
 void log_line(const std::string& line) { fmt::print(stderr, "{}\n", line); }
 
-// Nothing needs to be kept, so a step that does not end is left behind.
+// Nothing needs to be stored, so an unfinished step is abandoned.
 int serve_until_interrupted(Server& server) {
   while (!interrupt_signal()) {
     server.check();
@@ -74,7 +74,7 @@ int serve_until_interrupted(Server& server) {
 
 int view_run(const ViewArguments& arguments) {
   if (!arguments.overrides.empty() || arguments.play)
-    throw InvalidInput("--set and --play are for what is simulated; a run has been already");
+    throw InvalidInput("--set and --play need a scene; a run has already been simulated");
   const viewer::Report report =
       viewer::make_report(arguments.input, load_scene(scene_of_run(arguments.input)), {.max_bytes = kLargestRun});
   if (!report.note.empty()) fmt::print("note: {}\n", report.note);
@@ -121,24 +121,24 @@ int view(const ViewArguments& arguments) {
 
 void add_view(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<ViewArguments>();
-  CLI::App* command = app.add_subcommand("view", "Shows a scene in the browser, live: to be seen, touched and changed");
+  CLI::App* command = app.add_subcommand("view", "Shows a scene in the browser, live and interactive");
   command->footer(R"(
 Examples:
-  aspic view scenes/bunny.toml                    prints an address, and opens it where there is a display
-  aspic view bunny.obj --play                     a closed surface, filled with tets; starts at once
-  aspic view beam.toml --set material.young=2e5   with other values; the page changes them live, too
-  aspic view out/bunny                            a run that is done, as it was recorded
-  aspic view beam.toml --port 8080 --no-browser   on another machine; on yours: ssh -L 8080:127.0.0.1:8080 THERE
+  aspic view scenes/bunny.toml                    print an address, and open it if there is a display
+  aspic view bunny.obj --play                     a closed surface, filled with tets; starts immediately
+  aspic view beam.toml --set material.young=2e5   with other values; the page can change them live
+  aspic view out/bunny                            a finished run, as recorded
+  aspic view beam.toml --port 8080 --no-browser   on another machine; locally: ssh -L 8080:127.0.0.1:8080 HOST
 
-The address works on this machine only, with the token in it. Several pages may watch, one steers. Ctrl-C ends it, with exit code 0.)");
+The address works on this machine only and contains a token. Several pages can watch, one controls. Ctrl-C exits with 0.)");
   command->add_option("INPUT", arguments->input, "Scene (.toml), mesh, or directory of a run")->required();
   command->add_option("--set", arguments->overrides, "Override values: material.young=2e5; several may follow")
       ->allow_extra_args(false);
-  command->add_option("--port", arguments->port, "Port to listen at; any free one by default")
+  command->add_option("--port", arguments->port, "Port to listen on; any free port by default")
       ->check(CLI::Range(1, 65535));
   command->add_flag("--no-browser", arguments->no_browser, "Only print the address");
-  command->add_flag("--play", arguments->play, "Start the simulation at once");
-  command->add_option("--threads", arguments->threads, "Threads; all cores by default; the result is the same")
+  command->add_flag("--play", arguments->play, "Start the simulation immediately");
+  command->add_option("--threads", arguments->threads, "Threads; all cores by default; results do not depend on it")
       ->check(CLI::Range(1, 1024));
   command->callback([arguments, &action] { action = [arguments] { return view(*arguments); }; });
 }

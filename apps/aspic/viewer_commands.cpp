@@ -1,4 +1,4 @@
-// The commands that need the viewer.
+// Commands that need the viewer.
 #include "aspic/commands.h"
 
 namespace aspic::cli {

@@ -14,7 +14,7 @@ namespace aspic::cli {
 
 void add_viewer_commands(CLI::App& app, Action& action) {
   for (const char* name : {"view", "report", "render"}) {
-    CLI::App* command = app.add_subcommand(name, "")->group("")->allow_extras();  // not in the list of commands
+    CLI::App* command = app.add_subcommand(name, "")->group("")->allow_extras();  // hidden in the list of commands
     command->callback([name, &action] {
       action = [name]() -> int {
         throw InvalidInput(fmt::format(

@@ -46,7 +46,7 @@ Box box_of(const TriMesh& mesh) {
   return box;
 }
 
-// For each shell those that contain it.
+// For each shell, the shells that contain it.
 std::vector<std::vector<int>> around(const std::vector<TriMesh>& shells) {
   std::vector<Box> boxes;
   for (const TriMesh& shell : shells) boxes.push_back(box_of(shell));

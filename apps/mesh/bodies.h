@@ -1,4 +1,4 @@
-// The solid bodies that a closed surface bounds.
+// Splits a closed surface into the solid bodies that it bounds.
 #pragma once
 #include <vector>
 
@@ -6,11 +6,11 @@
 
 namespace aspic {
 
-// One outer shell and the shells of its cavities, facing out of the material. Sheets of the surface that lie in a
-// cavity are bodies of their own. In the order of the outer shells.
+// Returns one outer shell per body with the shells of its cavities, oriented outward from the material. Sheets inside a
+// cavity are separate bodies. The order is that of the outer shells.
 std::vector<TriMesh> bodies(const TriMesh& surface);
 
-// Parts that hang together through shared edges.
+// Number of parts that are connected through shared edges.
 int edge_connected_parts(const std::vector<Triangle>& triangles);
 
 }  // namespace aspic

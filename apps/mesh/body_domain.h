@@ -10,13 +10,13 @@ namespace aspic {
 struct BodyDomain {
   const TriMesh& surface;
   const LocalSize& size;
-  std::vector<std::vector<Vec3d>> sharp;  // chains of points that stay edges
+  std::vector<std::vector<Vec3d>> sharp;  // chains of points whose edges are preserved
   std::vector<Vec3d> seeds;               // points of the surface from which refinement starts
   size_t most_vertices = 0;               // at which refinement stops
-  bool has_blade = false;                 // slivers are its shape: they are not optimized, which would take minutes
+  bool has_blade = false;                 // a body with a blade has slivers; optimizing them would take minutes
 };
 
-// Returns no tets when none fits.
+// Returns no tets if none fits.
 TetMesh fill_body(const BodyDomain& body);
 
 }  // namespace aspic

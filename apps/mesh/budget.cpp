@@ -37,7 +37,7 @@ void limit_time(double seconds, const std::string& message) {
   ::setitimer(ITIMER_REAL, &timer, nullptr);
 }
 
-// The handler has a stack of its own, since a fault may be the end of the other one.
+// The handler has its own stack, because a fault may be the overflow of the other one.
 void end_faults(int exit_code, const std::string& message) {
   static std::array<char, 1 << 16> handler_stack;
   fault = {message, exit_code};

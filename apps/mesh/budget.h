@@ -1,4 +1,4 @@
-// Bounds of the time and the memory of this process.
+// Limits of time and memory for this process.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -7,11 +7,11 @@ namespace aspic {
 
 inline constexpr int kOutOfTime = 4;  // exit code
 
-// After this many seconds of wall time the process prints `message` to stderr and ends with kOutOfTime. A second call
+// After this many seconds of wall time the process prints `message` to stderr and exits with kOutOfTime. A second call
 // replaces the first.
 void limit_time(double seconds, const std::string& message);
 
-// When the process faults, by a signal as SIGSEGV, it prints `message` to stderr and ends with this exit code.
+// If a fault signal such as SIGSEGV occurs, the process prints `message` to stderr and exits with this code.
 void end_faults(int exit_code, const std::string& message);
 
 // Allocations beyond this many bytes throw std::bad_alloc.

@@ -14,17 +14,17 @@ namespace aspic {
 namespace {
 
 constexpr double kVolume = 0.1;    // largest relative error
-constexpr double kMissed = 0.005;  // largest part of the surface
+constexpr double kMissed = 0.005;  // largest fraction of the surface
 
 constexpr double kSearched = 8;  // times the allowed distance
 
-// Visits a few thousand points of the surface with the area that each stands for.
+// Visits a few thousand points of the surface with the areas that they represent.
 template <class Visit>
 void sample(const TriMesh& mesh, Visit visit) {
   constexpr double kPoints = 4000;
   double whole = 0;
   for (int t = 0; t < mesh.triangle_count(); ++t) whole += area(mesh, t);
-  double due = 0.5;  // samples that the triangles so far are still owed
+  double due = 0.5;  // samples still to be placed on the triangles so far
   for (int t = 0; t < mesh.triangle_count(); ++t) {
     const double part = area(mesh, t);
     const auto& [a, b, c] = mesh.triangles[t];
@@ -72,10 +72,10 @@ Fidelity fidelity(const TriMesh& body, const TetMesh& tets, double allowed) {
 std::string mismatch(const Fidelity& f, double allowed, double unit) {
   char text[300] = "";
   if (!(std::abs(f.filled - f.volume) <= kVolume * f.volume))
-    std::snprintf(text, sizeof text, "the tets hold %.3g %% of the volume that the surface encloses",
+    std::snprintf(text, sizeof text, "the tets fill %.3g %% of the volume inside the surface",
                   100 * f.filled / f.volume);
   else if (f.filled_parts > f.parts)
-    std::snprintf(text, sizeof text, "the tets fall into %d parts where the surface has %d", f.filled_parts, f.parts);
+    std::snprintf(text, sizeof text, "the tets form %d parts but the surface has %d", f.filled_parts, f.parts);
   else if (f.missed > kMissed)
     std::snprintf(text, sizeof text, "%.2g %% of the surface is farther than %.3g from the tets", 100 * f.missed,
                   allowed * unit);

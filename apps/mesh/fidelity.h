@@ -1,4 +1,4 @@
-// How well tets fill the surface that they were made from.
+// Agreement of tets with the surface that they fill.
 #pragma once
 #include <string>
 
@@ -7,16 +7,16 @@
 namespace aspic {
 
 struct Fidelity {
-  double volume = 0, filled = 0;    // enclosed by the surface, and of the tets
-  double distance = 0;              // largest from a sampled point of either surface to the other
-  double missed = 0;                // part of the surface that is farther from the tets than `allowed`
-  int parts = 1, filled_parts = 1;  // that hang together
+  double volume = 0, filled = 0;    // volume enclosed by the surface, and volume of the tets
+  double distance = 0;              // largest distance from a sampled point of either surface to the other
+  double missed = 0;                // fraction of the surface that is farther from the tets than `allowed`
+  int parts = 1, filled_parts = 1;  // connected parts
 };
 
-// Distances are searched up to a few times `allowed`.
+// Searches distances up to a few times `allowed`.
 Fidelity fidelity(const TriMesh& body, const TetMesh& tets, double allowed);
 
-// Why the tets are not the body; empty when they are. `unit` is the length of 1.
+// Returns why the tets do not represent the body; empty if they do. `unit` is the length of 1.
 std::string mismatch(const Fidelity& fidelity, double allowed, double unit);
 
 }  // namespace aspic

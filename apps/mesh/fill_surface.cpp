@@ -1,4 +1,4 @@
-// From a closed surface to tets: body by body, in a frame of unit size, judged against the surface.
+// Fills a closed surface with tets, body by body in a frame of unit size, and compares the result with the surface.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -24,7 +24,7 @@ std::string digits(double value) {
   return text;
 }
 
-// A body as it is refined, with the rule of its edge lengths.
+// A body to refine, with its rule of edge lengths.
 struct Plan {
   Stretch stretch;
   TriMesh surface;  // stretched
@@ -35,7 +35,7 @@ struct Plan {
   double thickness() const { return thin.thickness / stretch.factor; }
 };
 
-// Points of the samples, far enough from each other to leave the refinement its freedom.
+// Selects samples that are far enough apart to leave the refinement free.
 std::vector<Vec3d> seeds(const std::vector<SurfaceSample>& samples) {
   constexpr size_t kSeeds = 200;
   std::vector<Vec3d> seeds;
@@ -65,7 +65,7 @@ class SurfaceFiller {
     for (size_t b = 0; b < bodies_.size(); ++b) append(filled(static_cast<int>(b)), result_.tets);
     from_frame(frame_, result_.tets.rest);
     if (least_ < 0.9 * size_)
-      result_.notes.push_back("edges are as short as " + length(least_) + " where the shape is thin, elsewhere " +
+      result_.notes.push_back("edges are as short as " + length(least_) + " where the shape is thin, and otherwise " +
                               length(size_));
     return std::move(result_);
   }
@@ -90,13 +90,13 @@ class SurfaceFiller {
                        ", or allow more than " + digits(options_.most_tets) + " tets with --max-tets");
   }
 
-  // Returns why the tets are not the body; nothing when they are.
+  // Returns why the tets do not represent the body; empty if they do.
   std::string attempt(int body, const Plan& plan, double factor, TetMesh& mesh) {
     if (!plan.thin.problem.empty()) return plan.thin.problem;
     SizeRule rule = plan.thin.rule;
     rule.size *= factor, rule.smallest *= factor, rule.tets_across /= factor;
     const double tets = predicted_tets(plan.samples, plan.volume, rule), allowed = 0.7 * size_;
-    if (factor < 1 && tets > options_.most_tets) return "it takes too many tets";
+    if (factor < 1 && tets > options_.most_tets) return "it needs too many tets";
     mesh = refined(plan, rule, tets);
     problem_ = mesh.tets.empty() ? "no tet fits into it"
                                  : mismatch(fidelity(bodies_[body], mesh, allowed), allowed, frame_.unit);
@@ -104,7 +104,7 @@ class SurfaceFiller {
     return problem_;
   }
 
-  // The plan with equal edges where that takes few enough tets; else, of a plate, the one that is stretched least.
+  // Returns the plan with equal edges if it needs few enough tets; otherwise, for a plate, the least stretched plan.
   Plan cheapest(int body) const {
     Plan plan = planned(body, {}, Sides::opposite);
     const std::string problem = plan.thin.problem;
@@ -115,7 +115,7 @@ class SurfaceFiller {
     }
     if (!plan.thin.problem.empty())
       throw InvalidInput(body_name(body) + ": it is " + length(plan.thickness()) + " thick, and " + problem +
-                         "; allow more with --max-tets, or thicken it");
+                         "; increase --max-tets, or thicken it");
     return plan;
   }
 
@@ -140,7 +140,7 @@ class SurfaceFiller {
                             (has_few ? digits(across) + " tets across instead of two" : "") +
                             (has_few && is_flat ? ", and " : "") +
                             (is_flat ? "tets are " + digits(plan.stretch.factor) + " times as wide as thick" : "") +
-                            ", since more than " + digits(options_.most_tets) + " are not allowed (--max-tets)");
+                            ", because more than " + digits(options_.most_tets) + " are not allowed (--max-tets)");
   }
 
   TetMesh refined(const Plan& plan, const SizeRule& rule, double predicted) {
@@ -160,7 +160,7 @@ class SurfaceFiller {
   const MesherOptions& options_;
   double size_ = 0;
   double least_ = Box::kInfinity, least_size_ = 0;  // edge lengths in the frame
-  std::string problem_;                             // of the last mesh
+  std::string problem_;                             // problem of the last mesh
   std::vector<TriMesh> bodies_;
   FilledSurface result_;
 };

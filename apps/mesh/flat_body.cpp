@@ -11,9 +11,9 @@ void stretch(const Stretch& stretch, std::vector<Vec3d>& points) {
   for (Vec3d& x : points) x = x + ((stretch.factor - 1) * dot(stretch.axis, x)) * stretch.axis;
 }
 
-// The eigenvalues of sum area n n' are the parts of the area that face each of three directions.
+// The eigenvalues of sum area n n' are the areas that face each of three directions.
 std::optional<Vec3d> plate_normal(const TriMesh& body) {
-  constexpr double kFacing = 0.95;  // of the area
+  constexpr double kFacing = 0.95;  // fraction of the area
   std::array<double, 9> moment{};
   double whole = 0;
   for (int t = 0; t < body.triangle_count(); ++t) {

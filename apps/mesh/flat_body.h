@@ -1,4 +1,4 @@
-// Flat bodies are stretched along their normal, so that refinement with equal edges gives tets as flat as they are.
+// Flat bodies are stretched along their normal, so that refinement with equal edges gives correspondingly flat tets.
 #pragma once
 #include <optional>
 #include <vector>
@@ -8,13 +8,13 @@
 namespace aspic {
 
 struct Stretch {
-  Vec3d axis{};  // of unit length
+  Vec3d axis{};  // unit vector
   double factor = 1;
 };
 
 void stretch(const Stretch& stretch, std::vector<Vec3d>& points);
 
-// The normal of a body that is a plate: nearly all of its surface faces this direction or the opposite one.
+// Returns the normal of a plate: a body whose surface mostly faces one direction or the opposite one.
 std::optional<Vec3d> plate_normal(const TriMesh& body);
 
 }  // namespace aspic

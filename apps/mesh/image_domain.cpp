@@ -31,7 +31,7 @@ CGAL::Bbox_3 bounding_box(const CGAL::Image_3& image) {
           z + image.vz() * static_cast<double>(image.zdim() - 1)};
 }
 
-// The labels end at the border of the image; one voxel further out they are 0.
+// Labels exist up to the border of the image; one voxel beyond it they are 0.
 CGAL::Bbox_3 widened_by_voxel(const CGAL::Bbox_3& box, const CGAL::Image_3& image) {
   return {box.xmin() - image.vx(), box.ymin() - image.vy(), box.zmin() - image.vz(),
           box.xmax() + image.vx(), box.ymax() + image.vy(), box.zmax() + image.vz()};

@@ -35,10 +35,10 @@ Expression parsed(const std::string& text) {
 
 }  // namespace
 
-// A shape that reaches beyond the bounds is cut off there.
+// A shape that extends beyond the bounds is clipped.
 TetMesh mesh_implicit(const ImplicitShape& shape, const MesherOptions& options) {
   std::vector<Vec3d> corners = {shape.lower, shape.upper};
-  bounding_box(shape.lower, shape.upper);  // refuses empty ones
+  bounding_box(shape.lower, shape.upper);  // throws if empty
   const UnitFrame frame = unit_frame("--bounds", corners);
   to_frame(frame, corners);
   const CGAL::Bbox_3 bounds = bounding_box(corners[0], corners[1]);

@@ -28,7 +28,7 @@ std::string first_indices(const std::vector<int>& indices) {
   return indices.size() > kShown ? text + ", ..." : text;
 }
 
-// Holes that --fill-holes left open.
+// Remedy for holes that --fill-holes did not close.
 constexpr const char* kLargeHoles = "these holes are too large to fill; wrap the surface with --rebuild instead";
 
 void check(const std::filesystem::path& path, const TriMesh& mesh, Defects defects) {
@@ -51,7 +51,7 @@ void check_coordinates(const std::filesystem::path& path, const TriMesh& mesh) {
 
 }  // namespace
 
-// The doctor's products of lengths overflow or vanish in the units of some files; so it examines the frame.
+// The examination uses the unit frame, because products of lengths may overflow or underflow in the units of the file.
 CheckedSurface checked_surface(const std::filesystem::path& path, Defects defects) {
   CheckedSurface surface{read_tri_mesh(path), {}};
   surface.actions = repair(surface.mesh);
@@ -87,7 +87,7 @@ void check_output(const std::filesystem::path& path) {
     if (format.extension == lower(path.extension().string())) return;
     known.push_back(format.extension);
   }
-  throw InvalidInput("--output " + path.string() + ": no format with this extension holds tets" +
+  throw InvalidInput("--output " + path.string() + ": no format with this extension stores tets" +
                      suggestion(path.extension().string(), known));
 }
 
@@ -100,7 +100,8 @@ std::pair<int, double> parsed_region_size(const std::string& text) {
     const auto [last, size_error] = std::from_chars(equals + 1, end, size);
     if (size_error == std::errc() && last == end && std::isfinite(size) && size > 0) return {label, size};
   }
-  throw InvalidInput("--region-size " + text + ": write LABEL=SIZE with an integer and a positive length, as 2=0.5");
+  throw InvalidInput("--region-size " + text +
+                     ": write LABEL=SIZE with an integer and a positive length, such as 2=0.5");
 }
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// What must hold before the mesher is asked.
+// Checks of the input before meshing.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -10,21 +10,21 @@ namespace aspic {
 
 struct CheckedSurface {
   TriMesh mesh;
-  std::vector<std::string> actions;  // what was mended without being asked: one sentence each
+  std::vector<std::string> actions;  // automatic repairs, one sentence each
 };
 
 enum class Defects { refuse, fill_small_holes, rebuild };
 
-// A closed surface that does not run into itself; duplicate vertices, as in every STL file, are merged.
-// Throws InvalidInput naming triangles and remedy.
+// Reads a closed surface without self-intersections. Merges duplicate vertices, which every STL file has. Throws
+// InvalidInput with triangles and remedy.
 CheckedSurface checked_surface(const std::filesystem::path& path, Defects defects);
 
 bool is_image(const std::filesystem::path& path);
 
-// Throws InvalidInput when no format of that name holds tets: before the work rather than after it.
+// Throws InvalidInput if the extension has no format for tets, before any work is done.
 void check_output(const std::filesystem::path& path);
 
-// "LABEL=SIZE"
+// Parses "LABEL=SIZE".
 std::pair<int, double> parsed_region_size(const std::string& text);
 
 }  // namespace aspic

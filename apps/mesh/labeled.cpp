@@ -5,7 +5,7 @@
 namespace aspic {
 namespace {
 
-// The edge length of the region a point is in or, on a surface, of the finer of the two regions it separates.
+// Edge length of the region at a point; on a surface, of the finer of its two regions.
 class RegionSize {
  public:
   using Index = LabeledDomain::Index;
@@ -39,7 +39,7 @@ double smallest_size(const MesherOptions& options) {
 
 TetMesh mesh_labeled(const std::string& name, const LabeledDomain& domain, const LabelGrid& grid,
                      const MesherOptions& options) {
-  // Of tets of the smallest size in the whole box, there is one vertex for five.
+  // With tets of the smallest size in the whole box there is about one vertex per five tets.
   const double size = smallest_size(options), cells = grid.box_volume() / (0.11785 * size * size * size);
   const auto most_vertices = static_cast<size_t>(5e4 + std::min(cells, 1e9));
   bool is_complete = false;

@@ -1,4 +1,4 @@
-// Meshing of domains given by a label at each point, as images and implicit shapes are.
+// Meshing of domains with a label at each point: images and implicit shapes.
 #pragma once
 #include <CGAL/Labeled_mesh_domain_3.h>
 
@@ -13,11 +13,11 @@ namespace aspic {
 
 using LabeledDomain = CGAL::Labeled_mesh_domain_3<Kernel>;
 
-// Relative to the bounding box: how well intersections with the surface are located.
+// Accuracy of intersections with the surface, relative to the bounding box.
 inline constexpr double kSurfaceTolerance = 1e-5;
 
-// Labels at the centers of a grid of cells over the bounding box, the crossings between unlike neighbors, and from
-// them some points on the surface of every connected component that the grid can see.
+// Labels at the centers of a grid of cells over the bounding box, the crossings between neighbors of different labels,
+// and points on the surface of every connected component that the grid resolves.
 class LabelGrid {
  public:
   LabelGrid(const LabeledDomain& domain, const CGAL::Bbox_3& box, double spacing) : domain_(domain), box_(box) {
@@ -95,7 +95,7 @@ class LabelGrid {
   std::vector<int> labels_;
 };
 
-// Defined once, in labeled.cpp, for images and implicit shapes alike. `name`: what is filled, in messages.
+// Defined in labeled.cpp for images and implicit shapes. `name`: the object in messages.
 TetMesh mesh_labeled(const std::string& name, const LabeledDomain& domain, const LabelGrid& grid,
                      const MesherOptions& options);
 

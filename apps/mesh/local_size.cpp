@@ -9,17 +9,17 @@
 namespace aspic {
 namespace {
 
-constexpr double kGrowth = 0.4;          // of the edge length per distance
+constexpr double kGrowth = 0.4;          // growth of the edge length per distance
 constexpr double kRegularTet = 0.11785;  // volume / edge^3
-constexpr double kSmallestGap = 0.25;    // of the size; narrower slits may close
-constexpr double kLostArea = 0.01;       // part of the surface that may be thinner than the smallest edge length
+constexpr double kSmallestGap = 0.25;    // fraction of the size; narrower slits may close
+constexpr double kLostArea = 0.01;       // fraction of the surface that may be thinner than the smallest edge length
 
 double own_size(const SurfaceSample& sample, const SizeRule& rule) {
   const double wanted = std::min(sample.thickness / rule.tets_across, std::max(sample.gap, kSmallestGap * rule.size));
   return std::min(std::max(wanted, rule.smallest), rule.size);
 }
 
-// Between a ray and the normal of the side that it meets. Opposite sides are less than 30 degrees from parallel.
+// Cosine between a ray and the normal of the side that it meets. Opposite sides are less than 30 degrees from parallel.
 double least_cosine(Sides sides) { return sides == Sides::opposite ? 0.87 : 0; }
 
 double reach(const TriMesh& body, const TriangleTree& tree, const Vec3d& x, const Vec3d& ray, double cosine) {
@@ -40,7 +40,7 @@ int parts_per_edge(const TriMesh& body, int triangle, double spacing) {
   return static_cast<int>(std::clamp(std::ceil(std::sqrt(longest) / spacing), 1.0, kMost));
 }
 
-// The centroids of n^2 equal parts of a triangle.
+// Visits the centroids of n^2 equal parts of a triangle.
 template <class Visit>
 void for_each_part(const std::array<Vec3d, 3>& X, int n, Visit visit) {
   const auto at = [&](double i, double j) { return X[0] + (i / n) * (X[1] - X[0]) + (j / n) * (X[2] - X[0]); };
@@ -51,7 +51,7 @@ void for_each_part(const std::array<Vec3d, 3>& X, int n, Visit visit) {
     }
 }
 
-// Part of the surface that is thinner than `bound`.
+// Fraction of the surface that is thinner than `bound`.
 double thinner_area(const std::vector<SurfaceSample>& samples, double bound) {
   double thin = 0, all = 0;
   for (const SurfaceSample& sample : samples) {
@@ -61,7 +61,7 @@ double thinner_area(const std::vector<SurfaceSample>& samples, double bound) {
   return thin / all;
 }
 
-// The thickness that only `part` of the surface falls below.
+// Thickness such that `part` of the surface is thinner.
 double thickness_quantile(const std::vector<SurfaceSample>& samples, double part) {
   double low = 1e-12, high = 16;
   for (int i = 0; i < 60; ++i) {
@@ -71,8 +71,8 @@ double thickness_quantile(const std::vector<SurfaceSample>& samples, double part
   return low;
 }
 
-// The rule with the smallest bound of the edge length from rule.smallest up to `highest` that takes at most `most`
-// tets; `highest` does.
+// Returns the rule with the smallest bound of the edge length, from rule.smallest up to `highest`, that needs at most
+// `most` tets. `highest` satisfies this.
 SizeRule with_least_bound(const std::vector<SurfaceSample>& samples, double volume, SizeRule rule, double highest,
                           double most) {
   if (predicted_tets(samples, volume, rule) <= most) return rule;
@@ -109,8 +109,7 @@ std::vector<SurfaceSample> surface_samples(const TriMesh& body, double spacing, 
   return samples;
 }
 
-// The integral of 1 / edge length^3. Beside a thin sample the edge length grows with the depth, up to half the
-// thickness.
+// Integrates 1 / edge length^3. Beside a thin sample the edge length grows with the depth, up to half the thickness.
 double predicted_tets(const std::vector<SurfaceSample>& samples, double volume, const SizeRule& rule) {
   const double coarse = 1 / std::pow(rule.size, 3);
   double sum = volume * coarse;
@@ -125,7 +124,7 @@ double predicted_tets(const std::vector<SurfaceSample>& samples, double volume, 
 }
 
 ThinParts choose_rule(const std::vector<SurfaceSample>& samples, double volume, double size, double most_tets) {
-  const double uniform = 1.5 * volume / (kRegularTet * std::pow(size, 3));  // what the size asks for by itself
+  const double uniform = 1.5 * volume / (kRegularTet * std::pow(size, 3));  // number of tets for the size alone
   const double most = std::max(most_tets, uniform);
   ThinParts choice{.rule = {}, .tets = 0, .problem = {}, .thickness = thickness_quantile(samples, kLostArea)};
   const double one_across = std::min(choice.thickness, size), two_across = std::min(choice.thickness / 2, size);
@@ -137,7 +136,7 @@ ThinParts choose_rule(const std::vector<SurfaceSample>& samples, double volume, 
     return choice;
   }
   char text[200];
-  std::snprintf(text, sizeof text, "one tet across its thin parts takes about %.2g tets, more than the limit of %.2g",
+  std::snprintf(text, sizeof text, "one tet across its thin parts needs about %.2g tets, more than the limit of %.2g",
                 choice.tets, most_tets);
   choice.problem = text;
   return choice;

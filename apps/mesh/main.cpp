@@ -32,7 +32,7 @@ constexpr const char* kExamples =
     "  aspic-mesh --implicit \"(sqrt(x^2+y^2)-1)^2+z^2-0.16\" --bounds -2 -2 -1 2 2 1 -o torus.mesh\n"
     "  aspic-mesh liver.inr.gz -o liver.msh --size 8 --region-size 2=4\n"
     "  aspic-mesh scan.ply -o scan.msh --rebuild\n"
-    "Exit codes: 0 done, 2 bad input, or a result that is not the shape, 4 time limit, 1 anything else.\n\n";
+    "Exit codes: 0 done, 2 bad input, or a result that differs from the shape, 4 time limit, 1 anything else.\n\n";
 
 struct Arguments {
   std::string input, output, expression;
@@ -47,28 +47,26 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.set_version_flag("--version",
                        std::string("aspic-mesh ") + ASPIC_VERSION + " (CGAL " + CGAL_VERSION_TEXT + ")\n" + kLicense);
   app.footer(std::string(kExamples) + kLicense);
-  app.add_option("input", arguments.input,
-                 "a closed surface (.obj .stl .ply .off ...), or a labeled image (.inr .inr.gz)");
-  app.add_option("--implicit", arguments.expression, "instead of a file: a formula of x, y, z that is negative inside");
-  app.add_option("--bounds", arguments.bounds, "x0 y0 z0 x1 y1 z1: the box that holds the implicit shape")->expected(6);
-  app.add_option("-o,--output", arguments.output, "the file to write; its extension names the format")->required();
+  app.add_option("input", arguments.input, "Closed surface (.obj .stl .ply .off ...) or labeled image (.inr .inr.gz)");
+  app.add_option("--implicit", arguments.expression, "Formula of x, y, z that is negative inside, instead of a file");
+  app.add_option("--bounds", arguments.bounds, "x0 y0 z0 x1 y1 z1: bounding box of the implicit shape")->expected(6);
+  app.add_option("-o,--output", arguments.output, "Output file; the extension selects the format")->required();
   app.add_option("--size", arguments.size,
-                 "target edge length in units of the input; 0: diagonal of the bounding box / 25");
-  app.add_option("--region-size", arguments.region_sizes,
-                 "LABEL=SIZE: another target edge length in that region of an image")
+                 "Target edge length in units of the input; 0: diagonal of the bounding box / 25");
+  app.add_option("--region-size", arguments.region_sizes, "LABEL=SIZE: target edge length in this region of an image")
       ->allow_extra_args(false);
   app.add_flag("--fill-holes", arguments.fill_holes,
-               "close holes of the surface whose border is shorter than its diagonal");
+               "Close holes whose border is shorter than the diagonal of the surface");
   app.add_flag("--rebuild", arguments.rebuild,
-               "wrap a defective surface (holes, overlaps, inner walls) in a closed one and fill that");
+               "Wrap a defective surface (holes, overlaps, inner walls) in a closed one and fill it");
   app.add_option("--max-tets", arguments.most_tets,
-                 "tets up to which thin parts of a surface get two across; beyond, fewer, or an error")
+                 "Maximum tets with two across thin parts; beyond it one across, or an error")
       ->capture_default_str()
       ->check(CLI::Range(1e3, 1e8));
-  app.add_option("--time-limit", arguments.time_limit, "seconds of wall time after which meshing fails (exit code 4)")
+  app.add_option("--time-limit", arguments.time_limit, "Time limit of meshing in seconds of wall time (exit code 4)")
       ->capture_default_str()
       ->check(CLI::Range(1e-3, 1e9));
-  app.add_flag("--quiet", arguments.quiet, "no report");
+  app.add_flag("--quiet", arguments.quiet, "Print no report");
 }
 
 MesherOptions mesher_options(const Arguments& arguments) {
@@ -86,17 +84,16 @@ void check_combination(const Arguments& arguments) {
   if (arguments.input.empty() == arguments.expression.empty())
     throw InvalidInput("give either an input file or --implicit; see aspic-mesh --help");
   if (!arguments.expression.empty() && arguments.bounds.empty())
-    throw InvalidInput("--implicit needs --bounds x0 y0 z0 x1 y1 z1, the box that holds the shape");
+    throw InvalidInput("--implicit needs --bounds x0 y0 z0 x1 y1 z1, its bounding box");
   if (arguments.expression.empty() && !arguments.bounds.empty())
-    throw InvalidInput("--bounds belongs to --implicit; a file has its own");
+    throw InvalidInput("--bounds requires --implicit; omit it for a file");
   if (!arguments.region_sizes.empty() && !is_image(arguments.input))
     throw InvalidInput("--region-size needs a labeled image (.inr, .inr.gz); use --size");
   if (arguments.fill_holes && (arguments.input.empty() || is_image(arguments.input)))
     throw InvalidInput("--fill-holes needs a surface");
   if (arguments.rebuild && (arguments.input.empty() || is_image(arguments.input)))
     throw InvalidInput("--rebuild needs a surface");
-  if (arguments.rebuild && arguments.fill_holes)
-    throw InvalidInput("--rebuild closes holes too; leave --fill-holes out");
+  if (arguments.rebuild && arguments.fill_holes) throw InvalidInput("--rebuild also closes holes; omit --fill-holes");
 }
 
 Defects defects(const Arguments& arguments) {
@@ -162,7 +159,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "error: %s\n", error.what());
     return aspic::kBadInput;
   } catch (const std::bad_alloc&) {
-    std::fputs("error: meshing needs more memory than is free; give a larger --size\n", stderr);
+    std::fputs("error: meshing needs more than the free memory; give a larger --size\n", stderr);
     return aspic::kFailed;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "error: meshing failed: %s\n", error.what());

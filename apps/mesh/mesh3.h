@@ -1,4 +1,4 @@
-// What the three kinds of domain share: criteria from sizes, refinement, optimization, and the way back to a TetMesh.
+// Shared by the three kinds of domain: criteria from sizes, refinement, optimization, conversion to a TetMesh.
 #pragma once
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Mesh_3/sliver_criteria.h>
@@ -28,15 +28,15 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 
 // Mesh_3 bounds circumradii. A regular tet of edge e has circumradius 0.61 e, its faces 0.58 e, and refinement leaves
-// radii well below their bound: with the bound at this multiple of the wanted edge the mean edge comes out near it.
+// radii well below their bound. With this factor the mean edge is close to the target.
 inline constexpr double kRadiusPerEdge = 0.75;
-// Distance between the facets and the surface, relative to the bound of the facets' radii.
+// Bound of the distance between facets and surface, relative to the bound of the facets' radii.
 inline constexpr double kDistancePerRadius = 0.15;
 // Largest diameter of the balls around sharp edges.
 inline constexpr double kProtectedPerEdge = 1;
 inline constexpr double kSliverBound = 12;  // [degrees] smallest dihedral angle that the optimizers aim for
 
-// Points that the refinement starts from, given rather than shot at random, so that no component is missed.
+// Given initial points of the refinement instead of random ones, so that no component is missed.
 template <class Domain>
 using Seeds = std::vector<std::pair<Point, typename Domain::Index>>;
 
@@ -54,7 +54,7 @@ struct ComplexOf<Domain, Triangulation, true> {
 template <class Complex>
 TetMesh to_tet_mesh(const Complex& complex) {
   TetMesh mesh;
-  std::unordered_map<const void*, int> number;  // looked up only, never walked through
+  std::unordered_map<const void*, int> number;  // only for lookup; the order of iteration is undefined
   for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end(); ++cell) {
     Tet tet;
     for (int corner = 0; corner < 4; ++corner) {
@@ -69,7 +69,7 @@ TetMesh to_tet_mesh(const Complex& complex) {
   return mesh;
 }
 
-// A field of target edge lengths, times a factor.
+// Field of target edge lengths times a factor.
 template <class Field>
 class Scaled {
  public:
@@ -89,7 +89,7 @@ class Scaled {
   double factor_;
 };
 
-// Adds the seeds that no ball around a sharp edge covers or nearly touches.
+// Adds the seeds that are outside and not close to the balls around sharp edges.
 template <class Domain, class Field, class Complex>
 void insert_seeds(const Seeds<Domain>& seeds, const Field& edge, Complex& complex) {
   constexpr double kApart = 0.5;  // edge lengths
@@ -123,8 +123,8 @@ void protect_sharp_edges(const Domain& domain, const Criteria& criteria, size_t 
   }
 }
 
-// Counts the moves of a perturbation and throws when there are too many of them: in the tip of a needle, slivers can
-// turn into each other without end. At that point nothing has moved yet, so the complex is whole.
+// Counts the moves of a perturbation and throws if there are too many: in the tip of a needle, slivers can turn into
+// each other forever. Throws before a move, so the complex stays valid.
 template <class Triangulation>
 class CountedMoves : public CGAL::Mesh_3::Min_dihedral_angle_criterion<Triangulation> {
   using Base = CGAL::Mesh_3::Min_dihedral_angle_criterion<Triangulation>;
@@ -156,8 +156,8 @@ void perturb(const Domain& domain, Complex& complex) {
   }
 }
 
-// Every optimizer runs until it has converged or for a number of steps, not until a clock says so: that is what makes
-// the output reproducible.
+// Every optimizer runs until convergence or for a number of steps, without a time limit, so that the output is
+// reproducible.
 template <class Domain, class Complex>
 void optimize(const Domain& domain, Complex& complex) {
   namespace p = CGAL::parameters;
@@ -168,17 +168,17 @@ void optimize(const Domain& domain, Complex& complex) {
   CGAL::exude_mesh_3(complex, p::time_limit = 0, p::sliver_bound = kSliverBound);
 }
 
-// What is to be filled.
+// Domain, edge lengths and limits of a mesh.
 template <class Domain, class Field>
 struct Filling {
   const Domain& domain;
   const Field& edge;  // target edge lengths
   const Seeds<Domain>& seeds;
   size_t most_vertices;   // at which refinement stops
-  bool optimizes = true;  // what refinement leaves
+  bool optimizes = true;  // whether to optimize after refinement
 };
 
-// `is_complete`: whether refinement ended before it stopped.
+// `is_complete`: whether refinement finished within its limit.
 template <class Domain, class Field>
 TetMesh refined(const Filling<Domain, Field>& filling, bool& is_complete) {
   namespace p = CGAL::parameters;
@@ -201,8 +201,8 @@ TetMesh refined(const Filling<Domain, Field>& filling, bool& is_complete) {
   return to_tet_mesh(complex);
 }
 
-// CGAL's optimizers can break the triangulation between many protected edges. Its assertions, which are part of every
-// build of this program, notice; then the tets stay as refinement left them.
+// CGAL's optimizers can break the triangulation between many protected edges. Its assertions, which every build of this
+// program contains, detect this; then the tets before optimization are used.
 template <class Domain, class Field>
 TetMesh filled(Filling<Domain, Field> filling, bool& is_complete) {
   try {

@@ -17,7 +17,7 @@ std::string line(const char* format, Values... values) {
   return std::string(text) + '\n';
 }
 
-// Of the smallest dihedral angles of the tets [degrees].
+// Mean over the tets of their smallest dihedral angle [degrees].
 double average_smallest_dihedral(const TetMesh& mesh) {
   double sum = 0;
   for (int t = 0; t < mesh.tet_count(); ++t) sum += dihedral_range(corners(mesh, t))[0];
@@ -44,10 +44,9 @@ std::string quality_report(const TetMesh& mesh, double seconds) {
   for (const auto& [label, count] : regions) text += line("  region %-6d %d tets", label, count);
   text += line("volume          %.6g in %d component%s", q.total_volume, q.components, q.components == 1 ? "" : "s");
   text += line("edge length     %.4g on average", average_edge(mesh));
-  text += line("dihedral angle  smallest %.1f, largest %.1f, smallest of each tet on average %.1f degrees",
+  text += line("dihedral angle  smallest %.1f, largest %.1f, average of the smallest per tet %.1f degrees",
                q.min_dihedral, q.max_dihedral, average_smallest_dihedral(mesh));
-  text += line("mean ratio      smallest %.3f, average %.3f (1 is the regular tet)", q.min_mean_ratio,
-               q.average_mean_ratio);
+  text += line("mean ratio      smallest %.3f, average %.3f (1: regular tet)", q.min_mean_ratio, q.average_mean_ratio);
   return text + line("time            %.2f s", seconds);
 }
 

@@ -9,13 +9,13 @@
 namespace aspic {
 namespace {
 
-using Chain = std::vector<int>;  // vertices; the first is also the last of a closed one
+using Chain = std::vector<int>;  // vertices; closed chains begin and end with the same vertex
 
-constexpr double kSharp = 0.643;   // cosine of 50 degrees, between the normals beside an edge
-constexpr double kBlade = -0.94;   // minus the cosine of 20 degrees, between the normals beside an edge
+constexpr double kSharp = 0.643;   // cosine of 50 degrees, between the normals at an edge
+constexpr double kBlade = -0.94;   // minus the cosine of 20 degrees, between the normals at an edge
 constexpr double kStraight = 0.5;  // cosine of 60 degrees, between two edges of a chain
 
-// The edges beside which the cosine between the normals is less than `most`.
+// Edges whose adjacent normals have a cosine less than `most`.
 std::vector<std::array<int, 2>> sharp_edges(const TriMesh& body, double most) {
   std::vector<std::array<int, 2>> edges;
   for_each_edge(edge_uses(body.triangles), [&](const EdgeUse* first, const EdgeUse* last) {
@@ -36,7 +36,7 @@ double chain_length(const TriMesh& body, const Chain& chain) {
   return sum;
 }
 
-// The sharp edges as a graph, cut into chains at corners.
+// Graph of sharp edges, split into chains at corners.
 class SharpGraph {
  public:
   SharpGraph(const TriMesh& body, const std::vector<std::array<int, 2>>& edges)
@@ -53,7 +53,7 @@ class SharpGraph {
       if (is_corner(static_cast<int>(v)))
         for (int e : next_[v])
           if (!used_[e]) chains.push_back(walk(static_cast<int>(v), e));
-    for (size_t e = 0; e < edges_.size(); ++e)  // what is left is closed
+    for (size_t e = 0; e < edges_.size(); ++e)  // the remaining edges form closed chains
       if (!used_[e]) chains.push_back(walk(edges_[e][0], static_cast<int>(e)));
     return chains;
   }
@@ -105,7 +105,7 @@ bool prune(const TriMesh& body, double shortest, std::vector<std::array<int, 2>>
   return !gone.empty();
 }
 
-// Chains that leave a common corner at a small angle: the balls that protect them would shrink without end.
+// Marks chains that leave a common corner at a small angle, because the balls that protect them would shrink forever.
 std::vector<bool> in_needles(const TriMesh& body, const std::vector<Chain>& chains) {
   constexpr double kNeedle = 0.94;  // cosine of 20 degrees
   struct End {

@@ -59,7 +59,7 @@ TetMesh fill_body(const BodyDomain& body) {
   Domain domain(surface);
   const std::vector<std::vector<Point>> lines = polylines(body.sharp);
   domain.add_features(lines.begin(), lines.end());
-  bool is_complete = false;  // an incomplete mesh is judged like any other
+  bool is_complete = false;  // an incomplete mesh is checked like any other
   const BodySize edge(body.size);
   const Seeds<Domain> starts = seeds(domain, body.seeds);
   TetMesh tets =

@@ -1,4 +1,4 @@
-// Triangles between this program and CGAL.
+// Conversion of triangles to and from CGAL.
 #pragma once
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>

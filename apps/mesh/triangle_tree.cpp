@@ -34,8 +34,8 @@ Vec3d unit_normal(const TriMesh& mesh, int triangle) {
 
 TriangleTree::TriangleTree(const TriMesh& mesh) : mesh_(&mesh), tree_(boxes(mesh)) {}
 
-// The distance at which the line crosses the triangle, edges included; infinity when it does not.
-// [Moeller and Trumbore 1997]
+// Returns the distance at which the line crosses the triangle, including its edges; infinity if it does not. [Moeller
+// and Trumbore 1997]
 double TriangleTree::crossing(int triangle, const Vec3d& origin, const Vec3d& direction) const {
   constexpr double kEdge = 1e-9;
   const auto& [a, b, c] = mesh_->triangles[triangle];

@@ -1,5 +1,4 @@
-// Searches among the triangles of a surface: the first one that a ray meets, the nearest one, whether a point is
-// inside.
+// Queries on the triangles of a surface: first intersection with a ray, distance, and inside test.
 #pragma once
 #include <vector>
 
@@ -8,24 +7,24 @@
 
 namespace aspic {
 
-Vec3d unit_normal(const TriMesh& mesh, int triangle);  // 0 for a triangle without area
+Vec3d unit_normal(const TriMesh& mesh, int triangle);  // zero for a triangle without area
 double area(const TriMesh& mesh, int triangle);
 
 class TriangleTree {
  public:
-  explicit TriangleTree(const TriMesh& mesh);  // keeps a reference to the mesh
+  explicit TriangleTree(const TriMesh& mesh);  // stores a reference to the mesh
 
   struct Hit {
     double distance = Box::kInfinity;  // in units of the direction
     int triangle = -1;
   };
-  // The first crossing at a distance above `beyond`.
+  // First crossing at a distance above `beyond`.
   Hit first_hit(const Vec3d& origin, const Vec3d& direction, double beyond) const;
 
-  // Distance to the surface; infinity when it is above `reach`.
+  // Distance to the surface; infinity if above `reach`.
   double distance(const Vec3d& x, double reach = Box::kInfinity) const;
 
-  // Whether a ray from x crosses the closed surface an odd number of times, by the majority of three rays.
+  // Whether x is inside the closed surface: by a majority of three rays, each with an odd number of crossings.
   bool contains(const Vec3d& x) const;
 
  private:

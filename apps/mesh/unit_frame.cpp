@@ -11,9 +11,9 @@
 namespace aspic {
 namespace {
 
-constexpr double kLargest = 1e75;     // the fourth powers of lengths, as in dihedral angles, are finite
-constexpr double kSmallest = 1e-75;   // and positive
-constexpr double kResolution = 1e-6;  // largest distance of neighboring coordinates, relative to the extent
+constexpr double kLargest = 1e75;     // keeps fourth powers of lengths finite, as in dihedral angles
+constexpr double kSmallest = 1e-75;   // keeps them positive
+constexpr double kResolution = 1e-6;  // largest spacing of coordinates, relative to the extent
 
 std::string text(double value) {
   char digits[32];
@@ -43,7 +43,7 @@ UnitFrame unit_frame(const std::string& name, const std::vector<Vec3d>& points) 
     largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
   }
   extent *= 2;
-  if (!(extent > 0)) throw InvalidInput(name + ": all vertices are in one place; use a closed surface");
+  if (!(extent > 0)) throw InvalidInput(name + ": all vertices coincide; use a closed surface");
   if (!(extent < kLargest) || !(extent > kSmallest))
     throw InvalidInput(name + ": the shape is " + text(extent) +
                        " long, which is not between 1e-75 and 1e75; scale it");
@@ -51,7 +51,7 @@ UnitFrame unit_frame(const std::string& name, const std::vector<Vec3d>& points) 
   if (spacing > kResolution * extent)
     throw InvalidInput(name + ": coordinates of " + text(largest) + " are multiples of " + text(spacing) +
                        " in double precision, too coarse for a shape " + text(extent) +
-                       " long; move it closer to the origin where it was made");
+                       " long; move it closer to the origin in the source model");
   UnitFrame frame{{}, std::ldexp(1.0, std::ilogb(extent))};
   if (largest > 4 * extent)  // a multiple of the unit, so that differences stay exact
     for (int axis = 0; axis < 3; ++axis)
@@ -70,13 +70,13 @@ void from_frame(const UnitFrame& frame, std::vector<Vec3d>& points) {
 }
 
 void check_size(const Vec3d& extent, double size) {
-  constexpr double kMostCells = 1e9;  // cubes of that size in the bounding box
+  constexpr double kMostCells = 1e9;  // limit of cubes of that size in the bounding box
   double cells = 1;
   for (int axis = 0; axis < 3; ++axis) cells *= extent[axis] / size + 1;
   if (cells > kMostCells)
     throw InvalidInput("--size " + text(size) + ": too fine for a shape " +
                        text(std::max({extent[0], extent[1], extent[2]})) +
-                       " long; it is in the units of the input, give a larger one");
+                       " long; --size is in units of the input, give a larger one");
 }
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// Watertight rebuilding of defective surfaces, by CGAL's alpha wrapping.
+// Rebuilds defective surfaces as watertight ones with CGAL's alpha wrapping.
 #include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/alpha_wrap_3.h>
 
@@ -26,11 +26,11 @@ TriMesh without_degenerate_triangles(TriMesh mesh) {
 struct Wrap {
   SurfaceMesh surface;
   double volume = 0;
-  double inner = 0;  // volume without the layer between wrap and surface: near 0 around a sheet
+  double inner = 0;  // volume without the layer between wrap and surface; near 0 for a sheet
 };
 
 Wrap wrapped(const Soup& soup, double alpha) {
-  constexpr double kOffset = 0.1;  // of alpha
+  constexpr double kOffset = 0.1;  // fraction of alpha
   Wrap wrap;
   CGAL::alpha_wrap_3(soup.points, soup.triangles, alpha, kOffset * alpha, wrap.surface);
   wrap.volume = processing::volume(wrap.surface);
@@ -41,16 +41,16 @@ Wrap wrapped(const Soup& soup, double alpha) {
 void check_encloses(const std::string& name, const Wrap& wrap, double least) {
   if (wrap.inner < least * wrap.volume)
     throw InvalidInput(name +
-                       ": encloses next to no volume: it is a sheet, or open beyond what --rebuild can close; give the "
-                       "sheet a thickness, or close the surface, where it was made");
+                       ": encloses almost no volume: it is a sheet, or too open for --rebuild; give the "
+                       "sheet a thickness, or close the surface, in the source model");
 }
 
 }  // namespace
 
-// Wraps with finer and finer probes, as long as they do not enter the shape through its gaps: there the volume drops.
+// Wraps with decreasing alpha until the wrap enters the shape through its gaps, where the volume drops.
 Rebuilt rebuilt(const std::string& name, const TriMesh& mesh) {
-  constexpr double kCoarsest = 20, kFinest = 160;  // parts of the diagonal
-  constexpr double kEntered = 0.65;                // inner volume after a probe went inside, relative to before
+  constexpr double kCoarsest = 20, kFinest = 160;  // fractions of the diagonal
+  constexpr double kEntered = 0.65;                // relative inner volume that shows that the wrap went inside
   const TriMesh triangles = without_degenerate_triangles(mesh);
   if (triangles.triangles.empty()) throw InvalidInput(name + ": no triangle has an area; export the surface again");
   const Soup soup = to_soup(with_holes_filled(triangles, Box::kInfinity));

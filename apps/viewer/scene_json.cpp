@@ -6,6 +6,13 @@ namespace aspic::viewer {
 
 Json json_of(const Vec3d& x) { return {x[0], x[1], x[2]}; }
 
+Json tip_json(const Tip& tip) {
+  return {{"shape", tip.shape == TipShape::disc ? "disc" : "sphere"},
+          {"contact", tip.contact == TipContact::sliding ? "sliding" : "bonded"},
+          {"radius", tip.radius},
+          {"stiffness", tip.stiffness}};
+}
+
 Json fields_json(const std::vector<Field>& fields) {
   Json list = Json::array();
   for (const Field& field : fields)

@@ -1,4 +1,4 @@
-// What a poke says of the stiffness without any simulation.
+// Estimates of the stiffness from pokes, without simulation.
 #pragma once
 #include <optional>
 
@@ -6,12 +6,12 @@
 
 namespace aspic {
 
-// Young's modulus of a half-space that would push back as a case says: F (1 - nu^2) = 2 a d E for a flat punch of
-// radius a, nu = 0.4. None: no tip, no force, no way. [Johnson 1985, section 3.4]
+// Young's modulus of a half-space with the same force and depth: F (1 - nu^2) = 2 a d E for a flat punch of radius a,
+// nu = 0.4. Empty without indenter, force or depth. [Johnson 1985, section 3.4]
 std::optional<double> apparent_young(const LoadCase& load);
-// The median of all cases; none: there are none.
+// Median over all cases; empty without cases.
 std::optional<double> apparent_young(const Experiment& experiment);
 
-double median(std::vector<double> values);  // of at least one
+double median(std::vector<double> values);  // requires at least one value
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// Where a virtual bench pokes, and where it glues its markers.
+// Sites of pokes and markers of a virtual bench.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -8,12 +8,12 @@
 
 namespace aspic {
 
-// `count` points of the surface, each as far as can be from those before, away from held vertices; fewer where the
-// surface has no more.
+// Returns `count` points of the surface, each as far as possible from the previous ones and away from held vertices;
+// fewer if the surface has no more.
 std::vector<ProjectedPoint> marker_sites(const TetMesh& mesh, const SurfaceProjection& surface,
                                          std::span<const int> fixed, int count, uint64_t seed);
 
-// Which vertices of `mesh` lie where all of `truth` around is held.
+// Vertices of `mesh` at places where all surrounding vertices of `truth` are held.
 std::vector<int> held_vertices(const TetMesh& truth, std::span<const int> held, const TetMesh& mesh);
 
 }  // namespace aspic

@@ -1,12 +1,12 @@
-// Every key of capture.toml.
+// Keys of capture.toml.
 #pragma once
 #include "scene/schema.h"
 
 namespace aspic {
 
-const Schema& capture_schema();  // its document is the section "capture"
+const Schema& capture_schema();  // the document is the section "capture"
 
-// The names of columns that a table may have, by Aspic's names.
+// Aspic's names of the columns of each table.
 const std::vector<std::string>& marker_columns();
 const std::vector<std::string>& case_columns();
 const std::vector<std::string>& position_columns();

@@ -1,4 +1,4 @@
-// The table of load cases.
+// Table of load cases.
 #pragma once
 #include <map>
 #include <string>
@@ -16,17 +16,17 @@ struct CaseScope {
   const SurfaceProjection& surface;
 };
 
-// Appends the cases, of a group one after another, from the smallest load on, and their lines.
+// Appends the cases group by group, each from the smallest load on, and their lines.
 void read_cases(const CaptureSettings& settings, const CaseScope& scope, ErrorList& errors, DataSet& data);
 
-// How far the load of a case goes: the way of the tip [m], the pressure [Pa] or the gravity [m/s^2].
+// Size of the load of a case: displacement of the indenter [m], pressure [Pa] or gravity [m/s^2].
 double load_size(const LoadCase& load);
 
-// Standard deviation of the force along itself [N]. Not counted is how open a gauge of one axis leaves the force
-// across.
+// Standard deviation of the force along its direction [N]. Excludes the unbounded lateral uncertainty of a single-axis
+// gauge.
 double deviation_along(const LoadCase& load);
 
-// The axis of a tip that has turned since the touch.
+// Axis of an indenter that has rotated since the touch.
 Vec3d turned_axis(const TipPose& touch, const Vec3d& rotation);
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// How what is odd about a data set is gathered, and its parts.
+// Collects findings about a data set.
 #pragma once
 #include <string>
 #include <utility>
@@ -26,10 +26,10 @@ class DataFindings {
   std::vector<DataFinding> list_;
 };
 
-void diagnose_loads(const DataSet& data, DataFindings& findings);      // poses, pressures, gravity, what holds
-void diagnose_forces(const DataSet& data, DataFindings& findings);     // units, signs, outliers, missing ones
+void diagnose_loads(const DataSet& data, DataFindings& findings);      // poses, pressures, gravity, supports
+void diagnose_forces(const DataSet& data, DataFindings& findings);     // units, signs, outliers, missing forces
 void diagnose_positions(const DataSet& data, DataFindings& findings);  // units, outliers, markers off the surface
-void diagnose_content(const DataSet& data, DataFindings& findings);    // rigid motion, too little, repetitions
+void diagnose_content(const DataSet& data, DataFindings& findings);    // rigid motion, insufficient data, repetitions
 
 double norm(const Vec3d& v);
 double size_of(const TetMesh& mesh);                                             // diagonal of the bounding box [m]

@@ -1,5 +1,4 @@
-// What a fit leaves beside its material: material.fit/ with the options it was begun with, a row per iteration, what it
-// needs to continue after a kill, and its report.
+// Folder material.fit/ of a fit: its options, a row per iteration, the state for resumption, and the report.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -15,22 +14,21 @@ enum class ExistingFit { refuse, overwrite, resume };
 
 class FitFolder {
  public:
-  // Of the file that the material goes to. `options` belong to the fit: text_of(plan) and what the data are. Throws
-  // InvalidInput when something is there that may not be replaced, that was begun with other options, or that another
-  // process is writing.
+  // Opens the folder of the given material file. `options` identify the fit: text_of(plan) and the data. Throws
+  // InvalidInput if the folder must not be replaced, belongs to other options, or another process is writing to it.
   static FitFolder open(const std::filesystem::path& material, const std::string& options, ExistingFit existing);
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path report() const { return path_ / "report.html"; }
   FitMemory memory() const { return {path_, start_}; }
   bool is_resumed() const { return start_ == JournalStart::resume; }
-  int iterations_before() const { return rows_on_disk_; }  // of a fit that is resumed
+  int iterations_before() const { return rows_on_disk_; }  // rows before the resumption
 
-  // A row of history.csv. A resumed fit repeats its first rows, which are there already.
+  // Adds a row of history.csv. A resumed fit repeats its first rows, which exist already.
   void add(FitStage stage, const FitIteration& iteration);
-  // weights.csv: the weights of the regularizer that were tried.
+  // Writes weights.csv with the tried weights of the regularizer.
   void add_weights(const FitReport& report);
-  void finish();  // nothing remains to be resumed
+  void finish();  // removes the state for resumption
 
  private:
   std::filesystem::path path_;

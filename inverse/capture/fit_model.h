@@ -1,4 +1,4 @@
-// What one stage of a fit minimizes: a model with its unknowns, its prior and its memory.
+// Model of one stage of a fit, with its parameters, prior and stored state.
 #pragma once
 #include <memory>
 #include <optional>
@@ -12,19 +12,19 @@
 namespace aspic {
 
 struct FitModel {
-  // `simulated`: the cases that are fitted, on the mesh where they are simulated. Refers to it. With a folder in the
-  // memory it is remembered there as `name`.
+  // `simulated`: the fitted cases on the simulated mesh; stored by reference. If `memory` has a folder, the model is
+  // stored there as `name`.
   FitModel(const Experiment& data, const Experiment& simulated, const FitPlan& plan, std::vector<Unknown> unknowns,
            const FitMemory& memory, const std::string& name, const std::string& fingerprint);
 
   LeastSquares& recorded() { return journal ? static_cast<LeastSquares&>(*journal) : misfit; }
-  LeastSquares& data() { return *with_layers; }  // what is fitted
+  LeastSquares& data() { return *with_layers; }  // the residuals to minimize
 
   ParameterMap map;
   std::unique_ptr<Regularizer> prior;
   Misfit misfit;
   std::optional<Journal> journal;
-  std::optional<WithUncertainLayers> with_layers;  // of what is recorded
+  std::optional<WithUncertainLayers> with_layers;  // wraps the recorded model
 };
 
 }  // namespace aspic

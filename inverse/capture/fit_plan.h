@@ -1,4 +1,4 @@
-// What of a body is fitted, and how: the choices of `aspic fit`, with defaults that need no option.
+// Plan of a fit: parameters and methods of `aspic fit`, with defaults for every option.
 #pragma once
 #include <string>
 #include <utility>
@@ -14,43 +14,43 @@ namespace aspic {
 
 struct FitPlan {
   std::string model = "neo_hookean";
-  std::vector<Unknown> unknowns;                      // empty: young per tet, everything else one value; guess 0: found
-  std::vector<std::pair<std::string, double>> known;  // the same in every tet, not fitted: {"poisson", 0.45}
+  std::vector<Unknown> unknowns;                      // empty: young per tet, all others uniform; guess 0: automatic
+  std::vector<std::pair<std::string, double>> known;  // uniform, not fitted: {"poisson", 0.45}
   RegularizerOptions belief;
   FitOptions fit;
   EquilibriumOptions equilibrium;
-  std::vector<std::string> left_out;  // groups of cases that are predicted, not fitted
+  std::vector<std::string> left_out;  // groups of cases to predict instead of fitting
   bool uncertainty = true, cross_validation = true;
-  int refine = 0;  // the body is simulated on the mesh of the data with every tet in 8, so often
-  // Number of parts of constant stiffness into which a field per tet is divided if that explains the data as well;
-  // < 0: the smallest sufficient number, up to kMostParts; 0: none.
+  int refine = 0;  // the simulated mesh splits every tet in 8, this many times
+  // Number of parts of constant stiffness that replace a field per tet if they fit the data as well; < 0: the smallest
+  // sufficient number, up to kMostParts; 0: none.
   int parts = 0;
-  bool mesh_errors = false;  // what the mesh gets wrong is computed on a finer one and taken off the measurements
+  bool mesh_errors = false;  // correct measurements by the discretization error relative to a finer mesh
 };
 
-// "young=tets", "poisson=uniform", "b=handles:40". Throws InvalidInput.
+// Parses "young=tets", "poisson=uniform", "b=handles:40". Throws InvalidInput.
 Unknown parse_unknown(const std::string& text);
 std::string text_of(const Unknown& unknown);
 std::pair<std::string, double> parse_known(const std::string& text);  // "poisson=0.45"
 
 inline constexpr int kMostParts = 4;
 
-// One value for the whole body of each.
+// The same parameters, each uniform over the body.
 std::vector<Unknown> single_values(std::vector<Unknown> unknowns);
 
-// The plan with everything filled in that the data and the model decide. Throws InvalidInput for names that the model
-// or the data do not have.
+// Returns the plan with all choices that depend on data and model. Throws InvalidInput for names that the model or the
+// data do not have.
 FitPlan completed(FitPlan plan, const Experiment& experiment);
 
-// One "key = value" per line: two fits with the same text, of the same data, are the same to the bit.
+// One "key = value" per line. Fits with equal text and data are bit-reproducible.
 std::string text_of(const FitPlan& plan);
 std::string fingerprint_of(const Experiment& experiment);
 
-// What every tet has where nothing is fitted.
+// Parameters of every tet before fitting.
 std::vector<MaterialParameters> known_parameters(const FitPlan& plan, const Experiment& experiment);
 
-// Without the cases of some groups, or with them alone.
+// Returns the cases without some groups, or only those.
 Experiment without_groups(const Experiment& experiment, const std::vector<std::string>& groups);
-std::vector<std::string> groups_of(const Experiment& experiment);  // in their order
+std::vector<std::string> groups_of(const Experiment& experiment);  // in order of appearance
 
 }  // namespace aspic

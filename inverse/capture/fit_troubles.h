@@ -1,4 +1,4 @@
-// What goes wrong in a fit of measurements, with the row of the data where it does.
+// Messages for problems of a fit, with the row of the data.
 #pragma once
 #include <span>
 #include <string>
@@ -10,15 +10,14 @@
 
 namespace aspic {
 
-// Of a stiffness that no body has: of readings that no stiffness makes smaller or larger, such as forces of a body that
-// they do not belong to. Else empty.
+// Explains a stiffness beyond any material, caused by readings that no stiffness can fit, such as forces of another
+// body. Empty if the stiffness is plausible.
 std::string words_of_runaway(const DataSet& data, const MaterialParameters& material);
 
-// Of a fit that ended without a material, with the row of the first case that could not be solved.
+// Explains a fit without a material, with the row of the first unsolved case.
 std::string words_of_failure(const DataSet& data, const FitReport& report, const std::string& why);
 
-// Which row is explained worst by residuals r of the cases that are not left out, when that is far more than noise;
-// else empty.
+// Names the row with the largest residual r of the fitted cases if it is far above the noise; otherwise empty.
 std::string words_of_worst_row(const DataSet& data, const std::vector<std::string>& left_out, const Misfit& misfit,
                                std::span<const double> r);
 

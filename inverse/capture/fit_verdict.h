@@ -1,4 +1,4 @@
-// Whether a fitted material can be relied on: one judgment for the command line, the JSON file, and the page.
+// Verdict on the reliability of a fitted material, for the command line, the JSON file and the page.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,7 +8,7 @@
 namespace aspic {
 
 struct FitVerdict {
-  std::vector<FitReason> reasons;  // not to rely on the material; empty: the verdict is good
+  std::vector<FitReason> reasons;  // reasons against the material; empty: the verdict is good
   std::string text;                // a sentence
 
   bool is_good() const { return reasons.empty(); }
@@ -18,7 +18,7 @@ struct FitVerdict {
 // held_out_worse, groups_disagree, unexplained, predicts_badly, field_rejected.
 FitVerdict verdict(const DataSet& data, const FitOutcome& outcome);
 
-// The reasons for which one value is better than a field: mesh_not_settled, at_bound, group_missed, held_out_worse.
+// Reasons why one value is better than a field: mesh_not_settled, at_bound, group_missed, held_out_worse.
 std::vector<FitReason> reasons_against_field(const DataSet& data, const FitOutcome& outcome);
 
 }  // namespace aspic

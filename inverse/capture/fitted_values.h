@@ -1,4 +1,4 @@
-// What was fitted, as numbers for people and as a material for scenes.
+// Fitted quantities as values for display and as a material for scenes.
 #pragma once
 #include <span>
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace aspic {
 
-// `belief`: of the same fit; null: not known.
+// `belief`: posterior of the same fit; null: unknown.
 std::vector<FittedQuantity> fitted_quantities(const ParameterMap& map, const TetMesh& mesh, std::span<const double> p,
                                               const Posterior* belief);
 
-// By the user's numbers, with deviations and reductions beside the values.
+// In the user's numbering, with standard deviations and reductions beside the values.
 FittedMaterial fitted_material(const DataSet& data, const ParameterMap& map, std::span<const double> p,
                                const std::vector<FittedQuantity>& quantities);
 
-// Quantities whose values the readings push to an end of their range, or a field to its farthest from the guess:
+// Names quantities whose values are at the end of their range, or fields at their largest distance from the guess:
 // "young in 3 tets".
 std::vector<std::string> values_at_bound(const ParameterMap& map, std::span<const double> p);
 

@@ -1,5 +1,5 @@
-// A fit that can be killed and continues to the same bits. Its evaluations of the model are stored; when it is resumed,
-// it asks the same again and is answered from the file, without any equilibrium, until it comes to where it was.
+// Bit-reproducible resumption of a fit. Stores its evaluations of the model; a resumed fit repeats them and gets the
+// stored results without solving, until it reaches the interruption.
 #pragma once
 #include <filesystem>
 #include <fstream>
@@ -13,7 +13,7 @@
 
 namespace aspic {
 
-// What the next evaluation of a model starts from, beside p: equilibria.
+// Model state of the next evaluation besides p: equilibria.
 struct ModelState {
   std::function<std::vector<double>()> get;
   std::function<void(std::span<const double>)> set;
@@ -23,8 +23,8 @@ enum class JournalStart { anew, resume };
 
 class Journal : public LeastSquares {
  public:
-  // Writes `stem`.journal and, at every linearization, `stem`.state; both belong to `fingerprint`. Refers to `model`.
-  // Throws InvalidInput when it cannot resume from the files.
+  // Writes `stem`.journal and, at every linearization, `stem`.state; both depend on `fingerprint`. Stores a reference
+  // to `model`. Throws InvalidInput if it cannot resume from the files.
   Journal(LeastSquares& model, ModelState state, std::filesystem::path stem, const std::string& fingerprint,
           JournalStart start);
 
@@ -39,9 +39,9 @@ class Journal : public LeastSquares {
   std::vector<std::pair<int, int>> residuals_by_case() const override { return model_.residuals_by_case(); }
 
   bool is_replaying() const { return position_ < end_; }
-  // From here on nothing is written: what follows an interruption is no part of the fit.
+  // Stops writing: later evaluations are not part of the fit.
   void stop_writing();
-  // Brings the model to where the last linearization was, had that been answered from the file.
+  // Restores the model to the last linearization if that was replayed.
   void catch_up();
 
   static void remove(const std::filesystem::path& stem);
@@ -61,10 +61,10 @@ class Journal : public LeastSquares {
   std::string fingerprint_;
   OutputFile out_;
   std::ifstream in_;
-  std::uint64_t position_ = 0, end_ = 0;  // of what is replayed [bytes]
+  std::uint64_t position_ = 0, end_ = 0;  // position and end of the replayed part [bytes]
   std::vector<double> p_;                 // of the last successful evaluation
   std::vector<double> resumed_p_, resumed_state_;
-  bool is_behind_ = false;  // the model does not know yet what was replayed
+  bool is_behind_ = false;  // the model has not yet been restored to the replayed state
 };
 
 }  // namespace aspic

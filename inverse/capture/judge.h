@@ -1,4 +1,4 @@
-// A fitted material against the true one, which synthetic data come with.
+// Compares a fitted material with the truth of synthetic data.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,35 +7,35 @@
 
 namespace aspic {
 
-// Where the truth has one value.
+// Part of the body with one true value.
 struct Phase {
-  double share = 0;   // of the body's volume
+  double share = 0;   // fraction of the body's volume
   double truth = 0;   // [SI]
-  double fitted = 0;  // the mean over the tets that lie wholly in it (else partly), geometric for positive quantities
+  double fitted = 0;  // mean over the tets inside it (or partly inside, if none is), geometric for positive quantities
 };
 
-// Over the tets of the fit, by volume, of z = log q for positive quantities and z = q for Poisson's ratio. In a tet
-// where the truth varies, it is the mean of its z.
+// Errors by volume over the tets of the fit, of z = log q for positive quantities and z = q for Poisson's ratio. In a
+// tet with varying truth, z is averaged.
 struct Judgment {
   std::string quantity;
   double error = 0;            // root mean square of z - truth: 0.15 is 15 % of E
-  double relative_error = -1;  // that by the root mean square of the truth about its mean; < 0: the truth is uniform
+  double relative_error = -1;  // error over the root mean square of the truth about its mean; < 0: the truth is uniform
   double largest = 0;          // |z - truth|
   double level = 0;            // mean of z - truth
-  double coverage = -1;        // of the tets, those whose 95 % interval holds the truth; < 0: no intervals
+  double coverage = -1;        // fraction of tets whose 95 % interval contains the truth; < 0: no intervals
   std::vector<Phase> phases;   // by ascending truth; empty: the truth varies smoothly
-  double overlap = -1;         // intersection over union, of the smaller of two phases; < 0: there are not two
+  double overlap = -1;         // intersection over union for the smaller of two phases; < 0: not two phases
 
-  // The highest phase by the lowest; 1 where there are not two.
+  // Ratio of the highest to the lowest phase; 1 unless there are two or more.
   double contrast() const { return phases.size() < 2 ? 1 : phases.back().fitted / phases.front().fitted; }
   double true_contrast() const { return phases.size() < 2 ? 1 : phases.back().truth / phases.front().truth; }
 };
 
-// The values of which a piecewise constant field is made, ascending; empty: it has more than a few.
+// Values of a piecewise constant field, ascending; empty if there are more than a few.
 std::vector<double> levels_of(std::vector<double> values);
 
-// Of each quantity that both have, except the density. The fitted inclusion is separated from the rest of the body by
-// the threshold of [Otsu 1979], which does not know the truth.
+// Compares each quantity in both materials, except the density. The threshold of [Otsu 1979] separates the fitted
+// inclusion from the rest of the body, without using the truth.
 std::vector<Judgment> judge(const FittedMaterial& fitted, const FittedMaterial& truth);
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// The stages of a fit, one after another, and what they leave to each other.
+// Stages of a fit, and the data between them.
 #pragma once
 #include <functional>
 #include <optional>
@@ -14,25 +14,25 @@ namespace aspic {
 
 class MaterialFit {
  public:
-  // Refers to all but the plan.
+  // Stores references to all arguments but the plan.
   MaterialFit(const DataSet& data, const FitPlan& plan, const FitMemory& memory, const FitCallbacks& callbacks);
   FitOutcome run();
 
  private:
-  // material_fit.cpp: from data to a material. False: nothing comes after it.
+  // material_fit.cpp: stages from data to material. False: no further stage.
   bool fit_single_values(const std::string& name);
   bool has_single_values(FitModel& model, const FitReport& report);
-  bool take_off_mesh_errors();  // false: they are not known, and the data remain as they are
+  bool take_off_mesh_errors();  // false: unknown, and the data remain unchanged
   void fit_fields();
   void fit_and_describe();
-  // One value replaces a field that the data do not support, with what was found for the reason.
+  // Replaces an unsupported field by one value; stores the reasons.
   void fall_back(std::vector<FitReason> reasons);
-  // Fits again as long as what the mesh gets wrong changes with the material; `model` is the last one.
+  // Repeats the fit until the discretization error no longer changes with the material; `model` is the last one.
   void fit_until_mesh_errors_settle(std::optional<FitModel>& model);
   FitReport fit_stage(FitStage which, FitModel& model, const FitOptions& options,
                       const std::vector<double>& start = {});
 
-  // material_fit_results.cpp: what comes of it
+  // material_fit_results.cpp: results
   void learn_uncertainty(FitModel& model);
   void describe(FitModel& model, std::span<const double> p);
   void predict_left_out(const ParameterMap& map, std::span<const double> p);
@@ -44,7 +44,7 @@ class MaterialFit {
   void predict_group(const std::string& group, const ParameterMap& map, std::span<const double> p,
                      const UsePrediction& use);
 
-  // material_fit_parts.cpp: the material in parts, where it is wanted and the data allow it; else that of the field
+  // material_fit_parts.cpp: values in parts if requested and supported by the data; otherwise those of the field
   std::vector<double> divided(FitModel& model);
   std::vector<double> keep(const Parts& parts, const ParameterMap& map, int unknown, FoundParts& found);
 
@@ -53,14 +53,14 @@ class MaterialFit {
   void add_warnings(const std::vector<std::string>& more);
   bool is_field() const;
   bool has_many_values() const;                                  // a value per tet or handle
-  const TetMesh& mesh() const { return data_.experiment.mesh; }  // of the material
+  const TetMesh& mesh() const { return data_.experiment.mesh; }  // mesh of the material
 
   const DataSet& data_;
   FitPlan plan_;
   const FitMemory& memory_;
   const FitCallbacks& callbacks_;
   SimulatedData simulated_;
-  std::vector<MaterialParameters> material_;  // the last that was fitted
+  std::vector<MaterialParameters> material_;  // last fitted parameters
   std::string fingerprint_;
   FitOutcome outcome_;
 };

@@ -1,4 +1,4 @@
-// The table of triangles of a patch.
+// Table of the triangles of a patch.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace aspic {
 
-// Those listed in the file that is called `name` in the settings, in the numbers of `boundary` and oriented as there;
-// the first corner may be any.
+// Reads the triangles of the file with key `name` in the settings, in the numbering and orientation of `boundary`; any
+// corner can be first.
 std::vector<Triangle> listed_triangles(const std::filesystem::path& file, const Value& name,
                                        const std::vector<Triangle>& boundary, ErrorList& errors,
                                        std::vector<std::string>& notes);

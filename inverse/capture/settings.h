@@ -1,4 +1,4 @@
-// capture.toml, checked and complete.
+// Checked and completed capture.toml.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -13,12 +13,12 @@ class CaptureSettings {
  public:
   explicit CaptureSettings(const std::filesystem::path& path);  // the folder, or the file; throws InvalidInput
 
-  const Value& operator[](std::string_view key) const { return *document_.find(key); }  // of a key with a default
+  const Value& operator[](std::string_view key) const { return *document_.find(key); }  // for keys with a default
   const Value* find(std::string_view key) const { return document_.find(key); }
   Table& document() { return document_; }
   SceneFiles& files() { return files_; }
-  bool is_given(std::string_view key) const;               // no default
-  std::filesystem::path file(std::string_view key) const;  // that a key names; throws InvalidInput when it is missing
+  bool is_given(std::string_view key) const;               // not a default
+  std::filesystem::path file(std::string_view key) const;  // file named by a key; throws InvalidInput if missing
   const std::filesystem::path& folder() const { return folder_; }
   std::string file_name() const { return file_.filename().string(); }
 

@@ -1,5 +1,4 @@
-// The measurements as a fit sees them: on the mesh that is simulated, without what that mesh gets wrong, and without
-// the groups that are left out.
+// Measurements for a fit: on the simulated mesh, corrected by its discretization error, without held-out groups.
 #pragma once
 #include <string>
 #include <vector>
@@ -12,7 +11,7 @@ namespace aspic {
 
 class SimulatedData {
  public:
-  static constexpr int kTooFine = 60'000;  // tets, for a mesh of eight times as many
+  static constexpr int kTooFine = 60'000;  // limit of tets for a mesh with eight times as many
 
   SimulatedData(const Experiment& data, const FitPlan& plan);
 
@@ -21,20 +20,21 @@ class SimulatedData {
   const Experiment& fitted() const { return fitted_; }
 
   bool is_too_large_for_mesh_errors() const;
-  // Takes off what the mesh gets wrong for a material; why that is not known, and nothing changes, or nothing.
+  // Corrects the measurements by the discretization error for a material. Returns the reason if
+  // this is impossible, so that nothing changes; otherwise empty.
   std::string take_off_mesh_errors(const FitPlan& plan, const std::vector<MaterialParameters>& material);
-  // Of the positions, root mean square over the largest motion; < 0: not known.
+  // Of the positions: root mean square over the largest motion; < 0: unknown.
   double mesh_error() const;
-  // Of the force of case c, see MeshError; 0: not known.
+  // Of the force of case c, see MeshError; 0: unknown.
   double relative_force_error(size_t c) const { return errors_.empty() ? 0 : errors_[c].relative_force_error(); }
   double force_factor(size_t c) const { return errors_.empty() ? 1 : errors_[c].force_factor(); }
-  // Case c as a finer mesh would have it.
+  // Prediction for case c, corrected to a finer mesh.
   CasePrediction on_finer_mesh(size_t c, const CasePrediction& prediction) const;
 
  private:
   std::vector<std::string> left_out_;
   Experiment simulated_, corrected_, fitted_;
-  std::vector<MeshError> errors_;  // of each case; empty: not known
+  std::vector<MeshError> errors_;  // per case; empty: unknown
 };
 
 }  // namespace aspic

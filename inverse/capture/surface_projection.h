@@ -1,4 +1,4 @@
-// The nearest point of the surface of a body.
+// Projection onto the surface of a body.
 #pragma once
 #include <vector>
 
@@ -11,13 +11,13 @@ namespace aspic {
 struct ProjectedPoint {
   SurfacePoint point;
   Vec3d position{};  // [m]
-  Vec3d normal{};    // of the triangle, outwards, of length 1
+  Vec3d normal{};    // outward unit normal of the triangle
   double distance = 0;
 };
 
 class SurfaceProjection {
  public:
-  explicit SurfaceProjection(const TetMesh& mesh);  // refers to it
+  explicit SurfaceProjection(const TetMesh& mesh);  // stores a reference to the mesh
 
   const std::vector<Triangle>& triangles() const { return triangles_; }  // of the boundary, outward oriented
   ProjectedPoint nearest(const Vec3d& p) const;

@@ -1,5 +1,5 @@
-// A virtual bench: measurements of a body whose material is known, made by simulating the pokes on a mesh that is finer
-// than the one that a fit is given.
+// A virtual bench: synthetic measurements of a body with known material. Simulates pokes on a finer mesh than the fit
+// gets.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -14,7 +14,7 @@
 
 namespace aspic {
 
-// Throws InvalidInput for a pin that holds some directions only: captured data know vertices that are held in all.
+// Throws InvalidInput for a pin of only some directions: in captured data vertices are held in all directions.
 void require_full(const Pin& pin);
 
 struct SynthesisOptions {
@@ -27,39 +27,39 @@ struct SynthesisOptions {
   double noise = 0.01;        // standard deviation of positions, relative to the largest motion
   double force_noise = 0.01;  // of forces and torques, relative to the largest
   bool forces = true, torques = false;
-  bool regions = false;  // where the truth has one value, the tets of the data have one label: the anatomy is known
-  std::vector<Vec3d> gravity;    // a case for each direction, 9.81 m/s^2
-  std::optional<TetMesh> mesh;   // of the data set, at rest, in the place of the body; none: a coarser one is made
-  std::filesystem::path mesher;  // aspic-mesh; empty: found by itself
+  bool regions = false;          // label the tets of the data by true value, as for known anatomy
+  std::vector<Vec3d> gravity;    // one case per direction, 9.81 m/s^2
+  std::optional<TetMesh> mesh;   // rest mesh of the data set, in the position of the body; empty: a coarser one is made
+  std::filesystem::path mesher;  // aspic-mesh; empty: searched automatically
   uint64_t seed = 1;
-  StopToken stop = {};  // polled after every case; the cases so far are kept
+  StopToken stop = {};  // polled after every case; finished cases are kept
 };
 
 struct SynthesisStep {
-  int done = 0, of = 0;  // cases
+  int done = 0, of = 0;  // finished and total cases
   std::string name;
   Wrench wrench;
   int iterations = 0;
-  std::string failure;  // empty: an equilibrium was found
+  std::string failure;  // empty: equilibrium found
 };
 using SynthesisObserver = std::function<void(const SynthesisStep&)>;
 
 struct Synthesis {
   DataSet data;
-  FittedMaterial truth;  // on the mesh of the scene, by the user's numbers
+  FittedMaterial truth;  // on the mesh of the scene, in the user's numbering
   std::vector<std::string> notes;
-  int failed = 0;  // cases without an equilibrium, which are left out
+  int failed = 0;  // omitted cases without equilibrium
   bool interrupted = false;
 };
 
-// Of the one body of a scene, held where its pins hold it. Throws InvalidInput when there is nothing to measure.
+// Measures the single body of a scene, held where its pins hold it. Throws InvalidInput if there is nothing to measure.
 Synthesis synthesize(const Scene& scene, const SynthesisOptions& options, const SynthesisObserver& observe = {});
 
-// Of the one body of a scene, by the user's numbers. Throws InvalidInput.
+// Material of the single body of a scene, in the user's numbering. Throws InvalidInput.
 FittedMaterial true_material(const Scene& scene);
 
-// A mesh of the same body with edges about one and a half times as long: its shape generated anew, or its surface
-// filled by aspic-mesh. None: neither is possible; the reason is among the notes.
+// Mesh of the same body with edges about 1.5 times as long: regenerated shape, or surface filled by aspic-mesh. Empty
+// if neither is possible; the notes give the reason.
 std::optional<TetMesh> coarser_mesh(const Scene& scene, const std::filesystem::path& mesher,
                                     std::vector<std::string>& notes);
 

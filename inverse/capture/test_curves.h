@@ -1,6 +1,6 @@
-// Measured curves of homogeneous deformation as a table: columns `test` (uniaxial, equibiaxial, planar, simple_shear),
-// `stretch` (or amount of shear) and the nominal stress as `stress_Pa`, `stress_kPa` or `stress_MPa`. Further columns
-// are left alone. Rows of one test need not stand together.
+// Measured curves of homogeneous deformation as a table with columns `test` (uniaxial, equibiaxial, planar,
+// simple_shear), `stretch` (or amount of shear) and the nominal stress as `stress_Pa`, `stress_kPa` or `stress_MPa`.
+// Ignores other columns. Rows of a test need not be consecutive.
 #pragma once
 #include <filesystem>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace aspic {
 
-// One curve per test, in the order of their first rows. Throws InvalidInput with file, line, value and remedy.
+// Returns one curve per test in order of first appearance. Throws InvalidInput with file, line, value and remedy.
 std::vector<TestCurve> read_test_curves(const std::filesystem::path& path);
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// Units of measurement in which data may be given.
+// Units of measured data.
 #pragma once
 #include <string>
 #include <string_view>
@@ -6,8 +6,8 @@
 
 namespace aspic {
 
-// Of "length", "mesh", "force", "torque", "angle", "pressure" or "gravity"; the first is that of the SI.
+// Units of "length", "mesh", "force", "torque", "angle", "pressure" or "gravity"; the SI unit is first.
 std::vector<std::string> unit_names(std::string_view quantity);
-double unit_in_si(std::string_view quantity, std::string_view unit);  // of a name in that list
+double unit_in_si(std::string_view quantity, std::string_view unit);  // requires a name of that list
 
 }  // namespace aspic

@@ -1,6 +1,6 @@
-// Levenberg-Marquardt within bounds, for few unknowns of which some may end exactly at a bound: coefficients that must
-// not be negative. (fit.h maps bounded quantities smoothly to the whole line, where a bound is infinitely far away.)
-// Each iteration minimizes the damped Gauss-Newton model over the box, exactly [Nocedal 2006, alg. 16.3].
+// Levenberg-Marquardt with bounds, for few parameters that may end exactly at a bound, such as nonnegative
+// coefficients. (fit.h maps bounded quantities smoothly to the whole line, with bounds at infinity.) Each iteration
+// minimizes the damped Gauss-Newton model over the box exactly [Nocedal 2006, alg. 16.3].
 #pragma once
 #include <span>
 #include <vector>
@@ -15,7 +15,7 @@ struct Bounds {
 
 struct BoundedFitOptions {
   int max_iterations = 300;
-  double tolerance = 1e-10;  // of the decrease of |r|^2 that a step predicts, relative to |r|^2
+  double tolerance = 1e-10;  // predicted relative decrease of |r|^2
 };
 
 struct BoundedFit {
@@ -27,7 +27,7 @@ struct BoundedFit {
   int iterations = 0, evaluations = 0;
 };
 
-// From `guess`, clipped to the box. Not converged and p empty: the residuals are not defined at the guess.
+// Starts from `guess`, clipped to the box. Residuals undefined at the guess: not converged, with an empty p.
 BoundedFit minimize_within(LeastSquares& problem, std::span<const double> guess, std::span<const Bounds> bounds,
                            const BoundedFitOptions& options = {});
 

@@ -1,4 +1,4 @@
-// Tall matrices: some hundred columns of many rows.
+// Tall matrices: a few hundred columns with many rows.
 #pragma once
 #include <cmath>
 #include <span>

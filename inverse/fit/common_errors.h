@@ -1,6 +1,6 @@
-// Residuals with errors in common. Beside one of its own of length 1, r has an error along each of some directions n,
-// times a normal number: its covariance is I + sum of n n'. L makes it independent again: L (I + sum of n n') L' = I.
-// Along a direction of which nothing is known the error has no bounds, and L takes r off it: L n = 0.
+// Residuals with common errors. Besides its own unit variance, r has an error along each direction n, times a standard
+// normal number: the covariance is I + sum of n n'. L whitens it: L (I + sum of n n') L' = I. An unbounded error along
+// n is projected out: L n = 0.
 #pragma once
 #include <span>
 #include <vector>
@@ -11,9 +11,9 @@ namespace aspic {
 
 class CommonErrors {
  public:
-  // n: of the residuals from `first` on, and 0 elsewhere. As long as it is, so uncertain they are along it.
+  // Adds n for the residuals from `first` on, 0 elsewhere. The length of n is the standard deviation along it.
   void add(int first, std::vector<double> n);
-  void add_unbounded(std::vector<double> n);         // of all residuals, after all others
+  void add_unbounded(std::vector<double> n);         // for all residuals, after all other directions
   void apply(std::span<double> r) const;             // r := L r
   void apply_transposed(std::span<double> w) const;  // w := L' w
 
@@ -21,7 +21,7 @@ class CommonErrors {
   struct Direction {
     int first;
     std::vector<double> unit;
-    double taken;  // of the part along it: 0 none, 1 all
+    double taken;  // removed fraction along it: 0 none, 1 all
     void take_off(std::span<double> r) const;
   };
   std::vector<double> beside_others(int first, const std::vector<double>& n) const;
@@ -29,15 +29,15 @@ class CommonErrors {
   std::vector<Direction> directions_;
 };
 
-// How stiff the layer of a tip is, is a convention: nothing is known of log k. And a body whose mesh is too stiff
-// around the tip behaves as under another layer, in each case by itself: to log k, common to all cases, a normal number
-// of its own is added with the deviation kLayerDeviation. All models that are fitted and judged are taken so.
+// The stiffness k of an indenter's layer is a convention, so log k is unknown. A mesh that is too stiff around the
+// indenter also acts like another layer, independently in each case. So log k, common to all cases, gets a normal
+// deviation per case of kLayerDeviation. All fitted and compared models are treated this way.
 inline constexpr double kLayerDeviation = 3;  // a factor of 20
 
 class WithUncertainLayers : public LeastSquares {
  public:
-  // Refers to `data`, whose nuisances it takes in. They are those of the first p where r exists, so that the problem
-  // remains one of least squares.
+  // Stores a reference to `data`, whose nuisance directions it projects out. They are evaluated at the first p where r
+  // exists, so that the problem remains one of least squares.
   explicit WithUncertainLayers(LeastSquares& data) : data_(data) {}
 
   int unknowns() const override { return data_.unknowns(); }

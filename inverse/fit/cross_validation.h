@@ -1,5 +1,5 @@
-// Leave-one-group-out cross-validation: each group of cases (a poke) is left out in turn, the material is
-// fitted to the others, and the group is predicted.
+// Leave-one-group-out cross-validation: for each group of cases (a poke), fits the material to the others and predicts
+// the group.
 #pragma once
 #include <functional>
 #include <span>
@@ -15,14 +15,14 @@ struct HeldOut {
   std::string group;
   bool ok = false;
   std::string failure;  // why there is no prediction
-  int readings = 0;     // of markers, over all cases of the group
+  int readings = 0;     // number of marker readings in the group
   int forces = 0;
-  double peak_motion = 0;                   // of a marker from its place at rest, as measured [m]
+  double peak_motion = 0;                   // measured maximum displacement of a marker [m]
   double position_error = 0;                // root mean square of |predicted - measured| [m]
   double largest_error = 0;                 // [m]
-  double position_noise = 0;                // what the standard deviations alone would leave of it [m]
-  double peak_force = 0;                    // as measured [N]
-  double force_error = 0, force_noise = 0;  // the same of forces [N]
+  double position_noise = 0;                // expected part from the standard deviations alone [m]
+  double peak_force = 0;                    // measured maximum [N]
+  double force_error = 0, force_noise = 0;  // the same for forces [N]
   std::vector<double> p;                    // fitted without the group
 
   double relative_position_error() const { return peak_motion > 0 ? position_error / peak_motion : 0; }
@@ -31,21 +31,21 @@ struct HeldOut {
 
 struct CrossValidation {
   std::vector<HeldOut> groups;  // in the order of the cases
-  // Root mean square over the groups that were predicted, relative to the peak of each; < 0: there is none.
+  // Root mean square over the predicted groups, relative to the peak of each; < 0: none.
   double position_error = -1, force_error = -1;
   std::vector<std::string> warnings;
 };
 
-// The cases for which `wanted` is true, of the same body.
+// Returns the cases for which `wanted` is true, with the same body.
 Experiment subset(const Experiment& experiment, const std::function<bool(const LoadCase&)>& wanted);
 
-// What was predicted for the cases of `left_out`, one after another, against what was measured.
+// Compares predictions for the cases of `left_out`, in order, with the measurements.
 HeldOut compare(const Experiment& left_out, std::span<const CasePrediction> predicted);
 
-// Called before each group is left out.
+// Called before each group is held out.
 using CrossValidationObserver = std::function<void(int group, int groups, const std::string& name)>;
 
-// `fitted`: of all cases; its p is the start and its weight is kept.
+// `fitted`: fit of all cases; its p is the initial guess and its weight is kept.
 CrossValidation cross_validate(const Experiment& experiment, const ParameterMap& map, Regularizer& regularizer,
                                const FitReport& fitted, FitOptions options = {},
                                const EquilibriumOptions& equilibrium = {}, const CrossValidationObserver& observe = {});

@@ -11,27 +11,27 @@ namespace aspic {
 struct TestCurve {
   std::string name;  // "equibiaxial"
   Deformation deformation = Deformation::uniaxial;
-  std::vector<double> stretch;  // or amount of shear [1]
-  std::vector<double> stress;   // nominal [Pa]
+  std::vector<double> stretch;  // stretch, or amount of shear [1]
+  std::vector<double> stress;   // nominal stress [Pa]
 };
 
-// What counts alike: every newton per area; every curve, whatever its stresses (of the mean square of each curve);
-// every per cent (of each point, but of no less than 5 % of the largest stress of its curve).
+// Equal weights for: every unit of stress (absolute), every curve (its mean square), or every relative error (of each
+// point, with a floor of 5 % of the largest stress of its curve).
 enum class Weighting { absolute, balanced, relative };
 
 struct CurveFitOptions {
   std::string material = "neo_hookean";
   Volume volume = Volume::incompressible;
-  double poisson = 0.49;  // of compressible bodies, and of the scene that the material is for
+  double poisson = 0.49;  // for compressible bodies, and for the scene of the material
   Weighting weighting = Weighting::balanced;
-  std::vector<std::string> held;  // material's own parameters that keep their default
-  int starts = 6;                 // the material's defaults, and others at random (with a fixed seed)
+  std::vector<std::string> held;  // material parameters that keep their default
+  int starts = 6;                 // number of initial guesses: the defaults, and random ones (fixed seed)
 };
 
 struct FittedParameter {
-  std::string name, unit;  // "young", and the material's own
+  std::string name, unit;  // "young", and parameters of the material
   double value = 0;
-  double deviation = 0;  // standard deviation by the scatter of the residuals; infinite: the curves do not tell
+  double deviation = 0;  // standard deviation from the scatter of the residuals; infinite: undetermined
   bool at_bound = false, is_held = false;
 };
 
@@ -41,7 +41,7 @@ struct CurveErrors {
   double rms = 0;                 // of predicted - measured [Pa]
   double relative = 0;            // |predicted - measured| / |measured|, norms over the points
   double largest = 0;             // largest |predicted - measured| over the largest |measured|
-  double r_squared = 0;           // 1 - sum of squares / that about the mean of the measured
+  double r_squared = 0;           // 1 - sum of squares / sum of squares about the mean of the measurements
 };
 
 struct CurveFit {
@@ -50,14 +50,14 @@ struct CurveFit {
   double poisson = 0;
   std::vector<FittedParameter> fitted;
   std::vector<CurveErrors> curves;
-  double relative = 0, r_squared = 0;  // over the points of all curves together
+  double relative = 0, r_squared = 0;  // over the points of all curves
   bool is_converged = false;
   int iterations = 0;
-  std::vector<double> starts;  // |r|^2 / 2 reached from each start; infinite where none was
+  std::vector<double> starts;  // |r|^2 / 2 from each initial guess; infinite: failed
 };
 
-// Residuals as a function of ln mu and of the material's own parameters that are not held (as logarithms where their
-// range spans powers of ten). Refers to the curves.
+// Residuals as a function of ln mu and the material's other free parameters (as logarithms if their range spans powers
+// of ten). Stores a reference to the curves.
 class CurveMisfit : public LeastSquares {
  public:
   CurveMisfit(const std::vector<TestCurve>& curves, const CurveFitOptions& options);  // throws InvalidInput
@@ -73,25 +73,25 @@ class CurveMisfit : public LeastSquares {
   std::vector<double> guess(int start) const;
   MaterialParameters parameters(std::span<const double> p) const;
   std::vector<FittedParameter> described(const BoundedFit& fit) const;
-  const std::vector<double>& predicted() const { return predicted_; }  // by the last evaluate(), curve after curve
+  const std::vector<double>& predicted() const { return predicted_; }  // from the last evaluate(), curve by curve
 
  private:
-  struct Own {  // a parameter of the material that is fitted
+  struct Own {  // a fitted parameter of the material
     int index = 0;
     bool is_log = false;
   };
   void set_scale();
-  double fitted_shear() const;  // a first guess of mu
+  double fitted_shear() const;  // initial guess of mu
 
   const std::vector<TestCurve>& curves_;
   CurveFitOptions options_;
   const MaterialInfo& info_;
   std::vector<Own> own_;
   std::vector<Bounds> bounds_;
-  std::vector<double> scale_, predicted_, jacobian_;  // of each point [Pa]; jacobian_ row by row
+  std::vector<double> scale_, predicted_, jacobian_;  // per point [Pa]; jacobian_ is row-major
 };
 
-// Throws InvalidInput for an unknown material, a curve without points, and numbers that make no sense.
+// Throws InvalidInput for an unknown material, a curve without points, or invalid numbers.
 CurveFit fit_curves(const std::vector<TestCurve>& curves, const CurveFitOptions& options);
 
 // material = { model = "fung", young = 3.1e5, poisson = 0.49, b = 0.2 }

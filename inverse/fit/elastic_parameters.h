@@ -1,5 +1,4 @@
-// The parameters theta of all elastic terms of a model, one term after another: TetElasticity::parameter_count()
-// numbers for each of its tets.
+// Parameters theta of all elastic terms of a model, term by term: TetElasticity::parameter_count() values per tet.
 #pragma once
 #include <span>
 #include <vector>
@@ -10,11 +9,11 @@ namespace aspic {
 
 class ElasticParameters {
  public:
-  explicit ElasticParameters(const Model& model);  // refers to its elastic terms
+  explicit ElasticParameters(const Model& model);  // stores references to its elastic terms
 
-  int size() const { return start_.back(); }  // of theta
+  int size() const { return start_.back(); }  // size of theta
   int tets() const { return tet_start_.back(); }
-  int of_term(int k) const { return start_[k]; }             // where its numbers begin
+  int of_term(int k) const { return start_[k]; }             // start of its values in theta
   std::vector<MaterialParameters> get() const;               // one per tet
   void set(std::span<const MaterialParameters> parameters);  // one per tet
   // g += scale d(dV/dx)/dtheta change, and gradient += scale d(w . dV/dx)/dtheta.
@@ -23,7 +22,7 @@ class ElasticParameters {
 
  private:
   std::vector<TetElasticity*> terms_;
-  std::vector<int> start_, tet_start_;  // one per term, and the end
+  std::vector<int> start_, tet_start_;  // one entry per term, and the end
 };
 
 }  // namespace aspic

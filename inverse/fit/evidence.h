@@ -1,4 +1,4 @@
-// Which weight of the regularizer the data support: the one under which they are most probable [MacKay 1992].
+// Weight of the regularizer with the largest evidence [MacKay 1992].
 #pragma once
 #include <span>
 
@@ -8,11 +8,11 @@
 namespace aspic {
 
 struct SupportedWeight {
-  double factor = 1;  // times the weight of the fit
-  double gain = 0;    // -2 log of the probability that is gained by it
+  double factor = 1;  // relative to the weight of the fit
+  double gain = 0;    // -2 log of the ratio of evidence
 };
 
-// `p`: the fit with `weight`; `spectrum`: of its data there against exp(-weight R).
+// `p`: the fit with `weight`; `spectrum`: of its data there relative to exp(-weight R).
 SupportedWeight supported_weight(Regularizer& prior, double weight, std::span<const double> p,
                                  const Spectrum& spectrum);
 

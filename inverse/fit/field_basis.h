@@ -1,4 +1,4 @@
-// A field over the tets from few numbers: z_t = sum_j w_tj p_j, where the weights of a tet are positive and sum to 1.
+// A field over the tets with few coefficients: z_t = sum_j w_tj p_j. Weights of a tet are positive and sum to 1.
 #pragma once
 #include <span>
 #include <vector>
@@ -12,16 +12,16 @@ class FieldBasis {
   static FieldBasis uniform(int tets);
   static FieldBasis tets(int tets);
   static FieldBasis regions(const std::vector<int>& labels);  // one function per label, ascending
-  // Compact radial functions [Wendland 1995] about centroids of tets that are as far from each other as can be, divided
-  // by their sum [Shepard 1968]. `count` is at most the number of tets.
+  // Compact radial functions [Wendland 1995] at centroids of tets that are as far apart as possible, divided by their
+  // sum [Shepard 1968]. `count` is at most the number of tets.
   static FieldBasis radial(const TetMesh& mesh, int count);
 
-  int size() const { return size_; }  // numbers
+  int size() const { return size_; }  // number of coefficients
   bool is_identity() const { return is_identity_; }
   int tet_count() const { return static_cast<int>(row_start_.size()) - 1; }
   void multiply(std::span<const double> p, std::span<double> z) const;        // z = W p
   void add_transposed(std::span<const double> z, std::span<double> p) const;  // p += W' z
-  // visit(t, j, w) for every weight that is not 0, tet by tet.
+  // Calls visit(t, j, w) for every nonzero weight, tet by tet.
   template <class Visit>
   void for_each_weight(const Visit& visit) const {
     for (int t = 0; t < tet_count(); ++t)

@@ -1,4 +1,4 @@
-// Where in a body a direction of the unknowns acts, in words.
+// Describes in which part of a body a direction of the parameters acts.
 #pragma once
 #include <span>
 #include <string>
@@ -8,10 +8,10 @@
 namespace aspic {
 
 // "young of the whole body", "young around (0.01, 0, 0.02) m (8 % of the body)", "young around A against around B".
-// Quantities and places with little part in dp are left out; its sign does not count.
+// Omits quantities and places with a small part of dp; ignores its sign.
 std::string words_of_direction(const TetMesh& mesh, const ParameterMap& map, std::span<const double> dp);
 
-// "around (0.01, 0, 0.02) m (8 % of the body)": where a field, one number per tet, is large.
+// "around (0.01, 0, 0.02) m (8 % of the body)": region where a field, one value per tet, is large.
 std::string words_of_place(const TetMesh& mesh, std::span<const double> field);
 
 std::string words_of_point(const Vec3d& x);  // "(0.01, 0, 0.02) m"

@@ -1,4 +1,4 @@
-// Shared by the methods of a fit: f(p) = |r|^2 / 2 + weight R with derivatives, counts and calls of the observer.
+// Shared by the fitting methods: f(p) = |r|^2 / 2 + weight R with derivatives, counters and observer calls.
 #pragma once
 #include <algorithm>
 #include <span>
@@ -16,7 +16,7 @@ struct FitPoint {
 };
 
 double inner_product(std::span<const double> a, std::span<const double> b);
-double largest_entry(std::span<const double> v);  // of |v|
+double largest_entry(std::span<const double> v);  // largest |v_i|
 void add_multiple(double factor, std::span<const double> v, std::span<double> to);
 
 class FitRun {
@@ -33,9 +33,9 @@ class FitRun {
   Regularizer& prior() { return regularizer_; }
   int unknowns() const { return data_.unknowns(); }
   int residuals() const { return data_.residual_count(); }
-  // False: r is not defined at p, or not finite.
+  // Returns false if r is undefined or not finite at p.
   bool evaluate(std::span<const double> p, FitPoint& point);
-  bool linearize(const FitPoint& at);  // J at this point; false: it does not exist there
+  bool linearize(const FitPoint& at);  // linearizes J at this point; false if it does not exist
   void gradient(const FitPoint& at, std::span<double> g);
   void multiply(std::span<const double> dp, std::span<double> dr);
   void multiply_transposed(std::span<const double> w, std::span<double> pbar);
@@ -53,17 +53,17 @@ class FitRun {
   LeastSquares& data_;
   Regularizer& regularizer_;
   const FitObserver& observe_;
-  std::vector<double> evaluated_;  // the p of the last successful evaluation
+  std::vector<double> evaluated_;  // p of the last successful evaluation
   std::vector<double> dr_;
 };
 
-// How far a method is to go: to a part of the first decrement, or to an absolute one, but not without a step where the
-// weight is new. The first is remembered from one weight to the next.
+// Goal of a method: a fraction of the first decrement, or an absolute one, but at least one step for a new weight. The
+// first decrement is kept from weight to weight.
 struct FitGoal {
   double tolerance = 1e-3;
   double enough = 0;
   bool is_new = false;
-  double first_decrement = 0;  // 0: not known yet
+  double first_decrement = 0;  // 0: unknown
 
   bool is_reached(double decrement) {
     if (first_decrement == 0) first_decrement = decrement;
@@ -73,27 +73,27 @@ struct FitGoal {
   }
 };
 
-// Each minimizes from `at` with the weight of the run, and writes the best point to `at`.
+// Each method minimizes from `at` with the weight of the run, and writes the best point to `at`.
 Status levenberg_marquardt(FitRun& run, FitPoint& at, FitGoal& goal);
 Status gauss_newton_cg(FitRun& run, FitPoint& at, FitGoal& goal);
 Status fit_by_lbfgs(FitRun& run, FitPoint& at, FitGoal& goal);
 
 using FitMethod = Status (*)(FitRun&, FitPoint&, FitGoal&);
 
-// Choose the weight, and end at the p that belongs to it: so that |r|^2 is the number of residuals, so that the data
-// are most probable, or at the corner of the curve of (log misfit, log roughness).
+// Choose the weight and return its p: |r|^2 equal to the number of residuals, largest evidence, or the corner of the
+// curve (log misfit, log roughness).
 Status fit_by_discrepancy(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method);
 Status fit_by_evidence(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method);
 Status fit_by_l_curve(FitRun& run, FitPoint& at, FitGoal& goal, FitMethod method);
 
-// Towards d from `at`, backtracking where f falls too little or is not defined. False: no step was found.
+// Step along d from `at`, with backtracking if f decreases too little or is undefined. False: no step found.
 struct FitStep {
-  double length = 0;  // of the accepted step, in d
+  double length = 0;  // accepted step length, relative to d
   int trials = 0;
 };
 bool search_along(FitRun& run, FitPoint& at, std::span<const double> d, double slope, FitStep& step);
 
-// Whether the decrease that can be hoped for drowns in the noise of f, as it is computed from equilibria.
+// Whether the expected decrease is below the noise of f, which is computed from equilibria.
 bool is_lost_in_noise(double decrement, double objective);
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// Numbers in messages, as printf writes them.
+// Formats numbers in messages with printf.
 #pragma once
 #include <cstdio>
 #include <string>

@@ -1,4 +1,4 @@
-// Normal distributions of the unknowns, known by products with their precision (inverse covariance) and covariance.
+// Normal distributions of the parameters, given by products with their precision (inverse covariance) and covariance.
 #pragma once
 #include <random>
 #include <span>
@@ -16,19 +16,19 @@ class Gaussian {
   virtual void covariance(std::span<const double> v, std::span<double> z) = 0;  // z = C v
 };
 
-// The prior exp(-weight R), with the curvature of R at p. Directions without curvature are held
-// within +-kWidest deviations, so that the distribution exists.
+// Prior exp(-weight R) with the curvature of R at p. Directions without curvature get a standard deviation of kWidest,
+// so that the distribution is proper.
 class PriorGaussian : public Gaussian {
  public:
-  static constexpr double kWidest = 100;  // of what is fitted, where R says nothing: log E +- 100
+  static constexpr double kWidest = 100;  // standard deviation without information from R: log E +- 100
 
-  // Refers to the regularizer. weight >= 0.
+  // Stores a reference to the regularizer. Requires weight >= 0.
   PriorGaussian(Regularizer& regularizer, double weight, std::span<const double> p);
 
   int size() const override { return static_cast<int>(p_.size()); }
   void precision(std::span<const double> v, std::span<double> y) override;
   void covariance(std::span<const double> v, std::span<double> z) override;
-  void sample(std::mt19937_64& random, std::span<double> x);  // of mean 0
+  void sample(std::mt19937_64& random, std::span<double> x);  // zero mean
 
  private:
   Regularizer& regularizer_;

@@ -1,4 +1,4 @@
-// A body with the loads of a case, balanced increment by increment: what bickel.h simulates with.
+// A body under the loads of a case, equilibrated increment by increment, for bickel.h.
 #pragma once
 #include <memory>
 #include <span>
@@ -14,11 +14,11 @@ namespace aspic {
 
 class IncrementalBody {
  public:
-  // Refers to all of them.
+  // Stores references to all arguments.
   IncrementalBody(const Experiment& experiment, const LoadCase& load, const StrainSpaceModuli& moduli,
                   const BickelOptions& options);
 
-  // Applies this part of the load and solves for equilibrium. Returns false on failure; see failure().
+  // Applies this fraction of the load and solves for equilibrium. Returns false on failure; see failure().
   bool go_to(double part);
 
   CasePrediction prediction() const;
@@ -28,7 +28,7 @@ class IncrementalBody {
 
  private:
   void add_loads();
-  // Forces that do not balance; `size`: the largest that have acted so far.
+  // Unbalanced forces; `size`: the largest forces so far.
   std::vector<double> residual(std::span<const double> x, double& size) const;
   void clear_held(std::vector<double>& g) const;
   bool balance();

@@ -1,4 +1,4 @@
-// One load case as a body at rest under its load, with what is read off it.
+// One load case: a body at rest under its load, and its readings.
 #pragma once
 #include <span>
 #include <string>
@@ -11,15 +11,15 @@ namespace aspic {
 
 class LoadedBody {
  public:
-  // Refers to both. Throws InvalidInput for a case that no residual comes from, or one that cannot be read.
+  // Stores references to both. Throws InvalidInput for a case without residuals, or an invalid one.
   LoadedBody(const Experiment& experiment, const LoadCase& load, const std::string& material,
              std::span<const MaterialParameters> parameters, const EquilibriumOptions& options);
 
   int residual_count() const { return static_cast<int>(3 * (load_.positions.size() + has_force() + has_torque())); }
   std::string what(int residual) const;  // "poke 3, depth 2: marker 17, y"
 
-  // Finds the equilibrium for these parameters: from `start`, then from where the body is, then by applying the load in
-  // parts to the body at rest. Returns false if there is none; see failure().
+  // Finds the equilibrium for these parameters: from `start`, then from the current positions, then by load stepping
+  // from rest. Returns false if there is none; see failure().
   bool solve(std::span<const MaterialParameters> parameters, std::span<const double> start);
   bool is_solved() const { return is_solved_; }
   std::span<const double> x() const { return equilibrium_.x(); }
@@ -27,13 +27,13 @@ class LoadedBody {
   const CasePrediction& prediction() const { return prediction_; }
   const std::string& failure() const { return failure_; }
 
-  // Remembers x(): linearize() returns there.
+  // Stores x() for linearize().
   void accept() { accepted_.assign(x().begin(), x().end()); }
   bool linearize(std::span<const MaterialParameters> parameters);
   std::span<const double> accepted() const { return accepted_; }
   void restore(std::span<const double> x);  // as if x had been found and accepted
   bool is_linearized() const { return !equilibrium_.linearized_x().empty(); }
-  // x where it is linearized + dx/dtheta dtheta; false: that could not be solved.
+  // Computes linearized x + dx/dtheta dtheta; false if the solve failed.
   bool predict(std::span<const double> dtheta, std::span<double> x);
   bool multiply(std::span<const double> dtheta, std::span<double> dr);
   bool add_transposed(std::span<const double> w, std::span<double> thetabar);
@@ -45,9 +45,9 @@ class LoadedBody {
  private:
   bool has_force() const { return load_.force.has_value(); }
   bool has_torque() const { return load_.torque.has_value(); }
-  static const LoadCase& readable(const Experiment& experiment, const LoadCase& load);  // throws when it is not
+  static const LoadCase& readable(const Experiment& experiment, const LoadCase& load);  // throws if invalid
   Model make_model(const std::string& material, std::span<const MaterialParameters> parameters);
-  void apply(double part);  // of the load
+  void apply(double part);  // fraction of the load
   bool try_from(std::span<const double> start);
   bool load_in_parts();
   bool solved(const SolveReport& report);
@@ -56,8 +56,8 @@ class LoadedBody {
 
   const Experiment& experiment_;
   const LoadCase& load_;
-  Probe* probe_ = nullptr;           // in the model, if there is a tip
-  std::vector<ScaledLoad*> scaled_;  // in the model: weight and pressure
+  Probe* probe_ = nullptr;           // in the model; null without an indenter
+  std::vector<ScaledLoad*> scaled_;  // weight and pressure in the model
   std::vector<double> rest_;
   Equilibrium equilibrium_;
   CasePrediction prediction_;

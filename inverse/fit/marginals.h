@@ -1,4 +1,4 @@
-// Variances of the fitted quantities in every tet, before and after the data.
+// Prior and posterior variances of the fitted quantities in every tet.
 #pragma once
 #include <vector>
 
@@ -8,14 +8,14 @@
 namespace aspic {
 
 struct MarginalOptions {
-  int exact = 3000;   // largest number of values with one solve each
-  int samples = 256;  // else: of what the data do not see
+  int exact = 3000;   // maximum number of values with one solve each
+  int samples = 256;  // otherwise: samples of the undetermined part
   unsigned seed = 2;
 };
 
 struct Marginals {
-  std::vector<std::vector<double>> before, after;  // of each unknown in each tet, as it is fitted (log E)
-  double relative_error = 0;                       // largest standard error of a standard deviation; 0: they are exact
+  std::vector<std::vector<double>> before, after;  // of each parameter in each tet, on the fitted scale (log E)
+  double relative_error = 0;                       // largest standard error of a standard deviation; 0: exact
 };
 
 Marginals marginals(PosteriorGaussian& belief, const ParameterMap& map, const MarginalOptions& options = {});

@@ -1,5 +1,5 @@
-// From the few or many unknowns p of a fit to the material of every tet.
-//   p -> z = W p: each unknown quantity in each tet on the line where it is fitted (log E, ...), see quantity_scale.h
+// Maps the parameters p of a fit to the material of every tet.
+//   p -> z = W p: each fitted quantity in each tet on its fitted scale (log E, ...), see quantity_scale.h
 //     -> E, nu, extra -> mu, lambda, extra
 #pragma once
 #include <memory>
@@ -13,26 +13,26 @@
 
 namespace aspic {
 
-enum class Spread { uniform, regions, handles, tets };  // one value; per region; radial basis functions; per tet
+enum class Spread { uniform, regions, handles, tets };  // uniform; per region; radial basis functions; per tet
 
-// A quantity that is fitted: "young", "poisson" or one of the material's own (MaterialInfo::extra). Positive quantities
-// are fitted as logarithms, bounded ones by a smooth map of the line onto their range.
+// A fitted quantity: "young", "poisson" or one of the material's own (MaterialInfo::extra). Positive quantities are
+// fitted as logarithms, bounded ones by a smooth map of the line to their range.
 struct Unknown {
   std::string quantity = "young";
   Spread spread = Spread::tets;
-  int handles = 0;     // how many radial basis functions, for Spread::handles
-  double guess = 1e5;  // where the fit starts, in SI units
+  int handles = 0;     // number of radial basis functions, for Spread::handles
+  double guess = 1e5;  // initial guess [SI]
 };
 
 class ParameterMap {
  public:
-  // `known`: what every tet has where nothing is fitted. Throws InvalidInput.
+  // `known`: parameters of every tet before fitting. Throws InvalidInput.
   ParameterMap(const TetMesh& mesh, std::string material, std::vector<MaterialParameters> known,
                std::vector<Unknown> unknowns);
   ~ParameterMap();
   ParameterMap(ParameterMap&&) noexcept;
 
-  int size() const;  // number of unknowns
+  int size() const;  // number of entries of p
   int tet_count() const;
   int parameters_per_tet() const;  // mu, lambda and the material's own
   const std::vector<Unknown>& unknowns() const;
@@ -42,16 +42,16 @@ class ParameterMap {
   const FieldBasis& basis(int unknown) const;
 
   std::vector<MaterialParameters> parameters(std::span<const double> p) const;  // one per tet
-  // dtheta = dtheta/dp dp at p, parameters_per_tet() numbers per tet; and pbar += (dtheta/dp)' thetabar.
+  // Computes dtheta = dtheta/dp dp at p, parameters_per_tet() values per tet, and pbar += (dtheta/dp)' thetabar.
   void multiply(std::span<const double> p, std::span<const double> dp, std::span<double> dtheta) const;
   void add_transposed(std::span<const double> p, std::span<const double> thetabar, std::span<double> pbar) const;
 
   // The values in each tet of one unknown, as it is fitted (log E) and in SI units (E).
   std::vector<double> fitted_values(int unknown, std::span<const double> p) const;
   std::vector<double> values(int unknown, std::span<const double> p) const;
-  double value(int unknown, double fitted) const;           // in SI units, increasing in `fitted`
-  double place_in_range(int unknown, double fitted) const;  // -1 to 1, its ends; 0: it has no range
-  // fitted_values is linear in p: values' rows as a sparse matrix, tet by tet. For uncertainty.
+  double value(int unknown, double fitted) const;           // in SI units; increases with `fitted`
+  double place_in_range(int unknown, double fitted) const;  // -1 to 1 between its ends; 0: unbounded
+  // Derivatives of fitted_values, which is linear in p, and its sparse rows tet by tet, for uncertainty.
   void multiply_fitted(int unknown, std::span<const double> dp, std::span<double> values) const;
   void add_fitted_transposed(int unknown, std::span<const double> values, std::span<double> pbar) const;
 

@@ -1,4 +1,4 @@
-// From a field to the parts that it is made of: a few values, and the places where they hold.
+// Divides a field into parts: a few values and their locations.
 #pragma once
 #include <span>
 #include <vector>
@@ -10,18 +10,18 @@
 namespace aspic {
 
 struct Parts {
-  bool ok = false;  // false: an equilibrium was not found, or the field gathers about fewer values
+  bool ok = false;  // false: no equilibrium, or the field clusters at fewer values
   PartsEstimate estimate;
-  std::vector<double> p;  // of the field's map, with `estimate.mean`
+  std::vector<double> p;  // for the field's map, with `estimate.mean`
   double squares = 0;     // |r|^2 there
 };
 
-// `count` parts of `unknown`, which is one per tet, beginning where the field p gathers. Each pass linearizes the model
-// at the mean of the samples of the one before; by what the last one still moved, deviations are larger.
+// Finds `count` parts of `unknown`, a quantity per tet, starting from the clusters of the field p. Each pass linearizes
+// the model at the mean of the previous samples; the change of the last pass increases the standard deviations.
 Parts find_parts(LeastSquares& model, const ParameterMap& map, const TetMesh& mesh, std::span<const double> p,
                  int unknown, int count, const PartsOptions& options = {});
 
-// Whether parts explain the measurements about as well as the field, of |r|^2 = `field_squares`, or the noise does.
+// Whether the parts fit the measurements about as well as the field, with |r|^2 = `field_squares`, or within the noise.
 bool are_as_good(const Parts& parts, double field_squares, int residuals);
 
 }  // namespace aspic

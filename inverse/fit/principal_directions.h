@@ -1,5 +1,4 @@
-// In which fields over the body the uncertainty lies: principal components of the posterior, with tets weighted by
-// their part of the volume.
+// Principal components of the posterior as fields over the body, with tets weighted by volume.
 #pragma once
 #include <span>
 #include <vector>
@@ -10,15 +9,15 @@
 namespace aspic {
 
 struct PrincipalDirection {
-  double before = 0, after = 0;  // variance of its amplitude, before and after the data; mean over the body
-  std::vector<double> p;         // what moves along when the amplitude does
+  double before = 0, after = 0;  // variance of the amplitude, prior and posterior; mean over the body
+  std::vector<double> p;         // change of p with the amplitude
 };
 
-// The `count` largest, descending by `after`.
+// The `count` largest components, descending by `after`.
 std::vector<PrincipalDirection> principal_directions(PosteriorGaussian& belief, const ParameterMap& map,
                                                      const TetMesh& mesh, int count);
 
-// sqrt of the mean over the body of the squares of all fitted quantities that belong to p.
+// Root mean square over the body of all fitted quantities for p.
 double root_mean_square(const ParameterMap& map, const TetMesh& mesh, std::span<const double> p);
 
 }  // namespace aspic

@@ -1,4 +1,4 @@
-// The line on which a quantity is fitted: z in (-inf, inf) -> its value, smooth and increasing.
+// Scale on which a quantity is fitted: a smooth increasing map of z in (-inf, inf) to its value.
 //   positive              q = exp(z)
 //   in (lower, upper)     q = middle + half tanh(z / 2): the logistic curve, z = +-2 reaches 12 % and 88 % of the range
 //   in a range of powers  log q = middle + half tanh(z / half), z = log(q / center) in the middle of the range
@@ -40,12 +40,12 @@ class QuantityScale {
     }
     return is_log_ ? std::exp(line(z)) * du : du;
   }
-  double fitted(double q) const {  // z of a value inside the range
+  double fitted(double q) const {  // z of a value in the range
     const double u = is_log_ ? std::log(q + shift_) : q;
     return half_ > 0 ? width_ * std::atanh((u - middle_) / half_) : u;
   }
 
-  double place_in_range(double z) const { return half_ > 0 ? std::tanh(z / width_) : 0; }  // -1 to 1; 0: no range
+  double place_in_range(double z) const { return half_ > 0 ? std::tanh(z / width_) : 0; }  // -1 to 1; 0: unbounded
 
  private:
   double line(double z) const {

@@ -1,8 +1,8 @@
-// What the mesh of a fit gets wrong: linear tets are too stiff. The same body is put at rest under the same loads on a
-// mesh with edges half as long; errors fall with the square of the edges, so that 4/3 of the difference is that of the
-// mesh [Richardson 1911]. It is taken off the measurements, and a part of it is added to their standard deviations
-// (as in the approximation errors of [Kaipio and Somersalo 2007]). A force is proportional to the stiffness, which is
-// unknown: its extrapolation is geometric, so that it keeps its sign, and its error is relative.
+// Discretization error of a fit: linear tets are too stiff. The same body is solved under the same loads on a mesh with
+// half the edge length. Errors are quadratic in the edge length, so 4/3 of the difference is the error [Richardson
+// 1911]. It is subtracted from the measurements, and a fraction of it is added to their standard deviations (like the
+// approximation errors of [Kaipio and Somersalo 2007]). Forces are proportional to the unknown stiffness, so their
+// extrapolation is geometric: it keeps the sign, and the error is relative.
 #pragma once
 #include <span>
 #include <string>
@@ -12,23 +12,23 @@
 
 namespace aspic {
 
-// Every tet in eight, the octahedron in its middle along its shortest diagonal.
+// Splits every tet in eight, with the octahedron cut along its shortest diagonal.
 Experiment refined(const Experiment& experiment);
 Experiment refined(Experiment experiment, int times);
 
-// What the tets of a refined mesh are made of: its parts follow one another, tet by tet.
+// Parameters of the tets of a refined mesh; the parts of a tet are consecutive.
 std::vector<MaterialParameters> for_parts(std::span<const MaterialParameters> parameters, int tet_count);
 
-// Limit of fine meshes minus mesh of the fit, of what is predicted for a case.
+// Limit of fine meshes minus mesh of the fit, for the predictions of a case.
 struct MeshError {
   std::vector<Vec3d> markers;  // one per position [m]
   Wrench wrench;
   Vec3d force_on_mesh{};  // predicted on the mesh of the fit [N]
 
-  // The error of another force on the same body: it grows with the force.
+  // Error of another force on the same body, which grows with the force.
   Wrench for_force_on_mesh(const Vec3d& force) const;
   Wrench for_force_in_limit(const Vec3d& force) const;
-  double force_factor() const;  // |force in the limit| / |force on the mesh|; 1 without a force
+  double force_factor() const;  // |limit force| / |force on the mesh|; 1 without a force
   // |error of the force| over the smaller of both forces; 0 without a force.
   double relative_force_error() const;
 };
@@ -38,11 +38,11 @@ struct MeshErrors {
   std::string failure;           // why
 };
 
-// For a material, one set of parameters per tet or per tet of the mesh that the experiment's was refined from.
+// For a material with one parameter set per tet of the experiment's mesh or of its unrefined mesh.
 MeshErrors mesh_errors(const Experiment& experiment, const std::string& material,
                        std::span<const MaterialParameters> parameters, const EquilibriumOptions& options = {});
 
-// What would have been measured on a body that is like the mesh; deviations grow by kUncertain of the error.
+// Corrects the measurements to a body like the mesh; standard deviations grow by kUncertain of the error.
 inline constexpr double kUncertain = 1.0 / 3;
 Experiment without_mesh_errors(Experiment experiment, const MeshErrors& errors);
 

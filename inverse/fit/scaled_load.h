@@ -1,4 +1,4 @@
-// A load that is applied in parts: s V(x) for a term V and a factor s between 0 and 1.
+// Load stepping: s V(x) for a term V and a factor s from 0 to 1.
 #pragma once
 #include <memory>
 #include <utility>

@@ -1,6 +1,6 @@
-// Systems H x = b one after another whose matrices and solutions change little, as those of time steps: each starts
-// from the best combination of the last solutions, and a factor serves the next matrices as the preconditioner of
-// conjugate gradients.
+// Solves a sequence of systems H x = b with slowly changing matrices and solutions, such as time steps. Each solve
+// starts from the best combination of previous solutions; a factor preconditions conjugate gradients for subsequent
+// matrices.
 #pragma once
 #include <memory>
 #include <span>
@@ -13,7 +13,7 @@ namespace aspic {
 
 struct SequenceReport {
   SolveReport solve;
-  bool factorized = false;  // or a preconditioner was made
+  bool factorized = false;  // or a preconditioner was computed
 };
 
 class SequenceSolver {
@@ -21,30 +21,30 @@ class SequenceSolver {
   // `linear` names the solver, see linear_solver_names(). |b - H x| <= tolerance |b|.
   SequenceSolver(const std::string& linear, double tolerance);
 
-  void begin();  // another sequence; nothing is known of its solutions and matrices
+  void begin();  // starts another sequence and clears solutions and matrices
   SequenceReport solve(const BlockSparse& H, std::span<const double> b, std::span<double> x);
   std::string description() const { return solver_->description(); }
 
  private:
   using Vector = std::vector<double>;
-  // x = the combination of the remembered solutions that is closest to H^-1 b in the norm of H.
+  // x = combination of the stored solutions that is closest to H^-1 b in the norm of H.
   void project(const BlockSparse& H, std::span<const double> b, std::span<double> x);
   void remember(std::span<const double> x);
-  // H x = b with the factor of a matrix before. False: there is none, or it is better made anew.
+  // Solves H x = b with the factor of a previous matrix. Returns false if there is none, or a new one is better.
   bool solve_with_factor(const BlockSparse& H, std::span<const double> b, std::span<double> x, double tolerance,
                          SolveReport& report);
-  void note(const SolveReport& report, double tolerance);  // what the factor was good for
+  void note(const SolveReport& report, double tolerance);  // records the efficiency of the factor
   bool is_worn() const;
 
   std::unique_ptr<LinearSolver> solver_;
-  ConjugateGradient by_factor_;  // preconditioned with that of solver_
+  ConjugateGradient by_factor_;  // preconditioned by the factor of solver_
   double tolerance_;
   uint64_t analyzed_version_ = 0;
-  // Of the factor at hand: substitutions that it has cost so far, digits that were solved with it, and substitutions
-  // for a digit at the last solve. No digits: there is no factor.
+  // Statistics of the current factor: total substitutions, solved digits, and substitutions per digit of the last
+  // solve. No digits: no factor.
   double spent_ = 0, digits_ = 0, rate_ = 0;
-  std::vector<Vector> last_;           // solutions, latest first
-  std::vector<Vector> basis_, image_;  // scratch: the same made H-orthonormal, and H times that
+  std::vector<Vector> last_;           // newest first
+  std::vector<Vector> basis_, image_;  // scratch: H-orthonormal basis, and H times it
   Vector residual_, rest_;             // scratch
 };
 

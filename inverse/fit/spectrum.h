@@ -1,6 +1,6 @@
-// What the data say against what was believed: the eigenpairs of
+// Information of the data relative to the prior: the eigenpairs of
 //   J'J w = d C^-1 w,   W' C^-1 W = I,
-// where C is the covariance before the data. Along w the data are worth d times that belief, and the posterior is
+// where C is the prior covariance. Along w the data have d times the information of the prior; the posterior has
 //   (J'J + C^-1)^-1 = C - W diag(d / (1 + d)) W'.
 #pragma once
 #include "fit/columns.h"
@@ -10,26 +10,26 @@
 namespace aspic {
 
 struct Spectrum {
-  bool ok = true;         // false: a product with J was not finite; there are no eigenpairs
+  bool ok = true;         // false: a product with J was not finite, and there are no eigenpairs
   std::vector<double> d;  // descending, >= 0
-  Columns W;              // their directions
+  Columns W;              // directions w
   Columns dual;           // C^-1 W
-  bool complete = false;  // W spans everything
-  double missed = 0;      // no direction that is left out is worth much more than this
+  bool complete = false;  // W spans the whole space
+  double missed = 0;      // bound of d for omitted directions, approximately
 };
 
 struct SpectrumOptions {
-  int dense = 600;           // largest number of parameters or residuals with exact eigenpairs
-  int max_rank = 200;        // else: directions looked for
-  double negligible = 1e-1;  // value of d that is not worth looking for
+  int dense = 600;           // maximum number of parameters or residuals for exact eigenpairs
+  int max_rank = 200;        // otherwise: maximum number of directions
+  double negligible = 1e-1;  // negligible value of d
   unsigned seed = 1;
 };
 
-// Where `data` is linearized. Beyond `dense`, directions are found by random sampling [Halko 2011] and their values by
-// Nystroem's approximation, which never says more than the data: what it misses makes the posterior wider.
+// At the linearization of `data`. Beyond `dense`, random sampling [Halko 2011] finds directions and Nystroem's
+// approximation their values. It never overestimates the information: omissions make the posterior wider.
 Spectrum spectrum(LeastSquares& data, Gaussian& before, const SpectrumOptions& options = {});
 
-// The distribution once the data count. Refers to `before`.
+// Posterior distribution. Stores a reference to the prior `before`.
 class PosteriorGaussian : public Gaussian {
  public:
   PosteriorGaussian(PriorGaussian before, Spectrum spectrum);

@@ -1,8 +1,8 @@
-// Moduli interpolated in the space of strains, as [Bickel 2009] represents a non-linear material: examples, each a
-// deformed body with the E and nu per tet that explain it, are points in the six-dimensional space of the co-rotated
-// Cauchy strains e = R'F - I of each tet; between them log E and nu are interpolated by radial basis functions.
+// Moduli interpolated in strain space, as [Bickel 2009] represents a nonlinear material. Examples are deformed bodies
+// with fitted E and nu per tet: points in the six-dimensional space of corotated Cauchy strains e = R'F - I of each
+// tet. Between them log E and nu are interpolated by radial basis functions.
 //   log E(e) = c + sum_i w_i |e - e_i|,  sum_i w_i = 0,  and the same for nu(e)
-// Nothing is known beyond the examples: there the values are held within the range that they span, widened.
+// Beyond the examples the values are limited to their range, slightly widened.
 #pragma once
 #include <span>
 #include <string>
@@ -14,19 +14,19 @@
 
 namespace aspic {
 
-// e of a deformation gradient: symmetric, 0 at rest and for every rotation.
+// Corotated strain e: symmetric, 0 at rest and for every rotation.
 Mat3d corotated_strain(const Mat3d& F);
 Mat3d deformation_gradient(const TetMesh& mesh, const Mat3d& rest_inverse, int tet, std::span<const double> x);
 
 struct StrainExample {
   std::string name;
-  std::vector<double> young, poisson;  // per tet: of the linear material that explains the example [Pa], [1]
+  std::vector<double> young, poisson;  // per tet: linear material fitted to the example [Pa], [1]
   std::vector<double> x;               // the deformed body, 3 per vertex [m]
 };
 
 class StrainSpaceModuli {
  public:
-  // Throws InvalidInput without an example, and for one that does not belong to the mesh.
+  // Throws InvalidInput without examples, or for one of another mesh.
   StrainSpaceModuli(const TetMesh& mesh, std::span<const StrainExample> examples);
 
   Lame at(int tet, const Mat3d& strain) const;

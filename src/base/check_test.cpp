@@ -5,11 +5,11 @@
 namespace aspic {
 namespace {
 
-TEST(CheckDeathTest, AViolationNamesThePlaceAndTheConditionAndEndsTheProgram) {
+TEST(CheckDeathTest, ViolationNamesPlaceAndConditionAndAborts) {
   EXPECT_DEATH(check_failed("n == 3", "mesh.cpp", 7), "mesh.cpp:7: a bug in Aspic: n == 3 does not hold");
 }
 
-TEST(CheckDeathTest, ChecksAreOnOrOffAsTheBuildSays) {
+TEST(CheckDeathTest, ChecksFollowTheBuildType) {
   int evaluated = 0;
   ASPIC_CHECK(++evaluated == 1);
 #if defined(ASPIC_ENABLE_CHECKS)

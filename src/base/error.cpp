@@ -37,7 +37,7 @@ InvalidInput::InvalidInput(std::string_view message) : std::runtime_error(elided
 InvalidInput::InvalidInput(const std::vector<std::string>& messages) : std::runtime_error(lines_of(messages)) {}
 
 std::string nearest_name(std::string_view word, const std::vector<std::string>& known) {
-  if (word.size() > 64) return "";  // no typing error is that long
+  if (word.size() > 64) return "";  // too long for a typing error
   const std::string* best = nullptr;
   size_t best_distance = std::max<size_t>(2, word.size() / 3) + 1;
   for (const std::string& name : known) {

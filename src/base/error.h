@@ -7,7 +7,7 @@
 
 namespace aspic {
 
-// The message names the place (file:line:column where there is one), the value and the remedy, in one line:
+// Messages are one line with the place (file:line:column if there is one), the value and the remedy:
 //   beam.toml:12:3: poisson = 0.5; neo_hookean needs -1 < poisson < 0.5 (try 0.49)
 // Control characters are shown as \xNN. Lines longer than kLongestMessage bytes are shortened in the middle.
 class InvalidInput : public std::runtime_error {

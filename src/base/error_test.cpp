@@ -10,7 +10,7 @@ const std::vector<std::string> kKnown = {"young", "poisson", "density", "box"};
 TEST(NearestName, IsTheOneWithTheFewestTypingErrors) {
   EXPECT_EQ(nearest_name("young", kKnown), "young");
   EXPECT_EQ(nearest_name("yuong", kKnown), "young");     // two letters exchanged
-  EXPECT_EQ(nearest_name("poison", kKnown), "poisson");  // one missing
+  EXPECT_EQ(nearest_name("poison", kKnown), "poisson");  // one letter missing
   EXPECT_EQ(nearest_name("densitty", kKnown), "density");
   EXPECT_EQ(nearest_name("bax", kKnown), "box");
 }

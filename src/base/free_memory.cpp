@@ -13,7 +13,7 @@ namespace {
 
 constexpr int64_t kUnknown = std::numeric_limits<int64_t>::max();
 
-// The number after `key` in a file of lines "key number ...".
+// Returns the number after `key` in a file of lines "key number ...".
 int64_t entry(const char* path, const char* key) {
   std::ifstream file(path);
   for (std::string word; file >> word; file.ignore(256, '\n'))
@@ -26,7 +26,7 @@ int64_t machine_available() {
   return kilobytes == kUnknown ? kUnknown : kilobytes * 1024;
 }
 
-int64_t number_in(const char* path) {  // "max" stands for no limit
+int64_t number_in(const char* path) {  // "max" means no limit
   std::ifstream file(path);
   int64_t value = 0;
   return file >> value ? value : kUnknown;
@@ -36,7 +36,7 @@ struct GroupFiles {
   const char *limit, *usage, *statistics, *cache_key;
 };
 
-// The usage counts the page cache, which gives way to programs.
+// The usage includes the page cache, which the system can reclaim.
 int64_t group_available(const GroupFiles& files) {
   const int64_t limit = number_in(files.limit), usage = number_in(files.usage);
   if (limit == kUnknown || usage == kUnknown) return kUnknown;
@@ -44,7 +44,7 @@ int64_t group_available(const GroupFiles& files) {
   return std::clamp<int64_t>(limit - usage + (cache == kUnknown ? 0 : cache), 0, limit);
 }
 
-// What this process may still map (ulimit -v).
+// Memory that this process may still map (ulimit -v).
 int64_t process_available() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnknown;

@@ -1,11 +1,11 @@
-// How much memory this process may still take.
+// Memory that this process can still allocate.
 #pragma once
 #include <cstdint>
 
 namespace aspic {
 
-// [bytes], the smallest of what the machine has available and what the control group and ulimit -v allow. INT64_MAX
-// where no limit is known.
+// Returns the smallest of the memory available on the machine and the limits of control group and ulimit -v [bytes].
+// INT64_MAX if no limit is known.
 int64_t free_memory();
 
 }  // namespace aspic

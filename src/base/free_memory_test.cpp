@@ -6,9 +6,9 @@ namespace aspic {
 namespace {
 
 TEST(FreeMemory, IsPlausible) {
-  EXPECT_GT(free_memory(), 1 << 20);  // this test runs, so some is free
+  EXPECT_GT(free_memory(), 1 << 20);  // some memory is free, because this test runs
 #ifdef __linux__
-  EXPECT_LT(free_memory(), int64_t{1} << 50);  // a number was found, in bytes
+  EXPECT_LT(free_memory(), int64_t{1} << 50);  // a limit was found, in bytes
 #endif
 }
 

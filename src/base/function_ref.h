@@ -1,4 +1,4 @@
-// A view of something callable: two pointers, so passing it on never allocates, as std::function may.
+// A non-owning view of a callable: two pointers, so unlike std::function it never allocates.
 #pragma once
 #include <memory>
 #include <type_traits>
@@ -11,7 +11,7 @@ class FunctionRef;
 template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
  public:
-  // Implicit, so that a lambda can be an argument. `callable` must live as long as it is called through the view.
+  // Implicit, so that a lambda can be an argument. `callable` must outlive all calls through the view.
   template <class Callable>
   requires(!std::is_same_v<std::remove_cvref_t<Callable>, FunctionRef>)
       FunctionRef(Callable&& callable)  // NOLINT(bugprone-forwarding-reference-overload): constrained above

@@ -1,4 +1,4 @@
-// Names for contents that differ when the contents do: against mistakes, not against malice.
+// Hashes of contents, which detect mistakes, not forgery.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -21,6 +21,6 @@ class Fnv1a {
   std::uint64_t hash_ = kBasis;
 };
 
-std::string hex_digits(std::uint64_t number);  // 16 of them
+std::string hex_digits(std::uint64_t number);  // 16 hexadecimal digits
 
 }  // namespace aspic

@@ -15,8 +15,8 @@
 namespace aspic {
 namespace {
 
-// Threads without work look for it this long before they sleep: being woken takes as long as a short loop, and a solver
-// begins its next loop within microseconds. After the first moment they yield the processor.
+// Idle threads spin this long before they sleep: waking takes as long as a short loop, and a solver begins its next
+// loop within microseconds. After the first interval they yield the processor.
 constexpr std::chrono::microseconds kSpin{20}, kSpinAlone{2};
 
 void relax_processor() {
@@ -27,7 +27,7 @@ void relax_processor() {
 #endif
 }
 
-// Waits a short while for done(); not at all where the thread that it waits for may need this processor.
+// Spins for a short while until done(), but not if the awaited thread may need this processor.
 template <class Done>
 bool spin_until(Done done, bool may_spin) {
   if (done()) return true;
@@ -45,16 +45,16 @@ bool spin_until(Done done, bool may_spin) {
   }
 }
 
-// Runs one loop at a time; the calling thread works too. A thread that lowers remaining_ owns an index of the current
-// loop, which cannot end before that index is reported in pending_; so a thread that comes late does no harm, and
-// nobody waits for it.
+// Runs one loop at a time; the calling thread works, too. A thread that decrements remaining_ owns an index of the
+// current loop, which cannot end before that index is reported in pending_. So late threads are harmless, and nothing
+// waits for them.
 class Pool {
  public:
   ~Pool() { resize(0); }
 
   int workers() const { return static_cast<int>(threads_.size()); }
 
-  // Starts fewer when the system refuses that many: its limit of processes or of memory is reached.
+  // Starts fewer threads if the system refuses the number because of limits on processes or memory.
   void resize(int workers) {
     stop();
     may_spin_ = workers < processor_count();
@@ -65,9 +65,9 @@ class Pool {
     body_ = &body;
     count_ = count;
     pending_ = count;
-    remaining_ = count;  // from here on the threads see the loop
+    remaining_ = count;  // from here on the loop is visible to the threads
     if (sleeping_ > 0) {
-      { std::lock_guard lock(mutex_); }  // who saw no work is asleep by now
+      { std::lock_guard lock(mutex_); }  // threads that saw no work are asleep by now
       wake_.notify_all();
     }
     work();
@@ -91,7 +91,7 @@ class Pool {
     quit_ = false;
   }
 
-  // Starts all of them or none, so that those of a failed attempt give their memory back.
+  // Starts all threads or none, so that a failed attempt releases its memory.
   bool start(int workers) {
     try {
       threads_.reserve(static_cast<size_t>(workers));
@@ -123,20 +123,20 @@ class Pool {
       if (spin_until(called, may_spin_)) continue;
       std::unique_lock lock(mutex_);
       ++sleeping_;
-      if (!called()) wake_.wait(lock);  // woken too late or for nothing, it looks for the next loop
+      if (!called()) wake_.wait(lock);  // after a late or spurious wake-up, look for the next loop
       --sleeping_;
     }
   }
 
   std::vector<std::thread> threads_;
   bool may_spin_ = false;
-  // Each loop: what its owner writes before remaining_ is set...
+  // Each loop: data that the owner writes before remaining_ is set...
   const FunctionRef<void(int)>* body_ = nullptr;
   int count_ = 0;
-  // ...indices that nobody has taken, and indices that are not finished.
+  // ...unclaimed indices, and unfinished indices.
   std::atomic<int> remaining_ = 0;
   std::atomic<int> pending_ = 0;
-  // Read after remaining_ or pending_ was written, and written before they are read: one side sees the other.
+  // Written before and read after remaining_ or pending_, so that one of the sides sees the change of the other.
   std::atomic<int> sleeping_ = 0;
   std::atomic<bool> caller_sleeps_ = false, quit_ = false;
   std::mutex mutex_;
@@ -180,7 +180,7 @@ void parallel_for(int count, FunctionRef<void(int)> body) {
   }
   if (pool().workers() != threads - 1) {
     pool().resize(threads - 1);
-    int requested = threads;  // may have changed meanwhile
+    int requested = threads;  // may have changed in the meantime
     requested_threads().compare_exchange_strong(requested, pool().workers() + 1);
   }
   pool().run(count, [&](int i) {
@@ -192,7 +192,7 @@ void parallel_for(int count, FunctionRef<void(int)> body) {
 
 namespace {
 
-// A thread that is awake takes its first chunk after some 0.1 us, but waking one costs the caller a few microseconds.
+// An awake thread starts its first chunk after about 0.1 us, but waking one costs the caller a few microseconds.
 constexpr int kChunksWorthSharing = 4;
 
 void for_each_chunk(int count, FunctionRef<void(int)> body) {
@@ -208,7 +208,7 @@ void parallel_chunks(int count, FunctionRef<void(int, int)> body) {
 }
 
 double parallel_sum(int count, FunctionRef<double(int, int)> body) {
-  // Grows once. Taken along, so that a sum inside this one, on this thread, has its own.
+  // Grows once. Moved out during a sum, so that a nested sum on this thread uses its own.
   thread_local std::vector<double> spare;
   std::vector<double> partial = std::move(spare);
   partial.resize(chunk_count(count));

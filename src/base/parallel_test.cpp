@@ -47,7 +47,7 @@ TEST_P(Parallel, ChunksCoverTheRangeWithoutOverlap) {
   }
 }
 
-double term(int i) { return std::sin(i) * std::exp(i % 50); }  // rounds differently in another order
+double term(int i) { return std::sin(i) * std::exp(i % 50); }  // rounding depends on the order
 
 double sum_of_terms(int count) {
   return parallel_sum(count, [](int first, int last) {
@@ -65,7 +65,7 @@ TEST_P(Parallel, SumHasTheBitsOfOneThread) {
   EXPECT_EQ(sum_of_terms(0), 0);
 }
 
-TEST_P(Parallel, AnInnerLoopRunsOnTheThreadOfTheOuterOne) {
+TEST_P(Parallel, InnerLoopRunsOnThreadOfOuterLoop) {
   std::atomic<int> visits = 0, strangers = 0;
   parallel_for(20, [&](int) {
     const auto outer = std::this_thread::get_id();
@@ -78,7 +78,7 @@ TEST_P(Parallel, AnInnerLoopRunsOnTheThreadOfTheOuterOne) {
   EXPECT_EQ(strangers, 0);
 }
 
-TEST_P(Parallel, ASumInsideASumLeavesTheOuterOneAlone) {
+TEST_P(Parallel, NestedSumDoesNotChangeOuterSum) {
   const int outer = 4 * kChunkSize;
   const double inner = sum_of_terms(3 * kChunkSize);
   const double sum = parallel_sum(outer, [&](int first, int) { return first + sum_of_terms(3 * kChunkSize); });
@@ -114,7 +114,7 @@ TEST_P(Parallel, LoopsAllocateNothing) {
   EXPECT_EQ(sum, 3 * (a * a + b * a + c + d));
 }
 
-TEST_P(Parallel, ShortLoopsFollowEachOtherWhetherThreadsAreAwakeOrAsleep) {
+TEST_P(Parallel, ShortLoopsWorkWithAwakeAndSleepingThreads) {
   for (int loop = 0; loop < 3000; ++loop) {
     const int count = 2 + loop % 7;
     std::array<int, 8> value{};

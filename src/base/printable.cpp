@@ -5,7 +5,7 @@
 namespace aspic {
 namespace {
 
-// The bytes of the printable character that `text` begins with; 0: it begins with none.
+// Returns the length [bytes] of the printable character at the beginning of `text`; 0 if there is none.
 size_t printable_length(std::string_view text) {
   const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = byte(0);
@@ -37,7 +37,7 @@ void append_shown(std::string_view character, std::string& out) {
   out += {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
 }
 
-// As much of the beginning as `most` bytes show; the rest is left in `text`.
+// Returns the part of the beginning that fits into `most` bytes when shown; leaves the rest in `text`.
 std::string beginning(std::string_view& text, size_t most) {
   std::string out;
   while (!text.empty()) {

@@ -1,5 +1,5 @@
-// Text from files and command lines as a message, a report or a page may show it: a terminal obeys control characters,
-// and JSON holds nothing but UTF-8.
+// Printable text for messages, reports and pages from files and command lines: terminals interpret control characters,
+// and JSON must be UTF-8.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -7,19 +7,19 @@
 
 namespace aspic {
 
-// Whether `text` is UTF-8 without control characters: those of ASCII (line breaks and tabs, too) and of Latin-1, and
-// those of Unicode that break a line or turn the direction of what follows.
+// Whether `text` is UTF-8 without control characters: those of ASCII (including line breaks and tabs) and Latin-1, and
+// those of Unicode that break lines or change the text direction.
 bool is_printable(std::string_view text);
 
-// The same text where it is printable, and \xNN for each byte of the rest.
+// Returns the text with each unprintable byte as \xNN.
 std::string printable(std::string_view text);
-std::string printable_lines(std::string_view text);  // line breaks stay
+std::string printable_lines(std::string_view text);  // keeps line breaks
 
-// Printable and at most `most` bytes long [> 3]: the end is left out for "...", or, of `elided` text, the middle.
+// Returns printable text of at most `most` bytes [> 3]. "..." replaces the end, or the middle of `elided` text.
 std::string shortened(std::string_view text, size_t most = 60);
 std::string elided(std::string_view text, size_t most);
 
-// A word as a message shows it: shortened, in single quotes.
+// Returns a word for a message: shortened, in single quotes.
 std::string shown(std::string_view word);
 
 }  // namespace aspic

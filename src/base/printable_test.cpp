@@ -17,7 +17,7 @@ TEST(Printable, LeavesTextOfAnyLanguageAsItIs) {
   }
 }
 
-TEST(Printable, ShowsWhatATerminalWouldObeyByItsBytes) {
+TEST(Printable, ShowsTerminalControlCharactersByTheirBytes) {
   EXPECT_EQ(printable("\x1b[31mred"), "\\x1B[31mred");
   EXPECT_EQ(printable("two\r\nlines\t"), "two\\x0D\\x0Alines\\x09");
   EXPECT_EQ(printable("\x7f"), "\\x7F");
@@ -27,27 +27,27 @@ TEST(Printable, ShowsWhatATerminalWouldObeyByItsBytes) {
             "\\xC2\\x9B31m");  // U+009B begins an escape sequence, too
 }
 
-TEST(Printable, ShowsWhatIsNotUtf8ByItsBytes) {
+TEST(Printable, ShowsInvalidUtf8ByItsBytes) {
   EXPECT_EQ(printable("stra\xdf"
                       "e"),
             "stra\\xDFe");                                           // Latin-1
   EXPECT_EQ(printable("\xc3"), "\\xC3");                             // cut short
   EXPECT_EQ(printable("\xe2\x82"), "\\xE2\\x82");                    // cut short
-  EXPECT_EQ(printable("\xc0\xaf"), "\\xC0\\xAF");                    // longer than it need be
-  EXPECT_EQ(printable("\xe0\x80\xaf"), "\\xE0\\x80\\xAF");           // longer than it need be
-  EXPECT_EQ(printable("\xed\xa0\x80"), "\\xED\\xA0\\x80");           // half of a pair
+  EXPECT_EQ(printable("\xc0\xaf"), "\\xC0\\xAF");                    // overlong encoding
+  EXPECT_EQ(printable("\xe0\x80\xaf"), "\\xE0\\x80\\xAF");           // overlong encoding
+  EXPECT_EQ(printable("\xed\xa0\x80"), "\\xED\\xA0\\x80");           // half of a surrogate pair
   EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xF4\\x90\\x80\\x80");  // above U+10FFFF
 }
 
-TEST(Printable, ShowsWhatTurnsOrBreaksALineByItsBytes) {
+TEST(Printable, ShowsDirectionAndLineSeparatorsByTheirBytes) {
   EXPECT_EQ(printable("a\xe2\x80\xae"
                       "b"),
             "a\\xE2\\x80\\xAE"
-            "b");  // U+202E: right to left from here
+            "b");  // U+202E: right-to-left override
   EXPECT_EQ(printable("a\xe2\x80\xa8"
                       "b"),
             "a\\xE2\\x80\\xA8"
-            "b");  // U+2028: a new line
+            "b");  // U+2028: line separator
 }
 
 TEST(Printable, KeepsTheBreaksOfLines) {
@@ -68,7 +68,7 @@ TEST(Shortened, CutsBetweenCharactersAndAfterShowingThem) {
   EXPECT_EQ(shortened("0123456789", 10), "0123456789");
   EXPECT_EQ(shortened("0123456789a", 10), "0123456...");
   EXPECT_EQ(shortened("01234\xc3\xbc\xc3\xbc\xc3\xbc", 10), "01234\xc3\xbc...");
-  EXPECT_EQ(shortened("01234\x1b[31m", 10), "01234...");  // never a part of "\x1B"
+  EXPECT_EQ(shortened("01234\x1b[31m", 10), "01234...");  // never splits "\x1B"
   EXPECT_EQ(shown("\x1b]0;\a"), "'\\x1B]0;\\x07'");
 }
 
@@ -78,7 +78,7 @@ TEST(Elided, KeepsTheBeginningAndTheEnd) {
   EXPECT_TRUE(text.starts_with("place: aaa")) << text;
   EXPECT_TRUE(text.ends_with("a\\x1B; remedy")) << text;
   EXPECT_EQ(elided("short", 100), "short");
-  for (size_t cut = 0; cut < 4; ++cut) {  // wherever the end begins within a character
+  for (size_t cut = 0; cut < 4; ++cut) {  // for every position of the cut within a character
     std::string many;
     for (int i = 0; i < 500; ++i) many += "\xf0\x9f\xab\x80";
     EXPECT_TRUE(is_printable(elided(many + std::string(cut, 'a'), 100)));

@@ -11,7 +11,7 @@ namespace aspic {
 
 int processor_count() {
 #if defined(__linux__)
-  cpu_set_t allowed;  // the call fails on machines with more processors than the set has room for
+  cpu_set_t allowed;  // the call fails on machines with more processors than the set can hold
   if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return std::max(1, CPU_COUNT(&allowed));
 #endif
   return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));

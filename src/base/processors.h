@@ -1,8 +1,8 @@
-// How many processors this process may use.
+// Number of processors that this process may use.
 #pragma once
 
 namespace aspic {
 
-int processor_count();  // at least 1; honors the affinity mask (taskset) where the system has one
+int processor_count();  // at least 1; respects the affinity mask (taskset) where available
 
 }  // namespace aspic

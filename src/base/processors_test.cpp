@@ -11,7 +11,7 @@
 namespace aspic {
 namespace {
 
-TEST(Processors, AreAtLeastOneAndNoMoreThanTheMachineHas) {
+TEST(Processors, AreBetweenOneAndThoseOfTheMachine) {
   EXPECT_GE(processor_count(), 1);
   if (const unsigned all = std::thread::hardware_concurrency(); all > 0) {
     EXPECT_LE(processor_count(), static_cast<int>(all));

@@ -14,16 +14,16 @@ inline double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Stops a computation in one of two ways. A request discards the work under way: the computation ends as soon as it
-// polls the token, and its status is `interrupted`. A deadline keeps the best result so far: the status is `budget`.
-// Results that a deadline ends depend on the clock. Copies are cheap and share the request.
+// Stops a computation in one of two ways. A request discards the current work: the computation ends at its next poll of
+// the token with status `interrupted`. A deadline keeps the best result: the status is `budget`. Results that a
+// deadline ends depend on the clock. Copies are cheap and share the request.
 class StopToken {
  public:
   StopToken() = default;  // never stops and reads no clock
-  // `requested` is polled often, from one thread at a time. Once it has returned true, it must do so forever.
+  // `requested` is polled often, from one thread at a time. Once true, it must remain true.
   explicit StopToken(std::function<bool()> requested)
       : requested_(std::make_shared<const std::function<bool()>>(std::move(requested))) {}
-  // A deadline, in seconds from now. The clock must outlive the token and its copies.
+  // Deadline in seconds from now. The clock must outlive the token and its copies.
   StopToken(const WallClock& clock, double seconds) : clock_(&clock), begin_(clock()), end_(begin_ + seconds) {}
 
   bool requested() const { return requested_ && (*requested_)(); }
@@ -33,7 +33,7 @@ class StopToken {
   double now() const { return clock_ ? (*clock_)() : 0; }  // [s]; 0 without a deadline
   double seconds_left() const { return clock_ ? end_ - (*clock_)() : std::numeric_limits<double>::infinity(); }
 
-  // The same request with another deadline.
+  // Returns the same request with another deadline.
   StopToken with_deadline(const WallClock& clock, double seconds) const {
     StopToken token(clock, seconds);
     token.requested_ = requested_;
@@ -44,10 +44,10 @@ class StopToken {
     token.requested_ = requested_;
     return token;
   }
-  // The deadline moved to the given fraction of the time that it had at first, or forward by a number of seconds.
+  // Moves the deadline to a fraction of its initial time span, or forward by a number of seconds.
   StopToken at_fraction(double fraction) const { return ending_at(begin_ + fraction * (end_ - begin_)); }
   StopToken earlier_by(double seconds) const { return ending_at(end_ - seconds); }
-  // Work that misses the deadline is discarded, as after a request.
+  // At this deadline the current work is discarded, as after a request.
   StopToken discarding() const {
     return has_deadline() ? StopToken([token = *this] { return token.stopped(); }) : *this;
   }

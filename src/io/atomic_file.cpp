@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
   throw InvalidInput(path.string() + ": " + what + ": " + std::generic_category().message(error) + "; " + remedy);
 }
 
-// An open file descriptor, closed at the end of its scope.
+// File descriptor that is closed at the end of its scope.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -39,8 +39,8 @@ class Descriptor {
   int number_;
 };
 
-// A new file beside the target; removed unless it was renamed onto the target. Its name is short, so that it fits
-// wherever the target's does, and its permissions are those of any new file.
+// Temporary file beside the target, removed unless it was renamed onto the target. Its name is short, so that it fits
+// wherever the target's fits. It has the permissions of any new file.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& target)
@@ -91,7 +91,7 @@ class TemporaryFile {
   bool exists_ = false;
 };
 
-// The file that is replaced: a link stays a link.
+// The file to replace: a symbolic link remains a link.
 fs::path replaced_file(const fs::path& path) {
   std::error_code error;
   fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
@@ -101,8 +101,8 @@ fs::path replaced_file(const fs::path& path) {
   return target;
 }
 
-// After a crash the new name is on the disk only when its directory is. Some file systems refuse this; that is no
-// error, since the file itself is complete.
+// After a crash the new name exists only if its directory was synced. Some file systems refuse this, which is no error
+// because the file itself is complete.
 void flush_directory_of(const fs::path& file) {
   const fs::path directory = file.has_parent_path() ? file.parent_path() : fs::path(".");
   const Descriptor descriptor(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
@@ -134,7 +134,7 @@ std::string read_file(const fs::path& path) {
     throw InvalidInput(path.string() + ": is " + std::to_string(size) + " bytes, more than the " +
                        std::to_string(available) + " bytes of memory that are free; use a smaller file");
 
-  // A compressed file system stores less than the size, too, but not a hundred times less.
+  // A compressed file system also stores less than the size, but not a hundred times less.
   if (const auto stored = static_cast<size_t>(info.st_blocks) * 512; size > kSmall && stored < size / 100)
     throw InvalidInput(path.string() + ": is " + std::to_string(size) + " bytes, of which only " +
                        std::to_string(stored) + " were ever written; copy or download it again");
@@ -145,7 +145,7 @@ std::string read_file(const fs::path& path) {
     const ssize_t count = ::read(descriptor, contents.data() + done, size - done);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) fail(path, "cannot be read", errno, "check the disk");
-    if (count == 0) break;  // it was shortened meanwhile
+    if (count == 0) break;  // the file was shortened meanwhile
     done += static_cast<size_t>(count);
   }
   contents.resize(done);

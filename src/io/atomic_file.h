@@ -1,4 +1,4 @@
-// Files that appear whole or not at all: written to a temporary beside the target, fsync, rename.
+// Atomic file replacement: a temporary file beside the target, fsync, rename.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -7,6 +7,6 @@
 namespace aspic {
 
 void write_file(const std::filesystem::path& path, std::string_view contents);  // throws InvalidInput (disk full, ...)
-std::string read_file(const std::filesystem::path& path);  // throws InvalidInput when it cannot be read
+std::string read_file(const std::filesystem::path& path);  // throws InvalidInput if the file cannot be read
 
 }  // namespace aspic

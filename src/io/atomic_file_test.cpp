@@ -28,7 +28,7 @@ TEST_F(AtomicFile, LeavesNoTemporaryBehind) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
 }
 
-TEST_F(AtomicFile, NewFilesHaveOrdinaryPermissionsAndOldOnesKeepTheirs) {
+TEST_F(AtomicFile, NewFilesGetUsualPermissionsOldKeepTheirs) {
   write_file(folder / "a", "1");
   EXPECT_NE(fs::status(folder / "a").permissions() & fs::perms::owner_read, fs::perms::none);
   fs::permissions(folder / "a", fs::perms::owner_all);

@@ -1,4 +1,4 @@
-// White space as XML has it, between words and within base64.
+// White space of XML, also allowed inside base64.
 #pragma once
 
 namespace aspic {

@@ -1,5 +1,5 @@
-// Numbers in the binary part of a file that is held whole in memory.
-// Every error is an InvalidInput "file: byte N: what is wrong; remedy".
+// Reads numbers from the binary part of a file in memory. Every error is an InvalidInput "file: byte N: problem;
+// remedy".
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -16,7 +16,7 @@ class ByteCursor {
   ByteCursor(std::string file, std::string_view bytes, size_t position, std::endian order = std::endian::little)
       : file_(std::move(file)), bytes_(bytes), position_(position), order_(order) {}
 
-  // `what` names the thing expected, for the message when it is not there.
+  // `what` names the expected number in the message of an error.
   template <class T>
   T read(std::string_view what) {
     static_assert(std::is_arithmetic_v<T>);
@@ -35,7 +35,8 @@ class ByteCursor {
     return checked_finite(static_cast<double>(read<T>(what)), what);
   }
 
-  // `value` things of at least `bytes` bytes each must fit into the rest of the file, so memory may be reserved.
+  // Checks that `value` items of at least `bytes` bytes each fit into the rest of the file, so that memory can be
+  // reserved.
   int checked_count(int64_t value, std::string_view what, size_t bytes) const;
   double checked_finite(double value, std::string_view what) const;
 

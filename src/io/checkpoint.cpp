@@ -14,9 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Layout: magic, uint32 byte order mark, uint32 version, uint64 size of the whole file; the fingerprint; uint64 number
-// of integers, each a name and an int64; uint64 number of arrays, each a name, a uint64 length and doubles; CRC-32 of
-// everything before it. A name is a uint64 length and its characters.
+// Layout: magic, uint32 byte order mark, uint32 version, uint64 size of the file; the fingerprint; uint64 number of
+// integers, each a name and an int64; uint64 number of arrays, each a name, a uint64 length and doubles; CRC-32 of all
+// previous bytes. A name is a uint64 length and its characters.
 constexpr std::string_view kCheckpointMagic("ASPICCHK", 8);
 constexpr uint32_t kWordOrderMark = 0x01020304, kVersion = 1;
 constexpr size_t kCheckpointHeadSize = 24, kChecksumSize = 4;
@@ -121,19 +121,19 @@ class Decoder {
   std::string_view whole_, rest_;
 };
 
-// A second name for the file, replacing what had that name at once.
+// Gives the file a second name, atomically replacing the previous owner of that name.
 void keep_as(const fs::path& path, const fs::path& kept) {
   std::error_code error;
   const fs::path fresh = kept.string() + ".new";
   fs::remove(fresh, error);
   fs::create_hard_link(path, fresh, error);
-  if (error) {  // a file system without hard links
+  if (error) {  // the file system has no hard links
     write_file(kept, read_file(path));
     return;
   }
   fs::rename(fresh, kept, error);
   if (error) throw InvalidInput(kept.string() + ": cannot be written: " + error.message());
-  fs::remove(fresh, error);  // rename leaves both names where they are names of one file
+  fs::remove(fresh, error);  // rename keeps both names if they refer to one file
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Everything a run needs to continue, as named arrays and integers in one checked binary file.
+// State from which a run continues: named arrays and integers in one binary file with a checksum.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -10,31 +10,30 @@
 namespace aspic {
 
 struct Checkpoint {
-  std::string fingerprint;  // of the scene: a checkpoint fits no other
+  std::string fingerprint;  // fingerprint of the scene; a checkpoint fits no other scene
   std::vector<std::pair<std::string, std::vector<double>>> arrays;
   std::vector<std::pair<std::string, int64_t>> integers;
 
-  // Throw InvalidInput when there is none of that name.
+  // Throw InvalidInput if the name is missing.
   const std::vector<double>& array(std::string_view name) const;
   int64_t integer(std::string_view name) const;
 };
 
-// The whole file appears at once. What `path` held before stays beside it as `previous_checkpoint(path)`.
+// Writes the file atomically. The previous contents of `path` remain as `previous_checkpoint(path)`.
 void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint);
 std::filesystem::path previous_checkpoint(const std::filesystem::path& path);
 
-// Throws InvalidInput for a file that is cut short, altered in any byte, or of another version or byte order.
+// Throws InvalidInput if the file is truncated or altered, or has another version or byte order.
 Checkpoint read_checkpoint(const std::filesystem::path& path);
 
 struct NewestCheckpoint {
   Checkpoint checkpoint;
-  std::string note;  // why it is not the newest; empty when it is
+  std::string note;  // reason why it is not the newest; empty if it is
 };
-// `path` when it can be read, else the one before it; throws InvalidInput with both reasons when neither can.
+// Reads `path`, or the previous checkpoint if that fails. Throws InvalidInput with both reasons if neither can be read.
 NewestCheckpoint read_newest_checkpoint(const std::filesystem::path& path);
 
-// 16 hexadecimal digits that differ when the texts differ (FNV-1a, 64 bits): a guard against mistakes, not against
-// forgery.
+// Hash of the text in 16 hexadecimal digits (FNV-1a, 64 bits): detects mistakes, not forgery.
 std::string fingerprint(std::string_view text);
 
 }  // namespace aspic

@@ -75,7 +75,7 @@ TEST_F(CheckpointFile, NamesAnotherVersionOrByteOrder) {
   EXPECT_THAT(message(path("c.bin")), HasSubstr("c.bin: is no checkpoint"));
 }
 
-TEST_F(CheckpointFile, ADamagedNewestFallsBackToThePreviousWithANote) {
+TEST_F(CheckpointFile, DamagedNewestFallsBackToPreviousWithNote) {
   write_checkpoint(path("c.bin"), sample(1));
   write_checkpoint(path("c.bin"), sample(2));
   NewestCheckpoint newest = read_newest_checkpoint(path("c.bin"));
@@ -95,7 +95,7 @@ TEST_F(CheckpointFile, ADamagedNewestFallsBackToThePreviousWithANote) {
               HasSubstr("no readable checkpoint"));
 }
 
-// A program that is killed after the first of two checkpoints was kept leaves both names to one file.
+// A program that is killed after storing the first of two checkpoints leaves both names on one file.
 TEST_F(CheckpointFile, LeavesNothingBesideTheTwo) {
   write_checkpoint(path("c.bin"), sample(1));
   std::filesystem::create_hard_link(path("c.bin"), path("c.previous.bin"));

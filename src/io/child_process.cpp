@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr size_t kLongestMessage = 2000;
 
-// A write to a program that has ended is an error of that write, not the end of this program.
+// Writing to a program that has ended fails instead of raising SIGPIPE.
 class NoBrokenPipe {
  public:
   NoBrokenPipe() {
@@ -38,7 +38,7 @@ class NoBrokenPipe {
   struct sigaction before_ {};
 };
 
-// Files that are closed at the end of the scope.
+// File descriptors that are closed at the end of the scope.
 class Descriptors {
  public:
   Descriptors() = default;
@@ -54,7 +54,7 @@ class Descriptors {
       error_ = errno;
     return file;
   }
-  int error() const { return error_; }  // of the first that could not be opened
+  int error() const { return error_; }  // error of the first file that could not be opened
   int open(const fs::path& path, int flags) {
     return add(::open(path.empty() ? "/dev/null" : path.c_str(), flags | O_CLOEXEC, 0600));
   }
@@ -64,12 +64,12 @@ class Descriptors {
   int error_ = 0;
 };
 
-// In the child, where only what is safe in a signal handler may be called: runs the program on these files, or writes
-// the reason to the pipe `failure`.
+// Runs in the child, where only async-signal-safe functions are allowed: starts the program with these files, or writes
+// the reason of a failure to the pipe `failure`.
 [[noreturn]] void become(char* const* argv, std::array<int, 3> files, Lifetime lifetime, pid_t parent, int failure) {
   if (lifetime == Lifetime::own_group) ::setpgid(0, 0);
   if (lifetime == Lifetime::detached) ::setsid();
-  if (lifetime != Lifetime::detached) ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // however the parent ends
+  if (lifetime != Lifetime::detached) ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // even if the parent is killed
   bool is_ready = ::getppid() == parent;
   for (int i = 0; i < 3; ++i) is_ready = is_ready && ::dup2(files[i], i) >= 0;
   if (is_ready) ::execv(argv[0], argv);
@@ -87,7 +87,7 @@ ChildProcess::ChildProcess(const Launch& launch, const std::string& remedy)
   argv.push_back(nullptr);
   constexpr int kNew = O_WRONLY | O_CREAT | O_TRUNC;
   Descriptors files;
-  std::array<int, 2> input = {-1, -1}, failure = {-1, -1};  // exec closes `failure`; otherwise it brings the reason
+  std::array<int, 2> input = {-1, -1}, failure = {-1, -1};  // exec closes `failure`; otherwise it carries the reason
   if (::pipe2(failure.data(), O_CLOEXEC) != 0) files.add(-1);
   if (failure[0] >= 0) files.add(failure[0]);
   if (launch.has_input && ::pipe2(input.data(), O_CLOEXEC) != 0) files.add(-1);
@@ -101,7 +101,7 @@ ChildProcess::ChildProcess(const Launch& launch, const std::string& remedy)
   if (failure[1] >= 0) ::close(failure[1]);
   input_ = input[1];
   if (process_ > 0 && lifetime_ == Lifetime::own_group)
-    ::setpgid(process_, process_);  // in both processes: the order is unknown
+    ::setpgid(process_, process_);  // in both processes, because their order is unknown
   while (process_ > 0 && ::read(failure[0], &error, sizeof error) < 0 && errno == EINTR) {
   }
   if (!error) return;
@@ -114,7 +114,7 @@ ChildProcess::ChildProcess(const Launch& launch, const std::string& remedy)
 ChildProcess::~ChildProcess() {
   close_input();
   if (lifetime_ == Lifetime::detached) return;
-  if (lifetime_ == Lifetime::own_group) ::kill(-process_, SIGKILL);  // what it started may still run
+  if (lifetime_ == Lifetime::own_group) ::kill(-process_, SIGKILL);  // its own children may still run
   if (has_ended_) return;
   ::kill(process_, SIGKILL);
   wait();

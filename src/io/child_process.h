@@ -1,4 +1,4 @@
-// Another program, started without a shell.
+// Runs another program without a shell.
 #pragma once
 #include <sys/types.h>
 
@@ -9,34 +9,34 @@
 
 namespace aspic {
 
-// How long the program lives, and which ctrl-C in the terminal ends it.
+// Lifetime of the program, and whether ctrl-C in the terminal reaches it.
 enum class Lifetime {
-  shared,     // at most as long as its ChildProcess; ctrl-C reaches both programs
-  own_group,  // the same, with all that it starts; ctrl-C reaches this program alone
-  detached,   // as long as it likes, in a session of its own
+  shared,     // ends with its ChildProcess; ctrl-C reaches both programs
+  own_group,  // the same, including all its children; ctrl-C reaches only this program
+  detached,   // unlimited, in its own session
 };
 
 struct Launch {
   std::vector<std::string> command;     // absolute path of the program, arguments
-  std::filesystem::path output = {};    // file that receives its stdout; empty: discarded
-  std::filesystem::path messages = {};  // file that receives its stderr; empty: discarded
-  bool has_input = false;               // its stdin is a pipe from write(); else empty
+  std::filesystem::path output = {};    // file for stdout; empty: discarded
+  std::filesystem::path messages = {};  // file for stderr; empty: discarded
+  bool has_input = false;               // stdin is a pipe from write(); otherwise empty
   Lifetime lifetime = Lifetime::shared;
 };
 
 class ChildProcess {
  public:
-  // Throws InvalidInput when the program cannot be started, with `remedy` at the end of the message.
+  // Throws InvalidInput if the program cannot be started; the message ends with `remedy`.
   explicit ChildProcess(const Launch& launch, const std::string& remedy = "");
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  bool write(std::string_view bytes);  // to its stdin; false: it reads no more
+  bool write(std::string_view bytes);  // writes to stdin; false: the program reads no more
   void close_input();
   bool is_running();
-  int wait();                   // for its end; returns its status as waitpid() does, 0 for success
-  std::string message() const;  // the end of what it wrote to stderr, on one line
+  int wait();                   // waits for the end; returns the status of waitpid(), 0 for success
+  std::string message() const;  // end of its stderr, on one line
 
  private:
   std::filesystem::path messages_;
@@ -44,7 +44,7 @@ class ChildProcess {
   pid_t process_ = 0;
   int input_ = -1;  // file descriptor
   bool has_ended_ = false;
-  int status_ = -1;  // as of waitpid(); -1: not known
+  int status_ = -1;  // status of waitpid(); -1: unknown
 };
 
 }  // namespace aspic

@@ -37,7 +37,7 @@ CsvRow& CsvRow::add(std::string_view word) {
 CsvRow& CsvRow::add(double number) {
   separate();
   if (std::isnan(number)) {
-    text_ += "nan";  // its sign has no meaning
+    text_ += "nan";  // the sign has no meaning
   } else {
     append_number(text_, number);
   }
@@ -52,7 +52,7 @@ CsvRow& CsvRow::add(int number) {
 
 CsvFile CsvFile::create(const std::filesystem::path& path, const std::vector<std::string>& columns) {
   CsvFile table;
-  write_file(path, head_line(columns));  // never without its head
+  write_file(path, head_line(columns));  // the file always has its header line
   table.file_ = OutputFile::open_existing(path);
   return table;
 }

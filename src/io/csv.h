@@ -1,4 +1,4 @@
-// Tables as comma-separated values [RFC 4180] that grow row by row; numbers read back to the same bits.
+// Writes tables as comma-separated values [RFC 4180] row by row. Numbers read back to the same bits.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace aspic {
 
-// One line of a table: row.add(1).add("converged").add(0.1)
+// One row of a table: row.add(1).add("converged").add(0.1)
 class CsvRow {
  public:
-  CsvRow& add(std::string_view word);  // quoted where it needs to be
+  CsvRow& add(std::string_view word);  // quoted where necessary
   CsvRow& add(double number);
   CsvRow& add(int number);
   const std::string& text() const { return text_; }  // without the line break
@@ -27,14 +27,14 @@ class CsvFile {
   CsvFile() = default;
   static CsvFile create(const std::filesystem::path& path, const std::vector<std::string>& columns);
 
-  // Continues a table whose first column is a step number, ascending: rows of steps after `last_step` and a torn last
-  // line are dropped. Throws InvalidInput when the head is not `columns`, a row does not begin with a number, or the
-  // table ends before `last_step` (unless it may hold no row for a step: Rows::optional).
+  // Continues a table whose first column is an ascending step number: removes rows of steps after `last_step` and an
+  // incomplete last line. Throws InvalidInput if the header differs from `columns`, a row does not begin with a number,
+  // or the table ends before `last_step` (unless steps may lack rows: Rows::optional).
   enum class Rows { every_step, optional };
   static CsvFile resume(const std::filesystem::path& path, const std::vector<std::string>& columns, int last_step,
                         Rows rows);
 
-  void append(const CsvRow& row);                 // with one write, so that a killed run leaves whole lines
+  void append(const CsvRow& row);                 // one write per row, so that a killed run leaves complete lines
   uint64_t size() const { return file_.size(); }  // [bytes]
   const std::filesystem::path& path() const { return file_.path(); }
   void sync() { file_.sync(); }

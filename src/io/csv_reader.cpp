@@ -10,9 +10,9 @@
 namespace aspic {
 namespace {
 
-constexpr size_t kLongestLine = size_t{1} << 20;  // longer ones are of no table that Aspic writes
+constexpr size_t kLongestLine = size_t{1} << 20;  // longer than any line that Aspic writes
 
-// A line break inside quotes is not taken for one of the cell: no table here has any.
+// A line break inside quotes ends the line: no table here has such cells.
 std::vector<std::string> split(std::string_view line, char separator) {
   std::vector<std::string> cells(1);
   bool quoted = false;
@@ -58,7 +58,7 @@ CsvReader::CsvReader(const std::filesystem::path& path, CsvOrigin origin)
   columns_ = cells_;
 }
 
-// The next line, without its break; false at the end. A last line without a break counts as one of a foreign table.
+// Reads the next line without its line break; false at the end. The last line of a foreign table may lack the break.
 bool CsvReader::read_text(std::string& line) {
   line.clear();
   for (int c; (c = in_.get()) != std::char_traits<char>::eof();) {
@@ -68,14 +68,14 @@ bool CsvReader::read_text(std::string& line) {
     }
     line += static_cast<char>(c);
     if (line.size() > kLongestLine)
-      throw InvalidInput(path_.string() + ":" + std::to_string(line_ + 1) + ": is no line of a table: it is too long");
+      throw InvalidInput(path_.string() + ":" + std::to_string(line_ + 1) + ": is too long for a line of a table");
   }
   if (origin_ == CsvOrigin::aspic || line.empty()) return false;
   ++line_;
   return true;
 }
 
-// A line as cells_; false at the end.
+// Splits a line into cells_; false at the end.
 bool CsvReader::read_line() {
   std::string line;
   if (origin_ == CsvOrigin::aspic) {

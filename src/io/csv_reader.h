@@ -1,4 +1,4 @@
-// Tables as comma-separated values, read row by row: a long table never lies in memory as a whole.
+// Reads tables of comma-separated values row by row, without holding a table in memory.
 #pragma once
 #include <filesystem>
 #include <fstream>
@@ -9,31 +9,31 @@
 
 namespace aspic {
 
-// Who wrote a table: Aspic, or a spreadsheet or measuring program. Of the latter, the cells may be apart by semicolons
-// (the decimal sign is then a comma, or a point) or tabs, with blanks around them; empty lines and lines that begin
-// with # are skipped; the last line needs no line break; a byte order mark is no part of the first name.
+// Origin of a table: Aspic, or another program. Foreign tables may separate cells by semicolons (with decimal commas or
+// points) or tabs, with blanks around them. Their empty lines and lines that begin with # are skipped, the last line
+// needs no line break, and a byte order mark is ignored.
 enum class CsvOrigin { aspic, foreign };
 
-// Cells and names are printable (base/printable.h), whatever the bytes of the file.
+// Cells and column names are printable (base/printable.h) for any bytes in the file.
 class CsvReader {
  public:
-  // Throws InvalidInput when it cannot be read.
+  // Throws InvalidInput if the file cannot be read.
   explicit CsvReader(const std::filesystem::path& path, CsvOrigin origin = CsvOrigin::aspic);
 
-  const std::vector<std::string>& columns() const { return columns_; }  // of the head
+  const std::vector<std::string>& columns() const { return columns_; }  // column names of the header
   bool has(std::string_view column) const;
-  size_t column(std::string_view name) const;  // its index; throws InvalidInput
+  size_t column(std::string_view name) const;  // index of a column; throws InvalidInput if missing
 
-  // The next row; false after the last whole one: a torn last line, without a line break, is no row of Aspic's. Throws
-  // InvalidInput for a row with another number of cells than the head.
+  // Reads the next row; false after the last complete one. In tables of Aspic a last line without a line break is
+  // incomplete. Throws InvalidInput if the number of cells differs from the header.
   bool next();
-  int line() const { return line_; }  // of the row, from 1
+  int line() const { return line_; }  // line of the row, from 1
   std::string where() const;          // "markers.csv:12"
   bool is_blank(size_t column) const { return cells_[column].empty(); }
   const std::string& text(size_t column) const { return cells_[column]; }
-  double number(size_t column) const;  // may be infinite or nan; throws InvalidInput for anything else
+  double number(size_t column) const;  // may be infinite or NaN; throws InvalidInput if it is no number
   int integer(size_t column) const;
-  std::optional<double> try_number(size_t column) const;  // none: no number
+  std::optional<double> try_number(size_t column) const;  // empty if it is no number
 
  private:
   bool read_text(std::string& line);

@@ -35,7 +35,7 @@ class CsvReading : public FolderTest {
   }
 };
 
-TEST_F(CsvReading, GivesBackWhatWasWrittenToTheSameBits) {
+TEST_F(CsvReading, ReadsBackWrittenNumbersExactly) {
   CsvFile file = CsvFile::create(path("table.csv"), {"step", "name, with comma", "value"});
   file.append(CsvRow().add(1).add("say \"yes\"").add(0.1));
   file.append(CsvRow().add(2).add("").add(NAN));
@@ -56,7 +56,7 @@ TEST_F(CsvReading, GivesBackWhatWasWrittenToTheSameBits) {
   EXPECT_FALSE(table.next());
 }
 
-TEST_F(CsvReading, ShowsWhatATerminalWouldObeyByItsBytes) {
+TEST_F(CsvReading, ShowsTerminalControlCharactersByTheirBytes) {
   CsvReader table = reader(
       "step,e\x1b[31m\n1,b\xfc"
       "chse\n");
@@ -77,12 +77,12 @@ TEST_F(CsvReading, DamageIsRefusedWithFileAndLine) {
   EXPECT_THAT(refusal("step,energy\n1,2\n2\n"), HasSubstr("table.csv:3: has 1 cells; the head names 2"));
   EXPECT_THAT(refusal("step,energy\n1,two\n"), HasSubstr("table.csv:2: energy = 'two' is not a number"));
   EXPECT_THAT(refusal("step,energy\n1.5,2\n"), HasSubstr("table.csv:2: step = '1.5' is not a whole number"));
-  EXPECT_THAT(refusal("step,energy\n" + std::string(3'000'000, 'x') + "\n"), HasSubstr("table.csv:2: is no line"));
+  EXPECT_THAT(refusal("step,energy\n" + std::string(3'000'000, 'x') + "\n"), HasSubstr("table.csv:2: is too long"));
   EXPECT_THROW(CsvReader(path("none.csv")), InvalidInput);
   EXPECT_EQ(refusal("step,energy\r\n1,2\r\n"), "");
 }
 
-TEST_F(CsvReading, ATableOfASpreadsheetMayHaveSemicolonsAndDecimalCommas) {
+TEST_F(CsvReading, AcceptsSemicolonsAndDecimalCommasOfSpreadsheets) {
   write_file(path("foreign.csv"), "\xEF\xBB\xBF x [mm] ;force\r\n\r\n# taken on Monday\r\n 1,5 ; +2\r\n;-3,25e1;;");
   CsvReader table(path("foreign.csv"), CsvOrigin::foreign);
   EXPECT_THAT(table.columns(), testing::ElementsAre("x [mm]", "force"));

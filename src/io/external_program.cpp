@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The message of its failure, within a message of ours.
+// Message of the failure, for use inside another message.
 std::string complaint(const ChildProcess& process) {
   const std::string text = process.message();
   return text.starts_with("error: ") ? text.substr(7) : text;
@@ -26,7 +26,7 @@ std::string complaint(const ChildProcess& process) {
 }  // namespace
 
 TemporaryFolder::TemporaryFolder() {
-  std::error_code error;  // of an unusable TMPDIR
+  std::error_code error;  // error of an unusable TMPDIR
   std::string name = (fs::temp_directory_path(error) / "aspic-XXXXXX").string();
   if (error || !::mkdtemp(name.data()))
     throw InvalidInput(name +

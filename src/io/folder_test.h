@@ -1,4 +1,4 @@
-// A folder for one test, removed at its end, and what a call throws.
+// Temporary folder of one test, and the message of an exception.
 #pragma once
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -18,7 +18,7 @@ class TestFolder {
     const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
     std::string name = std::string("aspic_") + test.test_suite_name() + "_" + test.name();
     for (char& c : name)
-      if (c == '/') c = '_';  // of a test with parameters
+      if (c == '/') c = '_';  // from parameterized tests
     path_ = std::filesystem::path(testing::TempDir()) / (name + "_" + std::to_string(::getpid()));
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
@@ -34,7 +34,7 @@ class TestFolder {
   operator const std::filesystem::path&() const { return path_; }
   std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
 
-  // Without waiting for the disk, since tests write many files.
+  // Without fsync, because tests write many files.
   std::filesystem::path write(const std::string& name, std::string_view text) const {
     const std::filesystem::path file = path_ / name;
     std::filesystem::create_directories(file.parent_path());
@@ -46,7 +46,7 @@ class TestFolder {
   std::filesystem::path path_;
 };
 
-// What the call throws, as text; empty when it throws nothing.
+// Message of the exception that the call throws; empty if none.
 template <class Error = InvalidInput, class Call>
 std::string message_of(Call call) {
   try {

@@ -16,7 +16,7 @@ void append_word(std::string& bytes, uint32_t word) {
   for (int i = 0; i < 4; ++i) bytes += static_cast<char>(word >> (8 * i) & 0xff);
 }
 
-// Names are shown to people: what JSON could not hold is left out.
+// Removes characters that JSON cannot contain.
 std::string json_text(const std::string& name) {
   std::string text = "\"";
   for (const char c : name)
@@ -25,10 +25,10 @@ std::string json_text(const std::string& name) {
   return text + "\"";
 }
 
-// The binary chunk, and the accessors that say what is where.
+// The binary chunk, and the accessors that describe it.
 class Arrays {
  public:
-  // Returns the number of the accessor.
+  // Returns the index of the accessor.
   int add(const std::vector<float>& numbers, int components) {
     std::string range;
     for (const bool is_max : {false, true}) {
@@ -81,7 +81,7 @@ std::vector<float> difference(const std::vector<float>& a, const std::vector<flo
   return d;
 }
 
-// Frame k is the first one plus target k - 1, so at its time that weight is 1 and all others are 0.
+// Frame k is the first frame plus target k - 1: at its time that weight is 1 and all others are 0.
 std::vector<float> weights_of(size_t frames) {
   std::vector<float> weights(frames * (frames - 1), 0.0F);
   for (size_t k = 1; k < frames; ++k) weights[k * (frames - 1) + k - 1] = 1;

@@ -1,5 +1,5 @@
-// Binary glTF 2.0 (.glb) [Khronos]: one mesh whose frames are morph targets, one after another, as Blender, browsers
-// and game engines read them. Lengths are in meters, Y is up.
+// Binary glTF 2.0 (.glb) [Khronos]: one mesh whose frames are morph targets, for Blender, browsers and game engines.
+// Lengths are in meters, Y is up.
 #pragma once
 #include <span>
 #include <string>
@@ -13,11 +13,11 @@ struct GltfMesh {
   std::string name;
   std::span<const Triangle> triangles;
   std::vector<std::vector<float>> frames;  // at least one; 3 per vertex [m]
-  std::vector<double> times;               // of each frame, ascending [s]
+  std::vector<double> times;               // time of each frame, ascending [s]
 };
 
-// Positions between two frames are interpolated linearly. The size grows with the square of the number of frames, but
-// only by 4 bytes for each pair.
+// Players interpolate linearly between frames. The size grows quadratically with the number of frames, but only by 4
+// bytes per pair.
 std::string glb(const GltfMesh& mesh);
 
 }  // namespace aspic

@@ -12,7 +12,7 @@ namespace {
 
 using BinaryGltf = FolderTest;
 
-// Read as the specification says, by Python: chunks, accessors, morph targets and the weights of the animation.
+// Python reads the file according to the specification: chunks, accessors, morph targets and weights of the animation.
 const char* const kReader = R"(
 import json, struct, sys
 data = open(sys.argv[1], 'rb').read()

@@ -1,5 +1,5 @@
-// Gmsh .msh, read in versions 2.2 and 4.1, text and binary; written in 2.2, which every program reads.
-// The region of a tet is its first physical group, or its elementary entity where it has no group.
+// Gmsh .msh: reads versions 2.2 and 4.1, text and binary; writes 2.2, which every program reads. The region of a tet is
+// its first physical group, or its elementary entity if it has no group.
 #pragma once
 #include <string>
 #include <string_view>

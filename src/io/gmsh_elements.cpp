@@ -46,7 +46,7 @@ const GmshElementType* gmsh_element_type(int number) {
 }
 
 std::optional<int64_t> GmshTags::prepare() {
-  // Differences as unsigned numbers cannot overflow.
+  // Differences of unsigned numbers cannot overflow.
   bool is_consecutive = true;
   for (size_t i = 0; i < tags_.size() && is_consecutive; ++i)
     is_consecutive = static_cast<uint64_t>(tags_[i]) - static_cast<uint64_t>(tags_[0]) == i;

@@ -1,4 +1,4 @@
-// What the numbers of a .msh file mean: the table of element types, and tags that are neither ordered nor dense.
+// Element types and tags of .msh files. Tags are neither ordered nor dense.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -15,18 +15,18 @@ struct GmshElementType {
 };
 inline constexpr int kGmshTriangle = 2, kGmshQuadrangle = 3, kGmshTet = 4;
 
-const GmshElementType* gmsh_element_type(int number);  // null when unknown [Gmsh reference manual, MSH file format]
+const GmshElementType* gmsh_element_type(int number);  // null if unknown [Gmsh reference manual, MSH file format]
 
-// Vertex tag -> position in the file, which is the index of the vertex.
+// Maps vertex tags to positions in the file, which are the vertex indices.
 class GmshTags {
  public:
   void add(int64_t tag) { tags_.push_back(tag); }
-  std::optional<int64_t> prepare();  // after the last add(); the tag that occurs twice, if any
+  std::optional<int64_t> prepare();  // call after the last add(); returns a duplicate tag, if any
   std::optional<int> index(int64_t tag) const;
 
  private:
   std::vector<int64_t> tags_;
-  std::vector<std::pair<int64_t, int>> sorted_;  // empty when the tags are consecutive
+  std::vector<std::pair<int64_t, int>> sorted_;  // empty if the tags are consecutive
 };
 
 }  // namespace aspic

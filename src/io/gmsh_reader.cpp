@@ -30,7 +30,7 @@ class GmshReader {
                  "' should be; the counts do not fit the file, or it is no .msh file");
   }
 
-  // $MeshFormat: version, 0 (text) or 1 (binary), size of a double; in binary then the integer 1.
+  // $MeshFormat: version, 0 (text) or 1 (binary), size of a double; in binary files then the integer 1.
   void read_format() {
     expect("$MeshFormat");
     const double version = text_.number("the version");
@@ -91,7 +91,7 @@ class GmshReader {
     return point;
   }
 
-  // Version 2: a count, in text always; then tag x y z.
+  // Version 2: a count, always as text; then tag x y z.
   void read_nodes_2() {
     const int64_t count = text_.integer("the number of nodes");
     text_.skip_line();
@@ -105,7 +105,7 @@ class GmshReader {
     text_.seek(in.position());
   }
 
-  // Version 4: blocks, one per entity: first its tags, then its points, with parameters on the entity if it says so.
+  // Version 4: one block per entity: tags, then points, with parameters on the entity if flagged.
   void read_nodes_4() {
     GmshSource in = source();
     const int64_t blocks = in.size("the number of blocks"), count = in.size("the number of nodes");
@@ -131,7 +131,7 @@ class GmshReader {
     text_.seek(in.position());
   }
 
-  // $Entities lists the physical groups of each entity; those of volumes are read.
+  // $Entities lists the physical groups of each entity; only those of volumes are read.
   void read_entities() {
     GmshSource in = source();
     int64_t counts[4];
@@ -170,7 +170,7 @@ class GmshReader {
     return *index;
   }
 
-  // Version 2 numbers nodes by 4-byte integers, version 4 by 8-byte ones.
+  // Version 2 stores node tags as 4-byte integers, version 4 as 8-byte integers.
   void read_element(GmshSource& in, const GmshElementType& type, int group, int entity) {
     constexpr std::string_view kWhat = "a node of an element";
     if (type.number != kGmshTet && type.number != kGmshTriangle && type.number != kGmshQuadrangle)
@@ -183,7 +183,7 @@ class GmshReader {
     entities_.push_back(entity);
   }
 
-  // Tags of an element in version 2: physical group, elementary entity, then partitions.
+  // Element tags in version 2: physical group, elementary entity, then partitions.
   void read_element_2(GmshSource& in, const GmshElementType& type, int64_t tags) {
     const int group = tags > 0 ? in.integer("a physical group") : 0;
     const int entity = tags > 1 ? in.integer("an elementary entity") : 0;
@@ -241,7 +241,7 @@ class GmshReader {
     text_.seek(in.position());
   }
 
-  // Without physical groups, one entity that holds every tet labels nothing.
+  // Without physical groups, a single entity of all tets is no label.
   void set_regions() {
     const auto is_zero = [](int label) { return label == 0; };
     const bool has_groups = !std::all_of(groups_.begin(), groups_.end(), is_zero);
@@ -255,9 +255,9 @@ class GmshReader {
   GmshData data_ = GmshData::text;
   bool is_4_ = false, has_nodes_ = false;
   GmshTags tags_;
-  std::map<int, int> volume_groups_;    // entity -> its first physical group
+  std::map<int, int> volume_groups_;    // entity -> first physical group
   std::vector<int> groups_, entities_;  // per tet; group 0: none
-  std::string_view lost_;               // surface elements that are not read
+  std::string_view lost_;               // surface elements that are skipped
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The numbers of a section of a .msh file, alike for text and binary.
+// Reads the numbers of a .msh section from text or binary.
 #pragma once
 #include <bit>
 #include <string>
@@ -20,7 +20,7 @@ class GmshSource {
     text_.seek(position);
   }
 
-  // Gmsh's "int", 4 bytes; "size_t", 8 bytes; "double", 8 bytes.
+  // Gmsh types: "int", 4 bytes; "size_t", 8 bytes; "double", 8 bytes.
   int integer(std::string_view what) { return is_binary_ ? bytes_.read<int32_t>(what) : text_.small_integer(what); }
   int64_t size(std::string_view what) { return is_binary_ ? bytes_.read<int64_t>(what) : text_.integer(what); }
   double number(std::string_view what) { return is_binary_ ? bytes_.finite<double>(what) : text_.number(what); }
@@ -29,7 +29,7 @@ class GmshSource {
   void skip_sizes(int64_t count, std::string_view what) { skip(count, sizeof(int64_t), what); }
   void skip_numbers(int64_t count, std::string_view what) { skip(count, sizeof(double), what); }
 
-  // `value` things, each of at least `words` words in text and `bytes` bytes in binary, must fit into what is left.
+  // Checks that `value` items, each of at least `words` words of text or `bytes` bytes of binary, fit into the rest.
   int checked_count(int64_t value, std::string_view what, size_t words, size_t bytes) const {
     return is_binary_ ? bytes_.checked_count(value, what, bytes) : text_.checked_count(value, what, 2 * words);
   }

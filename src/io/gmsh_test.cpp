@@ -31,7 +31,7 @@ TEST(Gmsh, TagsMayHaveGaps) {
     EXPECT_THAT(parse_gmsh("a.msh", contents).tets, ElementsAre(Tet{0, 1, 2, 3}, Tet{1, 2, 3, 4}));
 }
 
-TEST(Gmsh, TextAndBinaryOfBothVersionsSayTheSame) {
+TEST(Gmsh, TextAndBinaryOfBothVersionsAgree) {
   const MeshContent expected = parse_gmsh("a.msh", gmsh_41_text());
   for (const std::string& contents : {gmsh_22_binary(), gmsh_41_binary()}) {
     const MeshContent mesh = parse_gmsh("a.msh", contents);
@@ -58,7 +58,7 @@ TEST(Gmsh, QuadranglesAreSplitWhereThereAreNoTets) {
   EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
 }
 
-TEST(Gmsh, WhatWouldLoseASolidIsRefusedByName) {
+TEST(Gmsh, RefusesUnsupportedSolidElementsByName) {
   const std::string tets10 = replaced(gmsh_22_text(), "5 4 4 9 2 1 -1 2 4 8 9", "5 11 2 9 2 1 2 4 8 9 1 2 4 8 9");
   EXPECT_THAT(gmsh_error(tets10),
               HasSubstr("a.msh:24: the mesh has 10-node tets (second order), which are not read; export it"));

@@ -33,7 +33,7 @@ class GmshWriter {
     out_ += is_binary_ ? "\n$EndNodes\n" : "$EndNodes\n";
   }
 
-  // group(i) and entity(i) label element i.
+  // group(i) and entity(i) are the labels of element i.
   template <class Element, class Group, class Entity>
   std::string finish(int type, const std::vector<Element>& elements, Group group, Entity entity) {
     out_ += "$Elements\n" + std::to_string(elements.size()) + '\n';
@@ -62,7 +62,7 @@ class GmshWriter {
 
 }  // namespace
 
-// A label is written as group and as entity, so that label 0, which as a group means none, reads back too.
+// Writes labels as group and as entity, so that label 0 reads back, which as a group means none.
 std::string gmsh_bytes(const TetMesh& mesh, FileEncoding encoding) {
   GmshWriter writer(encoding);
   writer.add_nodes(mesh.rest);

@@ -11,20 +11,20 @@
 namespace aspic {
 namespace {
 
-constexpr int kGzipWindow = 15 + 16;  // the largest window; 16 more: gzip's head and tail [zlib.h, deflateInit2]
+constexpr int kGzipWindow = 15 + 16;  // largest window; 16 selects gzip's header and trailer [zlib.h, deflateInit2]
 constexpr int kMemoryLevel = 8;       // zlib's default
 constexpr size_t kChunk = size_t{1} << 16;
 
-// zlib counts in 32 bits, so input is handed over in portions.
+// zlib counts in 32 bits, so the input is passed in portions.
 void hand_over(z_stream& stream, std::string_view& rest) {
   if (stream.avail_in > 0) return;
   const size_t portion = std::min<size_t>(rest.size(), std::numeric_limits<uInt>::max());
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(rest.data()));  // zlib does not write there
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(rest.data()));  // zlib does not write to it
   stream.avail_in = static_cast<uInt>(portion);
   rest.remove_prefix(portion);
 }
 
-// Room for one more chunk at the end of `bytes`; `take_back` gives back what was not filled.
+// Provides room for another chunk at the end of `bytes`; `take_back` removes the unused part.
 void add_room(z_stream& stream, std::string& bytes) {
   bytes.resize(bytes.size() + kChunk);
   stream.next_out = reinterpret_cast<Bytef*>(bytes.data() + bytes.size() - kChunk);

@@ -1,4 +1,4 @@
-// Gzip [RFC 1952]: one member, whole in memory.
+// Gzip [RFC 1952] in memory, one member.
 #pragma once
 #include <string>
 #include <string_view>
@@ -7,7 +7,7 @@ namespace aspic {
 
 std::string gzipped(std::string_view bytes);
 
-// Throws InvalidInput for what is damaged, cut short, or larger than `limit` bytes when unpacked.
+// Throws InvalidInput if the data are damaged or truncated, or exceed `limit` bytes when unpacked.
 std::string gunzipped(std::string_view bytes, size_t limit);
 
 }  // namespace aspic

@@ -37,7 +37,7 @@ void refuse_links(const std::filesystem::path& folder, FunctionRef<bool(const st
                          "folder be a link");
     if (fs::is_directory(status)) refuse_links(path, counts);
   }
-  if (error)  // what cannot be listed may hold links all the same
+  if (error)  // an unlistable folder may contain links, too
     throw InvalidInput(folder.string() + ": cannot be listed: " + error.message() + "; check the permissions");
 }
 

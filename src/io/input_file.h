@@ -1,4 +1,4 @@
-// What came from others is a regular file, or it is not read: a pipe may never end, and opening one may never return.
+// Opens foreign input only if it is a regular file: opening or reading a pipe may block forever.
 #pragma once
 #include <filesystem>
 #include <fstream>
@@ -8,12 +8,11 @@
 namespace aspic {
 
 std::ifstream open_input(const std::filesystem::path& path);  // throws InvalidInput
-// The same, but the stream has failed where the file is missing or not regular.
+// The same, but returns a failed stream if the file is missing or not regular.
 std::ifstream try_open_input(const std::filesystem::path& path);
 
-// Before writing into a folder that may come from others. Throws InvalidInput where something that counts in it, or in
-// a folder in it that counts, is a link: what is written there would go where it leads. So it does where such a folder
-// cannot be listed.
+// Checks a foreign folder before writing into it. Throws InvalidInput if a relevant entry, here or in a relevant
+// subfolder, is a symbolic link, because writing would follow it, or if such a folder cannot be listed.
 void refuse_links(const std::filesystem::path& folder, FunctionRef<bool(const std::filesystem::path&)> counts);
 
 }  // namespace aspic

@@ -33,7 +33,7 @@ TEST_F(InputFile, IsReadFromItsBeginning) {
   EXPECT_EQ(word, "text");
 }
 
-TEST_F(InputFile, LinksInAFolderAreRefusedWhereTheyCount) {
+TEST_F(InputFile, RelevantLinksInFolderAreRefused) {
   put(path("victim"), "");
   fs::create_directories(path("run") / "frames");
   const auto is_result = [](const fs::path& file) { return file.filename() != "mine"; };

@@ -1,4 +1,4 @@
-// Damaged files are either read or refused with InvalidInput: never a crash, a hang or all memory.
+// Damaged files are read or refused with InvalidInput. They cause no crash, hang or memory exhaustion.
 #include <gmock/gmock.h>
 
 #include <functional>
@@ -70,7 +70,7 @@ TEST(MalformedMesh, TruncationsAtEveryByteAreReadOrRefused) {
     for (size_t size = 0; size < c.contents.size(); ++size)
       refused +=
           is_refused(c, std::string_view(c.contents).substr(0, size), c.name + " cut at " + std::to_string(size));
-    // An OBJ file says nowhere how long it is.
+    // OBJ files do not state their size.
     if (c.name != "obj") {
       EXPECT_GT(refused, static_cast<int>(c.contents.size()) / 2) << c.name;
     }
@@ -101,7 +101,7 @@ TEST(MalformedMesh, ManyMutationsAtOnceAreReadOrRefused) {
     }
 }
 
-// Each number of a text in turn becomes a huge or negative one; a count must not be believed.
+// Replaces each number of a text by a huge or negative one; readers must not trust counts.
 TEST(MalformedMesh, HugeAndNegativeNumbersAreReadOrRefused) {
   for (const Case& c : cases())
     for (size_t i = 0; i < c.contents.size(); ++i) {

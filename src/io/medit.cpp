@@ -11,7 +11,7 @@
 namespace aspic {
 namespace {
 
-// Sections that may stand beside tets and triangles without anything being lost that is kept.
+// Sections that can be skipped without losing data beside tets and triangles.
 const std::vector<std::string>& skipped_sections() {
   static const std::vector<std::string> names = {"Edges",
                                                  "Corners",
@@ -68,7 +68,7 @@ const std::vector<std::string>& skipped_sections() {
   return names;
 }
 
-// Sections whose loss would lose part of the solid.
+// Sections that contain parts of the solid and must not be skipped.
 const std::map<std::string_view, std::string_view>& lost_solids() {
   static const std::map<std::string_view, std::string_view> names = {{"Hexahedra", "hexahedra"},
                                                                      {"Hexaedra", "hexahedra"},
@@ -97,14 +97,14 @@ class MeditReader {
   }
 
  private:
-  // The sections may come in any order, and tets before their vertices; so their places are noted first.
+  // Sections have any order, and tets may precede their vertices, so their positions are collected first.
   void find_sections() {
     if (const auto word = text_.word("'MeshVersionFormatted'"); word != "MeshVersionFormatted")
       text_.fail("found " + shown(word) + " where 'MeshVersionFormatted' should be; is this a Medit .mesh file?");
     text_.small_integer("the version");
     while (!text_.at_end()) {
       const std::string_view word = text_.word("a keyword");
-      if (!std::isalpha(static_cast<unsigned char>(word[0]))) continue;  // a number of the section before
+      if (!std::isalpha(static_cast<unsigned char>(word[0]))) continue;  // a number of the previous section
       if (word == "End") return;
       if (word == "nan" || word == "inf" || word == "NaN" || word == "Inf")
         text_.fail("a number is " + shown(word) + "; it must be finite");
@@ -158,7 +158,7 @@ class MeditReader {
       content_.tets[t] = read_corners<4>();
       content_.region[t] = text_.small_integer("the reference of a tet");
     }
-    // Reference 0 means none.
+    // Reference 0 means no label.
     if (std::all_of(content_.region.begin(), content_.region.end(), [](int label) { return label == 0; }))
       content_.region.clear();
   }

@@ -1,4 +1,4 @@
-// Medit .mesh, text: sections in any order, each with a keyword and a count. The reference of a tet is its region.
+// Medit .mesh, text: sections in any order, each with a keyword and a count. A tet's reference is its region.
 #pragma once
 #include <string>
 #include <string_view>

@@ -1,4 +1,4 @@
-// What a mesh file says, before it is known whether it describes a solid or a surface.
+// Contents of a mesh file before it is classified as solid or surface.
 #pragma once
 #include <span>
 #include <vector>
@@ -10,11 +10,11 @@ namespace aspic {
 struct MeshContent {
   std::vector<Vec3d> vertices;
   std::vector<Tet> tets;
-  std::vector<int> region;  // label of each tet, or empty
+  std::vector<int> region;  // label of each tet; may be empty
   std::vector<Triangle> triangles;
 };
 
-// Splits a polygon of at least three corners into triangles that share its first corner.
+// Splits a polygon of at least three corners into a fan of triangles.
 inline void add_fan(std::span<const int> corners, std::vector<Triangle>& triangles) {
   for (size_t i = 2; i < corners.size(); ++i) triangles.push_back({corners[0], corners[i - 1], corners[i]});
 }

@@ -199,7 +199,7 @@ inline std::string binary_stl(const std::string& head) {
   return s;
 }
 
-// Every one is valid.
+// All files are valid.
 inline std::vector<MeshExample> mesh_examples() {
   return {
       {"gmsh 2.2 text", ".msh", gmsh_22_text(), 6, 2, 0, {7, 9}},

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// One row of the table of formats; a function that is missing is a thing the format cannot do.
+// Row of the table of formats; a null function marks an unsupported operation.
 struct Format {
   std::string extension, name;
   MeshContent (*read)(const fs::path&);
@@ -59,7 +59,7 @@ void write_stl(const fs::path& path, const TriMesh& mesh, FileEncoding encoding)
   write_file(path, stl_bytes(path.string(), mesh, encoding));
 }
 
-// The other file of a .node/.ele pair, in the same case of letters.
+// The other file of a .node/.ele pair, in the same letter case.
 fs::path partner(const fs::path& path, const std::string& lower_extension) {
   std::string extension = lower_extension;
   if (const std::string given = path.extension().string(); given.size() > 1 && std::isupper(given[1]))
@@ -138,7 +138,7 @@ void check_vertices(const fs::path& path, const std::vector<Vec3d>& vertices) {
                            " has a coordinate that is not finite; find out where it comes from");
 }
 
-// The text and the mesh that is made of it are in memory together; a mesh takes about as much as its text.
+// Text and mesh are in memory together; a mesh needs about as much as its text.
 void check_memory(const fs::path& path) {
   constexpr std::uintmax_t kSmall = std::uintmax_t{1} << 24;
   std::error_code error;

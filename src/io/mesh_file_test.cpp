@@ -45,7 +45,7 @@ TriMesh awkward_triangles() {
   return {mesh.rest, boundary_triangles(mesh, 0, mesh.tet_count())};
 }
 
-TEST_F(MeshFile, TetsReadBackToTheSameBitsInEveryFormat) {
+TEST_F(MeshFile, TetsReadBackExactlyInEveryFormat) {
   TetMesh mesh = awkward_tets();
   for (const bool has_region : {false, true}) {
     if (has_region)
@@ -65,7 +65,7 @@ TEST_F(MeshFile, TetsReadBackToTheSameBitsInEveryFormat) {
   }
 }
 
-TEST_F(MeshFile, TrianglesReadBackToTheSameBitsInEveryFormatButStl) {
+TEST_F(MeshFile, TrianglesReadBackExactlyExceptInStl) {
   const TriMesh mesh = awkward_triangles();
   for (const MeshFormat& format : mesh_formats()) {
     if (!format.writes_triangles || format.extension == ".stl") continue;
@@ -80,8 +80,8 @@ TEST_F(MeshFile, TrianglesReadBackToTheSameBitsInEveryFormatButStl) {
   }
 }
 
-// STL numbers no vertices, so the corners of each triangle are compared.
-TEST_F(MeshFile, TextStlKeepsEveryCornerToTheBitAndJoinsTheTrianglesAgain) {
+// STL does not number vertices, so the corners of each triangle are compared.
+TEST_F(MeshFile, TextStlKeepsCornersExactlyAndJoinsTriangles) {
   const TetMesh tets = make_box({{-0.1, 0, 0}}, {{1.0 / 3, 1, 1}}, {2, 2, 2});
   const TriMesh mesh = boundary_surface(tets).surface;
   write_mesh(folder / "a.stl", mesh);
@@ -102,7 +102,7 @@ TEST_F(MeshFile, BinaryStlRoundsToSinglePrecision) {
               HasSubstr("single precision"));
 }
 
-TEST_F(MeshFile, EveryExampleHasTheSizeAndLabelsItStates) {
+TEST_F(MeshFile, ExamplesHaveTheStatedSizeAndLabels) {
   for (const MeshExample& example : mesh_examples()) {
     const fs::path path = folder / ("example" + example.extension);
     write_file(path, example.contents);
@@ -120,7 +120,7 @@ TEST_F(MeshFile, EveryExampleHasTheSizeAndLabelsItStates) {
   }
 }
 
-TEST_F(MeshFile, TheSurfaceOfATetMeshIsItsBoundary) {
+TEST_F(MeshFile, SurfaceOfTetMeshIsItsBoundary) {
   write_mesh(folder / "a.msh", make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1}));
   EXPECT_EQ(read_tri_mesh(folder / "a.msh").triangle_count(), 12);
 }
@@ -132,13 +132,13 @@ TEST_F(MeshFile, ExtensionsMatchInAnyCase) {
   EXPECT_EQ(read_tet_mesh(folder / "A.NODE").tets, awkward_tets().tets);
 }
 
-TEST_F(MeshFile, WritingDoesNotDependOnTheLocaleOrLeaveTemporaries) {
+TEST_F(MeshFile, WritingIgnoresLocaleAndLeavesNoTemporaries) {
   write_mesh(folder / "a.obj", TriMesh{{{{0.5, 0, 0}}, {{1, 0, 0}}, {{0, 1e-300, 0}}}, {{0, 1, 2}}});
   EXPECT_EQ(read_file(folder / "a.obj"), "# Aspic\nv 0.5 0 0\nv 1 0 0\nv 0 1e-300 0\nf 1 2 3\n");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
 }
 
-TEST_F(MeshFile, WhatCannotBeReadIsNamedWithARemedy) {
+TEST_F(MeshFile, UnreadableFilesAreNamedWithRemedy) {
   const auto read = [&](const fs::path& name, const char* contents) {
     write_file(folder / name, contents);
     return message_of([&] { read_mesh(folder / name); });
@@ -158,7 +158,7 @@ TEST_F(MeshFile, WhatCannotBeReadIsNamedWithARemedy) {
               HasSubstr("holds a surface, no tets; fill it with"));
 }
 
-TEST_F(MeshFile, WhatAFormatCannotHoldIsRefusedBeforeAnythingIsWritten) {
+TEST_F(MeshFile, UnsupportedContentIsRefusedBeforeWriting) {
   TetMesh tets = awkward_tets();
   EXPECT_THAT(message_of([&] { write_mesh(folder / "a.obj", tets); }), HasSubstr("cannot hold tets; write .msh"));
   EXPECT_THAT(message_of([&] { write_mesh(folder / "a.ele", awkward_triangles()); }),

@@ -1,4 +1,4 @@
-// Numbers as text and bytes that read back to the same bits, whatever the locale.
+// Numbers as text and bytes that read back to the same bits, independent of the locale.
 #pragma once
 #include <bit>
 #include <charconv>
@@ -12,7 +12,7 @@ namespace aspic {
 
 static_assert(std::endian::native == std::endian::little, "files are written in the order of the machine's bytes");
 
-// The shortest decimal text that is nearest to `value` and to no other.
+// Shortest decimal text that reads back to `value`.
 template <class T>
 void append_number(std::string& text, T value) {
   char digits[32];
@@ -28,7 +28,7 @@ inline void append_point(std::string& text, const Vec3d& point) {
   append_number(text, point[2]);
 }
 
-// " i j k", each index counted from `first`.
+// " i j k", each index offset by `first`.
 template <class Indices>
 void append_indices(std::string& text, const Indices& indices, int first) {
   for (const int index : indices) {

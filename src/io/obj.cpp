@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-// Statements of the format that say nothing about positions and polygons.
+// Statements without positions or polygons.
 const std::vector<std::string>& other_statements() {
   static const std::vector<std::string> names = {
       "vt",    "vn",     "vp",     "g",      "o",        "s",        "mg",   "usemtl",     "mtllib",    "p",
@@ -58,7 +58,7 @@ class ObjReader {
     add_fan(corners_, content_.triangles);
   }
 
-  // "vertex", "vertex/texture", "vertex//normal" or "vertex/texture/normal"; from 1, or from -1 backwards.
+  // "vertex", "vertex/texture", "vertex//normal" or "vertex/texture/normal"; counted from 1, or backward from -1.
   int corner(std::string_view word) {
     const auto given = parse_integer(word.substr(0, word.find('/')));
     if (!given) text_.fail("a corner is " + shown(word) + "; it must be a vertex number such as 1 or 1/1/1");
@@ -71,7 +71,7 @@ class ObjReader {
     return static_cast<int>(index);
   }
 
-  // A joined line has been read past its first line's end; skip_line() then ends the right one.
+  // After a continued line, skip_line() ends the line on which the statement ends.
   void leave_line() {
     while (!text_.at_line_end()) text_.word("");
   }
@@ -84,7 +84,7 @@ class ObjReader {
     leave_line();
   }
 
-  // A face may stand before its vertices, so this is known only at the end.
+  // A face may precede its vertices, so this is checked at the end.
   void check_forward_references() {
     const auto vertices = static_cast<int64_t>(content_.vertices.size());
     if (largest_ < vertices) return;

@@ -1,4 +1,4 @@
-// Wavefront OBJ: polygons as text. Only positions and faces are kept; texture, normals, groups and materials are not.
+// Wavefront OBJ: polygons as text. Reads positions and faces; ignores texture, normals, groups and materials.
 #pragma once
 #include <string>
 #include <string_view>

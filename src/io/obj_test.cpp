@@ -34,12 +34,12 @@ TEST(Obj, CornersMayCarryTextureAndNormal) {
   EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 1, 2}, Triangle{0, 2, 3}));
 }
 
-TEST(Obj, NegativeIndicesCountBackFromTheLastVertexSoFar) {
+TEST(Obj, NegativeIndicesCountBackFromLastVertex) {
   const MeshContent mesh = parse("v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 0 1 0\nf -4 -2 -1\n");
   EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
 }
 
-TEST(Obj, CommentsGroupsMaterialsCarriageReturnsAndJoinedLinesAreUnderstood) {
+TEST(Obj, CommentsGroupsMaterialsAndContinuedLinesAreAccepted) {
   const MeshContent mesh = parse(
       "\xef\xbb\xbf# made by hand\r\nmtllib a.mtl\r\no box\r\nv 0 0 0 1\r\nv 1 0 0 0.5 0.5 0.5\r\nv 1 \\\r\n 1 0 # "
       "corner\r\n"

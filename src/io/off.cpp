@@ -6,7 +6,7 @@
 namespace aspic {
 namespace {
 
-// [ST][C][N]OFF: what the prefixes announce follows the coordinates on a vertex's line.
+// [ST][C][N]OFF: data announced by the prefixes follows the coordinates of a vertex.
 void check_header(TextScanner& text) {
   std::string_view header = text.word("'OFF'");
   for (const std::string_view prefix : {"ST", "C", "N"})
@@ -25,7 +25,7 @@ MeshContent parse_off(const std::string& file, std::string_view contents) {
   // Shortest lines: "0 0 0" and "3 0 0 0".
   const int vertices = text.count("the number of vertices", 6);
   const int faces = text.count("the number of faces", 8);
-  text.skip_line();  // the number of edges is of no use
+  text.skip_line();  // the number of edges is not needed
 
   MeshContent content;
   content.vertices.resize(static_cast<size_t>(vertices));

@@ -1,4 +1,4 @@
-// Object File Format (Geomview): polygons as text. Colors, normals and texture coordinates are not kept.
+// Object File Format (Geomview): polygons as text. Ignores colors, normals and texture coordinates.
 #pragma once
 #include <string>
 #include <string_view>

@@ -43,7 +43,7 @@ OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
 void OutputFile::append(std::string_view bytes) {
   try {
     write_at(size_, bytes);
-  } catch (const InvalidInput&) {  // a disk may take a part of it
+  } catch (const InvalidInput&) {  // the disk may have stored a part
     [[maybe_unused]] const int best_effort = ::ftruncate(descriptor_, static_cast<off_t>(size_));
     throw;
   }

@@ -1,4 +1,4 @@
-// A file that grows while it is written, for results that are appended step by step.
+// File that grows during a run, for results that are appended step by step.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -6,7 +6,7 @@
 
 namespace aspic {
 
-// Every call throws InvalidInput with the path and the reason when the system refuses (disk full, no permission).
+// All functions throw InvalidInput with path and reason if the system refuses (disk full, no permission).
 class OutputFile {
  public:
   OutputFile() = default;                                              // no file
@@ -16,10 +16,10 @@ class OutputFile {
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&& other) noexcept;
 
-  void append(std::string_view bytes);                     // written whole or, where the system refuses, not at all
+  void append(std::string_view bytes);                     // writes all bytes, or none if the system refuses
   void write_at(uint64_t offset, std::string_view bytes);  // overwrites
   void truncate(uint64_t size);                            // keeps the first `size` bytes
-  void sync();                                             // returns when the bytes are on the disk
+  void sync();                                             // returns when the bytes are on disk
   void close();
 
   uint64_t size() const { return size_; }

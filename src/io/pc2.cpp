@@ -57,7 +57,7 @@ Pc2File Pc2File::resume(const std::filesystem::path& path, int points, int sampl
     throw InvalidInput(path.string() + ": holds fewer than the " + std::to_string(samples) +
                        " samples of the checkpoint; the run cannot be continued");
   }
-  cache.write_count();  // first, so that the head never counts what is cut off
+  cache.write_count();  // first, so that the header never counts truncated samples
   cache.file_.truncate(size);
   return cache;
 }

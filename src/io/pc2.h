@@ -1,4 +1,4 @@
-// PC2 point caches, as Blender's mesh cache modifier reads them: the moving positions of a mesh whose topology stays.
+// PC2 point caches, as Blender's mesh cache modifier reads them: positions of a mesh with constant topology over time.
 // Layout, little-endian: "POINTCACHE2\0", int32 version 1, int32 points, float32 start, float32 rate, int32 samples;
 // then for each sample float32 x y z of every point.
 #pragma once
@@ -14,14 +14,14 @@ namespace aspic {
 class Pc2File {
  public:
   static Pc2File create(const std::filesystem::path& path, int points);
-  // Continues a cache after its first `samples`; later ones are dropped. Throws InvalidInput when it holds fewer, or
+  // Continues a cache after its first `samples`; removes later ones. Throws InvalidInput if it has fewer samples or
   // another number of points.
   static Pc2File resume(const std::filesystem::path& path, int points, int samples);
 
-  // Positions, 3 per point [m], rounded to float32. The head counts the sample only once it is complete, so that a
-  // killed run leaves a valid file.
+  // Appends positions, 3 per point [m], rounded to float32. The header counts a sample only after it is complete, so
+  // that a killed run leaves a valid file.
   void append(std::span<const double> x);
-  std::vector<float> sample(int index) const;  // what was appended: 3 per point
+  std::vector<float> sample(int index) const;  // positions of a sample, 3 per point [m]
   int samples() const { return samples_; }
   int points() const { return points_; }
   void sync() { file_.sync(); }
@@ -35,14 +35,14 @@ class Pc2File {
   int points_ = 0, samples_ = 0;
 };
 
-// A cache that somebody else may be writing.
+// Reads a cache that another process may be writing.
 class Pc2Reader {
  public:
-  explicit Pc2Reader(const std::filesystem::path& path);  // throws InvalidInput when it is no whole point cache
+  explicit Pc2Reader(const std::filesystem::path& path);  // throws InvalidInput if it is not a point cache
 
   int points() const { return points_; }
   int samples() const { return samples_; }
-  std::vector<float> sample(int index);  // 3 per point; throws InvalidInput when it cannot be read
+  std::vector<float> sample(int index);  // 3 per point [m]; throws InvalidInput if it cannot be read
 
  private:
   std::filesystem::path path_;

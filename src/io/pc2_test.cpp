@@ -45,7 +45,7 @@ TEST_F(PointCache, CountsOnlyCompleteSamples) {
 TEST_F(PointCache, ResumingGivesTheSameBytesAsNotStopping) {
   write_two(path("whole.pc2"));
   write_two(path("torn.pc2"));
-  std::filesystem::resize_file(path("torn.pc2"), 32 + 24 + 7);  // the head already counts what a lost write left out
+  std::filesystem::resize_file(path("torn.pc2"), 32 + 24 + 7);  // the header counts the incomplete sample
   Pc2File cache = Pc2File::resume(path("torn.pc2"), 2, 1);
   EXPECT_EQ(cache.samples(), 1);
   cache.append(kSecond);

@@ -44,7 +44,7 @@ class PlyByteSource {
 
   double number(PlyScalar type, std::string_view what) { return bytes_.checked_finite(value(type, what), what); }
   int64_t integer(PlyScalar type, std::string_view what) {
-    const double v = value(type, what);  // every 32-bit integer is a double
+    const double v = value(type, what);  // a double represents every 32-bit integer
     if (!(std::abs(v) <= 4294967295.0) || v != std::floor(v))
       bytes_.fail(std::string(what) + " is not a whole number; export the file again");
     return static_cast<int64_t>(v);
@@ -90,7 +90,7 @@ class PlyReader {
     for (const PlyElement& element : header_.elements) {
       if (element.name == "tristrips" && element.count > 0)
         source_.fail("triangle strips are not read; export the surface with faces");
-      if (element.properties.empty()) continue;  // takes no room, whatever its count
+      if (element.properties.empty()) continue;  // needs no memory for any count
       if (element.name == "vertex") {
         if (std::exchange(has_vertices_, true))
           source_.fail("the header has a second element 'vertex'; merge it with the first");

@@ -1,5 +1,4 @@
-// PLY: polygons with any further properties, as text or in binary of either byte order. Only positions and faces are
-// kept.
+// PLY: polygons as text or binary of either byte order. Reads positions and faces; ignores other properties.
 #pragma once
 #include <string>
 #include <string_view>

@@ -88,7 +88,7 @@ PlyHeader parse_ply_header(const std::string& file, std::string_view contents) {
     }
   }
   if (!has_format) text.fail("the header has no format; add 'format ascii 1.0'");
-  text.skip_line();  // the binary part begins right after this line's end
+  text.skip_line();  // the binary part begins after this line break
   header.end = text.position();
   return header;
 }

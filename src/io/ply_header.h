@@ -1,4 +1,4 @@
-// The text at the beginning of a PLY file: which elements follow, and the properties of each.
+// Header of a PLY file: its elements and their properties.
 #pragma once
 #include <string>
 #include <string_view>
@@ -13,21 +13,21 @@ size_t size(PlyScalar scalar);  // [bytes]
 
 struct PlyProperty {
   std::string name;
-  PlyScalar type = PlyScalar::float32;  // of the values
+  PlyScalar type = PlyScalar::float32;  // type of the values
   bool is_list = false;
-  PlyScalar count_type = PlyScalar::uint8;  // of a list's length
+  PlyScalar count_type = PlyScalar::uint8;  // type of a list's length
 };
 
 struct PlyElement {
   std::string name;
-  int64_t count = 0;  // as the file says: not to be trusted
+  int64_t count = 0;  // as stated in the file; not trusted
   std::vector<PlyProperty> properties;
 };
 
 struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;
-  size_t end = 0;  // where the elements begin [bytes]
+  size_t end = 0;  // start of the elements [bytes]
 };
 
 PlyHeader parse_ply_header(const std::string& file, std::string_view contents);

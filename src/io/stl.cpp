@@ -14,7 +14,7 @@
 namespace aspic {
 namespace {
 
-constexpr size_t kHeaderSize = 80, kCountSize = 4, kTriangleSize = 50;  // [bytes] of binary STL
+constexpr size_t kHeaderSize = 80, kCountSize = 4, kTriangleSize = 50;  // parts of binary STL [bytes]
 
 struct PointHash {
   size_t operator()(const std::array<double, 3>& point) const {
@@ -24,7 +24,7 @@ struct PointHash {
   }
 };
 
-// Gives corners at the same place the same vertex. 0 and -0 are the same place: text files round small numbers to both.
+// Merges corners at the same position. 0 and -0 are equal, because text files round small numbers to both.
 class VertexMerger {
  public:
   int vertex(const Vec3d& point, std::vector<Vec3d>& vertices) {
@@ -64,7 +64,7 @@ class StlTextReader {
   void read_facet() {
     expect("facet", "'facet'");
     expect("normal", "'normal'");
-    for (int i = 0; i < 3; ++i) text_.word("a normal");  // derived data, often wrong or nan: not read
+    for (int i = 0; i < 3; ++i) text_.word("a normal");  // normals are derived data, often wrong or NaN, and not read
     expect("outer", "'outer loop'");
     expect("loop", "'outer loop'");
     Triangle triangle;
@@ -111,7 +111,7 @@ MeshContent parse_binary(ByteCursor bytes, int count) {
   return content;
 }
 
-// Unit normal of a triangle, zero where it has none.
+// Unit normal of a triangle; zero if it has no area.
 Vec3d normal(const TriMesh& mesh, const Triangle& triangle) {
   const Vec3d& a = mesh.vertices[triangle[0]];
   const Vec3d n = cross(mesh.vertices[triangle[1]] - a, mesh.vertices[triangle[2]] - a);
@@ -159,7 +159,7 @@ std::string bytes_of(const std::string& file, const TriMesh& mesh) {
 
 }  // namespace
 
-// Many binary files begin with "solid" too, so the size decides: a binary file has exactly the size that it says.
+// Many binary files begin with "solid", too, so the size decides: a binary file has exactly the size that it states.
 MeshContent parse_stl(const std::string& file, std::string_view contents) {
   const size_t first = contents.find_first_not_of(" \t\r\n");
   std::string space;

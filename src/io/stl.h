@@ -1,4 +1,4 @@
-// STL: loose triangles, as text or in binary. Corners at the same place become one vertex.
+// STL: unconnected triangles, as text or binary. Merges corners at the same position.
 #pragma once
 #include <string>
 #include <string_view>
@@ -10,7 +10,7 @@ namespace aspic {
 
 MeshContent parse_stl(const std::string& file, std::string_view contents);
 
-// Binary STL holds single precision, so there coordinates are rounded. InvalidInput when one is too large for that.
+// Binary STL rounds coordinates to single precision. Throws InvalidInput if one is too large for that.
 std::string stl_bytes(const std::string& file, const TriMesh& mesh, FileEncoding encoding);
 
 }  // namespace aspic

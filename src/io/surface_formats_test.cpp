@@ -1,4 +1,4 @@
-// OFF, PLY and STL: the variants that other programs write, and what is refused.
+// OFF, PLY and STL: variants of other programs, and rejected files.
 #include <gmock/gmock.h>
 
 #include <bit>
@@ -43,7 +43,7 @@ TEST(Off, ErrorsNameTheLine) {
   EXPECT_THAT(surface_error<parse_off>("ply\n"), HasSubstr("a:1: found 'ply' where 'OFF' should be"));
 }
 
-TEST(Ply, TextAndBothByteOrdersGiveCoordinatesAndFannedFaces) {
+TEST(Ply, TextAndBothByteOrdersGiveSameMesh) {
   for (const std::endian order : {std::endian::little, std::endian::big}) {
     const MeshContent mesh = parse_ply("a", binary_ply(order));
     EXPECT_EQ(mesh.vertices.at(3)[0], 1.5);
@@ -84,7 +84,7 @@ TEST(Ply, ErrorsNameTheLine) {
               HasSubstr("a:6: the number of elements 'b\\x01d' is 9"));
 }
 
-TEST(Ply, AnElementWithoutPropertiesTakesNoTimeWhateverItsCount) {
+TEST(Ply, ElementWithoutPropertiesNeedsNoTime) {
   EXPECT_EQ(parse_ply("a", small_ply("element nothing 9223372036854775807\n", "")).vertices.size(), 0u);
 }
 

@@ -1,4 +1,4 @@
-// Medit and TetGen: the variants that other programs write, and what is refused.
+// Medit and TetGen: variants of other programs, and rejected files.
 #include <gmock/gmock.h>
 
 #include "base/error.h"

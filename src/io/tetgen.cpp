@@ -13,7 +13,7 @@ int optional_integer(TextScanner& text, std::string_view what, int absent) {
   return text.at_line_end() ? absent : text.small_integer(what);
 }
 
-// Lines are numbered in order; `first` is the number of the first.
+// Lines are numbered consecutively; `first` is the first number.
 void check_number(TextScanner& text, std::string_view what, int64_t expected) {
   const int64_t number = text.integer(what);
   if (number != expected)
@@ -64,7 +64,7 @@ void read_tets(TextScanner& text, int first_vertex, MeshContent& content) {
   content.tets.resize(static_cast<size_t>(count));
   if (has_region) content.region.resize(content.tets.size());
   for (size_t t = 0; t < content.tets.size(); ++t) {
-    text.integer("the number of a tet");  // names nothing that is read
+    text.integer("the number of a tet");  // not used
     for (int& corner : content.tets[t]) {
       text.require_on_line("a corner of a tet");
       corner = text.index("a corner of a tet", first_vertex, static_cast<int>(content.vertices.size()));

@@ -1,4 +1,4 @@
-// TetGen's pair of text files: .node (vertices) and .ele (tets). The first attribute of a tet is its region.
+// TetGen's pair of text files: .node (vertices) and .ele (tets). A tet's first attribute is its region.
 #pragma once
 #include <string>
 #include <string_view>
@@ -11,7 +11,7 @@ struct TetgenText {
   std::string node, ele;
 };
 
-// Vertices are numbered from 0 or 1, whichever the first one has.
+// Vertices are numbered from 0 or 1, as the first line shows.
 MeshContent parse_tetgen(const std::string& node_file, std::string_view node, const std::string& ele_file,
                          std::string_view ele);
 TetgenText tetgen_text(const TetMesh& mesh);

@@ -17,9 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "aspic-mesh";
-constexpr int kOutOfTime = 4;  // its exit code
+constexpr int kOutOfTime = 4;  // exit code of the program
 
-// Beside this program, where an installation has it; at its place in the build folder; on the PATH.
+// Search path: beside this program (installation), its place in the build folder, the PATH.
 fs::path mesher() {
   const fs::path here = program_folder();
   return find_program(kProgram, {here, here / ".." / "mesh", here / ".." / "apps" / "mesh", here / "apps" / "mesh"},
@@ -33,7 +33,7 @@ void add_option(const char* name, double value, std::vector<std::string>& words)
   append_number(words.emplace_back(), value);
 }
 
-// The lines that the program begins with the name of the surface; the table of quality has none.
+// Returns the lines that begin with the name of the surface; lines of the quality table do not.
 std::vector<std::string> notes(const fs::path& output, const std::string& surface) {
   std::error_code error;
   std::istringstream lines(fs::exists(output, error) ? read_file(output) : "");

@@ -9,17 +9,17 @@
 namespace aspic {
 
 struct TetrahedralizeOptions {
-  double size = 0;     // target edge length in the units of the surface; 0: the diagonal of the bounding box / 25
-  double seconds = 0;  // wall time after which filling fails; 0: the program's default
-  std::filesystem::path program;  // aspic-mesh; empty: beside the running program, then on the PATH
+  double size = 0;                // target edge length in units of the surface; 0: diagonal of the bounding box / 25
+  double seconds = 0;             // limit of wall time [s]; 0: default of the program
+  std::filesystem::path program;  // aspic-mesh; empty: search beside the running program, then on the PATH
 };
 
 struct Tetrahedralization {
   TetMesh tets;
-  std::vector<std::string> notes;  // of the program: what it mended, where edges are short; one sentence each
+  std::vector<std::string> notes;  // repairs and short edges reported by the program; one sentence each
 };
 
-// Throws InvalidInput with the message of the program, or how to install it; TimeLimitPassed when time ran out.
+// Throws InvalidInput with the program's message, or with instructions to install it; TimeLimitPassed on a time-out.
 Tetrahedralization tetrahedralize(const std::filesystem::path& surface, const TetrahedralizeOptions& options);
 
 }  // namespace aspic

@@ -20,12 +20,12 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-// The mesher's place is taken by shell scripts that keep to its command line: SURFACE -o OUT --size S.
+// Shell scripts replace the mesher and accept its command line: SURFACE -o OUT --size S.
 class Tetrahedralize : public FolderTest {
  protected:
   Tetrahedralize() {
     fs::create_directory(folder / "temporary");
-    surface = folder / "a b;c.off";  // no shell may see this name
+    surface = folder / "a b;c.off";  // must not pass through a shell
     write_mesh(surface, boundary_surface(make_box({{0, 0, 0}}, {{2, 2, 1}}, {1, 1, 1})).surface);
     write_mesh(folder / "tets.mesh", make_box({{0, 0, 0}}, {{2, 2, 1}}, {1, 1, 1}));
     ::setenv("TMPDIR", (folder / "temporary").c_str(), 1);
@@ -72,7 +72,7 @@ TEST_F(Tetrahedralize, PassesTheTimeLimitAndItsFailure) {
               HasSubstr("ran out of time: --time-limit 2.5: too slow"));
 }
 
-// A process starts the program and is killed; the program's end of a pipe then closes.
+// A process starts the program and is killed. Then the program's end of the pipe closes.
 TEST_F(Tetrahedralize, TheProgramDiesWithItsParent) {
   int ends[2];
   ASSERT_EQ(::pipe(ends), 0);
@@ -84,7 +84,7 @@ TEST_F(Tetrahedralize, TheProgramDiesWithItsParent) {
   }
   ::close(ends[1]);
   char byte;
-  ASSERT_EQ(::read(ends[0], &byte, 1), 1);  // the program runs
+  ASSERT_EQ(::read(ends[0], &byte, 1), 1);  // the program is running
   ::kill(parent, SIGKILL);
   int status = 0;
   ::waitpid(parent, &status, 0);

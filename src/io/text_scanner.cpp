@@ -12,7 +12,7 @@ namespace {
 
 bool is_blank_in_line(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
-// std::from_chars takes no leading plus.
+// std::from_chars accepts no leading plus.
 std::string_view without_plus(std::string_view word) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
   return word;
@@ -25,7 +25,7 @@ std::optional<double> parse_number(std::string_view word) {
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size()) return std::nullopt;
-  // Too small for a double is zero; too large is not a number.
+  // Underflow gives zero; overflow is an error.
   if (error == std::errc::result_out_of_range && word.find_first_of("eE") != word.npos && word.rfind('-') > 0 &&
       word.rfind('-') != word.npos)
     return 0.0;
@@ -43,7 +43,7 @@ std::optional<int64_t> parse_integer(std::string_view word) {
 
 TextScanner::TextScanner(std::string file, std::string_view text, char comment)
     : file_(std::move(file)), text_(text), comment_(comment) {
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // of UTF-8, which some editors write
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // UTF-8 byte order mark, which some editors write
   if (text_.starts_with(kByteOrderMark)) position_ = kByteOrderMark.size();
 }
 
@@ -139,7 +139,7 @@ int TextScanner::count(std::string_view what, size_t bytes) { return checked_cou
 
 int TextScanner::checked_count(int64_t value, std::string_view what, size_t bytes) const {
   if (value < 0) fail(std::string(what) + " is " + std::to_string(value) + "; it must not be negative");
-  // The last item may lack the line's end.
+  // The last item may lack its line break.
   const size_t most = (text_.size() - position_ + 1) / std::max<size_t>(bytes, 1);
   if (value > INT_MAX || static_cast<size_t>(value) > most)
     fail(std::string(what) + " is " + std::to_string(value) + ", but the rest of the file has room for at most " +

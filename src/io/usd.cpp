@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Letters, digits and underscores, not beginning with a digit; distinct from all in `taken`.
+// Identifier of letters, digits and underscores that does not begin with a digit and is not in `taken`.
 std::string identifier(const std::string& name, std::set<std::string>& taken) {
   std::string word;
   for (const char c : name) {
@@ -49,7 +49,7 @@ std::string points_text(const std::vector<float>& x) {
   return text + "]";
 }
 
-// [(lower), (upper)], which viewers use instead of looking at every point.
+// [(lower), (upper)], so that viewers need not read every point.
 std::string extent_text(const std::vector<float>& x) {
   std::vector<float> corners(x.begin(), x.begin() + std::min<std::ptrdiff_t>(3, std::ssize(x)));
   corners.insert(corners.end(), corners.begin(), corners.end());
@@ -60,7 +60,7 @@ std::string extent_text(const std::vector<float>& x) {
   return points_text(corners);
 }
 
-// Whole frames keep whole numbers although the times were rounded.
+// Rounds almost integral time codes to integers, because the times were rounded.
 double time_code(double time, double codes_per_second) {
   const double code = time * codes_per_second;
   return std::abs(code - std::round(code)) < 1e-6 ? std::round(code) : code;

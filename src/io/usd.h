@@ -1,4 +1,4 @@
-// One USD scene as text (.usda): a mesh per body whose points are sampled over time. Y is up, units are meters.
+// USD scene as text (.usda): one mesh per body with points sampled over time. Y is up, lengths are in meters.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -11,14 +11,14 @@
 namespace aspic {
 
 struct UsdMesh {
-  std::string name;  // becomes a USD identifier; made unique by a number where needed
+  std::string name;  // becomes a USD identifier; a number makes it unique where necessary
   std::span<const Triangle> triangles;
   std::function<std::vector<float>(int sample)> points;  // 3 per vertex [m]
 };
 
-// times[i] [s] is that of sample i. A time code is time times `codes_per_second`; players show one frame per code, so
-// it should be the rate of the samples. The file is written sample by sample, so it may be larger than memory, and
-// appears at once when it is complete. Throws InvalidInput when it cannot be written.
+// Writes times[i] [s] as the time of sample i. A time code is time times `codes_per_second`, which should be the rate
+// of the samples because players show one frame per code. Writes sample by sample, so the file may exceed memory, and
+// replaces `path` atomically. Throws InvalidInput if it cannot be written.
 void write_usd(const std::filesystem::path& path, const std::vector<UsdMesh>& meshes, const std::vector<double>& times,
                double codes_per_second);
 

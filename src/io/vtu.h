@@ -1,4 +1,4 @@
-// VTK XML unstructured grids (.vtu) and their time index (.pvd), as ParaView and meshio read them.
+// VTK XML unstructured grids (.vtu) and their time index (.pvd), as read by ParaView and meshio.
 #pragma once
 #include <filesystem>
 #include <span>
@@ -11,31 +11,31 @@
 
 namespace aspic {
 
-// The type of the stored numbers.
+// Type of the stored numbers.
 enum class FieldType { float64, float32, int32 };
 
 struct Field {
   std::string name;
-  int components = 1;  // 1, 3, 6 or 9 numbers per point or cell
+  int components = 1;  // 1, 3, 6 or 9 values per point or cell
   std::vector<double> values;
   FieldType type = FieldType::float64;
 };
 
 struct Vtu {
-  TetMesh mesh;       // points as rest positions; region if the file has a "region" cell field
-  TriMesh triangles;  // triangle cells, when there are no tets
+  TetMesh mesh;       // points are rest positions; region is set if the file has a cell field "region"
+  TriMesh triangles;  // triangle cells if there are no tets
   std::vector<Field> point_fields, cell_fields;
-  std::vector<Field> file_fields;  // <FieldData>, of any length; text is skipped
+  std::vector<Field> file_fields;  // <FieldData> of any length; text is skipped
 };
 
 // Reads ascii, inline base64 and appended data, raw or zlib-compressed. Splits quads and skips lines and points. Throws
-// InvalidInput with file and line for other cells and for counts, indices and sizes that do not match.
+// InvalidInput with file and line for other cells, and for inconsistent counts, indices or sizes.
 Vtu read_vtu(const std::filesystem::path& path);
-Vtu parse_vtu(std::string_view contents, const std::string& file);  // `file` is for messages
-// Reads the points alone, 3 numbers each.
+Vtu parse_vtu(std::string_view contents, const std::string& file);  // `file` is the name in messages
+// Reads only the points, 3 coordinates each.
 std::vector<double> read_vtu_points(const std::filesystem::path& path);
 
-// Writes inline base64, zlib-compressed; points in double precision. Equal input gives equal bytes.
+// Writes inline base64, zlib-compressed, with points in double precision. The output is reproducible.
 void write_vtu(const std::filesystem::path& path, std::span<const double> points, const std::vector<Tet>& tets,
                const std::vector<Field>& point_fields, const std::vector<Field>& cell_fields,
                const std::vector<Field>& file_fields = {});

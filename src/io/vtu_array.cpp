@@ -15,9 +15,9 @@
 namespace aspic {
 namespace {
 
-constexpr size_t kMaxDeflateRatio = 1032;  // no deflate stream expands further [zlib, technical details]
+constexpr size_t kMaxDeflateRatio = 1032;  // limit of deflate [zlib, technical details]
 
-// The bytes behind an array: plain or base64, read from front to back.
+// Bytes of an array, plain or base64, read sequentially.
 class ArrayByteSource {
  public:
   ArrayByteSource(std::string_view text, bool base64) : text_(text), base64_(base64) {}
@@ -43,7 +43,7 @@ class ArrayByteSource {
  private:
   std::string_view text_;
   bool base64_;
-  std::string spare_;  // decoded but not yet taken
+  std::string spare_;  // decoded but not consumed
 };
 
 class ArrayReader {
@@ -51,7 +51,7 @@ class ArrayReader {
   ArrayReader(const VtkFile& file, const XmlElement& array, ArrayByteSource source, bool is_appended)
       : file_(file), array_(array), source_(std::move(source)), is_appended_(is_appended) {}
 
-  // An array of <AppendedData> counts towards what all of them may take of it.
+  // Arrays of <AppendedData> share its bytes; each byte is counted once.
   std::string read(size_t size) {
     const size_t before = source_.left();
     std::string bytes = file_.compressed ? read_blocks(size) : read_plain(size);
@@ -133,7 +133,7 @@ std::vector<Number> convert(const std::string& bytes, bool swapped) {
     if (swapped) std::reverse(raw, raw + sizeof(Stored));
     Stored stored;
     std::memcpy(&stored, raw, sizeof(Stored));
-    numbers[i] = static_cast<Number>(stored);  // NOLINT(bugprone-signed-char-misuse): an Int8 has its sign
+    numbers[i] = static_cast<Number>(stored);  // NOLINT(bugprone-signed-char-misuse): an Int8 is signed
   }
   return numbers;
 }
@@ -177,7 +177,7 @@ struct StoredType {
   std::vector<Number> (*convert)(const std::string& bytes, bool swapped);
 };
 
-// Compressed data may unpack to a thousand times their size: what is not free is not asked for.
+// Compressed data may expand a thousandfold, so the free memory is checked first.
 void check_memory(const VtkFile& file, const XmlElement& array, size_t count) {
   constexpr size_t kFew = size_t{1} << 20;
   if (count < kFew) return;

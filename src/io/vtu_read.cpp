@@ -10,12 +10,12 @@
 namespace aspic {
 namespace {
 
-// Cell types of VTK [vtkCellType.h]; between the first two: several vertices, a line.
+// Cell types of VTK [vtkCellType.h]; types 2 and 3 are several vertices and a line.
 constexpr int kVertex = 1, kPolyLine = 4, kTriangle = 5, kQuad = 9, kTet = 10;
 
 constexpr int64_t kMaxCount = std::numeric_limits<int>::max() / 4;
 
-// One <Piece>: points, cells and what is known of them.
+// One <Piece>: points, cells and their fields.
 struct Piece {
   const XmlElement* element = nullptr;
   size_t points = 0, cells = 0;
@@ -105,7 +105,7 @@ Piece read_piece(const VtkFile& file, const XmlElement& element) {
   return piece;
 }
 
-// The cells that are kept, as corners and as the index of the cell they come from.
+// Kept cells: their corners, and the index of the original cell.
 struct Kept {
   std::vector<Tet> tets;
   std::vector<Triangle> triangles;
@@ -151,7 +151,7 @@ Field read_field(const VtkFile& file, const XmlElement& array, size_t count) {
           field_type(array)};
 }
 
-// The arrays of <PointData> or <CellData>; text is passed over.
+// Reads the arrays of <PointData> or <CellData>; skips text.
 std::vector<Field> read_fields(const VtkFile& file, const XmlElement* section, size_t count) {
   std::vector<Field> fields;
   if (!section) return fields;
@@ -160,7 +160,7 @@ std::vector<Field> read_fields(const VtkFile& file, const XmlElement* section, s
   return fields;
 }
 
-// The arrays of <FieldData>, each of a length of its own.
+// Reads the arrays of <FieldData>, which have different lengths.
 std::vector<Field> read_file_fields(const VtkFile& file, const XmlElement& grid) {
   std::vector<Field> fields;
   const XmlElement* section = grid.child("FieldData");

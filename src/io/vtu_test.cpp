@@ -27,7 +27,7 @@ class VtuFile : public FolderTest {
   }
 };
 
-// Two tets on five points, with the arrays given as `array(type, name, components, numbers)` stores them.
+// Two tets on five points; `array(type, name, components, numbers)` encodes the arrays.
 template <class ArrayText>
 std::string grid(const std::string& head, ArrayText array, const std::string& tail = "") {
   return "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" " + head +
@@ -86,7 +86,7 @@ void expect_two_tets(const Vtu& vtu) {
   EXPECT_EQ(vtu.mesh.region, (std::vector<int>{7, -2}));
 }
 
-TEST_F(VtuFile, WhatIsWrittenReadsBackToTheSameBits) {
+TEST_F(VtuFile, WrittenGridsReadBackExactly) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
   constexpr int kPoints = 30000;  // several compressed blocks
@@ -124,7 +124,7 @@ TEST_F(VtuFile, WhatIsWrittenReadsBackToTheSameBits) {
   EXPECT_EQ(read_file(path("a.vtu")), read_file(path("b.vtu")));
 }
 
-TEST_F(VtuFile, FieldsOfTheWholeFileHaveLengthsOfTheirOwn) {
+TEST_F(VtuFile, FileFieldsHaveIndependentLengths) {
   const std::vector<double> points = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   write_vtu(path("a.vtu"), points, {{0, 1, 2, 3}}, {}, {{"young", 1, {1e5}}},
             {{"model <neo>", 1, {1}, FieldType::int32}, {"lines", 2, {1, 2, 3, 4, 5, 6}}});
@@ -166,7 +166,7 @@ TEST_F(VtuFile, EmptyGridsAreWrittenAndRead) {
 
 TEST_F(VtuFile, ReadsAscii) { expect_two_tets(read_text(grid("version=\"0.1\"", ascii))); }
 
-TEST_F(VtuFile, ReadsInlineBase64WithEitherHeaderByteOrderAndPadding) {
+TEST_F(VtuFile, ReadsInlineBase64InAllVariants) {
   for (const bool wide : {false, true}) {
     for (const bool swapped : {false, true}) {
       for (const bool apart : {false, true}) {
@@ -205,7 +205,7 @@ TEST_F(VtuFile, ReadsAppendedRawAndBase64) {
   }
 }
 
-// A small file would otherwise fill the memory: as many arrays as it likes, all of them the same bytes.
+// A small file that would exhaust the memory: many arrays that share the same bytes.
 TEST_F(VtuFile, RefusesAppendedArraysThatShareTheirBytes) {
   const std::string block = stored<uint32_t>(40, false) + std::string(40, '\0');
   std::string fields;
@@ -231,7 +231,7 @@ TEST_F(VtuFile, JoinsPieces) {
   EXPECT_EQ(vtu.mesh.region, (std::vector<int>{7, -2, 7, -2}));
 }
 
-TEST_F(VtuFile, GivesTrianglesAndSplitQuadsWhenThereAreNoTets) {
+TEST_F(VtuFile, GivesTrianglesAndSplitQuadsWithoutTets) {
   std::string text = grid("", ascii);
   text.replace(text.find("10\n 10"), 6, "9\n 5");
   text.replace(text.find("4\n 8\n"), 5, "4\n 7\n");
@@ -291,7 +291,7 @@ TEST_F(VtuFile, RefusesEveryTruncation) {
   for (size_t n = 0; n + 1 < whole.size(); ++n) EXPECT_NE(message(whole.substr(0, n)), "") << n;
 }
 
-// Whatever a byte becomes, the answer is a mesh or an InvalidInput; anything else would end the test.
+// For any change of a byte the result is a mesh or an InvalidInput; anything else ends the test.
 TEST_F(VtuFile, SurvivesEveryChangedByte) {
   write_vtu(path("a.vtu"), std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, {{0, 1, 2, 3}}, {}, {});
   const std::string whole = read_file(path("a.vtu"));

@@ -18,8 +18,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the files say LittleEndian");
 
-constexpr size_t kBlockSize = 1 << 18;  // bytes that are compressed at a time, so that threads share the work
-constexpr int kCompression = 1;         // fastest: the mantissas of positions hardly compress at any level
+constexpr size_t kBlockSize = 1 << 18;  // bytes per compressed block, so that threads share the work
+constexpr int kCompression = 1;         // fastest: mantissas of positions hardly compress at any level
 
 template <class Stored, class Number>
 std::string bytes_of(std::span<const Number> numbers) {
@@ -61,7 +61,7 @@ void append_compressed(std::string_view bytes, std::string& text) {
 void append_array(std::string_view type, std::string_view name, int components, std::string_view bytes,
                   std::string& text, const std::string& attributes = "") {
   text += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_escaped(name) + "\"";
-  // Left out for scalars, which meshio would otherwise give as a column.
+  // Omitted for scalars, which meshio would otherwise return as a column.
   if (components != 1) text += " NumberOfComponents=\"" + std::to_string(components) + "\"";
   text += attributes + " format=\"binary\">\n";
   append_compressed(bytes, text);

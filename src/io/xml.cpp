@@ -16,12 +16,12 @@ namespace aspic {
 namespace {
 
 constexpr size_t kMaxDepth = 32;
-constexpr int kMaxElements = 100000;  // bounds the memory that a hostile file can claim
+constexpr int kMaxElements = 100000;  // limits the memory for hostile files
 
 constexpr std::array<std::pair<std::string_view, char>, 5> kEntities = {
     {{"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}}};
 
-// Builds the tree from Expat's events. Exceptions must not pass through Expat, so errors are kept.
+// Builds the tree from Expat's events. Stores errors, because exceptions must not pass through Expat.
 class Builder {
  public:
   Builder(std::string_view document, const std::string& file, std::string_view verbatim)
@@ -98,9 +98,9 @@ class Builder {
   std::string_view verbatim_;
   std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser_;
   XmlElement root_;
-  std::vector<XmlElement*> open_;  // from the root to the innermost element
+  std::vector<XmlElement*> open_;  // from the root to the innermost open element
   int elements_ = 0;
-  bool has_ended_ = false;  // by the verbatim element
+  bool has_ended_ = false;  // at the verbatim element
   std::string error_;
 };
 

@@ -57,7 +57,7 @@ TEST(Xml, BoundsDepthAndNumberOfElements) {
   EXPECT_THAT(xml_message(many), testing::HasSubstr("more than 100000 elements"));
 }
 
-// Each entity would expand to ten of the one before it.
+// Each entity would expand to ten copies of the previous one.
 TEST(Xml, RefusesEntityBombs) {
   std::string bomb = "<!DOCTYPE a [<!ENTITY e0 \"ha\">";
   for (int i = 1; i < 20; ++i) {

@@ -9,16 +9,16 @@
 namespace aspic {
 namespace {
 
-constexpr size_t kGzipHead = 10, kGzipTail = 8;  // around the deflated bytes; the tail holds CRC-32 and size
+constexpr size_t kGzipHead = 10, kGzipTail = 8;  // around the deflated bytes; the trailer has CRC-32 and size
 constexpr uint16_t kVersion = 20, kUtf8 = 1 << 11, kDeflated = 8;
-constexpr uint16_t kMidnight = 0, kFirstOfJanuary1980 = 0x21;  // the same bytes give the same archive
+constexpr uint16_t kMidnight = 0, kFirstOfJanuary1980 = 0x21;  // constant, so that archives are reproducible
 
 template <class T>
 void append(std::string& bytes, T value) {
   for (size_t i = 0; i < sizeof(T); ++i) bytes += static_cast<char>(static_cast<uint64_t>(value) >> (8 * i) & 0xff);
 }
 
-// What both heads of a file have in common.
+// Fields that both headers of a file share.
 std::string description(const std::string& packed, const std::string& name) {
   std::string bytes;
   append<uint16_t>(bytes, kVersion);

@@ -1,4 +1,4 @@
-// ZIP archives [APPNOTE 6.3.10], deflated, written whole in memory: what a page hands to its reader as one file.
+// ZIP archives [APPNOTE 6.3.10], deflated in memory: several files that the page offers as one download.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,9 +7,9 @@ namespace aspic {
 
 struct ZipEntry {
   std::string name;   // with "/" between folders
-  std::string bytes;  // below 4 GiB
+  std::string bytes;  // less than 4 GiB
 };
 
-std::string zipped(const std::vector<ZipEntry>& entries);  // below 4 GiB and 65536 entries together
+std::string zipped(const std::vector<ZipEntry>& entries);  // in total less than 4 GiB and 65536 entries
 
 }  // namespace aspic

@@ -12,7 +12,7 @@ namespace {
 
 using ZipArchive = FolderTest;
 
-// Read by Python, which knows nothing of this writer. It checks the sums, too.
+// Python reads the archive independently, and checks the CRCs, too.
 TEST_F(ZipArchive, IsReadByPython) {
   const std::string zeros(100'000, '\0');
   write_file(path("a.zip"), zipped({{"scene/a.toml", "x = 1\n"}, {"scene/inputs/b.msh", zeros}, {"empty", ""}}));

@@ -1,4 +1,4 @@
-// As rigid as possible: psi = mu |F - R|^2, R the rotation closest to F. Nothing resists a change of volume as such.
+// As rigid as possible: psi = mu |F - R|^2, R the rotation closest to F. It has no volume term.
 #pragma once
 #include "material/material.h"
 #include "material/reference.h"

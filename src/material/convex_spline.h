@@ -1,8 +1,8 @@
-// Convex splines with knots 0 = t_0 < t_1 < ... < t_(N+1), for laws that data shape:
+// Convex splines with knots 0 = t_0 < t_1 < ... < t_(N+1), for data-driven laws:
 //   g(x) = sum over i = 1..N of c_i B_i(x),   B_i'' = 2 hat_i / (t_(i+1) - t_(i-1)),   B_i(0) = B_i'(0) = 0
-// hat_i is the piecewise linear function that is 1 at t_i and 0 at all other knots, so the slope B_i' climbs smoothly
+// hat_i is the piecewise linear function that is 1 at t_i and 0 at all other knots, so the slope B_i' rises smoothly
 // from 0 before t_(i-1) to 1 beyond t_(i+1) (the I-splines of [Ramsay 1988]). For c >= 0, g is convex and nondecreasing
-// over the whole line, with a continuous g''; before 0 it is 0, beyond the last knot it is linear.
+// on the whole line, with a continuous g''. It is 0 before 0 and linear beyond the last knot.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace aspic {
 
-// A function of one variable and its derivatives at a place.
+// Value and derivatives of a function of one variable.
 template <class T>
 struct Curve {
   T value, slope, curvature;
@@ -28,7 +28,7 @@ struct ConvexSpline {
     for (std::size_t k = 0; k <= N; ++k) {
       const double length = knots[k + 1] - knots[k];
       const T end = k < N ? T(2 / (knots[k + 2] - knots[k])) * c[k] : T(0.0), rise = end - start;
-      const T u = limited(T(1 / length) * (x - T(knots[k])));  // part of the piece that lies before x
+      const T u = limited(T(1 / length) * (x - T(knots[k])));  // fraction of the piece before x
       g.value = g.value + T(length * length) * u * u * (T(0.5) * start + T(1.0 / 6) * rise * u) +
                 T(length) * (start + T(0.5) * rise) * positive_part(x - T(knots[k + 1]));
       g.slope = g.slope + T(length) * u * (start + T(0.5) * rise * u);
@@ -45,7 +45,7 @@ struct ConvexSpline {
     return where_positive(x, x, T(0.0));
   }
   template <class T>
-  static T limited(const T& u) {  // to [0, 1]
+  static T limited(const T& u) {  // clamps to [0, 1]
     return where_positive(u - T(1.0), T(1.0), positive_part(u));
   }
 };

@@ -1,4 +1,4 @@
-// What the derivatives of materials must be beside right, which `verify` judges.
+// Properties of material derivatives other than correctness, which `verify` checks.
 #include <gtest/gtest.h>
 
 #include "material/states.h"

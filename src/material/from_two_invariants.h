@@ -11,7 +11,7 @@
 
 namespace aspic {
 
-// L has Params<T> and the five functions as curves, W1(I1bar, p) and so on.
+// L has Params<T> and the five functions as curves: W1(I1bar, p) and so on.
 template <class L>
 struct FromTwoInvariants : L {
   using TwoInvariantLaw = L;

@@ -1,4 +1,4 @@
-// What holds for every material: rest, rotation, barriers, lanes.
+// Properties of all materials: rest state, rotation, barriers, lanes.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -106,7 +106,7 @@ TEST(Materials, GiveInEachLaneWhatTheyGiveAlone) {
         SCOPED_TRACE(M::info().name + " at " + name);
         const Mat9d Hl = M::hessian(Fl, params[lane]);
         const Mat3d Pl = M::pk1(Fl, params[lane]);
-        // The compiler may fuse multiply-adds differently; J loses what cancels in the determinant.
+        // The compiler may fuse multiply-adds differently; J loses digits by cancellation in the determinant.
         const double scale = 1e-13 * largest(Hl.a), size = 1 + std::sqrt(squared_norm(Fl));
         EXPECT_NEAR(psi[lane], M::psi(Fl, params[lane]), scale * size * size + 1e-14);
         for (int i = 0; i < 9; ++i) EXPECT_NEAR(P.a[i][lane], Pl.a[i], scale * size);

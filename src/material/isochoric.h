@@ -12,7 +12,7 @@ T bulk_modulus(const LameOver<T>& l) {
   return l.lambda + T(2.0 / 3.0) * l.mu;
 }
 
-// J^(-2/3).
+// Returns J^(-2/3).
 template <class T>
 T isochoric_scale(const T& J) {
   const T root = cbrt(J);

@@ -9,8 +9,8 @@
 
 namespace aspic {
 
-// A material that scenes can name: params() converts small-strain constants to its own, info() describes it, and
-// reference_energy() is its formula in principal stretches, for the default extra parameters.
+// Material for scenes: params() converts small-strain constants to its own, info() describes it, and reference_energy()
+// is its formula in principal stretches for the default extra parameters.
 template <class M>
 concept RegisteredMaterial = Material<M> && requires(const MaterialParameters m, const MaterialParametersOver<Pack> p) {
   { M::params(m) } -> std::same_as<typename M::template Params<double>>;
@@ -20,14 +20,14 @@ concept RegisteredMaterial = Material<M> && requires(const MaterialParameters m,
   { M::reference_energy(s, r) } -> std::same_as<long double>;
 };
 
-// Calls fn.template operator()<M>() for every material, in the order of the list.
+// Calls fn.template operator()<M>() for every material in the order of the list.
 template <class Fn>
 void for_each_material(Fn&& fn) {
   const auto visit = [&fn]<RegisteredMaterial... M>(std::tuple<M...>*) { (fn.template operator()<M>(), ...); };
   visit(static_cast<MaterialList*>(nullptr));
 }
 
-// Calls fn.template operator()<M>() for the material of that name; throws InvalidInput with the nearest known name.
+// Calls fn.template operator()<M>() for the named material. Throws InvalidInput with the nearest known name.
 template <class Fn>
 void with_material(std::string_view name, Fn&& fn) {
   material_info(name);  // throws for an unknown name

@@ -1,4 +1,4 @@
-// What a hyperelastic material is: an energy density of the deformation gradient F and its two derivatives.
+// Hyperelastic materials: an energy density of the deformation gradient F and its two derivatives.
 #pragma once
 #include <array>
 #include <bit>
@@ -11,7 +11,7 @@
 
 namespace aspic {
 
-// pk1 and hessian are meaningful where psi is finite.
+// pk1 and hessian are defined where psi is finite.
 template <class M, class T>
 concept MaterialOver = requires(const Mat3<T> F, const typename M::template Params<T> p) {
   { M::psi(F, p) } -> std::same_as<T>;            // energy density         [J/m^3]
@@ -22,14 +22,14 @@ concept MaterialOver = requires(const Mat3<T> F, const typename M::template Para
 template <class M>
 concept Material = MaterialOver<M, double> && MaterialOver<M, Pack>;
 
-// Params<T> is an aggregate of T alone, so it is also an array of T.
+// Params<T> is an aggregate of T only, so it is also an array of T.
 template <class M>
 inline constexpr std::size_t kParameterCount = sizeof(typename M::template Params<double>) / sizeof(double);
 
 template <class M, class T>
 using ParameterArray = std::array<T, kParameterCount<M>>;
 
-// The same parameters over another scalar (double to Pack: in all lanes; to Jet: as constants).
+// Converts parameters to another scalar: double to Pack (in all lanes) or to Jet (as constants).
 template <class M, class To, class From = double>
 typename M::template Params<To> broadcast_params(const typename M::template Params<From>& p) {
   const auto from = std::bit_cast<ParameterArray<M, From>>(p);
@@ -38,7 +38,7 @@ typename M::template Params<To> broadcast_params(const typename M::template Para
   return std::bit_cast<typename M::template Params<To>>(to);
 }
 
-// One set of parameters per lane: 1 to kPackWidth of them; lanes beyond the last repeat it.
+// Packs one parameter set per lane: 1 to kPackWidth sets; the last one fills the remaining lanes.
 template <class M>
 typename M::template Params<Pack> pack_params(std::span<const typename M::template Params<double>> lanes) {
   ParameterArray<M, Pack> to;

@@ -1,5 +1,5 @@
-// The arguments of reference energies: the formula of each material in principal stretches, in extended precision.
-// Verification compares the material with it.
+// Arguments of the reference energies, which give each material in principal stretches and extended precision.
+// Verification compares the materials with them.
 #pragma once
 #include <array>
 #include <cmath>
@@ -22,7 +22,7 @@ struct PrincipalStretches {
 
   Real I1, I2, J, I1bar, I2bar;
   Real strain, strain2;  // sums of l - 1 and of (l - 1)^2
-  Real green, green2;    // the same of the Green strain (l^2 - 1) / 2
+  Real green, green2;    // the same for the Green strain (l^2 - 1) / 2
 
  private:
   template <class Term>

@@ -11,7 +11,7 @@ namespace aspic {
 
 inline constexpr int kMaxExtraParameters = 13;
 
-// The parameters of one tet: small-strain constants [Pa], and further ones in the order of MaterialInfo::extra.
+// Parameters of one tet: small-strain constants [Pa], and further ones in the order of MaterialInfo::extra.
 template <class T>
 struct MaterialParametersOver {
   LameOver<T> lame;
@@ -26,7 +26,7 @@ struct ExtraParameter {
 
 struct MaterialInfo {
   std::string name;     // "neo_hookean"
-  std::string formula;  // the energy density, one line of plain text
+  std::string formula;  // energy density as one line of plain text
   std::string remarks;  // limits and source; one or two sentences
   std::vector<ExtraParameter> extra;
   bool barrier = false;  // +inf for det F <= 0

@@ -47,7 +47,7 @@ TEST(Registry, RefusesAnUnknownNameAndSuggestsTheNearest) {
   }
 }
 
-// What a newcomer writes: psi alone.
+// Minimal user-defined material: psi only.
 struct NeoHookeanEnergy {
   template <class T>
   struct Params {

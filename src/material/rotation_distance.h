@@ -1,14 +1,14 @@
-// mu |F - R|^2, R the rotation closest to F: what arap and corotated share.
+// mu |F - R|^2, R the rotation closest to F: the term shared by arap and corotated.
 //   P = 2 mu (F - R),  H = 2 mu (Id - dR/dF)
 #pragma once
 #include "math/polar3.h"
 
 namespace aspic {
 
-// dR/dF grows as 1 / (s_i + s_j) [1]; below this sum of stretches it is held, so that H stays finite.
+// dR/dF grows like 1 / (s_i + s_j) [1]; this lower bound of the sum keeps H finite.
 inline constexpr double kLeastStretchSum = 1e-8;
 
-// |F - R|^2 = |F|^2 - 2 tr S + 3, and the better conditioned sum of (s_i - 1)^2 where the s_i are at hand.
+// |F - R|^2 = |F|^2 - 2 tr S + 3, or the better conditioned sum of (s_i - 1)^2 if the s_i are available.
 template <class T>
 T squared_rotation_distance(const Mat3<T>& F) {
   const Svd3<T> f = svd3(F);

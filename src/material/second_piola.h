@@ -1,4 +1,4 @@
-// Pieces for materials whose stress is P = F S, S a polynomial in C = F'F.
+// Helpers for materials whose stress is P = F S, S a polynomial in C = F'F.
 #pragma once
 #include "math/small.h"
 

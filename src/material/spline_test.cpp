@@ -19,7 +19,7 @@ MaterialParameters random_spline(std::mt19937& random, double young = 1, double 
   return m;
 }
 
-// Stretches of up to a few powers of ten, J > 0.
+// Stretches over a few powers of ten, J > 0.
 Mat3d strong_deformation(std::mt19937& random) {
   std::normal_distribution<double> exponent(0, 0.7);
   return random_rotation(random) *
@@ -108,7 +108,7 @@ TEST(Spline, IsElliptic) {
   }
 }
 
-// The test above is able to fail: I2bar is not polyconvex, and Mooney-Rivlin is not elliptic.
+// Shows that the test above can fail: I2bar is not polyconvex, and Mooney-Rivlin is not elliptic.
 TEST(Spline, IsEllipticWhereMooneyRivlinIsNot) {
   std::mt19937 random(4);
   MaterialParameters m{lame_from_shear_bulk(1, 1e-3), {1}};
@@ -128,7 +128,7 @@ TEST(Spline, IsEllipticWhereMooneyRivlinIsNot) {
 TEST(Spline, IsConvexInTheMinors) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> exponent(-1, 1), size(0, 3);
-  // Along lines through states whose bar invariants may also be below 3, where W is extended as a function of them.
+  // Lines through states whose isochoric invariants may also be below 3, to which W is extended.
   for (int i = 0; i < 20000; ++i) {
     const auto p = Spline::params(random_spline(random));
     const Mat3d F0 = size(random) * random_matrix(random), F1 = size(random) * random_matrix(random);

@@ -1,4 +1,4 @@
-// Deformation gradients that every material is judged at, and constants for it.
+// Deformation gradients and constants for tests of materials.
 #pragma once
 #include <cmath>
 #include <random>
@@ -24,7 +24,7 @@ inline Mat3d random_matrix(std::mt19937& random) {
   return A;
 }
 
-// From a random unit quaternion.
+// Rotation from a random unit quaternion.
 inline Mat3d random_rotation(std::mt19937& random) {
   std::normal_distribution<double> normal;
   const double a = normal(random), b = normal(random), c = normal(random), d = normal(random);
@@ -34,13 +34,13 @@ inline Mat3d random_rotation(std::mt19937& random) {
            s * (b * d + a * c), s * (c * d - a * b), 1 - s * (b * b + c * c)}};
 }
 
-// Well inside J > 0: a rotation times a stretch of at most 60 %.
+// Deformation with J > 0: a rotation times a stretch of at most 60 %.
 inline Mat3d random_deformation(std::mt19937& random) {
   return random_rotation(random) * (identity3<double>() + 0.2 * random_matrix(random));
 }
 
-// States where psi is finite and twice differentiable. Barriers have J > 0; where R is used, F has no kink. The part of
-// a name before a comma is its kind.
+// States where psi is finite and twice differentiable: barriers have J > 0, and R is differentiable where it is used.
+// The part of a name before a comma is its kind.
 template <class M>
 std::vector<NamedState> smooth_states() {
   std::mt19937 random(7);
@@ -51,7 +51,7 @@ std::vector<NamedState> smooth_states() {
   states.push_back({"equal singular values, two", random_rotation(random) * diagonal(1.5, 0.8, 0.8)});
   const Mat3d A = random_deformation(random);
   states.push_back({"J = 1e-8, small", std::cbrt(1e-8 / determinant(A)) * A});
-  if (!std::is_same_v<M, Fung>) {  // its exponential overflows in these
+  if (!std::is_same_v<M, Fung>) {  // the exponential of Fung overflows in these
     states.push_back({"J = 1e-8, flat", {{1, 0, 0, 0.25, 1, 0, -0.5, 0.125, 1e-8}}});
     states.push_back({"|F| = 1e6", 1e6 / std::sqrt(squared_norm(A)) * A});
   }
@@ -65,7 +65,7 @@ std::vector<NamedState> smooth_states() {
   return states;
 }
 
-// Middle-of-the-road constants with unequal extra parameters.
+// Typical constants with unequal extra parameters.
 template <class M>
 typename M::template Params<double> ordinary_params(double young = 2.5, double poisson = 0.4) {
   MaterialParameters m{lame_from_young_poisson(young, poisson), {}};

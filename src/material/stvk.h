@@ -57,7 +57,7 @@ struct Stvk {
   static Mat3<T> green_strain(const Mat3<T>& F) {
     return T(0.5) * (transpose(F) * F - identity3<T>());
   }
-  // Second Piola-Kirchhoff stress.
+  // Computes the second Piola-Kirchhoff stress.
   template <class T>
   static Mat3<T> stress(const Mat3<T>& E, const Params<T>& p) {
     return T(2.0) * p.mu * E + p.lambda * trace(E) * identity3<T>();

@@ -22,10 +22,10 @@ Uniaxial uniaxial(double l, double t, const typename M::template Params<double>&
   return {t, M::pk1(diagonal(l, t, t), p)(0, 0)};
 }
 
-TEST(Materials, ReproduceYoungModulusAndPoissonRatioAtSmallStrain) {
+TEST(Materials, ReproduceYoungAndPoissonAtSmallStrain) {
   for_each_material([]<class M>() {
     for (const double poisson : {-0.3, 0.0, 0.3, 0.45, 0.499}) {
-      const double young = 3e5, strain = 1e-4;  // the error of the central difference is about strain^2
+      const double young = 3e5, strain = 1e-4;  // central differences have an error of about strain^2
       const auto p = ordinary_params<M>(young, poisson);
       const Uniaxial pull = uniaxial<M>(1 + strain, 1, p), push = uniaxial<M>(1 - strain, 1, p);
       const double measured_young = (pull.stress - push.stress) / (2 * strain);
@@ -63,7 +63,7 @@ TEST(Materials, MatchTheUniaxialReferenceTable) {
   }
 }
 
-// Uniform scaling by s: the sign of dpsi/ds shows whether a shrunk body expands.
+// Uniform scaling by s: the sign of dpsi/ds shows whether a compressed body expands.
 template <class M>
 double pressure(double s, double poisson) {
   return trace(M::pk1(diagonal(s, s, s), ordinary_params<M>(1, poisson)));

@@ -1,4 +1,4 @@
-// Positive semidefinite 9x9 matrices: a fast exact test for many at a time, and a filter for the few that fail.
+// Positive semidefinite 9x9 matrices: a fast exact test of many matrices, and a filter for those that fail.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -10,15 +10,15 @@
 
 namespace aspic {
 
-// Bit l is set when H of lane l has an eigenvalue below -tolerance * (largest diagonal entry); NaN sets it too.
-// The test is whether H + shift Id = L D L' has positive D. It is sharp up to rounding (about 1e-15 of the scale).
+// Sets bit l if H of lane l has an eigenvalue below -tolerance * (largest diagonal entry), or NaN. Tests whether H +
+// shift Id = L D L' has positive D. Exact up to rounding (about 1e-15 relative).
 template <class T>
 unsigned indefinite_lanes(const Mat9<T>& H, double tolerance = 1e-12) {
   T scale = T(0.0);
   for (int i = 0; i < 9; ++i) scale = max(scale, abs(H(i, i)));
   const T shift = T(tolerance) * scale + T(std::numeric_limits<double>::min());  // H = 0 is semidefinite
 
-  T L[9][9];  // below the diagonal L; scaled by D before its column is finished
+  T L[9][9];  // L below the diagonal; scaled by D before its column is finished
   unsigned failed = 0;
   for (int k = 0; k < 9; ++k) {
     T d = H(k, k) + shift;
@@ -35,15 +35,15 @@ unsigned indefinite_lanes(const Mat9<T>& H, double tolerance = 1e-12) {
   return failed;
 }
 
-// The smallest eigenvalue that a filter leaves, relative to the largest |eigenvalue|.
+// Smallest eigenvalue after filtering, relative to the largest |eigenvalue|.
 inline constexpr double kEigenvalueFloor = 1e-9;
 
-// What becomes of an eigenvalue l: max(l, floor) or max(|l|, floor).
+// Replacement of an eigenvalue l: max(l, floor) or max(|l|, floor).
 enum class EigenvalueFilter { clamp, absolute };
 
-// Filters eigenvalues in those of the `lanes` that fail indefinite_lanes, with floor = relative_floor * (largest
-// |eigenvalue|), and leaves the other lanes alone to the last bit. `eigen()` gives the eigenvalues and eigenvectors of
-// H. Returns the lanes that were filtered.
+// Filters the eigenvalues in those of the `lanes` that fail indefinite_lanes, with floor = relative_floor * (largest
+// |eigenvalue|). Other lanes keep their bits. `eigen()` returns eigenvalues and eigenvectors of H. Returns the filtered
+// lanes.
 template <class T, class Eigen>
 unsigned filter_eigenvalues(Mat9<T>& H, EigenvalueFilter filter, unsigned lanes, const Eigen& eigen,
                             double relative_floor = kEigenvalueFloor) {
@@ -54,7 +54,7 @@ unsigned filter_eigenvalues(Mat9<T>& H, EigenvalueFilter filter, unsigned lanes,
   for (const T& l : e.values) largest = max(largest, abs(l));
   const T floor = max(T(relative_floor) * largest, T(std::numeric_limits<double>::min()));
   const T chosen = lanes_from_bits<T>(failed);
-  // Only what the filter changes is added, so that the other eigenvalues keep their last digits.
+  // Adds only the changes of the filter, so that other eigenvalues keep their last digits.
   for (int k = 0; k < 9; ++k) {
     const T l = e.values[k];
     const T raise = chosen * (max(filter == EigenvalueFilter::absolute ? abs(l) : l, floor) - l);

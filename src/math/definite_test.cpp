@@ -10,7 +10,7 @@ namespace {
 
 using Spectrum = std::array<double, 9>;
 
-// A random orthonormal basis: the eigenvectors of a random symmetric matrix.
+// Random orthonormal basis: eigenvectors of a random symmetric matrix.
 std::array<double, 81> random_basis(std::mt19937& random) {
   std::normal_distribution<double> normal;
   std::array<double, 81> A{};
@@ -110,7 +110,7 @@ TEST(MakeDefinite, ClampsOrReflectsTheNegativeEigenvaluesOnly) {
   }
 }
 
-TEST(MakeDefinite, FiltersTheFailingLanesAndLeavesTheOthersBitwiseAlone) {
+TEST(MakeDefinite, FiltersFailingLanesAndKeepsOthersBitwise) {
   std::mt19937 random(8);
   Mat9<Pack> before;
   Mat9d alone[kPackWidth];

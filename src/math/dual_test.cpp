@@ -20,7 +20,7 @@ void expect_equal(const D& f, double value, double rate) {
   EXPECT_NEAR(f.rate, rate, 1e-14);
 }
 
-TEST(Dual, FollowsTheRulesOfArithmeticAndTheChainRule) {
+TEST(Dual, FollowsArithmeticAndChainRules) {
   expect_equal(x * x * x - 2.0 * x, a * a * a - 2 * a, (3 * a * a - 2) * da);
   expect_equal(1.0 / x, 1 / a, -da / (a * a));
   expect_equal(-x / (x + 1.0), -a / (a + 1), -da / ((a + 1) * (a + 1)));
@@ -34,7 +34,7 @@ TEST(Dual, FollowsTheRulesOfArithmeticAndTheChainRule) {
 }
 
 TEST(Dual, NestedGivesMixedSecondDerivatives) {
-  const DD y(D(a, 1.0), D(1.0, 0.0));  // both directions are x itself
+  const DD y(D(a, 1.0), D(1.0, 0.0));  // both directions are the variable x
   EXPECT_NEAR((y * y * y).rate.rate, 6 * a, 1e-14);
   EXPECT_NEAR(log(y).rate.rate, -1 / (a * a), 1e-14);
   EXPECT_NEAR(sqrt(y).rate.rate, -0.25 * std::pow(a, -1.5), 1e-14);
@@ -49,7 +49,7 @@ Mat3d random_matrix(unsigned seed) {
   return A;
 }
 
-TEST(Dual, TheClosestRotationHasItsFirstAndSecondRates) {
+TEST(Dual, ClosestRotationHasFirstAndSecondDerivatives) {
   const Mat3d F = random_matrix(1), U = random_matrix(2), W = random_matrix(3);
   const auto along = [&](double u, double w) { return closest_rotation(F + u * U + w * W); };
   const auto second = closest_rotation(dual_matrix(dual_matrix(F, U), constant_matrix(W)));

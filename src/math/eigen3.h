@@ -9,10 +9,10 @@ namespace aspic {
 
 struct Eigen3 {
   Vec3d values;   // ascending
-  Mat3d vectors;  // orthonormal columns, in the order of the values
+  Mat3d vectors;  // orthonormal columns in the order of the values
 };
 
-// A must be symmetric and finite.
+// Requires a symmetric and finite A.
 inline Eigen3 symmetric_eigen(const Mat3d& A) {
   std::array<double, 9> entries;
   std::copy(A.a, A.a + 9, entries.begin());

@@ -7,7 +7,7 @@
 
 namespace aspic {
 
-// f and its first two derivatives. The Hessian is stored as its lower triangle.
+// f with its first two derivatives. Stores the lower triangle of the Hessian.
 template <class T>
 struct Jet {
   static constexpr int kVariables = 9;
@@ -27,7 +27,7 @@ struct Jet {
     return f;
   }
 
-  // g(a) for a function g of one variable, from g, g' and g'' at the value of a.
+  // g(a) for a function g of one variable, given g, g' and g'' at the value of a.
   friend Jet compose(const Jet& a, const T& g, const T& dg, const T& ddg) {
     Jet f;
     f.value = g;
@@ -61,7 +61,7 @@ struct Jet {
   }
   friend Jet operator/(const Jet& a, const Jet& b) { return a * reciprocal(b); }
 
-  // With constants, which have no derivatives to multiply.
+  // Operations with constants, which have no derivatives.
   friend Jet operator*(double s, const Jet& a) { return scaled(a, s); }
   friend Jet operator*(const Jet& a, double s) { return scaled(a, s); }
   friend Jet operator/(const Jet& a, double s) { return scaled(a, 1 / s); }
@@ -134,7 +134,7 @@ Jet<T> pow(const Jet<T>& a, double n) {
   return compose(a, slope * a.value, T(n) * slope, T(n * (n - 1)) * power);
 }
 
-// The branch is taken on the value; the derivatives are those of the branch.
+// The value selects the branch; the derivatives are those of the branch.
 template <class T>
 Jet<T> where_positive(const Jet<T>& condition, const Jet<T>& a, const Jet<T>& b) {
   Jet<T> f;

@@ -80,7 +80,7 @@ TEST(Jet, DifferentiatesTheDeterminant) {
   EXPECT_NEAR(H(1, 3), -F(2, 2), 1e-15);
 }
 
-TEST(Jet, OverPackGivesInEachLaneTheJetOverDouble) {
+TEST(Jet, OverPackAgreesWithDoubleInEachLane) {
   const auto f = [](const auto& u, const auto& v) { return log(u * v + 2.0) / (1.0 + sqrt(u)); };
   Pack lanes;
   for (int l = 0; l < kPackWidth; ++l) lanes.set(l, 1 + l);

@@ -1,6 +1,6 @@
-// N numbers that move together: a column of a 3x3 block or three components of a vector and a spare lane (N = 4), or
-// four of those (N = 16). Loads of three numbers read a fourth one behind them, so arrays of them need kSpareLanes more
-// entries at the end. Unlike those of a Pack, the lanes are one after another in memory.
+// N numbers in one vector: a column of a 3x3 block or three components of a vector with a spare lane (N = 4), or four
+// of those (N = 16). Loads of three numbers also read the number behind them, so arrays need kSpareLanes more entries
+// at the end. Unlike those of a Pack, the lanes are consecutive in memory.
 #pragma once
 #include <cstring>
 
@@ -55,7 +55,7 @@ template <class T>
 Quad<T> transposed_product(const T* A, Quad<T> x) {
   using Q = Quad<T>;
   const Q a = Q::load(A) * x, b = Q::load(A + 3) * x, c = Q::load(A + 6) * x, o = Q::zero();
-  // a0 + a1, b0 + b1, a2 + a3, b2 + b3, and so for c and o
+  // Computes a0 + a1, b0 + b1, a2 + a3, b2 + b3, and similarly for c and o.
   const Q ab = {__builtin_shufflevector(a.v, b.v, 0, 4, 2, 6) + __builtin_shufflevector(a.v, b.v, 1, 5, 3, 7)};
   const Q co = {__builtin_shufflevector(c.v, o.v, 0, 4, 2, 6) + __builtin_shufflevector(c.v, o.v, 1, 5, 3, 7)};
   return {__builtin_shufflevector(ab.v, co.v, 0, 1, 4, 5) + __builtin_shufflevector(ab.v, co.v, 2, 3, 6, 7)};

@@ -55,7 +55,7 @@ TYPED_TEST(LanesTest, LoadAndStoreOfThreeNumbersTouchNoFourth) {
   EXPECT_EQ(to, (std::array<TypeParam, 4>{1, 2, 3, 7}));
 }
 
-// Of three products of numbers below one, each sum may be rounded or fused: a few eps.
+// Tolerance of a few eps: sums of three products of numbers below one may be rounded or fused.
 TYPED_TEST(LanesTest, ProductsAreThoseOfTheColumnMajorBlock) {
   const TypeParam bound = 4 * std::numeric_limits<TypeParam>::epsilon();
   for (int repetition = 0; repetition < 20; ++repetition) {

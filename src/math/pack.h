@@ -1,4 +1,4 @@
-// A Pack is kPackWidth doubles that move together. The only file that knows that SIMD lanes exist.
+// A Pack is kPackWidth doubles in one SIMD vector. SIMD code is confined to this file.
 #pragma once
 #include <array>
 #include <bit>
@@ -10,7 +10,7 @@
 
 namespace aspic {
 
-// So that unqualified calls on a double never convert to Pack.
+// Lets unqualified calls on a double never convert to Pack.
 using std::abs;
 using std::cbrt;
 using std::exp;
@@ -44,7 +44,7 @@ struct Pack {
   Pack& operator*=(Pack b) { return v *= b.v, *this; }
 };
 
-// Applies fn lane by lane; a vector math library can replace it here and nowhere else.
+// Applies fn lane by lane. This is the only place where a vector math library could replace it.
 template <class Fn>
 Pack map(Pack a, Fn fn) {
   for (int i = 0; i < kPackWidth; ++i) a.v[i] = fn(a[i]);
@@ -57,10 +57,10 @@ inline Pack exp(Pack a) {
   return map(a, [](double x) { return std::exp(x); });
 }
 
-// The bits of the lanes as integers: sign, 11 bits of exponent, 52 of mantissa.
+// Bits of the lanes as integers: sign, 11 bits of exponent, 52 of mantissa.
 using PackBits __attribute__((vector_size(kPackWidth * sizeof(double)))) = long long;
 
-// Positive, normal and small enough that a few of them add up without overflow.
+// Whether all lanes are positive, normal and small enough that sums of a few do not overflow.
 inline bool all_ordinary(Pack a) {
   bool all = true;
   for (int i = 0; i < kPackWidth; ++i)
@@ -84,8 +84,8 @@ inline Pack log(Pack a) {
   return k * kLn2High - ((s * (f - R) - k * kLn2Low) - f);
 }
 
-// Within 2 ulp. A third of the exponent is right to some percent; Halley's iteration triples the digits, and
-// Newton's last one rounds once.
+// Cube root within 2 ulp. A third of the exponent is accurate to some percent; Halley's iteration triples the digits,
+// and a final Newton step rounds once.
 inline Pack cbrt(Pack a) {
   if (!all_ordinary(a)) return map(a, [](double x) { return std::cbrt(x); });
   constexpr double kTwoThirdsOfOne = 2.0 / 3 * static_cast<double>(std::bit_cast<long long>(0.97));
@@ -102,7 +102,7 @@ inline Pack pow(Pack a, double n) {
   return map(a, [n](double x) { return std::pow(x, n); });
 }
 
-// condition > 0 ? a : b, lane by lane.
+// Returns condition > 0 ? a : b, lane by lane.
 inline Pack where_positive(Pack condition, Pack a, Pack b) { return condition.v > 0 ? a.v : b.v; }
 inline double where_positive(double condition, double a, double b) { return condition > 0 ? a : b; }
 
@@ -110,7 +110,7 @@ inline Pack max(Pack a, Pack b) { return where_positive(a - b, a, b); }
 inline double max(double a, double b) { return where_positive(a - b, a, b); }
 inline Pack abs(Pack a) { return where_positive(a, a, -a); }
 
-// Bit l is set where lane l is not > 0 (NaN is not).
+// Sets bit l if lane l is not > 0, or is NaN.
 inline unsigned lanes_not_positive(Pack a) {
   unsigned bits = 0;
   for (int i = 0; i < kPackWidth; ++i) bits |= unsigned{!(a[i] > 0)} << i;
@@ -125,7 +125,7 @@ inline bool any_positive(Pack a) {
 }
 inline bool any_positive(double a) { return a > 0; }
 
-// 1 in the lanes whose bit is set, 0 in the others.
+// Returns 1 in the lanes whose bit is set, 0 in the others.
 template <class T>
 T lanes_from_bits(unsigned bits);
 template <>
@@ -139,7 +139,7 @@ inline double lanes_from_bits<double>(unsigned bits) {
   return bits & 1;
 }
 
-// Lanes are added in order, so that the sum rounds alike everywhere.
+// Adds the lanes in order, so that rounding is the same everywhere.
 inline double sum(Pack a) {
   double s = 0;
   for (int i = 0; i < kPackWidth; ++i) s += a[i];
@@ -151,16 +151,16 @@ inline double min(Pack a) {
   return m;
 }
 
-// Asks for the lines of a cache that hold these bytes.
+// Prefetches the cache lines of these bytes.
 inline void prefetch(const void* from, std::size_t bytes) {
   for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(from) + i);
 }
 
-// Rows of numbers in memory, one row per lane, against packs, one per column: what gathers and scatters consist of.
-// Rows move in pieces as wide as registers, and shuffles between registers turn them into columns. No number beside
-// the row is read or written. `row(lane)` is the address of the first number.
+// Transposition between rows of numbers in memory, one per lane, and packs, one per column, for gather and scatter.
+// Rows move in pieces of register width, and shuffles turn them into columns. Accesses no memory outside the rows.
+// `row(lane)` is the address of the first number.
 
-// N doubles as one vector; a vector is loaded and stored wherever it lies.
+// Vector of N doubles, loaded and stored at any alignment.
 template <int N>
 struct Vector {
   using Type __attribute__((vector_size(N * sizeof(double)))) = double;
@@ -177,7 +177,7 @@ void add(typename Vector<N>::Type a, double* to) {
   std::memcpy(to, &a, sizeof a);
 }
 
-// a0 b0 a1 b1 ..., from the lower or the upper halves of a and b.
+// Returns a0 b0 a1 b1 ... from the lower or the upper halves of a and b.
 template <bool kUpper, int... I>
 Pack zip(Pack a, Pack b, std::integer_sequence<int, I...>) {
   constexpr int kFirst = kUpper ? kPackWidth / 2 : 0;
@@ -185,8 +185,8 @@ Pack zip(Pack a, Pack b, std::integer_sequence<int, I...>) {
 }
 using LaneNumbers = std::make_integer_sequence<int, kPackWidth>;
 
-// Zipping the halves of the list moves the highest bit of the place to the lowest of the lane; as often as there are
-// bits, this exchanges places and lanes.
+// Zipping the halves of the list moves the highest bit of the position to the lowest bit of the lane. Repeated once per
+// bit, this transposes positions and lanes.
 inline void transpose(Pack* a) {
   constexpr int kHalf = kPackWidth / 2;
   for (int stage = 1; stage < kPackWidth; stage *= 2) {
@@ -205,7 +205,7 @@ Pack alternate(Pack a, Pack b, std::integer_sequence<int, I...>) {
   return Pack::Lanes(__builtin_shufflevector(a.v, b.v, (kOdd + I / 2 * 2 + I % 2 * kPackWidth)...));
 }
 
-// Two numbers from the row of each second lane, N of them.
+// Loads two numbers from the rows of every second lane, N of them.
 template <int N, class Row>
 typename Vector<N>::Type load_pairs(const Row& row, int lane, int column) {
   if constexpr (N == 2) {
@@ -227,7 +227,7 @@ std::array<Pack, 3> gather3(const Row& row) {
           alternate<1>(pairs(0, 1), pairs(1, 1), LaneNumbers())};
 }
 
-// row[c] += a[c], lane after lane: lanes may share a row.
+// Adds row[c] += a[c] lane by lane, so that lanes may share a row.
 template <class Row>
 void scatter3(const std::array<Pack, 3>& a, const Row& row) {
   const Pack even = alternate<0>(a[0], a[1], LaneNumbers()), odd = alternate<1>(a[0], a[1], LaneNumbers());

@@ -11,8 +11,8 @@ namespace {
 
 double ulp(double x) { return std::nextafter(std::abs(x), std::numeric_limits<double>::infinity()) - std::abs(x); }
 
-// Positive normal numbers below max/8, which is where the standard library takes over (its cbrt errs by up to 4 ulp):
-// half of them around 1, half over the whole range of exponents.
+// Positive normal numbers below max/8, above which the standard library is used (its cbrt errs by up to 4 ulp). Half of
+// them are near 1, half cover the whole range of exponents.
 std::vector<Pack> positive_numbers() {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> near(-0.5, 0.5), anywhere(-1022, 1020);
@@ -42,7 +42,7 @@ TEST(Pack, CbrtIsWithinTwoUlps) {
       2, [](Pack x) { return cbrt(x); }, [](long double x) { return std::cbrt(x); });
 }
 
-TEST(Pack, LogAndCbrtTreatSpecialLanesLikeTheStandardLibrary) {
+TEST(Pack, LogAndCbrtMatchLibraryForSpecialValues) {
   const double inf = std::numeric_limits<double>::infinity(), tiny = std::numeric_limits<double>::denorm_min();
   for (const double special : {0.0, -0.0, tiny, -1.0, inf, -inf, std::nan("")}) {
     Pack x = 2.0;
@@ -82,7 +82,7 @@ TEST(Pack, SelectsLaneByLane) {
   EXPECT_EQ(lanes_from_bits<Pack>(2)[1], 1);
 }
 
-// Rows of a table, some of them in several lanes, of which the last row ends where memory does.
+// Rows of a table, some shared by several lanes; the last row ends at the end of the allocation.
 struct Rows {
   static constexpr int kCount = 5, kLength = 9;
   std::vector<double> number;
@@ -118,7 +118,7 @@ void expect_rows_to_be_added(Scatter scatter) {
   EXPECT_EQ(rows.number, expected.number);
 }
 
-TEST(Pack, AddsOneRowPerLaneAlsoWhereLanesShareARowAndTouchesNothingElse) {
+TEST(Pack, AddsRowPerLaneWithSharedRows) {
   expect_rows_to_be_added<3>([](const auto& a, const auto& row) { scatter3(a, row); });
   expect_rows_to_be_added<9>([](const auto& a, const auto& row) { scatter9(a, row); });
 }

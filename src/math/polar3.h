@@ -1,4 +1,4 @@
-// The polar decomposition F = R S: R the closest rotation, tr S the sum of the (signed) singular values.
+// Polar decomposition F = R S: R is the closest rotation, tr S the sum of the (signed) singular values.
 #pragma once
 #include <limits>
 
@@ -17,21 +17,21 @@ template <class T>
 Mat3<T> closest_rotation(const Mat3<T>& F) {
   return rotation(svd3(F));
 }
-// With its rate: R' dR is the cross product with w, (tr S I - S) w = the axis of R' dF - dF' R.
+// With its derivative: R' dR is the cross product with w, (tr S I - S) w = the axis of R' dF - dF' R.
 template <class T>
 Mat3<Dual<T>> closest_rotation(const Mat3<Dual<T>>& F) {
   const Mat3<T> R = closest_rotation(values(F));
   const Mat3<T> S = transpose(R) * values(F), A = transpose(R) * rates(F);
   const Mat3<T> G = trace(S) * identity3<T>() - S;
-  const T det = determinant(G), least = T(std::numeric_limits<double>::min());  // 0 where R jumps
+  const T det = determinant(G), least = T(std::numeric_limits<double>::min());  // 0 where R is discontinuous
   const Vec3<T> axis = {{A(2, 1) - A(1, 2), A(0, 2) - A(2, 0), A(1, 0) - A(0, 1)}};
   const Vec3<T> w = (T(1.0) / where_positive(det - least, det, least)) * (transpose(cofactor(G)) * axis);
   const T o = T(0.0);
   return dual_matrix(R, R * Mat3<T>{{o, w[2], -w[1], -w[2], o, w[0], w[1], -w[0], o}});
 }
 
-// H += scale dR/dF, where dR/dF = sum over i < j of w w' / (s_i + s_j), w = vec(u_i v_j' - u_j v_i').
-// R jumps where s_i + s_j = 0; there the sum is held at `least`, so that the result stays finite.
+// H += scale dR/dF, where dR/dF = sum over i < j of w w' / (s_i + s_j), w = vec(u_i v_j' - u_j v_i'). R is
+// discontinuous at s_i + s_j = 0, so the sum is at least `least` and the result stays finite.
 template <class T>
 void add_rotation_gradient(const Svd3<T>& f, const T& scale, double least, Mat9<T>& H) {
   for (int j = 1; j < 3; ++j)
@@ -53,8 +53,8 @@ T stretch_trace(const Mat3<T>& F) {
   return f.s[0] + f.s[1] + f.s[2];
 }
 
-// With its derivatives: t = tr S is a root of (t^2 - I1)^2 / 4 - I2 - 2 J t, I1 = |F|^2, I2 = |cof F|^2.
-// Each Newton step on the jet doubles the order to which it is right, so two steps give second derivatives.
+// tr S with its derivatives: t = tr S is a root of (t^2 - I1)^2 / 4 - I2 - 2 J t, I1 = |F|^2, I2 = |cof F|^2. Each
+// Newton step on the jet doubles the order of accuracy, so two steps give second derivatives.
 template <class T>
 Jet<T> stretch_trace(const Mat3<Jet<T>>& F) {
   Mat3<T> value;

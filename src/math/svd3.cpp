@@ -23,7 +23,7 @@ void rotate_columns(const PlaneRotation<T>& r, Mat3<T>& A, int i, int j) {
   for (int k = 0; k < 3; ++k) rotate(r, A(k, i), A(k, j));
 }
 
-// Where the condition is positive, swaps two columns and turns one around: a rotation, so the determinant stays.
+// Where the condition is positive, swaps two columns and negates one. This rotation keeps the determinant.
 template <class T>
 void swap_columns(const T& condition, Mat3<T>& A, int i, int j) {
   for (int k = 0; k < 3; ++k) {
@@ -33,7 +33,7 @@ void swap_columns(const T& condition, Mat3<T>& A, int i, int j) {
   }
 }
 
-// Turns B and V by the same rotations until the columns of B are orthogonal to working precision.
+// Applies rotations to B and V until the columns of B are orthogonal to working precision.
 template <class T>
 void orthogonalize_columns(Mat3<T>& B, Mat3<T>& V) {
   constexpr int kMaxSweeps = 20;
@@ -55,7 +55,7 @@ void orthogonalize_columns(Mat3<T>& B, Mat3<T>& V) {
   }
 }
 
-// From the axis that is closest to perpendicular.
+// Unit vector perpendicular to u, from the axis that is closest to perpendicular.
 template <class T>
 Vec3<T> unit_perpendicular(const Vec3<T>& u) {
   const T x = abs(u[0]), y = abs(u[1]), z = abs(u[2]), zero = T(0.0), one = T(1.0);
@@ -66,7 +66,7 @@ Vec3<T> unit_perpendicular(const Vec3<T>& u) {
   return (one / sqrt(dot(w, w))) * w;
 }
 
-// x / length, or the other vector where the length is 0.
+// Returns x / length, or the other vector if the length is 0.
 template <class T>
 Vec3<T> unit(const Vec3<T>& x, const T& length, const Vec3<T>& other) {
   const T divisor = where_positive(length, length, T(1.0));
@@ -75,7 +75,7 @@ Vec3<T> unit(const Vec3<T>& x, const T& length, const Vec3<T>& other) {
 
 template <class T>
 Svd3<T> decomposition(const Mat3<T>& F) {
-  T scale = T(0.0);  // so that squares neither overflow nor vanish
+  T scale = T(0.0);  // scaling prevents overflow and underflow of squares
   for (const T& a : F.a) scale = max(scale, abs(a));
   scale = where_positive(scale, scale, T(1.0));
   Mat3<T> B, V = identity3<T>();

@@ -14,7 +14,7 @@ struct Svd3 {
   Mat3<T> V;
 };
 
-// F must be finite. F = 0 gives U = V = I.
+// Requires a finite F. F = 0 gives U = V = I.
 Svd3<double> svd3(const Mat3d& F);
 Svd3<Pack> svd3(const Mat3<Pack>& F);
 

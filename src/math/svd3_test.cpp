@@ -11,7 +11,7 @@
 namespace aspic {
 namespace {
 
-constexpr double kRoundOff = 4e-15;  // some 20 roundings
+constexpr double kRoundOff = 4e-15;  // about 20 roundings
 
 double largest(const Mat3d& A) {
   double most = 0;
@@ -60,7 +60,7 @@ TEST(Svd3, RestoresTheMatrixFromProperRotations) {
   for (const Mat3d& F : difficult_matrices()) expect_decomposition(F);
 }
 
-TEST(Svd3, GivesTheLastSingularValueTheSignOfTheDeterminant) {
+TEST(Svd3, LastSingularValueHasSignOfDeterminant) {
   for (const Mat3d& F : difficult_matrices())
     if (std::abs(determinant(F)) > 1e-12 * std::pow(largest(F), 3)) {
       EXPECT_EQ(std::signbit(svd3(F).s[2]), std::signbit(determinant(F)));
@@ -75,7 +75,7 @@ TEST(Svd3, KeepsTheRelativeAccuracyOfScaledColumns) {
   EXPECT_NEAR(f.s[0] * f.s[1] * f.s[2] / (1e-24 * determinant(A)), 1, 1e-13);
 }
 
-TEST(Svd3, OverPackGivesInEachLaneWhatDoubleGives) {
+TEST(Svd3, OverPackAgreesWithDoubleInEachLane) {
   std::mt19937 random(6);
   Mat3d alone[kPackWidth];
   Mat3<Pack> together;
@@ -108,7 +108,7 @@ TEST(Polar3, RotationGradientIsTheDerivativeOfTheRotation) {
     for (int r = 0; r < 9; ++r) {
       double GD = 0;
       for (int c = 0; c < 9; ++c) GD += G(r, c) * D.a[c];
-      EXPECT_NEAR(GD, dR.a[r], 1e-8);  // h^2 times third derivatives of order 10
+      EXPECT_NEAR(GD, dR.a[r], 1e-8);  // error: h^2 times third derivatives of order 10
     }
   }
 }

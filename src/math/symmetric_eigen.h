@@ -7,7 +7,7 @@
 
 namespace aspic {
 
-// A = sum values[k] v_k v_k', v_k = column k of `vectors` (column-major), orthonormal, in no particular order.
+// A = sum values[k] v_k v_k', where v_k = column k of `vectors` (column-major). Orthonormal and unordered.
 template <int N, class T = double>
 struct SymmetricEigen {
   std::array<T, N> values;
@@ -19,7 +19,7 @@ struct PlaneRotation {
   T sin, cos;
 };
 
-// The rotation by at most pi/4 that makes [[app, apq], [apq, aqq]] diagonal; none where `active` is not positive.
+// Rotation by at most pi/4 that diagonalizes [[app, apq], [apq, aqq]]; identity where `active` is not positive.
 template <class T>
 PlaneRotation<T> jacobi_rotation(const T& app, const T& aqq, const T& apq, const T& active) {
   const T zeta = (aqq - app) / (T(2.0) * where_positive(active, apq, T(1.0)));
@@ -37,10 +37,10 @@ void rotate(const PlaneRotation<T>& r, T& x, T& y) {
   x = z;
 }
 
-// Reads all of the column-major A, which must be symmetric; lanes that are not finite give no numbers.
+// Requires a symmetric, column-major A. Lanes that are not finite give undefined values.
 template <int N, class T>
 SymmetricEigen<N, T> symmetric_eigen(std::array<T, N * N> A) {
-  constexpr int kMaxSweeps = 30;  // convergence is quadratic: 6 to 8 are typical
+  constexpr int kMaxSweeps = 30;  // convergence is quadratic; 6 to 8 are typical
   SymmetricEigen<N, T> e;
   for (int i = 0; i < N * N; ++i) e.vectors[i] = T(i % (N + 1) == 0 ? 1.0 : 0.0);
   T scale = T(0.0);

@@ -1,5 +1,5 @@
-// A binary tree of axis-aligned boxes over items in Morton order: which items may overlap a box, be nearest to a point,
-// or lie on a ray.
+// Binary tree of axis-aligned boxes over items in Morton order. Finds the items whose boxes overlap a box, are near a
+// point, or lie on a ray.
 #pragma once
 #include <algorithm>
 #include <limits>
@@ -34,7 +34,7 @@ struct Box {
     }
     return sum;
   }
-  // The parameter s >= 0 at which origin + s direction enters the box; infinity when it misses.
+  // Returns the parameter s >= 0 at which origin + s direction enters the box; infinity if it misses.
   double entry(const Vec3d& origin, const Vec3d& direction) const {
     double first = 0, last = kInfinity;
     for (int axis = 0; axis < 3; ++axis) {
@@ -62,8 +62,8 @@ class BoxTree {
     if (!items_.empty()) overlap({0, 0, static_cast<int>(items_.size())}, box, visit);
   }
 
-  // Calls visit(item) for the items whose box is at a squared distance of at most `reach` from x, near ones first by
-  // and large; visit may lower `reach` as it goes.
+  // Calls visit(item) for the items whose box has a squared distance of at most `reach` from x, roughly from near to
+  // far. `visit` may lower `reach`.
   template <class Visit>
   void for_each_near(const Vec3d& x, const double& reach, Visit visit) const {
     if (!items_.empty()) near({0, 0, static_cast<int>(items_.size())}, x, reach, visit);

@@ -1,4 +1,4 @@
-// Parts of a mesh that hang together through shared vertices.
+// Connected components of a mesh: elements that are connected through shared vertices.
 #pragma once
 #include <vector>
 
@@ -6,7 +6,7 @@
 
 namespace aspic {
 
-// Indices of the elements of each component, ascending; components in the order of their first element.
+// Return the ascending element indices of each component; components are in the order of their first element.
 std::vector<std::vector<int>> tet_components(const TetMesh& mesh);
 std::vector<std::vector<int>> triangle_components(const TriMesh& mesh);
 

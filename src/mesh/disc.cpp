@@ -9,7 +9,7 @@
 namespace aspic {
 namespace {
 
-// Index of point i (taken round the ring) of ring k.
+// Index of point i (modulo the ring size) of ring k.
 int ring_point(int k, int i) { return k == 0 ? 0 : 1 + 3 * k * (k - 1) + i % (6 * k); }
 
 }  // namespace
@@ -42,7 +42,7 @@ std::vector<Tet> swept_tets(const Disc& disc, int copies, bool closed) {
   for (int copy = 0; copy + (closed ? 0 : 1) < copies; ++copy) {
     const int below = copy * points, above = (copy + 1) % copies * points;
     for (Triangle triangle : disc.triangles) {
-      // Turned so that a is the smallest; b and c keep the orientation of the triangle.
+      // Rotates the corners so that a is the smallest; the orientation is kept.
       std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
       const auto [a, b, c] = triangle;
       tets.push_back({below + a, above + b, above + c, above + a});

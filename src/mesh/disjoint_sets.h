@@ -1,4 +1,4 @@
-// Sets of integers that can be joined, by their smallest element.
+// Disjoint sets of integers (union-find), each represented by its smallest element.
 #pragma once
 #include <numeric>
 #include <utility>

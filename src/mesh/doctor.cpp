@@ -74,22 +74,22 @@ void examine_shapes(const TetMesh& mesh, Findings& findings) {
                 "remove them with --repair", shapes.repeated_vertex, true});
   findings.add({Severity::error, "zero_volume_tets",
                 count_of(shapes.flat.size(), total, "tets", "have no volume: their corners lie in a plane"),
-                "remove them with --repair, or mesh the shape anew", shapes.flat, true});
+                "remove them with --repair, or remesh the shape", shapes.flat, true});
   findings.add({Severity::error, "inverted_tets",
                 count_of(shapes.inverted.size(), total, "tets", "are inverted; the worst is tet ") +
                     std::to_string(shapes.worst_inverted) + " with volume " + number(shapes.most_negative) + " m^3",
-                "turn them with --repair", shapes.inverted, true});
+                "flip them with --repair", shapes.inverted, true});
   if (shapes.slivers.empty()) return;
   findings.add({Severity::warning, "slivers",
                 count_of(shapes.slivers.size(), total, "tets",
                          "are slivers (a dihedral angle within 5 degrees of 0 or 180); the worst is tet ") +
                     std::to_string(shapes.worst_sliver) + " with " + number(shapes.smallest_angle) +
                     " degrees; mean ratios by tenths: " + histogram_text(mesh),
-                "mesh the shape anew with aspic mesh; slivers make the solver slow and the material stiff",
-                shapes.slivers, false});
+                "remesh the shape with aspic mesh; slivers make the solver slow and the material stiff", shapes.slivers,
+                false});
 }
 
-// Faces shared by more than two tets, and by two that lie on the same side of it.
+// Finds faces shared by more than two tets, or by two tets on the same side.
 void examine_faces(const TetMesh& mesh, Findings& findings) {
   constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
   const auto face = [&](int place) {
@@ -97,7 +97,7 @@ void examine_faces(const TetMesh& mesh, Findings& findings) {
     const Tet& tet = mesh.tets[place / 4];
     return Triangle{tet[i], tet[j], tet[k]};
   };
-  // The outward face is an even permutation of the sorted one.
+  // An outward face is an even permutation of the sorted face.
   const auto is_even = [&](int place) {
     const auto [a, b, c] = face(place);
     return ((a < b) + (b < c) + (c < a) == 2) == (volume(mesh, place / 4) > 0);
@@ -121,17 +121,17 @@ void examine_faces(const TetMesh& mesh, Findings& findings) {
   }
   findings.add({Severity::error, "non_manifold_faces",
                 count_of(crowded.size(), mesh.tets.size(), "tets", "share a face with more than one other tet"),
-                "remove the extra tets where the mesh was made", crowded, false});
+                "remove the extra tets in the program that made the mesh", crowded, false});
   findings.add({Severity::warning, "folded_tets",
                 count_of(folded.size(), mesh.tets.size(), "tets",
                          "lie on the same side of a face as their neighbor, so they overlap"),
-                "mesh the shape anew", folded, false});
+                "remesh the shape with aspic mesh", folded, false});
 }
 
-// Tets whose centroid lies inside another one: not every overlap shows in this way, but a doubled part does.
+// Finds tets whose centroid is inside another tet. Not every overlap is found, but duplicated parts are.
 std::vector<int> overlapping_tets(const TetMesh& mesh) {
   constexpr double kInside = 1e-6;    // smallest barycentric weight that counts
-  constexpr size_t kMostNear = 4096;  // of a few tets: a pile of them would be compared in all pairs
+  constexpr size_t kMostNear = 4096;  // limit for a few tets, because a pile of them would need all pairs
   std::vector<Box> boxes(mesh.tets.size());
   const std::vector<Vec3d> centers = centroids(mesh);
   for (size_t t = 0; t < boxes.size(); ++t)
@@ -139,12 +139,12 @@ std::vector<int> overlapping_tets(const TetMesh& mesh) {
   const BoxTree tree(boxes);
   const auto holds = [&](int tet, const Vec3d& x) {
     const TetCorners X = corners(mesh, tet);
-    const std::array<double, 4> w = barycentric(X, x);  // of a flat tet: anything
+    const std::array<double, 4> w = barycentric(X, x);  // undefined for a flat tet
     const bool is_inside = std::all_of(w.begin(), w.end(), [](double wi) { return wi >= kInside; });
     return is_inside && std::abs(signed_volume(X)) > flat_volume(X);
   };
   std::vector<char> is_held(mesh.tets.size(), 0);
-  // False where too many are near all of these, and each must be examined alone.
+  // Returns false if too many tets are near, so that each must be examined alone.
   const auto examine = [&](std::span<const int> tets, std::vector<int>& near) {
     Box here;
     for (const int t : tets) here.add(centers[t]);
@@ -161,7 +161,7 @@ std::vector<int> overlapping_tets(const TetMesh& mesh) {
     return true;
   };
   parallel_chunks(mesh.tet_count(), [&](int first, int last) {
-    constexpr int kTogether = 16;  // neighbors share the way through the tree
+    constexpr int kTogether = 16;  // neighbors share the path through the tree
     std::vector<int> near;
     for (int i = first; i < last; i += kTogether) {
       const auto tets = tree.items().subspan(i, std::min(kTogether, last - i));
@@ -182,15 +182,16 @@ void examine_boundary(const TetMesh& mesh, Findings& findings) {
   for (int t : surface.non_manifold) on_edges.insert(on_edges.end(), triangles[t].begin(), triangles[t].end());
   std::sort(on_edges.begin(), on_edges.end());
   on_edges.erase(std::unique(on_edges.begin(), on_edges.end()), on_edges.end());
-  findings.add({Severity::warning, "non_manifold_edges",
-                std::to_string(surface.non_manifold_edges) +
-                    " edges of the boundary have more than two boundary triangles: parts hang together by an edge, as "
-                    "by a hinge (the vertices of these triangles are listed)",
-                "join or separate the parts where the mesh was made", on_edges, false});
+  findings.add(
+      {Severity::warning, "non_manifold_edges",
+       std::to_string(surface.non_manifold_edges) +
+           " edges of the boundary have more than two boundary triangles: parts are connected only by an edge, "
+           "like a hinge (the vertices of these triangles are listed)",
+       "join or separate the parts in the source model", on_edges, false});
   findings.add({Severity::warning, "non_manifold_vertices",
                 count_of(surface.non_manifold_vertices.size(), mesh.rest.size(), "vertices",
-                         "join parts that touch there only, as by a ball joint"),
-                "join or separate the parts where the mesh was made", surface.non_manifold_vertices, false});
+                         "connect parts only at a point, like a ball joint"),
+                "join or separate the parts in the source model", surface.non_manifold_vertices, false});
 }
 
 }  // namespace
@@ -207,7 +208,7 @@ std::vector<Finding> diagnose(const TetMesh& mesh) {
   const std::vector<int> overlapping = overlapping_tets(mesh);
   findings.add({Severity::warning, "overlapping_tets",
                 count_of(overlapping.size(), mesh.tets.size(), "tets", "have their centroid inside another tet"),
-                "mesh the shape anew", overlapping, false});
+                "remesh the shape with aspic mesh", overlapping, false});
   examine_boundary(mesh, findings);
   examine_components(mesh, findings);
   examine_units(mesh.rest, findings);

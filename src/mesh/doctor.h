@@ -1,4 +1,4 @@
-// What is wrong or suspicious about a mesh, each finding named, with the indices and the remedy.
+// Examines meshes for errors and suspicious values. Each finding has a name, the indices and a remedy.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@ namespace aspic {
 
 enum class Severity { error, warning, note };  // an error stops a simulation
 
-// [m] Beyond it the powers of a length in volumes and angles overflow. Such a mesh cannot be examined.
+// Limit [m] beyond which volumes and angles overflow. Larger meshes cannot be examined.
 inline constexpr double kLargestCoordinate = 1e30;
 
 struct Finding {
@@ -17,7 +17,7 @@ struct Finding {
   std::string name;          // "inverted_tets", "zero_volume_tets", "slivers", "duplicate_vertices", ...
   std::string message;       // one sentence with the count and the worst value
   std::string remedy;        // what to do, "--repair" where that helps
-  std::vector<int> indices;  // of the elements, vertices or triangles meant
+  std::vector<int> indices;  // affected elements, vertices or triangles
   bool repairable = false;
 };
 
@@ -34,8 +34,8 @@ std::vector<Finding> diagnose(const TetMesh& mesh);
 std::vector<Finding> diagnose(const TriMesh& mesh);  // open, non-manifold, self-intersecting, orientation, degenerate
 MeshQuality quality(const TetMesh& mesh);
 
-// Does what can be done without guessing: flips inverted tets, removes zero-volume ones, merges duplicate vertices,
-// drops unreferenced ones. Returns one sentence per action; empty when nothing was done.
+// Makes the unambiguous repairs: flips inverted tets, removes zero-volume tets, merges duplicate vertices and removes
+// unreferenced ones. Returns one sentence per action; empty if nothing was done.
 std::vector<std::string> repair(TetMesh& mesh);
 std::vector<std::string> repair(TriMesh& mesh);
 

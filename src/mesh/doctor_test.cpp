@@ -30,11 +30,11 @@ TEST(DoctorOfTets, FindsAnInvertedTetAndTurnsIt) {
   std::swap(mesh.tets[7][0], mesh.tets[7][1]);
   EXPECT_THAT(found(mesh, "inverted_tets").indices, ElementsAre(7));
   EXPECT_TRUE(has_errors(diagnose(mesh)));
-  EXPECT_THAT(repair(mesh), ElementsAre("turned 1 inverted tets"));
+  EXPECT_THAT(repair(mesh), ElementsAre("flipped 1 inverted tets"));
   EXPECT_THAT(diagnose(mesh), IsEmpty());
 }
 
-TEST(DoctorOfTets, FindsAZeroVolumeTetAndRemovesItWithItsRegion) {
+TEST(DoctorOfTets, FindsZeroVolumeTetAndRemovesIt) {
   TetMesh mesh = box();
   mesh.region.assign(mesh.tets.size(), 1);
   const int first = mesh.vertex_count();
@@ -98,7 +98,7 @@ TEST(DoctorOfTets, FindsRepeatedTets) {
   EXPECT_EQ(mesh.tets, box().tets);
 }
 
-TEST(DoctorOfTets, FindsADoubledTetBesideAPileOfOthers) {
+TEST(DoctorOfTets, FindsDoubledTetBesideManyOthers) {
   TetMesh mesh;
   for (const double x : {0.0, 100.0})
     for (const Vec3d& X : {Vec3d{{0, 0, 0}}, Vec3d{{1, 0, 0}}, Vec3d{{0, 1, 0}}, Vec3d{{0, 0, 1}}})
@@ -118,7 +118,7 @@ TEST(DoctorOfTets, FindsTetsFoldedOntoTheirNeighbor) {
   EXPECT_THAT(names(diagnose(mesh)), IsEmpty());
 }
 
-TEST(DoctorOfTets, FindsPartsThatHangByAnEdgeOrACorner) {
+TEST(DoctorOfTets, FindsPartsConnectedByEdgeOrCorner) {
   TetMesh hinge;
   hinge.rest = {{{0, 0, 0}}, {{0, 0, 1}}, {{1, 0, 0}}, {{1, 1, 0}}, {{-1, 0, 0}}, {{-1, -1, 0}}};
   hinge.tets = {{0, 2, 3, 1}, {0, 4, 5, 1}};
@@ -160,7 +160,7 @@ TEST(DoctorOfTets, AdviceToRepairHelps) {
   std::swap(mesh.tets[3][0], mesh.tets[3][1]);                                // inverted
   mesh.tets.push_back(clean[0]);                                              // repeated
   mesh.tets.push_back({clean[0][0], clean[0][1], clean[0][2], clean[0][2]});  // lists a vertex twice
-  mesh.rest.insert(mesh.rest.end(), {mesh.rest[clean[5][0]], {{9, 9, 9}}});   // a duplicate, an unreferenced one
+  mesh.rest.insert(mesh.rest.end(), {mesh.rest[clean[5][0]], {{9, 9, 9}}});   // a duplicate and an unreferenced vertex
   mesh.tets[5][0] = mesh.vertex_count() - 2;
   std::vector<std::string> promised;
   for (const Finding& finding : diagnose(mesh))

@@ -1,4 +1,4 @@
-// What the tests of the doctor share.
+// Helpers for the tests of the mesh doctor.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ Finding found(const Mesh& mesh, const std::string& name) {
   return {};
 }
 
-// About the axis (1, 2, 3): nothing stays aligned with the axes.
+// Rotates about (1, 2, 3), so that no face stays aligned with the axes.
 inline Vec3d turned(const Vec3d& x) {
   const Vec3d axis = (1 / std::sqrt(14.0)) * Vec3d{{1, 2, 3}};
   const double c = std::cos(0.7), s = std::sin(0.7);

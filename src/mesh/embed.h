@@ -7,7 +7,7 @@
 namespace aspic {
 
 struct Embedding {
-  std::vector<Tet> vertices;                   // of the carrying tet, per skin vertex
+  std::vector<Tet> vertices;                   // corners of the carrying tet, per skin vertex
   std::vector<std::array<double, 4>> weights;  // barycentric, summing to 1; negative outside the cage
   int outside = 0;                             // skin vertices that no tet contains
 };

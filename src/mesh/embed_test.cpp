@@ -50,8 +50,8 @@ TEST(Embedding, WeightsSumToOne) {
   for (const auto& w : embedding.weights) EXPECT_NEAR(w[0] + w[1] + w[2] + w[3], 1, 1e-13);
 }
 
-TEST(Embedding, FindsTheNearestTetRatherThanTheNearestCentroid) {
-  // A long tet lies close to p with its side, a small one farther away has the nearer centroid.
+TEST(Embedding, FindsNearestTetNotNearestCentroid) {
+  // One face of a long tet is close to p; a small tet farther away has the nearer centroid.
   TetMesh cage;
   cage.rest = {{{-10, 0, 0}}, {{10, 0, 0}},  {{10, -1, 0}}, {{10, 0, -1}},
                {{0, 1, 0}},   {{0.2, 1, 0}}, {{0, 1.2, 0}}, {{0, 1, 0.2}}};

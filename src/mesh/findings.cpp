@@ -77,11 +77,11 @@ bool examine_vertices(const std::vector<Vec3d>& vertices, const std::vector<Elem
     findings.add_general(
         {Severity::error, "empty_mesh", "the mesh has no " + noun, "check the file and its format", {}, false});
   findings.add({Severity::error, "invalid_indices",
-                count_of(invalid.size(), elements.size(), noun, "name a vertex that does not exist"),
+                count_of(invalid.size(), elements.size(), noun, "refer to a vertex that does not exist"),
                 "write the file again; indices start at 1 in some formats and at 0 in others", invalid, false});
   findings.add({Severity::error, "non_finite_coordinates",
-                count_of(infinite.size(), total, "vertices", "have a coordinate that is infinite or not a number"),
-                "correct the file", infinite, false});
+                count_of(infinite.size(), total, "vertices", "have an infinite or NaN coordinate"), "correct the file",
+                infinite, false});
   if (elements.empty() || !invalid.empty() || !infinite.empty()) return false;
   const std::vector<int> large = too_large(vertices);
   findings.add({Severity::error, "coordinates_too_large",
@@ -90,22 +90,22 @@ bool examine_vertices(const std::vector<Vec3d>& vertices, const std::vector<Elem
                 "choose a larger unit of length, or correct the file", large, false});
   if (!large.empty()) return false;
   const std::vector<int> repeated = duplicates(vertices), unused = unreferenced(elements, total);
-  // A vertex of no tet has no mass, which no solver can move; beside a surface it is harmless.
+  // A vertex without tets has no mass, so no solver can move it; beside a surface it is harmless.
   constexpr Severity severity = std::tuple_size_v<Element> == 4 ? Severity::error : Severity::note;
   findings.add({Severity::warning, "duplicate_vertices",
                 count_of(repeated.size(), total, "vertices",
-                         "lie exactly where an earlier one does, so the mesh comes apart there"),
+                         "coincide with an earlier vertex, so the mesh is not connected there"),
                 "merge them with --repair", repeated, true});
   findings.add({severity, "unreferenced_vertices",
-                count_of(unused.size(), total, "vertices", "belong to none of the " + noun), "drop them with --repair",
-                unused, true});
+                count_of(unused.size(), total, "vertices", "belong to none of the " + noun),
+                "remove them with --repair", unused, true});
   return true;
 }
 template bool examine_vertices(const std::vector<Vec3d>&, const std::vector<Tet>&, const std::string&, Findings&);
 template bool examine_vertices(const std::vector<Vec3d>&, const std::vector<Triangle>&, const std::string&, Findings&);
 
 void examine_units(const std::vector<Vec3d>& vertices, Findings& findings) {
-  constexpr double kLargest = 50, kSmallest = 1e-3;  // [m] soft bodies are seldom outside
+  constexpr double kLargest = 50, kSmallest = 1e-3;  // [m] usual range of soft bodies
   Box box;
   for (const Vec3d& x : vertices) box.add(x);
   double extent = 0;
@@ -114,25 +114,25 @@ void examine_units(const std::vector<Vec3d>& vertices, Findings& findings) {
     findings.add_general({Severity::note,
                           "suspicious_units",
                           "extent " + number(extent) + " m; if the file is in millimeters use scale = 0.001",
-                          "set scale in the scene when the file is not in meters",
+                          "set scale in the scene if the file is not in meters",
                           {},
                           false});
   if (extent < kSmallest)
     findings.add_general({Severity::note,
                           "suspicious_units",
                           "extent " + number(extent) + " m; if the file is in kilometers use scale = 1000",
-                          "set scale in the scene when the file is not in meters",
+                          "set scale in the scene if the file is not in meters",
                           {},
                           false});
 }
 
 namespace {
 
-// Whether parts of the mesh become one when vertices at the same place are merged.
+// Whether merging the vertices at equal positions would connect parts of the mesh.
 template <class Element>
 bool are_joined_by_merging(const std::vector<std::vector<int>>& parts, const std::vector<Element>& elements,
                            const std::vector<Vec3d>& vertices) {
-  std::vector<int> part_at(vertices.size(), -1);  // by the first vertex of a place
+  std::vector<int> part_at(vertices.size(), -1);  // by the first vertex at a position
   const std::vector<int> first = first_at_same_place(vertices);
   for (size_t p = 0; p < parts.size(); ++p)
     for (const int e : parts[p])
@@ -150,10 +150,10 @@ void add_components(const std::vector<std::vector<int>>& components, const std::
   const auto& smallest = *std::min_element(components.begin(), components.end(), smaller);
   Finding finding{Severity::note,
                   "several_components",
-                  "the mesh falls into " + std::to_string(components.size()) +
+                  "the mesh consists of " + std::to_string(components.size()) +
                       " parts that share no vertex; the smallest has " + std::to_string(smallest.size()) + " " + noun,
-                  are_joined ? "if one body was meant, merge the duplicate vertices with --repair"
-                             : "if one body was meant, join the parts where it was made",
+                  are_joined ? "if it should be one body, merge the duplicate vertices with --repair"
+                             : "if it should be one body, join the parts in the source model",
                   {},
                   false};
   for (const auto& component : components) finding.indices.push_back(component.front());

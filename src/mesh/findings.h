@@ -1,4 +1,4 @@
-// How findings are worded. Shared by the examinations of tets and of surfaces.
+// Collects and formats findings, for tets and surfaces.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@ namespace aspic {
 
 std::string number(double value);  // three significant digits
 
-// "3 of 600 tets are inverted": the size of the list, the total, and a predicate.
+// Returns "3 of 600 tets are inverted" from the count, the total, a noun and a predicate.
 std::string count_of(size_t count, size_t total, const std::string& noun, const std::string& what);
 
 class Findings {
@@ -25,8 +25,8 @@ class Findings {
   std::vector<Finding> list_;
 };
 
-// What can be said of points alone, with the elements that use them. `false`: indices or coordinates are unusable and
-// nothing more should be asked of the mesh.
+// Examines points and the elements that use them. Returns false if indices or coordinates are unusable, so that the
+// mesh must not be examined further.
 template <class Element>
 bool examine_vertices(const std::vector<Vec3d>& vertices, const std::vector<Element>& elements, const std::string& noun,
                       Findings& findings);

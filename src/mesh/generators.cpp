@@ -21,8 +21,8 @@ double coordinate(double lower, double upper, int i, int cells) {
   return i == cells ? upper : lower + (upper - lower) * i / cells;
 }
 
-// Walks from the corner (i, j, k) to the opposite one along the axes in all six orders: every tet shares the main
-// diagonal of its cell, and the faces of neighboring cells are cut alike.
+// Walks from corner (i, j, k) to the opposite corner along the axes in all six orders. All tets share the main diagonal
+// of the cell, and faces of neighboring cells match.
 void add_kuhn_cell(const Grid& grid, int i, int j, int k, std::vector<Tet>& tets) {
   constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   constexpr bool kOdd[6] = {false, true, true, false, false, true};
@@ -38,8 +38,8 @@ void add_kuhn_cell(const Grid& grid, int i, int j, int k, std::vector<Tet>& tets
   }
 }
 
-// A regular tet on every other corner and four at the remaining corners; mirrored in every other cell, so that
-// the faces match.
+// One regular tet on every other corner and four at the remaining corners, mirrored in every other cell so that the
+// faces match.
 void add_five_cell(const Grid& grid, int i, int j, int k, std::vector<Tet>& tets) {
   constexpr int kCut[5][4] = {{0, 3, 5, 6}, {1, 0, 3, 5}, {2, 3, 0, 6}, {4, 0, 5, 6}, {7, 5, 3, 6}};  // bits x y z
   const int mirror = (i + j + k) % 2;

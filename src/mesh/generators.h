@@ -9,7 +9,7 @@ enum class BoxCut {
   five,  // five tets per cell, alternating
 };
 
-// [lower, upper] cut into cells[0] x cells[1] x cells[2]. Vertex (i, j, k) has index (i (ny + 1) + j) (nz + 1) + k.
+// [lower, upper] in cells[0] x cells[1] x cells[2] cells. Vertex (i, j, k) has index (i (ny + 1) + j) (nz + 1) + k.
 TetMesh make_box(const Vec3d& lower, const Vec3d& upper, const std::array<int, 3>& cells, BoxCut cut = BoxCut::kuhn);
 
 // Round solids with edges of about `size` [m]. All volumes are positive. If size is at most the smallest dimension, the

@@ -40,7 +40,7 @@ int euler_characteristic(const TriMesh& surface) {
   return surface.vertex_count() - surface.triangle_count() / 2;  // V - E + F with 2 E = 3 F
 }
 
-// Each directed edge occurs once, with its opposite: closed, manifold along edges, consistently oriented.
+// Each directed edge occurs once, with its opposite: the surface is closed, manifold along edges and oriented.
 bool is_closed_and_oriented(const TriMesh& surface) {
   std::map<std::pair<int, int>, int> uses;
   for (const Triangle& t : surface.triangles)
@@ -56,7 +56,7 @@ void expect_sound(const TetMesh& mesh, int euler) {
   const BoundarySurface boundary = boundary_surface(mesh);
   EXPECT_TRUE(is_closed_and_oriented(boundary.surface));
   EXPECT_EQ(euler_characteristic(boundary.surface), euler);
-  // Conforming: were two tets to share half a face only, both halves would count as boundary twice over.
+  // The mesh is conforming: if two tets shared only half a face, the boundary would contain both halves twice.
   EXPECT_NEAR(enclosed_volume(boundary.surface), total_volume(mesh), 1e-12 * total_volume(mesh));
   std::set<int> used;
   for (const Tet& tet : mesh.tets) used.insert(tet.begin(), tet.end());
@@ -125,7 +125,7 @@ TEST(Sphere, IsSoundAtAnySize) {
   }
 }
 
-TEST(Sphere, ApproachesTheBallWithTheSquareOfTheSize) {
+TEST(Sphere, ConvergesQuadraticallyToTheBall) {
   const double ball = 4 * std::numbers::pi / 3;
   const double coarse = ball - total_volume(make_sphere(1, 0.2)), fine = ball - total_volume(make_sphere(1, 0.1));
   EXPECT_GT(fine, 0);
@@ -145,7 +145,7 @@ TEST(Torus, IsSoundAndHasOneHole) {
   expect_sound(make_torus(1, 0.01, 0.1), 0);
 }
 
-TEST(Torus, ApproachesItsVolumeWithTheSquareOfTheSize) {
+TEST(Torus, ConvergesQuadraticallyToItsVolume) {
   const double solid = 2 * std::numbers::pi * std::numbers::pi * 0.4 * 0.4;
   const double coarse = solid - total_volume(make_torus(1, 0.4, 0.1));
   const double fine = solid - total_volume(make_torus(1, 0.4, 0.05));

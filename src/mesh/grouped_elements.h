@@ -1,4 +1,4 @@
-// Elements by the set of their vertices: those that have the same vertices stand together. Linear in their number.
+// Groups elements that have the same vertices, in linear time.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@ namespace aspic {
 template <size_t N>
 struct GroupedElement {
   std::array<int, N> vertices;  // ascending
-  int place;                    // what the caller knows it by
+  int place;                    // element number of the caller
 };
 
 namespace detail {
@@ -27,7 +27,7 @@ std::array<int, N> ascending(std::array<int, N> v) {
   return v;
 }
 
-// The first vertices are the same already.
+// The vertices before `first` are equal.
 template <size_t N>
 bool is_less(const GroupedElement<N>& a, const GroupedElement<N>& b) {
   for (size_t i = 1; i < N; ++i)
@@ -44,8 +44,8 @@ bool are_same(const GroupedElement<N>& a, const GroupedElement<N>& b) {
 
 }  // namespace detail
 
-// `for_each(visit)` calls visit(vertices, place) for every element; it is called twice and must do the same again.
-// Vertices are from 0 to vertex_count - 1. The result is sorted by vertices, then by place.
+// `for_each(visit)` calls visit(vertices, place) for every element. It is called twice and must repeat the same calls.
+// Vertices are in [0, vertex_count). The result is sorted by vertices, then by place.
 template <size_t N, class ForEach>
 std::vector<GroupedElement<N>> grouped_elements(int vertex_count, const ForEach& for_each) {
   std::vector<int64_t> start(static_cast<size_t>(vertex_count) + 1, 0);
@@ -66,7 +66,7 @@ std::vector<GroupedElement<N>> grouped_elements(int vertex_count, const ForEach&
   return elements;
 }
 
-// Calls visit(begin, end) for the elements of each set of vertices.
+// Calls visit(begin, end) for the elements of each vertex set.
 template <size_t N, class Visit>
 void for_each_group(const std::vector<GroupedElement<N>>& elements, const Visit& visit) {
   for (size_t begin = 0, end; begin < elements.size(); begin = end) {

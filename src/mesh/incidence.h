@@ -1,4 +1,4 @@
-// Which elements touch each vertex.
+// Incident elements of each vertex.
 #pragma once
 #include <span>
 #include <utility>
@@ -7,8 +7,8 @@
 namespace aspic {
 
 struct Incidence {
-  std::vector<int> start;    // one entry per vertex, and the end; empty: not made yet
-  std::vector<int> element;  // of one vertex after another, in the order in which they were given
+  std::vector<int> start;    // one entry per vertex, and the end; empty: not built yet
+  std::vector<int> element;  // elements vertex by vertex, in the given order
 
   Incidence() = default;
   Incidence(int vertex_count, std::span<const std::pair<int, int>> vertex_and_element);

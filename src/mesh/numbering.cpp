@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-// Element i of the result is element source(i) of the values.
+// Element i of the result is element source(i) of the input.
 template <class Source>
 std::vector<double> gathered(std::span<const double> values, int components, const Source& source) {
   const size_t width = static_cast<size_t>(components), count = values.size() / width;
@@ -20,7 +20,7 @@ std::vector<double> gathered(std::span<const double> values, int components, con
   return result;
 }
 
-// Vertex i of the result is vertex vertex_source(i) of the mesh, whose vertex v is called vertex_name(v) there.
+// Vertex i of the result is vertex vertex_source(i) of the mesh; its vertex v becomes vertex_name(v).
 template <class VertexSource, class VertexName, class TetSource>
 TetMesh rearranged(const TetMesh& mesh, const VertexSource& vertex_source, const VertexName& vertex_name,
                    const TetSource& tet_source) {

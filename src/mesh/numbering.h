@@ -1,4 +1,4 @@
-// Two numberings of one mesh: that of the user's files and selections, and that of storage, in which neighbors in space
+// Two numberings of one mesh: the user's, in files and selections, and the storage order, in which neighbors in space
 // are near each other in memory.
 #pragma once
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace aspic {
 
-// A permutation of the vertices or the tets; the identity by default.
+// Permutation of the vertices or the tets; the identity by default.
 class Renumbering {
  public:
   Renumbering() = default;
@@ -27,7 +27,7 @@ class Renumbering {
   void append(int count, const Renumbering& part, int more);
 
  private:
-  std::vector<int> user_, stored_;  // both empty: the same numbers
+  std::vector<int> user_, stored_;  // both empty: identity
 };
 
 struct Numbering {

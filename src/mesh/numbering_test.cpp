@@ -11,7 +11,7 @@
 namespace aspic {
 namespace {
 
-// The mean difference of two vertices of a tet in memory.
+// Mean index difference of two vertices of a tet.
 double mean_reach(const TetMesh& mesh) {
   double sum = 0;
   for (const Tet& tet : mesh.tets)
@@ -27,7 +27,7 @@ TEST(Renumbering, ANewOneChangesNothing) {
 }
 
 TEST(Renumbering, GoesBothWays) {
-  const Renumbering r({2, 0, 1});  // what is stored first is the user's number 2
+  const Renumbering r({2, 0, 1});  // the first stored element is number 2 of the user
   EXPECT_EQ(r.to_user(0), 2);
   EXPECT_EQ(r.from_user(2), 0);
   EXPECT_EQ(r.to_user(std::vector<int>{0, 1}), (std::vector<int>{0, 2}));
@@ -62,7 +62,7 @@ TEST(Numbering, BringsNeighborsTogetherAndIsUndone) {
   for (int t = 0; t < mesh.tet_count(); ++t) EXPECT_EQ(volume(stored, numbering.tet.from_user(t)), volume(mesh, t));
 }
 
-TEST(Numbering, DoesNotDependOnTheOrderOfTheFile) {
+TEST(Numbering, IsIndependentOfTheFileOrder) {
   const TetMesh mesh = make_box({{0, 0, 0}}, {{1, 1.1, 1.2}}, {3, 3, 3});
   std::vector<int> vertices(mesh.rest.size()), tets(mesh.tets.size());
   for (size_t i = 0; i < vertices.size(); ++i) vertices[i] = static_cast<int>(i * 5 % vertices.size());

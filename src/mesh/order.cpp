@@ -11,11 +11,11 @@
 namespace aspic {
 namespace {
 
-constexpr int kBits = 21;  // per axis: three of them fit a 64-bit code
+constexpr int kBits = 21;  // per axis; three of them fit into 64 bits
 
 bool is_finite(const Vec3d& x) { return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]); }
 
-// Two zeros in front of each of the lowest 21 bits.
+// Inserts two zeros before each of the lowest 21 bits.
 uint64_t spread(uint64_t bits) {
   bits = (bits | bits << 32) & 0x001f00000000ffff;
   bits = (bits | bits << 16) & 0x001f0000ff0000ff;
@@ -44,7 +44,7 @@ Cube bounding_cube(std::span<const Vec3d> points) {
 
 using Cell = std::array<uint64_t, 3>;
 
-// Of the grid over the cube; the corner where that is not defined.
+// Cell in the grid of the cube; the corner cell if undefined.
 Cell cell_of(const Vec3d& x, const Cube& cube) {
   if (!is_finite(x) || !(cube.size > 0) || !std::isfinite(cube.size)) return {};
   constexpr double kCells = 1 << kBits;
@@ -56,7 +56,7 @@ Cell cell_of(const Vec3d& x, const Cube& cube) {
 
 uint64_t morton_code(const Cell& cell) { return spread(cell[0]) | spread(cell[1]) << 1 | spread(cell[2]) << 2; }
 
-// The distance along the curve, found by undoing the turns of its parts from the largest to the smallest
+// Index along the Hilbert curve, computed by undoing the rotations of its parts from the largest to the smallest
 // [Skilling2004].
 uint64_t hilbert_code(Cell cell) {
   constexpr uint64_t kTop = uint64_t{1} << (kBits - 1);

@@ -1,4 +1,4 @@
-// Orders that keep neighbors in space near each other in memory.
+// Space-filling orders that keep neighbors in space near each other in memory.
 #pragma once
 #include <span>
 #include <vector>
@@ -7,13 +7,13 @@
 
 namespace aspic {
 
-// The indices of the points along the Morton (Z-order) curve of their bounding cube; points in the same cell of its
-// 2^21-fold grid keep their order. Points that are not finite come first.
+// Returns the indices of the points along the Morton (Z-order) curve of their bounding cube. Points in the same cell of
+// its 2^21-fold grid keep their order. Points that are not finite come first.
 std::vector<int> morton_order(std::span<const Vec3d> points);
-// The same along the Hilbert curve, whose neighbors are neighbors in space too: it makes no leaps.
+// The same along the Hilbert curve, whose consecutive cells are always adjacent.
 std::vector<int> hilbert_order(std::span<const Vec3d> points);
 
-std::vector<Vec3d> centroids(const TetMesh& mesh);                           // of the tets at rest [m]
-std::vector<Vec3d> centroids(const TetMesh& mesh, int first, size_t count);  // of some of them
+std::vector<Vec3d> centroids(const TetMesh& mesh);                           // centroids of the tets at rest [m]
+std::vector<Vec3d> centroids(const TetMesh& mesh, int first, size_t count);  // the same for a range of tets
 
 }  // namespace aspic

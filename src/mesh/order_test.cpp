@@ -19,12 +19,12 @@ double path_length(const std::vector<Vec3d>& points, const std::vector<int>& ord
   return sum;
 }
 
-TEST(MortonOrder, VisitsTheCornersOfACubeWithXFastest) {
+TEST(MortonOrder, VisitsCubeCornersWithXFastest) {
   const std::vector<Vec3d> corners = {{{1, 1, 1}}, {{0, 0, 0}}, {{0, 0, 1}}, {{1, 0, 0}}, {{0, 1, 0}}};
   EXPECT_EQ(morton_order(corners), (std::vector<int>{1, 3, 4, 2, 0}));
 }
 
-TEST(MortonOrder, IsAPermutationThatShortensTheWayThroughAMesh) {
+TEST(MortonOrder, IsPermutationThatShortensPathThroughMesh) {
   const std::vector<Vec3d> centers = centroids(make_box({{0, 0, 0}}, {{1, 1, 1}}, {16, 16, 16}));
   std::vector<int> order = morton_order(centers), natural(centers.size());
   std::iota(natural.begin(), natural.end(), 0);
@@ -35,14 +35,14 @@ TEST(MortonOrder, IsAPermutationThatShortensTheWayThroughAMesh) {
   EXPECT_EQ(order, natural);
 }
 
-TEST(MortonOrder, KeepsTheOrderOfEqualPointsAndBearsNan) {
+TEST(MortonOrder, KeepsOrderOfEqualPointsAndAcceptsNan) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<Vec3d> points = {{{1, 1, 1}}, {{1, 1, 1}}, {{nan, 0, 0}}, {{1, 1, 1}}};
   EXPECT_EQ(morton_order(points), (std::vector<int>{0, 1, 2, 3}));
   EXPECT_TRUE(morton_order({}).empty());
 }
 
-TEST(MortonOrder, LeavesPointsFartherApartThanADoubleCanSayInTheirOrder) {
+TEST(MortonOrder, KeepsOrderOfPointsWithOverflowingDistances) {
   EXPECT_EQ(morton_order(std::vector<Vec3d>{{{1e308, 1, 1}}, {{-1e308, 0, 0}}, {{0, 0, 0}}}),
             (std::vector<int>{0, 1, 2}));
 }
@@ -52,7 +52,7 @@ TEST(HilbertOrder, StepsFromCellToNeighboringCell) {
   for (int i = 0; i < 8; ++i)
     for (int j = 0; j < 8; ++j)
       for (int k = 0; k < 8; ++k) grid.push_back({{double(i), double(j), double(k)}});
-  grid.push_back({{8, 8, 8}});  // so that the cells of the curve are those of the grid
+  grid.push_back({{8, 8, 8}});  // aligns the cells of the curve with the grid
   const std::vector<int> order = hilbert_order(grid);
   for (size_t i = 1; i < order.size(); ++i) {
     if (order[i] == 512 || order[i - 1] == 512) continue;
@@ -60,7 +60,7 @@ TEST(HilbertOrder, StepsFromCellToNeighboringCell) {
   }
 }
 
-TEST(HilbertOrder, IsAPermutationAndKeepsTheOrderOfEqualPoints) {
+TEST(HilbertOrder, IsPermutationAndKeepsOrderOfEqualPoints) {
   std::vector<int> order = hilbert_order(centroids(make_box({{0, 0, 0}}, {{1, 1, 1}}, {5, 5, 5})));
   std::sort(order.begin(), order.end());
   for (size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], static_cast<int>(i));

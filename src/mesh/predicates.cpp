@@ -24,12 +24,12 @@ Pair exact_sum(double a, double b) {
 }
 
 Pair exact_product(double a, double b) {
-  const volatile double product = a * b;  // volatile: not to be fused into a sum that uses it
+  const volatile double product = a * b;  // volatile prevents fusion into a sum
   const double p = product;
   return {p, std::fma(a, b, -p)};
 }
 
-// A number as a sum of doubles that do not overlap, smallest first.
+// A number as a sum of nonoverlapping doubles, smallest first.
 class Expansion {
  public:
   void add(double x) {
@@ -80,7 +80,7 @@ int exact_orientation(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3
   Expansion sum;
   if (is_exact_difference(a, d) && is_exact_difference(b, d) && is_exact_difference(c, d)) {
     add_triple(sum, a - d, b - d, c - d, 1);
-  } else {  // the same determinant, expanded
+  } else {  // expansion of the same determinant
     add_triple(sum, a, b, c, 1);
     add_triple(sum, d, b, c, -1);
     add_triple(sum, a, d, c, -1);

@@ -9,7 +9,7 @@
 namespace aspic {
 namespace {
 
-TEST(Orientation, IsPositiveForCounterClockwiseTurnsAndPositiveDeterminants) {
+TEST(Orientation, IsPositiveForCounterClockwiseAndPositiveDeterminants) {
   EXPECT_EQ(orientation(Vec2d{0, 0}, Vec2d{1, 0}, Vec2d{0, 1}), 1);
   EXPECT_EQ(orientation(Vec2d{0, 0}, Vec2d{0, 1}, Vec2d{1, 0}), -1);
   EXPECT_EQ(orientation(Vec3d{{1, 0, 0}}, Vec3d{{0, 1, 0}}, Vec3d{{0, 0, 1}}, Vec3d{{0, 0, 0}}), 1);
@@ -17,16 +17,16 @@ TEST(Orientation, IsPositiveForCounterClockwiseTurnsAndPositiveDeterminants) {
 }
 
 TEST(Orientation, SeesOneUnitInTheLastPlace) {
-  // On the line y = x, and off it by one ulp, where the rounded determinant is 0 or worse [Kettner et al. 2008].
+  // Points on the line y = x, and off it by one ulp, where rounding ruins the determinant [Kettner et al. 2008].
   const Vec2d b = {12, 12}, c = {24, 24};
   EXPECT_EQ(orientation(Vec2d{0.5, 0.5}, b, c), 0);
   EXPECT_EQ(orientation(Vec2d{0.5, std::nextafter(0.5, 1)}, b, c), 1);
   EXPECT_EQ(orientation(Vec2d{std::nextafter(0.5, 1), 0.5}, b, c), -1);
 }
 
-TEST(Orientation, OfFourPointsInAPlaneIsZeroHoweverTheyAreOrdered) {
-  // Integer points of the plane through p spanned by u and v, far from the origin: all coordinates are exact, while
-  // the products of the determinant are not.
+TEST(Orientation, OfCoplanarPointsIsZeroInAnyOrder) {
+  // Integer points of the plane through p spanned by u and v, far from the origin: coordinates are exact, products of
+  // the determinant are not.
   std::mt19937 random(5);
   std::uniform_int_distribution<int> integer(-1000000, 1000000), large(-100000, 100000);
   for (int trial = 0; trial < 200; ++trial) {
@@ -52,7 +52,7 @@ TEST(Orientation, AgreesWithIntegerArithmetic) {
   std::mt19937 random(9);
   std::uniform_int_distribution<int> small(-3, 3);
   for (int trial = 0; trial < 2000; ++trial) {
-    // Small offsets in units of 2^-50 about (1, 1, 1): the filter fails for most.
+    // Small offsets in units of 2^-50 about (1, 1, 1), for which the filter usually fails.
     long long m[3][3];
     Vec3d x[4];
     const Vec3d base = {{1, 1, 1}};

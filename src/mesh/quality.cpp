@@ -31,7 +31,7 @@ MeshQuality quality(const TetMesh& mesh) {
     q.max_dihedral = std::max(q.max_dihedral, most);
     q.min_mean_ratio = std::min(q.min_mean_ratio, ratio);
     q.average_mean_ratio += ratio / mesh.tet_count();
-    // Inverted tets count in the lowest bin. A ratio that overflowed is bounded before it becomes an index.
+    // Inverted tets count in the lowest bin. An overflowed ratio is bounded before it becomes an index.
     ++q.mean_ratio_histogram[ratio > 0 ? std::min(kBins - 1, static_cast<int>(std::min(ratio, 1.0) * kBins)) : 0];
   }
   return q;

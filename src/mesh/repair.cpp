@@ -24,7 +24,7 @@ bool indices_are_valid(const std::vector<Element>& elements, size_t vertex_count
   return true;
 }
 
-// Returns how many there were.
+// Returns the number of removed elements.
 template <class Element>
 size_t drop_unreferenced(std::vector<Vec3d>& vertices, std::vector<Element>& elements) {
   std::vector<int> number(vertices.size(), -1);
@@ -43,7 +43,7 @@ size_t drop_unreferenced(std::vector<Vec3d>& vertices, std::vector<Element>& ele
   return dropped;
 }
 
-// All vertices must be in use. Returns how many were merged into an earlier one.
+// Requires that all vertices are used. Returns the number of vertices merged into an earlier one.
 template <class Element>
 size_t merge_duplicates(std::vector<Vec3d>& vertices, std::vector<Element>& elements) {
   const std::vector<int> first = first_at_same_place(vertices);
@@ -98,7 +98,7 @@ size_t remove_triangles(TriMesh& mesh, const std::vector<bool>& remove) {
   return removed;
 }
 
-// Edges that an odd number of the triangles share: the boundary of what they enclose.
+// Number of edges that an odd number of triangles share.
 size_t odd_edges(const TriMesh& mesh, const std::vector<bool>& remove) {
   std::vector<Triangle> kept;
   for (size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -108,15 +108,15 @@ size_t odd_edges(const TriMesh& mesh, const std::vector<bool>& remove) {
   return odd;
 }
 
-// Whether the triangle is an even permutation of its vertices in ascending order.
+// Whether the triangle is an even permutation of its sorted vertices.
 bool runs_forward(const Triangle& triangle) {
   const auto& [a, b, c] = triangle;
   return (a < b) + (b < c) + (c < a) == 2;
 }
 
-// Pairs of triangles with the same vertices that face each other. They enclose nothing.
+// Marks pairs of triangles with the same vertices and opposite orientation, which enclose nothing.
 std::vector<bool> back_to_back(const TriMesh& mesh) {
-  std::map<Triangle, std::vector<size_t>> unpaired;  // facing the same way
+  std::map<Triangle, std::vector<size_t>> unpaired;  // triangles of one orientation
   std::vector<bool> paired(mesh.triangles.size());
   for (size_t t = 0; t < paired.size(); ++t) {
     Triangle key = mesh.triangles[t];
@@ -132,8 +132,8 @@ std::vector<bool> back_to_back(const TriMesh& mesh) {
   return paired;
 }
 
-// Removes back-to-back pairs where that leaves fewer open edges than keeping one triangle of each, which is right for a
-// surface that was written from both sides. Returns how many triangles.
+// Removes back-to-back pairs if this leaves fewer open edges than keeping one triangle of each pair (a surface written
+// from both sides). Returns the number of removed triangles.
 size_t cancel_pairs(TriMesh& mesh) {
   const std::vector<bool> pairs = back_to_back(mesh), repeated = is_repeated(mesh.triangles);
   return odd_edges(mesh, pairs) < odd_edges(mesh, repeated) ? remove_triangles(mesh, pairs) : 0;
@@ -147,7 +147,7 @@ std::vector<std::string> repair(TetMesh& mesh) {
   say(actions, "dropped", drop_unreferenced(mesh.rest, mesh.tets), "unreferenced vertices");
   say(actions, "merged", merge_duplicates(mesh.rest, mesh.tets), "duplicate vertices into those at the same place");
   say(actions, "removed", remove_tets(mesh, [&](int t) { return has_volume(mesh, t); }), "tets of zero volume");
-  say(actions, "turned", turn_inverted(mesh), "inverted tets");
+  say(actions, "flipped", turn_inverted(mesh), "inverted tets");
   const std::vector<bool> repeated = is_repeated(mesh.tets);
   say(actions, "removed", remove_tets(mesh, [&](int t) { return !repeated[t]; }), "repeated tets");
   say(actions, "dropped", drop_unreferenced(mesh.rest, mesh.tets), "vertices that only removed tets used");
@@ -163,9 +163,9 @@ std::vector<std::string> repair(TriMesh& mesh) {
   std::vector<bool> twice(mesh.triangles.size());
   for (size_t t = 0; t < mesh.triangles.size(); ++t) twice[t] = lists_vertex_twice(mesh.triangles[t]);
   say(actions, "removed", remove_triangles(mesh, twice), "triangles that list a vertex twice");
-  say(actions, "removed", cancel_pairs(mesh), "triangles that lie back to back in pairs");
+  say(actions, "removed", cancel_pairs(mesh), "triangles in back-to-back pairs");
   say(actions, "removed", remove_triangles(mesh, is_repeated(mesh.triangles)), "repeated triangles");
-  say(actions, "turned", orient(mesh), "triangles that faced the wrong way");
+  say(actions, "flipped", orient(mesh), "triangles with the wrong orientation");
   say(actions, "dropped", drop_unreferenced(mesh.vertices, mesh.triangles),
       "vertices that only removed triangles used");
   return actions;

@@ -10,9 +10,9 @@
 namespace aspic {
 namespace {
 
-constexpr long kMostCompared = 100'000'000;  // seconds
+constexpr long kMostCompared = 100'000'000;  // takes seconds
 
-// Turned so that the vertices common to both come first, in the same order; how many there are.
+// Rotates both so that their common vertices come first, in the same order. Returns the number of common vertices.
 int align(Triangle& s, Triangle& t) {
   int common = 0;
   for (int i = 0; i < 3; ++i) {
@@ -56,7 +56,7 @@ class Search {
   }
 
  private:
-  // Each with the corners of an earlier one, in whatever order: a pile of them would be compared in all pairs.
+  // Omits triangles that repeat the corners of an earlier one: a pile of them would need all pairs.
   void leave_out_repeated() {
     const auto sorted = [this](int t) {
       Triangle triangle = triangles_[t];

@@ -1,4 +1,4 @@
-// Which triangles of a surface run into each other.
+// Self-intersections of a triangle surface.
 #pragma once
 #include <array>
 #include <vector>
@@ -9,12 +9,12 @@ namespace aspic {
 
 struct SelfIntersections {
   std::vector<std::array<int, 2>> pairs;  // ascending, sorted
-  bool is_complete = true;                // no pair was left out
+  bool is_complete = true;                // no pair was omitted
 };
 
-// Pairs of triangles with a point in common other than the corners and edges they share. Vertices
-// at the same place count as shared. Degenerate and repeated triangles, and those not finite, are left out. O(n log n)
-// for surfaces whose triangles are not all in one place; the search ends at `most` pairs, or when it has compared 1e8.
+// Finds pairs of triangles that share points other than common corners and edges. Vertices at the same position count
+// as shared. Ignores degenerate, repeated and non-finite triangles. O(n log n) unless the triangles cluster at one
+// place. The search ends at `most` pairs, or after 1e8 comparisons.
 SelfIntersections self_intersections(const TriMesh& mesh, int most = 1 << 20);
 
 }  // namespace aspic

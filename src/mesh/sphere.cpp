@@ -1,5 +1,5 @@
-// A ball from the icosahedron: each of its 20 tets (center, face) is subdivided regularly, and the shells are pushed
-// out onto spheres. The map is scale-free along the radius, so the quality does not fall with the size of the tets.
+// Ball from the icosahedron: each of its 20 tets (center, face) is subdivided regularly, and the shells are projected
+// onto spheres. The map is scale-free along the radius, so quality does not depend on the number of shells.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -21,7 +21,7 @@ constexpr int kIcosahedronFaces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {
                                           {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
                                           {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
 
-using Weights = std::array<int, 3>;  // of the corners of a face; their sum is the shell, 0 at the center
+using Weights = std::array<int, 3>;  // weights of the corners of a face; their sum is the shell, 0 at the center
 
 class Ball {
  public:
@@ -36,10 +36,10 @@ class Ball {
   }
 
  private:
-  // The tets and octahedra of the regular subdivision whose smallest weights are w.
+  // Adds the tets and octahedra of the regular subdivision with smallest weights w.
   void add_cells(const int (&face)[3], const Weights& w) {
     const auto [i, j, k] = w;
-    const int above = shells_ - (i + j + k);  // shells left
+    const int above = shells_ - (i + j + k);  // remaining shells
     const int base = vertex(face, w), x = vertex(face, {i + 1, j, k}), y = vertex(face, {i, j + 1, k}),
               z = vertex(face, {i, j, k + 1});
     add_tet(base, x, y, z);
@@ -51,7 +51,7 @@ class Ball {
     add_tet(xy, yz, zx, vertex(face, {i + 1, j + 1, k + 1}));
   }
 
-  // Four tets round the shortest of the three diagonals.
+  // Four tets around the shortest of the three diagonals.
   void add_octahedron(std::array<int, 2> a, std::array<int, 2> b, std::array<int, 2> c) {
     if (squared_length(b) < squared_length(a)) std::swap(a, b);
     if (squared_length(c) < squared_length(a)) std::swap(a, c);

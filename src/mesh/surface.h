@@ -6,8 +6,8 @@
 
 namespace aspic {
 
-// Triangles that belong to exactly one of tets [first, first + count), outward oriented, with vertex indices of the
-// tet mesh, in a deterministic order.
+// Returns the triangles that belong to exactly one of tets [first, first + count), outward oriented, with vertex
+// indices of the tet mesh, in a deterministic order.
 std::vector<Triangle> boundary_triangles(const TetMesh& mesh, int first, int count);
 
 struct BoundarySurface {

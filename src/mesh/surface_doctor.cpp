@@ -1,4 +1,4 @@
-// The doctor of triangle meshes.
+// Examination and repair of triangle meshes.
 #include <algorithm>
 
 #include "mesh/doctor.h"
@@ -27,13 +27,13 @@ void examine_triangles(const TriMesh& mesh, Findings& findings) {
                 true});
   findings.add({Severity::warning, "degenerate_triangles",
                 count_of(thin.size(), total, "triangles", "have no area: their corners lie on a line"),
-                "swap or collapse their edges where the surface was made", thin, false});
+                "flip or collapse their edges in the source model", thin, false});
   findings.add({Severity::error, "repeated_triangles",
                 count_of(repeated.size(), total, "triangles", "have the same vertices as an earlier one"),
                 "remove them with --repair", repeated, true});
 }
 
-// A one-sided sheet (a Moebius strip) cannot be turned.
+// A one-sided sheet (Moebius strip) cannot be oriented.
 bool can_be_oriented(TriMesh mesh) {
   orient(mesh);
   return topology(mesh.triangles, mesh.vertex_count()).disagreeing.empty();
@@ -43,26 +43,27 @@ void examine_edges(const TriMesh& mesh, const SurfaceTopology& surface, Findings
   const size_t total = mesh.triangles.size();
   findings.add(
       {Severity::error, "open_surface",
-       "the surface is open: " + std::to_string(surface.open_edges) + " edges round " + std::to_string(surface.holes) +
-           (surface.holes == 1 ? " hole" : " holes") + " have one triangle only (these triangles are listed)",
-       "close the holes where it was made; aspic mesh --fill-holes closes small ones, aspic mesh --rebuild wraps "
+       "the surface is open: " + std::to_string(surface.open_edges) + " edges around " + std::to_string(surface.holes) +
+           (surface.holes == 1 ? " hole" : " holes") + " belong to only one triangle (these triangles are listed)",
+       "close the holes in the source model; aspic mesh --fill-holes closes small ones, aspic mesh --rebuild wraps "
        "the surface in a closed one",
        surface.open, false});
   findings.add(
       {Severity::error, "non_manifold_edges",
-       std::to_string(surface.non_manifold_edges) + " edges are shared by more than two triangles (these are listed)",
-       "remove inner walls and extra triangles where it was made, or wrap the surface in a new one with aspic mesh "
+       std::to_string(surface.non_manifold_edges) +
+           " edges are shared by more than two triangles (the triangles are listed)",
+       "remove inner walls and extra triangles in the source model, or wrap the surface in a new one with aspic mesh "
        "--rebuild",
        surface.non_manifold, false});
   findings.add({Severity::warning, "non_manifold_vertices",
                 count_of(surface.non_manifold_vertices.size(), mesh.vertices.size(), "vertices",
-                         "join sheets that touch there only"),
-                "separate or join the sheets where it was made", surface.non_manifold_vertices, false});
+                         "connect sheets only at a point"),
+                "separate or join the sheets in the source model", surface.non_manifold_vertices, false});
   const bool is_repairable = !surface.disagreeing.empty() && can_be_oriented(mesh);
   findings.add({Severity::error, "inconsistent_orientation",
-                count_of(surface.disagreeing.size(), total, "triangles", "face the other way than a neighbor"),
-                is_repairable ? "turn them with --repair"
-                              : "the sheet has one side only, which --repair cannot turn; cut it where it was made",
+                count_of(surface.disagreeing.size(), total, "triangles", "are oriented opposite to a neighbor"),
+                is_repairable ? "flip them with --repair"
+                              : "the sheet is one-sided, so --repair cannot orient it; cut it in the source model",
                 surface.disagreeing, is_repairable});
 }
 
@@ -72,7 +73,7 @@ void examine_intersections(const TriMesh& mesh, Findings& findings) {
     findings.add_general({Severity::warning,
                           "crowded_triangles",
                           "too many triangles overlap in one place; not all pairs of them were compared",
-                          "remove what lies on top of other parts where the surface was made",
+                          "remove overlapping parts in the source model",
                           {},
                           false});
   if (pairs.empty()) return;
@@ -81,9 +82,9 @@ void examine_intersections(const TriMesh& mesh, Findings& findings) {
   std::sort(triangles.begin(), triangles.end());
   triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
   findings.add({Severity::error, "self_intersections",
-                "the surface runs into itself: " + std::to_string(pairs.size()) + " pairs of triangles, the first " +
+                "the surface intersects itself: " + std::to_string(pairs.size()) + " pairs of triangles, the first " +
                     std::to_string(pairs[0][0]) + " and " + std::to_string(pairs[0][1]),
-                "pull the parts apart, or unite them where it was made or with aspic mesh --rebuild", triangles,
+                "separate the parts, or unite them in the source model or with aspic mesh --rebuild", triangles,
                 false});
 }
 
@@ -99,8 +100,8 @@ std::vector<Finding> diagnose(const TriMesh& mesh) {
   if (is_closed && enclosed_volume(mesh) < 0)
     findings.add_general({Severity::warning,
                           "inward_surface",
-                          "the triangles face inwards: the enclosed volume is negative",
-                          "turn them with --repair",
+                          "the triangles face inward: the enclosed volume is negative",
+                          "flip them with --repair",
                           {},
                           true});
   examine_intersections(mesh, findings);

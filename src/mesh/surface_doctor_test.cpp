@@ -43,7 +43,7 @@ TEST(DoctorOfSurfaces, FindsAHole) {
   surface.triangles.erase(surface.triangles.begin() + 4);
   const Finding finding = found(surface, "open_surface");
   EXPECT_EQ(finding.indices.size(), 3u);
-  EXPECT_THAT(finding.message, HasSubstr("3 edges round 1 hole "));
+  EXPECT_THAT(finding.message, HasSubstr("3 edges around 1 hole "));
   EXPECT_TRUE(has_errors(diagnose(surface)));
 }
 
@@ -52,12 +52,12 @@ TEST(DoctorOfSurfaces, FindsTurnedTrianglesAndTurnsThemBack) {
   TriMesh surface = clean;
   std::swap(surface.triangles[9][1], surface.triangles[9][2]);
   EXPECT_THAT(found(surface, "inconsistent_orientation").indices, testing::Contains(9));
-  EXPECT_THAT(repair(surface), ElementsAre("turned 1 triangles that faced the wrong way"));
+  EXPECT_THAT(repair(surface), ElementsAre("flipped 1 triangles with the wrong orientation"));
   EXPECT_EQ(surface.triangles, clean.triangles);
 }
 
 TEST(DoctorOfSurfaces, DoesNotAdviseTurningAOneSidedSheet) {
-  TriMesh strip;  // of Moebius: five quads, the last joined to the first upside down
+  TriMesh strip;  // Moebius strip: five quads, the last joined to the first with a half twist
   for (int i = 0; i < 5; ++i) {
     const double angle = 2 * std::numbers::pi * i / 5;
     for (const double side : {-0.2, 0.2}) {
@@ -69,7 +69,7 @@ TEST(DoctorOfSurfaces, DoesNotAdviseTurningAOneSidedSheet) {
   }
   const Finding finding = found(strip, "inconsistent_orientation");
   EXPECT_FALSE(finding.repairable);
-  EXPECT_THAT(finding.remedy, HasSubstr("one side only"));
+  EXPECT_THAT(finding.remedy, HasSubstr("one-sided"));
 }
 
 TEST(DoctorOfSurfaces, RefusesCoordinatesWhosePowersOverflow) {
@@ -79,13 +79,13 @@ TEST(DoctorOfSurfaces, RefusesCoordinatesWhosePowersOverflow) {
 }
 
 TEST(DoctorOfSurfaces, CancelsBackToBackPairs) {
-  TriMesh surface = ball();  // with a fin of two triangles on an edge
+  TriMesh surface = ball();  // a fin of two triangles is added on an edge
   const auto [a, b, c] = surface.triangles[5];
   const int tip = surface.vertex_count();
   surface.vertices.push_back(1.5 * surface.vertices[a]);
   surface.triangles.push_back({a, b, tip});
   surface.triangles.push_back({b, a, tip});
-  EXPECT_THAT(repair(surface), ElementsAre("removed 2 triangles that lie back to back in pairs",
+  EXPECT_THAT(repair(surface), ElementsAre("removed 2 triangles in back-to-back pairs",
                                            "dropped 1 vertices that only removed triangles used"));
   EXPECT_THAT(diagnose(surface), IsEmpty());
 }
@@ -152,7 +152,7 @@ TEST(DoctorOfSurfaces, FindsADegenerateTriangle) {
   EXPECT_THAT(found(surface, "degenerate_triangles").indices, ElementsAre(0));
 }
 
-TEST(SelfIntersection, OfTwoBallsIsFoundExactlyWhereTheyMeet) {
+TEST(SelfIntersection, OfTwoBallsIsFoundAtTheirIntersection) {
   const TriMesh apart = joined(ball(), ball(), {{2.01, 0, 0}});
   EXPECT_THAT(self_intersections(apart).pairs, IsEmpty());
   const TriMesh meeting = joined(ball(), ball(), {{1.5, 0, 0}});
@@ -162,7 +162,7 @@ TEST(SelfIntersection, OfTwoBallsIsFoundExactlyWhereTheyMeet) {
     for (int v : meeting.triangles[t]) EXPECT_NEAR(meeting.vertices[v][0], 0.75, 0.45);
 }
 
-TEST(SelfIntersection, OfAlignedBoxesIsFoundThoughEdgesMeetEdges) {
+TEST(SelfIntersection, OfAlignedBoxesIsFoundDespiteEdgeContacts) {
   const TriMesh cube = boundary_surface(make_box({{0, 0, 0}}, {{1, 1, 1}}, {1, 1, 1})).surface;
   for (const Vec3d& offset : {Vec3d{{0.5, 0.5, 0.5}}, Vec3d{{0.5, 0, 0}}, Vec3d{{1, 0.5, 0.5}}})
     EXPECT_THAT(self_intersections(joined(cube, cube, offset)).pairs, testing::Not(IsEmpty()));
@@ -219,12 +219,12 @@ TEST(SelfIntersection, SurvivesManyTrianglesInOnePlace) {
   EXPECT_EQ(self_intersections(pile, 1000).pairs.size(), 1000u);
 }
 
-TEST(SelfIntersection, OfOneTriangleGivenAMillionTimesIsNone) {
+TEST(SelfIntersection, OfMillionCopiesOfOneTriangleIsNone) {
   TriMesh pile;
   pile.vertices = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}};
   for (int i = 0; i < 333'333; ++i)
     pile.triangles.insert(pile.triangles.end(), {Triangle{0, 1, 2}, Triangle{1, 2, 0}, Triangle{2, 1, 0}});
-  const SelfIntersections found = self_intersections(pile);  // all pairs of them would take an hour
+  const SelfIntersections found = self_intersections(pile);  // all pairs would take an hour
   EXPECT_THAT(found.pairs, IsEmpty());
   EXPECT_TRUE(found.is_complete);
 }

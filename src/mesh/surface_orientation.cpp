@@ -10,7 +10,7 @@
 namespace aspic {
 namespace {
 
-// Neighbors across edges that exactly two triangles share, and whether the two agree there.
+// Neighbors across edges shared by exactly two triangles, and whether their orientations agree.
 struct Neighbor {
   int triangle;
   bool agrees;
@@ -31,8 +31,8 @@ std::vector<std::array<Neighbor, 3>> neighbors(const std::vector<Triangle>& tria
 
 void turn(Triangle& triangle) { std::swap(triangle[1], triangle[2]); }
 
-// Triangles reached from `start` across shared edges; `flip` says which of them must turn to agree with it. Empty when
-// no choice agrees (a Moebius strip).
+// Returns the triangles reached from `start` across shared edges; `flip` marks those that must flip to agree with it.
+// Empty if none agrees (Moebius strip).
 std::vector<int> sheet(const std::vector<std::array<Neighbor, 3>>& next, int start, std::vector<int>& flip) {
   std::vector<int> reached = {start};
   flip[start] = 0;

@@ -1,4 +1,4 @@
-// Which way the triangles of a surface face.
+// Orientation of triangle surfaces.
 #pragma once
 #include <cstddef>
 
@@ -6,11 +6,11 @@
 
 namespace aspic {
 
-double enclosed_volume(const TriMesh& mesh);  // [m^3] by the divergence theorem; negative when it faces inwards
+double enclosed_volume(const TriMesh& mesh);  // by the divergence theorem [m^3]; negative if oriented inward
 
-// Makes each sheet of the surface agree in itself, turning the fewer triangles. When the surface is one closed sheet it
-// is then made to face outwards; of several, one may bound a cavity, and to decide that would be to guess. Sheets that
-// cannot agree (a Moebius strip) are left alone. Returns how many triangles turned.
+// Orients each sheet of the surface consistently by flipping the fewer triangles. A single closed sheet is then
+// oriented outward; of several sheets one may bound a cavity, so they are left. Sheets that are not orientable (Moebius
+// strip) remain unchanged. Returns the number of flipped triangles.
 size_t orient(TriMesh& mesh);
 
 }  // namespace aspic

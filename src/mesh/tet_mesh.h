@@ -1,4 +1,4 @@
-// A tetrahedral mesh at rest, and a triangle mesh. Plain data: no adjacency, no physics.
+// A tetrahedral mesh at rest, and a triangle mesh, as plain data without adjacency or physics.
 #pragma once
 #include <array>
 #include <vector>
@@ -13,7 +13,7 @@ using Triangle = std::array<int, 3>;
 struct TetMesh {
   std::vector<Vec3d> rest;  // X, one per vertex [m]
   std::vector<Tet> tets;    // positively oriented: volume(mesh, t) > 0
-  std::vector<int> region;  // label of each tet; empty when the mesh has none
+  std::vector<int> region;  // label of each tet; empty if the mesh has none
 
   int vertex_count() const { return static_cast<int>(rest.size()); }
   int tet_count() const { return static_cast<int>(tets.size()); }

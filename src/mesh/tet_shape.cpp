@@ -45,7 +45,7 @@ double mean_ratio(const TetCorners& X) {
 double flat_volume(const TetCorners& X) {
   double size = 0;
   for (const Vec3d& x : X) size = std::max({size, std::abs(x[0]), std::abs(x[1]), std::abs(x[2])});
-  // Each entry of the determinant carries the round-off of a coordinate; the others are edges.
+  // Each entry of the determinant has the round-off of a coordinate times edges.
   const double edge = longest_edge(X);
   return 4 * std::numeric_limits<double>::epsilon() * std::max(size, edge) * edge * edge;
 }

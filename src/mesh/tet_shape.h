@@ -1,4 +1,4 @@
-// The shape of one tetrahedron: lengths, angles, quality, and its point nearest to another.
+// Shape of a tetrahedron: lengths, angles, quality, and its distance from a point.
 #pragma once
 #include <array>
 #include <cmath>
@@ -28,20 +28,20 @@ inline double signed_volume(const TetCorners& X) {
 
 double longest_edge(const TetCorners& corners);
 
-// The angles inside the tet at its six edges [degrees], smallest and largest. 0 and 180 for a flat one.
+// Smallest and largest dihedral angle at the six edges [degrees]; 0 and 180 for a flat tet.
 std::array<double, 2> dihedral_range(const TetCorners& corners);
 
-// 12 (3 V)^(2/3) / sum of squared edges: 1 for the regular tet, 0 for a flat one, negative for an inverted one
+// Mean ratio 12 (3 V)^(2/3) / sum of squared edges: 1 for a regular tet, 0 for a flat one, negative for an inverted one
 // [Liu and Joe 1994].
 double mean_ratio(const TetCorners& corners);
 
-// Volume below this is round-off of the corners rather than shape: the tet counts as flat.
+// Volumes below this threshold are round-off of the corners: the tet counts as flat.
 double flat_volume(const TetCorners& corners);
 
-// Barycentric coordinates of p, summing to 1; the tet must not be flat.
+// Barycentric coordinates of p, which sum to 1. Requires a tet that is not flat.
 std::array<double, 4> barycentric(const TetCorners& corners, const Vec3d& p);
 
-// Squared distance [m^2] from p, whose barycentric coordinates are w, to the tet; 0 inside.
+// Squared distance [m^2] from p to the tet, 0 inside. w: barycentric coordinates of p.
 double squared_distance(const TetCorners& corners, const std::array<double, 4>& w, const Vec3d& p);
 
 }  // namespace aspic

@@ -20,7 +20,7 @@ int corner_of(const Triangle& triangle, int vertex) {
   return static_cast<int>(std::find(triangle.begin(), triangle.end(), vertex) - triangle.begin());
 }
 
-// Corners of triangles round a vertex belong to one fan when their triangles share an edge at it.
+// Triangles around a vertex belong to one fan if they share an edge at it.
 std::vector<int> vertices_with_several_fans(const std::vector<Triangle>& triangles, const std::vector<EdgeUse>& uses,
                                             int vertex_count) {
   DisjointSets fans(3 * static_cast<int>(triangles.size()));

@@ -1,4 +1,4 @@
-// How the elements of a mesh meet. All lists are in ascending order.
+// Topology of a mesh: edges, boundaries and non-manifold places. All lists are ascending.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -8,16 +8,16 @@
 
 namespace aspic {
 
-// For each point the first one at exactly the same place: itself, unless it is a duplicate. O(n log n).
+// For each point, returns the first one at exactly the same position (itself unless duplicate). O(n log n).
 std::vector<int> first_at_same_place(const std::vector<Vec3d>& points);
 
-// The use of an edge by one triangle.
+// Use of an edge by one triangle.
 struct EdgeUse {
   std::array<int, 2> edge;  // ascending
   int triangle;
-  bool forward;  // the triangle runs along it from edge[0] to edge[1]
+  bool forward;  // the triangle traverses it from edge[0] to edge[1]
 };
-// Sorted by edge: the uses of one edge are consecutive. Triangles with a vertex listed twice are left out.
+// Returns the uses sorted by edge. Omits triangles that list a vertex twice.
 std::vector<EdgeUse> edge_uses(const std::vector<Triangle>& triangles);
 
 // Calls visit(begin, end) for the uses of each edge.
@@ -31,15 +31,15 @@ void for_each_edge(const std::vector<EdgeUse>& uses, Visit visit) {
 
 struct SurfaceTopology {
   std::vector<int> open;                   // triangles with an edge that no other triangle shares
-  std::vector<int> non_manifold;           // triangles with an edge shared by more than two
-  std::vector<int> disagreeing;            // triangles whose neighbor runs along the common edge in the same direction
-  std::vector<int> non_manifold_vertices;  // whose triangles form several fans
+  std::vector<int> non_manifold;           // triangles with an edge that more than two triangles share
+  std::vector<int> disagreeing;            // triangles whose neighbor traverses the common edge in the same direction
+  std::vector<int> non_manifold_vertices;  // vertices whose triangles form several fans
   int open_edges = 0, non_manifold_edges = 0;
   int holes = 0;  // connected groups of open edges
 };
 SurfaceTopology topology(const std::vector<Triangle>& triangles, int vertex_count);
 
-// Elements whose vertices were all listed before in another element, in any order.
+// Returns the elements whose vertices all occur in an earlier element, in any order.
 template <class Element>
 std::vector<int> repeated_elements(const std::vector<Element>& elements);
 

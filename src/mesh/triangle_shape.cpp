@@ -11,7 +11,7 @@ namespace {
 
 using Triangle2 = std::array<Vec2d, 3>;
 
-// Without the coordinate in which the normal is largest.
+// Projects along the coordinate in which the normal is largest.
 Triangle2 flattened(const TriangleCorners& t, int without) {
   const int u = (without + 1) % 3, v = (without + 2) % 3;
   return {{{t[0][u], t[0][v]}, {t[1][u], t[1][v]}, {t[2][u], t[2][v]}}};
@@ -24,8 +24,8 @@ int largest_axis(const Vec3d& normal) {
   return largest;
 }
 
-// Two triangles of the plane, either orientation, are apart when a line along an edge of one has the other strictly
-// outside (separating axes).
+// Coplanar triangles of either orientation are disjoint if the line of an edge of one strictly separates the other
+// (separating axes).
 bool is_separated_by_edges(const Triangle2& s, const Triangle2& t) {
   const int inside = orientation(s[0], s[1], s[2]);
   for (int e = 0; e < 3; ++e) {
@@ -42,7 +42,7 @@ bool meet_in_plane(const TriangleCorners& s, const TriangleCorners& t) {
   return !is_separated_by_edges(a, b) && !is_separated_by_edges(b, a);
 }
 
-// The segment pq, not in the plane of t, against t: the line passes all edges on the same side.
+// Whether segment pq, not in the plane of t, meets t: the line passes all edges on the same side.
 bool segment_meets(const Vec3d& p, const Vec3d& q, const TriangleCorners& t) {
   bool left = true, right = true;
   for (int e = 0; e < 3; ++e) {
@@ -53,7 +53,7 @@ bool segment_meets(const Vec3d& p, const Vec3d& q, const TriangleCorners& t) {
   return left || right;
 }
 
-// Whether an edge of s passes through t; `sides` are those of the corners of s.
+// Whether an edge of s passes through t; `sides` are the sides of the corners of s.
 bool edge_passes_through(const TriangleCorners& s, const std::array<int, 3>& sides, const TriangleCorners& t) {
   for (int e = 0; e < 3; ++e) {
     const int f = (e + 1) % 3;
@@ -74,7 +74,7 @@ bool all_on_one_side(const std::array<int, 3>& sides) {
 
 bool all_in_plane(const std::array<int, 3>& sides) { return sides[0] == 0 && sides[1] == 0 && sides[2] == 0; }
 
-// The wedges at the common corner s[0] = t[0] of coplanar triangles overlap: one contains an edge of the other.
+// Whether the wedges at the common corner s[0] = t[0] of coplanar triangles overlap: one contains an edge of the other.
 bool wedges_overlap(const TriangleCorners& s, const TriangleCorners& t) {
   const int without = largest_axis(cross(s[1] - s[0], s[2] - s[0]));
   const Triangle2 a = flattened(s, without), b = flattened(t, without);
@@ -82,7 +82,7 @@ bool wedges_overlap(const TriangleCorners& s, const TriangleCorners& t) {
     const int inside = orientation(wedge[0], wedge[1], wedge[2]);
     return orientation(wedge[0], wedge[1], p) * inside > 0 && orientation(wedge[0], wedge[2], p) * inside < 0;
   };
-  const auto coincide = [&] {  // both edges of b along those of a
+  const auto coincide = [&] {  // both edges of b coincide with those of a
     return orientation(a[0], a[1], a[2]) != 0 && contains(a, {(b[1][0] + b[2][0]) / 2, (b[1][1] + b[2][1]) / 2});
   };
   return contains(a, b[1]) || contains(a, b[2]) || contains(b, a[1]) || contains(b, a[2]) || coincide();
@@ -116,7 +116,7 @@ bool is_degenerate(const TriangleCorners& t) {
     for (int axis = 0; axis < 3; ++axis) size = std::max(size, std::abs(t[c][axis]));
   }
   const Vec3d normal = cross(t[1] - t[0], t[2] - t[0]);
-  // Moving the corners by their round-off changes the cross product by about this much.
+  // Round-off of the corners changes the cross product by about this amount.
   return !(std::sqrt(dot(normal, normal)) >
            4 * std::numeric_limits<double>::epsilon() * std::max(size, longest) * longest);
 }
@@ -133,7 +133,7 @@ bool meet(const TriangleCorners& s, const TriangleCorners& t) {
 bool meet_beyond_vertex(const TriangleCorners& s, const TriangleCorners& t) {
   const std::array<int, 3> of_t = sides_of(s, t), of_s = sides_of(t, s);
   if (all_in_plane(of_t)) return wedges_overlap(s, t);
-  // The common points form a segment from the common corner; it ends on the edge opposite to it of one of the two.
+  // The intersection is a segment from the common corner to the opposite edge of one of the triangles.
   const auto opposite_edge_meets = [](const TriangleCorners& a, const std::array<int, 3>& sides,
                                       const TriangleCorners& b) {
     return sides[1] * sides[2] <= 0 && (sides[1] != 0 || sides[2] != 0) && segment_meets(a[1], a[2], b);

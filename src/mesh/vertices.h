@@ -1,4 +1,4 @@
-// Vertices of a mesh chosen by where they are, and values computed at all of them.
+// Selects vertices by position, and evaluates functions at all vertices.
 #pragma once
 #include <functional>
 #include <vector>
@@ -7,10 +7,10 @@
 
 namespace aspic {
 
-// A question about a point X of the rest shape [m].
+// Condition on a point X of the rest shape [m].
 using Predicate = std::function<bool(const Vec3d& X)>;
 
-// Returns the vertices that satisfy the predicate, ascending; empty when there are none.
+// Returns the vertices that satisfy the predicate, ascending.
 std::vector<int> vertices_where(const TetMesh& mesh, const Predicate& predicate);
 
 // Returns f(X) of every vertex, 3 numbers per vertex.

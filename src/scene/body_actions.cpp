@@ -31,7 +31,7 @@ struct Builder {
   std::vector<std::string>& notes;
   std::vector<PointSpring> point_springs;
   std::vector<Spring> springs;
-  int pressures = 0;  // that were added
+  int pressures = 0;  // number of added pressures
 
   SelectionScope scope(const PlacedBody& body) const { return {body.mesh, up, body.name()}; }
 };
@@ -80,7 +80,7 @@ void note_jump(const Pin& pin, const std::vector<Vec3d>& starts, std::vector<std
 std::string leave_out(const Value& first, const Value& second, bool leaves_any) {
   const Value &a = first["where"], &b = second["where"];
   if (!leaves_any) return "remove pin '" + second["name"].text() + "': all of its vertices are in other pins";
-  if (!a.is_text() || !b.is_text()) return "let one of them leave it out";
+  if (!a.is_text() || !b.is_text()) return "exclude it from one of them";
   return "try where = \"(" + b.text() + ") && !(" + a.text() + ")\" in pin '" + second["name"].text() + "'";
 }
 
@@ -114,7 +114,7 @@ void add_pins(Builder& builder, const PlacedBody& body) {
         throw error_at(scene["where"].place, "vertex " + std::to_string(v) + " of body '" + body.name() + "' at " +
                                                  point_text(body.mesh.rest[v]) + " is in pin '" +
                                                  (*other)["name"].text() + "' and in pin '" + scene["name"].text() +
-                                                 "', which hold it along the same direction; " +
+                                                 "', which constrain the same direction; " +
                                                  leave_out(*other, scene, leaves_any));
       pin.vertices.push_back(body.model_vertex(v));
     }
@@ -255,8 +255,8 @@ void add_pressures(Builder& builder, const PlacedBody& body) {
                        ExpressionVariables::position_and_time);
     if (p.depends_on_position())
       throw error_at(value.place,
-                     "value: a pressure that follows the surface is the same all over it, so its formula "
-                     "may use t alone (a load of X, Y, Z that keeps its direction: dead_pressure of a "
+                     "value: a follower pressure is uniform, so its formula "
+                     "may use only t (for a load of X, Y, Z with fixed direction: dead_pressure of a "
                      "[[body.traction]])");
     std::vector<Triangle> patch = select_triangles(scene["where"], builder.scope(body), boundary);
     for (Triangle& t : patch)
@@ -327,7 +327,7 @@ void add_damping(PlacedBody& body, size_t index, MassKind kind, SceneFiles& file
   Value& damping = *body.scene.table().find("damping");
   const double a = damping["mass"].number(), b = damping["stiffness"].number();
   if (a > 0 || b > 0) {
-    std::vector<double> density(model.density.size(), 0.0);  // of this body alone
+    std::vector<double> density(model.density.size(), 0.0);  // densities of this body, zero elsewhere
     const auto first = model.density.begin() + body.first_tet;
     std::copy(first, first + body.mesh.tet_count(), density.begin() + body.first_tet);
     model.damping.push_back(

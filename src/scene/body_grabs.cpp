@@ -29,7 +29,7 @@ Tet corners_of(const Value& point, const PlacedBody& body) {
     throw error_at(point.place, "point: no tet of body '" + body.name() + "' has the vertices " +
                                     std::to_string(corners[0]) + ", " + std::to_string(corners[1]) + ", " +
                                     std::to_string(corners[2]) + ", " + std::to_string(corners[3]) +
-                                    "; a spring can hold a point of one tet only");
+                                    "; a spring can hold a point of only one tet");
   return corners;
 }
 

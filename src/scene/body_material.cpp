@@ -132,7 +132,7 @@ class FromFile {
     const bool is_chosen = is_given(table_, "model");
     if (fitted_.model.empty()) {
       if (!is_chosen)
-        throw error_at(place_, file_ + " names no model; say which one its numbers are for (try model = " +
+        throw error_at(place_, file_ + " names no model; state the model of its values (try model = " +
                                    toml_string("neo_hookean") + " beside `file`)");
       model_ = model.text();
       try {
@@ -145,7 +145,7 @@ class FromFile {
     model_ = fitted_.model;
     if (is_chosen && model.text() != model_)
       throw error_at(model.place, "model = " + toml_string(model.text()) + "; the numbers of " + file_ +
-                                      " were fitted for " + model_ + " and mean something else to another model " +
+                                      " were fitted for " + model_ + " and are invalid for another model " +
                                       "(remove `model`, or fit with --model " + model.text() + ")");
     table_.set("model", {model_, {}});
   }
@@ -173,16 +173,16 @@ class FromFile {
     const std::string& frame = table_.find("frame")->text();
     throw error_at(place_, file_ + " has a mesh from " + text(own) + "; body '" + body_.name() + "' lies from " +
                                text(other) + " in the frame '" + frame + "', up to " + four_digits(sampling_.farthest) +
-                               " m away from it (try another `frame`: mesh, scaled or placed; is one in mm?)");
+                               " m away from it (try another `frame`: mesh, scaled or placed; check the units)");
   }
 
   void note_differences(const std::string& name, std::vector<std::string>& notes) const {
     if (sampling_.is_same_mesh) return;
     std::string note = "body '" + body_.name() + "': its " + std::to_string(body_.mesh.tet_count()) +
                        " tets are not the " + std::to_string(fitted_.mesh.tet_count()) + " of " + name +
-                       "; each takes the values of the tet there in which its centroid lies";
+                       "; each uses the values of the tet there that contains its centroid";
     if (sampling_.outside > 0)
-      note += ", " + std::to_string(sampling_.outside) + " of the nearest one, from which they are up to " +
+      note += ", " + std::to_string(sampling_.outside) + " of the nearest one, at distances up to " +
               four_digits(sampling_.farthest) + " m away";
     notes.push_back(note);
   }

@@ -126,7 +126,7 @@ LoadedMesh resolve_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMes
   if (loaded->surface.empty()) {
     if (const Value* size = body.find("mesh_size"))
       throw error_at(size->place, "mesh_size = " + number_text(size->number()) + "; " + path.string() +
-                                      " holds tets already, so there is nothing to fill; remove mesh_size");
+                                      " already contains tets; remove mesh_size");
     body.table().set("mesh", {keep_mesh_file(path, name, loader.files), {}});
     return *std::move(loaded);
   }
@@ -159,7 +159,7 @@ void note_outside(const BodyMesh& body, const std::string& name, std::vector<std
   if (const int outside = body.embedding.outside; outside > 0)
     notes.push_back("body '" + name + "': " + std::to_string(outside) + " of " +
                     std::to_string(body.skin.vertex_count()) +
-                    " skin vertices lie outside the tets and follow the nearest one");
+                    " skin vertices are outside the tets and follow the nearest one");
 }
 
 // Refuses files that must exceed the limit, and announces large ones.
@@ -194,7 +194,7 @@ std::string MeshLoader::why_not_in_memory(double more_tets) const {
   const double bytes = (tets + more_tets) * kBytesInModel;
   const auto available = static_cast<double>(std::min(limit.memory, free_memory()));
   if (bytes <= available) return "";
-  return "about " + rounded_text(tets + more_tets) + " tets take at least " + rounded_text(bytes / 1e9) + " GB; " +
+  return "about " + rounded_text(tets + more_tets) + " tets need at least " + rounded_text(bytes / 1e9) + " GB; " +
          rounded_text(available / 1e9) + " GB of memory are free";
 }
 

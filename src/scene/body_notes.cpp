@@ -25,8 +25,8 @@ void note_inverted(const PlacedBody& body, std::vector<std::string>& notes) {
     if (!(volume(start, t) > 0)) ++count;
   if (count > 0 && body.scene["elastic"].boolean())
     notes.push_back("body '" + body.name() + "': " + std::to_string(count) +
-                    " tets start inverted or flat; a shape that is flat or a point may be in balance and stay "
-                    "so (disturb it with a small deform.displacement)");
+                    " tets are inverted or flat at the start; a flat shape may be in equilibrium and stay "
+                    "so (perturb it with a small deform.displacement)");
 }
 
 // Far from the origin, differences of positions lose their last digits.
@@ -100,24 +100,23 @@ std::string poisson_remedy(const Value& material) {
 
 void note_weight(const PlacedBody& body, const Means& mean, const Vec3d& gravity, std::vector<std::string>& notes) {
   const Value& scene = body.scene;
-  if (!scene.find("pin") && !scene.find("spring")) return;  // it falls
+  if (!scene.find("pin") && !scene.find("spring")) return;  // the body falls
   const double strain = mean.density * extent(body.mesh.rest, gravity) / mean.young;
   if (!(strain > kCrushed)) return;
   const std::string crushed = "body '" + body.name() +
                               "': its weight crushes it: density * gravity * height / young = " + three_digits(strain) +
-                              ", where 1 is much; if ";
+                              ", where 1 is already large; if ";
   const Box box = bounding_box(body.mesh.rest);
   const double size = std::max({box.upper[0] - box.lower[0], box.upper[1] - box.lower[1], box.upper[2] - box.lower[2]});
   if (size > kLarge && strain < 1e3) {
-    notes.push_back(crushed + "its " + three_digits(size) + " m were meant in mm, set body." + body.name() +
+    notes.push_back(crushed + "its " + three_digits(size) + " m are millimeters, set body." + body.name() +
                     ".scale = 0.001");
     return;
   }
   double factor = 1e3;
   while (factor < 1e9 && strain > factor) factor *= 1e3;
   const char* unit = factor == 1e3 ? "kPa" : factor == 1e6 ? "MPa" : "GPa";
-  notes.push_back(crushed + three_digits(mean.young) + " was meant in " + unit + ", " +
-                  stiffness_remedy(body, mean, factor));
+  notes.push_back(crushed + three_digits(mean.young) + " is in " + unit + ", " + stiffness_remedy(body, mean, factor));
 }
 
 void note_diamond(const PlacedBody& body, const Means& mean, std::vector<std::string>& notes) {
@@ -126,9 +125,9 @@ void note_diamond(const PlacedBody& body, const Means& mean, std::vector<std::st
   const double length = std::sqrt(dot(box.upper - box.lower, box.upper - box.lower));
   double factor = 1e3;
   while (factor < 1e9 && mean.young / factor > kSoft) factor *= 1e3;
-  notes.push_back("body '" + body.name() + "': stiffer than diamond (1.2e12 Pa), it rings at " +
+  notes.push_back("body '" + body.name() + "': stiffer than diamond (1.2e12 Pa), it vibrates at " +
                   three_digits(std::sqrt(mean.young / mean.density) / (2 * length)) + " Hz; if " +
-                  three_digits(mean.young) + " Pa is " + three_digits(factor) + " times too much, " +
+                  three_digits(mean.young) + " Pa is " + three_digits(factor) + " times too large, " +
                   stiffness_remedy(body, mean, 1 / factor));
 }
 
@@ -146,8 +145,8 @@ void note_unbounded(const PlacedBody& body, const BodyMaterial& material, std::v
       for (int r = 0; r < 3; ++r) x.push_back(size * X[r]);
     if (!(V->value(x) < 0)) continue;
     notes.push_back("body '" + body.name() + "': with poisson = " + number_text(poisson_ratio(least->lame)) +
-                    " the energy of " + material.model + " has no least value: a body that is " +
-                    (size < 1 ? "squeezed" : "stretched") + " far enough never comes back (" +
+                    " the energy of " + material.model + " has no minimum: a body that is " +
+                    (size < 1 ? "squeezed" : "stretched") + " far enough never recovers (" +
                     poisson_remedy(body.scene["material"]) + ", or model = \"stvk\")");
     return;
   }
@@ -184,11 +183,11 @@ void note_parts(const PlacedBody& body, const Model& model, std::vector<std::str
     if (!is_held) loose.push_back(part.front());
   }
   std::string note =
-      "body '" + body.name() + "': its mesh falls into " + std::to_string(parts.size()) + " parts that share no vertex";
+      "body '" + body.name() + "': its mesh has " + std::to_string(parts.size()) + " parts that share no vertex";
   if (!loose.empty() && loose.size() < parts.size())
     note += "; no pin holds " + std::to_string(loose.size()) + " of them (the first holds tet " +
             std::to_string(loose.front()) + ")";
-  notes.push_back(note + "; if one body was meant, join them where it was made, or merge duplicate vertices with " +
+  notes.push_back(note + "; for one body join them in the source model, or merge duplicate vertices with " +
                   "--repair");
 }
 

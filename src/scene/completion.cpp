@@ -26,7 +26,7 @@ void check_name(const std::string& name, const Place& place) {
   });
   if (!good)
     throw error_at(place, "name = " + shortened(toml_string(name)) +
-                              "; a name is made of at most 64 letters, digits, _ and - (try \"body1\")");
+                              "; a name has at most 64 letters, digits, _ and - (try \"body1\")");
 }
 
 // Names each table that has no name by `name_of`, and refuses duplicates.
@@ -51,7 +51,7 @@ void check_beside_file(const Value& material) {
   for (const Member& m : material.table().members) {
     if (m.key == "model" || m.key == "density" || m.key == "file" || m.key == "frame" || m.key == "hash") continue;
     throw error_at(m.place, m.key + " = " + shortened(inline_toml(m.value)) + "; file = " + file +
-                                " has the elastic quantities of every tet (remove " + m.key +
+                                " already has the elastic constants of every tet (remove " + m.key +
                                 "; only density may be given beside a file)");
   }
 }
@@ -87,7 +87,7 @@ void check_times(const Array& places) {
   for (const Value& place : places) {
     const Value& time = place["time"];
     if (time.number() <= last)
-      throw error_at(time.place, "time = " + number_text(time.number()) + "; must be later than the one before, " +
+      throw error_at(time.place, "time = " + number_text(time.number()) + "; must be later than the previous one, " +
                                      number_text(last));
     last = time.number();
   }
@@ -111,7 +111,7 @@ void check_springs(const Value& springs, const Array& bodies) {
   for (const Value& spring : springs.array()) {
     check_motion(spring);
     if (const Value* edges = spring.find("edges"); edges && !edges->boolean())
-      throw error_at(edges->place, "edges = false; leave the whole spring out, or write edges = true");
+      throw error_at(edges->place, "edges = false; omit the spring, or write edges = true");
     const Value* other = spring.find("to_body");
     if (other && std::find(names.begin(), names.end(), other->text()) == names.end())
       throw error_at(other->place, "to_body = " + toml_string(other->text()) + "; there is no such body" +
@@ -125,11 +125,11 @@ void check_grabs(const Value& grabs) {
     check_times(path);
     if (path.size() < 2)
       throw error_at(grab["path"].place, "path: " + std::to_string(path.size()) +
-                                             " places; at least two are needed, the start and the end");
+                                             " positions; at least two are needed, the start and the end");
     if (point.size() != 4)
       throw error_at(grab["point"].place, "point: " + std::to_string(point.size()) +
-                                              " vertices; the four of one tet are needed (weight = 0 for one that does "
-                                              "not count)");
+                                              " vertices; the four of one tet are needed (weight = 0 for one without "
+                                              "influence)");
     double sum = 0;
     for (const Value& share : point) sum += share["weight"].number();
     if (!(std::abs(sum - 1) <= kWeightRoundOff))
@@ -158,7 +158,7 @@ void complete_scene(Table& document) {
   if (bodies.empty()) throw error_at(list.place, "body = []; at least one is needed");
   if (bodies.size() > kMostBodies)
     throw error_at(list.place, std::to_string(bodies.size()) + " bodies; at most " + std::to_string(kMostBodies) +
-                                   " are simulated (make one mesh of those that are alike)");
+                                   " are supported (combine similar bodies in one mesh)");
   name_tables(bodies, body_name);
   for (Value& body : bodies) {
     complete_material(*body.table().find("material"));

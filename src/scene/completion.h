@@ -4,8 +4,8 @@
 
 namespace aspic {
 
-// Names bodies and pins, fills in the extra parameters of materials, and checks conditions between keys.
-// Requires a document that has passed check_and_complete(). Throws InvalidInput.
+// Names bodies and pins, fills in the extra parameters of materials, and checks conditions between keys. Requires a
+// document that passed check_and_complete(). Throws InvalidInput.
 void complete_scene(Table& document);
 
 }  // namespace aspic

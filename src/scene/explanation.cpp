@@ -17,8 +17,8 @@ using namespace places;  // NOLINT(google-build-using-namespace)
 
 std::string residual_place(const Model& model, const StepReport& report, std::span<const double> x) {
   if (report.worst_vertex < 0) return "";
-  return vertex_name(model, report.worst_vertex) + " at " + point_text(x, report.worst_vertex) + " is furthest from " +
-         "balance: " + text(report.worst_residual) + " N are left over";
+  return vertex_name(model, report.worst_vertex) + " at " + point_text(x, report.worst_vertex) + " is farthest from " +
+         "balance: " + text(report.worst_residual) + " N remain";
 }
 
 // Relative volume below which a tet counts as crushed.
@@ -61,8 +61,8 @@ class Explainer {
       case Status::inaccurate:
         return inaccurate();
       case Status::budget:
-        return {"the time budget was spent after " + std::to_string(report_.iterations) +
-                    " iterations; the step ends where they came",
+        return {"the time budget ended after " + std::to_string(report_.iterations) +
+                    " iterations; the step keeps their result",
                 "solver.time_budget = " + text(solver_.time_budget), "raise solver.time_budget, or solver.tolerance"};
       case Status::unstable:
         return blow_up();
@@ -82,8 +82,8 @@ class Explainer {
   Explanation not_held(const RigidMotion& motion) const {
     const std::string body = model_.bodies.size() > 1 ? "body '" + model_.bodies[motion.body].name + "'" : "the body";
     const bool has_pins = !model_.pins.empty();
-    return {motion.is_rotation ? "statics have no stiffness along a rigid motion that the pins leave free"
-                               : "there is no single equilibrium: nothing holds " + body,
+    return {motion.is_rotation ? "statics has no stiffness along a rigid motion that the pins leave free"
+                               : "the equilibrium is not unique: nothing holds " + body,
             (has_pins ? "the pins let " + body + " " : "no pins in the scene: " + body + " can ") + to_string(motion),
             std::string(motion.is_rotation ? "pin one more vertex, away from that axis" : "pin some vertices") +
                 ", or use time.integrator = \"backward_euler\""};
@@ -92,7 +92,7 @@ class Explainer {
   std::string smaller_steps() const {
     const double tolerance = simulation_.options().adaptive.tolerance;
     if (tolerance > 0)  // the shortest substep, time.step / 2^20, failed as well
-      return "raise time.adaptive.tolerance (" + text(tolerance) + " now): shorter parts of the step failed as well";
+      return "raise time.adaptive.tolerance (" + text(tolerance) + " now): shorter substeps also failed";
     return is_static() ? "load the body in smaller steps (" + step_text() + " now)"
                        : "shorten the step (" + step_text() + " now)";
   }
@@ -103,7 +103,7 @@ class Explainer {
         "round-off hides " + text(100 * report_.lost_accuracy) + " % of the weight, the inertia or the velocities",
         "positions have " + std::to_string(digits) + " digits, and " + step_text(),
         "lengthen a tiny time.step, move a distant body to the origin, or lower an extreme stiffness (young, poisson); "
-        "pin what must not move"};
+        "pin fixed parts"};
   }
 
   Explanation blow_up() const {
@@ -114,7 +114,7 @@ class Explainer {
     const std::string& name = simulation_.options().integrator;
     const bool gains_energy = simulation_.integrator().gains_energy;
     const std::string end = report_.status == Status::unstable
-                                ? "has made more than ten times the energy that the body can have"
+                                ? "has produced more than ten times the possible energy of the body"
                                 : "left the range of numbers";
     if (gains_energy && h < stable.h)
       return {name + " adds energy in every step, however short, and " + end, "time.integrator = \"" + name + "\"",
@@ -125,9 +125,9 @@ class Explainer {
           step_text() + " is below " + text(stable.h) + " s, where it is stable for small motions, but not for these",
           "shorten time.step, or use time.integrator = \"backward_euler\""};
     const std::string cause = "the explicit scheme " + name + " blew up: its steps of " + text(h) +
-                              " s are longer than the " + text(stable.h) + " s up to which it can be stable here";
+                              " s are longer than the " + text(stable.h) + " s of its stability limit here";
     const std::string place =
-        stable.is_damping ? " is damped most strongly: the damping allows no longer steps"
+        stable.is_damping ? " has the strongest damping, which limits the step"
                           : " vibrates fastest, at " + text(stable.frequency) + " Hz: small, stiff or light tets";
     return {cause, stable.vertex < 0 ? "" : vertex_name(model_, stable.vertex) + place,
             (gains_energy ? "" : "time.step = " + text(stable.h / 2) + " or less, or ") +
@@ -151,10 +151,10 @@ class Explainer {
                     [&](const auto& V) { return std::isfinite(V->value(x)); }))
       return {};
     return {
-        "the pins themselves press a tet flat or turn it inside out, however short the step; the material has no "
+        "the pins themselves flatten or invert a tet, for any step length; the material has no "
         "energy there",
         tet_name(model_, worst.tet) + ", whose corners are all pinned: " + text(worst.det_F) + " of its volume",
-        "material.model = \"stable_neo_hookean\", which bears it, or pins that stop earlier"};
+        "material.model = \"stable_neo_hookean\", which tolerates it, or pins that stop earlier"};
   }
 
   Explanation undefined_start() const {
@@ -162,7 +162,7 @@ class Explainer {
     if (!pins.cause.empty()) return pins;
     const WorstTet worst = most_squashed(model_.mesh, placed());
     if (!(worst.det_F > 0) && worst.tet >= 0)
-      return {"the pins move so far in one step that a tet is inverted, where the material has no energy",
+      return {"the pins invert a tet in one step, where the material has no finite energy",
               tet_name(model_, worst.tet) + ": " + text(worst.det_F) + " of its volume",
               smaller_steps() + ", or move the pins more slowly"};
     if (report_.iterations > 0) return undefined_end();
@@ -178,15 +178,15 @@ class Explainer {
             smaller_steps() + ", and look for forces, pins or velocities that are too large"};
   }
 
-  // The iterations led to a state of infinite energy.
+  // Explains iterations that led to a state of infinite energy.
   Explanation undefined_end() const {
     const std::string& name = simulation_.options().integrator;
-    const std::string remedy = "time.integrator = \"backward_euler\", whose line search stays where there is energy";
+    const std::string remedy = "time.integrator = \"backward_euler\", whose line search keeps the energy finite";
     if (simulation_.integrator().takes_one_iteration)
-      return {"one Newton iteration without a line search went to where the material has no energy",
+      return {"one Newton iteration without a line search left the domain of the energy",
               "time.integrator = \"" + name + "\"", remedy};
     if (simulation_.integrator().ends_beyond_minimum)
-      return {"the step of " + name + " extrapolates beyond the minimum, to where the material has no energy",
+      return {"the step of " + name + " extrapolates beyond the minimum and left the domain of the energy",
               "time.integrator = \"" + name + "\"", remedy};
     if (solver_.minimize.line_search.test == DecreaseTest::none)
       return {"without a line search the iterations left the range of numbers", "solver.line_search.test = \"none\"",
@@ -202,20 +202,20 @@ class Explainer {
   }
 
   Explanation too_fine() const {
-    return {"the parts of the step became so short that positions, which have 16 digits, hardly change in them",
+    return {"the substeps became too short for the 16 digits of positions",
             "time.adaptive.tolerance = " + text(simulation_.options().adaptive.tolerance),
             "time.adaptive.tolerance = 1e-06"};
   }
 
   Explanation inaccurate() const {
     if (simulation_.options().adaptive.tolerance < kFinest) return too_fine();
-    return {"the error estimate of the smallest part of the step, time.step / 2^20, is above its share",
+    return {"the error estimate of the smallest substep, time.step / 2^20, exceeds its share",
             "time.adaptive.tolerance = " + text(simulation_.options().adaptive.tolerance),
             "raise time.adaptive.tolerance; pins that jump cannot be resolved by shorter steps"};
   }
 
   Explanation too_much_asked(const std::string& cause) const {
-    return {cause + ": a full Newton step lowers the energy by half of g.d, and more is asked for",
+    return {cause + ": a full Newton step lowers the energy by half of g.d, less than required",
             "solver.line_search.c = " + text(solver_.minimize.line_search.sufficient_decrease),
             "solver.line_search.c = 1e-4"};
   }
@@ -224,7 +224,7 @@ class Explainer {
     const LineSearchOptions& search = solver_.minimize.line_search;
     const std::string cause = "the line search found no step that lowers the energy enough";
     if (search.test == DecreaseTest::slide)
-      return {cause + ": the slide's test asks for the decrease c g.d of a full step, however short the step is",
+      return {cause + ": the slide's test requires the decrease c g.d of a full step for any step length",
               "solver.line_search.test = \"slide\"", "solver.line_search.test = \"textbook\""};
     if (search.sufficient_decrease > 0.5) return too_much_asked(cause);
     if (search.tolerance > 1e-5)
@@ -242,18 +242,17 @@ class Explainer {
     if (threshold > 0 && threshold < round_off && report_.residual <= kNearRoundOff * round_off) {
       const double reachable = power_of_ten_above(options.tolerance * 10 * round_off / threshold);
       const bool is_useful = options.criterion == Criterion::absolute || is_static() || reachable <= kLoosest;
-      return {cause + ": round-off alone is " + text(round_off) + " N, and less is asked for",
+      return {cause + ": round-off alone is " + text(round_off) + " N, above the threshold",
               is_useful ? "solver.tolerance = " + text(options.tolerance) : step_text(),
-              is_useful
-                  ? "solver.tolerance = " + text(reachable)
-                  : "lengthen time.step: positions have 16 digits, and too few of them change in so short a time"};
+              is_useful ? "solver.tolerance = " + text(reachable)
+                        : "increase time.step: positions have 16 digits, and too few of them change in a short step"};
     }
     const std::string& B = solver_.preconditioner;
     if (!is_newton() && B != "auto" && B != "hessian")
-      return {cause + ": without the Hessian " + solver_.method + " takes many more for stiff bodies",
+      return {cause + ": without the Hessian " + solver_.method + " needs many more for stiff bodies",
               "solver.preconditioner = \"" + B + "\"", "solver.preconditioner = \"hessian\""};
     if (!is_newton())
-      return {cause + ": methods without the Hessian take many more for stiff bodies",
+      return {cause + ": methods without the Hessian need many more for stiff bodies",
               "solver.method = \"" + solver_.method + "\"",
               "solver.method = \"newton\", or raise solver.max_iterations"};
     if (options.line_search.sufficient_decrease > 0.5) return too_much_asked(cause);
@@ -270,7 +269,7 @@ class Explainer {
     if (is_newton() && solver_.definiteness == "exact")
       return {"the exact Hessian has directions of negative curvature, along which Newton's method would climb",
               "solver.definiteness = \"exact\"", "solver.definiteness = \"on_demand\""};
-    return {"no direction could be computed along which the energy falls", squashed_place(model_, x_),
+    return {"no descent direction could be computed", squashed_place(model_, x_),
             smaller_steps() + "; `aspic check` finds bad tets"};
   }
 

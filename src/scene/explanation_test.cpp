@@ -112,7 +112,7 @@ TEST(Explanation, TooShortStepSuggestsLongerStep) {
   const Explanation why = first_failure({.h = 1e-9, .solver = {}}, Status::iteration_limit);
   EXPECT_THAT(why.cause, HasSubstr("round-off"));
   EXPECT_THAT(why.place, HasSubstr("time.step = 1e-09"));
-  EXPECT_THAT(why.remedy, HasSubstr("lengthen time.step"));
+  EXPECT_THAT(why.remedy, HasSubstr("increase time.step"));
 }
 
 TEST(Explanation, FreeBodyInStaticsNamesMissingPins) {

@@ -15,7 +15,7 @@ namespace {
 
 struct Function {
   const char* name;
-  const char* meaning;  // empty: the usual one
+  const char* meaning;  // empty: the usual meaning
   double (*call)(double);
 };
 struct Function2 {
@@ -80,7 +80,7 @@ void check_text(const std::string& text) {
   if (text.size() > kMaxExpressionLength)
     throw InvalidInput(in_column(text, kMaxExpressionLength + 1,
                                  std::to_string(text.size()) + " characters; at most " +
-                                     std::to_string(kMaxExpressionLength) + " are read (use a per-element file)"));
+                                     std::to_string(kMaxExpressionLength) + " are supported (use a per-element file)"));
   int depth = 0;
   for (size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -90,7 +90,7 @@ void check_text(const std::string& text) {
     if (c == '=') {
       const char before = i > 0 ? text[i - 1] : ' ', after = i + 1 < text.size() ? text[i + 1] : ' ';
       const bool compares = after == '=' || before == '=' || before == '<' || before == '>' || before == '!';
-      if (!compares) throw InvalidInput(in_column(text, i + 1, "'=' assigns nothing here; compare with '=='"));
+      if (!compares) throw InvalidInput(in_column(text, i + 1, "'=' is not allowed; compare with '=='"));
     }
     depth += (c == '(') - (c == ')');
     if (depth > kMaxExpressionDepth)
@@ -112,7 +112,7 @@ std::string reason_of(const mu::ParserError& e, ExpressionVariables variables) {
   switch (e.GetCode()) {
     case mu::ecUNASSIGNABLE_TOKEN:
       if (e.GetToken() == "t" && variables == ExpressionVariables::position)
-        return "'t' has no meaning here: this is evaluated once, at the start";
+        return "'t' is not allowed: this is evaluated once, at the start";
       if (e.GetToken().size() == 1)  // every other letter is near
         return "unknown name '" + e.GetToken() + "' (a point is " +
                (variables == ExpressionVariables::plane_position ? "x, y or X, Y)" : "x, y, z or X, Y, Z)");

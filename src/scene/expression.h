@@ -37,7 +37,7 @@ class Expression {
 };
 
 struct NamedMeaning {
-  std::string name, meaning;  // no meaning: the usual one of that name
+  std::string name, meaning;  // empty meaning: the usual one of that name
 };
 std::vector<NamedMeaning> expression_functions();  // for the reference
 std::vector<NamedMeaning> expression_constants();

@@ -42,7 +42,7 @@ TEST(Expression, AcceptsPositionInEitherCase) {
 TEST(Expression, AcceptsTimeOnlyIfThereIsOne) {
   const Expression moving("X + t", ExpressionVariables::position_and_time);
   EXPECT_EQ(moving.at({{1, 0, 0}}, 0.5), 1.5);
-  EXPECT_THAT(formula_refusal("X + t"), HasSubstr("'t' has no meaning here"));
+  EXPECT_THAT(formula_refusal("X + t"), HasSubstr("'t' is not allowed"));
 }
 
 TEST(Expression, HoldsWhereAPredicateIsTrue) {

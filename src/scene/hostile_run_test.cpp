@@ -72,7 +72,7 @@ TEST_F(HostileRun, IsRecognizedInAnyFolderName) {
 TEST_F(HostileRun, TableIsRecognizedByBoundedRead) {
   fs::resize_file(run_ / "steps.csv", 0);
   fs::resize_file(run_ / "steps.csv", std::uintmax_t{1} << 40);  // nothing but zeros, and no line break
-  EXPECT_THAT(resumed(), HasSubstr("holds no run"));
+  EXPECT_THAT(resumed(), HasSubstr("contains no run"));
 }
 
 TEST(HostileScene, RejectsControlCharacters) {
@@ -97,13 +97,13 @@ TEST(HostileScene, IsQuotedInOneLine) {
 TEST(HostileScene, HasAtMostTenThousandBodies) {
   std::string bodies;
   for (int i = 0; i < 10001; ++i) bodies += "[[body]]\nshape = { box = { upper = [1, 1, 1], cells = [1, 1, 1] } }\n";
-  EXPECT_THAT(refusal(bodies), HasSubstr("10001 bodies; at most 10000 are simulated"));
+  EXPECT_THAT(refusal(bodies), HasSubstr("10001 bodies; at most 10000 are supported"));
 }
 
 TEST(HostileScene, TablesHaveLinesOfAtMostAMebibyte) {
   const TestFolder folder;
   const fs::path file = folder.write("values.csv", std::string(size_t{1} << 21, ','));
-  EXPECT_THAT(message_of([&] { read_number_table(file, 1, 1, "a tet", {}); }), HasSubstr(":1: is no line of a table"));
+  EXPECT_THAT(message_of([&] { read_number_table(file, 1, 1, "a tet", {}); }), HasSubstr(":1: is too long"));
 }
 
 }  // namespace

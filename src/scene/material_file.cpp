@@ -18,7 +18,7 @@
 namespace aspic {
 namespace {
 
-// The model is the name of a field of the whole file: ParaView shows it, and every VTU reader accepts it.
+// Name of a file field for the model, which ParaView shows and every VTU reader accepts.
 const std::string kModelField = "model ";
 
 bool is_quantity(const std::string& name) {
@@ -40,7 +40,7 @@ std::string model_of(const Vtu& vtu, const std::string& file) {
   for (const Field& field : vtu.file_fields) {
     if (!field.name.starts_with(kModelField)) continue;
     if (!model.empty())
-      throw InvalidInput(file + ": names two models, '" + model + "' and '" + field.name.substr(kModelField.size()) +
+      throw InvalidInput(file + ": contains two models, '" + model + "' and '" + field.name.substr(kModelField.size()) +
                          "'; keep one of the fields of the file");
     model = field.name.substr(kModelField.size());
     try {
@@ -71,14 +71,14 @@ std::vector<std::string> quantities_of(const std::string& model) {
 FittedMaterial read_material(const std::filesystem::path& path) {
   Vtu vtu = read_vtu(path);
   if (vtu.mesh.tets.empty())
-    throw InvalidInput(path.string() + ": has no tets; a material needs the tets whose fields it is made of");
+    throw InvalidInput(path.string() + ": has no tets; a material file needs tets with fields");
   FittedMaterial material{.mesh = std::move(vtu.mesh), .model = model_of(vtu, path.string())};
   for (Field& field : vtu.cell_fields) {
     if (field.name == "region") continue;  // of the mesh
     const bool is_value = is_quantity(field.name);
     if (is_value && field.components != 1)
       throw InvalidInput(path.string() + ": cell field '" + field.name + "' has " + std::to_string(field.components) +
-                         " components; a quantity has one per tet");
+                         " components; one per tet is needed");
     if (field.components != 1) continue;
     auto& list = is_value ? material.values : material.further;
     list.emplace_back(field.name, std::move(field.values));

@@ -33,7 +33,7 @@ double largest_extent(const Box& box) {
   return std::max({size[0], size[1], size[2]});
 }
 
-// Returns a fraction of the height that holds more than a point of the body.
+// Returns a fraction of the height that contains more than one point of the body.
 double base_fraction(const std::vector<Vec3d>& X, const Box& box) {
   const double height = box.upper[1] - box.lower[1];
   for (const double fraction : {0.02, 0.05, 0.1, 0.2}) {
@@ -62,14 +62,14 @@ Stiffness stiffness_for(const TetMesh& mesh, double base) {
   if (share < kStiffest)
     return {one_digit(share * least), "under its own weight the body sinks by about 5 % of its size"};
   return {one_digit(kStiffest * least),
-          "ten times what a column of its height needs; thin parts sink by more than 5 % of its size"};
+          "ten times the value for a column of its height; thin parts sink by more than 5 % of its size"};
 }
 
 struct Choice {
   std::string key, text;  // "material.young"
 };
 
-// Does an override replace this key, a key inside it, or a table around it?
+// Whether an override replaces this key, a key inside it, or a table around it.
 bool is_overridden(const std::string& key, const std::vector<std::string>& overrides) {
   for (const std::string& o : overrides) {
     const std::string path = o.substr(0, o.find('='));
@@ -108,28 +108,27 @@ Defaults defaults_for(const std::filesystem::path& path, TetMesh mesh, double sc
   const std::string size = number_text(extent);
   if (scale == 1) {
     d.choices.push_back(
-        {"scale", "scale = 1: a mesh has no unit; its largest extent, " + size + ", is taken as meters"});
+        {"scale", "scale = 1: a mesh has no unit; its largest extent, " + size + ", is read as meters"});
   } else {
     d.choices.push_back({"scale", "scale = " + number_text(scale) + ": a mesh has no unit; its largest extent, " +
                                       size +
-                                      ", becomes 1 m, at which the motion can be followed (scale=1 keeps meters, "
+                                      ", becomes 1 m, so that the motion is visible (scale=1 keeps meters, "
                                       "scale=0.001 is for millimeters)"});
   }
-  d.choices.push_back({"gravity", "gravity = 9.81 m/s^2 along -y: up is taken as y (gravity=[0,0,-9.81] for z)"});
-  d.choices.push_back(
-      {"material.model",
-       "material.model = neo_hookean_log: its energy is infinite where a tet is flat, so that none inverts"});
+  d.choices.push_back({"gravity", "gravity = 9.81 m/s^2 along -y: y is up (gravity=[0,0,-9.81] for z)"});
+  d.choices.push_back({"material.model",
+                       "material.model = neo_hookean_log: its energy is infinite for flat tets, so that none inverts"});
   d.choices.push_back({"material.young", "material.young = " + number_text(young) + " Pa: " + reason});
   d.choices.push_back({"material.poisson",
-                       "material.poisson = 0.4: rubber or flesh as far as linear tets render it "
+                       "material.poisson = 0.4: rubber or flesh within the limits of linear tets "
                        "well"});
   d.choices.push_back({"material.density", "material.density = 1000 kg/m^3: water and soft tissue"});
   d.choices.push_back({"pin", "pin: the lowest " + number_text(100 * base) +
-                                  " % of the height is held, as if glued to "
+                                  " % of the height is fixed, as if glued to "
                                   "the ground"});
-  d.choices.push_back({"deform", "deform: pulled sideways by a quarter of its height at the top, then let go"});
-  d.choices.push_back({"time.step", "time.step = 0.01 s: follows swings of a few hertz"});
-  d.choices.push_back({"time.duration", "time.duration = 2 s: several swings"});
+  d.choices.push_back({"deform", "deform: top pulled sideways by a quarter of the height, then released"});
+  d.choices.push_back({"time.step", "time.step = 0.01 s: resolves oscillations of a few hertz"});
+  d.choices.push_back({"time.duration", "time.duration = 2 s: several oscillations"});
   return d;
 }
 
@@ -156,10 +155,9 @@ SceneSource scene_of_mesh(const std::filesystem::path& path, const std::vector<s
   const Value* size = body.find("mesh_size");
   LoadedMesh mesh = load_mesh(path, size ? size->number() : 0, loader);
   if (mesh.tets.rest.empty() || mesh.tets.tets.empty())
-    throw InvalidInput(file + ": holds no tets and no triangles; there is nothing to simulate");
+    throw InvalidInput(file + ": contains no tets and no triangles; use a mesh with tets or a closed surface");
   const double extent = largest_extent(bounding_box(mesh.tets.rest));
-  if (!(extent > 0) || !std::isfinite(extent))
-    throw InvalidInput(file + ": all vertices are in one place; there is nothing to simulate");
+  if (!(extent > 0) || !std::isfinite(extent)) throw InvalidInput(file + ": all vertices coincide; use another mesh");
 
   double scale = guessed_scale(mesh.tets.rest);
   if (is_overridden("scale", overrides) && body["scale"].is_number()) scale = body["scale"].number();

@@ -1,4 +1,4 @@
-// docs/scene.md, from the schema.
+// Generates docs/scene.md from the schema.
 #include <algorithm>
 
 #include "scene/expression.h"
@@ -46,7 +46,7 @@ bool is_alternative(const Key& key) {
          });
 }
 
-// Type, unit, range and default. The rule above the list of a section says which alternatives are required.
+// Returns type, unit, range and default. The rule above the list of a section states which alternatives are required.
 std::string facts(const Key& key) {
   std::string out = kinds(key);
   if (!key.unit.empty()) out += " [" + key.unit + "]";

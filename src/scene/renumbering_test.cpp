@@ -301,7 +301,7 @@ TEST_F(Renumbered, ExplanationsNameTheUsersVertex) {
   const std::string first = place(plain);
   int vertex = -1;
   ASSERT_EQ(std::sscanf(first.c_str(), "vertex %d of body 'bar'", &vertex), 1) << first;
-  EXPECT_THAT(place(other), HasSubstr("vertex " + other.vertex(vertex) + " of body 'bar' is damped most strongly"));
+  EXPECT_THAT(place(other), HasSubstr("vertex " + other.vertex(vertex) + " of body 'bar' has the strongest damping"));
 }
 
 TEST_F(Renumbered, ErrorsNameTheUsersVerticesAndTets) {

@@ -31,7 +31,7 @@ void create_folder(const fs::path& folder) {
   fs::create_directories(folder, error);
   if (error)
     throw InvalidInput(folder.string() + ": cannot be created: " + error.message() +
-                       "; choose a writable place with --out");
+                       "; choose a writable directory with --out");
 }
 
 // Removes an earlier run, or throws.
@@ -41,10 +41,10 @@ void make_room(const RunLayout& layout, const Scene& scene, ExistingRun existing
   if (!fs::is_directory(layout.root(), error)) throw InvalidInput(name + ": is a file; results need a directory");
   if (layout.is_barely_begun()) return layout.remove_unfinished();
   if (!layout.holds_run()) {
-    throw InvalidInput(name + ": is not empty and holds no run; choose another directory, or empty this one");
+    throw InvalidInput(name + ": is not empty and contains no run; choose another directory, or empty this one");
   }
   if (existing == ExistingRun::refuse) {
-    throw InvalidInput(name + ": holds a run already; --force replaces it, --resume continues it");
+    throw InvalidInput(name + ": already contains a run; --force replaces it, --resume continues it");
   }
   layout.refuse_links();
   std::vector<fs::path> needed;  // inputs of the new run may lie in the old one
@@ -164,7 +164,7 @@ struct RunDirectory::Impl {
   Impl(RunLayout where, const Scene& scene)
       : layout(std::move(where)), output(scene.output), scene_fingerprint(fingerprint(scene.resolved)) {}
 
-  // The frame that `time` falls into; times are sums of rounded steps, hence the tolerance.
+  // Frame index of `time`; times are sums of rounded steps, hence the tolerance.
   double frame_slot(double time) const { return std::floor(time / output.every + 1e-6); }
 
   bool is_frame_due(double time) const {
@@ -185,7 +185,7 @@ struct RunDirectory::Impl {
       std::error_code error;
       if (const auto size = fs::file_size(file, error); error || size == 0)
         throw InvalidInput(file.string() + ": " + (error ? "is missing" : "is empty") +
-                           ", so the run cannot be continued; put it back, or start the run again with --force");
+                           ", so the run cannot be continued; restore it, or restart the run with --force");
     }
   }
 
@@ -253,12 +253,12 @@ RunDirectory RunDirectory::resume(const fs::path& path, Scene& scene) {
   auto impl = std::make_unique<Impl>(RunLayout(path), scene);
   const RunLayout& layout = impl->layout;
   impl->lock.emplace(path);
-  if (!layout.holds_run()) throw InvalidInput(path.string() + ": holds no run to continue");
+  if (!layout.holds_run()) throw InvalidInput(path.string() + ": contains no run to continue");
   layout.refuse_links();
   std::error_code error;
   if (!fs::exists(layout.checkpoint(), error) && !fs::exists(previous_checkpoint(layout.checkpoint()), error))
     throw InvalidInput(path.string() +
-                       ": the run was ended before its first checkpoint, so nothing is lost; start it with --force");
+                       ": the run ended before its first checkpoint, so nothing is lost; restart it with --force");
   const NewestCheckpoint newest = read_newest_checkpoint(layout.checkpoint());
   check_same_scene(layout, scene, newest.checkpoint);
   scene.simulation.restore(to_snapshot(newest.checkpoint, scene.simulation.model()));
@@ -304,8 +304,8 @@ fs::path scene_of_run(const fs::path& run) {
   const RunLayout layout(run);
   std::error_code error;
   if (!fs::exists(layout.scene(), error)) {
-    throw InvalidInput(run.string() + ": holds no run to continue (there is no scene.toml in it)" +
-                       (layout.holds_run() ? "; it was ended before it began: start it with --force" : ""));
+    throw InvalidInput(run.string() + ": contains no run to continue (scene.toml is missing)" +
+                       (layout.holds_run() ? "; it ended before its start: restart it with --force" : ""));
   }
   return layout.scene();
 }

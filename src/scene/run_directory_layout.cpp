@@ -68,7 +68,7 @@ std::vector<fs::path> trace_folders(const fs::path& root) {
   return folders;
 }
 
-// Directly in the folder of a run.
+// Whether a run writes this file directly into its folder.
 bool is_name_of_run(const fs::path& file) {
   const std::string name = file.filename().string();
   const RunLayout layout("");

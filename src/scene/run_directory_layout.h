@@ -28,8 +28,8 @@ class RunLayout {
   std::filesystem::path skin_rest(const std::string& skin) const { return skins() / ("skin_" + skin + ".obj"); }
   std::filesystem::path skin_cache(const std::string& skin) const { return skins() / ("skin_" + skin + ".pc2"); }
 
-  bool holds_run() const;        // has a steps.csv with the header of runs
-  bool is_barely_begun() const;  // holds only unfinished files of a run that was killed
+  bool holds_run() const;        // contains a steps.csv with the header of runs
+  bool is_barely_begun() const;  // contains only unfinished files of a run that was killed
   // Throws InvalidInput if a file or folder that a run writes is a link, whose target does not belong to the run.
   void refuse_links() const;
   // Removes every file of the run, also inputs, except those in `needed`.

@@ -18,7 +18,7 @@ class RunSkins {
   void sync();
   // Rewrites run.usda with all frames.
   void write_usd(const std::vector<double>& frame_times);
-  // Does so if the number of frames has doubled since, so that the total cost stays linear.
+  // Rewrites run.usda if the number of frames has doubled since, so that the total cost stays linear.
   void write_usd_when_doubled(const std::vector<double>& frame_times);
   void close();
 

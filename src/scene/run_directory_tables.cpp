@@ -123,7 +123,7 @@ void RunTables::require_iterations(const Checkpoint& checkpoint) const {
     if (name == kIterationBytes && static_cast<int64_t>(iterations_.size()) != bytes)
       throw InvalidInput(iterations_.path().string() + ": has " + std::to_string(iterations_.size()) +
                          " bytes up to the checkpoint, and " + std::to_string(bytes) +
-                         " were written; put the whole file back, or start the run again with --force");
+                         " were written; restore the whole file, or restart the run with --force");
 }
 
 void RunTables::sync() {

@@ -296,7 +296,7 @@ TEST_F(RunResults, ReplacingARunSparesForeignFiles) {
   EXPECT_THAT(names(path("run")), testing::UnorderedElementsAreArray(expected));
 }
 
-TEST_F(RunResults, InputsAreKeptBesideTheSceneAndReplacedWithTheRun) {
+TEST_F(RunResults, InputsAreStoredWithSceneAndReplaced) {
   put(path("bar.msh"), "a mesh");
   Scene scene = sagging_scene();
   scene.resolved += "mesh = \"inputs/bar.msh\"\n";
@@ -338,7 +338,7 @@ TEST_F(RunResults, ForeignDirectoryIsNeverTouched) {
   const Scene scene = sagging_scene();
   for (const ExistingRun existing : {ExistingRun::refuse, ExistingRun::overwrite}) {
     EXPECT_THAT(message_of<InvalidInput>([&] { RunDirectory::create(path("mine"), scene, existing); }),
-                HasSubstr("mine: is not empty and holds no run"));
+                HasSubstr("mine: is not empty and contains no run"));
     EXPECT_THAT(message_of<InvalidInput>([&] { RunDirectory::create(path("mine/scene.toml"), scene, existing); }),
                 HasSubstr("is a file"));
   }
@@ -388,8 +388,8 @@ TEST_F(RunResults, RefusesToResumeWithoutAFrame) {
 TEST_F(RunResults, MissingRunIsReported) {
   Scene scene = sagging_scene();
   EXPECT_THAT(message_of<InvalidInput>([&] { RunDirectory::resume(path("no"), scene); }),
-              HasSubstr("holds no run to continue"));
-  EXPECT_THAT(message_of<InvalidInput>([&] { scene_of_run(path("no")); }), HasSubstr("holds no run to continue"));
+              HasSubstr("contains no run to continue"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { scene_of_run(path("no")); }), HasSubstr("contains no run to continue"));
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ RunLock::RunLock(const std::filesystem::path& folder)
   const std::string holder = holder_of(descriptor_);
   ::close(descriptor_);
   throw InvalidInput(folder.string() + ": " + holder +
-                     " is writing results into it; wait for its end, end it, or choose another place with --out");
+                     " is writing results into it; wait for its end, stop it, or choose another directory with --out");
 }
 
 RunLock::~RunLock() {

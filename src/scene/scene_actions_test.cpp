@@ -50,9 +50,9 @@ TEST(ScenePins, RollersLetTheBodySlide) {
 TEST(ScenePins, HoldingDirectionTwiceIsRejected) {
   const std::string roller = pin("name = \"roller\"\nwhere = \"y < 0.1\"\naxes = \"xy\"");
   for (const char* other : {"axes = \"x\"", "direction = [1, 1, 0]", "axes = \"xyz\"", "axes = \"xz\""})
-    EXPECT_THAT(
-        refusal(kCube + roller + pin("name = \"wall\"\nwhere = \"x < 0.1\"\n" + std::string(other))),
-        AllOf(HasSubstr("'roller'"), HasSubstr("'wall'"), HasSubstr("along the same direction"), HasSubstr("&& !(")))
+    EXPECT_THAT(refusal(kCube + roller + pin("name = \"wall\"\nwhere = \"x < 0.1\"\n" + std::string(other))),
+                AllOf(HasSubstr("'roller'"), HasSubstr("'wall'"), HasSubstr("constrain the same direction"),
+                      HasSubstr("&& !(")))
         << other;
   EXPECT_EQ(refusal(kCube + roller + pin("where = \"x < 0.1\"\naxes = \"z\"")), "");
   EXPECT_THAT(refusal(kCube + pin("where = \"all\"\ndirection = [0, 0, 0]")), HasSubstr("a direction is needed"));
@@ -145,7 +145,7 @@ TEST(SceneRemedies, NameKeysOfMaterial) {
 
 TEST(SceneRemedies, ForNegativePoissonRatiosAreAccepted) {
   const auto notes_of = [](const std::string& moduli) {
-    return note_with(load(kCube + "material = { model = \"neo_hookean\", " + moduli + " }\n"), "no least value");
+    return note_with(load(kCube + "material = { model = \"neo_hookean\", " + moduli + " }\n"), "has no minimum");
   };
   EXPECT_THAT(notes_of("poisson = -0.5"), HasSubstr("(poisson = 0 or more"));
   EXPECT_THAT(notes_of("shear = 3e4, bulk = 5e3"), HasSubstr("(bulk = 20000 or more"));

@@ -48,7 +48,7 @@ SimulationOptions options_of(const Table& document, std::vector<std::string>& no
     throw error_at(table[conflict->option].place, conflict->reason);
   }
   if (!make_integrator(options.integrator)->facts().is_implicit && options.solver.method != SolverOptions().method)
-    notes.push_back("integrator = '" + options.integrator + "' minimizes nothing: solver.method = '" +
+    notes.push_back("integrator = '" + options.integrator + "' does not minimize: solver.method = '" +
                     options.solver.method + "' has no effect");
   return options;
 }

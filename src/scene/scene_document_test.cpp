@@ -69,7 +69,7 @@ TEST(SceneDocument, MisspelledKeyNamesPlaceValueAndNearestName) {
 
 TEST(SceneDocument, WrongTypeNamesExpectedType) {
   EXPECT_EQ(document_refusal("[time]\nstep = \"fast\"\n" + kBox),
-            "beam.toml:2:8: step = \"fast\"; this is a string; expected is a number [s]");
+            "beam.toml:2:8: step = \"fast\"; this is a string; expected a number [s]");
   EXPECT_THAT(document_refusal("gravity = [0, -9.81]\n" + kBox),
               AllOf(StartsWith("beam.toml:1:11"), HasSubstr("three numbers [m/s^2]")));
   EXPECT_THAT(document_refusal("[solver]\nmax_iterations = 2.5\n" + kBox), HasSubstr("an integer"));
@@ -161,7 +161,7 @@ TEST(SceneDocument, DegenerateGeometryIsRejected) {
   EXPECT_THAT(document_refusal(
                   kBox + "[[body.pin]]\nwhere = \"all\"\nmotion = { keyframes = [{ time = 1, displacement = [0, 0, "
                          "0] }, { time = 1, displacement = [0, 0, 0] }] }\n"),
-              HasSubstr("later than the one before"));
+              HasSubstr("later than the previous one"));
 }
 
 TEST(Override, ReplacesValuesAnywhere) {

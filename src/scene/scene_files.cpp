@@ -28,7 +28,7 @@ bool is_confined(const fs::path& path) {
   return part == normal.end() || *part != "..";
 }
 
-// Whether the file that a confined name leads to is confined as well: links lead anywhere.
+// Whether `file`, after following links, is below `top`.
 bool is_below(const fs::path& file, const fs::path& top) {
   std::error_code error;
   const fs::path real = fs::canonical(file, error), real_top = fs::canonical(top, error);
@@ -61,18 +61,18 @@ fs::path SceneFiles::find(const Value& name) const {
   const bool trusted = allow_outside_ || name.place.is_override();
   if (!trusted && !is_confined(path))
     throw error_at(name.place, shown +
-                                   " lies outside the scene's folder and the one above it; move the file there, or "
-                                   "give it on the command line with --set");
+                                   " is outside the scene's folder and its parent; move the file there, or "
+                                   "pass it on the command line with --set");
   const fs::path full = path.is_absolute() ? path : (name.place.is_override() ? path : folder_ / path);
   std::error_code error;
   if (fs::is_regular_file(full, error)) {
     if (trusted || is_below(full, folder_.empty() ? ".." : folder_ / "..")) return full;
     throw error_at(name.place, shown +
-                                   " is a link that leads out of the scene's folder and the one above it; copy the "
-                                   "file there, or give it on the command line with --set");
+                                   " is a link to outside the scene's folder and its parent; copy the "
+                                   "file there, or pass it on the command line with --set");
   }
   if (fs::is_directory(full, error)) throw error_at(name.place, shown + " is a folder; a file is needed");
-  if (fs::exists(full, error)) throw error_at(name.place, shown + " is not a regular file; copy it to one");
+  if (fs::exists(full, error)) throw error_at(name.place, shown + " is not a regular file; copy its contents to one");
   const std::string nearest = nearest_name(full.filename().string(), names_in(full.parent_path()));
   throw error_at(name.place, shown + " does not exist (looked for " + full.lexically_normal().string() + ")" +
                                  (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
@@ -93,7 +93,7 @@ std::string SceneFiles::keep(const TetMesh& mesh, const std::string& stem) {
 void check_fingerprint(Table& table, const std::string& key, const std::string& hash, const std::string& what) {
   if (const Value* expected = table.find(key); expected && expected->text() != hash)
     throw error_at(expected->place, key + " = " + shortened(toml_string(expected->text())) + ", but " + what + " has " +
-                                        hash + ": it has changed since; remove " + key + " to accept that");
+                                        hash + ": it has changed; remove " + key + " to accept this");
   table.set(key, {hash, {}});
 }
 

@@ -20,7 +20,7 @@ std::string fingerprint_of_file(const std::filesystem::path& path);
 
 class SceneFiles {
  public:
-  // Names are relative to `folder`. Files outside of it and of the folder above are refused unless `allow_outside`.
+  // Names are relative to `folder`. Files outside of it and of its parent are refused unless `allow_outside`.
   SceneFiles(std::filesystem::path folder, bool allow_outside);
 
   // Returns the file that a value names. Throws InvalidInput with the nearest name if it is refused or missing.
@@ -38,7 +38,7 @@ class SceneFiles {
   bool allow_outside_;
 };
 
-// Compares with the hash that `table` has under `key`; without one, stores it there.
+// Compares with the hash under `key` of `table`; if absent, stores the hash there.
 void check_fingerprint(Table& table, const std::string& key, const std::string& hash, const std::string& what);
 
 }  // namespace aspic

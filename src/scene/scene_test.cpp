@@ -91,7 +91,7 @@ TEST(Scene, ScalesThenRotatesThenTranslatesRestShape) {
   EXPECT_LT(distance(corner, {{8, 1, 3}}), 1e-14);
 }
 
-TEST(Scene, EulerAnglesRotateAboutXThenYThenZ) {
+TEST(Scene, EulerAnglesRotateAboutXYZInOrder) {
   const Scene scene = load(kCube + "rotate = { euler_deg = [90, 0, 90] }\n");
   // (0, 1, 0) -> (0, 0, 1) about x -> (0, 0, 1) about z.
   EXPECT_LT(distance(rest(scene, 6), {{0, 0, 1}}), 1e-15);
@@ -203,7 +203,7 @@ TEST(Scene, EmptySelectionIsRejectedWithExtent) {
   EXPECT_THAT(refusal(kCube + "[[body.pin]]\nwhere = \"1 / x\"\n"), AllOf(HasSubstr(":5:"), HasSubstr("inf")));
 }
 
-TEST(Scene, VertexInTwoPinsIsRejectedWithBothNames) {
+TEST(Scene, VertexInTwoPinsNamesBoth) {
   EXPECT_THAT(
       refusal(kCube + "[[body.pin]]\nname = \"left\"\nwhere = \"x < 0.1\"\n[[body.pin]]\nname = \"low\"\nwhere = "
                       "\"y < 0.1\"\n"),
@@ -216,7 +216,7 @@ TEST(Scene, LockingIsNoted) {
 }
 
 TEST(Scene, InvertedOrFlatStartIsNoted) {
-  EXPECT_THAT(load(kCube + "deform = { scale = 0 }\n").notes, Contains(HasSubstr("48 tets start inverted or flat")));
+  EXPECT_THAT(load(kCube + "deform = { scale = 0 }\n").notes, Contains(HasSubstr("48 tets are inverted or flat")));
   EXPECT_THAT(load(kCube + "deform = { scale = 0.5 }\n").notes, Not(Contains(HasSubstr("inverted"))));
 }
 
@@ -266,7 +266,7 @@ TEST(Scene, GrabRequiresTetWeightsAndPath) {
   EXPECT_THAT(refusal(kCube + kGrabbed + "path = [{ time = 0, position = [1, 1, 1] }]\n"), HasSubstr("at least two"));
   EXPECT_THAT(
       refusal(kCube + kGrabbed + "path = [{ time = 1, position = [1, 1, 1] }, { time = 1, position = [1, 1, 1] }]\n"),
-      HasSubstr("later than the one before"));
+      HasSubstr("later than the previous one"));
   const auto with_point = [&](const std::string& point) {
     return refusal(kCube + "[[body.grab]]\nstiffness = 10\npoint = [" + point + "]\n" + path);
   };

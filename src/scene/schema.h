@@ -80,7 +80,7 @@ const Schema& scene_schema();
 // Checks a document against the schema and fills in the defaults, in the order of the schema. Integers become floats
 // where a float is expected. Throws InvalidInput with the first few errors, one per line.
 void check_and_complete(Table& document, const std::string& source);
-// Does so for another kind of document, whose keys are those of `section`.
+// The same for another kind of document, whose keys are those of `section`.
 void check_and_complete(Table& document, const std::string& source, const Schema& schema, const std::string& section);
 
 // Sorts the members of a checked document at every level into the order of the schema.

@@ -132,14 +132,14 @@ void add_pin_and_spring(Schema& s) {
            .choices = {"fixed"},
            .table = "motion",
            .meaning = "prescribed motion",
-           .reason = "holds the body"});
+           .reason = "fixes the body"});
   add_keys(s, "pin",
            {{.name = "axes",
              .accepts = kText,
              .fallback = "\"xyz\"",
              .choices = {"x", "y", "z", "xy", "xz", "yz", "xyz"},
              .meaning = "fixed axes; the others are free",
-             .reason = "holds the body"},
+             .reason = "fixes the body"},
             {.name = "direction", .accepts = kNumbers, .meaning = "single fixed direction, any nonzero vector"}});
   s.alternatives.push_back({"pin", {{"axes"}, {"direction"}}});
 
@@ -163,7 +163,7 @@ void add_pin_and_spring(Schema& s) {
              .choices = {"fixed"},
              .table = "motion",
              .meaning = "motion of the targets",
-             .reason = "they stay"},
+             .reason = "fixed targets"},
             {.name = "between",
              .accepts = kPairs,
              .required = true,

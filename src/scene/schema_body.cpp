@@ -1,4 +1,4 @@
-// The part of the schema that says what a body is and where it starts.
+// Schema of bodies: mesh, placement, material and initial state.
 #include "scene/schema_table.h"
 
 namespace aspic {
@@ -111,7 +111,7 @@ void add_shapes(Schema& s) {
              .fallback = "\"kuhn\"",
              .choices = {"kuhn", "five"},
              .meaning = "six tets per cell, or five, alternating",
-             .reason = "refines without surprises"}});
+             .reason = "refines uniformly"}});
   s.alternatives.push_back({"box", {{"cells"}, {"size"}}, true});
 
   s.sections.push_back({"cylinder", "cylinder = { ... }", "A cylinder about the z axis."});

@@ -31,7 +31,7 @@ bool is_row(const Value& v) { return is_array_of(v, 3, is_number); }
 bool is_pair(const Value& v) { return is_array_of(v, 2, is_integer); }
 bool is_table(const Value& v) { return v.is_table(); }
 
-// What kind of value this is, among those that the key accepts; 0: none of them.
+// Returns the kind of the value among those that the key accepts; 0: none.
 unsigned kind_of(const Value& v, unsigned accepts) {
   const auto is = [&](unsigned kind, bool fits) { return (accepts & kind) && fits; };
   if (is(kInteger, is_integer(v))) return kInteger;
@@ -145,7 +145,7 @@ class Checker {
   void check_value(Value& value, const Key& key) {
     switch (kind_of(value, key.accepts)) {
       case 0:
-        return wrong(value, key, "this is " + type_name(value) + "; expected is " + expected(key));
+        return wrong(value, key, "this is " + type_name(value) + "; expected " + expected(key));
       case kInteger:
         return check_number(value, value, key);
       case kNumber:

@@ -46,7 +46,7 @@ void add_time(Schema& s) {
         .accepts = kNumber,
         .unit = "s",
         .fallback = number_text(usual.h),
-        .range = {.min = 0, .max = 1e100, .min_open = true},  // its square is finite
+        .range = {.min = 0, .max = 1e100, .min_open = true},  // the square stays finite
         .meaning = "time step h",
         .reason = "resolves motions of a few hertz"},
        {.name = "duration",
@@ -55,7 +55,7 @@ void add_time(Schema& s) {
         .fallback = "2.0",
         .range = {.min = 0},
         .meaning = "simulated time; the last step reaches it",
-        .reason = "long enough to see a soft body swing"},
+        .reason = "several oscillations of a soft body"},
        {.name = "integrator",
         .accepts = kText,
         .fallback = toml_string(usual.integrator),
@@ -74,7 +74,7 @@ void add_time(Schema& s) {
              .range = {.min = 0, .max = 1},
              .meaning = "maximum position error per step, relative to the diagonal of the body at rest; 0: no "
                         "substeps. Not for bdf2 and quasi_static",
-             .reason = "a step costs what it did before"}});
+             .reason = "no extra cost"}});
 }
 
 void add_solver(Schema& s) {
@@ -101,7 +101,7 @@ void add_solver(Schema& s) {
         .choices = preconditioner_names(),
         .meaning = "approximation of the Hessian in `lbfgs`, `nonlinear_cg` and `gradient_descent`, made once per "
                    "step; `auto`: `hessian`, or `none` for `gradient_descent`",
-        .reason = "fast, except for `gradient_descent`, which is that of the lecture"},
+        .reason = "fast; `gradient_descent` is as in the lecture"},
        {.name = "initial_guess",
         .accepts = kText,
         .fallback = toml_string(SimulationOptions().initial_guess),
@@ -110,13 +110,13 @@ void add_solver(Schema& s) {
             "initial guess of a minimization: `zero` rest shape, `current` positions, `extrapolated` q + h qdot, "
             "`last_increment` previous increment, `accelerated` previous accelerations, `best` the one of the last "
             "four with the lowest energy; it also replaces a guess of infinite energy",
-        .reason = "never worse than where the body is"},
+        .reason = "never worse than the current positions"},
        {.name = "max_iterations",
         .accepts = kInteger,
         .fallback = std::to_string(usual.minimize.max_iterations),
         .range = {.min = 1, .max = 1e9},
         .meaning = "maximum iterations per step; beyond, the step has not converged",
-        .reason = "far more than Newton's method takes, but for the hardest steps"},
+        .reason = "far more than Newton's method usually needs"},
        {.name = "time_budget",
         .accepts = kNumber,
         .unit = "s",
@@ -130,7 +130,7 @@ void add_solver(Schema& s) {
         .fallback = number_text(usual.minimize.tolerance),
         .range = kNotNegative,
         .meaning = "threshold of `criterion`",
-        .reason = "positions are then right to about six digits"},
+        .reason = "about six correct digits of positions"},
        {.name = "criterion",
         .accepts = kText,
         .fallback = toml_string(scale),
@@ -139,7 +139,7 @@ void add_solver(Schema& s) {
             "measure of convergence: norm of the gradient relative to the balancing forces (`scale`), to the first "
             "gradient, or in N (`absolute`); or Newton's direction: square root of the relative decrement "
             "(`decrement`), `velocity` in m/s, `acceleration` in m/s^2",
-        .reason = "means the same in every unit and for every start"},
+        .reason = "independent of units and initial guess"},
        {.name = "line_search",
         .accepts = kTable,
         .fallback = "{}",
@@ -158,13 +158,13 @@ void add_solver(Schema& s) {
         .meaning = "indefinite Hessians of `newton` and `newton_cg`: fail (`exact`); modify negative eigenvalues of "
                    "all elements always (`clamped`, `absolute` values), only when needed (`on_demand`, the meaning of "
                    "`auto`), or only at large residuals (`progressive`)",
-        .reason = "projects only when it has to"},
+        .reason = "projects only if necessary"},
        {.name = "mass",
         .accepts = kText,
         .fallback = "\"consistent\"",
         .choices = {"consistent", "lumped"},
         .meaning = "mass matrix",
-        .reason = "second-order accurate in space, and costs nothing extra in an implicit step"}});
+        .reason = "second order in space at no extra cost in implicit steps"}});
 }
 
 void add_line_search(Schema& s) {
@@ -202,7 +202,7 @@ void add_line_search(Schema& s) {
              .choices = decrease_test_names(),
              .meaning = "bound on E: `textbook` E + c alpha g.d (Armijo); `slide` E + c g.d, as printed in the "
                         "lecture; `none` accepts the first trial",
-             .reason = "converges from everywhere"}});
+             .reason = "converges from any initial guess"}});
 }
 
 void add_output(Schema& s) {
@@ -222,8 +222,8 @@ void add_output(Schema& s) {
            .meaning = "simulated time between frames; 0: every step",
            .reason = "nothing is lost"});
   format("vtu", usual.vtu, "VTU frames for ParaView", "carries all fields");
-  format("obj", usual.obj, "OBJ skin per frame", "large; PC2 holds the same");
-  format("ply", usual.ply, "PLY skin per frame", "large; PC2 holds the same");
+  format("obj", usual.obj, "OBJ skin per frame", "large; PC2 contains the same");
+  format("ply", usual.ply, "PLY skin per frame", "large; PC2 contains the same");
   format("pc2", usual.pc2, "PC2 cache for Blender", "small");
   format("usd", usual.usd, "USD text file", "opens in most 3-D programs");
   format("report", usual.report, "report.html", "opens in any browser; takes less time than the VTU frames");
@@ -241,7 +241,7 @@ void add_output(Schema& s) {
            .fallback = number_text(usual.checkpoint_every),
            .range = kNotNegative,
            .meaning = "wall time between checkpoints; 0: with every frame",
-           .reason = "ctrl-C and `kill` lose nothing, a crash the last second"});
+           .reason = "Ctrl-C and `kill` lose nothing, a crash the last second"});
 }
 
 void add_material(Schema& s) {
@@ -269,7 +269,7 @@ void add_material(Schema& s) {
            .fallback = "\"neo_hookean\"",
            .choices = models,
            .meaning = "strain energy density; `aspic materials` prints the formulas",
-           .reason = "stays finite when elements are turned inside out"});
+           .reason = "stays finite for inverted elements"});
   field("density", "kg/m^3", "1000.0", kPositive, "density at rest", "water and soft tissue", false);
   field("young", "Pa", "1e5", kPositive, "Young's modulus E", "soft silicone rubber", false);
   field("poisson", "", "0.3", {.min = -1, .max = 0.5, .min_open = true, .max_open = true}, "Poisson's ratio nu",
@@ -283,14 +283,14 @@ void add_material(Schema& s) {
            .accepts = kText,
            .required = true,
            .meaning = "material of `aspic fit` ([format](formats.md#materials)); each tet takes the values at its "
-                      "centroid. A `density` given here replaces the file's"});
+                      "centroid. A `density` here replaces that of the file"});
   add_key(s, "material",
           {.name = "frame",
            .accepts = kText,
            .fallback = "\"mesh\"",
            .choices = {"mesh", "scaled", "placed"},
            .meaning = "coordinates of the file: `mesh` those of the body's mesh file; `scaled` after `scale`; `placed` "
-                      "after rotate and translate as well",
+                      "also after rotate and translate",
            .reason = "the material was fitted on the mesh of the body"});
   add_key(s, "material", {.name = "hash", .accepts = kText, .meaning = "hash of the file, in resolved scenes"});
   std::set<std::string> known;

@@ -13,7 +13,7 @@
 namespace aspic {
 namespace {
 
-// Selections by height reach a little further than their fraction, so that a flat base is whole despite round-off.
+// Selections by height extend slightly beyond their fraction, so that a flat base is complete despite round-off.
 constexpr double kHeightSlack = 1e-9;
 
 Predicate by_height(const SelectionScope& scope, double lowest, double highest) {
@@ -68,7 +68,7 @@ void require_some(const Selected& selected, const Value& where, const SelectionS
   if (!selected.empty()) return;
   const Box box = bounding_box(scope.mesh.rest);
   throw error_at(where.place, "where = " + shortened(inline_toml(where)) + " selects no " + what + " of body '" +
-                                  scope.body + "', which reaches from " + point_text(box.lower) + " to " +
+                                  scope.body + "', which extends from " + point_text(box.lower) + " to " +
                                   point_text(box.upper));
 }
 

@@ -17,9 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kLongestLine = size_t{1} << 20;
-constexpr size_t kMostBeyond = 100000;  // lines that are too many are counted up to here, for the message
+constexpr size_t kMostBeyond = 100000;  // limit of the count of excess lines for the message
 
-// The words of a line, without its separators.
+// Splits a line at its separators.
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
   while (true) {
@@ -66,7 +66,7 @@ std::vector<double> from_file(Table& table, const TetMesh& mesh, SceneFiles& fil
     values = from_vtu(path, view, mesh);
   } else {
     if (const Value* field = table.find("name"))
-      throw error_at(field->place, "name = " + toml_string(field->text()) + "; only a VTU file has named fields");
+      throw error_at(field->place, "name = " + toml_string(field->text()) + "; only VTU files have named fields");
     values = read_number_table(path, 1, mesh.tets.size(), "a tet", name.place);
   }
   check_fingerprint(table, "hash", fingerprint_of_file(path), path.string());
@@ -120,7 +120,7 @@ std::vector<double> read_number_table(const fs::path& path, size_t columns, size
     begin = end + 1;
     ++line_number;
     const std::string where = path.string() + ":" + std::to_string(line_number) + ": ";
-    if (line.size() > kLongestLine) throw InvalidInput(where + "is no line of a table: it is too long");
+    if (line.size() > kLongestLine) throw InvalidInput(where + "is too long for a line of a table");
     const std::vector<std::string_view> words = words_of(line);
     if (words.empty() || words[0].starts_with('#')) continue;
     double number = 0;

@@ -62,12 +62,12 @@ Value convert(const toml::node& node, const Source& source) {
     std::stable_sort(table.members.begin(), table.members.end(), earlier);
     value.data = std::move(table);
   } else {
-    throw InvalidInput(to_string(value.place) + ": a date or time has no use in a scene; write a number or a string");
+    throw InvalidInput(to_string(value.place) + ": dates and times are not supported; write a number or a string");
   }
   return value;
 }
 
-// The library follows the parts of a.b.c by recursion, as far as the stack reaches. Texts and comments are passed over.
+// The library parses a.b.c recursively, limited by the stack. Texts and comments are skipped.
 void check_depth_of_keys(std::string_view text, const Source& source) {
   constexpr int kDeepest = 32;
   int line = 1, dots = 0;
@@ -89,7 +89,7 @@ void check_depth_of_keys(std::string_view text, const Source& source) {
     } else if (c == '.') {
       if (++dots > kDeepest)
         throw InvalidInput(to_string(Place{source, line, 1}) + ": a key of more than " + std::to_string(kDeepest) +
-                           " parts; nothing here is nested so deeply");
+                           " parts; no key is nested this deeply");
     } else if (!continues_key(c)) {
       dots = 0;
     }
@@ -112,7 +112,7 @@ std::string read_toml_text(const std::filesystem::path& path) {
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (!error && size > kMost)
     throw InvalidInput(path.string() + ": " + std::to_string(size) +
-                       " bytes; at most 16 MiB are read (put numbers per element into CSV files)");
+                       " bytes; at most 16 MiB are supported (put values per element into CSV files)");
   return read_file(path);
 }
 

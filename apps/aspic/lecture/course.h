@@ -1,4 +1,4 @@
-// The lecture "From Energy to Motion": its 62 pages, and the demonstration that stands for each.
+// The lecture "From Energy to Motion": its 62 pages and their demonstrations.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -12,24 +12,24 @@ namespace aspic::cli::lecture {
 
 inline constexpr int kPages = 62;
 
-// Where the scenes and meshes come from.
+// Provides scenes and meshes.
 class Stage {
  public:
-  // `mesh`: for the demonstrations on a real mesh, tets or a closed surface; empty: the bunny where it is found.
-  // `cache` keeps meshes that take long to make. Throws InvalidInput when the lecture's scenes are not found.
+  // `mesh`: tets or closed surface for demonstrations on a real mesh; empty: the bunny if available. `cache` stores
+  // meshes that take long to make. Throws InvalidInput if the scenes of the lecture are missing.
   Stage(const std::filesystem::path& mesh, std::filesystem::path cache);
 
-  // A scene of scenes/lecture on the shape that it describes.
+  // Returns a scene of scenes/lecture with its own shape.
   Scene scene(const std::string& name, const std::vector<std::string>& overrides = {}) const;
-  // The same with its bodies of the real mesh, made one meter large; where there is none, of the scene's own shape.
+  // Returns the scene with the real mesh, scaled to one meter, as its bodies; without a real mesh, with its own shape.
   Scene on_real_mesh(const std::string& name, const std::vector<std::string>& overrides = {}) const;
-  // The same with a mesh of at least `tets` tets.
+  // Returns the scene with a mesh of at least `tets` tets.
   Scene on_fine_mesh(const std::string& name, int tets, Sheet& sheet) const;
 
-  std::filesystem::path path_of(const std::string& name) const;  // the file of a scene of scenes/lecture
-  std::vector<std::string> real_mesh() const;                    // the overrides that on_real_mesh() adds
+  std::filesystem::path path_of(const std::string& name) const;  // file of a scene of scenes/lecture
+  std::vector<std::string> real_mesh() const;                    // overrides that on_real_mesh() adds
 
-  const std::string& mesh_note() const { return note_; }  // which mesh it is, and why
+  const std::string& mesh_note() const { return note_; }  // selected mesh, and the reason
 
  private:
   Scene load(const std::string& name, const std::filesystem::path& mesh, std::vector<std::string> overrides) const;
@@ -40,18 +40,18 @@ class Stage {
 };
 
 struct Demonstration {
-  std::string key;         // the name of its folder, "10-18_differences"
+  std::string key;         // folder name, "10-18_differences"
   std::vector<int> pages;  // ascending
   std::string title;
-  std::string claim;  // what the slides say, with their formulas
+  std::string claim;  // claim of the slides, with formulas
   std::function<void(const Stage&, Sheet&)> run;
 };
 const std::vector<Demonstration>& demonstrations();
 std::vector<const Demonstration*> demonstrations_of(int page);
 
-// Why a page has no demonstration; empty for one that has.
+// Returns why a page has no demonstration; empty if it has one.
 std::string reason_for_none(int page);
-bool is_unavailable(int page);  // what it shows cannot be done yet
+bool is_unavailable(int page);  // shows something that is not supported yet
 
 // The demonstrations, by file.
 void show_fine_mesh(const Stage& stage, Sheet& sheet);

@@ -1,4 +1,4 @@
-// Pages 38 to 42: the generic loop with d = -gradient, which zig-zags.
+// Pages 38 to 42: the generic loop with d = -gradient, which zigzags.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,9 +14,9 @@
 namespace aspic::cli::lecture {
 namespace {
 
-// How a path turns from one step to the next.
+// Angles between consecutive steps of a path.
 struct Turns {
-  int count = 0, sharp = 0;  // sharp: by more than a right angle
+  int count = 0, sharp = 0;  // sharp: more than a right angle
   double share() const { return count > 0 ? static_cast<double>(sharp) / count : 0; }
 };
 Turns turns_of(const Minimization& path) {
@@ -79,7 +79,7 @@ void descend_in_the_plane(const std::string& function, Planar start, double leas
 
 struct Descent {
   MinimizeReport report;
-  Vector value, gradient;  // by iteration
+  Vector value, gradient;  // per iteration
   double seconds = 0;
 };
 

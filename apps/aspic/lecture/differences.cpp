@@ -1,4 +1,4 @@
-// Pages 10 to 22: finite differences of q, and where dV/dq is evaluated.
+// Pages 10 to 22: finite differences of q, and the time at which dV/dq is evaluated.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 namespace aspic::cli::lecture {
 namespace {
 
-// A motion of all vertices whose derivatives are known: x_r = X_r cos(w_r t) + X_(r+1) sin(w_r t).
+// Motion of all vertices with known derivatives: x_r = X_r cos(w_r t) + X_(r+1) sin(w_r t).
 struct KnownMotion {
   const TetMesh& mesh;
 
-  // The k-th derivative of q at t.
+  // k-th derivative of q at t.
   Vector derivative(int k, double t) const {
     constexpr std::array<double, 3> w = {3, 4, 5};  // [rad/s]
     Vector q;
@@ -116,8 +116,8 @@ constexpr int kComparedSteps = 60;
 struct Trajectory {
   Vector time, tip;       // [s], [m]
   Vector at_old, at_new;  // |M (q_(i+1) - q~)/h^2 + dV/dq| with dV/dq at q_i and at q_(i+1), of each step [N]
-  double threshold = 0;   // what the steps were asked for [N]
-  double noise = 0;       // of M (q_(i+1) - q~)/h^2: four roundings of positions, over h^2, times the masses [N]
+  double threshold = 0;   // threshold of the steps [N]
+  double noise = 0;       // round-off of M (q_(i+1) - q~)/h^2: four roundings of q, over h^2, times masses [N]
 };
 
 Trajectory follow(Scene scene, int tip) {

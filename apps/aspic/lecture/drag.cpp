@@ -17,7 +17,7 @@ const Energy& leash_of(const Model& model) {
   throw InvalidInput("the scene has no springs to a cursor");
 }
 
-// The force with which the cursor pulls [N].
+// Force of the cursor on the body [N].
 Vec3d pull(const ActiveTerm& leash, const Vector& q) {
   Vector g(q.size(), 0.0);
   leash.add_gradient(q, 1, g);
@@ -26,7 +26,7 @@ Vec3d pull(const ActiveTerm& leash, const Vector& q) {
   return force;
 }
 
-// The same as the derivative of the springs' energy when the whole body is shifted [N].
+// The same as the derivative of the springs' energy with respect to a shift of the body [N].
 Vec3d pull_by_differences(const ActiveTerm& leash, const Vector& q) {
   Vec3d force{};
   constexpr double kShift = 1e-3;  // [m]: any width is exact for a quadratic V
@@ -48,7 +48,7 @@ void show_drag(const Stage& stage, Sheet& sheet) {
   Simulation& simulation = scene.simulation;
   ActiveTerm leash(leash_of(simulation.model()));
   const Vector rest = simulation.state().q;
-  Vector held(rest.size(), 0.0);  // not zero where a spring is tied
+  Vector held(rest.size(), 0.0);  // nonzero where a spring is attached
   leash.add_gradient(Vector(rest.size(), 1e3), 1, held);
   int tip = 0;
   while (held[3 * tip] == 0) ++tip;
@@ -93,7 +93,7 @@ struct Drag {
   std::string integrator;
   Vector time, energy;
   Run run;
-  Vector shape;  // the last q that is not far outside
+  Vector shape;  // last q that is not far outside
 };
 
 Drag drag(Scene scene) {

@@ -4,8 +4,8 @@
 
 namespace aspic::cli::lecture {
 
-// The formulas of a demonstration as MathML; empty where it has none, and in programs without the viewer, whose page's
-// build makes them (web/src/formulas.json).
+// Returns the formulas of a demonstration as MathML. Empty if it has none, or if the program was built without the
+// viewer, whose page generates them (web/src/formulas.json).
 std::vector<std::string> formulas_of(const std::string& key);
 
 }  // namespace aspic::cli::lecture

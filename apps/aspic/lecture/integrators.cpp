@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kStiffness = 100, kStep = 0.01;  // [N/m], [s]
 
-// Four masses of 1 kg, each on a spring to where it rests: w = 10 rad/s.
+// Four masses of 1 kg, each on a spring to its rest position: w = 10 rad/s.
 Simulation make_oscillator(const std::string& integrator) {
   Model model;
   model.mesh = {{{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}, {{0, 1, 2, 3}}, {}};
@@ -35,8 +35,8 @@ Simulation make_oscillator(const std::string& integrator) {
 }
 
 struct Oscillation {
-  Vector time, energy, modified;                  // relative to the start; modified: what symplectic Euler conserves
-  double least_ratio = INFINITY, most_ratio = 0;  // of the energy from one step to the next
+  Vector time, energy, modified;                  // relative to the start; modified: invariant of symplectic Euler
+  double least_ratio = INFINITY, most_ratio = 0;  // energy ratio of consecutive steps
 };
 
 Oscillation oscillate(const std::string& integrator, int steps) {
@@ -98,7 +98,7 @@ void check_oscillator(Sheet& sheet) {
                     {"backward_euler", backward.time, backward.energy}}});
 }
 
-// The slide, word for word: q_(i+1) = 2 q_i - q_(i-1) - h^2 M^-1 dV/dq(q_i), with a lumped M.
+// The printed formula: q_(i+1) = 2 q_i - q_(i-1) - h^2 M^-1 dV/dq(q_i), with a lumped M.
 Vector as_printed(const Scene& scene, int steps) {
   const Model& model = scene.simulation.model();
   const Pins pins(model.pins, scene.simulation.state().q);
@@ -157,7 +157,7 @@ void show_backward_euler(const Stage& stage, Sheet& sheet) {
   const Run implicit = run(simulation, kSteps, [&](const StepReport& report) {
     const Vector dv = plus(simulation.state().qdot, -1, before.qdot);
     const double excess =
-        report.potential_total + inner(dv, mass_times(model, dv)) / 2 - before_energy;  // of E over E(q_i), over h^2
+        report.potential_total + inner(dv, mass_times(model, dv)) / 2 - before_energy;  // E minus E(q_i), over h^2
     worst = std::max(worst, excess / first);
     before = simulation.state();
     before_energy = report.kinetic + report.potential_total;

@@ -16,27 +16,27 @@ namespace {
 
 using viewer::Lesson;
 
-// Where the cursor is at which time, from where it grabbed the highest point of the body.
+// Cursor positions over time, relative to the grabbed highest point of the body.
 struct RecordedDrag {
   struct Key {
     double time;   // [s]
     Vec3d offset;  // [m]
   };
   std::vector<Key> keys;
-  double until = 0;      // [s] the end of the recording
-  double stiffness = 0;  // [N/m]; 0: the usual one
+  double until = 0;      // end of the recording [s]
+  double stiffness = 0;  // [N/m]; 0: default
 };
 
 enum class Shape { of_the_scene, real_mesh };
 
-// What the viewer adds to a demonstration.
+// Viewer settings of a demonstration.
 struct Staging {
   const char* demonstration;  // its key
-  const char* part;           // added to the title where a demonstration has several lessons
+  const char* part;           // appended to the title if a demonstration has several lessons
   const char* look;
   const char* panel;
-  const char* scene = "";  // of scenes/lecture; empty: none
-  const char* field = "";  // that colors the body
+  const char* scene = "";  // scene of scenes/lecture; empty: none
+  const char* field = "";  // field for colors
   Shape shape = Shape::real_mesh;
   std::vector<std::string> overrides = {};
   std::vector<Lesson::Comparison> comparison = {};
@@ -48,7 +48,7 @@ nlohmann::json question(const char* name, double x, double y, nlohmann::json set
   return {{"name", name}, {"start", {x, y}}, {"settings", std::move(settings)}, {"iteration", 0}, {"samples", 61}};
 }
 
-// The cursor's way of pages 33 and 34, as in scenes/lecture/33_mouse.toml.
+// Path of the cursor on pages 33 and 34, as in scenes/lecture/33_mouse.toml.
 RecordedDrag wild_drag() {
   return {.keys = {{0, {{0, 0, 0}}},
                    {0.07, {{0.5, -0.1, 0}}},
@@ -61,7 +61,7 @@ RecordedDrag wild_drag() {
           .stiffness = 1e6};
 }
 
-// The cursor's way of page 25, as in scenes/lecture/25_drag.toml.
+// Path of the cursor on page 25, as in scenes/lecture/25_drag.toml.
 RecordedDrag slow_drag() {
   return {.keys = {{0, {{0, 0, 0}}}, {0.3, {{0.25, 0, 0}}}, {0.5, {{0.25, 0.1, 0.1}}}, {0.8, {{0, 0, 0.1}}}},
           .until = 1.5};
@@ -248,7 +248,7 @@ Vec3d offset_at(const RecordedDrag& drag, double time) {
 
 nlohmann::json to_json(const Vec3d& x) { return {x[0], x[1], x[2]}; }
 
-// The recorded mouse: it grabs the highest point, moves once in every step and lets go.
+// Recorded mouse: grabs the highest point, moves once per step and releases it.
 std::string recording_of(const RecordedDrag& drag, const std::filesystem::path& path,
                          const std::vector<std::string>& overrides) {
   const Scene scene = load_scene(path, {.overrides = overrides});
@@ -281,7 +281,7 @@ std::string recording_of(const RecordedDrag& drag, const std::filesystem::path& 
       .dump();
 }
 
-// Where the scenes are; `why_not` where they are not found.
+// Location of the scenes; `why_not` if they are missing.
 struct Place {
   std::optional<Stage> stage;
   std::vector<std::string> real_mesh;
@@ -341,7 +341,7 @@ Lesson missing_page(int page) {
 std::vector<Lesson> lessons(const std::filesystem::path& cache) {
   const Place place = find_place(cache);
   std::vector<Lesson> list;
-  int page = 1;  // to be looked at next for what cannot be shown
+  int page = 1;  // next page to examine for unavailable ones
   for (const Demonstration& demonstration : demonstrations()) {
     for (; page < demonstration.pages.front(); ++page)
       if (is_unavailable(page)) list.push_back(missing_page(page));

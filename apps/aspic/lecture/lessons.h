@@ -1,4 +1,4 @@
-// The pages of the lecture as lessons of the viewer: the demonstrations of course.h, each with what to look at.
+// Lessons of the viewer from the lecture's pages: the demonstrations of course.h with instructions.
 #pragma once
 #include <filesystem>
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace aspic::cli::lecture {
 
-// In the order of the pages. Where the lecture's scenes are not found, lessons that need one say so. `cache` keeps
-// meshes that take long to make.
+// Returns the lessons in page order. If the lecture's scenes are missing, lessons that need one report it. `cache`
+// stores meshes that take long to make.
 std::vector<viewer::Lesson> lessons(const std::filesystem::path& cache);
 
 }  // namespace aspic::cli::lecture

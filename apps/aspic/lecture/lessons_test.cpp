@@ -30,7 +30,7 @@ const std::vector<Lesson>& all_lessons() {
 
 constexpr char kOtherScene[] = "[[body]]\nshape = { box = { upper = [1, 1, 1], cells = [1, 1, 1] } }\n";
 
-// A session in which a lesson was opened, and the rows of its steps.
+// A session with an opened lesson, and the rows of its steps.
 class Opened {
  public:
   explicit Opened(const std::string& id) {
@@ -48,20 +48,20 @@ class Opened {
     return json::parse(answer.to_sender.at(0).bytes);
   }
   void step() { EXPECT_EQ(command({{"do", "step"}})["kind"], "reply"); }
-  // The recorded mouse to its end; without one, as many steps.
+  // Plays the recorded mouse to its end, or the given number of steps without one.
   void play(int steps) {
     if (!session_->is_playing()) command({{"do", "play"}});
     for (int i = 0; i < steps && session_->is_playing(); ++i) hear(session_->advance());
   }
 
-  const std::string& field() const { return field_; }  // that colors the body
+  const std::string& field() const { return field_; }  // field for colors
   bool has(const std::string& side) const { return scenes_.contains(side); }
   const std::vector<json>& rows(const std::string& side) { return rows_[side]; }
   bool converged(const std::string& side) const {
     const auto& rows = rows_.at(side);
     return std::all_of(rows.begin(), rows.end(), [](const json& row) { return row.at("converged") == true; });
   }
-  // Kinetic + potential [J]; what is not finite is infinite.
+  // Kinetic + potential [J]; infinity if not finite.
   double largest_energy(const std::string& side) const {
     double most = 0;
     for (const json& row : rows_.at(side)) {
@@ -170,7 +170,7 @@ TEST(Lessons, ExplicitAndImplicitAgreeWithShortSteps) {
   EXPECT_NEAR(opened.largest_energy("b") / opened.largest_energy("a"), 1, 0.05);
 }
 
-TEST(Lessons, ClassicalForwardEulerExplodesWhereThePrintedOneDoesNot) {
+TEST(Lessons, ClassicalForwardEulerExplodesUnlikePrintedOne) {
   Opened opened("23_printed_forward_euler");
   opened.play(2000);
   const double first = [&] {
@@ -182,7 +182,7 @@ TEST(Lessons, ClassicalForwardEulerExplodesWhereThePrintedOneDoesNot) {
   EXPECT_GT(opened.largest_energy("b"), 1e3 * first);
 }
 
-TEST(Lessons, BackwardEulerSurvivesTheStepThatTheExplicitSchemeDoesNot) {
+TEST(Lessons, BackwardEulerSurvivesStepOfExplodingExplicitScheme) {
   Opened opened("24_backward_euler");
   opened.play(80);
   EXPECT_TRUE(opened.converged("a"));
@@ -213,7 +213,7 @@ TEST(Lessons, TissueShowsItsStiffnessAndStiffens) {
   EXPECT_GT(energy(10), 1.05 * 4 * energy(5));  // at twice the depth
 }
 
-TEST(Lessons, TenTimesTheStepEndsTheExplicitSchemeAlone) {
+TEST(Lessons, TenfoldStepEndsOnlyTheExplicitScheme) {
   Opened opened("19-22_explicit_or_implicit");
   opened.command({{"do", "set"}, {"key", "time.step"}, {"value", 5e-3}});
   opened.play(60);
@@ -231,12 +231,12 @@ TEST(Lessons, HardStepWithoutLineSearchLeavesTheNumbers) {
 
 class Explosion : public testing::TestWithParam<std::string> {};
 
-TEST_P(Explosion, IsThatOfTheOtherSchemeUnderTheSameMouse) {
+TEST_P(Explosion, OccursWithOtherSchemeUnderSameMouse) {
   Opened opened("33-34_explosion_" + GetParam());
   opened.play(18);
   EXPECT_TRUE(opened.converged("a"));
   if (GetParam() == "explicit") {
-    EXPECT_GT(opened.rows("a").size(), 2 * opened.rows("b").size());  // it continues where the other one has ended
+    EXPECT_GT(opened.rows("a").size(), 2 * opened.rows("b").size());  // it continues after the other has ended
   }
   EXPECT_GT(opened.largest_energy("b"), 1e3 * opened.largest_energy("a"));
 }
@@ -250,7 +250,7 @@ TEST(Lessons, GradientDescentTakesMoreIterations) {
   EXPECT_GT(opened.rows("b")[2]["iterations"].size(), 10 * opened.rows("a")[2]["iterations"].size());
 }
 
-TEST(Lessons, NewtonConvergesOnTheHardStepOnlyWithALineSearch) {
+TEST(Lessons, NewtonNeedsLineSearchOnTheHardStep) {
   Opened opened("53+62_pure_newton");
   opened.step();
   EXPECT_TRUE(opened.converged("a"));

@@ -1,4 +1,4 @@
-// Pages 5 to 10: the equation of motion of finite elements, and of masses and springs.
+// Pages 5 to 10: equation of motion of finite elements, and of masses and springs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,10 +13,10 @@ namespace aspic::cli::lecture {
 namespace {
 
 struct SlopeCheck {
-  Vector step, error;  // relative error of the central difference, by its width [m]
+  Vector step, error;  // relative error of the central difference, and its width [m]
 };
 
-// (V(q + s d) - V(q - s d)) / 2s against d'dV/dq.
+// Compares (V(q + s d) - V(q - s d)) / 2s with d'dV/dq.
 SlopeCheck check_slope(const Model& model, const Vector& q, const Vector& d) {
   const double exact = inner(gradient_of_potential(model, q), d);
   SlopeCheck check;
@@ -29,7 +29,7 @@ SlopeCheck check_slope(const Model& model, const Vector& q, const Vector& d) {
   return check;
 }
 
-// The four highest vertices and where their entries stand in q.
+// The four highest vertices and the positions of their entries in q.
 void write_stacked(const Sheet& sheet, const Model& model, const Vector& q) {
   std::vector<int> order(model.mesh.vertex_count());
   for (size_t v = 0; v < order.size(); ++v) order[v] = static_cast<int>(v);
@@ -66,7 +66,7 @@ void show_equation_of_motion(const Stage& stage, Sheet& sheet) {
   sheet.at_most("dV/dq against differences of V, relative", *std::min_element(check.error.begin(), check.error.end()),
                 1e-8, "", "the best width loses a third of the 16 digits, the sum over the tets some more");
 
-  // One explicit step yields the acceleration that the program uses.
+  // One explicit step yields the acceleration used by the program.
   Scene moving = stage.on_real_mesh("05_swing", {"time.integrator=symplectic_euler", "time.step=1e-5"});
   const State before = moving.simulation.state();
   moving.simulation.step();

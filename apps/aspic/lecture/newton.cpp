@@ -20,8 +20,8 @@ constexpr int kMostIterations = 60;
 struct Attempt {
   std::string name;
   MinimizeReport report;
-  Vector value, gradient, alpha;  // by iteration
-  Vector q;                       // where it ended
+  Vector value, gradient, alpha;  // per iteration
+  Vector q;                       // final position
 };
 
 Attempt attempt(OpenStep& step, DecreaseTest test) {
@@ -123,8 +123,8 @@ void show_overshoot(const Stage&, Sheet& sheet) {
 
 namespace {
 
-// The curve of an iteration that rejects trials: the first that rejects one or two, where they can be seen together
-// with the accepted one; otherwise the first that rejects any.
+// Curve of an iteration that rejects trials: the first with one or two rejections, which are visible together with the
+// accepted trial, otherwise the first with any.
 struct Curve {
   int iteration = -1;
   double slope = 0, measured_slope = 0, value = 0;  // d'g, and the same by differences

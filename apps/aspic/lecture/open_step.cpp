@@ -25,7 +25,7 @@ OpenStep::OpenStep(Scene opened)
 }
 
 Vector OpenStep::residual(std::span<const double> q) const {
-  const Vector free = plus(q_t, h, qdot);  // q~ before the pins are placed
+  const Vector free = plus(q_t, h, qdot);  // q~ before the pins are moved
   Vector r = plus(mass_times(model(), plus(q, -1, free)), h * h, gradient_of_potential(model(), q));
   pins.set_zero(r);
   return r;

@@ -1,4 +1,4 @@
-// An implicit step of a scene laid open: E of the step that would come next, and where it starts.
+// Access to an implicit step of a scene: the objective E of the next step and its initial guess.
 #pragma once
 #include <functional>
 #include <vector>
@@ -11,7 +11,7 @@ namespace aspic::cli::lecture {
 using Vector = std::vector<double>;
 
 struct OpenStep {
-  // The step of backward Euler from where the scene stands.
+  // Prepares a step of backward Euler from the state of the scene.
   explicit OpenStep(Scene opened);
   OpenStep(const OpenStep&) = delete;
   OpenStep& operator=(const OpenStep&) = delete;
@@ -19,37 +19,37 @@ struct OpenStep {
   const Model& model() const { return scene.simulation.model(); }
   int vertex_count() const { return model().mesh.vertex_count(); }
 
-  // M (q - q~) + h^2 dV/dq, zero at pinned vertices: what an implicit step makes zero.
+  // M (q - q~) + h^2 dV/dq, zero at pinned vertices: the residual of an implicit step.
   Vector residual(std::span<const double> q) const;
-  // A lower bound of the smallest eigenvalue of the consistent mass matrix [kg]: the element matrices have
-  // rho V / 20 as their smallest one, of which a vertex collects a fifth of its mass.
+  // Returns a lower bound of the smallest eigenvalue of the consistent mass matrix [kg]: element matrices have the
+  // smallest eigenvalue rho V / 20, of which a vertex collects a fifth of its mass.
   double smallest_mass() const;
 
   Scene scene;
   double h;                            // [s]
-  Vector q_t, qdot, predicted, start;  // start: q_t with the pins where they must be at the end
+  Vector q_t, qdot, predicted, start;  // start: q_t with the pins at their final positions
   Pins pins;
   IncrementalPotential E;
 };
 
-Vector gradient_of_potential(const Model& model, std::span<const double> q);  // dV/dq, of pinned vertices too
+Vector gradient_of_potential(const Model& model, std::span<const double> q);  // dV/dq, including pinned vertices
 double potential(const Model& model, std::span<const double> q);              // V(q)
 Vector mass_times(const Model& model, std::span<const double> a);             // M a
 
 double norm(std::span<const double> v);
-double largest(std::span<const double> v);                                         // absolute value of an entry
+double largest(std::span<const double> v);                                         // largest absolute value of an entry
 Vector plus(std::span<const double> a, double factor, std::span<const double> b);  // a + factor b
 Vector scaled(std::span<const double> a, double factor);
 double inner(std::span<const double> a, std::span<const double> b);
-// A fixed smooth displacement of the free vertices [1], of the size 1.
+// Fixed smooth displacement of the free vertices with amplitude 1.
 Vector smooth_direction(const OpenStep& step);
 
-std::vector<char> fixed_entries(const OpenStep& step);  // marks the entries of q that belong to pinned vertices
+std::vector<char> fixed_entries(const OpenStep& step);  // marks the entries of pinned vertices in q
 
-// The exponent p of error ~ step^p: the slope between the first and the last entry, of the table.
+// Exponent p of error ~ step^p: slope between the first and the last entry.
 double observed_order(const Vector& step, const Vector& error);
 
-// The boundary where the vertices stand, for pictures.
+// Boundary at the given positions, for pictures.
 TriMesh surface_at(const Model& model, std::span<const double> q);
 
 }  // namespace aspic::cli::lecture

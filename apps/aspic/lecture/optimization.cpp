@@ -17,7 +17,7 @@ struct Root {
   std::vector<double> residuals;
 };
 
-// Newton's method on the equation r(q) = 0 alone, with its derivative M + h^2 d2V/dq2; E is never evaluated.
+// Newton's method for the equation r(q) = 0 with the derivative M + h^2 d2V/dq2. Never evaluates E.
 Root find_root(OpenStep& step) {
   Root root{step.start, {}};
   const auto solver = make_linear_solver("cholesky");
@@ -69,7 +69,7 @@ void show_optimization(const Stage& stage, Sheet& sheet) {
   Vector g_root(q.size()), g_minimum(q.size());
   step.E.gradient(root.q, g_root);
   step.E.gradient(minimum, g_minimum);
-  // E is at least as curved as the inertia where V is convex, so a gradient g is left over at most g / m from the root.
+  // E is at least as curved as the inertia where V is convex, so a gradient g means a distance of at most g / m.
   const double bound = (norm(g_root) + norm(g_minimum) + 2 * step.E.scales().gradient_round_off) / step.smallest_mass();
   sheet.at_most("|root of the equation - minimizer of E|", largest(plus(root.q, -1, minimum)), bound, "m",
                 "what is left of both gradients over the least eigenvalue of M");

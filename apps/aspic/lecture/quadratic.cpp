@@ -14,7 +14,7 @@
 namespace aspic::cli::lecture {
 namespace {
 
-// How far E and its model are apart at x + s d.
+// Difference of E and its model at x + s d.
 struct Departure {
   Vector s, error;
 };
@@ -33,7 +33,7 @@ Departure departure(Objective& E, const Vector& x, const Vector& d) {
   return result;
 }
 
-// |H d + g| / |g| of the Newton direction.
+// |H d + g| / |g| for the Newton direction.
 double residual_of_direction(Objective& E, const Vector& x) {
   Vector g(x.size()), d(x.size()), Hd(x.size());
   E.gradient(x, g);
@@ -44,7 +44,7 @@ double residual_of_direction(Objective& E, const Vector& x) {
   return norm(plus(Hd, 1, g)) / norm(g);
 }
 
-// |gradient| after one full step / before: zero for a quadratic function.
+// |gradient| after one full step / before; zero for a quadratic function.
 double gradient_left(Objective& E, Vector x) {
   Newton newton(make_linear_solver("cholesky"));
   Vector g(x.size());
@@ -59,7 +59,7 @@ double gradient_left(Objective& E, Vector x) {
   return norm(g) / before;
 }
 
-// A swelling of the body by a few per cent: all tets change alike, so that their third derivatives add up.
+// Uniform expansion of the body by a few percent, for which third derivatives of all tets add up.
 Vector swelling(const OpenStep& step) {
   Vector d(step.start.size());
   for (size_t i = 0; i < d.size(); ++i) d[i] = step.start[i] - step.start[i % 3];
@@ -69,7 +69,7 @@ Vector swelling(const OpenStep& step) {
 
 void show_on_rosenbrock(Sheet& sheet) {
   Problem problem = known_problem("rosenbrock");
-  problem.start = {-0.8, 0.3};  // where H is positive definite
+  problem.start = {-0.8, 0.3};  // H is positive definite here
   const Vector x = {-0.8, 0.3, 0};
   const Departure d = departure(*problem.function, x, {0.05, 0.02, 0});
   sheet.at_most("Rosenbrock: order of E - model along d, distance from 3", std::abs(observed_order(d.s, d.error) - 3),

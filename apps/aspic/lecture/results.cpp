@@ -65,7 +65,7 @@ std::vector<int> pages_with(PageVerdict verdict, const std::vector<Result>& resu
   return pages;
 }
 
-// JSON has no infinity: what exploded is the word "inf".
+// JSON has no infinity, so exploded values are the text "inf".
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(fmt::format("{}", value)); }
 
 Json to_json(const Measure& m) {

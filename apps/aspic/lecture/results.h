@@ -1,4 +1,4 @@
-// The results of demonstrations as text, as a page and as JSON.
+// Results of demonstrations as text, page and JSON.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -16,9 +16,9 @@ struct Result {
 
 std::string pages_text(const std::vector<int>& pages);  // "5, 7-9"
 void print(const Result& result);
-std::string count_text(const std::vector<Result>& results);  // how many pages pass, and which cannot be judged
+std::string count_text(const std::vector<Result>& results);  // number of passing pages, and pages that cannot be judged
 
-// index.html with the pictures inside, and lecture.json, of all the pages.
+// Writes index.html with embedded pictures, and lecture.json, for all pages.
 void write_summary(const std::filesystem::path& folder, const std::string& mesh, const std::vector<Result>& results);
 
 }  // namespace aspic::cli::lecture

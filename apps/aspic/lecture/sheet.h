@@ -1,4 +1,4 @@
-// What one demonstration of the lecture measured, wrote and drew.
+// Measurements, files and pictures of one demonstration of the lecture.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -14,7 +14,7 @@
 
 namespace aspic::cli::lecture {
 
-enum class Relation { at_most, at_least, equals, shown };  // shown: a number that nothing is judged by
+enum class Relation { at_most, at_least, equals, shown };  // shown: a value that is not judged
 
 struct Measure {
   std::string what;
@@ -22,15 +22,15 @@ struct Measure {
   std::string unit;
   Relation relation = Relation::shown;
   double bound = 0;
-  std::string reason;  // where the bound comes from
+  std::string reason;  // source of the bound
 
-  bool holds() const;  // false for what is not a number
+  bool holds() const;  // false for NaN
 };
 std::string to_string(Relation relation);
 
 class Sheet {
  public:
-  // Everything goes into `folder`, which is created. Throws InvalidInput.
+  // Writes to `folder`, which is created. Throws InvalidInput.
   explicit Sheet(std::filesystem::path folder);
 
   void at_most(std::string what, double value, double bound, std::string unit, std::string reason);
@@ -40,12 +40,12 @@ class Sheet {
   void remark(std::string text) { remarks_.push_back(std::move(text)); }
 
   CsvFile table(const std::string& name, const std::vector<std::string>& columns) const;
-  void keep(const Scene& scene) const;  // as scene NAME.toml beside the data, ready to be run
+  void keep(const Scene& scene) const;  // writes NAME.toml beside the data, ready to run
   template <class Picture>
   void draw(const std::string& name, const std::string& caption, const Picture& picture) {
     draw_by(name, caption, [&](const std::filesystem::path& path) { cli::draw(path, picture); });
   }
-  void draw(const std::string& name, const std::string& caption, MeshPicture picture);  // by draw_meshes()
+  void draw(const std::string& name, const std::string& caption, MeshPicture picture);  // drawn by draw_meshes()
   void draw_by(const std::string& name, const std::string& caption,
                const std::function<void(const std::filesystem::path&)>& write);
 
@@ -53,9 +53,9 @@ class Sheet {
   const std::vector<Measure>& measures() const { return measures_; }
   const std::vector<std::string>& remarks() const { return remarks_; }
   const std::vector<Figure>& figures() const { return figures_; }
-  bool passes() const;  // something was judged, and all of it holds
+  bool passes() const;  // at least one value is judged, and all pass
 
-  // Draws the meshes of all sheets at once; what cannot be drawn becomes a remark. Returns false if stopped.
+  // Draws the meshes of all sheets together; failures become remarks. Returns false if stopped.
   static bool draw_meshes(const std::vector<Sheet*>& sheets, const StopToken& stop);
 
  private:
@@ -64,13 +64,13 @@ class Sheet {
     MeshPicture picture;
   };
 
-  bool can_draw();  // says once that gnuplot is missing
+  bool can_draw();  // reports once that gnuplot is missing
 
   std::filesystem::path folder_;
   std::vector<Measure> measures_;
   std::vector<std::string> remarks_;
   std::vector<Figure> figures_;
-  std::vector<MeshFigure> meshes_;  // to be drawn
+  std::vector<MeshFigure> meshes_;  // pending pictures
   bool told_missing_ = false;
 };
 

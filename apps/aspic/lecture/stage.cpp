@@ -1,4 +1,4 @@
-// Finds the scenes of the lecture and the real mesh, without any path of a machine.
+// Finds the scenes of the lecture and the real mesh, without machine-specific paths.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ double extent_of(const fs::path& path) {
 
 bool holds_tets(const fs::path& path) { return std::holds_alternative<TetMesh>(read_mesh(path)); }
 
-// Tets that fill the surface, made once and stored under a name with surface and size.
+// Fills the surface with tets, once; the stored name contains surface and size.
 fs::path filled(const fs::path& surface, double size, const fs::path& cache) {
   const std::string hash = fingerprint_of_file(surface);
   const fs::path kept =
@@ -55,7 +55,7 @@ fs::path filled(const fs::path& surface, double size, const fs::path& cache) {
   return kept;
 }
 
-// The mesh in the place of the bodies' own ones, one meter large.
+// Overrides that replace the bodies' meshes by this mesh, scaled to one meter.
 std::vector<std::string> overrides_for(const fs::path& mesh) {
   if (mesh.empty()) return {};
   return {"mesh=" + toml_string(mesh.string()), fmt::format("scale={}", 1 / extent_of(mesh))};
@@ -80,7 +80,7 @@ Stage::Stage(const fs::path& mesh, fs::path cache) : scenes_(shipped_file("scene
   if (mesh_.empty() && !surface_.empty()) {
     try {
       mesh_ = filled(surface_, 0, cache_);
-    } catch (const InvalidInput& error) {  // without aspic-mesh
+    } catch (const InvalidInput& error) {  // aspic-mesh is missing
       note_ = std::string(error.what()) + "; ";
     }
   }
@@ -102,19 +102,19 @@ Scene Stage::on_fine_mesh(const std::string& name, int tets, Sheet& sheet) const
   fs::path fine;
   try {
     fine = finer(tets);
-  } catch (const InvalidInput& error) {  // no aspic-mesh, or a surface that it refuses
+  } catch (const InvalidInput& error) {  // aspic-mesh is missing, or it refuses the surface
     sheet.remark(error.what());
   }
   if (!fine.empty()) return load(name, fine, {});
   if (!mesh_.empty()) sheet.remark("the real mesh has fewer tets and no surface is known to fill: a generated ring");
-  // A ring has about 35 tets per cube of its edge length in 0.2 m^3: refine its description until there are enough.
+  // A ring has about 35 tets per cube of its edge length in 0.2 m^3; its description is refined accordingly.
   for (double size = 0.025;; size *= 0.8) {
     Scene scene = load(name, {}, {fmt::format("body.0.shape.torus.size={}", size)});
     if (scene.simulation.model().mesh.tet_count() >= tets) return scene;
   }
 }
 
-// The real mesh where it is fine enough, or its surface filled with smaller tets; empty when there is neither.
+// The real mesh if fine enough, or its surface filled with smaller tets; empty if neither exists.
 fs::path Stage::finer(int tets) const {
   if (mesh_.empty()) return {};
   const TetMesh mesh = read_tet_mesh(mesh_);
@@ -122,7 +122,7 @@ fs::path Stage::finer(int tets) const {
   if (surface_.empty()) return {};
   double volume = 0;
   for (int t = 0; t < mesh.tet_count(); ++t) volume += aspic::volume(mesh, t);
-  // A tet of edge a has the volume a^3 / (6 sqrt 2); meshes have somewhat larger ones for the same target.
+  // A tet of edge a has the volume a^3 / (6 sqrt 2); meshes have slightly larger ones for the same target.
   double size = std::cbrt(volume / tets * 6 * std::sqrt(2.0)) * 0.9;
   for (;; size *= 0.85) {
     const fs::path fine = filled(surface_, size, cache_);

@@ -1,4 +1,4 @@
-// Page 3: a slab of soft tissue in layers is poked.
+// Page 3: a layered slab of soft tissue is poked.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace aspic::cli::lecture {
 namespace {
 
 struct Poke {
-  Vector depth, force, energy;  // [m], [N], [J]; first the slab at rest
+  Vector depth, force, energy;  // [m], [N], [J]; first entry: slab at rest
   Run run;
 };
 
@@ -30,7 +30,7 @@ Poke poke(Simulation& simulation, int steps) {
   result.run = run(simulation, steps, [&](const StepReport& report) {
     const Vector& q = simulation.state().q;
     const Vector g = gradient_of_potential(simulation.model(), q);
-    double force = 0;  // what the indenter presses with: the reaction, downwards
+    double force = 0;  // force of the indenter: the reaction, downward
     for (const int v : indenter.vertices) force -= g[3 * v + 1];
     result.depth.push_back(height - q[y]);
     result.force.push_back(force);
@@ -39,8 +39,8 @@ Poke poke(Simulation& simulation, int steps) {
   return result;
 }
 
-// The largest deviation of dV/d(depth), by central differences, from the force, and the largest that differences of
-// this width may have: a sixth of h^2 F'', twice, as F'' is itself a difference.
+// Largest deviation of dV/d(depth), by central differences, from the force, and its largest truncation error: a sixth
+// of h^2 F'', twice, because F'' is also a difference.
 struct VirtualWork {
   double error = 0, allowed = 0;  // [N]
 };
@@ -55,7 +55,7 @@ VirtualWork virtual_work(const Poke& poke) {
   return worst;
 }
 
-// Mean compression under the indenter of muscle, fat and skin, from below.
+// Mean compression under the indenter of muscle, fat and skin.
 std::array<double, 3> compression(const Model& model, const Vector& q) {
   std::array<double, 4> below{}, height = {0, 0.0125, 0.0275, 0.03};
   std::array<int, 4> count{};
@@ -73,7 +73,7 @@ std::array<double, 3> compression(const Model& model, const Vector& q) {
   return strain;
 }
 
-// Half of the slab, cut through the middle of the indenter.
+// Half of the slab, cut through the center of the indenter.
 TriMesh half_slab(const Model& model, const Vector& q, std::vector<double>& young) {
   TetMesh half{model.mesh.rest, {}, {}};
   std::vector<double> of_tet;

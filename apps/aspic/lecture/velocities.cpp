@@ -1,4 +1,4 @@
-// Pages 36 to 40: the same minimization over velocities.
+// Pages 36 to 40: the same minimization in velocities.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace aspic::cli::lecture {
 namespace {
 
-// Another objective in other units: E / unit, over the same x.
+// Objective in other units: E / unit over the same x.
 class Rescaled : public Objective {
  public:
   Rescaled(Objective& E, double unit) : E_(E), unit_(unit) {}
@@ -53,7 +53,7 @@ Vector position_of(VelocityForm& form, const Vector& v) {
   return {q.begin(), q.end()};
 }
 
-// The largest distance between the iterates of the two forms; infinite when they are not as many.
+// Largest distance between the iterates of the two forms; infinite if their numbers differ.
 double distance(const std::vector<Vector>& q, const std::vector<Vector>& v, VelocityForm& form) {
   if (q.size() != v.size()) return INFINITY;
   double most = 0;
@@ -61,7 +61,7 @@ double distance(const std::vector<Vector>& q, const std::vector<Vector>& v, Velo
   return most;
 }
 
-// E(v) as the slide has it, from its parts.
+// E(v) as on the slide, from its parts.
 double printed_E(const OpenStep& step, const Vector& v) {
   const Vector dv = plus(v, -1, scaled(plus(step.predicted, -1, step.q_t), 1 / step.h));
   return inner(dv, mass_times(step.model(), dv)) / 2 + potential(step.model(), plus(step.q_t, step.h, v));
@@ -94,7 +94,7 @@ void show_velocity_form(const Stage& stage, Sheet& sheet) {
 
   Newton newton_q(make_linear_solver("cholesky")), newton_v(make_linear_solver("cholesky"));
   const auto q = iterates(step.E, newton_q, step.start, 50), v = iterates(form, newton_v, v0, 50);
-  // A gradient is known to its round-off, and so the solution of H d = -g to that over the least eigenvalue of H >= M.
+  // The error of H d = -g is the round-off of the gradient over the smallest eigenvalue of H >= M.
   const double noise = 4 * step.E.scales().gradient_round_off / step.smallest_mass() + 4 * kEpsilon * largest(step.q_t);
   sheet.show("Newton iterations", static_cast<double>(q.size()) - 1, "");
   sheet.at_most("Newton: largest distance between the iterates of both forms", distance(q, v, form), noise, "m",
