@@ -115,10 +115,10 @@ TEST(Scene, BrokenMeshIsRejectedWithDiagnosis) {
 TEST(Scene, LongWorkIsAnnounced) {
   const auto announced = [](const std::string& cells) {
     const TestFolder folder;
-    std::vector<std::string> announced;
+    std::vector<std::string> announcements;
     const std::string text =
         "[[body]]\nname = \"box\"\nshape = { box = { upper = [1, 1, 1], cells = " + cells + " } }\n";
-    load_scene(folder.write("s.toml", text), {.announce = [&](const std::string& what) { announced.push_back(what); }});
+    load_scene(folder.write("s.toml", text), {.announce = [&](const std::string& what) { announcements.push_back(what); }});
     return announced;
   };
   EXPECT_THAT(announced("[2, 2, 2]"), testing::IsEmpty());
