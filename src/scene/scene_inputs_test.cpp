@@ -118,8 +118,9 @@ TEST(Scene, LongWorkIsAnnounced) {
     std::vector<std::string> announcements;
     const std::string text =
         "[[body]]\nname = \"box\"\nshape = { box = { upper = [1, 1, 1], cells = " + cells + " } }\n";
-    load_scene(folder.write("s.toml", text), {.announce = [&](const std::string& what) { announcements.push_back(what); }});
-    return announced;
+    load_scene(folder.write("s.toml", text),
+               {.announce = [&](const std::string& what) { announcements.push_back(what); }});
+    return announcements;
   };
   EXPECT_THAT(announced("[2, 2, 2]"), testing::IsEmpty());
   EXPECT_THAT(announced("[50, 50, 20]"),
