@@ -105,8 +105,8 @@ void check_planes(const Subject& subject, Findings& found) {
                                ", stretch " + std::to_string(row.stretch).substr(0, 3) +
                                (is_turned ? ", planes turned" : "");
       const std::string reason = "half a digit of the table";
-      found.expect(name + ": lateral stretch", pulled.lateral, row.expected.lateral, kHalfDigit, reason);
-      found.expect(name + ": reaction / area", pulled.stress, row.expected.stress, kHalfDigit, reason, "Pa");
+      found.expect(name + ": lateral stretch", {pulled.lateral, row.expected.lateral, kHalfDigit}, reason);
+      found.expect(name + ": reaction / area", {pulled.stress, row.expected.stress, kHalfDigit}, reason, "Pa");
       found.expect_small(name + ": sum of the reactions / pull", pulled.balance, 1e-11, "the solve leaves 1e-13");
     }
   }

@@ -71,11 +71,11 @@ void check_edges(const Subject& subject, Findings& found) {
       if (std::any_of(own.states.begin(), own.states.end(), is_here)) continue;
       const double psi = taken.psi(F);
       if (info.barrier)
-        found.expect(info.name + ", " + name + ": refused with psi = +inf", std::isinf(psi) && psi > 0, 1, 0,
+        found.expect(info.name + ", " + name + ": refused with psi = +inf", {std::isinf(psi) && psi > 0, 1, 0},
                      "yes or no; it is what the formula says, or more than a number can hold");
       else
         found.expect(info.name + ", " + name + ": psi, P and H are finite",
-                     std::isfinite(psi + max_abs(taken.pk1(F).a) + max_abs(taken.hessian(F).a)), 1, 0,
+                     {std::isfinite(psi + max_abs(taken.pk1(F).a) + max_abs(taken.hessian(F).a)), 1, 0},
                      "yes or no; the closest rotation jumps there, so there is no derivative");
     }
   }
@@ -125,7 +125,7 @@ void check_slopes(const Subject& subject, Findings& found) {
                          "where the error h^2 of the difference meets its round-off, 1e-16 / h of psi, which is 1e5 of "
                          "what it changes by where |F| = 2e-3");
       if (!std::isnan(order))
-        orders.expect(info.name + ", " + kind + ": lowest order", order, 2, 0.2,
+        orders.expect(info.name + ", " + kind + ": lowest order", {order, 2, 0.2},
                       "a line fitted over the decades before round-off");
     }
   }

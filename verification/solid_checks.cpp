@@ -92,10 +92,10 @@ void check_sphere(const Subject& subject, Findings& found) {
     }
     const double tolerance = subject.quick ? 0.03 : 1e-3;
     const std::string reason = "what the extrapolation with order 2 leaves: the next term of the error";
-    found.expect(material + ": growth of the outer radius, limit", richardson(outer, 2) - 2, exact.outer - 2,
-                 tolerance * (exact.outer - 2), reason, "m");
-    found.expect(material + ": nominal stress inside / E, limit", richardson(force, 2), exact.force,
-                 tolerance * exact.force, reason);
+    found.expect(material + ": growth of the outer radius, limit",
+                 {richardson(outer, 2) - 2, exact.outer - 2, tolerance * (exact.outer - 2)}, reason, "m");
+    found.expect(material + ": nominal stress inside / E, limit",
+                 {richardson(force, 2), exact.force, tolerance * exact.force}, reason);
   }
 }
 
@@ -143,8 +143,8 @@ void check_half_space(const Subject& subject, Findings& found) {
     for (const int axis : {2, 0}) {
       if (std::abs(exact[axis]) < 1e-9) continue;
       found.expect(std::string(names[k]) + ": displacement along " + (axis == 2 ? "z" : "x") + ", limit",
-                   richardson({by_mesh[0][k][axis], by_mesh[1][k][axis]}, 2), exact[axis],
-                   (subject.quick ? 0.1 : 0.02) * exact[2],
+                   {richardson({by_mesh[0][k][axis], by_mesh[1][k][axis]}, 2), exact[axis],
+                    (subject.quick ? 0.1 : 0.02) * exact[2]},
                    "extrapolated with order 2, 8 or 16 cells from the force: the point load disturbs that order", "m");
     }
   }
@@ -184,8 +184,9 @@ void check_torsion(const Subject& subject, Findings& found) {
   std::vector<double> values;
   for (const int n : subject.quick ? std::vector<int>{3, 6} : std::vector<int>{6, 12})
     values.push_back(torsional_stiffness(n, material, subject.stiffness));
-  found.expect("torque / (G twist a^4), limit", richardson(values, 2), 0.1405770,
-               (subject.quick ? 0.03 : 3e-3) * 0.140577, "what the extrapolation with order 2 leaves");
+  found.expect("torque / (G twist a^4), limit",
+               {richardson(values, 2), 0.1405770, (subject.quick ? 0.03 : 3e-3) * 0.140577},
+               "what the extrapolation with order 2 leaves");
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ Status fit_by_lbfgs(FitRun& run, FitPoint& at, FitGoal& goal) {
                                 .criterion = Criterion::first_gradient,
                                 .line_search = {.tolerance = 1e-6},
                                 .stop = StopToken([&] { return is_done || run.is_stopped(); })};
-  const MinimizeReport report = minimizer.minimize(f, direction, p, f.at_iterate(), options, observe);
+  const MinimizeReport report = minimizer.minimize(f, direction, {p, f.at_iterate()}, options, observe);
   return report.status == Status::interrupted ? ended : report.status;
 }
 

@@ -222,12 +222,12 @@ struct Trajectory::Impl {
   // Adds -mu' dg/drho of inertia, weight and mass-proportional damping.
   void add_density(double f, std::span<double> density) {
     const TetMesh& mesh = model.mesh;
-    for (size_t i = 0; i < moved.size(); ++i) moved[i] = after.q[i] - moved[i];  // q1 - q0 - h v0
+    for (size_t i = 0; i < moved.size(); ++i) moved[i] -= after.q[i];  // q0 + h v0 - q1
     for (size_t k = 0; k < model.damping.size(); ++k)
       for (size_t i = 0; i < moved.size(); ++i)
         if (const double a = damping(k).mass_factor(static_cast<int>(i / 3)); a != 0)
-          moved[i] += options.h * a * (after.q[i] - now.q[i]);
-    add_density_gradient(mesh, model.mass->kind(), mu, moved, -1, density);
+          moved[i] -= options.h * a * (after.q[i] - now.q[i]);
+    add_density_gradient(mesh, model.mass->kind(), mu, moved, density);
     for (int t = 0; t < mesh.tet_count(); ++t) {
       double work = 0;
       for (const int v : mesh.tets[t])

@@ -175,8 +175,8 @@ void expect_hessian_derivatives(const MaterialInfo& info, Definiteness definiten
   const std::vector<double> direction = numbers(bodies.x.size());
   std::vector<double> change = numbers(bodies.parameters.size() * bodies.count());
   std::vector<double> dx(bodies.x.size()), dtheta(change.size());
-  V->add_hessian_derivatives(bodies.x, u, w, definiteness, 1, dx, {});
-  V->add_hessian_derivatives(bodies.x, u, w, definiteness, 1, {}, dtheta);
+  V->add_hessian_derivatives(bodies.x, u, w, definiteness, {.x = dx});
+  V->add_hessian_derivatives(bodies.x, u, w, definiteness, {.parameters = dtheta});
 
   constexpr double kStep = 1e-7;  // so short that no eigenvalue passes the one at which it is raised
   const auto difference = [&](const auto& at) {

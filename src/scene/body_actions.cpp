@@ -341,8 +341,8 @@ void add_damping(PlacedBody& body, size_t index, MassKind kind, SceneFiles& file
 
 }  // namespace
 
-void add_actions(std::vector<PlacedBody>& bodies, const Vec3d& gravity, MassKind mass, SceneFiles& files, Model& model,
-                 std::vector<std::string>& notes) {
+void add_actions(const SceneActions& actions, Model& model) {
+  const auto& [bodies, gravity, mass, files, notes] = actions;
   const double g = norm(gravity);
   Builder builder{bodies, g > 0 ? (-1 / g) * gravity : Vec3d{{0, 1, 0}}, model, notes, {}, {}, 0};
   for (const PlacedBody& body : bodies) add_pins(builder, body);

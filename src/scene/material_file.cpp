@@ -119,7 +119,7 @@ void write_material(const std::filesystem::path& path, const FittedMaterial& mat
     }
   std::vector<Field> model;
   if (!material.model.empty()) model.push_back({kModelField + material.model, 1, {1}, FieldType::int32});
-  write_vtu(path, rest_positions(material.mesh), material.mesh.tets, {}, fields, model);
+  write_vtu(path, rest_positions(material.mesh), material.mesh.tets, {{}, fields, model});
 }
 
 MaterialSampling sampling(const FittedMaterial& material, std::span<const Vec3d> centroids) {

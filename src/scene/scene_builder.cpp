@@ -186,7 +186,7 @@ class SceneBuilder {
       export_moduli(parameters);
     }
     model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind);
-    add_actions(bodies_, source_.document.find("gravity")->vector(), kind, files_, model_, source_.notes);
+    add_actions({bodies_, source_.document.find("gravity")->vector(), kind, files_, source_.notes}, model_);
     for (const PlacedBody& body : bodies_) note_parts(body, model_, source_.notes);
   }
 
